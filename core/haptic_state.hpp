@@ -1,0 +1,49 @@
+#pragma once
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <type_traits>
+namespace tapstudy::core {
+using Vec3 = Eigen::Vector3d;
+
+// Two frames, both right-handed, in metres.
+//   Device frame: origin at the middle of the workspace; +x right, +y up, +z towards the
+//   participant. Devices report and receive in it.
+//   Plate frame: origin at the middle of the plate's upper face; +x right, +y away from the
+//   participant, +z out of the plate. The model, the contact and tapping points live in it.
+// core/placement.hpp goes from one to the other.
+
+// What the device reported this tick, or the same seen in the plate frame.
+struct HandState {
+  Vec3 position_m{Vec3::Zero()};
+  Vec3 velocity_m_s{Vec3::Zero()};
+};
+enum class TickFault : std::uint8_t { none, device_read, device_write, non_finite_force };
+
+// The parts of the force on the finger along the outward normal of the plate, before the limiter.
+struct ForceParts {
+  double penalty_n{0.0};    // paper eq. 1
+  double vibration_n{0.0};  // paper eq. 17
+  double sinusoid_n{0.0};   // paper section 5.2.3
+  double total_n() const noexcept { return penalty_n + vibration_n + sinusoid_n; }  // eq. 18
+};
+
+// One row of the trace; plain bytes so it can cross the ring buffer without allocating.
+// Vectors are in the device frame; force_n is what was written to the device, after the limiter.
+struct TraceSample {
+  std::int64_t t_ns;
+  std::array<double, 3> position_m;
+  std::array<double, 3> velocity_m_s;
+  double penetration_m;
+  double penalty_n;
+  double vibration_n;
+  double sinusoid_n;
+  std::array<double, 3> force_n;
+  std::uint8_t alternative;  // which of the trial's alternatives was rendered
+  bool touching;
+  bool struck;     // an impact: the tick in which the plate was excited
+  bool saturated;  // the limiter changed the force
+  TickFault fault;
+};
+static_assert(std::is_trivially_copyable_v<TraceSample>);
+}  // namespace tapstudy::core

@@ -1,0 +1,89 @@
+#include "core/model/box_outline.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+namespace tapstudy::core {
+namespace {
+using Corners = std::array<int, 4>;
+
+// Corner k has x high if bit 0 is set, y high for bit 1, z high for bit 2. Each face once around.
+constexpr std::array<Corners, 6> corner_loops{Corners{0, 4, 6, 2}, Corners{1, 3, 7, 5},
+                                              Corners{0, 1, 5, 4}, Corners{2, 6, 7, 3},
+                                              Corners{0, 2, 3, 1}, Corners{4, 5, 7, 6}};
+
+Vec3 corner(const Box& box, int k) {
+  const auto bits = static_cast<unsigned>(k);
+  return {(bits & 1U) != 0U ? box.high_m().x() : box.low_m().x(),
+          (bits & 2U) != 0U ? box.high_m().y() : box.low_m().y(),
+          (bits & 4U) != 0U ? box.high_m().z() : box.low_m().z()};
+}
+
+// 0 where p is at the start of the edge, 1 at its end, nothing off the edge.
+double along_edge(const Vec3& p, const Vec3& from, const Vec3& to, double tolerance_m) {
+  const Vec3 edge = to - from;
+  const double t = (p - from).dot(edge) / edge.squaredNorm();
+  const bool is_on_edge = (from + t * edge - p).norm() <= tolerance_m;
+  return is_on_edge ? t : -1.0;
+}
+
+std::vector<int> points_on_edge(const std::vector<Vec3>& points, int from, int to,
+                                double tolerance_m) {
+  const auto place = [&](int i) {
+    return along_edge(points.at(static_cast<std::size_t>(i)),
+                      points.at(static_cast<std::size_t>(from)),
+                      points.at(static_cast<std::size_t>(to)), tolerance_m);
+  };
+  std::vector<int> found;
+  for (int i = 8; i < static_cast<int>(points.size()); ++i) {
+    if (place(i) > 0.0 && place(i) < 1.0) {
+      found.push_back(i);
+    }
+  }
+  std::ranges::sort(found, {}, place);
+  return found;
+}
+
+BoxOutline::Side side_of(const std::vector<Vec3>& points, const Corners& corners,
+                         double tolerance_m) {
+  const auto point = [&](int i) { return points.at(static_cast<std::size_t>(i)); };
+  BoxOutline::Side side;
+  for (std::size_t k = 0; k < corners.size(); ++k) {
+    const int from = corners.at(k);
+    const int to = corners.at((k + 1) % corners.size());
+    side.loop.push_back(from);
+    const std::vector<int> between = points_on_edge(points, from, to, tolerance_m);
+    side.loop.insert(side.loop.end(), between.begin(), between.end());
+  }
+  const Vec3 u = point(corners[1]) - point(corners[0]);
+  const Vec3 v = point(corners[3]) - point(corners[0]);
+  const Vec3 normal = u.cross(v).normalized();
+  for (int i = 8; i < static_cast<int>(points.size()); ++i) {
+    const bool is_in_plane = std::abs(normal.dot(point(i) - point(corners[0]))) <= tolerance_m;
+    if (is_in_plane && std::ranges::find(side.loop, i) == side.loop.end()) {
+      side.inside.push_back(i);
+    }
+  }
+  return side;
+}
+}  // namespace
+
+BoxOutline outline(const Box& box, const std::vector<Vec3>& points_m) {
+  const double tolerance_m = 1e-9 * box.size_m.norm();
+  BoxOutline result;
+  for (int k = 0; k < 8; ++k) {
+    result.points_m.push_back(corner(box, k));
+  }
+  for (const Vec3& point : points_m) {
+    const bool is_new = std::ranges::none_of(
+        result.points_m, [&](const Vec3& other) { return (other - point).norm() <= tolerance_m; });
+    if (is_new) {
+      result.points_m.push_back(point);
+    }
+  }
+  for (std::size_t i = 0; i < result.sides.size(); ++i) {
+    result.sides.at(i) = side_of(result.points_m, corner_loops.at(i), tolerance_m);
+  }
+  return result;
+}
+}  // namespace tapstudy::core

@@ -1,0 +1,30 @@
+#pragma once
+#include "core/haptic_state.hpp"
+namespace tapstudy::core {
+// Where the plate lies in the device's workspace. Along the normal, plate and device agree 1 : 1,
+// so that speed of impact and penetration are physical; sideways one metre of plate is
+// `lateral_scale` metres of device, because a plate is wide and a workspace is a few centimetres.
+//   plate x = device x / scale,  plate y = -device z / scale,  plate z = device y,
+// all relative to `origin_m`, the place of the plate frame's origin in the device frame.
+// Forces turn with the frames and keep their size.
+struct Placement {
+  Vec3 origin_m{Vec3::Zero()};
+  double lateral_scale{1.0};  // > 0
+
+  HandState to_plate(const HandState& hand) const noexcept {
+    return {lengths_to_plate(hand.position_m - origin_m), lengths_to_plate(hand.velocity_m_s)};
+  }
+  Vec3 point_to_device(const Vec3& plate_point_m) const noexcept {
+    return origin_m + Vec3{lateral_scale * plate_point_m.x(), plate_point_m.z(),
+                           -lateral_scale * plate_point_m.y()};
+  }
+  static Vec3 force_to_device(const Vec3& plate_force_n) noexcept {
+    return {plate_force_n.x(), plate_force_n.z(), -plate_force_n.y()};
+  }
+
+ private:
+  Vec3 lengths_to_plate(const Vec3& device) const noexcept {
+    return {device.x() / lateral_scale, -device.z() / lateral_scale, device.y()};
+  }
+};
+}  // namespace tapstudy::core

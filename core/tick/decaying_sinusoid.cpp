@@ -1,0 +1,23 @@
+#include "core/tick/decaying_sinusoid.hpp"
+
+#include <cmath>
+#include <numbers>
+namespace tapstudy::core {
+namespace {
+constexpr double silent_exponent = 30.0;  // e^-30 of the amplitude is below any device's resolution
+}
+
+void DecayingSinusoid::strike(double speed_m_s) noexcept {
+  amplitude_n_ = shape_.amplitude_n_s_per_m * speed_m_s;
+  age_s_ = 0.0;
+}
+
+double DecayingSinusoid::force_n() const noexcept {
+  const double exponent = shape_.decay_per_s * age_s_;
+  if (amplitude_n_ == 0.0 || exponent > silent_exponent) {
+    return 0.0;
+  }
+  return amplitude_n_ * std::exp(-exponent) *
+         std::sin(2.0 * std::numbers::pi * shape_.frequency_hz * age_s_);
+}
+}  // namespace tapstudy::core

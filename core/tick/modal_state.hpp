@@ -1,0 +1,35 @@
+#pragma once
+#include <Eigen/Core>
+
+#include "core/haptic_state.hpp"
+#include "core/model/modal_model.hpp"
+#include "core/tick/oscillator_step.hpp"
+#include "core/tick/surface_locator.hpp"
+namespace tapstudy::core {
+// The moving half of a plate: one displacement and one velocity a mode (paper eq. 11). The model
+// must outlive it. The constructor allocates; nothing else does.
+class ModalState {
+ public:
+  ModalState(const ModalModel& model, Integrator integrator, double dt_s);
+
+  // From now on the plate is touched here, along this outward normal (plate frame, unit length).
+  void touch(const SurfacePoint& point, const Vec3& normal) noexcept;
+  // An impulse at the touched point along the normal, outwards positive [N s]: each mode's velocity
+  // jumps by its share P' p (paper eq. 11, 15).
+  void strike(double impulse_n_s) noexcept;
+  void tick() noexcept;
+  void reset() noexcept;
+
+  // Of the touched point, along the normal, outwards positive (paper eq. 16, 17).
+  double displacement_m() const noexcept;
+  double velocity_m_s() const noexcept;
+  // Of the whole plate: kinetic plus elastic.
+  double energy_j() const noexcept;
+
+ private:
+  const ModalModel* model_;
+  Eigen::ArrayXd qq_, qv_, vq_, vv_;  // OscillatorStep, one a mode
+  Eigen::ArrayXd displacement_, velocity_, next_;
+  Eigen::ArrayXd touched_;  // the touched point's displacement along the normal, per mode
+};
+}  // namespace tapstudy::core

@@ -1,0 +1,49 @@
+#include "device/simulated_hand.hpp"
+
+#include <cmath>
+namespace tapstudy::device {
+namespace {
+core::OscillatorStep muscle_step(const HandBody& body, double dt_s) noexcept {
+  const double omega = std::sqrt(body.muscle_stiffness_n_per_m / body.mass_kg);
+  const double ratio = body.muscle_damping_n_s_per_m / (2.0 * body.mass_kg * omega);
+  return core::exact_step(omega, ratio, dt_s);
+}
+}  // namespace
+
+SimulatedHand::SimulatedHand(const HandBody& body, double dt_s, double memory_s)
+    : body_{body}, dt_s_{dt_s}, step_{muscle_step(body, dt_s)} {
+  felt_.reserve(static_cast<std::size_t>(std::ceil(memory_s / dt_s)));
+}
+
+void SimulatedHand::follow(TapPath path) {
+  path_ = std::move(path);
+  ticks_ = 0;
+  if (!has_started_) {
+    const Target start = path_.at(0.0);
+    hand_ = {start.position_m, start.velocity_m_s};
+    has_started_ = true;
+  }
+}
+
+Io SimulatedHand::read(core::HandState& hand) noexcept {
+  hand = hand_;
+  return Io::ok;
+}
+
+Io SimulatedHand::write(const core::Vec3& force_n) noexcept {
+  if (felt_.size() < felt_.capacity()) {
+    felt_.push_back({hand_, force_n});
+  }
+  // In coordinates that move with the aim the force is a displaced point of rest.
+  const Target now = path_.at(static_cast<double>(ticks_) * dt_s_);
+  const Target next = path_.at(static_cast<double>(++ticks_) * dt_s_);
+  const core::Vec3 drift_m_s = (next.position_m - now.position_m) / dt_s_;
+  const core::Vec3 rest_m = force_n / body_.muscle_stiffness_n_per_m;
+  const core::Vec3 offset_m = hand_.position_m - now.position_m - rest_m;
+  const core::Vec3 relative_m_s = hand_.velocity_m_s - drift_m_s;
+  hand_.position_m =
+      next.position_m + rest_m + step_.qq * offset_m + step_.qv * relative_m_s;
+  hand_.velocity_m_s = drift_m_s + step_.vq * offset_m + step_.vv * relative_m_s;
+  return Io::ok;
+}
+}  // namespace tapstudy::device

@@ -1,0 +1,49 @@
+#pragma once
+#include <vector>
+
+#include "core/tick/oscillator_step.hpp"
+#include "device/device.hpp"
+#include "device/tap_path.hpp"
+namespace tapstudy::device {
+// Finger, grip and device as one mass on a muscle's spring and damper.
+struct HandBody {
+  double mass_kg{0.1};
+  double muscle_stiffness_n_per_m{400.0};
+  double muscle_damping_n_s_per_m{9.0};
+};
+
+// What a hand knows of one tick: where it was and the force it was given. Nothing about the plate.
+struct FeltTick {
+  core::HandState hand;
+  core::Vec3 force_n;
+};
+
+// A hand that taps by itself and is pushed back by the force it is given: m x'' = k (a - x) +
+// b (a' - x') + f, with the muscle's aim a from a TapPath; between ticks f, a and a' are held, and
+// the motion is exact. A device like any other, for studies without hardware.
+class SimulatedHand final : public Device {
+ public:
+  // Remembers what it felt for up to memory_s seconds.
+  SimulatedHand(const HandBody& body, double dt_s, double memory_s);
+
+  // Starts a new series of taps at the time of the next read. The first call puts the hand where
+  // the path starts; later ones leave it where it is.
+  void follow(TapPath path);
+  const std::vector<FeltTick>& felt() const noexcept { return felt_; }
+  void forget() noexcept { felt_.clear(); }
+
+  Io read(core::HandState& hand) noexcept override;
+  Io write(const core::Vec3& force_n) noexcept override;
+  std::string description() const override { return "simulated hand"; }
+
+ private:
+  HandBody body_;
+  double dt_s_;
+  core::OscillatorStep step_;
+  TapPath path_{{}};
+  std::int64_t ticks_{0};
+  bool has_started_{false};
+  core::HandState hand_;
+  std::vector<FeltTick> felt_;
+};
+}  // namespace tapstudy::device

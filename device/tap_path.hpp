@@ -1,0 +1,36 @@
+#pragma once
+#include <vector>
+
+#include "core/haptic_state.hpp"
+namespace tapstudy::device {
+// One voluntary tap: where, how fast, how deep the muscle aims, how long it stays. Device frame;
+// taps go down (-y).
+struct PlannedTap {
+  core::Vec3 point_m{core::Vec3::Zero()};  // on the surface
+  double speed_m_s{0.3};                   // > 0
+  double hover_m{0.02};                    // starts and ends this high above the surface
+  double run_up_m{0.01};                   // of these, to gather speed; 0: at speed from the start
+  double press_m{0.004};                   // the muscle's aim below the surface
+  double dwell_s{0.2};
+  double pause_s{0.3};  // after lifting, while moving to the next point
+};
+
+struct Target {
+  core::Vec3 position_m{core::Vec3::Zero()};
+  core::Vec3 velocity_m_s{core::Vec3::Zero()};
+};
+
+// Where the muscle aims during a series of taps: down at constant speed after a constant
+// acceleration, dwell, lift and travel to the next point along a minimum-jerk path (Flash & Hogan
+// 1985). After the last tap the aim rests above its point.
+class TapPath {
+ public:
+  explicit TapPath(std::vector<PlannedTap> taps);
+  Target at(double t_s) const noexcept;
+  double duration_s() const noexcept { return starts_s_.back(); }
+
+ private:
+  std::vector<PlannedTap> taps_;
+  std::vector<double> starts_s_;  // of each tap, and the end
+};
+}  // namespace tapstudy::device

@@ -1,0 +1,31 @@
+#pragma once
+#include <cstdint>
+namespace tapstudy::device {
+using Nanoseconds = std::int64_t;
+
+// The loop's only view of time.
+class TickClock {
+ public:
+  virtual ~TickClock() = default;
+  virtual Nanoseconds now() noexcept = 0;
+  // Returns the time it woke at, which is never before the deadline.
+  virtual Nanoseconds wait_until(Nanoseconds deadline) noexcept = 0;
+};
+
+// Real time: CLOCK_MONOTONIC with absolute deadlines, so that lateness does not add up.
+class MonotonicClock final : public TickClock {
+ public:
+  Nanoseconds now() noexcept override;
+  Nanoseconds wait_until(Nanoseconds deadline) noexcept override;
+};
+
+// Time that passes as fast as the loop computes.
+class VirtualClock final : public TickClock {
+ public:
+  Nanoseconds now() noexcept override { return now_; }
+  Nanoseconds wait_until(Nanoseconds deadline) noexcept override { return now_ = deadline; }
+
+ private:
+  Nanoseconds now_{0};
+};
+}  // namespace tapstudy::device

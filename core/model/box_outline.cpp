@@ -7,16 +7,17 @@ namespace tapstudy::core {
 namespace {
 using Corners = std::array<int, 4>;
 
-// Corner k has x high if bit 0 is set, y high for bit 1, z high for bit 2. Each face once around.
-constexpr std::array<Corners, 6> corner_loops{Corners{0, 4, 6, 2}, Corners{1, 3, 7, 5},
-                                              Corners{0, 1, 5, 4}, Corners{2, 6, 7, 3},
-                                              Corners{0, 2, 3, 1}, Corners{4, 5, 7, 6}};
+// Corners 0 to 3 once around the bottom, 4 to 7 above them. TetGen's mesh depends on the order of
+// points and faces, so the order is part of what makes a study repeatable.
+constexpr std::array<Corners, 6> corner_loops{Corners{0, 1, 2, 3}, Corners{4, 5, 6, 7},
+                                              Corners{0, 1, 5, 4}, Corners{1, 2, 6, 5},
+                                              Corners{2, 3, 7, 6}, Corners{3, 0, 4, 7}};
 
 Vec3 corner(const Box& box, int k) {
-  const auto bits = static_cast<unsigned>(k);
-  return {(bits & 1U) != 0U ? box.high_m().x() : box.low_m().x(),
-          (bits & 2U) != 0U ? box.high_m().y() : box.low_m().y(),
-          (bits & 4U) != 0U ? box.high_m().z() : box.low_m().z()};
+  const int around = k % 4;
+  return {around == 1 || around == 2 ? box.high_m().x() : box.low_m().x(),
+          around >= 2 ? box.high_m().y() : box.low_m().y(),
+          k >= 4 ? box.high_m().z() : box.low_m().z()};
 }
 
 // 0 where p is at the start of the edge, 1 at its end, nothing off the edge.

@@ -52,12 +52,13 @@ void fill_facet(tetgenio::facet& facet, const BoxOutline::Side& side) {
   }
 }
 
-void fill(tetgenio& in, const BoxOutline& outline) {
+// Points go in relative to the box's low corner, and come out the same way.
+void fill(tetgenio& in, const BoxOutline& outline, const Vec3& low_m) {
   in.firstnumber = 0;
   in.numberofpoints = static_cast<int>(outline.points_m.size());
   in.pointlist = new REAL[3 * outline.points_m.size()];
   for (std::size_t i = 0; i < outline.points_m.size(); ++i) {
-    std::ranges::copy(outline.points_m[i], in.pointlist + 3 * i);
+    Eigen::Map<Vec3>{in.pointlist + 3 * i} = outline.points_m[i] - low_m;
   }
   in.numberoffacets = static_cast<int>(outline.sides.size());
   in.facetlist = new tetgenio::facet[outline.sides.size()];
@@ -98,9 +99,10 @@ void find_surface(TetMesh& mesh) {
   }
 }
 
-TetMesh mesh_from(const tetgenio& out) {
+TetMesh mesh_from(const tetgenio& out, const Vec3& low_m) {
   TetMesh mesh;
   mesh.nodes_m = Eigen::Map<const decltype(mesh.nodes_m)>(out.pointlist, out.numberofpoints, 3);
+  mesh.nodes_m.rowwise() += low_m.transpose();
   mesh.tets =
       Eigen::Map<const decltype(mesh.tets)>(out.tetrahedronlist, out.numberoftetrahedra, 4);
   make_volumes_positive(mesh);
@@ -121,13 +123,13 @@ TetMesh mesh_box(const Box& box, const MeshSize& size, const std::vector<Vec3>& 
   check_count(box, size);
   tetgenio in;
   tetgenio out;
-  fill(in, outline(box, points_m));
+  fill(in, outline(box, points_m), box.low_m());
   std::string switches = tetgen_switches(size);
   try {
     tetrahedralize(switches.data(), &in, &out);
   } catch (int code) {
     throw ModelError{fmt::format("mesh: TetGen gave up on the plate with code {}", code)};
   }
-  return mesh_from(out);
+  return mesh_from(out, box.low_m());
 }
 }  // namespace tapstudy::core

@@ -1,0 +1,34 @@
+#pragma once
+#include <set>
+#include <string>
+#include <vector>
+namespace tapstudy::protocols {
+// Everything that is wrong with one file, gathered so that a researcher sees it all at once; and
+// every key that was asked for, so that the schema can be held against the reader.
+class Problems {
+ public:
+  explicit Problems(std::string file) : file_{std::move(file)} {}
+  // line and column count from 0.
+  void add(int line, int column, const std::string& key_path, const std::string& what);
+  // Throws InvalidInput with one line a problem, `file:line:column: key.path: what`, in the order
+  // of the file, if there are any.
+  void throw_if_any() const;
+
+  void asked_for(std::string key_path) { asked_.insert(std::move(key_path)); }
+  // `*` stands for any name, `[]` for any place in a list.
+  const std::set<std::string>& asked() const { return asked_; }
+
+ private:
+  struct Problem {
+    int line;
+    int column;
+    std::string text;
+  };
+  std::string file_;
+  std::vector<Problem> problems_;
+  std::set<std::string> asked_;
+};
+
+// " (did you mean 'x'?)" for the closest of the allowed words, or nothing if none is close.
+std::string did_you_mean(const std::string& word, const std::vector<std::string>& allowed);
+}  // namespace tapstudy::protocols

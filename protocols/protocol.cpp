@@ -1,0 +1,30 @@
+#include "protocols/protocol.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "core/error.hpp"
+namespace tapstudy::protocols {
+namespace {
+template <class Item>
+const Item& named(const std::vector<Item>& items, const std::string& name, const char* kind) {
+  const auto found = std::ranges::find(items, name, &Item::name);
+  if (found != items.end()) {
+    return *found;
+  }
+  std::vector<std::string> names;
+  std::ranges::transform(items, std::back_inserter(names), &Item::name);
+  throw core::InvalidInput{
+      fmt::format("{} '{}' is not in the protocol (it has: {})", kind, name, fmt::join(names, ", "))};
+}
+}  // namespace
+
+const Stimulus& Protocol::stimulus(const std::string& name) const {
+  return named(stimuli, name, "stimulus");
+}
+const Block& Protocol::block(const std::string& name) const {
+  return named(blocks, name, "block");
+}
+}  // namespace tapstudy::protocols

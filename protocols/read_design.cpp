@@ -1,0 +1,152 @@
+// Tapping points, stimuli, blocks and hypotheses: the experimental design.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "protocols/read_sections.hpp"
+namespace tapstudy::protocols {
+namespace {
+using Presence = MapReader::Presence;
+
+std::vector<std::string> technique_names() {
+  std::vector<std::string> names;
+  for (const core::Technique& technique : core::techniques) {
+    names.emplace_back(technique.name);
+  }
+  return names;
+}
+
+void read_points(MapReader& top, Protocol& protocol) {
+  top.each_point("tapping_points_m", Presence::required,
+                 [&](const std::string& name, const Eigen::Vector2d& at_m) {
+                   protocol.tapping_points_m[name] = at_m;
+                 });
+}
+
+// Reports split accuracy by factors, so every stimulus has a level of each.
+void check_factors(MapReader& reader, const Stimulus& stimulus, const Protocol& protocol) {
+  if (protocol.stimuli.empty()) {
+    return;
+  }
+  const Stimulus& first = protocol.stimuli.front();
+  if (keys_of(first.factors) != keys_of(stimulus.factors)) {
+    reader.reject("factors",
+                  fmt::format("are not those of stimulus '{}': all stimuli have the same factors",
+                              first.name));
+  }
+}
+
+void check_sinusoid(MapReader& reader, const Stimulus& stimulus, const Protocol& protocol) {
+  if (stimulus.technique != nullptr && stimulus.technique->sinusoid &&
+      !(protocol.rendering.sinusoid.amplitude_n_s_per_m > 0.0)) {
+    reader.reject("technique", fmt::format("'{}' needs rendering.sinusoid with an amplitude above 0",
+                                           stimulus.technique->name));
+  }
+}
+
+Block read_block(MapReader& reader, const Protocol& protocol) {
+  Block block;
+  block.name = reader.text("name");
+  block.task = reader.one_of<Task>(
+      "task", {{"identification", Task::identification}, {"choice", Task::choice}});
+  block.question = reader.text("question");
+  block.stimuli = reader.words("stimuli", "stimulus", stimulus_names(protocol));
+  if (block.task == Task::identification) {
+    block.responses =
+        reader.words("responses", "stimulus", stimulus_names(protocol), block.stimuli);
+  }
+  block.repetitions = reader.integer("repetitions", 1, 1000, 1);
+  block.order = reader.one_of<Order>("order",
+                                     {{"shuffle", Order::shuffle},
+                                      {"listed", Order::listed},
+                                      {"shuffle_within_repetition",
+                                       Order::shuffle_within_repetition},
+                                      {"williams", Order::williams}},
+                                     "shuffle");
+  block.is_practice = reader.yes_or_no("practice", false);
+  return block;
+}
+
+void check_block(MapReader& reader, const Block& block, const Protocol& protocol) {
+  if (std::ranges::find(protocol.blocks, block.name, &Block::name) != protocol.blocks.end()) {
+    reader.reject("name", fmt::format("'{}' is the name of an earlier block", block.name));
+  }
+  if (block.task == Task::choice && block.stimuli.size() < 2) {
+    reader.reject("stimuli", "a choice needs at least two stimuli to choose from");
+  }
+  if (block.task == Task::identification && block.responses.size() < 2) {
+    reader.reject("responses", "an identification needs at least two possible answers");
+  }
+  if (block.stimuli.size() > 26) {
+    reader.reject("stimuli", "a block has at most 26 stimuli");
+  }
+  for (const std::string& stimulus : block.stimuli) {
+    const bool can_be_answered =
+        block.task == Task::choice ||
+        std::ranges::find(block.responses, stimulus) != block.responses.end();
+    if (!can_be_answered) {
+      reader.reject("responses", fmt::format("'{}' is presented but cannot be answered", stimulus));
+    }
+  }
+}
+}  // namespace
+
+std::vector<std::string> stimulus_names(const Protocol& protocol) {
+  std::vector<std::string> names;
+  std::ranges::transform(protocol.stimuli, std::back_inserter(names), &Stimulus::name);
+  return names;
+}
+
+void read_stimuli(MapReader& top, Protocol& protocol) {
+  read_points(top, protocol);
+  top.each("stimuli", Presence::required, [&](const std::string& name, MapReader& reader) {
+    Stimulus stimulus;
+    stimulus.name = name;
+    stimulus.label = reader.text("label", name);
+    stimulus.plate = reader.word("plate", "plate", keys_of(protocol.plates));
+    stimulus.material = reader.word("material", "material", keys_of(protocol.materials));
+    stimulus.technique =
+        core::find_technique(reader.word("technique", "technique", technique_names()));
+    reader.each_text("factors", Presence::optional,
+                     [&](const std::string& factor, const std::string& level) {
+                       stimulus.factors[factor] = level;
+                     });
+    check_factors(reader, stimulus, protocol);
+    check_sinusoid(reader, stimulus, protocol);
+    protocol.stimuli.push_back(stimulus);
+  });
+}
+
+void read_blocks(MapReader& top, Protocol& protocol) {
+  top.list("blocks", Presence::optional, [&](MapReader& reader) {
+    const Block block = read_block(reader, protocol);
+    check_block(reader, block, protocol);
+    protocol.blocks.push_back(block);
+  });
+}
+
+void read_hypotheses(MapReader& top, Protocol& protocol) {
+  std::vector<std::string> blocks;
+  std::ranges::transform(protocol.blocks, std::back_inserter(blocks), &Block::name);
+  top.list("hypotheses", Presence::optional, [&](MapReader& reader) {
+    Hypothesis hypothesis;
+    hypothesis.name = reader.text("name");
+    hypothesis.statement = reader.text("statement");
+    hypothesis.block = reader.word("block", "block", blocks);
+    hypothesis.claim =
+        reader.one_of<Claim>("claim", {{"accuracy_above_chance", Claim::accuracy_above_chance},
+                                       {"chosen_above_chance", Claim::chosen_above_chance}});
+    const auto block = std::ranges::find(protocol.blocks, hypothesis.block, &Block::name);
+    const bool is_choice = block != protocol.blocks.end() && block->task == Task::choice;
+    if (hypothesis.claim == Claim::chosen_above_chance) {
+      hypothesis.stimulus = reader.word("stimulus", "stimulus of the block",
+                                        is_choice ? block->stimuli : stimulus_names(protocol));
+    }
+    if (block != protocol.blocks.end() &&
+        is_choice != (hypothesis.claim == Claim::chosen_above_chance)) {
+      reader.reject("claim", "does not fit the task of the block");
+    }
+    protocol.hypotheses.push_back(hypothesis);
+  });
+}
+}  // namespace tapstudy::protocols

@@ -1,0 +1,28 @@
+#pragma once
+#include <functional>
+
+#include "protocols/protocol.hpp"
+#include "protocols/yaml_reader.hpp"
+namespace tapstudy::protocols {
+// The sections of a protocol, each reading its part of the file into its part of the Protocol.
+// Sections that name things of other sections are read after them.
+void read_rendering(MapReader& top, Protocol& protocol);
+void read_placement(MapReader& top, MapReader::Presence presence,
+                    const std::function<void(const core::Placement&)>& take);
+void read_materials(MapReader& top, Protocol& protocol);
+void read_plates(MapReader& top, Protocol& protocol);
+void read_stimuli(MapReader& top, Protocol& protocol);
+void read_blocks(MapReader& top, Protocol& protocol);
+void read_hypotheses(MapReader& top, Protocol& protocol);
+void read_simulation(MapReader& top, Protocol& protocol);
+
+std::vector<std::string> stimulus_names(const Protocol& protocol);
+template <class Value>
+std::vector<std::string> keys_of(const std::map<std::string, Value>& named) {
+  std::vector<std::string> keys;
+  for (const auto& [key, value] : named) {
+    keys.push_back(key);
+  }
+  return keys;
+}
+}  // namespace tapstudy::protocols

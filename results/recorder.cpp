@@ -1,0 +1,63 @@
+#include "results/recorder.hpp"
+
+#include <chrono>
+namespace tapstudy::results {
+namespace {
+constexpr std::chrono::milliseconds drain_every{5};
+}
+
+Recorder::Recorder(Store& store)
+    : store_{store}, thread_{[this](const std::stop_token& stop) { run(stop); }} {}
+
+Recorder::~Recorder() {
+  thread_.request_stop();
+  arrived_.notify_all();
+}
+
+std::future<void> Recorder::save(TrialRecord record) {
+  Parcel parcel{std::move(record), {}};
+  std::future<void> saved = parcel.saved.get_future();
+  {
+    const std::lock_guard lock{mutex_};
+    parcels_.push_back(std::move(parcel));
+  }
+  arrived_.notify_all();
+  return saved;
+}
+
+void Recorder::follow(TraceCollector& collector) {
+  const std::lock_guard lock{mutex_};
+  followed_ = &collector;
+}
+
+void Recorder::leave() {
+  const std::lock_guard lock{mutex_};
+  followed_ = nullptr;
+}
+
+void Recorder::write(Parcel& parcel) {
+  try {
+    store_.add_trial(parcel.record);
+    parcel.saved.set_value();
+  } catch (...) {  // whatever it is, it belongs to the one who waits for the trial
+    parcel.saved.set_exception(std::current_exception());
+  }
+}
+
+void Recorder::run(const std::stop_token& stop) {
+  std::unique_lock lock{mutex_};
+  while (!stop.stop_requested() || !parcels_.empty()) {
+    arrived_.wait_for(lock, stop, drain_every, [this] { return !parcels_.empty(); });
+    if (followed_ != nullptr) {
+      followed_->drain();
+    }
+    while (!parcels_.empty()) {
+      Parcel parcel = std::move(parcels_.front());
+      parcels_.pop_front();
+      lock.unlock();
+      write(parcel);
+      lock.lock();
+    }
+  }
+}
+}  // namespace tapstudy::results

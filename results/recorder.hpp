@@ -1,0 +1,43 @@
+#pragma once
+#include <condition_variable>
+#include <deque>
+#include <future>
+#include <mutex>
+#include <stop_token>
+#include <thread>
+
+#include "results/store.hpp"
+#include "results/trace_collector.hpp"
+namespace tapstudy::results {
+// The thread that alone writes to the store. During a live trial it also empties the haptic
+// thread's ring, so that the loop never waits for the disk.
+class Recorder {
+ public:
+  explicit Recorder(Store& store);
+  ~Recorder();  // saves what was handed in, then stops
+  Recorder(const Recorder&) = delete;
+  Recorder& operator=(const Recorder&) = delete;
+
+  // Ready when the trial is in the database for good; carries the StoreError if it is not.
+  std::future<void> save(TrialRecord record);
+
+  // Drains the collector every few milliseconds, until leave() returns.
+  void follow(TraceCollector& collector);
+  void leave();
+
+ private:
+  void run(const std::stop_token& stop);
+  struct Parcel {
+    TrialRecord record;
+    std::promise<void> saved;
+  };
+  void write(Parcel& parcel);
+
+  Store& store_;
+  std::mutex mutex_;
+  std::condition_variable_any arrived_;
+  std::deque<Parcel> parcels_;
+  TraceCollector* followed_{nullptr};
+  std::jthread thread_;
+};
+}  // namespace tapstudy::results

@@ -1,0 +1,118 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+namespace tapstudy::results {
+// What a study directory holds, as plain rows. Names and units are those of the SQL columns.
+
+// Simulated and pilot sessions never enter the report of a real study unless asked for.
+enum class Mode { real, pilot, simulated };
+std::string to_text(Mode mode);
+Mode mode_from(const std::string& text);
+
+struct StudyRow {
+  std::string title;
+  std::string protocol_file;
+  std::string protocol_text;
+  std::string protocol_sha256;
+};
+
+// One visit of one participant. Stored before the first trial, with all that its repetition takes.
+struct SessionRow {
+  std::int64_t id{};
+  std::string participant_id;
+  int participant_index{};  // from 0, among all of the study; counterbalancing goes by it
+  Mode mode{Mode::real};
+  std::uint64_t seed{};
+  std::string planned_order;                 // one line a trial
+  std::optional<std::int64_t> resumes{};  // the session that it goes on with
+  double rate_hz{};
+  std::string rig_text;
+  std::string device;
+  std::string scheduler;
+  std::string program_version;
+  std::string git_hash;
+  std::string compiler;
+  std::string started_utc;
+};
+
+struct AlternativeRow {
+  int position{};     // from 0
+  std::string label;  // what the participant saw instead of a name; empty in identification
+  std::string stimulus;
+};
+struct ResponseRow {
+  std::string response;                            // a stimulus's name
+  std::optional<bool> is_correct;                  // identification only
+  double response_time_s{};                        // from the start of the trial
+  std::optional<double> time_from_first_contact_s;  // nothing if the plate was never touched
+};
+struct EventRow {
+  double t_s{};            // from the first tick of the trial
+  std::string kind;        // contact, impact, release, switch
+  double value{};          // impact: speed m/s; switch: position of the alternative; else 0
+};
+struct TraceChunk {
+  std::int64_t first_tick{};
+  std::int64_t ticks{};
+  std::vector<std::byte> bytes;  // trace_codec.hpp
+};
+struct TickStatisticsRow {
+  std::int64_t ticks{};
+  std::int64_t late{};
+  std::int64_t skipped{};
+  std::int64_t saturated{};
+  std::int64_t dropped_samples{};
+  double worst_lateness_s{};
+  std::string fault;  // empty: none
+};
+struct TrialRow {
+  std::int64_t session_id{};
+  int number{};      // in the planned order, from 1
+  int attempt{1};    // an interrupted trial that is repeated has a second
+  std::string block;
+  std::string task;  // identification, choice
+  bool is_practice{};
+  int repetition{};
+  std::string status;  // answered, interrupted
+  double duration_s{};
+};
+
+// A trial with all that belongs to it: stored whole or not at all.
+struct TrialRecord {
+  TrialRow trial;
+  std::vector<AlternativeRow> alternatives;
+  std::optional<ResponseRow> response;
+  std::vector<EventRow> events;
+  std::vector<TraceChunk> trace;
+  TickStatisticsRow statistics;
+};
+
+// An answered trial, as analysis wants it.
+struct AnswerRow {
+  std::string participant_id;
+  Mode mode{};
+  std::string block;
+  std::string task;
+  bool is_practice{};
+  int number{};
+  std::string stimulus;  // identification: presented; choice: empty
+  std::string response;
+  double response_time_s{};
+  std::int64_t ticks{};
+  std::int64_t late{};
+  std::int64_t skipped{};
+  std::int64_t dropped_samples{};
+};
+
+// How long and how often each alternative of a choice was tried.
+struct VisitRow {
+  std::string participant_id;
+  std::string block;
+  std::string stimulus;
+  int visits{};
+  double dwell_s{};
+};
+}  // namespace tapstudy::results

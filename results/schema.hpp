@@ -1,0 +1,92 @@
+#pragma once
+namespace tapstudy::results {
+// PRAGMA application_id of a study's database ("taps") and PRAGMA user_version of its schema.
+inline constexpr int application_id = 0x74617073;
+inline constexpr int schema_version = 1;
+
+inline constexpr const char* schema_sql = R"sql(
+CREATE TABLE study (
+  id INTEGER PRIMARY KEY CHECK (id = 1),
+  title TEXT NOT NULL,
+  protocol_file TEXT NOT NULL,
+  protocol_text TEXT NOT NULL,
+  protocol_sha256 TEXT NOT NULL,
+  created_utc TEXT NOT NULL
+) STRICT;
+CREATE TABLE participant (
+  participant_id TEXT PRIMARY KEY,
+  participant_index INTEGER NOT NULL UNIQUE
+) STRICT;
+CREATE TABLE session (
+  session_id INTEGER PRIMARY KEY,
+  participant_id TEXT NOT NULL REFERENCES participant,
+  mode TEXT NOT NULL CHECK (mode IN ('real', 'pilot', 'simulated')),
+  seed TEXT NOT NULL,               -- unsigned 64 bit, decimal
+  planned_order TEXT NOT NULL,
+  resumes INTEGER REFERENCES session,
+  rate_hz REAL NOT NULL,
+  rig_text TEXT NOT NULL,
+  device TEXT NOT NULL,
+  scheduler TEXT NOT NULL,
+  program_version TEXT NOT NULL,
+  git_hash TEXT NOT NULL,
+  compiler TEXT NOT NULL,
+  started_utc TEXT NOT NULL
+) STRICT;
+CREATE TABLE trial (
+  trial_id INTEGER PRIMARY KEY,
+  session_id INTEGER NOT NULL REFERENCES session,
+  number INTEGER NOT NULL,
+  attempt INTEGER NOT NULL,
+  block TEXT NOT NULL,
+  task TEXT NOT NULL CHECK (task IN ('identification', 'choice')),
+  is_practice INTEGER NOT NULL,
+  repetition INTEGER NOT NULL,
+  status TEXT NOT NULL CHECK (status IN ('answered', 'interrupted')),
+  duration_s REAL NOT NULL,
+  UNIQUE (session_id, number, attempt)
+) STRICT;
+CREATE TABLE alternative (
+  trial_id INTEGER NOT NULL REFERENCES trial,
+  position INTEGER NOT NULL,
+  label TEXT NOT NULL,
+  stimulus TEXT NOT NULL,
+  PRIMARY KEY (trial_id, position)
+) STRICT;
+CREATE TABLE response (
+  response_id INTEGER PRIMARY KEY,
+  trial_id INTEGER NOT NULL REFERENCES trial,
+  response TEXT NOT NULL,
+  is_correct INTEGER,
+  response_time_s REAL NOT NULL,
+  time_from_first_contact_s REAL,
+  supersedes INTEGER UNIQUE REFERENCES response  -- a correction names what it corrects
+) STRICT;
+CREATE INDEX response_of_trial ON response (trial_id);
+CREATE TABLE event (
+  trial_id INTEGER NOT NULL REFERENCES trial,
+  t_s REAL NOT NULL,
+  kind TEXT NOT NULL,
+  value REAL NOT NULL
+) STRICT;
+CREATE INDEX event_of_trial ON event (trial_id);
+CREATE TABLE trace_chunk (
+  trial_id INTEGER NOT NULL REFERENCES trial,
+  first_tick INTEGER NOT NULL,
+  ticks INTEGER NOT NULL,
+  codec TEXT NOT NULL,
+  bytes BLOB NOT NULL,
+  PRIMARY KEY (trial_id, first_tick)
+) STRICT;
+CREATE TABLE tick_statistics (
+  trial_id INTEGER PRIMARY KEY REFERENCES trial,
+  ticks INTEGER NOT NULL,
+  late INTEGER NOT NULL,
+  skipped INTEGER NOT NULL,
+  saturated INTEGER NOT NULL,
+  dropped_samples INTEGER NOT NULL,
+  worst_lateness_s REAL NOT NULL,
+  fault TEXT NOT NULL
+) STRICT;
+)sql";
+}  // namespace tapstudy::results

@@ -1,0 +1,61 @@
+#include "results/trace_collector.hpp"
+
+#include <utility>
+
+#include "results/trace_codec.hpp"
+namespace tapstudy::results {
+namespace {
+constexpr std::size_t ticks_per_chunk = 4096;
+}
+
+void TraceCollector::drain() {
+  core::TraceSample sample{};
+  while (ring_->try_pop(sample)) {
+    note_events(sample);
+    pending_.push_back(sample);
+    if (pending_.size() == ticks_per_chunk) {
+      pack();
+    }
+  }
+}
+
+void TraceCollector::note_events(const core::TraceSample& sample) {
+  const double t_s = 1e-9 * static_cast<double>(sample.t_ns);
+  const auto note = [&](const char* kind, double value) {
+    collected_.events.push_back({t_s, kind, value});
+  };
+  if (!has_previous_ || sample.alternative != previous_.alternative) {
+    note("switch", sample.alternative);
+  }
+  if (sample.touching && !previous_.touching) {
+    note("contact", 0.0);
+  }
+  if (sample.struck) {
+    note("impact", -sample.velocity_m_s[1]);  // the plate's normal is the device's y axis
+  }
+  if (!sample.touching && previous_.touching) {
+    note("release", 0.0);
+  }
+  collected_.duration_s = t_s;
+  previous_ = sample;
+  has_previous_ = true;
+}
+
+void TraceCollector::pack() {
+  if (pending_.empty()) {
+    return;
+  }
+  const auto ticks = static_cast<std::int64_t>(pending_.size());
+  collected_.chunks.push_back({collected_.ticks, ticks, encode_trace(pending_)});
+  collected_.ticks += ticks;
+  pending_.clear();
+}
+
+TraceCollector::Collected TraceCollector::finish() {
+  drain();
+  pack();
+  has_previous_ = false;
+  previous_ = {};
+  return std::exchange(collected_, {});
+}
+}  // namespace tapstudy::results

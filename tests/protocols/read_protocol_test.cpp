@@ -1,0 +1,96 @@
+#include "protocols/read_protocol.hpp"
+
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <string>
+
+#include "core/error.hpp"
+#include "support/texts.hpp"
+using namespace tapstudy;
+using Catch::Matchers::Contains;
+using testing::replaced;
+
+namespace {
+std::string refusal(const std::string& text) {
+  try {
+    protocols::parse_protocol(text, "study.yaml");
+  } catch (const core::InvalidInput& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+std::string discrimination() {
+  return testing::contents(testing::shipped("paper/discrimination.yaml"));
+}
+}  // namespace
+
+TEST_CASE("every shipped protocol can be read", "[protocols]") {
+  for (const auto& entry :
+       std::filesystem::directory_iterator{testing::shipped("paper")}) {
+    if (entry.path().extension() == ".yaml") {
+      INFO(entry.path().string());
+      CHECK_NOTHROW(protocols::read_protocol(entry.path().string()));
+    }
+  }
+}
+
+TEST_CASE("an unknown key is refused with its place and the key that was meant", "[protocols]") {
+  const std::string text =
+      replaced(discrimination(), "  penalty_stiffness_n_per_m:", "  penalty_stifness_n_per_m:");
+  CHECK_THAT(refusal(text), Contains("study.yaml:19:3: rendering.penalty_stifness_n_per_m: is not "
+                                     "a known key"));
+  CHECK_THAT(refusal(text), Contains("did you mean 'penalty_stiffness_n_per_m'?"));
+  CHECK_THAT(refusal(text), Contains("rendering.penalty_stiffness_n_per_m: is missing"));
+}
+
+TEST_CASE("all that is wrong is said at once, in the order of the file", "[protocols]") {
+  std::string text = replaced(discrimination(), "mass_kg: 0.058", "mass_kg: heavy");
+  text = replaced(text, "poissons_ratio: 0.35", "poissons_ratio: 0.5");
+  text = replaced(text, "plate: two_fixations", "plate: two_fixation");
+  const std::string said = refusal(text);
+  CHECK_THAT(said, Contains("finger.mass_kg: 'heavy' is not a number"));
+  CHECK_THAT(said, Contains("materials.acrylic.poissons_ratio: 0.5 is not allowed (greater than -1 "
+                            "and less than 0.5)"));
+  CHECK_THAT(said, Contains("stimuli.acrylic_two.plate: 'two_fixation' is not a known plate"));
+  CHECK(said.find("mass_kg") < said.find("poissons_ratio"));
+  CHECK(said.find("poissons_ratio") < said.find("two_fixation"));
+}
+
+TEST_CASE("what makes no sense as a study is refused", "[protocols]") {
+  struct Case {
+    const char* from;
+    const char* to;
+    const char* said;
+  };
+  const auto [from, to, said] = GENERATE(values<Case>({
+      {"rate_hz: 1000", "rate_hz: .nan", "rendering.rate_hz: nan is not allowed"},
+      {"rate_hz: 1000", "rate_hz: 1e999", "rendering.rate_hz"},
+      {"rate_hz: 1000", "rate_hz: 500", "rendering.band_limit_hz: is not below half of rate_hz"},
+      {"repetitions: 2", "repetitions: 0", "blocks[0].repetitions: 0 is not allowed"},
+      {"repetitions: 2", "repetitions: 2.5", "blocks[0].repetitions: '2.5' is not a whole number"},
+      {"size_m: [0.6, 0.6, 0.05]", "size_m: [0.6, 0.6]", "is not a list of 3 numbers"},
+      {"size_m: [0.6, 0.6, 0.05]", "size_m: [0.6, -1, 0.05]", "size_m[1]: -1 is not allowed"},
+      {"factors: {structure: two, material: mdf}", "factors: {structure: two}",
+       "stimuli.mdf_two.factors: are not those of stimulus 'acrylic_two'"},
+      {"technique: fem", "technique: fem+sinusoid", "needs rendering.sinusoid"},
+      {"technique: fem", "technique: fern", "did you mean 'fem'?"},
+      {"stimuli: [acrylic_two, mdf_two,", "stimuli: [acrylic_two, acrylic_two,",
+       "blocks[0].stimuli[1]: 'acrylic_two' is listed twice"},
+      {"claim: accuracy_above_chance", "claim: chosen_above_chance", "does not fit the task"},
+      {"title: Structure", "title: A\ntitle: Structure", "title: is there twice"},
+      {"format: tapstudy/1", "format: tapstudy/9", "'tapstudy/9' is not a known format"},
+      {"blocks:\n  - name", "blocks:\n  name", "not YAML"},
+      {"finger:\n", "finger: soft\nfinger2:\n", "finger: 'soft' is not a mapping"},
+  }));
+  INFO(from << " → " << to);
+  CHECK_THAT(refusal(replaced(discrimination(), from, to)), Contains(said));
+}
+
+TEST_CASE("a file that is not there, empty or no text is refused", "[protocols]") {
+  CHECK_THROWS_AS(protocols::read_protocol("/nowhere/study.yaml"), core::InvalidInput);
+  CHECK_THROWS_AS(protocols::read_protocol("/tmp"), core::InvalidInput);
+  CHECK_THAT(refusal(""), Contains("study.yaml:1:1"));
+  CHECK_THAT(refusal("[1, 2]"), Contains("study.yaml:1:1"));
+  CHECK_THAT(refusal("{a: b"), Contains("not YAML"));
+  CHECK_THAT(refusal(std::string{"\0\1\2\xff", 4}), Contains("study.yaml"));
+}

@@ -1,0 +1,39 @@
+#include "support/texts.hpp"
+
+#include <unistd.h>
+
+#include <catch2/catch.hpp>
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+namespace tapstudy::testing {
+namespace fs = std::filesystem;
+
+std::string contents(const fs::path& file) {
+  std::ifstream stream{file, std::ios::binary};
+  INFO(file.string());
+  REQUIRE(stream.good());
+  return {std::istreambuf_iterator<char>{stream}, {}};
+}
+
+fs::path shipped(const std::string& name) {
+  return fs::path{TAPSTUDY_SOURCE_DIR} / "protocols" / name;
+}
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  const auto at = text.find(from);
+  INFO("looking for: " << from);
+  REQUIRE(at != std::string::npos);
+  return text.replace(at, from.size(), to);
+}
+
+TempDirectory::TempDirectory() {
+  std::string name = (fs::temp_directory_path() / "tapstudy_XXXXXX").string();
+  REQUIRE(mkdtemp(name.data()) != nullptr);
+  path_ = name;
+}
+TempDirectory::~TempDirectory() {
+  std::error_code ignored;
+  fs::remove_all(path_, ignored);
+}
+}  // namespace tapstudy::testing

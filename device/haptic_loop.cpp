@@ -103,7 +103,7 @@ core::TraceSample HapticLoop::tick(Nanoseconds now) noexcept {
   sample.force_n = as_array(limited.force_n);
   sample.touching = rendered.contact.touching;
   sample.struck = rendered.contact.struck;
-  sample.saturated = limited.force_n != wanted_n;
+  sample.saturated = limited.was_changed;
   return sample;
 }
 }  // namespace tapstudy::device

@@ -15,14 +15,15 @@ SimulatedHand::SimulatedHand(const HandBody& body, double dt_s, double memory_s)
   felt_.reserve(static_cast<std::size_t>(std::ceil(memory_s / dt_s)));
 }
 
-void SimulatedHand::follow(TapPath path) {
-  path_ = std::move(path);
+double SimulatedHand::follow(std::vector<PlannedTap> taps) {
+  path_ = TapPath{std::move(taps), has_started_ ? std::optional{hand_.position_m} : std::nullopt};
   ticks_ = 0;
   if (!has_started_) {
     const Target start = path_.at(0.0);
     hand_ = {start.position_m, start.velocity_m_s};
     has_started_ = true;
   }
+  return path_.duration_s();
 }
 
 Io SimulatedHand::read(core::HandState& hand) noexcept {

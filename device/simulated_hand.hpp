@@ -26,9 +26,9 @@ class SimulatedHand final : public Device {
   // Remembers what it felt for up to memory_s seconds.
   SimulatedHand(const HandBody& body, double dt_s, double memory_s);
 
-  // Starts a new series of taps at the time of the next read. The first call puts the hand where
-  // the path starts; later ones leave it where it is.
-  void follow(TapPath path);
+  // Starts a new series of taps at the next tick and returns how long it takes. The first call puts
+  // the hand above the first point, at speed if there is no run-up; later ones let it travel there.
+  double follow(std::vector<PlannedTap> taps);
   const std::vector<FeltTick>& felt() const noexcept { return felt_; }
   void forget() noexcept { felt_.clear(); }
 

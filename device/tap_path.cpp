@@ -7,6 +7,9 @@ namespace {
 using core::Vec3;
 const Vec3 up{0.0, 1.0, 0.0};
 
+Vec3 above(const PlannedTap& tap) noexcept {
+  return tap.point_m + tap.hover_m * up;
+}
 double run_up_s(const PlannedTap& tap) noexcept {
   return 2.0 * tap.run_up_m / tap.speed_m_s;
 }
@@ -34,7 +37,9 @@ Target travelling(const Vec3& from, const Vec3& to, double t_s, double duration_
 }
 }  // namespace
 
-TapPath::TapPath(std::vector<PlannedTap> taps) : taps_{std::move(taps)}, starts_s_{0.0} {
+TapPath::TapPath(std::vector<PlannedTap> taps, std::optional<Vec3> from_m)
+    : taps_{std::move(taps)}, from_m_{std::move(from_m)} {
+  starts_s_.push_back(from_m_ && !taps_.empty() ? taps_.front().pause_s : 0.0);
   for (const PlannedTap& tap : taps_) {
     starts_s_.push_back(starts_s_.back() + duration_of(tap));
   }
@@ -43,6 +48,9 @@ TapPath::TapPath(std::vector<PlannedTap> taps) : taps_{std::move(taps)}, starts_
 Target TapPath::at(double t_s) const noexcept {
   if (taps_.empty()) {
     return {};
+  }
+  if (t_s < starts_s_.front()) {
+    return travelling(*from_m_, above(taps_.front()), t_s, starts_s_.front());
   }
   const auto next = std::upper_bound(starts_s_.begin(), starts_s_.end() - 1, t_s);
   const auto index = static_cast<std::size_t>(std::max<std::ptrdiff_t>(
@@ -58,7 +66,6 @@ Target TapPath::at(double t_s) const noexcept {
     return {pressed, Vec3::Zero()};
   }
   const PlannedTap& following = taps_[std::min(index + 1, taps_.size() - 1)];
-  return travelling(pressed, following.point_m + following.hover_m * up, left_s - tap.dwell_s,
-                    tap.pause_s);
+  return travelling(pressed, above(following), left_s - tap.dwell_s, tap.pause_s);
 }
 }  // namespace tapstudy::device

@@ -1,4 +1,5 @@
 #pragma once
+#include <optional>
 #include <vector>
 
 #include "core/haptic_state.hpp"
@@ -25,12 +26,14 @@ struct Target {
 // 1985). After the last tap the aim rests above its point.
 class TapPath {
  public:
-  explicit TapPath(std::vector<PlannedTap> taps);
+  // From where the hand is, if it is somewhere already; else it starts above the first point.
+  explicit TapPath(std::vector<PlannedTap> taps, std::optional<core::Vec3> from_m = {});
   Target at(double t_s) const noexcept;
   double duration_s() const noexcept { return starts_s_.back(); }
 
  private:
   std::vector<PlannedTap> taps_;
+  std::optional<core::Vec3> from_m_;
   std::vector<double> starts_s_;  // of each tap, and the end
 };
 }  // namespace tapstudy::device

@@ -1,0 +1,103 @@
+#include "analysis/confusion_matrix.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <functional>
+#include <numeric>
+
+#include "core/error.hpp"
+namespace tapstudy::analysis {
+namespace {
+std::size_t place_of(const std::vector<Item>& items, const std::string& name, const char* kind) {
+  const auto found = std::ranges::find(items, name, &Item::name);
+  if (found == items.end()) {
+    throw core::InvalidInput{fmt::format("{} '{}' is not part of this matrix", kind, name)};
+  }
+  return static_cast<std::size_t>(found - items.begin());
+}
+
+using Agrees = std::function<bool(const Item& stimulus, const Item& response)>;
+
+Proportion counted(const ConfusionMatrix& matrix, const Agrees& is_success, const Agrees& counts) {
+  Proportion proportion;
+  for (std::size_t i = 0; i < matrix.stimuli.size(); ++i) {
+    for (std::size_t j = 0; j < matrix.responses.size(); ++j) {
+      if (!counts(matrix.stimuli[i], matrix.responses[j])) {
+        continue;
+      }
+      const int n = matrix.counts[i][j];
+      proportion.trials += n;
+      proportion.successes += is_success(matrix.stimuli[i], matrix.responses[j]) ? n : 0;
+    }
+  }
+  return proportion;
+}
+
+bool always(const Item& /*stimulus*/, const Item& /*response*/) {
+  return true;
+}
+
+Agrees same_level(const std::string& factor) {
+  return [factor](const Item& stimulus, const Item& response) {
+    return stimulus.factors.at(factor) == response.factors.at(factor);
+  };
+}
+}  // namespace
+
+ConfusionMatrix::ConfusionMatrix(std::vector<Item> of_stimuli, std::vector<Item> of_responses)
+    : stimuli{std::move(of_stimuli)},
+      responses{std::move(of_responses)},
+      counts(stimuli.size(), std::vector<int>(responses.size(), 0)) {}
+
+void ConfusionMatrix::add(const std::string& stimulus, const std::string& response, int times) {
+  counts.at(place_of(stimuli, stimulus, "stimulus"))
+      .at(place_of(responses, response, "response")) += times;
+}
+
+int ConfusionMatrix::row_total(std::size_t stimulus) const {
+  return std::accumulate(counts.at(stimulus).begin(), counts.at(stimulus).end(), 0);
+}
+
+int ConfusionMatrix::total() const {
+  int sum = 0;
+  for (std::size_t i = 0; i < stimuli.size(); ++i) {
+    sum += row_total(i);
+  }
+  return sum;
+}
+
+Proportion overall_accuracy(const ConfusionMatrix& matrix) {
+  return counted(
+      matrix,
+      [](const Item& stimulus, const Item& response) { return stimulus.name == response.name; },
+      always);
+}
+
+Proportion factor_accuracy(const ConfusionMatrix& matrix, const std::string& factor) {
+  return counted(matrix, same_level(factor), always);
+}
+
+Proportion conditional_accuracy(const ConfusionMatrix& matrix, const std::string& factor,
+                                const std::string& given) {
+  return counted(matrix, same_level(factor), same_level(given));
+}
+
+std::vector<std::string> factors_of(const ConfusionMatrix& matrix) {
+  std::vector<std::string> names;
+  if (matrix.stimuli.empty()) {
+    return names;
+  }
+  for (const auto& [factor, level] : matrix.stimuli.front().factors) {
+    const bool is_everywhere =
+        std::ranges::all_of(matrix.stimuli,
+                            [&](const Item& item) { return item.factors.contains(factor); }) &&
+        std::ranges::all_of(matrix.responses,
+                            [&](const Item& item) { return item.factors.contains(factor); });
+    if (is_everywhere) {
+      names.push_back(factor);
+    }
+  }
+  return names;
+}
+}  // namespace tapstudy::analysis

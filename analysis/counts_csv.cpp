@@ -1,0 +1,133 @@
+#include "analysis/counts_csv.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <set>
+
+#include "core/error.hpp"
+namespace tapstudy::analysis {
+namespace {
+struct Line {
+  int number;
+  std::vector<std::string> cells;
+};
+
+[[noreturn]] void refuse(const std::string& file, int line, const std::string& what) {
+  throw core::InvalidInput{fmt::format("{}:{}: {}", file, line, what)};
+}
+
+std::string trimmed(const std::string& text) {
+  const auto first = text.find_first_not_of(" \t\r\"");
+  const auto last = text.find_last_not_of(" \t\r\"");
+  return first == std::string::npos ? "" : text.substr(first, last - first + 1);
+}
+
+std::vector<std::string> split(const std::string& line) {
+  std::vector<std::string> cells;
+  std::size_t start = 0;
+  for (std::size_t comma = 0; comma != std::string::npos; start = comma + 1) {
+    comma = line.find(',', start);
+    cells.push_back(trimmed(line.substr(start, comma - start)));
+  }
+  return cells;
+}
+
+std::vector<Line> read_lines(std::istream& text, const std::string& file) {
+  std::vector<Line> lines;
+  int number = 0;
+  for (std::string line; std::getline(text, line);) {
+    ++number;
+    if (trimmed(line).empty() || line.front() == '#') {
+      continue;
+    }
+    lines.push_back({number, split(line)});
+    if (lines.back().cells.size() != lines.front().cells.size()) {
+      refuse(file, number, fmt::format("has {} cells, the header has {}",
+                                       lines.back().cells.size(), lines.front().cells.size()));
+    }
+  }
+  if (lines.size() < 2 || lines.front().cells.front() != "stimulus") {
+    refuse(file, lines.empty() ? 1 : lines.front().number,
+           "is not a table with a header that starts with 'stimulus' and at least one row");
+  }
+  return lines;
+}
+
+int count_in(const std::string& cell, const std::string& file, int line) {
+  int value{};
+  const char* const end = cell.data() + cell.size();
+  const auto [stopped, error] = std::from_chars(cell.data(), end, value);
+  if (error != std::errc{} || stopped != end || value < 0) {
+    refuse(file, line, fmt::format("'{}' is not a count", cell));
+  }
+  return value;
+}
+
+ConfusionMatrix from_answers(const std::vector<Line>& lines) {
+  std::set<std::string> names;
+  for (std::size_t i = 1; i < lines.size(); ++i) {
+    names.insert({lines[i].cells[0], lines[i].cells[1]});
+  }
+  std::vector<Item> items;
+  for (const std::string& name : names) {
+    items.push_back({name, name, {}});
+  }
+  ConfusionMatrix matrix{items, items};
+  for (std::size_t i = 1; i < lines.size(); ++i) {
+    matrix.add(lines[i].cells[0], lines[i].cells[1]);
+  }
+  return matrix;
+}
+
+ConfusionMatrix from_matrix(const std::vector<Line>& lines, const std::string& file) {
+  const std::vector<std::string>& header = lines.front().cells;
+  std::vector<Item> stimuli;
+  for (std::size_t i = 1; i < lines.size(); ++i) {
+    const std::string& name = lines[i].cells[0];
+    if (std::ranges::find(stimuli, name, &Item::name) != stimuli.end()) {
+      refuse(file, lines[i].number, fmt::format("stimulus '{}' is there twice", name));
+    }
+    stimuli.push_back({name, name, {}});
+  }
+  std::vector<Item> responses;
+  for (std::size_t column = 1; column < header.size(); ++column) {
+    if (std::ranges::find(stimuli, header[column], &Item::name) != stimuli.end()) {
+      responses.push_back({header[column], header[column], {}});
+      continue;
+    }
+    for (std::size_t i = 0; i < stimuli.size(); ++i) {
+      stimuli[i].factors[header[column]] = lines[i + 1].cells[column];
+    }
+  }
+  if (responses.size() < 2) {
+    refuse(file, lines.front().number, "names fewer than two of the stimuli as responses");
+  }
+  for (Item& response : responses) {
+    response.factors = std::ranges::find(stimuli, response.name, &Item::name)->factors;
+  }
+  ConfusionMatrix matrix{stimuli, responses};
+  for (std::size_t i = 1; i < lines.size(); ++i) {
+    for (std::size_t column = 1; column < header.size(); ++column) {
+      if (std::ranges::find(responses, header[column], &Item::name) != responses.end()) {
+        matrix.add(lines[i].cells[0], header[column],
+                   count_in(lines[i].cells[column], file, lines[i].number));
+      }
+    }
+  }
+  return matrix;
+}
+}  // namespace
+
+ConfusionMatrix read_counts(std::istream& text, const std::string& file) {
+  const std::vector<Line> lines = read_lines(text, file);
+  const std::vector<std::string>& header = lines.front().cells;
+  const bool is_answers = header.size() >= 2 && header[1] == "response";
+  ConfusionMatrix matrix = is_answers ? from_answers(lines) : from_matrix(lines, file);
+  if (matrix.total() == 0) {
+    refuse(file, lines.front().number, "holds no answers");
+  }
+  return matrix;
+}
+}  // namespace tapstudy::analysis

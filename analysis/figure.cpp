@@ -1,0 +1,96 @@
+#include "analysis/figure.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <sstream>
+
+#include "core/error.hpp"
+namespace tapstudy::analysis {
+namespace {
+constexpr int panel_width = 360;
+constexpr int panel_height = 220;
+
+struct Span {
+  double low{0.0};
+  double high{0.0};
+};
+
+Span y_span(const Figure& figure) {
+  Span span;
+  for (const Panel& panel : figure.panels) {
+    for (const Series& series : panel.series) {
+      const auto [low, high] = std::ranges::minmax(series.y);
+      span = {std::min(span.low, low), std::max(span.high, high)};
+    }
+  }
+  const double margin = 0.05 * std::max(span.high - span.low, 1e-12);
+  return {span.low - margin, span.high + margin};
+}
+
+// gnuplot reads '' inside a single-quoted text as one quote and knows no other escape.
+std::string quoted(const std::string& text) {
+  std::string safe{"'"};
+  for (const char c : text) {
+    safe += c == '\'' ? std::string{"''"} : std::string{c};
+  }
+  return safe + "'";
+}
+
+void write_panel(std::ostream& script, const Panel& panel, std::size_t index) {
+  for (std::size_t i = 0; i < panel.series.size(); ++i) {
+    const Series& series = panel.series[i];
+    script << fmt::format("$data_{}_{} << END\n", index, i);
+    for (std::size_t k = 0; k < series.x.size(); ++k) {
+      script << fmt::format("{:.9g} {:.9g}\n", series.x[k], series.y[k]);
+    }
+    script << "END\n";
+  }
+  script << "set title " << quoted(panel.title) << " noenhanced\nplot ";
+  for (std::size_t i = 0; i < panel.series.size(); ++i) {
+    script << (i == 0 ? "" : ", ")
+           << fmt::format("$data_{}_{} with lines lw 1.5 title ", index, i)
+           << quoted(panel.series[i].label);
+  }
+  script << '\n';
+}
+
+std::string gnuplot_script(const Figure& figure, const std::string& file) {
+  const std::size_t rows = (figure.panels.size() + figure.columns - 1) / figure.columns;
+  const Span span = y_span(figure);
+  std::ostringstream script;
+  script << fmt::format("set terminal svg size {},{} font 'sans,11' background 'white'\n",
+                        static_cast<std::size_t>(panel_width) * figure.columns,
+                        panel_height * rows + 40)
+         << "set output " << quoted(file) << "\nset grid\nset key top right\n"
+         << "set xlabel " << quoted(figure.x_label) << "\nset ylabel " << quoted(figure.y_label)
+         << fmt::format("\nset yrange [{:.9g}:{:.9g}]\n", span.low, span.high)
+         << fmt::format("set multiplot layout {},{} title ", rows, figure.columns)
+         << quoted(figure.title) << '\n';
+  for (std::size_t i = 0; i < figure.panels.size(); ++i) {
+    write_panel(script, figure.panels[i], i);
+  }
+  script << "unset multiplot\n";
+  return script.str();
+}
+
+void run_gnuplot(const std::string& script) {
+  FILE* const gnuplot = popen("gnuplot 2>/dev/null", "w");
+  const bool is_written =
+      gnuplot != nullptr && std::fwrite(script.data(), 1, script.size(), gnuplot) == script.size();
+  if (gnuplot == nullptr || pclose(gnuplot) != 0 || !is_written) {
+    throw core::InvalidInput{"figures need gnuplot, which is not installed or failed"};
+  }
+}
+}  // namespace
+
+void draw_svg(const Figure& figure, const std::string& file) {
+  if (std::filesystem::exists(file)) {
+    throw core::InvalidInput{file + ": exists already and is not overwritten"};
+  }
+  run_gnuplot(gnuplot_script(figure, file));
+}
+}  // namespace tapstudy::analysis

@@ -1,0 +1,32 @@
+#pragma once
+#include <vector>
+namespace tapstudy::analysis {
+struct Interval {
+  double low{};
+  double high{};
+};
+
+// k successes in n trials.
+struct Proportion {
+  int successes{};
+  int trials{};
+  double value() const { return static_cast<double>(successes) / trials; }  // trials > 0
+};
+
+// The 95 % score interval of a proportion (Wilson 1927). trials > 0.
+Interval wilson_interval(const Proportion& proportion);
+
+// P(X >= k) for X binomial(n, chance): the exact one-sided test of "more often than chance".
+double binomial_p_at_least(const Proportion& observed, double chance);
+
+// The exact multinomial test of equal probabilities; outcomes no more probable than the one
+// observed count against it. At most a few dozen observations and a handful of classes: every
+// outcome is enumerated. counts not empty, none negative.
+double exact_multinomial_p(const std::vector<int>& counts);
+
+// The fewest successes in n trials that are significant at alpha against chance, one-sided; n + 1
+// if none is.
+int critical_successes(int trials, double chance, double alpha);
+// The probability of reaching them when the true proportion is `truth`.
+double binomial_power(int trials, double chance, double alpha, double truth);
+}  // namespace tapstudy::analysis

@@ -1,0 +1,20 @@
+#pragma once
+namespace tapstudy::analysis {
+inline constexpr const char* html_style = R"css(
+body{font:16px/1.5 system-ui,sans-serif;color:#1b2733;max-width:60rem;margin:2rem auto;padding:0 1rem}
+h1{font-size:1.6rem}h2{font-size:1.2rem;margin-top:2rem}h3{font-size:1rem;margin:1.5rem 0 .3rem}
+.simulated{background:#fff3cd;border-left:.3rem solid #d39e00;padding:.5rem 1rem}
+table{border-collapse:collapse}caption{text-align:left;color:#567;font-size:.85rem;padding-bottom:.4rem}
+.matrix th{font-weight:500;padding:.4rem .7rem;text-align:right}.matrix thead th{text-align:center;max-width:9rem}
+.matrix td{width:7rem;height:4rem;text-align:center;border:2px solid #fff}
+.matrix td b{display:block;font-size:1.2rem}.matrix td span{font-size:.8rem;opacity:.85}
+.matrix td.correct{outline:2px solid #1b2733;outline-offset:-3px}
+.matrix .total{width:3rem;color:#567;text-align:center}
+.accuracy th{font-weight:500;text-align:left;padding:.2rem 1rem .2rem 0}.accuracy td{padding:.2rem 1rem .2rem 0}
+.dot{width:200px;height:16px}.dot .axis{stroke:#cdd6df}.dot .chance{stroke:#b0413e;stroke-dasharray:3 2}
+.dot .interval{stroke:#08519c;stroke-width:2}.dot circle{fill:#08519c}
+.note,.provenance{font-size:.85rem;color:#567}.provenance th{text-align:left;font-weight:500;padding-right:1rem;vertical-align:top}
+.provenance td{word-break:break-all}.notes{white-space:pre-line}
+@media print{body{margin:0}.matrix td,.simulated{print-color-adjust:exact;-webkit-print-color-adjust:exact}}
+)css";
+}  // namespace tapstudy::analysis

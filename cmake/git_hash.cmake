@@ -1,0 +1,20 @@
+# Writes OUTPUT with the commit of SOURCE_DIR; leaves the file alone if nothing has changed.
+execute_process(COMMAND git rev-parse --short=12 HEAD WORKING_DIRECTORY ${SOURCE_DIR}
+  OUTPUT_VARIABLE hash OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET RESULT_VARIABLE failed)
+if(failed)
+  set(hash "unknown")
+else()
+  execute_process(COMMAND git status --porcelain --untracked-files=no
+    WORKING_DIRECTORY ${SOURCE_DIR} OUTPUT_VARIABLE changes ERROR_QUIET)
+  if(changes)
+    string(APPEND hash "+changes")
+  endif()
+endif()
+set(text "#pragma once\n#define TAPSTUDY_GIT_HASH \"${hash}\"\n")
+set(present "")
+if(EXISTS ${OUTPUT})
+  file(READ ${OUTPUT} present)
+endif()
+if(NOT present STREQUAL text)
+  file(WRITE ${OUTPUT} "${text}")
+endif()

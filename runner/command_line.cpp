@@ -1,0 +1,32 @@
+#include "runner/command_line.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+
+#include "core/error.hpp"
+#include "runner/build_info.hpp"
+#include "runner/commands/commands.hpp"
+namespace tapstudy::runner {
+ExitCode carry_out(int argc, const char* const* argv) {
+  CLI::App app{"User studies of tapped virtual objects, from a YAML protocol to the report.",
+               "tapstudy"};
+  app.require_subcommand(1);
+  app.set_version_flag("--version",
+                       fmt::format("tapstudy {} ({})", program_version(), git_hash()));
+  add_check(app);
+  add_run(app);
+  add_simulate(app);
+  add_report(app);
+  add_modes(app);
+  add_tap(app);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& asked_for_help) {
+    return static_cast<ExitCode>(app.exit(asked_for_help));
+  } catch (const CLI::ParseError& error) {
+    throw core::InvalidInput{fmt::format("{} (tapstudy --help says more)", error.what())};
+  }
+  return ExitCode::done;
+}
+}  // namespace tapstudy::runner

@@ -1,0 +1,135 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <map>
+#include <memory>
+
+#include "analysis/proportion.hpp"
+#include "core/error.hpp"
+#include "core/rng.hpp"
+#include "protocols/read_protocol.hpp"
+#include "protocols/schedule.hpp"
+#include "runner/commands/commands.hpp"
+#include "runner/model_library.hpp"
+#include "runner/progress.hpp"
+namespace tapstudy::runner {
+namespace {
+struct CheckOptions {
+  std::string protocol;
+  int participants{10};
+  std::uint64_t seed{1};
+};
+constexpr double alpha = 0.05;
+
+void print_models(const protocols::Protocol& protocol) {
+  fmt::print("\nmodels\n");
+  std::map<std::string, std::vector<std::string>> users;
+  for (const protocols::Stimulus& stimulus : protocol.stimuli) {
+    if (stimulus.technique->vibration) {
+      users[core::content_key(plate_spec(protocol, stimulus))].push_back(stimulus.name);
+    }
+  }
+  for (const auto& [key, names] : users) {
+    const Progress progress{fmt::format("building the model of '{}'", names.front())};
+    const core::PlateModel plate =
+        core::build_plate_model(plate_spec(protocol, protocol.stimulus(names.front())));
+    const core::ModelCost& cost = plate.report.cost;
+    fmt::print("  {}: {} tetrahedra, {} dof, {} modes below {} Hz, {:.3f} s\n",
+               fmt::join(names, ", "), plate.report.tets, plate.report.dofs,
+               plate.modal.frequency_hz.size(), protocol.band_limit_hz,
+               cost.mesh_s + cost.assemble_s + cost.solve_s);
+  }
+  if (users.empty()) {
+    fmt::print("  none: no technique here vibrates\n");
+  }
+}
+
+double trial_s(const protocols::Protocol& protocol, const protocols::Block& block) {
+  const protocols::SimulatedTapSettings& taps = protocol.simulation.taps;
+  const double tap_s = 1.7 * taps.hover_m / taps.speed_m_s + taps.dwell_s + taps.pause_s;
+  const int visits = block.task == protocols::Task::choice
+                         ? taps.visits * static_cast<int>(block.stimuli.size())
+                         : 1;
+  return tap_s * taps.taps_per_visit * visits;
+}
+
+void warn_of_balance(const protocols::Block& block, int participants) {
+  const int conditions = static_cast<int>(block.stimuli.size());
+  const int rows = protocols::williams_rows(conditions);
+  if (block.order == protocols::Order::williams && participants % rows != 0) {
+    fmt::print("    warning: {} participants do not balance the {} orders (use a multiple of {})\n",
+               participants, rows, rows);
+  } else if (block.task == protocols::Task::identification &&
+             block.order != protocols::Order::williams) {
+    fmt::print("    note: random orders balance only on average; order: williams balances {} "
+               "stimuli over every {} participants\n",
+               conditions, rows);
+  }
+}
+
+void print_power(const protocols::Block& block, int participants) {
+  const bool is_choice = block.task == protocols::Task::choice;
+  const std::size_t options = is_choice ? block.stimuli.size() : block.responses.size();
+  const double chance = 1.0 / static_cast<double>(options);
+  const int answers = participants * block.repetitions *
+                      (is_choice ? 1 : static_cast<int>(block.stimuli.size()));
+  const int critical = analysis::critical_successes(answers, chance, alpha);
+  fmt::print("    chance {:.0f} %; of {} answers {} must {} for p < .05 (one-sided, answers "
+             "independent)\n",
+             100.0 * chance, answers, critical, is_choice ? "choose the expected one" : "be right");
+  fmt::print("    power if the truth is");
+  for (const double above : {0.1, 0.2, 0.3}) {
+    fmt::print("{} {:.0f} %: {:.2f}", above > 0.15 ? "," : "", 100.0 * (chance + above),
+               analysis::binomial_power(answers, chance, alpha, chance + above));
+  }
+  fmt::print("\n");
+}
+
+void print_design(const protocols::Protocol& protocol, int participants) {
+  fmt::print("{}\n\n", protocol.title);
+  double total_s = 0.0;
+  for (const protocols::Block& block : protocol.blocks) {
+    const bool is_choice = block.task == protocols::Task::choice;
+    const int trials =
+        block.repetitions * (is_choice ? 1 : static_cast<int>(block.stimuli.size()));
+    const double seconds = trials * trial_s(protocol, block);
+    total_s += seconds;
+    fmt::print("  {}{}: {}, {} stimuli, {} trials a participant, about {:.0f} s of tapping\n",
+               block.name, block.is_practice ? " (practice)" : "",
+               is_choice ? "choice" : "identification", block.stimuli.size(), trials, seconds);
+    warn_of_balance(block, participants);
+    print_power(block, participants);
+  }
+  fmt::print("\n  {} participants, {:.0f} min of tapping each\n", participants, total_s / 60.0);
+}
+
+void run_check(const CheckOptions& options) {
+  const protocols::Protocol protocol = protocols::read_protocol(options.protocol);
+  if (options.participants < 1 || options.participants > 10000) {
+    throw core::InvalidInput{fmt::format("--participants: {} is not allowed (from 1 to 10000)",
+                                         options.participants)};
+  }
+  print_design(protocol, options.participants);
+  print_models(protocol);
+  const int index = options.participants - 1;
+  const std::uint64_t seed = core::derived_seed(options.seed, core::Purpose::participant,
+                                                static_cast<std::uint64_t>(index));
+  fmt::print("\nschedule of participant {} of a simulation with seed {}\n", options.participants,
+             options.seed);
+  fmt::print("{}", protocols::described(make_schedule(protocol, seed, index)));
+}
+}  // namespace
+
+void add_check(CLI::App& app) {
+  auto* const command =
+      app.add_subcommand("check", "Validate a study and show its design, models and schedule");
+  const auto options = std::make_shared<CheckOptions>();
+  command->add_option("protocol", options->protocol, "Study (YAML)")->required();
+  command->add_option("--participants", options->participants, "How many are planned")
+      ->capture_default_str();
+  command->add_option("--seed", options->seed, "Of the schedule shown")->capture_default_str();
+  command->callback([options] { run_check(*options); });
+}
+}  // namespace tapstudy::runner

@@ -1,0 +1,90 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "protocols/read_protocol.hpp"
+#include "runner/commands/commands.hpp"
+#include "runner/model_library.hpp"
+#include "runner/progress.hpp"
+namespace tapstudy::runner {
+namespace {
+struct ModesOptions {
+  std::string protocol;
+  std::string stimulus;
+  bool wants_json{false};
+  std::string mesh_out;
+};
+
+void print_json(const ModesOptions& options, const core::PlateModel& plate) {
+  const core::ModelReport& report = plate.report;
+  nlohmann::ordered_json json{{"schema_version", 1}, {"stimulus", options.stimulus}};
+  json["frequencies_hz"] = std::vector<double>(plate.modal.frequency_hz.begin(),
+                                               plate.modal.frequency_hz.end());
+  json["damping_ratios"] = std::vector<double>(plate.modal.damping_ratio.begin(),
+                                               plate.modal.damping_ratio.end());
+  json["alpha_per_s"] = plate.modal.damping.alpha_per_s;
+  json["beta_s"] = plate.modal.damping.beta_s;
+  json["element_order"] = 1;
+  json["nodes"] = report.nodes;
+  json["elements"] = report.tets;
+  json["dof"] = report.dofs;
+  json["rigid_body_modes"] = report.rigid_body_modes;
+  json["modes_in_band_by_inertia"] = report.counted_in_band;
+  json["worst_residual"] = report.worst_residual;
+  json["seconds"] = {{"mesh", report.cost.mesh_s},
+                     {"assemble", report.cost.assemble_s},
+                     {"solve", report.cost.solve_s},
+                     {"total", report.cost.mesh_s + report.cost.assemble_s + report.cost.solve_s}};
+  fmt::print("{}\n", json.dump(2));
+}
+
+void print_table(const ModesOptions& options, const protocols::Protocol& protocol,
+                 const core::PlateModel& plate) {
+  const core::ModelReport& report = plate.report;
+  fmt::print("{}: {} nodes, {} linear tetrahedra, {} free degrees of freedom, {:.3f} s\n\n",
+             options.stimulus, report.nodes, report.tets, report.dofs,
+             report.cost.mesh_s + report.cost.assemble_s + report.cost.solve_s);
+  fmt::print("  mode  frequency_hz  damping_ratio\n");
+  for (Eigen::Index i = 0; i < plate.modal.frequency_hz.size(); ++i) {
+    fmt::print("  {:>4}  {:>12.3f}  {:>13.4f}\n", i + 1, plate.modal.frequency_hz[i],
+               plate.modal.damping_ratio[i]);
+  }
+  fmt::print("\n  {} below {} Hz by the inertia of K - sigma M", report.counted_in_band,
+             protocol.band_limit_hz);
+  if (report.rigid_body_modes > 0) {
+    fmt::print(", {} of them motions of the rigid body, left out", report.rigid_body_modes);
+  }
+  fmt::print("; worst residual {:.1e}\n", report.worst_residual);
+}
+
+void run_modes(const ModesOptions& options) {
+  const protocols::Protocol protocol = protocols::read_protocol(options.protocol);
+  const core::PlateSpec spec = plate_spec(protocol, protocol.stimulus(options.stimulus));
+  const core::PlateModel plate = [&] {
+    const Progress progress{fmt::format("building the model of '{}'", options.stimulus)};
+    return core::build_plate_model(spec);
+  }();
+  if (!options.mesh_out.empty()) {
+    core::write_tetgen_files(plate.mesh, options.mesh_out);
+  }
+  if (options.wants_json) {
+    print_json(options, plate);
+  } else {
+    print_table(options, protocol, plate);
+  }
+}
+}  // namespace
+
+void add_modes(CLI::App& app) {
+  auto* const command =
+      app.add_subcommand("modes", "Natural frequencies and damping of a stimulus's plate");
+  const auto options = std::make_shared<ModesOptions>();
+  command->add_option("protocol", options->protocol, "Study (YAML)")->required();
+  command->add_option("--stimulus", options->stimulus, "Which stimulus")->required();
+  command->add_flag("--json", options->wants_json, "For programs");
+  command->add_option("--mesh-out", options->mesh_out, "Write the mesh as PREFIX.node, PREFIX.ele");
+  command->callback([options] { run_modes(*options); });
+}
+}  // namespace tapstudy::runner

@@ -1,0 +1,177 @@
+#include <fmt/format.h>
+#include <fmt/ostream.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+
+#include "analysis/figure.hpp"
+#include "core/error.hpp"
+#include "protocols/read_protocol.hpp"
+#include "runner/commands/commands.hpp"
+#include "runner/output_file.hpp"
+#include "runner/scripted_tap.hpp"
+namespace tapstudy::runner {
+namespace {
+using core::TraceSample;
+
+struct TapOptions {
+  std::string protocol;
+  std::string stimulus;
+  std::string at{"0,0"};
+  double speed_m_s{0.3};
+  double seconds{0.5};
+  std::string technique;
+  std::string csv;
+  std::string panels;
+};
+
+double seconds_of(const TraceSample& sample) {
+  return 1e-9 * static_cast<double>(sample.t_ns);
+}
+
+void write_csv(std::ostream& out, const std::vector<TraceSample>& trace) {
+  out << "t_s,position_x_m,position_y_m,position_z_m,velocity_x_m_s,velocity_y_m_s,velocity_z_m_s,"
+         "penetration_m,penalty_n,vibration_n,sinusoid_n,force_n,touching,struck,saturated\n";
+  for (const TraceSample& s : trace) {
+    fmt::print(out,
+               "{:.6f},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},"
+               "{:.17g},{:.17g},{:d},{:d},{:d}\n",
+               seconds_of(s), s.position_m[0], s.position_m[1], s.position_m[2], s.velocity_m_s[0],
+               s.velocity_m_s[1], s.velocity_m_s[2], s.penetration_m, s.penalty_n, s.vibration_n,
+               s.sinusoid_n, s.force_n[1], s.touching, s.struck, s.saturated);
+  }
+}
+
+template <class Value>
+double largest(const std::vector<TraceSample>& trace, const Value& value) {
+  double most = 0.0;
+  for (const TraceSample& sample : trace) {
+    most = std::max(most, std::abs(value(sample)));
+  }
+  return most;
+}
+
+void print_summary(const TapOptions& options, const std::vector<TraceSample>& trace) {
+  const auto impact = std::ranges::find(trace, true, &TraceSample::struck);
+  fmt::print("{} at {}\n", options.stimulus, options.at);
+  if (impact != trace.end()) {
+    fmt::print("  impact         {:.3f} s, {:.4f} m/s\n", seconds_of(*impact),
+               -impact->velocity_m_s[1]);
+  }
+  fmt::print("  impacts        {}\n", std::ranges::count(trace, true, &TraceSample::struck));
+  fmt::print("  penalty        {:.4g} N at most\n", largest(trace, [](const TraceSample& s) { return s.penalty_n; }));
+  fmt::print("  vibration      {:.4g} N at most\n", largest(trace, [](const TraceSample& s) { return s.vibration_n; }));
+  fmt::print("  sinusoid       {:.4g} N at most\n", largest(trace, [](const TraceSample& s) { return s.sinusoid_n; }));
+  fmt::print("  limited ticks  {}\n", std::ranges::count(trace, true, &TraceSample::saturated));
+}
+
+protocols::Protocol protocol_with_technique(const TapOptions& options) {
+  protocols::Protocol protocol = protocols::read_protocol(options.protocol);
+  if (options.technique.empty()) {
+    return protocol;
+  }
+  const core::Technique* technique = core::find_technique(options.technique);
+  if (technique == nullptr) {
+    throw core::InvalidInput{
+        fmt::format("--technique: '{}' is not a technique (one of: none, sinusoid, fem, "
+                    "fem+sinusoid)",
+                    options.technique)};
+  }
+  if (technique->sinusoid && !(protocol.rendering.sinusoid.amplitude_n_s_per_m > 0.0)) {
+    throw core::InvalidInput{fmt::format(
+        "--technique: '{}' needs rendering.sinusoid in the protocol", options.technique)};
+  }
+  for (protocols::Stimulus& stimulus : protocol.stimuli) {
+    stimulus.technique = technique;
+  }
+  return protocol;
+}
+
+analysis::Panel panel_of(const std::string& title, const std::vector<TraceSample>& trace) {
+  analysis::Panel panel{title, {{"penalty", {}, {}}, {"vibration", {}, {}}, {"total", {}, {}}}};
+  const auto impact = std::ranges::find(trace, true, &TraceSample::struck);
+  const double start_s = impact == trace.end() ? 0.0 : seconds_of(*impact);
+  for (const TraceSample& sample : trace) {
+    const std::array values{sample.penalty_n, sample.vibration_n + sample.sinusoid_n,
+                            sample.force_n[1]};
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      panel.series[i].x.push_back(seconds_of(sample) - start_s);
+      panel.series[i].y.push_back(values.at(i));
+    }
+  }
+  return panel;
+}
+
+// One figure a plate: a row a stimulus, a column a tapping point (the paper's Figures 4 and 5).
+void draw_panels(const TapOptions& options, const protocols::Protocol& protocol) {
+  ModelLibrary models;
+  const protocols::Rig rig = protocols::simulated_rig();
+  std::error_code error;
+  std::filesystem::create_directories(options.panels, error);
+  for (const auto& [plate, spec] : protocol.plates) {
+    analysis::Figure figure{"Feedback force, " + plate, "time after impact [s]", "force [N]",
+                            protocol.tapping_points_m.size(), {}};
+    for (const protocols::Stimulus& stimulus : protocol.stimuli) {
+      if (stimulus.plate != plate) {
+        continue;
+      }
+      for (const auto& [point, at_m] : protocol.tapping_points_m) {
+        const ScriptedTap tap{stimulus.name, at_m, options.speed_m_s, options.seconds};
+        figure.panels.push_back(panel_of(fmt::format("{}, {}", stimulus.label, point),
+                                         trace_of(tap, protocol, rig, models)));
+      }
+    }
+    const std::string file =
+        (std::filesystem::path{options.panels} / ("forces_" + plate + ".svg")).string();
+    if (!figure.panels.empty()) {
+      analysis::draw_svg(figure, file);
+      fmt::print("{}\n", file);
+    }
+  }
+}
+
+void run_tap(const TapOptions& options) {
+  const protocols::Protocol protocol = protocol_with_technique(options);
+  if (!options.panels.empty()) {
+    draw_panels(options, protocol);
+    return;
+  }
+  if (options.stimulus.empty()) {
+    throw core::InvalidInput{"--stimulus is required (or --panels DIR for all of them)"};
+  }
+  ModelLibrary models;
+  const ScriptedTap tap{options.stimulus, point_on_plate(options.at, protocol), options.speed_m_s,
+                        options.seconds};
+  const auto trace = trace_of(tap, protocol, protocols::simulated_rig(), models);
+  if (options.csv.empty()) {
+    print_summary(options, trace);
+    return;
+  }
+  if (options.csv == "-") {
+    write_csv(std::cout, trace);
+    return;
+  }
+  write_new_file(options.csv, [&](std::ostream& out) { write_csv(out, trace); });
+  print_summary(options, trace);
+}
+}  // namespace
+
+void add_tap(CLI::App& app) {
+  auto* const command = app.add_subcommand("tap", "Force trace of one scripted tap");
+  const auto options = std::make_shared<TapOptions>();
+  command->add_option("protocol", options->protocol, "Study (YAML)")->required();
+  command->add_option("--stimulus", options->stimulus, "Which stimulus to tap");
+  command->add_option("--at", options->at, "X,Y on the plate in metres, or a tapping point");
+  command->add_option("--speed", options->speed_m_s, "Speed of impact [m/s]");
+  command->add_option("--technique", options->technique,
+                      "none, sinusoid, fem or fem+sinusoid instead of the stimulus's own");
+  command->add_option("--seconds", options->seconds, "How long the finger stays");
+  command->add_option("--csv", options->csv, "Write every tick to this new file (- for stdout)");
+  command->add_option("--panels", options->panels,
+                      "Draw all stimuli at all tapping points into this directory (SVG)");
+  command->callback([options] { run_tap(*options); });
+}
+}  // namespace tapstudy::runner

@@ -1,0 +1,19 @@
+#pragma once
+#include <stdexcept>
+namespace tapstudy::runner {
+// What the process tells the shell.
+enum class ExitCode {
+  done = 0,
+  wrong_input = 2,
+  device_failed = 3,
+  model_failed = 4,
+  store_failed = 5,
+  stopped = 130
+};
+
+// The operator asked to stop (Ctrl-C, end of input); all that was answered is kept.
+class Stopped : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+}  // namespace tapstudy::runner

@@ -1,0 +1,43 @@
+#include "runner/line_input.hpp"
+
+#include <poll.h>
+#include <unistd.h>
+
+#include <array>
+namespace tapstudy::runner {
+namespace {
+constexpr int glance_ms = 50;
+}
+
+std::optional<std::string> LineInput::take_line() {
+  const auto end = received_.find('\n');
+  if (end == std::string::npos) {
+    return std::nullopt;
+  }
+  std::string line = received_.substr(0, end);
+  received_.erase(0, end + 1);
+  if (!line.empty() && line.back() == '\r') {
+    line.pop_back();
+  }
+  return line;
+}
+
+std::optional<std::string> LineInput::next(const std::function<bool()>& keep_waiting) {
+  while (keep_waiting()) {
+    if (auto line = take_line()) {
+      return line;
+    }
+    pollfd waiting{descriptor_, POLLIN, 0};
+    if (poll(&waiting, 1, glance_ms) <= 0) {
+      continue;
+    }
+    std::array<char, 512> bytes{};
+    const ssize_t count = read(descriptor_, bytes.data(), bytes.size());
+    if (count <= 0) {
+      return std::nullopt;
+    }
+    received_.append(bytes.data(), static_cast<std::size_t>(count));
+  }
+  return std::nullopt;
+}
+}  // namespace tapstudy::runner

@@ -1,0 +1,11 @@
+#include "runner/logging.hpp"
+
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+namespace tapstudy::runner {
+void set_up_logging() {
+  auto logger = spdlog::stderr_color_mt("tapstudy");
+  logger->set_pattern("tapstudy: %^%v%$");
+  spdlog::set_default_logger(logger);
+}
+}  // namespace tapstudy::runner

@@ -1,0 +1,37 @@
+#include "runner/output_file.hpp"
+
+#include <filesystem>
+
+#include "core/error.hpp"
+namespace tapstudy::runner {
+namespace {
+void write_file(const std::string& file, const Write& write) {
+  std::ofstream stream{file, std::ios::binary};
+  if (!stream) {
+    throw core::InvalidInput{file + ": cannot be written"};
+  }
+  write(stream);
+  stream.close();
+  if (!stream) {
+    throw core::InvalidInput{file + ": writing failed (is the disk full?)"};
+  }
+}
+}  // namespace
+
+void write_new_file(const std::string& file, const Write& write) {
+  if (std::filesystem::exists(file)) {
+    throw core::InvalidInput{file + ": exists already and is not overwritten"};
+  }
+  write_file(file, write);
+}
+
+void replace_file(const std::string& file, const Write& write) {
+  const std::string unfinished = file + ".unfinished";
+  write_file(unfinished, write);
+  std::error_code error;
+  std::filesystem::rename(unfinished, file, error);
+  if (error) {
+    throw core::InvalidInput{file + ": cannot be replaced: " + error.message()};
+  }
+}
+}  // namespace tapstudy::runner

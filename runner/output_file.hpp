@@ -1,0 +1,13 @@
+#pragma once
+#include <fstream>
+#include <functional>
+#include <ostream>
+#include <string>
+namespace tapstudy::runner {
+using Write = std::function<void(std::ostream&)>;
+// Writes a new file by the function. Throws InvalidInput if there is one of that name already, if
+// it cannot be created, or if not everything arrived on the disk.
+void write_new_file(const std::string& file, const Write& write);
+// The same, but takes the place of a file of that name once everything is on the disk.
+void replace_file(const std::string& file, const Write& write);
+}  // namespace tapstudy::runner

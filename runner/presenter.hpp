@@ -1,0 +1,61 @@
+#pragma once
+#include <functional>
+#include <span>
+
+#include "core/tick/tap_renderer.hpp"
+#include "device/haptic_loop.hpp"
+#include "results/recorder.hpp"
+#include "results/trace_collector.hpp"
+namespace tapstudy::runner {
+// What a participant can do while a trial's alternatives are rendered.
+class Exploration {
+ public:
+  virtual ~Exploration() = default;
+  virtual void switch_to(std::size_t alternative) = 0;
+  // Lets the trial run on; returns early if it has ended by a fault.
+  virtual void pass_time(double seconds) = 0;
+  virtual bool is_running() const = 0;
+  virtual double time_s() const = 0;  // since the trial began
+};
+using Explore = std::function<void(Exploration&)>;
+
+// All that one trial's loop left behind.
+struct Presented {
+  results::TraceCollector::Collected trace;
+  device::LoopReport loop;
+  std::int64_t dropped_samples{};
+};
+
+// Runs the haptic loop over some alternatives while somebody explores them.
+class Presenter {
+ public:
+  virtual ~Presenter() = default;
+  virtual Presented present(std::span<core::TapRenderer> alternatives, const Explore& explore) = 0;
+};
+
+// In virtual time: the loop advances only while the explorer lets time pass, on one thread.
+class VirtualPresenter final : public Presenter {
+ public:
+  VirtualPresenter(device::Device& device, const device::LoopSettings& settings)
+      : device_{device}, settings_{settings} {}
+  Presented present(std::span<core::TapRenderer> alternatives, const Explore& explore) override;
+
+ private:
+  device::Device& device_;
+  device::LoopSettings settings_;
+};
+
+// In real time: the loop runs on its own thread, the recorder empties its ring.
+class LivePresenter final : public Presenter {
+ public:
+  LivePresenter(device::Device& device, const device::LoopSettings& settings,
+                results::Recorder& recorder)
+      : device_{device}, settings_{settings}, recorder_{recorder} {}
+  Presented present(std::span<core::TapRenderer> alternatives, const Explore& explore) override;
+
+ private:
+  device::Device& device_;
+  device::LoopSettings settings_;
+  results::Recorder& recorder_;
+};
+}  // namespace tapstudy::runner

@@ -1,0 +1,26 @@
+#include "runner/progress.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <chrono>
+namespace tapstudy::runner {
+Progress::Progress(std::string what)
+    : what_{std::move(what)}, thread_{[this](const std::stop_token& stop) { talk(stop); }} {}
+
+Progress::~Progress() {
+  thread_.request_stop();
+  ended_.notify_all();
+}
+
+void Progress::talk(const std::stop_token& stop) {
+  std::unique_lock lock{mutex_};
+  int seconds = 0;
+  int next = 1;
+  while (!ended_.wait_for(lock, stop, std::chrono::seconds{next - seconds},
+                          [&] { return stop.stop_requested(); })) {
+    seconds = next;
+    next += 5;
+    spdlog::info("{} … {} s", what_, seconds);
+  }
+}
+}  // namespace tapstudy::runner

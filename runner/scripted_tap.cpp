@@ -1,0 +1,90 @@
+#include "runner/scripted_tap.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <charconv>
+#include <optional>
+
+#include "core/error.hpp"
+#include "device/simulated_hand.hpp"
+#include "results/trace_codec.hpp"
+#include "runner/presenter.hpp"
+#include "runner/rig.hpp"
+#include "runner/scene.hpp"
+namespace tapstudy::runner {
+namespace {
+constexpr double hover_m = 0.005;
+
+void check(const ScriptedTap& tap, const core::Box& box) {
+  if ((tap.at_m.cwiseAbs().array() > box.high_m().head<2>().array()).any()) {
+    throw core::InvalidInput{fmt::format("--at: ({}, {}) is off the plate (x in ±{} m, y in ±{} m)",
+                                         tap.at_m.x(), tap.at_m.y(), box.high_m().x(),
+                                         box.high_m().y())};
+  }
+  if (!(tap.speed_m_s > 0.0 && tap.speed_m_s <= 10.0)) {
+    throw core::InvalidInput{
+        fmt::format("--speed: {} is not allowed (greater than 0, at most 10 m/s)", tap.speed_m_s)};
+  }
+  if (!(tap.seconds > 0.0 && tap.seconds <= 60.0)) {
+    throw core::InvalidInput{
+        fmt::format("--seconds: {} is not allowed (greater than 0, at most 60)", tap.seconds)};
+  }
+}
+
+std::optional<double> number(const std::string& text) {
+  double value{};
+  const char* const end = text.data() + text.size();
+  const auto [stopped, error] = std::from_chars(text.data(), end, value);
+  return error == std::errc{} && stopped == end ? std::optional{value} : std::nullopt;
+}
+}  // namespace
+
+std::vector<core::TraceSample> trace_of(const ScriptedTap& tap,
+                                        const protocols::Protocol& protocol,
+                                        const protocols::Rig& rig, ModelLibrary& models) {
+  const protocols::Stimulus& stimulus = protocol.stimulus(tap.stimulus);
+  check(tap, protocol.plates.at(stimulus.plate).box);
+  const device::LoopSettings settings = loop_settings(protocol, rig);
+  device::SimulatedHand hand{hand_body(protocol.simulation.hand), protocol.rendering.dt_s, 0.0};
+  device::PlannedTap planned;
+  planned.point_m = settings.placement.point_to_device({tap.at_m.x(), tap.at_m.y(), 0.0});
+  planned.speed_m_s = tap.speed_m_s;
+  planned.hover_m = hover_m;
+  planned.run_up_m = 0.0;
+  planned.press_m = protocol.simulation.taps.press_m;
+  planned.dwell_s = tap.seconds;
+  hand.follow({planned});
+  Scene scene = build_scene(protocol, {tap.stimulus}, models);
+  const Presented presented =
+      VirtualPresenter{hand, settings}.present(scene.alternatives, [&](Exploration& exploration) {
+        exploration.pass_time(hover_m / tap.speed_m_s + tap.seconds);
+      });
+  std::vector<core::TraceSample> samples;
+  for (const results::TraceChunk& chunk : presented.trace.chunks) {
+    const auto decoded = results::decode_trace(chunk.bytes, static_cast<std::size_t>(chunk.ticks));
+    samples.insert(samples.end(), decoded.begin(), decoded.end());
+  }
+  return samples;
+}
+
+Eigen::Vector2d point_on_plate(const std::string& text, const protocols::Protocol& protocol) {
+  const auto named = protocol.tapping_points_m.find(text);
+  if (named != protocol.tapping_points_m.end()) {
+    return named->second;
+  }
+  const auto comma = text.find(',');
+  const auto x = number(text.substr(0, comma));
+  const auto y = comma == std::string::npos ? std::nullopt : number(text.substr(comma + 1));
+  if (!x || !y) {
+    std::vector<std::string> names;
+    for (const auto& [name, at] : protocol.tapping_points_m) {
+      names.push_back(name);
+    }
+    throw core::InvalidInput{fmt::format(
+        "--at: '{}' is neither X,Y in metres nor a tapping point (one of: {})", text,
+        fmt::join(names, ", "))};
+  }
+  return {*x, *y};
+}
+}  // namespace tapstudy::runner

@@ -1,0 +1,70 @@
+#include "runner/session.hpp"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <sched.h>
+
+#include <algorithm>
+#include <cctype>
+#include <ctime>
+
+#include "core/error.hpp"
+#include "results/sha256.hpp"
+#include "runner/build_info.hpp"
+namespace tapstudy::runner {
+namespace {
+std::string scheduler_in_force(results::Mode mode) {
+  if (mode == results::Mode::simulated) {
+    return "virtual time";
+  }
+  switch (sched_getscheduler(0)) {
+    case SCHED_FIFO:
+      return "SCHED_FIFO";
+    case SCHED_RR:
+      return "SCHED_RR";
+    default:
+      return "SCHED_OTHER";
+  }
+}
+}  // namespace
+
+results::StudyRow study_row(const protocols::Protocol& protocol, const std::string& file) {
+  return {protocol.title, file, protocol.text, results::sha256(protocol.text)};
+}
+
+results::SessionRow session_row(const SessionPlan& plan, const protocols::Protocol& protocol,
+                                const protocols::Rig& rig, const protocols::Schedule& schedule) {
+  results::SessionRow session;
+  session.participant_id = plan.participant_id;
+  session.participant_index = plan.participant_index;
+  session.mode = plan.mode;
+  session.seed = plan.seed;
+  session.planned_order = protocols::described(schedule);
+  session.rate_hz = protocol.rate_hz;
+  session.rig_text = rig.text;
+  session.device = plan.device;
+  session.scheduler = scheduler_in_force(plan.mode);
+  session.program_version = program_version();
+  session.git_hash = git_hash();
+  session.compiler = compiler();
+  session.started_utc = fmt::format("{:%FT%TZ}", fmt::gmtime(std::time(nullptr)));
+  return session;
+}
+
+void check_participant_id(const std::string& id) {
+  const auto is_allowed = [](unsigned char c) {
+    return std::isalnum(c) != 0 || c == '-' || c == '_' || c == '.';
+  };
+  if (id.empty() || id.size() > 64 || !std::ranges::all_of(id, is_allowed)) {
+    throw core::InvalidInput{fmt::format(
+        "--participant: '{}' is not allowed (1 to 64 letters, digits, '-', '_' or '.')", id)};
+  }
+}
+
+void check_has_blocks(const protocols::Protocol& protocol) {
+  if (protocol.blocks.empty()) {
+    throw core::InvalidInput{
+        fmt::format("'{}' has no blocks, so there is nothing to run", protocol.title)};
+  }
+}
+}  // namespace tapstudy::runner

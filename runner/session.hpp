@@ -1,0 +1,27 @@
+#pragma once
+#include <cstdint>
+#include <string>
+
+#include "protocols/protocol.hpp"
+#include "protocols/schedule.hpp"
+#include "results/rows.hpp"
+namespace tapstudy::runner {
+// The study's own row, from the protocol's file.
+results::StudyRow study_row(const protocols::Protocol& protocol, const std::string& file);
+
+// All that a session must say of itself before its first trial.
+struct SessionPlan {
+  std::string participant_id;
+  int participant_index{};
+  results::Mode mode{};
+  std::uint64_t seed{};
+  std::string device;
+};
+results::SessionRow session_row(const SessionPlan& plan, const protocols::Protocol& protocol,
+                                const protocols::Rig& rig, const protocols::Schedule& schedule);
+
+// Throws InvalidInput for a name that a file or a table could stumble over.
+void check_participant_id(const std::string& id);
+// Throws InvalidInput if the protocol has nothing to run.
+void check_has_blocks(const protocols::Protocol& protocol);
+}  // namespace tapstudy::runner

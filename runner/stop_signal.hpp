@@ -1,0 +1,8 @@
+#pragma once
+namespace tapstudy::runner {
+// From here on Ctrl-C and SIGTERM ask to stop instead of ending the process; a second one ends it.
+void listen_for_stop();
+bool stop_was_asked();
+// Throws Stopped if so.
+void stop_if_asked();
+}  // namespace tapstudy::runner

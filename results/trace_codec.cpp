@@ -49,45 +49,45 @@ TraceSample unpacked(const Packed& p) {
           static_cast<core::TickFault>(p.flag[4])};
 }
 
-Word difference(std::size_t column, Word now, Word before) {
-  return column == 0 ? now - before : now ^ before;
-}
-Word restored(std::size_t column, Word change, Word before) {
-  return column == 0 ? before + change : before ^ change;
-}
-std::byte byte_of(Word word, std::size_t place) {
-  return static_cast<std::byte>(word >> (8 * place));
-}
-
-void shuffle_words(const Packed& change, std::size_t tick, std::size_t ticks,
-                   std::vector<std::byte>& planes) {
-  for (std::size_t column = 0; column < words; ++column) {
-    for (std::size_t place = 0; place < sizeof(Word); ++place) {
-      planes[(column * sizeof(Word) + place) * ticks + tick] = byte_of(change.word[column], place);
-    }
+// The columns side by side: for each, all lowest bytes, then all second lowest, and so on.
+class Planes {
+ public:
+  explicit Planes(std::size_t ticks) : ticks_{ticks}, bytes_(ticks * bytes_per_tick) {}
+  explicit Planes(std::size_t ticks, std::vector<std::byte> bytes)
+      : ticks_{ticks}, bytes_{std::move(bytes)} {}
+  std::span<std::byte> of_word(std::size_t column, std::size_t place) {
+    return plane(column * sizeof(Word) + place);
   }
-  for (std::size_t column = 0; column < flags; ++column) {
-    planes[(words * sizeof(Word) + column) * ticks + tick] =
-        static_cast<std::byte>(change.flag[column]);
+  std::span<std::byte> of_flag(std::size_t column) {
+    return plane(words * sizeof(Word) + column);
   }
-}
-}  // namespace
+  const std::vector<std::byte>& bytes() const { return bytes_; }
 
-std::vector<std::byte> encode_trace(std::span<const TraceSample> samples) {
-  std::vector<std::byte> planes(samples.size() * bytes_per_tick);
-  Packed before{};
-  for (std::size_t tick = 0; tick < samples.size(); ++tick) {
-    const Packed now = packed(samples[tick]);
-    Packed change = now;
-    for (std::size_t column = 0; column < words; ++column) {
-      change.word[column] = difference(column, now.word[column], before.word[column]);
-    }
-    shuffle_words(change, tick, samples.size(), planes);
+ private:
+  std::span<std::byte> plane(std::size_t index) {
+    return std::span{bytes_}.subspan(index * ticks_, ticks_);
+  }
+  std::size_t ticks_;
+  std::vector<std::byte> bytes_;
+};
+
+// What a column's words change by from tick to tick: time by subtraction, numbers by exclusive or.
+std::vector<Word> changes(const std::vector<Packed>& samples, std::size_t column) {
+  std::vector<Word> changes;
+  changes.reserve(samples.size());
+  Word before = 0;
+  for (const Packed& sample : samples) {
+    const Word now = sample.word[column];
+    changes.push_back(column == 0 ? now - before : now ^ before);
     before = now;
   }
-  std::vector<std::byte> bytes(ZSTD_compressBound(planes.size()));
-  const std::size_t size = ZSTD_compress(bytes.data(), bytes.size(), planes.data(), planes.size(),
-                                         compression_level);
+  return changes;
+}
+
+std::vector<std::byte> compressed(const std::vector<std::byte>& plain) {
+  std::vector<std::byte> bytes(ZSTD_compressBound(plain.size()));
+  const std::size_t size =
+      ZSTD_compress(bytes.data(), bytes.size(), plain.data(), plain.size(), compression_level);
   if (ZSTD_isError(size) != 0U) {
     throw StoreError{std::string{"trace: compression failed: "} + ZSTD_getErrorName(size)};
   }
@@ -95,31 +95,68 @@ std::vector<std::byte> encode_trace(std::span<const TraceSample> samples) {
   return bytes;
 }
 
-std::vector<TraceSample> decode_trace(std::span<const std::byte> bytes, std::size_t ticks) {
-  std::vector<std::byte> planes(ticks * bytes_per_tick);
-  const std::size_t size =
-      ZSTD_decompress(planes.data(), planes.size(), bytes.data(), bytes.size());
-  if (ZSTD_isError(size) != 0U || size != planes.size()) {
+std::vector<std::byte> decompressed(std::span<const std::byte> bytes, std::size_t size) {
+  std::vector<std::byte> plain(size);
+  const std::size_t found =
+      ZSTD_decompress(plain.data(), plain.size(), bytes.data(), bytes.size());
+  if (ZSTD_isError(found) != 0U || found != size) {
     throw StoreError{"trace: a chunk does not hold the ticks that it should"};
   }
-  const auto plane = [&](std::size_t index, std::size_t tick) {
-    return std::to_integer<Word>(planes[index * ticks + tick]);
-  };
+  return plain;
+}
+}  // namespace
+
+std::vector<std::byte> encode_trace(std::span<const TraceSample> samples) {
+  std::vector<Packed> rows;
+  rows.reserve(samples.size());
+  for (const TraceSample& sample : samples) {
+    rows.push_back(packed(sample));
+  }
+  Planes planes{samples.size()};
+  for (std::size_t column = 0; column < words; ++column) {
+    const std::vector<Word> column_changes = changes(rows, column);
+    for (std::size_t place = 0; place < sizeof(Word); ++place) {
+      const std::span<std::byte> plane = planes.of_word(column, place);
+      for (std::size_t tick = 0; tick < rows.size(); ++tick) {
+        plane[tick] = static_cast<std::byte>(column_changes[tick] >> (8 * place));
+      }
+    }
+  }
+  for (std::size_t column = 0; column < flags; ++column) {
+    const std::span<std::byte> plane = planes.of_flag(column);
+    for (std::size_t tick = 0; tick < rows.size(); ++tick) {
+      plane[tick] = static_cast<std::byte>(rows[tick].flag[column]);
+    }
+  }
+  return compressed(planes.bytes());
+}
+
+std::vector<TraceSample> decode_trace(std::span<const std::byte> bytes, std::size_t ticks) {
+  Planes planes{ticks, decompressed(bytes, ticks * bytes_per_tick)};
+  std::vector<Packed> rows(ticks);
+  for (std::size_t column = 0; column < words; ++column) {
+    for (std::size_t place = 0; place < sizeof(Word); ++place) {
+      const std::span<const std::byte> plane = planes.of_word(column, place);
+      for (std::size_t tick = 0; tick < ticks; ++tick) {
+        rows[tick].word[column] |= std::to_integer<Word>(plane[tick]) << (8 * place);
+      }
+    }
+    for (std::size_t tick = 1; tick < ticks; ++tick) {
+      Word& now = rows[tick].word[column];
+      const Word before = rows[tick - 1].word[column];
+      now = column == 0 ? before + now : before ^ now;
+    }
+  }
+  for (std::size_t column = 0; column < flags; ++column) {
+    const std::span<const std::byte> plane = planes.of_flag(column);
+    for (std::size_t tick = 0; tick < ticks; ++tick) {
+      rows[tick].flag[column] = std::to_integer<std::uint8_t>(plane[tick]);
+    }
+  }
   std::vector<TraceSample> samples;
   samples.reserve(ticks);
-  Packed now{};
-  for (std::size_t tick = 0; tick < ticks; ++tick) {
-    for (std::size_t column = 0; column < words; ++column) {
-      Word change = 0;
-      for (std::size_t place = 0; place < sizeof(Word); ++place) {
-        change |= plane(column * sizeof(Word) + place, tick) << (8 * place);
-      }
-      now.word[column] = restored(column, change, now.word[column]);
-    }
-    for (std::size_t column = 0; column < flags; ++column) {
-      now.flag[column] = static_cast<std::uint8_t>(plane(words * sizeof(Word) + column, tick));
-    }
-    samples.push_back(unpacked(now));
+  for (const Packed& row : rows) {
+    samples.push_back(unpacked(row));
   }
   return samples;
 }

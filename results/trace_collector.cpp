@@ -19,6 +19,12 @@ void TraceCollector::drain() {
   }
 }
 
+void TraceCollector::discard() {
+  core::TraceSample sample{};
+  while (ring_->try_pop(sample)) {
+  }
+}
+
 void TraceCollector::note_events(const core::TraceSample& sample) {
   const double t_s = 1e-9 * static_cast<double>(sample.t_ns);
   const auto note = [&](const char* kind, double value) {

@@ -11,6 +11,8 @@ class TraceCollector {
  public:
   explicit TraceCollector(core::SpscRing<core::TraceSample>& ring) : ring_{&ring} {}
   void drain();
+  // Empties the ring and keeps nothing of it.
+  void discard();
   // Drains what is left and hands over everything.
   struct Collected {
     std::vector<TraceChunk> chunks;

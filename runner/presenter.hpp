@@ -33,16 +33,20 @@ class Presenter {
   virtual Presented present(std::span<core::TapRenderer> alternatives, const Explore& explore) = 0;
 };
 
+enum class Keep { trace, nothing };
+
 // In virtual time: the loop advances only while the explorer lets time pass, on one thread.
 class VirtualPresenter final : public Presenter {
  public:
-  VirtualPresenter(device::Device& device, const device::LoopSettings& settings)
-      : device_{device}, settings_{settings} {}
+  VirtualPresenter(device::Device& device, const device::LoopSettings& settings,
+                   Keep keep = Keep::trace)
+      : device_{device}, settings_{settings}, keep_{keep} {}
   Presented present(std::span<core::TapRenderer> alternatives, const Explore& explore) override;
 
  private:
   device::Device& device_;
   device::LoopSettings settings_;
+  Keep keep_;
 };
 
 // In real time: the loop runs on its own thread, the recorder empties its ring.

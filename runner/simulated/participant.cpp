@@ -56,7 +56,7 @@ SimulatedParticipant::SimulatedParticipant(const protocols::Protocol& protocol,
 
 void SimulatedParticipant::remember_real_plates(ModelLibrary& models) {
   const protocols::Protocol reality = made_real(protocol_);
-  VirtualPresenter world{hand_, settings_};
+  VirtualPresenter world{hand_, settings_, Keep::nothing};
   for (const std::string& plate : real_plates(protocol_)) {
     Scene scene = build_scene(reality, {plate}, models);
     world.present(scene.alternatives, [&](Exploration& exploration) {

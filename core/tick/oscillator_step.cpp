@@ -36,14 +36,14 @@ OscillatorStep exact_step(double omega_rad_s, double damping_ratio, double dt_s)
                              : overdamped_step(omega_rad_s, damping_ratio, dt_s);
 }
 
-// With beta = 1/4 and gamma = 1/2 the method is the trapezoidal rule on (q, v); solved for v'.
+// With beta = 1/4 and gamma = 1/2 the method is the trapezoidal rule on (q, v), solved for q', v'.
 OscillatorStep newmark_step(double omega_rad_s, double damping_ratio, double dt_s) noexcept {
   const double damping = damping_ratio * omega_rad_s * dt_s;
   const double stiffness = 0.25 * omega_rad_s * omega_rad_s * dt_s * dt_s;
   const double denominator = 1.0 + damping + stiffness;
-  const double vq = -omega_rad_s * omega_rad_s * dt_s / denominator;
-  const double vv = (1.0 - damping - stiffness) / denominator;
-  return {1.0 + 0.5 * dt_s * vq, 0.5 * dt_s * (1.0 + vv), vq, vv};
+  return {(1.0 + damping - stiffness) / denominator, dt_s / denominator,
+          -omega_rad_s * omega_rad_s * dt_s / denominator,
+          (1.0 - damping - stiffness) / denominator};
 }
 
 OscillatorStep oscillator_step(Integrator integrator, double omega_rad_s, double damping_ratio,

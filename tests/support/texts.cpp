@@ -16,6 +16,16 @@ std::string contents(const fs::path& file) {
   return {std::istreambuf_iterator<char>{stream}, {}};
 }
 
+void write(const fs::path& file, const std::string& text) {
+  std::ofstream stream{file, std::ios::binary};
+  stream << text;
+  REQUIRE(stream.flush().good());
+}
+
+std::string source(const std::string& name) {
+  return (fs::path{TAPSTUDY_SOURCE_DIR} / name).string();
+}
+
 fs::path shipped(const std::string& name) {
   return fs::path{TAPSTUDY_SOURCE_DIR} / "protocols" / name;
 }

@@ -3,7 +3,9 @@
 #include <string>
 namespace tapstudy::testing {
 std::string contents(const std::filesystem::path& file);
-// A path below protocols/.
+void write(const std::filesystem::path& file, const std::string& text);
+// A path below the sources, or below protocols/.
+std::string source(const std::string& name);
 std::filesystem::path shipped(const std::string& name);
 // The first occurrence of `from` replaced; fails the test if there is none.
 std::string replaced(std::string text, const std::string& from, const std::string& to);

@@ -1,0 +1,103 @@
+#include "core/tick/tap_renderer.hpp"
+
+#include <catch2/catch.hpp>
+#include <vector>
+
+#include "core/model/plate_model.hpp"
+#include "support/no_alloc.hpp"
+#include "support/plates.hpp"
+using namespace tapstudy::core;
+namespace testing = tapstudy::testing;
+
+namespace {
+const VibratingPlate& plate() {
+  static const VibratingPlate shared{
+      build_plate_model(testing::paper_plate(2, testing::mdf())).modal};
+  return shared;
+}
+RenderSettings settings() {
+  RenderSettings all;
+  all.sinusoid.amplitude_n_s_per_m = 3.0;
+  return all;
+}
+// A finger that goes straight in at 0.3 m/s and stays 2 mm deep.
+std::vector<RenderedTick> tapped(const char* technique, double x_m, double y_m) {
+  TapRenderer renderer{*find_technique(technique), settings(), 0.3, 0.3, &plate()};
+  std::vector<RenderedTick> ticks;
+  renderer.tick({{x_m, y_m, 0.001}, {0.0, 0.0, -0.3}});
+  for (int tick = 0; tick < 300; ++tick) {
+    const double depth_m = std::min(0.002, 0.0002 + 3e-4 * tick);
+    ticks.push_back(renderer.tick({{x_m, y_m, -depth_m}, {0.0, 0.0, -0.3}}));
+  }
+  return ticks;
+}
+}  // namespace
+
+TEST_CASE("every technique has the penalty force of eq. 1 and is the sum of its parts (eq. 18)",
+          "[core][technique]") {
+  for (const Technique& technique : techniques) {
+    INFO(technique.name);
+    for (const RenderedTick& tick : tapped(technique.name.data(), 0.2, 0.2)) {
+      CHECK(tick.parts.penalty_n == Approx(3000.0 * tick.contact.penetration_m));
+      CHECK(tick.force_n.z() == Approx(tick.parts.penalty_n + tick.parts.vibration_n +
+                                       tick.parts.sinusoid_n));
+      CHECK(tick.force_n.head<2>().norm() == 0.0);
+      CHECK((tick.parts.vibration_n == 0.0 || technique.vibration));
+      CHECK((tick.parts.sinusoid_n == 0.0 || technique.sinusoid));
+    }
+  }
+}
+
+TEST_CASE("the sinusoid is the same wherever one taps and follows its formula",
+          "[core][technique]") {
+  const auto here = tapped("sinusoid", 0.2, 0.2);
+  const auto there = tapped("sinusoid", -0.25, 0.0);
+  for (std::size_t tick = 0; tick < here.size(); ++tick) {
+    CHECK(here[tick].parts.sinusoid_n == there[tick].parts.sinusoid_n);
+    const double t = 1e-3 * static_cast<double>(tick);
+    CHECK(here[tick].parts.sinusoid_n ==
+          Approx(0.9 * std::exp(-600.0 * t) * std::sin(2.0 * M_PI * 250.0 * t)).margin(1e-12));
+  }
+}
+
+TEST_CASE("the plate's vibration depends on where one taps", "[core][technique]") {
+  const auto corner = tapped("fem", 0.24, 0.24);
+  const auto fixed = tapped("fem", -0.29, -0.29);
+  double largest_at_corner = 0.0;
+  double largest_at_fixed = 0.0;
+  for (std::size_t tick = 0; tick < corner.size(); ++tick) {
+    largest_at_corner = std::max(largest_at_corner, std::abs(corner[tick].parts.vibration_n));
+    largest_at_fixed = std::max(largest_at_fixed, std::abs(fixed[tick].parts.vibration_n));
+  }
+  CHECK(largest_at_corner > 20.0 * largest_at_fixed);
+}
+
+TEST_CASE("a tap pushes the plate away from the finger", "[core][technique]") {
+  CHECK(tapped("fem", 0.24, 0.24).front().parts.vibration_n < 0.0);
+}
+
+TEST_CASE("fem+sinusoid is fem and sinusoid together", "[core][technique]") {
+  const auto fem = tapped("fem", 0.1, 0.24);
+  const auto sinusoid = tapped("sinusoid", 0.1, 0.24);
+  const auto both = tapped("fem+sinusoid", 0.1, 0.24);
+  for (std::size_t tick = 0; tick < both.size(); ++tick) {
+    CHECK(both[tick].parts.vibration_n == fem[tick].parts.vibration_n);
+    CHECK(both[tick].parts.sinusoid_n == sinusoid[tick].parts.sinusoid_n);
+  }
+}
+
+TEST_CASE("nothing is felt off the plate", "[core][technique][safety]") {
+  TapRenderer renderer{*find_technique("fem+sinusoid"), settings(), 0.3, 0.3, &plate()};
+  renderer.tick({{0.0, 0.0, 0.001}, {0.0, 0.0, -1.0}});
+  renderer.tick({{0.0, 0.0, -0.001}, {0.0, 0.0, -1.0}});
+  CHECK(renderer.tick({{0.0, 0.0, 0.0001}, {}}).force_n == Vec3::Zero());
+}
+
+TEST_CASE("rendering allocates nothing", "[core][technique][realtime]") {
+  TapRenderer renderer{*find_technique("fem+sinusoid"), settings(), 0.3, 0.3, &plate()};
+  const testing::AllocationCount allocations;
+  for (int tick = 0; tick < 10'000; ++tick) {
+    renderer.tick({{0.0001 * (tick % 1000), 0.0, 0.002 * std::sin(0.05 * tick)}, {}});
+  }
+  CHECK(allocations.count() == 0);
+}

@@ -1,0 +1,165 @@
+#include "device/haptic_loop.hpp"
+
+#include <catch2/catch.hpp>
+#include <limits>
+#include <vector>
+
+#include "support/no_alloc.hpp"
+using namespace tapstudy;
+using core::Vec3;
+
+namespace {
+// In a plate 2 mm deep from the second reading on; fails on cue.
+class FakeDevice final : public device::Device {
+ public:
+  device::Io read(core::HandState& hand) noexcept override {
+    hand.position_m = {0.0, ++reads_ == 1 ? 0.01 : height_m, 0.0};
+    return reads_ == fail_read_at ? device::Io::failed : device::Io::ok;
+  }
+  device::Io write(const Vec3& force_n) noexcept override {
+    last_force_n = force_n;
+    ++writes_;
+    return writes_ == fail_write_at ? device::Io::failed : device::Io::ok;
+  }
+  std::string description() const override { return "fake"; }
+
+  double height_m{-0.002};
+  int fail_read_at{-1};
+  int fail_write_at{-1};
+  Vec3 last_force_n{Vec3::Zero()};
+
+ private:
+  int reads_{0};
+  int writes_{0};
+};
+
+// Wakes as late as it is told.
+class CrankedClock final : public device::TickClock {
+ public:
+  device::Nanoseconds now() noexcept override { return now_; }
+  device::Nanoseconds wait_until(device::Nanoseconds deadline) noexcept override {
+    now_ = deadline + (waits_ < lateness.size() ? lateness[waits_] : 0);
+    ++waits_;
+    return now_;
+  }
+  std::vector<device::Nanoseconds> lateness;
+
+ private:
+  std::size_t waits_{0};
+  device::Nanoseconds now_{0};
+};
+
+struct Bench {
+  explicit Bench(std::size_t ring = 4096) : trace{ring} {
+    for (int i = 0; i < 2; ++i) {
+      renderers.emplace_back(core::techniques[0], core::RenderSettings{}, 0.3, 0.3, nullptr);
+    }
+  }
+  std::vector<core::TraceSample> samples() {
+    std::vector<core::TraceSample> all;
+    core::TraceSample sample{};
+    while (trace.try_pop(sample)) {
+      all.push_back(sample);
+    }
+    return all;
+  }
+  device::HapticLoop loop() {
+    return {hand, renderers, settings, trace, clock};
+  }
+  FakeDevice hand;
+  CrankedClock clock;
+  std::vector<core::TapRenderer> renderers;
+  device::LoopSettings settings{1'000'000, {10.0, 1e5}, {}};
+  core::SpscRing<core::TraceSample> trace;
+};
+}  // namespace
+
+TEST_CASE("the loop pushes back on a finger inside the plate", "[device][loop]") {
+  Bench bench;
+  device::HapticLoop loop = bench.loop();
+  loop.run_ticks(10);
+  const auto samples = bench.samples();
+  REQUIRE(samples.size() == 10);
+  CHECK(samples.front().force_n[1] == 0.0);
+  CHECK(samples.back().force_n[1] == Approx(3000.0 * 0.002));
+  CHECK(samples.back().t_ns == 9'000'000);
+  CHECK(loop.report().ticks == 10);
+}
+
+TEST_CASE("the loop ends at zero force, whatever ended it", "[device][loop][safety]") {
+  Bench bench;
+  core::TickFault fault = core::TickFault::none;
+  SECTION("asked to stop") {
+    device::HapticLoop loop = bench.loop();
+    loop.run_ticks(5);
+    std::stop_source stop;
+    stop.request_stop();
+    loop.run(stop.get_token());
+    fault = loop.report().stopped_by;
+    CHECK(fault == core::TickFault::none);
+  }
+  SECTION("the device stopped answering") {
+    bench.hand.fail_read_at = 5;
+    device::HapticLoop loop = bench.loop();
+    loop.run_ticks(100);
+    CHECK(loop.report().stopped_by == core::TickFault::device_read);
+    CHECK(loop.report().ticks == 5);
+    loop.run_ticks(100);
+    CHECK(loop.report().ticks == 5);  // a fault is latched
+  }
+  SECTION("the device stopped taking forces") {
+    bench.hand.fail_write_at = 7;
+    device::HapticLoop loop = bench.loop();
+    loop.run_ticks(100);
+    CHECK(loop.report().stopped_by == core::TickFault::device_write);
+  }
+  SECTION("the position was not a number") {
+    bench.hand.height_m = std::numeric_limits<double>::quiet_NaN();
+    device::HapticLoop loop = bench.loop();
+    loop.run_ticks(100);
+    CHECK(loop.report().stopped_by == core::TickFault::non_finite_force);
+  }
+  CHECK(bench.hand.last_force_n == Vec3::Zero());
+}
+
+TEST_CASE("late ticks are counted, missed ones skipped, and the rhythm stays", "[device][loop]") {
+  Bench bench;
+  bench.clock.lateness = {0, 600'000, 0, 3'200'000, 0};
+  device::HapticLoop loop = bench.loop();
+  loop.run_ticks(5);
+  std::vector<std::int64_t> times;
+  for (const core::TraceSample& sample : bench.samples()) {
+    times.push_back(sample.t_ns);
+  }
+  CHECK(times == std::vector<std::int64_t>{0, 1'600'000, 2'000'000, 6'200'000, 7'000'000});
+  CHECK(loop.report().late == 2);
+  CHECK(loop.report().skipped == 3);
+  CHECK(loop.report().worst_lateness == 3'200'000);
+}
+
+TEST_CASE("another alternative is taken only off the plate", "[device][loop][safety]") {
+  Bench bench;
+  device::HapticLoop loop = bench.loop();
+  loop.run_ticks(3);
+  loop.request_alternative(1);
+  loop.run_ticks(3);
+  CHECK(bench.samples().back().alternative == 0);  // the finger is still in
+  bench.hand.height_m = 0.001;
+  loop.run_ticks(2);
+  CHECK(bench.samples().back().alternative == 1);
+}
+
+TEST_CASE("samples that find no room are counted", "[device][loop]") {
+  Bench bench{16};
+  device::HapticLoop loop = bench.loop();
+  loop.run_ticks(20);
+  CHECK(bench.trace.dropped() == 4);
+}
+
+TEST_CASE("a thousand ticks of the loop allocate nothing", "[device][loop][realtime]") {
+  Bench bench;
+  device::HapticLoop loop = bench.loop();
+  const testing::AllocationCount allocations;
+  loop.run_ticks(1000);
+  CHECK(allocations.count() == 0);
+}

@@ -1,0 +1,103 @@
+#include "results/trace_codec.hpp"
+
+#include <catch2/catch.hpp>
+#include <cstring>
+#include <limits>
+
+#include "core/rng.hpp"
+#include "results/store_error.hpp"
+#include "results/trace_collector.hpp"
+using namespace tapstudy;
+using core::TraceSample;
+
+namespace {
+std::vector<TraceSample> wild_samples(std::size_t count) {
+  core::Rng rng{11};
+  std::vector<TraceSample> samples;
+  for (std::size_t i = 0; i < count; ++i) {
+    TraceSample s{};
+    s.t_ns = static_cast<std::int64_t>(i) * 1'000'003 - 5;
+    s.position_m = {rng.normal(), -0.0, 1e-320};
+    s.velocity_m_s = {rng.normal() * 1e300, 0.0, rng.uniform()};
+    s.penetration_m = rng.uniform();
+    s.penalty_n = std::numeric_limits<double>::infinity();
+    s.vibration_n = std::numeric_limits<double>::quiet_NaN();
+    s.sinusoid_n = -rng.uniform();
+    s.force_n = {0.0, rng.normal(), 0.0};
+    s.alternative = static_cast<std::uint8_t>(rng.below(256));
+    s.touching = rng.below(2) == 1;
+    s.struck = rng.below(2) == 1;
+    s.saturated = rng.below(2) == 1;
+    s.fault = core::TickFault::device_write;
+    samples.push_back(s);
+  }
+  return samples;
+}
+bool same_bits(double a, double b) {
+  return std::memcmp(&a, &b, sizeof a) == 0;
+}
+}  // namespace
+
+TEST_CASE("a trace comes back to the last bit, NaN and denormals included", "[results][codec]") {
+  const std::size_t count = GENERATE(0U, 1U, 2U, 4096U, 5000U);
+  const auto samples = wild_samples(count);
+  const auto decoded = results::decode_trace(results::encode_trace(samples), count);
+  REQUIRE(decoded.size() == count);
+  for (std::size_t i = 0; i < count; ++i) {
+    CHECK(decoded[i].t_ns == samples[i].t_ns);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      CHECK(same_bits(decoded[i].position_m.at(axis), samples[i].position_m.at(axis)));
+      CHECK(same_bits(decoded[i].velocity_m_s.at(axis), samples[i].velocity_m_s.at(axis)));
+      CHECK(same_bits(decoded[i].force_n.at(axis), samples[i].force_n.at(axis)));
+    }
+    CHECK(same_bits(decoded[i].penetration_m, samples[i].penetration_m));
+    CHECK(same_bits(decoded[i].penalty_n, samples[i].penalty_n));
+    CHECK(same_bits(decoded[i].vibration_n, samples[i].vibration_n));
+    CHECK(same_bits(decoded[i].sinusoid_n, samples[i].sinusoid_n));
+    CHECK(decoded[i].alternative == samples[i].alternative);
+    CHECK(decoded[i].touching == samples[i].touching);
+    CHECK(decoded[i].struck == samples[i].struck);
+    CHECK(decoded[i].saturated == samples[i].saturated);
+    CHECK(decoded[i].fault == samples[i].fault);
+  }
+}
+
+TEST_CASE("bytes that are no trace are refused", "[results][codec]") {
+  auto bytes = results::encode_trace(wild_samples(100));
+  CHECK_THROWS_AS(results::decode_trace(bytes, 99), results::StoreError);
+  CHECK_THROWS_AS(results::decode_trace(bytes, 101), results::StoreError);
+  bytes.resize(bytes.size() / 2);
+  CHECK_THROWS_AS(results::decode_trace(bytes, 100), results::StoreError);
+}
+
+TEST_CASE("the collector keeps every sample and notes what happened", "[results][collector]") {
+  core::SpscRing<TraceSample> ring{1U << 14U};
+  results::TraceCollector collector{ring};
+  for (int tick = 0; tick < 10'000; ++tick) {
+    TraceSample sample{};
+    sample.t_ns = tick * 1'000'000LL;
+    sample.touching = tick >= 100 && tick < 200;
+    sample.struck = tick == 100;
+    sample.velocity_m_s[1] = -0.25;
+    sample.alternative = tick < 5000 ? 0 : 2;
+    ring.try_push(sample);
+  }
+  const auto collected = collector.finish();
+  CHECK(collected.ticks == 10'000);
+  std::int64_t kept = 0;
+  for (const results::TraceChunk& chunk : collected.chunks) {
+    CHECK(chunk.first_tick == kept);
+    kept += chunk.ticks;
+  }
+  CHECK(kept == 10'000);
+  std::vector<std::tuple<double, std::string, double>> events;
+  for (const results::EventRow& event : collected.events) {
+    events.emplace_back(event.t_s, event.kind, event.value);
+  }
+  using Event = std::tuple<double, std::string, double>;
+  CHECK(events == std::vector<Event>{{0.0, "switch", 0.0},
+                                     {0.1, "contact", 0.0},
+                                     {0.1, "impact", 0.25},
+                                     {0.2, "release", 0.0},
+                                     {5.0, "switch", 2.0}});
+}

@@ -40,7 +40,8 @@ bool always(const Item& /*stimulus*/, const Item& /*response*/) {
 
 Agrees same_level(const std::string& factor) {
   return [factor](const Item& stimulus, const Item& response) {
-    return stimulus.factors.at(factor) == response.factors.at(factor);
+    const auto level = response.factors.find(factor);
+    return level != response.factors.end() && stimulus.factors.at(factor) == level->second;
   };
 }
 }  // namespace
@@ -83,17 +84,31 @@ Proportion conditional_accuracy(const ConfusionMatrix& matrix, const std::string
   return counted(matrix, same_level(factor), same_level(given));
 }
 
+double factor_chance(const ConfusionMatrix& matrix, const std::string& factor,
+                     const std::string& given) {
+  const Agrees agrees = same_level(factor);
+  const Agrees counts = given.empty() ? Agrees{always} : same_level(given);
+  double agreeing = 0.0;
+  double possible = 0.0;
+  for (std::size_t i = 0; i < matrix.stimuli.size(); ++i) {
+    for (const Item& response : matrix.responses) {
+      if (counts(matrix.stimuli[i], response)) {
+        possible += matrix.row_total(i);
+        agreeing += agrees(matrix.stimuli[i], response) ? matrix.row_total(i) : 0;
+      }
+    }
+  }
+  return possible > 0.0 ? agreeing / possible : 0.0;
+}
+
 std::vector<std::string> factors_of(const ConfusionMatrix& matrix) {
   std::vector<std::string> names;
   if (matrix.stimuli.empty()) {
     return names;
   }
   for (const auto& [factor, level] : matrix.stimuli.front().factors) {
-    const bool is_everywhere =
-        std::ranges::all_of(matrix.stimuli,
-                            [&](const Item& item) { return item.factors.contains(factor); }) &&
-        std::ranges::all_of(matrix.responses,
-                            [&](const Item& item) { return item.factors.contains(factor); });
+    const bool is_everywhere = std::ranges::all_of(
+        matrix.stimuli, [&](const Item& item) { return item.factors.contains(factor); });
     if (is_everywhere) {
       names.push_back(factor);
     }

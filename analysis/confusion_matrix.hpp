@@ -34,5 +34,10 @@ Proportion factor_accuracy(const ConfusionMatrix& matrix, const std::string& fac
 // The same among those answers only that are right about another factor.
 Proportion conditional_accuracy(const ConfusionMatrix& matrix, const std::string& factor,
                                 const std::string& given);
+// How often a guess among the responses would agree on the factor, given it agrees on another
+// (given may be empty), weighing the stimuli as they were presented.
+double factor_chance(const ConfusionMatrix& matrix, const std::string& factor,
+                     const std::string& given);
+// The factors that every stimulus has a level of. A response without a level agrees with none.
 std::vector<std::string> factors_of(const ConfusionMatrix& matrix);
 }  // namespace tapstudy::analysis

@@ -14,6 +14,9 @@ struct Line {
   std::vector<std::string> cells;
 };
 
+constexpr std::size_t most_classes = 200;
+constexpr int most_answers = 1'000'000;
+
 [[noreturn]] void refuse(const std::string& file, int line, const std::string& what) {
   throw core::InvalidInput{fmt::format("{}:{}: {}", file, line, what)};
 }
@@ -44,8 +47,9 @@ std::vector<Line> read_lines(std::istream& text, const std::string& file) {
     }
     lines.push_back({number, split(line)});
     if (lines.back().cells.size() != lines.front().cells.size()) {
-      refuse(file, number, fmt::format("has {} cells, the header has {}",
-                                       lines.back().cells.size(), lines.front().cells.size()));
+      refuse(file, number,
+             fmt::format("has {} cells, the header has {}", lines.back().cells.size(),
+                         lines.front().cells.size()));
     }
   }
   if (lines.size() < 2 || lines.front().cells.front() != "stimulus") {
@@ -59,16 +63,22 @@ int count_in(const std::string& cell, const std::string& file, int line) {
   int value{};
   const char* const end = cell.data() + cell.size();
   const auto [stopped, error] = std::from_chars(cell.data(), end, value);
-  if (error != std::errc{} || stopped != end || value < 0) {
-    refuse(file, line, fmt::format("'{}' is not a count", cell));
+  if (error != std::errc{} || stopped != end || value < 0 || value > most_answers) {
+    refuse(file, line, fmt::format("'{}' is not a count (from 0 to {})", cell, most_answers));
   }
   return value;
 }
 
-ConfusionMatrix from_answers(const std::vector<Line>& lines) {
+ConfusionMatrix from_answers(const std::vector<Line>& lines, const std::string& file) {
   std::set<std::string> names;
   for (std::size_t i = 1; i < lines.size(); ++i) {
     names.insert({lines[i].cells[0], lines[i].cells[1]});
+  }
+  if (names.size() > most_classes) {
+    refuse(file, lines.front().number,
+           fmt::format("names {} different stimuli and responses (at "
+                       "most {})",
+                       names.size(), most_classes));
   }
   std::vector<Item> items;
   for (const std::string& name : names) {
@@ -83,6 +93,10 @@ ConfusionMatrix from_answers(const std::vector<Line>& lines) {
 
 ConfusionMatrix from_matrix(const std::vector<Line>& lines, const std::string& file) {
   const std::vector<std::string>& header = lines.front().cells;
+  if (std::max(lines.size(), header.size()) > most_classes) {
+    refuse(file, lines.front().number,
+           fmt::format("has more than {} stimuli or responses", most_classes));
+  }
   std::vector<Item> stimuli;
   for (std::size_t i = 1; i < lines.size(); ++i) {
     const std::string& name = lines[i].cells[0];
@@ -91,29 +105,36 @@ ConfusionMatrix from_matrix(const std::vector<Line>& lines, const std::string& f
     }
     stimuli.push_back({name, name, {}});
   }
-  std::vector<Item> responses;
-  for (std::size_t column = 1; column < header.size(); ++column) {
-    if (std::ranges::find(stimuli, header[column], &Item::name) != stimuli.end()) {
-      responses.push_back({header[column], header[column], {}});
-      continue;
-    }
+  const auto stimulus_named = [&](const std::string& name) {
+    return std::ranges::find(stimuli, name, &Item::name);
+  };
+  const auto first_response =
+      std::find_if(header.begin() + 1, header.end(),
+                   [&](const std::string& name) { return stimulus_named(name) != stimuli.end(); });
+  const auto factors = static_cast<std::size_t>(first_response - header.begin());
+  for (std::size_t column = 1; column < factors; ++column) {
     for (std::size_t i = 0; i < stimuli.size(); ++i) {
       stimuli[i].factors[header[column]] = lines[i + 1].cells[column];
     }
   }
-  if (responses.size() < 2) {
-    refuse(file, lines.front().number, "names fewer than two of the stimuli as responses");
+  std::vector<Item> responses;
+  for (std::size_t column = factors; column < header.size(); ++column) {
+    if (std::ranges::find(responses, header[column], &Item::name) != responses.end()) {
+      refuse(file, lines.front().number,
+             fmt::format("response '{}' is there twice", header[column]));
+    }
+    const auto stimulus = stimulus_named(header[column]);
+    responses.push_back(stimulus != stimuli.end() ? *stimulus
+                                                  : Item{header[column], header[column], {}});
   }
-  for (Item& response : responses) {
-    response.factors = std::ranges::find(stimuli, response.name, &Item::name)->factors;
+  if (responses.size() < 2) {
+    refuse(file, lines.front().number, "has fewer than two responses");
   }
   ConfusionMatrix matrix{stimuli, responses};
   for (std::size_t i = 1; i < lines.size(); ++i) {
-    for (std::size_t column = 1; column < header.size(); ++column) {
-      if (std::ranges::find(responses, header[column], &Item::name) != responses.end()) {
-        matrix.add(lines[i].cells[0], header[column],
-                   count_in(lines[i].cells[column], file, lines[i].number));
-      }
+    for (std::size_t column = factors; column < header.size(); ++column) {
+      matrix.add(lines[i].cells[0], header[column],
+                 count_in(lines[i].cells[column], file, lines[i].number));
     }
   }
   return matrix;
@@ -124,7 +145,7 @@ ConfusionMatrix read_counts(std::istream& text, const std::string& file) {
   const std::vector<Line> lines = read_lines(text, file);
   const std::vector<std::string>& header = lines.front().cells;
   const bool is_answers = header.size() >= 2 && header[1] == "response";
-  ConfusionMatrix matrix = is_answers ? from_answers(lines) : from_matrix(lines, file);
+  ConfusionMatrix matrix = is_answers ? from_answers(lines, file) : from_matrix(lines, file);
   if (matrix.total() == 0) {
     refuse(file, lines.front().number, "holds no answers");
   }

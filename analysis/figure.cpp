@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -23,6 +24,9 @@ Span y_span(const Figure& figure) {
   Span span;
   for (const Panel& panel : figure.panels) {
     for (const Series& series : panel.series) {
+      if (series.y.empty()) {
+        continue;
+      }
       const auto [low, high] = std::ranges::minmax(series.y);
       span = {std::min(span.low, low), std::max(span.high, high)};
     }
@@ -31,11 +35,16 @@ Span y_span(const Figure& figure) {
   return {span.low - margin, span.high + margin};
 }
 
-// gnuplot reads '' inside a single-quoted text as one quote and knows no other escape.
+// gnuplot reads '' inside a single-quoted text as one quote and knows no other escape; a line's end
+// would end the command, so no control character gets through.
 std::string quoted(const std::string& text) {
   std::string safe{"'"};
   for (const char c : text) {
-    safe += c == '\'' ? std::string{"''"} : std::string{c};
+    if (c == '\'') {
+      safe += "''";
+    } else {
+      safe += std::iscntrl(static_cast<unsigned char>(c)) != 0 ? ' ' : c;
+    }
   }
   return safe + "'";
 }
@@ -51,8 +60,7 @@ void write_panel(std::ostream& script, const Panel& panel, std::size_t index) {
   }
   script << "set title " << quoted(panel.title) << " noenhanced\nplot ";
   for (std::size_t i = 0; i < panel.series.size(); ++i) {
-    script << (i == 0 ? "" : ", ")
-           << fmt::format("$data_{}_{} with lines lw 1.5 title ", index, i)
+    script << (i == 0 ? "" : ", ") << fmt::format("$data_{}_{} with lines lw 1.5 title ", index, i)
            << quoted(panel.series[i].label);
   }
   script << '\n';
@@ -78,7 +86,7 @@ std::string gnuplot_script(const Figure& figure, const std::string& file) {
 }
 
 void run_gnuplot(const std::string& script) {
-  FILE* const gnuplot = popen("gnuplot 2>/dev/null", "w");
+  FILE* const gnuplot = popen("gnuplot >/dev/null 2>&1", "w");
   const bool is_written =
       gnuplot != nullptr && std::fwrite(script.data(), 1, script.size(), gnuplot) == script.size();
   if (gnuplot == nullptr || pclose(gnuplot) != 0 || !is_written) {
@@ -88,9 +96,13 @@ void run_gnuplot(const std::string& script) {
 }  // namespace
 
 void draw_svg(const Figure& figure, const std::string& file) {
-  if (std::filesystem::exists(file)) {
+  std::error_code error;
+  if (std::filesystem::exists(file, error)) {
     throw core::InvalidInput{file + ": exists already and is not overwritten"};
   }
   run_gnuplot(gnuplot_script(figure, file));
+  if (std::filesystem::file_size(file, error) == 0 || error) {
+    throw core::InvalidInput{file + ": cannot be written"};
+  }
 }
 }  // namespace tapstudy::analysis

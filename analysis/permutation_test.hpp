@@ -1,12 +1,11 @@
 #pragma once
 #include <cstdint>
-#include <string>
 #include <vector>
 namespace tapstudy::analysis {
-// One participant's answers, trial by trial.
+// One participant's answers, trial by trial; equal numbers stand for equal names.
 struct Answers {
-  std::vector<std::string> stimuli;
-  std::vector<std::string> responses;
+  std::vector<int> stimuli;
+  std::vector<int> responses;
 };
 
 // Is accuracy better than guessing? Each participant's responses are shuffled over that

@@ -8,6 +8,8 @@
 #include <numeric>
 namespace tapstudy::analysis {
 namespace {
+constexpr double most_outcomes = 1e6;
+
 double log_factorial(int n) {
   return std::lgamma(static_cast<double>(n) + 1.0);
 }
@@ -49,13 +51,22 @@ double binomial_p_at_least(const Proportion& observed, double chance) {
   if (observed.successes <= 0) {
     return 1.0;
   }
+  if (observed.successes > observed.trials) {
+    return 0.0;
+  }
   const boost::math::binomial_distribution<> guesses{static_cast<double>(observed.trials), chance};
   return boost::math::cdf(
       boost::math::complement(guesses, static_cast<double>(observed.successes - 1)));
 }
 
-double exact_multinomial_p(const std::vector<int>& counts) {
+std::optional<double> exact_multinomial_p(const std::vector<int>& counts) {
   const int total = std::accumulate(counts.begin(), counts.end(), 0);
+  const int classes = static_cast<int>(counts.size());
+  const double log_outcomes =
+      log_factorial(total + classes - 1) - log_factorial(classes - 1) - log_factorial(total);
+  if (log_outcomes > std::log(most_outcomes)) {
+    return std::nullopt;
+  }
   // equal probabilities differ by rounding
   const double limit = log_probability(counts, total) + 1e-9;
   double p = 0.0;
@@ -68,12 +79,17 @@ double exact_multinomial_p(const std::vector<int>& counts) {
 }
 
 int critical_successes(int trials, double chance, double alpha) {
-  for (int k = 0; k <= trials; ++k) {
-    if (binomial_p_at_least({k, trials}, chance) <= alpha) {
-      return k;
+  int fewest = 0;
+  int most = trials + 1;
+  while (fewest < most) {
+    const int middle = fewest + (most - fewest) / 2;
+    if (binomial_p_at_least({middle, trials}, chance) <= alpha) {
+      most = middle;
+    } else {
+      fewest = middle + 1;
     }
   }
-  return trials + 1;
+  return fewest;
 }
 
 double binomial_power(int trials, double chance, double alpha, double truth) {

@@ -1,4 +1,5 @@
 #pragma once
+#include <optional>
 #include <vector>
 namespace tapstudy::analysis {
 struct Interval {
@@ -20,9 +21,9 @@ Interval wilson_interval(const Proportion& proportion);
 double binomial_p_at_least(const Proportion& observed, double chance);
 
 // The exact multinomial test of equal probabilities; outcomes no more probable than the one
-// observed count against it. At most a few dozen observations and a handful of classes: every
-// outcome is enumerated. counts not empty, none negative.
-double exact_multinomial_p(const std::vector<int>& counts);
+// observed count against it. Every outcome is enumerated; nothing if there are more than a million.
+// counts not empty, none negative.
+std::optional<double> exact_multinomial_p(const std::vector<int>& counts);
 
 // The fewest successes in n trials that are significant at alpha against chance, one-sided; n + 1
 // if none is.

@@ -11,19 +11,29 @@
 namespace tapstudy::analysis {
 namespace {
 using results::AnswerRow;
-constexpr int shuffles = 9999;
+constexpr int most_shuffles = 9999;
+constexpr int fewest_shuffles = 99;
 constexpr std::uint64_t shuffle_seed = 1;
+
+// As many as take no more than a moment; the report says how many there were.
+int shuffles_for(std::size_t answers) {
+  constexpr std::size_t most_work = 20'000'000;
+  return static_cast<int>(std::clamp<std::size_t>(most_work / std::max<std::size_t>(answers, 1),
+                                                  fewest_shuffles, most_shuffles));
+}
 
 std::vector<FactorResult> factor_results(const ConfusionMatrix& matrix) {
   std::vector<FactorResult> found;
   const std::vector<std::string> factors = factors_of(matrix);
   for (const std::string& factor : factors) {
-    found.push_back({factor, "", factor_accuracy(matrix, factor)});
+    found.push_back(
+        {factor, "", factor_accuracy(matrix, factor), factor_chance(matrix, factor, "")});
   }
   for (const std::string& factor : factors) {
     for (const std::string& given : factors) {
       if (factor != given) {
-        found.push_back({factor, given, conditional_accuracy(matrix, factor, given)});
+        found.push_back({factor, given, conditional_accuracy(matrix, factor, given),
+                         factor_chance(matrix, factor, given)});
       }
     }
   }
@@ -41,6 +51,10 @@ IdentificationSummary identification(const BlockDesign& design,
   std::map<std::string, Proportion> accuracies;
   std::map<std::string, Answers> by_participant;
   std::vector<std::string> order;
+  std::map<std::string, int> codes;
+  const auto code = [&](const std::string& name) {
+    return codes.emplace(name, static_cast<int>(codes.size())).first->second;
+  };
   for (const AnswerRow& answer : answers) {
     matrix.add(answer.stimulus, answer.response);
     if (!accuracies.contains(answer.participant_id)) {
@@ -49,8 +63,8 @@ IdentificationSummary identification(const BlockDesign& design,
     Proportion& accuracy = accuracies[answer.participant_id];
     ++accuracy.trials;
     accuracy.successes += answer.stimulus == answer.response ? 1 : 0;
-    by_participant[answer.participant_id].stimuli.push_back(answer.stimulus);
-    by_participant[answer.participant_id].responses.push_back(answer.response);
+    by_participant[answer.participant_id].stimuli.push_back(code(answer.stimulus));
+    by_participant[answer.participant_id].responses.push_back(code(answer.response));
   }
   IdentificationSummary summary = summary_of(matrix, design.name, design.question);
   std::vector<Answers> all;
@@ -58,19 +72,22 @@ IdentificationSummary identification(const BlockDesign& design,
     summary.participants.push_back({participant, accuracies[participant]});
     all.push_back(by_participant[participant]);
   }
+  if (design.hypotheses.empty()) {
+    return summary;
+  }
+  const int shuffles = shuffles_for(answers.size());
+  const double p = permutation_p(all, shuffles, shuffle_seed);
   for (const PlannedHypothesis& planned : design.hypotheses) {
     summary.hypotheses.push_back(
-        {planned,
-         fmt::format("permutation within participants, {} shuffles, one-sided", shuffles),
-         summary.accuracy, matrix.chance(),
-         answers.empty() ? 1.0 : permutation_p(all, shuffles, shuffle_seed)});
+        {planned, fmt::format("permutation within participants, {} shuffles, one-sided", shuffles),
+         summary.accuracy, matrix.chance(), p});
   }
   return summary;
 }
 
 ChoiceSummary choice(const BlockDesign& design, const std::vector<AnswerRow>& answers,
                      const std::vector<results::VisitRow>& visits) {
-  ChoiceSummary summary{design.name, design.question, {}, {}, 1.0, false, {}};
+  ChoiceSummary summary{design.name, design.question, {}, {}, std::nullopt, false, {}};
   std::vector<int> counts;
   const int total = static_cast<int>(answers.size());
   for (const Item& item : design.stimuli) {

@@ -39,6 +39,7 @@ struct FactorResult {
   std::string factor;
   std::string given;  // empty: among all answers
   Proportion accuracy;
+  double chance{};  // of agreeing by guessing, for the stimuli that were presented
 };
 struct ParticipantAccuracy {
   std::string participant_id;
@@ -65,8 +66,8 @@ struct ChoiceSummary {
   std::string question;
   std::vector<AlternativeResult> alternatives;
   std::vector<std::pair<std::string, std::string>> choices;  // participant, stimulus
-  double multinomial_p{};
-  bool has_repeated_choices{};  // several by one participant: not independent
+  std::optional<double> multinomial_p;  // nothing if there are too many outcomes to enumerate
+  bool has_repeated_choices{};          // several by one participant: not independent
   std::vector<HypothesisResult> hypotheses;
 };
 using BlockSummary = std::variant<IdentificationSummary, ChoiceSummary>;

@@ -65,8 +65,8 @@ void HapticLoop::note_lateness(Nanoseconds woke_at) noexcept {
 void HapticLoop::take_requested_alternative() noexcept {
   const std::size_t wanted = requested_.load(std::memory_order_acquire);
   if (wanted != current_ && !alternatives_[current_].is_touching()) {
+    alternatives_[wanted].take_over_from(alternatives_[current_]);
     current_ = wanted;
-    alternatives_[current_].reset();
   }
 }
 
@@ -86,7 +86,7 @@ core::TraceSample HapticLoop::tick(Nanoseconds now) noexcept {
   const core::Vec3 wanted_n = core::Placement::force_to_device(rendered.force_n);
   const core::LimitedForce limited =
       core::limit_force(wanted_n, previous_force_n_, settings_.limits, dt_s);
-  if (!limited.was_finite || !hand.position_m.allFinite()) {
+  if (!limited.was_finite || !hand.position_m.allFinite() || !hand.velocity_m_s.allFinite()) {
     sample.fault = TickFault::non_finite_force;
     return sample;
   }

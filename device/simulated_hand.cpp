@@ -10,10 +10,8 @@ core::OscillatorStep muscle_step(const HandBody& body, double dt_s) noexcept {
 }
 }  // namespace
 
-SimulatedHand::SimulatedHand(const HandBody& body, double dt_s, double memory_s)
-    : body_{body}, dt_s_{dt_s}, step_{muscle_step(body, dt_s)} {
-  felt_.reserve(static_cast<std::size_t>(std::ceil(memory_s / dt_s)));
-}
+SimulatedHand::SimulatedHand(const HandBody& body, double dt_s, Memory memory)
+    : body_{body}, dt_s_{dt_s}, memory_{memory}, step_{muscle_step(body, dt_s)} {}
 
 double SimulatedHand::follow(std::vector<PlannedTap> taps) {
   path_ = TapPath{std::move(taps), has_started_ ? std::optional{hand_.position_m} : std::nullopt};
@@ -22,6 +20,9 @@ double SimulatedHand::follow(std::vector<PlannedTap> taps) {
     const Target start = path_.at(0.0);
     hand_ = {start.position_m, start.velocity_m_s};
     has_started_ = true;
+  }
+  if (memory_ == Memory::kept) {
+    felt_.reserve(felt_.size() + static_cast<std::size_t>(std::ceil(path_.duration_s() / dt_s_)));
   }
   return path_.duration_s();
 }
@@ -32,7 +33,7 @@ Io SimulatedHand::read(core::HandState& hand) noexcept {
 }
 
 Io SimulatedHand::write(const core::Vec3& force_n) noexcept {
-  if (felt_.size() < felt_.capacity()) {
+  if (memory_ == Memory::kept && felt_.size() < felt_.capacity()) {
     felt_.push_back({hand_, force_n});
   }
   // In coordinates that move with the aim the force is a displaced point of rest.
@@ -42,8 +43,7 @@ Io SimulatedHand::write(const core::Vec3& force_n) noexcept {
   const core::Vec3 rest_m = force_n / body_.muscle_stiffness_n_per_m;
   const core::Vec3 offset_m = hand_.position_m - now.position_m - rest_m;
   const core::Vec3 relative_m_s = hand_.velocity_m_s - drift_m_s;
-  hand_.position_m =
-      next.position_m + rest_m + step_.qq * offset_m + step_.qv * relative_m_s;
+  hand_.position_m = next.position_m + rest_m + step_.qq * offset_m + step_.qv * relative_m_s;
   hand_.velocity_m_s = drift_m_s + step_.vq * offset_m + step_.vv * relative_m_s;
   return Io::ok;
 }

@@ -23,11 +23,12 @@ struct FeltTick {
 // the motion is exact. A device like any other, for studies without hardware.
 class SimulatedHand final : public Device {
  public:
-  // Remembers what it felt for up to memory_s seconds.
-  SimulatedHand(const HandBody& body, double dt_s, double memory_s);
+  enum class Memory { kept, none };
+  SimulatedHand(const HandBody& body, double dt_s, Memory memory);
 
   // Starts a new series of taps at the next tick and returns how long it takes. The first call puts
   // the hand above the first point, at speed if there is no run-up; later ones let it travel there.
+  // A hand that remembers takes room for what it will feel meanwhile.
   double follow(std::vector<PlannedTap> taps);
   const std::vector<FeltTick>& felt() const noexcept { return felt_; }
   void forget() noexcept { felt_.clear(); }
@@ -39,6 +40,7 @@ class SimulatedHand final : public Device {
  private:
   HandBody body_;
   double dt_s_;
+  Memory memory_;
   core::OscillatorStep step_;
   TapPath path_{{}};
   std::int64_t ticks_{0};

@@ -53,8 +53,8 @@ Target TapPath::at(double t_s) const noexcept {
     return travelling(*from_m_, above(taps_.front()), t_s, starts_s_.front());
   }
   const auto next = std::upper_bound(starts_s_.begin(), starts_s_.end() - 1, t_s);
-  const auto index = static_cast<std::size_t>(std::max<std::ptrdiff_t>(
-      0, std::distance(starts_s_.begin(), next) - 1));
+  const auto index = static_cast<std::size_t>(
+      std::max<std::ptrdiff_t>(0, std::distance(starts_s_.begin(), next) - 1));
   const PlannedTap& tap = taps_[index];
   double left_s = t_s - starts_s_[index];
   if (left_s < approach_s(tap)) {

@@ -38,8 +38,9 @@ void Problems::throw_if_any() const {
     return;
   }
   std::vector<Problem> sorted = problems_;
-  std::ranges::stable_sort(
-      sorted, {}, [](const Problem& problem) { return std::tuple{problem.line, problem.column}; });
+  std::ranges::stable_sort(sorted, {}, [](const Problem& problem) {
+    return std::tuple{problem.line, problem.column};
+  });
   std::vector<std::string> lines;
   std::ranges::transform(sorted, std::back_inserter(lines), &Problem::text);
   throw core::InvalidInput{fmt::format("{}", fmt::join(lines, "\n"))};

@@ -16,8 +16,8 @@ const Item& named(const std::vector<Item>& items, const std::string& name, const
   }
   std::vector<std::string> names;
   std::ranges::transform(items, std::back_inserter(names), &Item::name);
-  throw core::InvalidInput{
-      fmt::format("{} '{}' is not in the protocol (it has: {})", kind, name, fmt::join(names, ", "))};
+  throw core::InvalidInput{fmt::format("{} '{}' is not in the protocol (it has: {})", kind, name,
+                                       fmt::join(names, ", "))};
 }
 }  // namespace
 

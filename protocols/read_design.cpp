@@ -21,6 +21,13 @@ void read_points(MapReader& top, Protocol& protocol) {
                  [&](const std::string& name, const Eigen::Vector2d& at_m) {
                    protocol.tapping_points_m[name] = at_m;
                  });
+  for (const auto& [point, at_m] : protocol.tapping_points_m) {
+    for (const auto& [name, plate] : protocol.plates) {
+      if ((at_m.cwiseAbs().array() > plate.box.high_m().head<2>().array()).any()) {
+        top.reject("tapping_points_m", fmt::format("{} is off plate '{}'", point, name));
+      }
+    }
+  }
 }
 
 // Reports split accuracy by factors, so every stimulus has a level of each.
@@ -39,14 +46,15 @@ void check_factors(MapReader& reader, const Stimulus& stimulus, const Protocol& 
 void check_sinusoid(MapReader& reader, const Stimulus& stimulus, const Protocol& protocol) {
   if (stimulus.technique != nullptr && stimulus.technique->sinusoid &&
       !(protocol.rendering.sinusoid.amplitude_n_s_per_m > 0.0)) {
-    reader.reject("technique", fmt::format("'{}' needs rendering.sinusoid with an amplitude above 0",
-                                           stimulus.technique->name));
+    reader.reject("technique",
+                  fmt::format("'{}' needs rendering.sinusoid with an amplitude above 0",
+                              stimulus.technique->name));
   }
 }
 
 Block read_block(MapReader& reader, const Protocol& protocol) {
   Block block;
-  block.name = reader.text("name");
+  block.name = reader.name("name");
   block.task = reader.one_of<Task>(
       "task", {{"identification", Task::identification}, {"choice", Task::choice}});
   block.question = reader.text("question");
@@ -56,13 +64,13 @@ Block read_block(MapReader& reader, const Protocol& protocol) {
         reader.words("responses", "stimulus", stimulus_names(protocol), block.stimuli);
   }
   block.repetitions = reader.integer("repetitions", 1, 1000, 1);
-  block.order = reader.one_of<Order>("order",
-                                     {{"shuffle", Order::shuffle},
-                                      {"listed", Order::listed},
-                                      {"shuffle_within_repetition",
-                                       Order::shuffle_within_repetition},
-                                      {"williams", Order::williams}},
-                                     "shuffle");
+  block.order =
+      reader.one_of<Order>("order",
+                           {{"shuffle", Order::shuffle},
+                            {"listed", Order::listed},
+                            {"shuffle_within_repetition", Order::shuffle_within_repetition},
+                            {"williams", Order::williams}},
+                           "shuffle");
   block.is_practice = reader.yes_or_no("practice", false);
   return block;
 }
@@ -130,7 +138,7 @@ void read_hypotheses(MapReader& top, Protocol& protocol) {
   std::ranges::transform(protocol.blocks, std::back_inserter(blocks), &Block::name);
   top.list("hypotheses", Presence::optional, [&](MapReader& reader) {
     Hypothesis hypothesis;
-    hypothesis.name = reader.text("name");
+    hypothesis.name = reader.name("name");
     hypothesis.statement = reader.text("statement");
     hypothesis.block = reader.word("block", "block", blocks);
     hypothesis.claim =

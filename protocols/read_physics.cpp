@@ -70,16 +70,17 @@ void read_rendering(MapReader& top, Protocol& protocol) {
     protocol.rate_hz = rendering.number("rate_hz", {500.0, 10000.0});
     protocol.band_limit_hz = rendering.number("band_limit_hz", Range::positive(1e5));
     if (protocol.band_limit_hz >= protocol.rate_hz / 2.0) {
-      rendering.reject("band_limit_hz", "is not below half of rate_hz: faster modes cannot be "
-                                        "rendered and must not be folded back");
+      rendering.reject("band_limit_hz",
+                       "is not below half of rate_hz: faster modes cannot be "
+                       "rendered and must not be folded back");
     }
     settings.dt_s = 1.0 / protocol.rate_hz;
     settings.penalty_stiffness_n_per_m =
         rendering.number("penalty_stiffness_n_per_m", Range::positive(1e6));
     settings.release_height_m = rendering.number("release_height_m", {0.0, 0.1}, 5e-4);
     settings.integrator = rendering.one_of<core::Integrator>(
-        "integrator",
-        {{"exact", core::Integrator::exact}, {"newmark", core::Integrator::newmark}}, "exact");
+        "integrator", {{"exact", core::Integrator::exact}, {"newmark", core::Integrator::newmark}},
+        "exact");
     read_sinusoid(rendering, settings.sinusoid);
   });
 }
@@ -103,7 +104,7 @@ void read_materials(MapReader& top, Protocol& protocol) {
 void read_plates(MapReader& top, Protocol& protocol) {
   top.each("plates", Presence::required, [&](const std::string& name, MapReader& reader) {
     Plate plate;
-    plate.box.size_m = reader.numbers("size_m", 3, Range::positive(100.0));
+    plate.box.size_m = reader.numbers("size_m", 3, {1e-4, 100.0});
     reader.map("mesh", Presence::optional, [&](MapReader& mesh) {
       mesh.integer("order", 1, 1, 1);
       if (mesh.has("max_tet_volume_m3")) {

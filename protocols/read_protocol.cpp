@@ -3,20 +3,25 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <fstream>
-#include <sstream>
+#include <iterator>
 
 #include "core/error.hpp"
 #include "protocols/read_sections.hpp"
 namespace tapstudy::protocols {
 namespace {
 std::string contents_of(const std::string& file) {
+  std::error_code error;
   std::ifstream stream{file, std::ios::binary};
-  std::ostringstream text;
-  if (!stream || !(text << stream.rdbuf())) {
+  if (!stream || std::filesystem::is_directory(file, error)) {
     throw core::InvalidInput{file + ": cannot be read"};
   }
-  return text.str();
+  std::string text{std::istreambuf_iterator<char>{stream}, {}};
+  if (stream.bad()) {
+    throw core::InvalidInput{file + ": cannot be read"};
+  }
+  return text;
 }
 
 Protocol parse(const std::string& text, const std::string& file, Problems& problems) {
@@ -25,7 +30,7 @@ Protocol parse(const std::string& text, const std::string& file, Problems& probl
   protocol.text = text;
   top.word("format", "format", {"tapstudy/1"});
   protocol.title = top.text("title");
-  protocol.notes = top.text("notes", "");
+  protocol.notes = top.paragraphs("notes", "");
   read_rendering(top, protocol);
   read_placement(top, MapReader::Presence::required,
                  [&](const core::Placement& placement) { protocol.placement = placement; });

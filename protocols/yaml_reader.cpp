@@ -5,18 +5,34 @@
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 
 #include "core/error.hpp"
+#include "protocols/utf8.hpp"
 namespace tapstudy::protocols {
 namespace {
+constexpr std::size_t longest_echo = 60;
+
+// What a message may repeat of a file: short, and nothing that would move a terminal's cursor.
+std::string printable(const std::string& text) {
+  std::string safe = text.substr(0, longest_echo);
+  std::ranges::replace_if(
+      safe, [](unsigned char c) { return std::iscntrl(c) != 0; }, '?');
+  return text.size() > longest_echo ? safe + "…" : safe;
+}
+
+bool has_control_characters(const std::string& text) {
+  return std::ranges::any_of(text, [](unsigned char c) { return std::iscntrl(c) != 0; });
+}
+
 std::string kind_of(const YAML::Node& node) {
   switch (node.Type()) {
     case YAML::NodeType::Undefined:
     case YAML::NodeType::Null:
       return "nothing";
     case YAML::NodeType::Scalar:
-      return fmt::format("'{}'", node.Scalar());
+      return fmt::format("'{}'", printable(node.Scalar()));
     case YAML::NodeType::Sequence:
       return "a list";
     case YAML::NodeType::Map:
@@ -25,6 +41,14 @@ std::string kind_of(const YAML::Node& node) {
   return "something else";
 }
 }  // namespace
+
+bool is_name(const std::string& text) {
+  const auto is_inner = [](unsigned char c) {
+    return c < 128 && (std::isalnum(c) != 0 || c == '_' || c == '-' || c == '+' || c == '.');
+  };
+  return !text.empty() && text.size() <= 64 && std::ranges::all_of(text, is_inner) &&
+         text.find_first_of("-+.") != 0;
+}
 
 bool Range::contains(double x) const {
   return std::isfinite(x) && (low_included ? x >= low : x > low) &&
@@ -47,13 +71,20 @@ MapReader::MapReader(MapReader&&) noexcept = default;
 
 MapReader MapReader::whole_file(const std::string& text, const std::string& file,
                                 Problems& problems) {
+  if (!is_utf8(text)) {
+    throw core::InvalidInput{fmt::format("{}:1:1: not UTF-8 text", file)};
+  }
   try {
-    MapReader reader{YAML::Load(text), "", "", problems};
+    const std::vector<YAML::Node> documents = YAML::LoadAll(text);
+    if (documents.size() > 1) {
+      throw core::InvalidInput{fmt::format("{}: holds more than one YAML document", file)};
+    }
+    MapReader reader{documents.empty() ? YAML::Node{} : documents.front(), "", "", problems};
     if (!reader.node_->IsMap()) {
       throw core::InvalidInput{fmt::format("{}:1:1: not a mapping of keys to values", file)};
     }
     return reader;
-  } catch (const YAML::ParserException& error) {
+  } catch (const YAML::Exception& error) {
     throw core::InvalidInput{fmt::format("{}:{}:{}: not YAML: {}", file, error.mark.line + 1,
                                          error.mark.column + 1, error.msg)};
   }
@@ -154,11 +185,39 @@ std::string MapReader::text(const std::string& key, std::optional<std::string> o
   if (!node) {
     return otherwise.value_or("");
   }
-  if (!node->IsScalar() || node->Scalar().empty()) {
+  if (!node->IsScalar() || node->Scalar().empty() || has_control_characters(node->Scalar())) {
+    reject_at(*node, path_of(key), fmt::format("{} is not one line of text", kind_of(*node)));
+    return "";
+  }
+  return node->Scalar();
+}
+
+std::string MapReader::paragraphs(const std::string& key, std::optional<std::string> otherwise) {
+  const auto node = find(key, !otherwise);
+  if (!node) {
+    return otherwise.value_or("");
+  }
+  if (!node->IsScalar()) {
     reject_at(*node, path_of(key), fmt::format("{} is not text", kind_of(*node)));
     return "";
   }
   return node->Scalar();
+}
+
+bool MapReader::check_name(const YAML::Node& node, const std::string& path) {
+  if (node.IsScalar() && is_name(node.Scalar())) {
+    return true;
+  }
+  reject_at(node, path,
+            fmt::format("{} is not a name (1 to 64 letters, digits, '_', '-', '+' or '.', starting "
+                        "with a letter, a digit or '_')",
+                        kind_of(node)));
+  return false;
+}
+
+std::string MapReader::name(const std::string& key) {
+  const auto node = find(key, true);
+  return node && check_name(*node, path_of(key)) ? node->Scalar() : "";
 }
 
 Eigen::VectorXd MapReader::numbers(const std::string& key, Eigen::Index size, const Range& range) {
@@ -178,14 +237,15 @@ Eigen::VectorXd MapReader::numbers(const std::string& key, Eigen::Index size, co
   return values;
 }
 
-bool MapReader::is_allowed(const YAML::Node& node, const std::string& path,
-                           const std::string& kind, const std::vector<std::string>& allowed) {
+bool MapReader::is_allowed(const YAML::Node& node, const std::string& path, const std::string& kind,
+                           const std::vector<std::string>& allowed) {
   if (node.IsScalar() && std::ranges::find(allowed, node.Scalar()) != allowed.end()) {
     return true;
   }
   const std::string hint = node.IsScalar() ? did_you_mean(node.Scalar(), allowed) : "";
-  reject_at(node, path, fmt::format("{} is not a known {} (one of: {}{})", kind_of(node), kind,
-                                    fmt::join(allowed, ", "), hint));
+  reject_at(node, path,
+            fmt::format("{} is not a known {} (one of: {}{})", kind_of(node), kind,
+                        fmt::join(allowed, ", "), hint));
   return false;
 }
 
@@ -257,6 +317,9 @@ void MapReader::each(const std::string& key, Presence presence, const ReadNamed&
   }
   std::vector<std::string> seen;
   for (const auto& entry : *node) {
+    if (!check_name(entry.first, path_of(key))) {
+      continue;
+    }
     const std::string name = entry.first.Scalar();
     if (std::ranges::find(seen, name) != seen.end()) {
       reject_at(entry.first, path_of(key) + "." + name, "is there twice");
@@ -270,23 +333,30 @@ void MapReader::each(const std::string& key, Presence presence, const ReadNamed&
 void MapReader::each_point(
     const std::string& key, Presence presence,
     const std::function<void(const std::string&, const Eigen::Vector2d&)>& take) {
-  map(key, presence, [&](MapReader& points) {
+  const auto node = find_map(key, presence);
+  if (!node) {
+    return;
+  }
+  read_inner(*node, path_of(key), pattern_of(key), [&](MapReader& points) {
     points.has_free_names_ = true;
     for (const auto& entry : *points.node_) {
-      const std::string name = entry.first.Scalar();
-      take(name, points.numbers(name, 2, {-100.0, 100.0}));
+      if (points.check_name(entry.first, path_of(key))) {
+        const std::string name = entry.first.Scalar();
+        take(name, points.numbers(name, 2, {-100.0, 100.0}));
+      }
     }
   });
 }
 
-void MapReader::each_text(
-    const std::string& key, Presence presence,
-    const std::function<void(const std::string&, const std::string&)>& take) {
+void MapReader::each_text(const std::string& key, Presence presence,
+                          const std::function<void(const std::string&, const std::string&)>& take) {
   map(key, presence, [&](MapReader& texts) {
     texts.has_free_names_ = true;
     for (const auto& entry : *texts.node_) {
-      const std::string name = entry.first.Scalar();
-      take(name, texts.text(name));
+      if (texts.check_name(entry.first, path_of(key))) {
+        const std::string name = entry.first.Scalar();
+        take(name, texts.name(name));
+      }
     }
   });
 }

@@ -24,14 +24,16 @@ struct Range {
   static Range positive(double high = 1e30) { return {0.0, high, false, true}; }
 };
 
+// 1 to 64 letters, digits, '_', '-', '+' or '.', not starting with '-', '+' or '.'.
+bool is_name(const std::string& text);
+
 // One mapping of a YAML file, read key by key. Whatever is wrong goes to Problems, and a harmless
 // value is returned so that reading goes on; finish() reports the keys nobody asked for.
 // A key asked for with a default may be missing; one without may not.
 class MapReader {
  public:
   // The whole file. Throws InvalidInput if it cannot be read or is not YAML.
-  static MapReader whole_file(const std::string& text, const std::string& file,
-                              Problems& problems);
+  static MapReader whole_file(const std::string& text, const std::string& file, Problems& problems);
   ~MapReader();
   MapReader(MapReader&&) noexcept;
   MapReader(const MapReader&) = delete;
@@ -42,7 +44,11 @@ class MapReader {
   double number(const std::string& key, const Range& range, std::optional<double> otherwise = {});
   int integer(const std::string& key, int low, int high, std::optional<int> otherwise = {});
   bool yes_or_no(const std::string& key, std::optional<bool> otherwise = {});
+  // Any text on one line; paragraphs may have several.
   std::string text(const std::string& key, std::optional<std::string> otherwise = {});
+  std::string paragraphs(const std::string& key, std::optional<std::string> otherwise = {});
+  // A name that data, tables and file names can carry: see is_name.
+  std::string name(const std::string& key);
   // `size` numbers in brackets.
   Eigen::VectorXd numbers(const std::string& key, Eigen::Index size, const Range& range);
   // One of the given words; kind names what they are.
@@ -96,6 +102,7 @@ class MapReader {
   void read_inner(const YAML::Node& node, const std::string& path, const std::string& pattern,
                   const ReadMap& read);
   std::optional<YAML::Node> find_map(const std::string& key, Presence presence);
+  bool check_name(const YAML::Node& node, const std::string& path);
   bool is_allowed(const YAML::Node& node, const std::string& path, const std::string& kind,
                   const std::vector<std::string>& allowed);
 

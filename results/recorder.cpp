@@ -1,6 +1,8 @@
 #include "results/recorder.hpp"
 
 #include <chrono>
+#include <exception>
+#include <utility>
 namespace tapstudy::results {
 namespace {
 constexpr std::chrono::milliseconds drain_every{5};
@@ -37,6 +39,9 @@ void Recorder::leave() {
 
 void Recorder::write(Parcel& parcel) {
   try {
+    if (drain_failure_) {
+      std::rethrow_exception(std::exchange(drain_failure_, nullptr));
+    }
     store_.add_trial(parcel.record);
     parcel.saved.set_value();
   } catch (...) {  // whatever it is, it belongs to the one who waits for the trial
@@ -44,13 +49,22 @@ void Recorder::write(Parcel& parcel) {
   }
 }
 
+void Recorder::drain_followed() noexcept {
+  try {
+    if (followed_ != nullptr) {
+      followed_->drain();
+    }
+  } catch (...) {  // nobody waits for this thread; the trial's promise will carry it
+    drain_failure_ = std::current_exception();
+    followed_ = nullptr;
+  }
+}
+
 void Recorder::run(const std::stop_token& stop) {
   std::unique_lock lock{mutex_};
   while (!stop.stop_requested() || !parcels_.empty()) {
     arrived_.wait_for(lock, stop, drain_every, [this] { return !parcels_.empty(); });
-    if (followed_ != nullptr) {
-      followed_->drain();
-    }
+    drain_followed();
     while (!parcels_.empty()) {
       Parcel parcel = std::move(parcels_.front());
       parcels_.pop_front();

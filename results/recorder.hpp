@@ -21,7 +21,8 @@ class Recorder {
   // Ready when the trial is in the database for good; carries the StoreError if it is not.
   std::future<void> save(TrialRecord record);
 
-  // Drains the collector every few milliseconds, until leave() returns.
+  // Drains the collector every few milliseconds, until leave() returns. If that fails, the loop
+  // goes on, the samples that find no room are counted, and saving the trial fails with the reason.
   void follow(TraceCollector& collector);
   void leave();
 
@@ -32,12 +33,14 @@ class Recorder {
     std::promise<void> saved;
   };
   void write(Parcel& parcel);
+  void drain_followed() noexcept;
 
   Store& store_;
   std::mutex mutex_;
   std::condition_variable_any arrived_;
   std::deque<Parcel> parcels_;
   TraceCollector* followed_{nullptr};
+  std::exception_ptr drain_failure_;  // given to the next trial that is to be saved
   std::jthread thread_;
 };
 }  // namespace tapstudy::results

@@ -23,10 +23,10 @@ struct StudyRow {
 struct SessionRow {
   std::int64_t id{};
   std::string participant_id;
-  int participant_index{};  // from 0, among all of the study; counterbalancing goes by it
+  int participant_index{};  // from 0 among those of the mode; counterbalancing goes by it
   Mode mode{Mode::real};
   std::uint64_t seed{};
-  std::string planned_order;                 // one line a trial
+  std::string planned_order;              // one line a trial
   std::optional<std::int64_t> resumes{};  // the session that it goes on with
   double rate_hz{};
   std::string rig_text;
@@ -44,15 +44,15 @@ struct AlternativeRow {
   std::string stimulus;
 };
 struct ResponseRow {
-  std::string response;                            // a stimulus's name
-  std::optional<bool> is_correct;                  // identification only
-  double response_time_s{};                        // from the start of the trial
+  std::string response;                             // a stimulus's name
+  std::optional<bool> is_correct;                   // identification only
+  double response_time_s{};                         // from the start of the trial
   std::optional<double> time_from_first_contact_s;  // nothing if the plate was never touched
 };
 struct EventRow {
-  double t_s{};            // from the first tick of the trial
-  std::string kind;        // contact, impact, release, switch
-  double value{};          // impact: speed m/s; switch: position of the alternative; else 0
+  double t_s{};      // from the first tick of the trial
+  std::string kind;  // contact, impact, release, switch
+  double value{};    // impact: speed m/s; switch: position of the alternative; else 0
 };
 struct TraceChunk {
   std::int64_t first_tick{};
@@ -70,8 +70,8 @@ struct TickStatisticsRow {
 };
 struct TrialRow {
   std::int64_t session_id{};
-  int number{};      // in the planned order, from 1
-  int attempt{1};    // an interrupted trial that is repeated has a second
+  int number{};    // in the planned order, from 1
+  int attempt{1};  // an interrupted trial that is repeated has a second
   std::string block;
   std::string task;  // identification, choice
   bool is_practice{};

@@ -15,12 +15,13 @@ CREATE TABLE study (
 ) STRICT;
 CREATE TABLE participant (
   participant_id TEXT PRIMARY KEY,
-  participant_index INTEGER NOT NULL UNIQUE
+  mode TEXT NOT NULL CHECK (mode IN ('real', 'pilot', 'simulated')),
+  participant_index INTEGER NOT NULL,  -- from 0 in each mode: pilots take no place of real ones
+  UNIQUE (mode, participant_index)
 ) STRICT;
 CREATE TABLE session (
   session_id INTEGER PRIMARY KEY,
   participant_id TEXT NOT NULL REFERENCES participant,
-  mode TEXT NOT NULL CHECK (mode IN ('real', 'pilot', 'simulated')),
   seed TEXT NOT NULL,               -- unsigned 64 bit, decimal
   planned_order TEXT NOT NULL,
   resumes INTEGER REFERENCES session,

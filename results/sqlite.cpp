@@ -19,9 +19,9 @@ void Database::Close::operator()(sqlite3* handle) const {
   sqlite3_close_v2(handle);
 }
 
-Database::Database(const std::string& file, Access access) : file_{file} {
-  const int flags = access == Access::read ? SQLITE_OPEN_READONLY
-                                           : SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE;
+Database::Database(const std::string& file, Access access) : file_{file}, access_{access} {
+  const int flags =
+      access == Access::read ? SQLITE_OPEN_READONLY : SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE;
   sqlite3* handle = nullptr;
   const int code = sqlite3_open_v2(file.c_str(), &handle, flags, nullptr);
   handle_.reset(handle);
@@ -102,7 +102,8 @@ double Statement::real(int column) {
   return sqlite3_column_double(handle_.get(), column);
 }
 std::vector<std::byte> Statement::bytes(int column) {
-  const auto* const first = static_cast<const std::byte*>(sqlite3_column_blob(handle_.get(), column));
+  const auto* const first =
+      static_cast<const std::byte*>(sqlite3_column_blob(handle_.get(), column));
   const auto size = static_cast<std::size_t>(sqlite3_column_bytes(handle_.get(), column));
   return first == nullptr ? std::vector<std::byte>{} : std::vector<std::byte>{first, first + size};
 }

@@ -18,6 +18,8 @@ class Database {
   Database(const std::string& file, Access access);
   void run(const std::string& sql);
   const std::string& file() const { return file_; }
+  bool is_open() const { return handle_ != nullptr; }
+  bool can_write() const { return access_ == Access::write; }
   std::int64_t last_row_id() const;
 
  private:
@@ -26,6 +28,7 @@ class Database {
     void operator()(sqlite3* handle) const;
   };
   std::string file_;
+  Access access_;
   std::unique_ptr<sqlite3, Close> handle_;
 };
 

@@ -4,8 +4,10 @@
 #include <fmt/format.h>
 
 #include <charconv>
+#include <chrono>
 #include <ctime>
 #include <filesystem>
+#include <thread>
 
 #include "results/schema.hpp"
 #include "results/store_error.hpp"
@@ -38,6 +40,24 @@ std::uint64_t seed_from(const std::string& text) {
   return seed;
 }
 
+// Changing the journal needs the file for oneself for a moment, and does not wait by itself.
+void use_write_ahead_log(Database& database) {
+  constexpr int attempts = 50;
+  for (int attempt = 1;; ++attempt) {
+    try {
+      database.run(
+          "PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; "
+          "PRAGMA foreign_keys = ON");
+      return;
+    } catch (const StoreError&) {
+      if (attempt == attempts) {
+        throw;
+      }
+      std::this_thread::sleep_for(std::chrono::milliseconds{100});
+    }
+  }
+}
+
 constexpr const char* session_columns =
     "session_id, participant_id, participant_index, mode, seed, planned_order, resumes, rate_hz, "
     "rig_text, device, scheduler, program_version, git_hash, compiler, started_utc";
@@ -65,32 +85,39 @@ SessionRow session_from(Statement& row) {
 
 Store Store::open_or_create(const std::string& directory, const StudyRow& study) {
   make_directory(directory);
-  const bool exists = fs::exists(database_file(directory));
   Store store{Database{database_file(directory), Database::Access::write}};
-  store.database_.run("PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; "
-                      "PRAGMA foreign_keys = ON");
-  if (!exists) {
-    store.create(study);
-    return store;
+  if (!store.is_empty()) {
+    store.check_schema();  // before anything in it is changed
   }
-  store.check_schema();
-  const StudyRow present = store.study();
-  if (present.protocol_sha256 != study.protocol_sha256) {
-    throw core::InvalidInput{fmt::format(
-        "{}: holds the study of another protocol, '{}' (choose another --out; to change a running "
-        "study, start a new one)",
-        directory, present.title)};
-  }
+  use_write_ahead_log(store.database_);
+  store.create_or_check(study);
   return store;
 }
 
 Store Store::open_existing(const std::string& directory) {
-  if (!fs::exists(database_file(directory))) {
+  std::error_code error;
+  if (!fs::exists(database_file(directory), error)) {
     throw core::InvalidInput{fmt::format("{}: there is no study here (no study.db)", directory)};
   }
   Store store{Database{database_file(directory), Database::Access::read}};
   store.check_schema();
   return store;
+}
+
+Store::~Store() {
+  if (!database_.is_open() || !database_.can_write()) {
+    return;
+  }
+  try {
+    database_.run("PRAGMA journal_mode = DELETE");
+  } catch (const StoreError&) {  // NOLINT(bugprone-empty-catch): another process has it open
+  }
+}
+
+bool Store::is_empty() {
+  Statement tables{database_, "SELECT count(*) FROM sqlite_master"};
+  tables.step();
+  return tables.integer(0) == 0;
 }
 
 void Store::check_schema() {
@@ -104,8 +131,21 @@ void Store::check_schema() {
   }
 }
 
-void Store::create(const StudyRow& study) {
+// In one transaction, so that of two programs that start at once one creates and one finds.
+void Store::create_or_check(const StudyRow& study) {
   Transaction all{database_};
+  if (!is_empty()) {
+    check_schema();
+    const StudyRow present = this->study();
+    if (present.protocol_sha256 != study.protocol_sha256) {
+      throw core::InvalidInput{
+          fmt::format("{}: holds the study of another protocol, '{}' (choose another --out; to "
+                      "change a running "
+                      "study, start a new one)",
+                      database_.file(), present.title)};
+    }
+    return;
+  }
   database_.run(schema_sql);
   database_.run(fmt::format("PRAGMA application_id = {}; PRAGMA user_version = {}", application_id,
                             schema_version));
@@ -131,21 +171,22 @@ StudyRow Store::study() {
 }
 
 int Store::index_of(const std::string& participant_id, Mode mode) {
-  Statement other{database_, "SELECT mode FROM session WHERE participant_id = ? AND mode <> ?"};
-  other.bind(participant_id).bind(to_text(mode));
-  if (other.step()) {
+  Statement row{database_,
+                "SELECT participant_index, mode FROM participant WHERE participant_id = ?"};
+  row.bind(participant_id);
+  if (!row.step()) {
+    Statement next{
+        database_,
+        "SELECT coalesce(max(participant_index) + 1, 0) FROM participant WHERE mode = ?"};
+    next.bind(to_text(mode)).step();
+    return static_cast<int>(next.integer(0));
+  }
+  if (row.text(1) != to_text(mode)) {
     throw core::InvalidInput{
         fmt::format("participant '{}' is in this study already, in {} sessions (choose another id)",
-                    participant_id, other.text(0))};
+                    participant_id, row.text(1))};
   }
-  Statement row{database_, "SELECT participant_index FROM participant WHERE participant_id = ?"};
-  row.bind(participant_id);
-  if (row.step()) {
-    return static_cast<int>(row.integer(0));
-  }
-  Statement next{database_, "SELECT coalesce(max(participant_index) + 1, 0) FROM participant"};
-  next.step();
-  return static_cast<int>(next.integer(0));
+  return static_cast<int>(row.integer(0));
 }
 
 bool Store::has_sessions(const std::string& participant_id) {
@@ -155,16 +196,17 @@ bool Store::has_sessions(const std::string& participant_id) {
 void Store::add_session(SessionRow& session) {
   Transaction all{database_};
   Statement{database_,
-            "INSERT OR IGNORE INTO participant (participant_id, participant_index) VALUES (?, ?)"}
+            "INSERT OR IGNORE INTO participant (participant_id, mode, participant_index) "
+            "VALUES (?, ?, ?)"}
       .bind(session.participant_id)
+      .bind(to_text(session.mode))
       .bind(session.participant_index)
       .finish();
   Statement{database_,
-            "INSERT INTO session (participant_id, mode, seed, planned_order, resumes, rate_hz, "
+            "INSERT INTO session (participant_id, seed, planned_order, resumes, rate_hz, "
             "rig_text, device, scheduler, program_version, git_hash, compiler, started_utc) "
-            "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)"}
+            "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)"}
       .bind(session.participant_id)
-      .bind(to_text(session.mode))
       .bind(std::to_string(session.seed))
       .bind(session.planned_order)
       .bind(session.resumes)
@@ -184,6 +226,9 @@ void Store::add_session(SessionRow& session) {
 void Store::add_trial(const TrialRecord& record) {
   Transaction whole_trial{database_};
   const TrialRow& trial = record.trial;
+  if (record.response) {
+    check_not_answered(trial);
+  }
   Statement{database_,
             "INSERT INTO trial (session_id, number, attempt, block, task, is_practice, "
             "repetition, status, duration_s) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)"}
@@ -199,6 +244,20 @@ void Store::add_trial(const TrialRecord& record) {
       .finish();
   add_details(database_.last_row_id(), record);
   whole_trial.commit();
+}
+
+void Store::check_not_answered(const TrialRow& trial) {
+  Statement row{database_,
+                "SELECT participant_id FROM trial JOIN session USING (session_id) "
+                "WHERE number = ? AND status = 'answered' AND participant_id = "
+                "(SELECT participant_id FROM session WHERE session_id = ?)"};
+  row.bind(trial.number).bind(trial.session_id);
+  if (row.step()) {
+    throw StoreError{
+        fmt::format("{}: participant '{}' has answered trial {} already (is another "
+                    "session of the same participant running?)",
+                    database_.file(), row.text(0), trial.number)};
+  }
 }
 
 void Store::add_details(std::int64_t trial_id, const TrialRecord& record) {
@@ -319,8 +378,8 @@ std::vector<VisitRow> Store::visits() {
       "GROUP BY participant_index, block, stimulus ORDER BY participant_index, block, stimulus"};
   std::vector<VisitRow> visits;
   while (row.step()) {
-    visits.push_back({row.text(0), row.text(1), row.text(2), static_cast<int>(row.integer(3)),
-                      row.real(4)});
+    visits.push_back(
+        {row.text(0), row.text(1), row.text(2), static_cast<int>(row.integer(3)), row.real(4)});
   }
   return visits;
 }

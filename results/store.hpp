@@ -15,23 +15,29 @@ class Store {
   // Opens the study of this protocol in the directory, or creates both.
   // Throws InvalidInput if the directory holds the study of another protocol.
   static Store open_or_create(const std::string& directory, const StudyRow& study);
-  // Throws InvalidInput if there is no study.
+  // For reading. Throws InvalidInput if there is no study.
   static Store open_existing(const std::string& directory);
+  // Leaves a writer's database as one plain file, without the journal's companions.
+  ~Store();
+  Store(Store&&) noexcept = default;
+  Store& operator=(Store&&) noexcept = delete;
+  Store(const Store&) = delete;
+  Store& operator=(const Store&) = delete;
 
   StudyRow study();
+  // The index of an existing participant, or the next free one of the mode.
   // Throws InvalidInput if the participant is there already in another mode.
-  // The index of an existing participant, or the next free one.
   int index_of(const std::string& participant_id, Mode mode);
   bool has_sessions(const std::string& participant_id);
   // Adds the participant if new; fills in the row's id.
   void add_session(SessionRow& session);
+  // Throws StoreError also if the participant has answered this trial already, in any session.
   void add_trial(const TrialRecord& record);
 
   // The participant's latest session, to resume it.
   std::optional<SessionRow> latest_session(const std::string& participant_id);
   // Numbers of the trials that the participant has answered, in any session.
   std::vector<int> answered_trials(const std::string& participant_id);
-  // Attempts made at a trial so far in this session.
   std::vector<AnswerRow> answers();
   std::vector<VisitRow> visits();
   std::vector<SessionRow> sessions();
@@ -40,7 +46,9 @@ class Store {
  private:
   explicit Store(Database database) : database_{std::move(database)} {}
   void check_schema();
-  void create(const StudyRow& study);
+  bool is_empty();
+  void create_or_check(const StudyRow& study);
+  void check_not_answered(const TrialRow& trial);
   void add_details(std::int64_t trial_id, const TrialRecord& record);
   Database database_;
 };

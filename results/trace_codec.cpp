@@ -23,13 +23,13 @@ struct Packed {
 
 Packed packed(const TraceSample& s) {
   const auto bits = [](double x) { return std::bit_cast<Word>(x); };
-  return {{static_cast<Word>(s.t_ns), bits(s.position_m[0]), bits(s.position_m[1]),
-           bits(s.position_m[2]), bits(s.velocity_m_s[0]), bits(s.velocity_m_s[1]),
-           bits(s.velocity_m_s[2]), bits(s.penetration_m), bits(s.penalty_n), bits(s.vibration_n),
-           bits(s.sinusoid_n), bits(s.force_n[0]), bits(s.force_n[1]), bits(s.force_n[2])},
-          {s.alternative, static_cast<std::uint8_t>(s.touching),
-           static_cast<std::uint8_t>(s.struck), static_cast<std::uint8_t>(s.saturated),
-           static_cast<std::uint8_t>(s.fault)}};
+  return {
+      {static_cast<Word>(s.t_ns), bits(s.position_m[0]), bits(s.position_m[1]),
+       bits(s.position_m[2]), bits(s.velocity_m_s[0]), bits(s.velocity_m_s[1]),
+       bits(s.velocity_m_s[2]), bits(s.penetration_m), bits(s.penalty_n), bits(s.vibration_n),
+       bits(s.sinusoid_n), bits(s.force_n[0]), bits(s.force_n[1]), bits(s.force_n[2])},
+      {s.alternative, static_cast<std::uint8_t>(s.touching), static_cast<std::uint8_t>(s.struck),
+       static_cast<std::uint8_t>(s.saturated), static_cast<std::uint8_t>(s.fault)}};
 }
 
 TraceSample unpacked(const Packed& p) {
@@ -58,9 +58,7 @@ class Planes {
   std::span<std::byte> of_word(std::size_t column, std::size_t place) {
     return plane(column * sizeof(Word) + place);
   }
-  std::span<std::byte> of_flag(std::size_t column) {
-    return plane(words * sizeof(Word) + column);
-  }
+  std::span<std::byte> of_flag(std::size_t column) { return plane(words * sizeof(Word) + column); }
   const std::vector<std::byte>& bytes() const { return bytes_; }
 
  private:
@@ -97,8 +95,7 @@ std::vector<std::byte> compressed(const std::vector<std::byte>& plain) {
 
 std::vector<std::byte> decompressed(std::span<const std::byte> bytes, std::size_t size) {
   std::vector<std::byte> plain(size);
-  const std::size_t found =
-      ZSTD_decompress(plain.data(), plain.size(), bytes.data(), bytes.size());
+  const std::size_t found = ZSTD_decompress(plain.data(), plain.size(), bytes.data(), bytes.size());
   if (ZSTD_isError(found) != 0U || found != size) {
     throw StoreError{"trace: a chunk does not hold the ticks that it should"};
   }

@@ -12,8 +12,7 @@ ExitCode carry_out(int argc, const char* const* argv) {
   CLI::App app{"User studies of tapped virtual objects, from a YAML protocol to the report.",
                "tapstudy"};
   app.require_subcommand(1);
-  app.set_version_flag("--version",
-                       fmt::format("tapstudy {} ({})", program_version(), git_hash()));
+  app.set_version_flag("--version", fmt::format("tapstudy {} ({})", program_version(), git_hash()));
   add_check(app);
   add_run(app);
   add_simulate(app);

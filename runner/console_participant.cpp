@@ -36,9 +36,8 @@ std::optional<std::size_t> number_in(const std::string& word, std::size_t most) 
 std::optional<std::size_t> index_of(const std::string& label,
                                     const std::vector<std::string>& labels) {
   const auto found = std::ranges::find(labels, label);
-  return found == labels.end()
-             ? std::nullopt
-             : std::optional{static_cast<std::size_t>(found - labels.begin())};
+  return found == labels.end() ? std::nullopt
+                               : std::optional{static_cast<std::size_t>(found - labels.begin())};
 }
 }  // namespace
 
@@ -58,8 +57,7 @@ void ConsoleParticipant::get_ready(const Presentation& presentation) {
 
 std::optional<std::string> ConsoleParticipant::next_line(const Exploration& exploration) {
   say("> ");
-  const auto line =
-      input_.next([&] { return exploration.is_running() && !stop_was_asked(); });
+  const auto line = input_.next([&] { return exploration.is_running() && !stop_was_asked(); });
   if (!line) {
     return std::nullopt;
   }
@@ -69,9 +67,8 @@ std::optional<std::string> ConsoleParticipant::next_line(const Exploration& expl
 
 std::optional<std::size_t> ConsoleParticipant::perform(const Presentation& presentation,
                                                        Exploration& exploration) {
-  return presentation.task == protocols::Task::identification
-             ? identify(presentation, exploration)
-             : choose(presentation, exploration);
+  return presentation.task == protocols::Task::identification ? identify(presentation, exploration)
+                                                              : choose(presentation, exploration);
 }
 
 std::optional<std::size_t> ConsoleParticipant::identify(const Presentation& presentation,

@@ -7,7 +7,8 @@
 namespace tapstudy::runner {
 namespace {
 constexpr int glance_ms = 50;
-}
+constexpr std::size_t longest_line = 4096;
+}  // namespace
 
 std::optional<std::string> LineInput::take_line() {
   const auto end = received_.find('\n');
@@ -37,6 +38,9 @@ std::optional<std::string> LineInput::next(const std::function<bool()>& keep_wai
       return std::nullopt;
     }
     received_.append(bytes.data(), static_cast<std::size_t>(count));
+    if (received_.size() > longest_line && received_.find('\n') == std::string::npos) {
+      received_.clear();  // no answer is that long
+    }
   }
   return std::nullopt;
 }

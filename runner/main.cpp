@@ -1,6 +1,6 @@
-#include <fmt/format.h>
-
+#include <cstdio>
 #include <exception>
+#include <iostream>
 
 #include "core/error.hpp"
 #include "device/device.hpp"
@@ -26,14 +26,24 @@ ExitCode code_of(const std::exception& error) {
   }
   return ExitCode::wrong_input;
 }
+// A result that did not reach its file or pipe is no result.
+void check_results_arrived() {
+  std::cout.flush();
+  if (!std::cout || std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
+    throw tapstudy::results::StoreError{"standard output: writing failed (is the disk full?)"};
+  }
+}
 }  // namespace
 
 int main(int argc, char** argv) {
   try {
     tapstudy::runner::set_up_logging();
-    return static_cast<int>(tapstudy::runner::carry_out(argc, argv));
+    const ExitCode code = tapstudy::runner::carry_out(argc, argv);
+    check_results_arrived();
+    return static_cast<int>(code);
   } catch (const std::exception& error) {
-    fmt::print(stderr, "{}\n", error.what());
+    std::fputs(error.what(), stderr);  // which may be closed: nothing more can be done then
+    std::fputs("\n", stderr);
     return static_cast<int>(code_of(error));
   }
 }

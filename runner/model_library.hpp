@@ -9,7 +9,8 @@
 #include "protocols/protocol.hpp"
 namespace tapstudy::runner {
 // What a stimulus's plate is to the model.
-core::PlateSpec plate_spec(const protocols::Protocol& protocol, const protocols::Stimulus& stimulus);
+core::PlateSpec plate_spec(const protocols::Protocol& protocol,
+                           const protocols::Stimulus& stimulus);
 
 // Models of plates, each built once however many stimuli share it, and only when a technique that
 // vibrates asks for it. May be used by several threads.

@@ -13,13 +13,16 @@ void write_file(const std::string& file, const Write& write) {
   write(stream);
   stream.close();
   if (!stream) {
+    std::error_code ignored;
+    std::filesystem::remove(file, ignored);
     throw core::InvalidInput{file + ": writing failed (is the disk full?)"};
   }
 }
 }  // namespace
 
 void write_new_file(const std::string& file, const Write& write) {
-  if (std::filesystem::exists(file)) {
+  std::error_code error;
+  if (std::filesystem::exists(file, error)) {
     throw core::InvalidInput{file + ": exists already and is not overwritten"};
   }
   write_file(file, write);

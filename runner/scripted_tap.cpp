@@ -17,18 +17,18 @@ namespace {
 constexpr double hover_m = 0.005;
 
 void check(const ScriptedTap& tap, const core::Box& box) {
-  if ((tap.at_m.cwiseAbs().array() > box.high_m().head<2>().array()).any()) {
+  if (!(tap.at_m.cwiseAbs().array() <= box.high_m().head<2>().array()).all()) {
     throw core::InvalidInput{fmt::format("--at: ({}, {}) is off the plate (x in ±{} m, y in ±{} m)",
                                          tap.at_m.x(), tap.at_m.y(), box.high_m().x(),
                                          box.high_m().y())};
   }
-  if (!(tap.speed_m_s > 0.0 && tap.speed_m_s <= 10.0)) {
+  if (!(tap.speed_m_s >= 0.001 && tap.speed_m_s <= 10.0)) {
     throw core::InvalidInput{
-        fmt::format("--speed: {} is not allowed (greater than 0, at most 10 m/s)", tap.speed_m_s)};
+        fmt::format("--speed: {} is not allowed (from 0.001 to 10 m/s)", tap.speed_m_s)};
   }
-  if (!(tap.seconds > 0.0 && tap.seconds <= 60.0)) {
+  if (!(tap.seconds >= 0.01 && tap.seconds <= 60.0)) {
     throw core::InvalidInput{
-        fmt::format("--seconds: {} is not allowed (greater than 0, at most 60)", tap.seconds)};
+        fmt::format("--seconds: {} is not allowed (from 0.01 to 60)", tap.seconds)};
   }
 }
 
@@ -40,13 +40,13 @@ std::optional<double> number(const std::string& text) {
 }
 }  // namespace
 
-std::vector<core::TraceSample> trace_of(const ScriptedTap& tap,
-                                        const protocols::Protocol& protocol,
+std::vector<core::TraceSample> trace_of(const ScriptedTap& tap, const protocols::Protocol& protocol,
                                         const protocols::Rig& rig, ModelLibrary& models) {
   const protocols::Stimulus& stimulus = protocol.stimulus(tap.stimulus);
   check(tap, protocol.plates.at(stimulus.plate).box);
   const device::LoopSettings settings = loop_settings(protocol, rig);
-  device::SimulatedHand hand{hand_body(protocol.simulation.hand), protocol.rendering.dt_s, 0.0};
+  device::SimulatedHand hand{hand_body(protocol.simulation.hand), protocol.rendering.dt_s,
+                             device::SimulatedHand::Memory::none};
   device::PlannedTap planned;
   planned.point_m = settings.placement.point_to_device({tap.at_m.x(), tap.at_m.y(), 0.0});
   planned.speed_m_s = tap.speed_m_s;
@@ -81,9 +81,9 @@ Eigen::Vector2d point_on_plate(const std::string& text, const protocols::Protoco
     for (const auto& [name, at] : protocol.tapping_points_m) {
       names.push_back(name);
     }
-    throw core::InvalidInput{fmt::format(
-        "--at: '{}' is neither X,Y in metres nor a tapping point (one of: {})", text,
-        fmt::join(names, ", "))};
+    throw core::InvalidInput{
+        fmt::format("--at: '{}' is neither X,Y in metres nor a tapping point (one of: {})", text,
+                    fmt::join(names, ", "))};
   }
   return {*x, *y};
 }

@@ -13,9 +13,8 @@ struct ScriptedTap {
   double speed_m_s{0.3};
   double seconds{0.5};
 };
-// Throws InvalidInput if the point is off the plate or the speed out of (0, 10] m/s.
-std::vector<core::TraceSample> trace_of(const ScriptedTap& tap,
-                                        const protocols::Protocol& protocol,
+// Throws InvalidInput if the point is off the plate or the speed out of 0.001 to 10 m/s.
+std::vector<core::TraceSample> trace_of(const ScriptedTap& tap, const protocols::Protocol& protocol,
                                         const protocols::Rig& rig, ModelLibrary& models);
 
 // "X,Y" in metres or the name of a tapping point. Throws InvalidInput if it is neither.

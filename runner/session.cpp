@@ -13,6 +13,8 @@
 #include "runner/build_info.hpp"
 namespace tapstudy::runner {
 namespace {
+constexpr double most_ticks = 4e6;
+
 std::string scheduler_in_force(results::Mode mode) {
   if (mode == results::Mode::simulated) {
     return "virtual time";
@@ -58,6 +60,29 @@ void check_participant_id(const std::string& id) {
   if (id.empty() || id.size() > 64 || !std::ranges::all_of(id, is_allowed)) {
     throw core::InvalidInput{fmt::format(
         "--participant: '{}' is not allowed (1 to 64 letters, digits, '-', '_' or '.')", id)};
+  }
+}
+
+double simulated_trial_s(const protocols::Protocol& protocol, const protocols::Block& block) {
+  const protocols::SimulatedTapSettings& taps = protocol.simulation.taps;
+  const double run_up_m = 0.5 * taps.hover_m;  // at half the speed on average
+  const double tap_s =
+      (taps.hover_m + run_up_m + taps.press_m) / taps.speed_m_s + taps.dwell_s + taps.pause_s;
+  const int visits = block.task == protocols::Task::choice
+                         ? taps.visits * static_cast<int>(block.stimuli.size())
+                         : 1;
+  return tap_s * taps.taps_per_visit * visits;
+}
+
+void check_trial_length(const protocols::Protocol& protocol) {
+  for (const protocols::Block& block : protocol.blocks) {
+    const double ticks = simulated_trial_s(protocol, block) * protocol.rate_hz;
+    if (ticks > most_ticks) {
+      throw core::InvalidInput{fmt::format(
+          "block '{}': a simulated trial would take {:.2g} ticks (at most {:.0g}: lower "
+          "simulation.taps.taps_per_visit, visits, dwell_s or pause_s, or raise speed_m_s)",
+          block.name, ticks, most_ticks)};
+    }
   }
 }
 

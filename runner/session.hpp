@@ -22,6 +22,10 @@ results::SessionRow session_row(const SessionPlan& plan, const protocols::Protoc
 
 // Throws InvalidInput for a name that a file or a table could stumble over.
 void check_participant_id(const std::string& id);
+// How long a simulated participant taps in a trial of the block, about.
+double simulated_trial_s(const protocols::Protocol& protocol, const protocols::Block& block);
+// Throws InvalidInput if that is so long that its trace would fill the memory.
+void check_trial_length(const protocols::Protocol& protocol);
 // Throws InvalidInput if the protocol has nothing to run.
 void check_has_blocks(const protocols::Protocol& protocol);
 }  // namespace tapstudy::runner

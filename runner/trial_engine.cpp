@@ -25,8 +25,8 @@ std::int64_t TrialEngine::run(std::int64_t session_id, const protocols::Schedule
 
 Presentation TrialEngine::presentation_of(const PlannedTrial& trial, int total) const {
   const protocols::Block& block = protocol_.block(trial.block);
-  Presentation presentation{trial.number,   total, trial.is_practice, trial.task,
-                            block.question, {},    {}};
+  Presentation presentation{trial.number, total, trial.is_practice, trial.task, block.question,
+                            {},           {}};
   if (trial.task == Task::identification) {
     for (const std::string& response : block.responses) {
       presentation.options.push_back(response);
@@ -41,8 +41,7 @@ Presentation TrialEngine::presentation_of(const PlannedTrial& trial, int total) 
   return presentation;
 }
 
-std::int64_t TrialEngine::run_trial(std::int64_t session_id, const PlannedTrial& trial,
-                                    int total) {
+std::int64_t TrialEngine::run_trial(std::int64_t session_id, const PlannedTrial& trial, int total) {
   const Presentation presentation = presentation_of(trial, total);
   Scene scene = build_scene(protocol_, trial.stimuli, models_);
   participant_.get_ready(presentation);
@@ -59,14 +58,16 @@ std::int64_t TrialEngine::run_trial(std::int64_t session_id, const PlannedTrial&
   const std::int64_t ticks = presented.loop.ticks;
   recorder_.save(trial_record(session_id, trial, answer, std::move(presented))).get();
   if (fault != core::TickFault::none) {
-    throw device::DeviceError{fmt::format("trial {}: {}; force is off, the trial is stored as "
-                                          "interrupted (go on with --resume)",
-                                          trial.number, to_text(fault))};
+    throw device::DeviceError{
+        fmt::format("trial {}: {}; force is off, the trial is stored as "
+                    "interrupted (go on with --resume)",
+                    trial.number, to_text(fault))};
   }
   if (!answer) {
-    throw Stopped{fmt::format("stopped in trial {} of {}; every answer given so far is kept (go on "
-                              "with --resume)",
-                              trial.number, total)};
+    throw Stopped{
+        fmt::format("stopped in trial {} of {}; every answer given so far is kept (go on "
+                    "with --resume)",
+                    trial.number, total)};
   }
   participant_.saved(presentation);
   return ticks;

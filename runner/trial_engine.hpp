@@ -20,15 +20,15 @@ class TrialEngine {
         participant_{participant},
         recorder_{recorder} {}
 
-  // Leaves out the trials that are done; returns the ticks rendered. Throws Stopped if the participant or the operator stops,
-  // DeviceError if the device fails, StoreError if a trial cannot be stored; in each case the trial
-  // that was under way is stored as interrupted, if it can be.
+  // Leaves out the trials that are done; returns the ticks rendered. Throws Stopped if the
+  // participant or the operator stops, DeviceError if the device fails, StoreError if a trial
+  // cannot be stored; in each case the trial that was under way is stored as interrupted, if it can
+  // be.
   std::int64_t run(std::int64_t session_id, const protocols::Schedule& schedule,
                    const std::set<int>& done_trials = {});
 
  private:
-  std::int64_t run_trial(std::int64_t session_id, const protocols::PlannedTrial& trial,
-                         int total);
+  std::int64_t run_trial(std::int64_t session_id, const protocols::PlannedTrial& trial, int total);
   Presentation presentation_of(const protocols::PlannedTrial& trial, int total) const;
 
   const protocols::Protocol& protocol_;

@@ -8,8 +8,8 @@ constexpr std::size_t ring_capacity = 1024;
 
 class VirtualExploration final : public Exploration {
  public:
-  VirtualExploration(device::HapticLoop& loop, results::TraceCollector& collector,
-                     double period_s, Keep keep)
+  VirtualExploration(device::HapticLoop& loop, results::TraceCollector& collector, double period_s,
+                     Keep keep)
       : loop_{loop}, collector_{collector}, period_s_{period_s}, keep_{keep} {}
   void switch_to(std::size_t alternative) override { loop_.request_alternative(alternative); }
   void pass_time(double seconds) override {
@@ -21,9 +21,7 @@ class VirtualExploration final : public Exploration {
       left -= slice;
     }
   }
-  bool is_running() const override {
-    return loop_.report().stopped_by == core::TickFault::none;
-  }
+  bool is_running() const override { return loop_.report().stopped_by == core::TickFault::none; }
   double time_s() const override { return static_cast<double>(loop_.report().ticks) * period_s_; }
 
  private:

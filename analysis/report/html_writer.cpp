@@ -34,7 +34,9 @@ std::string escaped(const std::string& text) {
 // White to deep blue; the text turns white where the cell is dark.
 std::string cell_style(double share) {
   const double x = std::sqrt(share);
-  const auto mix = [&](int from, int to) { return static_cast<int>(std::lround(from + x * (to - from))); };
+  const auto mix = [&](int from, int to) {
+    return static_cast<int>(std::lround(from + x * (to - from)));
+  };
   return fmt::format("background:rgb({},{},{});color:{}", mix(247, 8), mix(251, 69), mix(255, 148),
                      share > 0.35 ? "#fff" : "#123");
 }
@@ -68,7 +70,8 @@ std::string dot_plot(const Proportion& proportion, double chance) {
   const Interval interval = wilson_interval(proportion);
   return fmt::format(
       "<svg class=dot viewBox=\"0 0 200 16\" role=img aria-label=\"{}\">"
-      "<line class=axis x1=0 y1=8 x2=200 y2=8 /><line class=chance x1={:.1f} y1=0 x2={:.1f} y2=16 />"
+      "<line class=axis x1=0 y1=8 x2=200 y2=8 /><line class=chance x1={:.1f} y1=0 x2={:.1f} y2=16 "
+      "/>"
       "<line class=interval x1={:.1f} y1=8 x2={:.1f} y2=8 /><circle cx={:.1f} cy=8 r=4 /></svg>",
       with_interval(proportion), 200 * chance, 200 * chance, 200 * interval.low,
       200 * interval.high, 200 * proportion.value());
@@ -78,23 +81,6 @@ void write_accuracy_row(std::ostream& out, const std::string& title, const Propo
                         double chance) {
   fmt::print(out, "<tr><th scope=row>{}</th><td>{}</td><td>{}</td></tr>\n", escaped(title),
              with_interval(proportion), dot_plot(proportion, chance));
-}
-
-// The chance of agreeing on a factor by guessing among the responses.
-double chance_of(const ConfusionMatrix& matrix, const FactorResult& result) {
-  int agreeing = 0;
-  int possible = 0;
-  for (const Item& stimulus : matrix.stimuli) {
-    for (const Item& response : matrix.responses) {
-      const bool counts = result.given.empty() || stimulus.factors.at(result.given) ==
-                                                      response.factors.at(result.given);
-      possible += counts ? 1 : 0;
-      agreeing += counts && stimulus.factors.at(result.factor) == response.factors.at(result.factor)
-                      ? 1
-                      : 0;
-    }
-  }
-  return static_cast<double>(agreeing) / possible;
 }
 
 void write_hypotheses(std::ostream& out, const std::vector<HypothesisResult>& hypotheses) {
@@ -115,7 +101,7 @@ void write_block(std::ostream& out, const IdentificationSummary& summary) {
   out << "<h3>Accuracy</h3><table class=accuracy>\n";
   write_accuracy_row(out, "all answers", summary.accuracy, summary.matrix.chance());
   for (const FactorResult& result : summary.factors) {
-    write_accuracy_row(out, title_of(result), result.accuracy, chance_of(summary.matrix, result));
+    write_accuracy_row(out, title_of(result), result.accuracy, result.chance);
   }
   out << "</table>\n";
   if (!summary.participants.empty()) {
@@ -143,7 +129,7 @@ void write_block(std::ostream& out, const ChoiceSummary& summary) {
   fmt::print(out,
              "</table>\n<p>All alternatives equally likely: {} (exact multinomial test, outcomes "
              "ordered by probability).{}</p>\n",
-             escaped(p_value(summary.multinomial_p)),
+             escaped(multinomial_words(summary)),
              summary.has_repeated_choices
                  ? " Several choices of one participant are not independent."
                  : "");

@@ -52,6 +52,7 @@ Json as_json(const IdentificationSummary& summary) {
     Json factor{{"factor", result.factor}};
     factor["given"] = result.given.empty() ? Json{nullptr} : Json(result.given);
     factor["accuracy"] = as_json(result.accuracy);
+    factor["chance"] = result.chance;
     json["factors"].push_back(factor);
   }
   json["participants"] = Json::array();
@@ -76,7 +77,8 @@ Json as_json(const ChoiceSummary& summary) {
   for (const auto& [participant, stimulus] : summary.choices) {
     json["choices"].push_back({{"participant_id", participant}, {"stimulus", stimulus}});
   }
-  json["exact_multinomial_p"] = summary.multinomial_p;
+  json["exact_multinomial_p"] =
+      summary.multinomial_p ? Json(*summary.multinomial_p) : Json(nullptr);
   json["has_repeated_choices"] = summary.has_repeated_choices;
   json["hypotheses"] = as_json(summary.hypotheses);
   return json;

@@ -29,8 +29,7 @@ void write_matrix(std::ostream& out, const ConfusionMatrix& matrix) {
     for (std::size_t j = 0; j < matrix.responses.size(); ++j) {
       const Proportion cell{matrix.counts[i][j], matrix.row_total(i)};
       const std::string said = fmt::format("{} ({})", cell.successes, percent(cell));
-      fmt::print(out, "  {:>{}}", said,
-                 std::max<std::size_t>(matrix.responses[j].name.size(), 10));
+      fmt::print(out, "  {:>{}}", said, std::max<std::size_t>(matrix.responses[j].name.size(), 10));
     }
     fmt::print(out, "\n");
   }
@@ -41,7 +40,8 @@ void write_block(std::ostream& out, const IdentificationSummary& summary) {
   fmt::print(out, "\n  correct: {}, chance {:.0f} %\n", with_interval(summary.accuracy),
              100.0 * summary.matrix.chance());
   for (const FactorResult& result : summary.factors) {
-    fmt::print(out, "  {}: {}\n", title_of(result), with_interval(result.accuracy));
+    fmt::print(out, "  {}: {}, chance {:.0f} %\n", title_of(result), with_interval(result.accuracy),
+               100.0 * result.chance);
   }
   write_hypotheses(out, summary.hypotheses);
 }
@@ -52,7 +52,7 @@ void write_block(std::ostream& out, const ChoiceSummary& summary) {
                with_interval(result.chosen), result.visits, result.dwell_s);
   }
   fmt::print(out, "  all equally likely: {} (exact multinomial, by probability){}\n",
-             p_value(summary.multinomial_p),
+             multinomial_words(summary),
              summary.has_repeated_choices
                  ? "; several choices of one participant are not independent"
                  : "");

@@ -20,7 +20,16 @@ std::string with_interval(const Proportion& proportion) {
 }
 
 std::string p_value(double p) {
-  return p < 0.001 ? "p < .001" : fmt::format("p = {:.3f}", p).replace(4, 1, "");
+  if (p < 0.001) {
+    return "p < .001";
+  }
+  const std::string digits = fmt::format("{:.3f}", p);
+  return "p = " + (digits.front() == '0' ? digits.substr(1) : digits);
+}
+
+std::string multinomial_words(const ChoiceSummary& summary) {
+  return summary.multinomial_p ? p_value(*summary.multinomial_p)
+                               : "not computed, too many possible outcomes";
 }
 
 std::string title_of(const FactorResult& result) {
@@ -34,12 +43,14 @@ bool is_simulated(const Summary& summary) {
 
 std::string methods(const Summary& summary) {
   if (summary.modes == "counts") {
-    return "Computed from a table of counts; participants are not known, so intervals (Wilson 1927) "
+    return "Computed from a table of counts; participants are not known, so intervals (Wilson "
+           "1927) "
            "treat all answers as independent.";
   }
   std::string text = fmt::format("{} participants ({}). ", summary.participants, summary.modes);
   text +=
-      "Intervals are 95 % score intervals (Wilson 1927); pooled over participants they treat answers "
+      "Intervals are 95 % score intervals (Wilson 1927); pooled over participants they treat "
+      "answers "
       "as independent. Accuracy is tested by shuffling each participant's responses over that "
       "participant's own trials, choices by the exact binomial and multinomial distributions. ";
   if (summary.loop) {

@@ -7,5 +7,7 @@ struct Box {
   Vec3 size_m;  // each > 0
   Vec3 low_m() const { return {-0.5 * size_m.x(), -0.5 * size_m.y(), -size_m.z()}; }
   Vec3 high_m() const { return {0.5 * size_m.x(), 0.5 * size_m.y(), 0.0}; }
+  // Points nearer than this are one: meshers stumble over finer detail.
+  double snap_m() const { return 1e-6 * size_m.norm(); }
 };
 }  // namespace tapstudy::core

@@ -70,7 +70,7 @@ BoxOutline::Side side_of(const std::vector<Vec3>& points, const Corners& corners
 }  // namespace
 
 BoxOutline outline(const Box& box, const std::vector<Vec3>& points_m) {
-  const double tolerance_m = 1e-9 * box.size_m.norm();
+  const double tolerance_m = box.snap_m();
   BoxOutline result;
   for (int k = 0; k < 8; ++k) {
     result.points_m.push_back(corner(box, k));

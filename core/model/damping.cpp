@@ -9,8 +9,8 @@ RayleighDamping rayleigh_from_two_ratios(const TwoRatioDamping& ratios, double f
   if (!(0.0 < first_rad_s && first_rad_s < last_rad_s)) {
     throw ModelError{"damping: two damping ratios need two different frequencies inside the band"};
   }
-  const double scale = 2.0 * first_rad_s * last_rad_s /
-                       ((last_rad_s - first_rad_s) * (last_rad_s + first_rad_s));
+  const double scale =
+      2.0 * first_rad_s * last_rad_s / ((last_rad_s - first_rad_s) * (last_rad_s + first_rad_s));
   const RayleighDamping damping{
       scale * (last_rad_s * ratios.first_ratio - first_rad_s * ratios.last_ratio),
       scale * (ratios.last_ratio / first_rad_s - ratios.first_ratio / last_rad_s)};

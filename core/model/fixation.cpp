@@ -9,17 +9,11 @@
 #include "core/error.hpp"
 namespace tapstudy::core {
 namespace {
-// Nodes are found within this fraction of the plate's diagonal: rounding, not reach.
-constexpr double snap_fraction = 1e-9;
 constexpr int rim_points = 8;
 
-double snap_m(const Box& box) {
-  return snap_fraction * box.size_m.norm();
-}
-
 bool is_on_face(double z_m, Face face, const Box& box) {
-  const bool on_top = std::abs(z_m - box.high_m().z()) <= snap_m(box);
-  const bool on_bottom = std::abs(z_m - box.low_m().z()) <= snap_m(box);
+  const bool on_top = std::abs(z_m - box.high_m().z()) <= box.snap_m();
+  const bool on_bottom = std::abs(z_m - box.low_m().z()) <= box.snap_m();
   switch (face) {
     case Face::top:
       return on_top;
@@ -34,7 +28,7 @@ bool is_on_face(double z_m, Face face, const Box& box) {
 }
 
 bool holds_node(const Fixation& fixation, const Vec3& node_m, const Box& box) {
-  const double reach_m = fixation.radius_m + snap_m(box);
+  const double reach_m = fixation.radius_m + box.snap_m();
   return (node_m.head<2>() - fixation.at_m).norm() <= reach_m &&
          is_on_face(node_m.z(), fixation.face, box);
 }
@@ -44,8 +38,8 @@ std::vector<Eigen::Vector2d> sideways_points(const Fixation& fixation) {
   if (fixation.shape == RegionShape::disc) {
     for (int i = 0; i < rim_points; ++i) {
       const double angle = 2.0 * std::numbers::pi * i / rim_points;
-      points.emplace_back(fixation.at_m + fixation.radius_m * Eigen::Vector2d{std::cos(angle),
-                                                                              std::sin(angle)});
+      points.emplace_back(fixation.at_m +
+                          fixation.radius_m * Eigen::Vector2d{std::cos(angle), std::sin(angle)});
     }
   }
   return points;
@@ -64,6 +58,16 @@ std::vector<double> heights_m(Face face, const Box& box) {
   return {};
 }
 
+// A point within rounding of an edge is on it.
+Eigen::Vector2d onto_edges(Eigen::Vector2d point, const Eigen::Vector2d& half_m, double snap_m) {
+  for (Eigen::Index axis = 0; axis < 2; ++axis) {
+    if (std::abs(std::abs(point[axis]) - half_m[axis]) <= snap_m) {
+      point[axis] = std::copysign(half_m[axis], point[axis]);
+    }
+  }
+  return point;
+}
+
 std::string described(const Fixation& fixation) {
   return fmt::format("{} at ({}, {}) m",
                      fixation.shape == RegionShape::vertex
@@ -78,10 +82,10 @@ std::vector<Vec3> points_to_mesh(const std::vector<Fixation>& fixations, const B
   const Eigen::Vector2d half_m = box.high_m().head<2>();
   for (const Fixation& fixation : fixations) {
     for (const Eigen::Vector2d& sideways : sideways_points(fixation)) {
-      if ((sideways.cwiseAbs().array() > half_m.array() + snap_m(box)).any()) {
+      if ((sideways.cwiseAbs().array() > half_m.array() + box.snap_m()).any()) {
         continue;
       }
-      const Eigen::Vector2d inside = sideways.cwiseMax(-half_m).cwiseMin(half_m);
+      const Eigen::Vector2d inside = onto_edges(sideways, half_m, box.snap_m());
       for (const double height : heights_m(fixation.face, box)) {
         points.emplace_back(inside.x(), inside.y(), height);
       }
@@ -106,14 +110,13 @@ std::vector<bool> held_dofs(const TetMesh& mesh, const Box& box,
       }
     }
     if (!touches) {
-      throw ModelError{fmt::format(
-          "fixation: the {} touches no node of the plate (x in ±{} m, y in ±{} m)",
-          described(fixation), box.high_m().x(), box.high_m().y())};
+      throw ModelError{
+          fmt::format("fixation: the {} touches no node of the plate (x in ±{} m, y in ±{} m)",
+                      described(fixation), box.high_m().x(), box.high_m().y())};
     }
   }
   if (std::find(held.begin(), held.end(), false) == held.end()) {
-    throw ModelError{
-        "fixation: every node of the plate is held, nothing is left free to vibrate"};
+    throw ModelError{"fixation: every node of the plate is held, nothing is left free to vibrate"};
   }
   return held;
 }

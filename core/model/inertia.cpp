@@ -25,6 +25,7 @@ class SignedFactor : public Eigen::CholmodSimplicialLDLT<SparseMatrix> {
 
 int eigenvalues_below(const StiffnessAndMass& matrices, double sigma) {
   SignedFactor factor;
+  factor.cholmod().print = 0;  // what goes wrong is said below
   factor.compute(matrices.K - sigma * matrices.M);
   if (factor.info() != Eigen::Success) {
     throw ModelError{fmt::format("modes: K - {:.6g} M has no L D L' factor", sigma)};

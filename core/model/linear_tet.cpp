@@ -42,8 +42,9 @@ LinearTet linear_tet(const TetCorners& corners_m, const Eigen::Matrix<double, 6,
   element.mass.setZero();
   for (Eigen::Index i = 0; i < 4; ++i) {
     for (Eigen::Index j = 0; j < 4; ++j) {
-      element.mass.block<3, 3>(3 * i, 3 * j).diagonal().setConstant(
-          density_kg_per_m3 * volume / 20.0 * (i == j ? 2.0 : 1.0));
+      element.mass.block<3, 3>(3 * i, 3 * j)
+          .diagonal()
+          .setConstant(density_kg_per_m3 * volume / 20.0 * (i == j ? 2.0 : 1.0));
     }
   }
   return element;

@@ -1,13 +1,13 @@
 #include "core/model/modal_solver.hpp"
 
+#include <Spectra/SymGEigsShiftSolver.h>
 #include <fmt/format.h>
 
 #include <Eigen/CholmodSupport>
 #include <Eigen/Eigenvalues>
-#include <Spectra/SymGEigsShiftSolver.h>
-
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "core/error.hpp"
@@ -21,6 +21,7 @@ constexpr int most_restarts = 1000;
 constexpr double rigid_fraction = 1e-4;
 // Up to this size the whole spectrum costs nothing, and Lanczos would have no room.
 constexpr Eigen::Index dense_size = 96;
+constexpr int most_modes = 1000;
 
 // The solver's view of (K - sigma M)^-1 with sigma < 0, which is positive definite even for a body
 // that is free to move.
@@ -31,10 +32,12 @@ class ShiftedSolve {
   Eigen::Index rows() const { return matrices_.K.rows(); }
   Eigen::Index cols() const { return matrices_.K.cols(); }
   void set_shift(double sigma) {
+    factor_.cholmod().print = 0;  // what goes wrong is said below
     factor_.compute(matrices_.K - sigma * matrices_.M);
     if (factor_.info() != Eigen::Success) {
-      throw ModelError{"modes: the stiffness matrix could not be factorised (is the body in one "
-                       "piece, are its properties in range?)"};
+      throw ModelError{
+          "modes: the stiffness matrix could not be factorised (is the body in one "
+          "piece, are its properties in range?)"};
     }
   }
   void perform_op(const double* x_in, double* y_out) const {
@@ -83,9 +86,8 @@ Pairs lowest_by_lanczos(const StiffnessAndMass& matrices, int count, double shif
   Spectra::SymGEigsShiftSolver<ShiftedSolve, MassProduct, Spectra::GEigsMode::ShiftInvert> solver{
       solve, mass, count, basis, shift};
   solver.init();
-  const Eigen::Index converged =
-      solver.compute(Spectra::SortRule::LargestMagn, most_restarts, lanczos_tolerance,
-                     Spectra::SortRule::SmallestAlge);
+  const Eigen::Index converged = solver.compute(Spectra::SortRule::LargestMagn, most_restarts,
+                                                lanczos_tolerance, Spectra::SortRule::SmallestAlge);
   if (solver.info() != Spectra::CompInfo::Successful || converged < count) {
     throw ModelError{fmt::format("modes: only {} of {} modes converged in {} restarts", converged,
                                  count, most_restarts)};
@@ -115,13 +117,18 @@ void fix_signs(Eigen::MatrixXd& vectors) {
   }
 }
 
+// Relative to the forces it is the difference of. What rounding alone can leave there grows with
+// the stiffest element over the softest mode and is taken off.
 double worst_residual(const StiffnessAndMass& matrices, const Modes& modes) {
   double worst = 0.0;
+  const double rounding = 10.0 * std::numeric_limits<double>::epsilon() * matrices.K.norm();
   for (Eigen::Index i = 0; i < modes.omega_rad_s.size(); ++i) {
     const Eigen::VectorXd elastic = matrices.K * modes.shapes.col(i);
     const Eigen::VectorXd inertial =
         modes.omega_rad_s[i] * modes.omega_rad_s[i] * (matrices.M * modes.shapes.col(i));
-    worst = std::max(worst, (elastic - inertial).norm() / (elastic.norm() + inertial.norm()));
+    const double explained = rounding * modes.shapes.col(i).norm();
+    const double unexplained = std::max(0.0, (elastic - inertial).norm() - explained);
+    worst = std::max(worst, unexplained / (elastic.norm() + inertial.norm()));
   }
   return worst;
 }
@@ -132,6 +139,12 @@ Modes solve_modes(const StiffnessAndMass& matrices, double band_limit_hz) {
   Modes modes;
   modes.counted_in_band = eigenvalues_below(matrices, band * band);
   const int count = modes.counted_in_band;
+  if (count > most_modes) {
+    throw ModelError{
+        fmt::format("modes: {} lie below {} Hz, more than the {} that a tick could "
+                    "carry (lower band_limit_hz, or is the body too soft?)",
+                    count, band_limit_hz, most_modes)};
+  }
   const Eigen::Index size = matrices.K.rows();
   Pairs pairs{Eigen::VectorXd{0}, Eigen::MatrixXd{size, 0}};
   if (count > 0) {
@@ -140,9 +153,10 @@ Modes solve_modes(const StiffnessAndMass& matrices, double band_limit_hz) {
     pairs = is_small ? lowest_dense(matrices, count) : lowest_by_lanczos(matrices, count, shift);
   }
   if (count > 0 && pairs.values.maxCoeff() >= band * band) {
-    throw ModelError{fmt::format("modes: {} lie below {} Hz by the inertia count, but the solver "
-                                 "missed one of them",
-                                 count, band_limit_hz)};
+    throw ModelError{
+        fmt::format("modes: {} lie below {} Hz by the inertia count, but the solver "
+                    "missed one of them",
+                    count, band_limit_hz)};
   }
   const double zero = rigid_fraction * rigid_fraction * band * band;
   modes.rigid_body_modes = static_cast<int>((pairs.values.array() < zero).count());

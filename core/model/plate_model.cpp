@@ -28,7 +28,7 @@ class Stopwatch {
 // The triangles of the upper face, with their nodes renumbered from 0.
 void keep_tapped_face(const TetMesh& mesh, const Box& box, ModalModel& model,
                       std::vector<Eigen::Index>& kept_nodes) {
-  const double tolerance_m = 1e-9 * box.size_m.norm();
+  const double tolerance_m = box.snap_m();
   const auto is_on_top = [&](int node) {
     return std::abs(mesh.nodes_m(node, 2) - box.high_m().z()) <= tolerance_m;
   };

@@ -11,7 +11,8 @@
 namespace tapstudy::core {
 namespace {
 std::ofstream new_file(const std::string& path) {
-  if (std::filesystem::exists(path)) {
+  std::error_code error;
+  if (std::filesystem::exists(path, error)) {
     throw InvalidInput{path + ": exists already and is not overwritten"};
   }
   std::ofstream file{path};

@@ -5,7 +5,7 @@ namespace tapstudy::core {
 // A body cut into linear tetrahedra.
 struct TetMesh {
   Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor> nodes_m;  // one row a node
-  Eigen::Matrix<int, Eigen::Dynamic, 4, Eigen::RowMajor> tets;  // node indices, positive volume
+  Eigen::Matrix<int, Eigen::Dynamic, 4, Eigen::RowMajor> tets;     // node indices, positive volume
   Eigen::Matrix<int, Eigen::Dynamic, 3, Eigen::RowMajor> surface;  // outward counter-clockwise
 };
 

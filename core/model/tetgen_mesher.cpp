@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <map>
-#include <stdexcept>
+#include <new>
 
 #include "core/error.hpp"
 #include "core/model/box_outline.hpp"
@@ -14,7 +14,7 @@
 #include <tetgen.h>
 namespace tapstudy::core {
 namespace {
-constexpr double most_tets = 2e6;
+constexpr double most_tets = 2e5;
 
 // A well-shaped tetrahedron is about as large as its cube's sixth; a thin sheet cannot have larger
 // ones than its thickness allows.
@@ -103,8 +103,7 @@ TetMesh mesh_from(const tetgenio& out, const Vec3& low_m) {
   TetMesh mesh;
   mesh.nodes_m = Eigen::Map<const decltype(mesh.nodes_m)>(out.pointlist, out.numberofpoints, 3);
   mesh.nodes_m.rowwise() += low_m.transpose();
-  mesh.tets =
-      Eigen::Map<const decltype(mesh.tets)>(out.tetrahedronlist, out.numberoftetrahedra, 4);
+  mesh.tets = Eigen::Map<const decltype(mesh.tets)>(out.tetrahedronlist, out.numberoftetrahedra, 4);
   make_volumes_positive(mesh);
   find_surface(mesh);
   return mesh;
@@ -113,7 +112,7 @@ TetMesh mesh_from(const tetgenio& out, const Vec3& low_m) {
 std::string tetgen_switches(const MeshSize& size) {
   std::string switches = fmt::format("pq{}Q", size.radius_edge_ratio);
   if (size.max_tet_volume_m3) {
-    switches += fmt::format("a{:.12f}", *size.max_tet_volume_m3);
+    switches += fmt::format("a{:.24f}", *size.max_tet_volume_m3);
   }
   return switches;
 }
@@ -129,6 +128,8 @@ TetMesh mesh_box(const Box& box, const MeshSize& size, const std::vector<Vec3>& 
     tetrahedralize(switches.data(), &in, &out);
   } catch (int code) {
     throw ModelError{fmt::format("mesh: TetGen gave up on the plate with code {}", code)};
+  } catch (const std::bad_alloc&) {
+    throw ModelError{"mesh: not enough memory for so many tetrahedra"};
   }
   return mesh_from(out, box.low_m());
 }

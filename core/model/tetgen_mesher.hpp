@@ -12,6 +12,6 @@ struct MeshSize {
 };
 
 // A quality mesh of the box (TetGen, Si 2015) that has the given points of the box among its nodes.
-// Throws ModelError if the sizes ask for more than two million tetrahedra or TetGen gives up.
+// Throws ModelError if the sizes ask for more than 200 000 tetrahedra or TetGen gives up.
 TetMesh mesh_box(const Box& box, const MeshSize& size, const std::vector<Vec3>& points_m = {});
 }  // namespace tapstudy::core

@@ -25,8 +25,8 @@ OscillatorStep overdamped_step(double omega, double zeta, double dt) noexcept {
   const double fast = std::exp(-fast_rate * dt);
   const double qv =
       half_gap * dt > 0.0 ? slow * -std::expm1(-2.0 * half_gap * dt) / (2.0 * half_gap) : slow * dt;
-  const double vv = root > 0.1 ? (fast_rate * fast - slow_rate * slow) / (2.0 * half_gap)
-                               : slow - fast_rate * qv;
+  const double vv =
+      root > 0.1 ? (fast_rate * fast - slow_rate * slow) / (2.0 * half_gap) : slow - fast_rate * qv;
   return {slow + slow_rate * qv, qv, -omega * omega * qv, vv};
 }
 }  // namespace

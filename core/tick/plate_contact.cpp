@@ -18,9 +18,9 @@ const Contact& PlateContact::tick(const HandState& tip) noexcept {
   return contact_;
 }
 
-void PlateContact::reset() noexcept {
+void PlateContact::continue_from(const PlateContact& other) noexcept {
   contact_ = {};
-  was_above_ = false;
-  may_strike_ = false;
+  was_above_ = other.was_above_;
+  may_strike_ = other.may_strike_;
 }
 }  // namespace tapstudy::core

@@ -25,7 +25,8 @@ class PlateContact {
       : half_x_m_{half_x_m}, half_y_m_{half_y_m}, release_height_m_{release_height_m} {}
   const Contact& tick(const HandState& tip) noexcept;
   const Contact& now() const noexcept { return contact_; }
-  void reset() noexcept;
+  // Knows where the finger came from as the other did; neither is touching.
+  void continue_from(const PlateContact& other) noexcept;
 
  private:
   double half_x_m_;

@@ -63,8 +63,8 @@ ForceParts TapRenderer::parts(const Contact& contact) const noexcept {
   return parts;
 }
 
-void TapRenderer::reset() noexcept {
-  contact_.reset();
+void TapRenderer::take_over_from(const TapRenderer& other) noexcept {
+  contact_.continue_from(other.contact_);
   if (vibration_) {
     vibration_->reset();
   }

@@ -49,7 +49,8 @@ class TapRenderer {
               double half_y_m, const VibratingPlate* plate);
   RenderedTick tick(const HandState& tip) noexcept;
   bool is_touching() const noexcept { return contact_.now().touching; }
-  void reset() noexcept;
+  // Goes on in silence where another renderer left the finger, off the plate.
+  void take_over_from(const TapRenderer& other) noexcept;
 
  private:
   void excite(const Contact& contact) noexcept;

@@ -14,12 +14,14 @@
 #include "runner/commands/commands.hpp"
 #include "runner/model_library.hpp"
 #include "runner/progress.hpp"
+#include "runner/seed.hpp"
+#include "runner/session.hpp"
 namespace tapstudy::runner {
 namespace {
 struct CheckOptions {
   std::string protocol;
   int participants{10};
-  std::uint64_t seed{1};
+  std::string seed{"1"};
 };
 constexpr double alpha = 0.05;
 
@@ -46,15 +48,6 @@ void print_models(const protocols::Protocol& protocol) {
   }
 }
 
-double trial_s(const protocols::Protocol& protocol, const protocols::Block& block) {
-  const protocols::SimulatedTapSettings& taps = protocol.simulation.taps;
-  const double tap_s = 1.7 * taps.hover_m / taps.speed_m_s + taps.dwell_s + taps.pause_s;
-  const int visits = block.task == protocols::Task::choice
-                         ? taps.visits * static_cast<int>(block.stimuli.size())
-                         : 1;
-  return tap_s * taps.taps_per_visit * visits;
-}
-
 void warn_of_balance(const protocols::Block& block, int participants) {
   const int conditions = static_cast<int>(block.stimuli.size());
   const int rows = protocols::williams_rows(conditions);
@@ -63,9 +56,10 @@ void warn_of_balance(const protocols::Block& block, int participants) {
                participants, rows, rows);
   } else if (block.task == protocols::Task::identification &&
              block.order != protocols::Order::williams) {
-    fmt::print("    note: random orders balance only on average; order: williams balances {} "
-               "stimuli over every {} participants\n",
-               conditions, rows);
+    fmt::print(
+        "    note: random orders balance only on average; order: williams balances {} "
+        "stimuli over every {} participants\n",
+        conditions, rows);
   }
 }
 
@@ -73,12 +67,13 @@ void print_power(const protocols::Block& block, int participants) {
   const bool is_choice = block.task == protocols::Task::choice;
   const std::size_t options = is_choice ? block.stimuli.size() : block.responses.size();
   const double chance = 1.0 / static_cast<double>(options);
-  const int answers = participants * block.repetitions *
-                      (is_choice ? 1 : static_cast<int>(block.stimuli.size()));
+  const int answers =
+      participants * block.repetitions * (is_choice ? 1 : static_cast<int>(block.stimuli.size()));
   const int critical = analysis::critical_successes(answers, chance, alpha);
-  fmt::print("    chance {:.0f} %; of {} answers {} must {} for p < .05 (one-sided, answers "
-             "independent)\n",
-             100.0 * chance, answers, critical, is_choice ? "choose the expected one" : "be right");
+  fmt::print(
+      "    chance {:.0f} %; of {} answers {} must {} for p < .05 (one-sided, answers "
+      "independent)\n",
+      100.0 * chance, answers, critical, is_choice ? "choose the expected one" : "be right");
   fmt::print("    power if the truth is");
   for (const double above : {0.1, 0.2, 0.3}) {
     fmt::print("{} {:.0f} %: {:.2f}", above > 0.15 ? "," : "", 100.0 * (chance + above),
@@ -92,9 +87,8 @@ void print_design(const protocols::Protocol& protocol, int participants) {
   double total_s = 0.0;
   for (const protocols::Block& block : protocol.blocks) {
     const bool is_choice = block.task == protocols::Task::choice;
-    const int trials =
-        block.repetitions * (is_choice ? 1 : static_cast<int>(block.stimuli.size()));
-    const double seconds = trials * trial_s(protocol, block);
+    const int trials = block.repetitions * (is_choice ? 1 : static_cast<int>(block.stimuli.size()));
+    const double seconds = trials * simulated_trial_s(protocol, block);
     total_s += seconds;
     fmt::print("  {}{}: {}, {} stimuli, {} trials a participant, about {:.0f} s of tapping\n",
                block.name, block.is_practice ? " (practice)" : "",
@@ -108,14 +102,15 @@ void print_design(const protocols::Protocol& protocol, int participants) {
 void run_check(const CheckOptions& options) {
   const protocols::Protocol protocol = protocols::read_protocol(options.protocol);
   if (options.participants < 1 || options.participants > 10000) {
-    throw core::InvalidInput{fmt::format("--participants: {} is not allowed (from 1 to 10000)",
-                                         options.participants)};
+    throw core::InvalidInput{
+        fmt::format("--participants: {} is not allowed (from 1 to 10000)", options.participants)};
   }
   print_design(protocol, options.participants);
   print_models(protocol);
   const int index = options.participants - 1;
-  const std::uint64_t seed = core::derived_seed(options.seed, core::Purpose::participant,
-                                                static_cast<std::uint64_t>(index));
+  const std::uint64_t seed =
+      core::derived_seed(seed_from(options.seed, "--seed"), core::Purpose::participant,
+                         static_cast<std::uint64_t>(index));
   fmt::print("\nschedule of participant {} of a simulation with seed {}\n", options.participants,
              options.seed);
   fmt::print("{}", protocols::described(make_schedule(protocol, seed, index)));

@@ -20,10 +20,10 @@ struct ModesOptions {
 void print_json(const ModesOptions& options, const core::PlateModel& plate) {
   const core::ModelReport& report = plate.report;
   nlohmann::ordered_json json{{"schema_version", 1}, {"stimulus", options.stimulus}};
-  json["frequencies_hz"] = std::vector<double>(plate.modal.frequency_hz.begin(),
-                                               plate.modal.frequency_hz.end());
-  json["damping_ratios"] = std::vector<double>(plate.modal.damping_ratio.begin(),
-                                               plate.modal.damping_ratio.end());
+  json["frequencies_hz"] =
+      std::vector<double>(plate.modal.frequency_hz.begin(), plate.modal.frequency_hz.end());
+  json["damping_ratios"] =
+      std::vector<double>(plate.modal.damping_ratio.begin(), plate.modal.damping_ratio.end());
   json["alpha_per_s"] = plate.modal.damping.alpha_per_s;
   json["beta_s"] = plate.modal.damping.beta_s;
   json["element_order"] = 1;

@@ -33,7 +33,8 @@ struct ReportOptions {
 
 // Real sessions unless something else is asked for; where there are no real ones, what there is,
 // and the report says so.
-Mode mode_to_report(const ReportOptions& options, const std::vector<results::SessionRow>& sessions) {
+Mode mode_to_report(const ReportOptions& options,
+                    const std::vector<results::SessionRow>& sessions) {
   if (!options.mode.empty()) {
     return results::mode_from(options.mode);
   }
@@ -52,10 +53,10 @@ std::vector<std::pair<std::string, std::string>> provenance(
   std::vector<std::string> seeds;
   for (const results::SessionRow& session : sessions) {
     if (session.mode == mode) {
-      programs.insert(fmt::format("{} ({}, {})", session.program_version, session.git_hash,
-                                  session.compiler));
-      devices.insert(fmt::format("{}, {} Hz, {}", session.device, session.rate_hz,
-                                 session.scheduler));
+      programs.insert(
+          fmt::format("{} ({}, {})", session.program_version, session.git_hash, session.compiler));
+      devices.insert(
+          fmt::format("{}, {} Hz, {}", session.device, session.rate_hz, session.scheduler));
       seeds.push_back(fmt::format("{} {}", session.participant_id, session.seed));
     }
   }
@@ -83,8 +84,8 @@ Summary summary_of_study(const ReportOptions& options) {
       protocols::parse_protocol(study.protocol_text, study.protocol_file);
   std::vector<results::VisitRow> visits = store.visits();
   std::erase_if(visits, [&](const results::VisitRow& visit) {
-    return std::ranges::find(answers, visit.participant_id,
-                             &results::AnswerRow::participant_id) == answers.end();
+    return std::ranges::find(answers, visit.participant_id, &results::AnswerRow::participant_id) ==
+           answers.end();
   });
   Summary summary = analysis::summarise(design_of(protocol), answers, visits);
   summary.provenance = provenance(study, sessions, mode);
@@ -105,6 +106,9 @@ Summary summary_of_counts(const std::string& file) {
 void write_files(const ReportOptions& options, const Summary& summary) {
   std::error_code error;
   fs::create_directories(options.out, error);
+  if (!fs::is_directory(options.out, error)) {
+    throw core::InvalidInput{options.out + ": cannot be made a directory"};
+  }
   const auto write = [&](const std::string& name, const Write& content) {
     const std::string file = (fs::path{options.out} / name).string();
     if (options.replace) {
@@ -133,8 +137,8 @@ void run_report(ReportOptions options) {
   if (options.directory.empty() == options.counts.empty()) {
     throw core::InvalidInput{"report takes either the directory of a study or --counts FILE.csv"};
   }
-  const Summary summary = options.counts.empty() ? summary_of_study(options)
-                                                 : summary_of_counts(options.counts);
+  const Summary summary =
+      options.counts.empty() ? summary_of_study(options) : summary_of_counts(options.counts);
   analysis::write_text(std::cout, summary);
   std::cout << std::endl;
   if (options.out.empty() && options.counts.empty()) {
@@ -147,8 +151,8 @@ void run_report(ReportOptions options) {
 }  // namespace
 
 void add_report(CLI::App& app) {
-  auto* const command = app.add_subcommand(
-      "report", "Confusion matrix and statistics: terminal, HTML, JSON and CSV");
+  auto* const command =
+      app.add_subcommand("report", "Confusion matrix and statistics: terminal, HTML, JSON and CSV");
   const auto options = std::make_shared<ReportOptions>();
   command->add_option("directory", options->directory, "Directory of a study");
   command->add_option("--counts", options->counts,

@@ -12,6 +12,7 @@
 #include "runner/commands/commands.hpp"
 #include "runner/console_participant.hpp"
 #include "runner/rig.hpp"
+#include "runner/seed.hpp"
 #include "runner/session.hpp"
 #include "runner/simulated/tap_drawing.hpp"
 #include "runner/stop_signal.hpp"
@@ -23,7 +24,7 @@ struct RunOptions {
   std::string participant;
   std::string directory;
   std::string rig;
-  std::optional<std::uint64_t> seed;
+  std::string seed;
   bool resume{false};
   bool pilot{false};
 };
@@ -47,22 +48,26 @@ OpenedSession open_session(const RunOptions& options, const protocols::Protocol&
   plan.participant_index = store.index_of(plan.participant_id, plan.mode);
   const auto earlier = store.latest_session(plan.participant_id);
   if (earlier && !options.resume) {
-    throw core::InvalidInput{fmt::format("participant '{}' is in this study already (go on with "
-                                         "--resume, or choose another id)",
-                                         options.participant)};
+    throw core::InvalidInput{
+        fmt::format("participant '{}' is in this study already (go on with "
+                    "--resume, or choose another id)",
+                    options.participant)};
   }
   if (!earlier && options.resume) {
     throw core::InvalidInput{
         fmt::format("participant '{}' has no session to resume", options.participant)};
   }
-  plan.seed = earlier ? earlier->seed : options.seed ? *options.seed : fresh_seed();
+  plan.seed = earlier                ? earlier->seed
+              : options.seed.empty() ? fresh_seed()
+                                     : seed_from(options.seed, "--seed");
   OpenedSession session;
   session.schedule = make_schedule(protocol, plan.seed, plan.participant_index);
   session.row = session_row(plan, protocol, rig, session.schedule);
   if (earlier) {
     if (earlier->planned_order != session.row.planned_order) {
-      throw core::InvalidInput{"--resume: this program would plan another order than the stored "
-                               "one; resume with the version that began the session"};
+      throw core::InvalidInput{
+          "--resume: this program would plan another order than the stored "
+          "one; resume with the version that began the session"};
     }
     session.row.resumes = earlier->id;
     const std::vector<int> done = store.answered_trials(plan.participant_id);
@@ -88,17 +93,21 @@ void run_session(const RunOptions& options) {
       models.plate_of(protocol, stimulus);
     }
   }
+  if (options.resume) {
+    results::Store::open_existing(options.directory);  // or there is nothing to resume
+  }
   results::Store store =
       results::Store::open_or_create(options.directory, study_row(protocol, options.protocol));
   const OpenedSession session = open_session(options, protocol, rig, store);
   listen_for_stop();
 
-  device::SimulatedHand hand{hand_body(protocol.simulation.hand), protocol.rendering.dt_s, 0.0};
+  device::SimulatedHand hand{hand_body(protocol.simulation.hand), protocol.rendering.dt_s,
+                             device::SimulatedHand::Memory::none};
   core::Rng hand_rng{core::derived_seed(session.row.seed, core::Purpose::hand)};
   LineInput input{STDIN_FILENO};
-  ConsoleParticipant participant{input, [&] {
-    hand.follow(draw_taps(protocol, settings.placement, taps_without_end, hand_rng));
-  }};
+  ConsoleParticipant participant{
+      input,
+      [&] { hand.follow(draw_taps(protocol, settings.placement, taps_without_end, hand_rng)); }};
   results::Recorder recorder{store};
   LivePresenter presenter{hand, settings, recorder};
   TrialEngine engine{protocol, models, presenter, participant, recorder};

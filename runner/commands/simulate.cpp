@@ -1,5 +1,3 @@
-#include "runner/simulated/study.hpp"
-
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -8,7 +6,9 @@
 #include "core/error.hpp"
 #include "protocols/read_protocol.hpp"
 #include "runner/commands/commands.hpp"
+#include "runner/seed.hpp"
 #include "runner/session.hpp"
+#include "runner/simulated/study.hpp"
 #include "runner/stop_signal.hpp"
 namespace tapstudy::runner {
 namespace {
@@ -16,15 +16,17 @@ void run_simulate(const SimulatedStudy& study) {
   const protocols::Protocol protocol = protocols::read_protocol(study.protocol_file);
   check_has_blocks(protocol);
   if (study.participants < 1 || study.participants > 10000) {
-    throw core::InvalidInput{fmt::format("--participants: {} is not allowed (from 1 to 10000)",
-                                         study.participants)};
+    throw core::InvalidInput{
+        fmt::format("--participants: {} is not allowed (from 1 to 10000)", study.participants)};
   }
+  check_trial_length(protocol);
   listen_for_stop();
   const SimulatedTime time = simulate(study, protocol);
-  fmt::print("{} simulated participants, {} trials, {:.0f} s of tapping in {:.2f} s ({:.0f} × real "
-             "time)\n{}/study.db\n",
-             study.participants, time.trials, time.tapped_s, time.wall_s,
-             time.tapped_s / time.wall_s, study.directory);
+  fmt::print(
+      "{} simulated participants, {} trials, {:.0f} s of tapping in {:.2f} s ({:.0f} × real "
+      "time)\n{}/study.db\n",
+      study.participants, time.trials, time.tapped_s, time.wall_s, time.tapped_s / time.wall_s,
+      study.directory);
 }
 }  // namespace
 
@@ -32,12 +34,15 @@ void add_simulate(CLI::App& app) {
   auto* const command =
       app.add_subcommand("simulate", "The whole study with simulated participants");
   const auto study = std::make_shared<SimulatedStudy>();
+  const auto seed = std::make_shared<std::string>("1");
   study->participants = 10;
-  study->seed = 1;
   command->add_option("protocol", study->protocol_file, "Study (YAML)")->required();
   command->add_option("--participants", study->participants, "How many")->capture_default_str();
-  command->add_option("--seed", study->seed, "Of all randomness")->capture_default_str();
+  command->add_option("--seed", *seed, "Of all randomness")->capture_default_str();
   command->add_option("--out", study->directory, "Directory of the study")->required();
-  command->callback([study] { run_simulate(*study); });
+  command->callback([study, seed] {
+    study->seed = seed_from(*seed, "--seed");
+    run_simulate(*study);
+  });
 }
 }  // namespace tapstudy::runner

@@ -62,9 +62,12 @@ void print_summary(const TapOptions& options, const std::vector<TraceSample>& tr
                -impact->velocity_m_s[1]);
   }
   fmt::print("  impacts        {}\n", std::ranges::count(trace, true, &TraceSample::struck));
-  fmt::print("  penalty        {:.4g} N at most\n", largest(trace, [](const TraceSample& s) { return s.penalty_n; }));
-  fmt::print("  vibration      {:.4g} N at most\n", largest(trace, [](const TraceSample& s) { return s.vibration_n; }));
-  fmt::print("  sinusoid       {:.4g} N at most\n", largest(trace, [](const TraceSample& s) { return s.sinusoid_n; }));
+  fmt::print("  penalty        {:.4g} N at most\n",
+             largest(trace, [](const TraceSample& s) { return s.penalty_n; }));
+  fmt::print("  vibration      {:.4g} N at most\n",
+             largest(trace, [](const TraceSample& s) { return s.vibration_n; }));
+  fmt::print("  sinusoid       {:.4g} N at most\n",
+             largest(trace, [](const TraceSample& s) { return s.sinusoid_n; }));
   fmt::print("  limited ticks  {}\n", std::ranges::count(trace, true, &TraceSample::saturated));
 }
 
@@ -111,9 +114,15 @@ void draw_panels(const TapOptions& options, const protocols::Protocol& protocol)
   const protocols::Rig rig = protocols::simulated_rig();
   std::error_code error;
   std::filesystem::create_directories(options.panels, error);
+  if (!std::filesystem::is_directory(options.panels, error)) {
+    throw core::InvalidInput{options.panels + ": cannot be made a directory"};
+  }
   for (const auto& [plate, spec] : protocol.plates) {
-    analysis::Figure figure{"Feedback force, " + plate, "time after impact [s]", "force [N]",
-                            protocol.tapping_points_m.size(), {}};
+    analysis::Figure figure{"Feedback force, " + plate,
+                            "time after impact [s]",
+                            "force [N]",
+                            protocol.tapping_points_m.size(),
+                            {}};
     for (const protocols::Stimulus& stimulus : protocol.stimuli) {
       if (stimulus.plate != plate) {
         continue;

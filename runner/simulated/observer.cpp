@@ -1,7 +1,12 @@
 #include "runner/simulated/observer.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <limits>
+
+#include "core/error.hpp"
 namespace tapstudy::runner {
 namespace {
 // No two levels are told apart below this, however quiet the observer: it keeps weights finite.
@@ -17,23 +22,36 @@ Features mean_of(std::span<const FeltTap> taps) {
   return mean;
 }
 
-std::size_t index_of_least(const std::vector<double>& values) {
-  return static_cast<std::size_t>(std::ranges::min_element(values) - values.begin());
-}
 }  // namespace
 
 SimulatedObserver::SimulatedObserver(std::vector<core::Vec3> places_m, double noise_db,
                                      core::Rng rng)
     : places_m_{std::move(places_m)}, noise_db_{noise_db}, rng_{rng} {}
 
+std::size_t SimulatedObserver::index_of_least(const std::vector<double>& values) {
+  const double least = *std::ranges::min_element(values);
+  std::vector<std::size_t> equals;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (values[i] == least) {
+      equals.push_back(i);
+    }
+  }
+  return equals[rng_.below(static_cast<std::uint32_t>(equals.size()))];
+}
+
 std::size_t SimulatedObserver::place_of(const FeltTap& tap) const {
-  const auto nearest = std::ranges::min_element(places_m_, {}, [&](const core::Vec3& place) {
-    return (place - tap.place_m).squaredNorm();
-  });
+  const auto nearest = std::ranges::min_element(
+      places_m_, {}, [&](const core::Vec3& place) { return (place - tap.place_m).squaredNorm(); });
   return static_cast<std::size_t>(nearest - places_m_.begin());
 }
 
 void SimulatedObserver::remember(const std::string& plate, std::span<const FeltTap> taps) {
+  if (taps.empty()) {
+    throw core::InvalidInput{
+        fmt::format("simulation: no tap on '{}' stays in contact for the 0.16 s that feeling it "
+                    "takes (raise simulation.taps.dwell_s or press_m)",
+                    plate)};
+  }
   std::vector<std::vector<FeltTap>> at_place(places_m_.size());
   for (const FeltTap& tap : taps) {
     at_place.at(place_of(tap)).push_back(tap);
@@ -74,8 +92,8 @@ double SimulatedObserver::distance(const Features& difference, const Features& n
   double sum = 0.0;
   for (std::size_t i = 0; i < difference.size(); ++i) {
     const double felt = difference.at(i) + noise.at(i);
-    sum += felt * felt /
-           (noise_db_ * noise_db_ + memory.variance_db2.at(i) + finest_db * finest_db);
+    sum +=
+        felt * felt / (noise_db_ * noise_db_ + memory.variance_db2.at(i) + finest_db * finest_db);
   }
   return sum;
 }
@@ -105,7 +123,8 @@ std::size_t SimulatedObserver::most_alike(const std::vector<std::vector<FeltTap>
   const Memory& memory = memories_.at(plate);
   std::vector<double> distances;
   for (const std::vector<FeltTap>& taps : felt) {
-    distances.push_back(distance(difference(taps, memory), noise(), memory));
+    distances.push_back(taps.empty() ? std::numeric_limits<double>::infinity()
+                                     : distance(difference(taps, memory), noise(), memory));
   }
   return index_of_least(distances);
 }

@@ -19,11 +19,12 @@ class SimulatedObserver {
  public:
   SimulatedObserver(std::vector<core::Vec3> places_m, double noise_db, core::Rng rng);
 
-  // taps not empty. Places never tapped are remembered as the plate's mean.
+  // Places never tapped are remembered as the plate's mean. Throws InvalidInput without taps.
   void remember(const std::string& plate, std::span<const FeltTap> taps);
   // Which of the remembered plates is this most like? A guess if nothing was felt.
   std::size_t most_alike(std::span<const FeltTap> felt, const std::vector<std::string>& plates);
-  // Which of several felt things is most like the one remembered plate?
+  // Which of several felt things is most like the one remembered plate? One that was not felt at
+  // all is like nothing; if none was, a guess.
   std::size_t most_alike(const std::vector<std::vector<FeltTap>>& felt, const std::string& plate);
 
  private:
@@ -34,6 +35,7 @@ class SimulatedObserver {
   std::size_t place_of(const FeltTap& tap) const;
   Features difference(std::span<const FeltTap> felt, const Memory& memory) const;
   Features noise();
+  std::size_t index_of_least(const std::vector<double>& values);  // a draw among equals
   double distance(const Features& difference, const Features& noise, const Memory& memory) const;
 
   std::vector<core::Vec3> places_m_;

@@ -7,8 +7,6 @@
 #include "runner/simulated/tap_drawing.hpp"
 namespace tapstudy::runner {
 namespace {
-constexpr double longest_visit_s = 3600.0;
-
 using core::Purpose;
 
 // The plates that have to be known to answer this protocol's questions.
@@ -30,15 +28,6 @@ protocols::Protocol made_real(protocols::Protocol protocol) {
   return protocol;
 }
 
-// Longest series of taps, generously; what is felt after that is not remembered.
-double memory_s(const protocols::Protocol& protocol) {
-  const protocols::Simulation& simulation = protocol.simulation;
-  const int taps =
-      std::max(simulation.taps.taps_per_visit, simulation.observer.familiarisation_taps);
-  const double tap_s = simulation.taps.hover_m / simulation.taps.speed_m_s +
-                       simulation.taps.dwell_s + simulation.taps.pause_s;
-  return std::min(longest_visit_s, 2.0 * tap_s * taps + 1.0);
-}
 }  // namespace
 
 SimulatedParticipant::SimulatedParticipant(const protocols::Protocol& protocol,
@@ -46,7 +35,8 @@ SimulatedParticipant::SimulatedParticipant(const protocols::Protocol& protocol,
                                            ModelLibrary& models, std::uint64_t seed)
     : protocol_{protocol},
       settings_{settings},
-      hand_{hand_body(protocol.simulation.hand), protocol.rendering.dt_s, memory_s(protocol)},
+      hand_{hand_body(protocol.simulation.hand), protocol.rendering.dt_s,
+            device::SimulatedHand::Memory::kept},
       hand_rng_{core::derived_seed(seed, Purpose::memory)},
       observer_{aims_m(protocol, settings.placement), protocol.simulation.observer.noise_db,
                 core::Rng{core::derived_seed(seed, Purpose::observer)}} {
@@ -60,16 +50,15 @@ void SimulatedParticipant::remember_real_plates(ModelLibrary& models) {
   for (const std::string& plate : real_plates(protocol_)) {
     Scene scene = build_scene(reality, {plate}, models);
     world.present(scene.alternatives, [&](Exploration& exploration) {
-      observer_.remember(
-          plate, tap(exploration, protocol_.simulation.observer.familiarisation_taps));
+      observer_.remember(plate,
+                         tap(exploration, protocol_.simulation.observer.familiarisation_taps));
     });
   }
 }
 
 std::vector<FeltTap> SimulatedParticipant::tap(Exploration& exploration, int count) {
   hand_.forget();
-  exploration.pass_time(
-      hand_.follow(draw_taps(protocol_, settings_.placement, count, hand_rng_)));
+  exploration.pass_time(hand_.follow(draw_taps(protocol_, settings_.placement, count, hand_rng_)));
   return felt_taps(hand_.felt(), protocol_.rendering.dt_s,
                    protocol_.simulation.observer.threshold_n);
 }

@@ -33,15 +33,16 @@ std::vector<PlannedSession> add_sessions(const SimulatedStudy& study,
                                          const protocols::Rig& rig, results::Store& store) {
   std::vector<PlannedSession> sessions;
   for (int i = 0; i < study.participants; ++i) {
-    SessionPlan plan{fmt::format("sim-{:02}", i + 1), 0, results::Mode::simulated,
-                     core::derived_seed(study.seed, core::Purpose::participant,
-                                        static_cast<std::uint64_t>(i)),
-                     "simulated hand"};
+    SessionPlan plan{
+        fmt::format("sim-{:02}", i + 1), 0, results::Mode::simulated,
+        core::derived_seed(study.seed, core::Purpose::participant, static_cast<std::uint64_t>(i)),
+        "simulated hand"};
     plan.participant_index = store.index_of(plan.participant_id, plan.mode);
     if (store.has_sessions(plan.participant_id)) {
-      throw core::InvalidInput{fmt::format("{}: participant '{}' is in this study already (choose "
-                                           "another --out)",
-                                           study.directory, plan.participant_id)};
+      throw core::InvalidInput{
+          fmt::format("{}: participant '{}' is in this study already (choose "
+                      "another --out)",
+                      study.directory, plan.participant_id)};
     }
     PlannedSession session{0, plan.seed,
                            make_schedule(protocol, plan.seed, plan.participant_index)};

@@ -46,8 +46,7 @@ std::vector<double> without_spring(std::span<const FeltTick> contact) {
 
 // Mean square of the part at one frequency (Goertzel 1958, as a rotating phasor).
 double power_at(std::span<const double> signal, double frequency_hz, double dt_s) {
-  const std::complex<double> turn =
-      std::polar(1.0, -2.0 * std::numbers::pi * frequency_hz * dt_s);
+  const std::complex<double> turn = std::polar(1.0, -2.0 * std::numbers::pi * frequency_hz * dt_s);
   std::complex<double> phasor{1.0, 0.0};
   std::complex<double> sum{0.0, 0.0};
   for (const double x : signal) {
@@ -67,6 +66,9 @@ Features features_of(std::span<const FeltTick> contact, double dt_s, double thre
   Features levels{};
   for (std::size_t band = 0; band < bands; ++band) {
     const double frequency = lowest_band_hz * std::exp2(static_cast<double>(band) / 3.0);
+    if (frequency >= 0.5 / dt_s) {
+      break;  // the loop cannot carry it, so nobody feels it
+    }
     for (std::size_t window = 0; window < windows.size(); ++window) {
       const double power = power_at(windows.at(window), frequency, dt_s);
       levels.at(window * bands + band) = 10.0 * std::log10(1.0 + power / threshold_power);
@@ -86,8 +88,8 @@ std::vector<FeltTap> felt_taps(std::span<const FeltTick> felt, double dt_s, doub
     const auto last = std::find_if_not(first, felt.end(), is_contact);
     const auto length = std::min(static_cast<std::size_t>(last - first), whole);
     if (length == whole) {
-      taps.push_back({first->hand.position_m,
-                      features_of(std::span{first, length}, dt_s, threshold_n)});
+      taps.push_back(
+          {first->hand.position_m, features_of(std::span{first, length}, dt_s, threshold_n)});
     }
     first = std::find_if(last, felt.end(), is_contact);
   }

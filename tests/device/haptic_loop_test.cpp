@@ -14,6 +14,7 @@ class FakeDevice final : public device::Device {
  public:
   device::Io read(core::HandState& hand) noexcept override {
     hand.position_m = {0.0, ++reads_ == 1 ? 0.01 : height_m, 0.0};
+    hand.velocity_m_s.y() = speed_m_s;
     return reads_ == fail_read_at ? device::Io::failed : device::Io::ok;
   }
   device::Io write(const Vec3& force_n) noexcept override {
@@ -24,6 +25,7 @@ class FakeDevice final : public device::Device {
   std::string description() const override { return "fake"; }
 
   double height_m{-0.002};
+  double speed_m_s{0.0};
   int fail_read_at{-1};
   int fail_write_at{-1};
   Vec3 last_force_n{Vec3::Zero()};
@@ -63,9 +65,7 @@ struct Bench {
     }
     return all;
   }
-  device::HapticLoop loop() {
-    return {hand, renderers, settings, trace, clock};
-  }
+  device::HapticLoop loop() { return {hand, renderers, settings, trace, clock}; }
   FakeDevice hand;
   CrankedClock clock;
   std::vector<core::TapRenderer> renderers;
@@ -119,6 +119,12 @@ TEST_CASE("the loop ends at zero force, whatever ended it", "[device][loop][safe
     loop.run_ticks(100);
     CHECK(loop.report().stopped_by == core::TickFault::non_finite_force);
   }
+  SECTION("the velocity was not a number") {
+    bench.hand.speed_m_s = std::numeric_limits<double>::quiet_NaN();
+    device::HapticLoop loop = bench.loop();
+    loop.run_ticks(100);
+    CHECK(loop.report().stopped_by == core::TickFault::non_finite_force);
+  }
   CHECK(bench.hand.last_force_n == Vec3::Zero());
 }
 
@@ -147,6 +153,18 @@ TEST_CASE("another alternative is taken only off the plate", "[device][loop][saf
   bench.hand.height_m = 0.001;
   loop.run_ticks(2);
   CHECK(bench.samples().back().alternative == 1);
+}
+
+TEST_CASE("a switch in the very tick of entry loses neither contact nor impact", "[device][loop]") {
+  Bench bench;
+  device::HapticLoop loop = bench.loop();
+  loop.run_ticks(1);
+  loop.request_alternative(1);
+  loop.run_ticks(1);
+  const core::TraceSample entry = bench.samples().back();
+  CHECK(entry.alternative == 1);
+  CHECK(entry.touching);
+  CHECK(entry.struck);
 }
 
 TEST_CASE("samples that find no room are counted", "[device][loop]") {

@@ -25,8 +25,7 @@ std::string discrimination() {
 }  // namespace
 
 TEST_CASE("every shipped protocol can be read", "[protocols]") {
-  for (const auto& entry :
-       std::filesystem::directory_iterator{testing::shipped("paper")}) {
+  for (const auto& entry : std::filesystem::directory_iterator{testing::shipped("paper")}) {
     if (entry.path().extension() == ".yaml") {
       INFO(entry.path().string());
       CHECK_NOTHROW(protocols::read_protocol(entry.path().string()));
@@ -37,7 +36,7 @@ TEST_CASE("every shipped protocol can be read", "[protocols]") {
 TEST_CASE("an unknown key is refused with its place and the key that was meant", "[protocols]") {
   const std::string text =
       replaced(discrimination(), "  penalty_stiffness_n_per_m:", "  penalty_stifness_n_per_m:");
-  CHECK_THAT(refusal(text), Contains("study.yaml:19:3: rendering.penalty_stifness_n_per_m: is not "
+  CHECK_THAT(refusal(text), Contains("study.yaml:21:3: rendering.penalty_stifness_n_per_m: is not "
                                      "a known key"));
   CHECK_THAT(refusal(text), Contains("did you mean 'penalty_stiffness_n_per_m'?"));
   CHECK_THAT(refusal(text), Contains("rendering.penalty_stiffness_n_per_m: is missing"));

@@ -97,7 +97,8 @@ TEST_CASE("the study of another protocol is left alone", "[results][store]") {
 TEST_CASE("what is not a study is refused", "[results][store]") {
   const testing::TempDirectory directory;
   CHECK_THROWS_AS(Store::open_existing(directory.path()), core::InvalidInput);
-  testing::write(directory / "study.db", "this is not a database, but it is long enough to be read");
+  testing::write(directory / "study.db",
+                 "this is not a database, but it is long enough to be read");
   CHECK_THROWS_AS(Store::open_or_create(directory.path(), study), StoreError);
   CHECK_THAT(testing::contents(directory / "study.db"), Contains("this is not a database"));
 }
@@ -120,8 +121,9 @@ TEST_CASE("a correction supersedes an answer and both stay", "[results][store]")
   store.add_session(row);
   store.add_trial(trial(row.id, 1, "b"));
   Database database{directory / "study.db", Database::Access::write};
-  database.run("INSERT INTO response (trial_id, response, is_correct, response_time_s, supersedes) "
-               "VALUES (1, 'a', 1, 3.0, 1)");
+  database.run(
+      "INSERT INTO response (trial_id, response, is_correct, response_time_s, supersedes) "
+      "VALUES (1, 'a', 1, 3.0, 1)");
   REQUIRE(store.answers().size() == 1);
   CHECK(store.answers().front().response == "a");
 }

@@ -58,7 +58,8 @@ TEST_CASE("a constant strain stores the energy of Hooke's law (patch test)", "[c
   const Matrix3 strain = 0.5 * (gradient + gradient.transpose());
   const double shear = 2.5e9 / (2.0 * 1.25);
   const double lame = 2.5e9 * 0.25 / (1.25 * 0.5);
-  const double density = 0.5 * lame * strain.trace() * strain.trace() + shear * strain.squaredNorm();
+  const double density =
+      0.5 * lame * strain.trace() * strain.trace() + shear * strain.squaredNorm();
   const Vector12 u = displaced(slanted_corners(), gradient);
   CHECK(0.5 * u.dot(element().stiffness * u) == Approx(density * volume(slanted_corners())));
 }

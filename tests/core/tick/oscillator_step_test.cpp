@@ -19,9 +19,8 @@ double energy(const OscillatorStep& step, double omega, double q, double v) {
   const double v_after = step.vq * q + step.vv * v;
   return v_after * v_after + omega * omega * q_after * q_after;
 }
-constexpr std::initializer_list<double> damping_ratios{0.0, 0.01,      0.7,       0.999999,
-                                                       1.0, 1.000001,  1.0000001, 1.004,
-                                                       1.2, 3.0,       100.0};
+constexpr std::initializer_list<double> damping_ratios{
+    0.0, 0.01, 0.7, 0.999999, 1.0, 1.000001, 1.0000001, 1.004, 1.2, 3.0, 100.0};
 constexpr double dt_s = 1e-3;
 }  // namespace
 

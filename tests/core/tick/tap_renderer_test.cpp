@@ -39,8 +39,8 @@ TEST_CASE("every technique has the penalty force of eq. 1 and is the sum of its 
     INFO(technique.name);
     for (const RenderedTick& tick : tapped(technique.name.data(), 0.2, 0.2)) {
       CHECK(tick.parts.penalty_n == Approx(3000.0 * tick.contact.penetration_m));
-      CHECK(tick.force_n.z() == Approx(tick.parts.penalty_n + tick.parts.vibration_n +
-                                       tick.parts.sinusoid_n));
+      CHECK(tick.force_n.z() ==
+            Approx(tick.parts.penalty_n + tick.parts.vibration_n + tick.parts.sinusoid_n));
       CHECK(tick.force_n.head<2>().norm() == 0.0);
       CHECK((tick.parts.vibration_n == 0.0 || technique.vibration));
       CHECK((tick.parts.sinusoid_n == 0.0 || technique.sinusoid));

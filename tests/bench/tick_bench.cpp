@@ -1,0 +1,106 @@
+// One tick of fem+sinusoid on a finger that slides in contact, against the number of modes and
+// against a plain vector loop over the same state.
+#include <benchmark/benchmark.h>
+
+#include <cmath>
+#include <vector>
+
+#include "core/rng.hpp"
+#include "core/tick/tap_renderer.hpp"
+
+using namespace tapstudy::core;
+namespace {
+constexpr double dt_s = 1e-3;
+
+// A square face of 2 × side² triangles with made-up modes: the tick sees only numbers.
+ModalModel made_up_model(Eigen::Index modes, int side) {
+  ModalModel model;
+  Rng rng{1};
+  model.frequency_hz = Eigen::ArrayXd::LinSpaced(modes, 20.0, 300.0);
+  model.damping_ratio = Eigen::ArrayXd::Constant(modes, 0.02);
+  model.touch_nodes_m.resize((side + 1) * (side + 1), 3);
+  for (int j = 0; j <= side; ++j) {
+    for (int i = 0; i <= side; ++i) {
+      model.touch_nodes_m.row(j * (side + 1) + i) << 0.6 * i / side - 0.3, 0.6 * j / side - 0.3,
+          0.0;
+    }
+  }
+  model.touch_surface.resize(2 * side * side, 3);
+  Eigen::Index row = 0;
+  for (int j = 0; j < side; ++j) {
+    for (int i = 0; i < side; ++i) {
+      const int low = j * (side + 1) + i;
+      const int high = low + side + 1;
+      model.touch_surface.row(row++) << low, low + 1, high + 1;
+      model.touch_surface.row(row++) << low, high + 1, high;
+    }
+  }
+  model.shape = ModalModel::Rows::NullaryExpr(3 * model.touch_nodes_m.rows(), modes,
+                                              [&] { return rng.normal(); });
+  return model;
+}
+
+RenderSettings settings() {
+  RenderSettings all;
+  all.sinusoid.amplitude_n_s_per_m = 3.0;
+  return all;
+}
+
+void tick_in_contact(benchmark::State& state) {
+  const VibratingPlate plate{made_up_model(state.range(0), static_cast<int>(state.range(1)))};
+  TapRenderer renderer{*find_technique("fem+sinusoid"), settings(), 0.3, 0.3, &plate};
+  renderer.tick({{0.0, 0.0, 0.001}, {0.0, 0.0, -0.3}});
+  double angle = 0.0;
+  for (auto _ : state) {
+    angle += 1e-3;
+    const HandState tip{{0.2 * std::cos(angle), 0.2 * std::sin(angle), -0.001}, {0.0, 0.0, -0.3}};
+    benchmark::DoNotOptimize(renderer.tick(tip));
+  }
+}
+BENCHMARK(tick_in_contact)
+    ->ArgNames({"modes", "side"})
+    ->Args({14, 10})
+    ->Args({55, 10})
+    ->Args({220, 10})
+    ->Args({55, 100});
+
+// Loud start and silent tail of the modes alone.
+void modal_core(benchmark::State& state) {
+  const VibratingPlate plate{made_up_model(55, 10)};
+  ModalState modes{plate.model, Integrator::exact, dt_s};
+  modes.touch(plate.locator.locate(0.1, 0.1), {0.0, 0.0, 1.0});
+  modes.strike(1.0);
+  const bool is_silent = state.range(0) == 1;
+  for (int tick = 0; is_silent && tick < 1'000'000; ++tick) {
+    modes.tick();
+  }
+  for (auto _ : state) {
+    modes.tick();
+    benchmark::DoNotOptimize(modes.displacement_m());
+    if (!is_silent) {
+      modes.strike(1e-6);
+    }
+  }
+}
+BENCHMARK(modal_core)->ArgName("silent")->Arg(0)->Arg(1);
+
+// What the modal core does, written by hand on arrays.
+void plain_loop(benchmark::State& state) {
+  constexpr std::size_t modes = 55;
+  std::vector<double> q(modes, 1.0), v(modes, 0.5), touched(modes, 0.3);
+  const std::vector<double> qq(modes, 0.99), qv(modes, 1e-3), vq(modes, -0.5), vv(modes, 0.98);
+  for (auto _ : state) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < modes; ++i) {
+      const double next = qq[i] * q[i] + qv[i] * v[i];
+      v[i] = vq[i] * q[i] + vv[i] * v[i];
+      q[i] = next;
+      sum += touched[i] * next;
+    }
+    benchmark::DoNotOptimize(sum);
+    q[0] += 1e-6;
+  }
+}
+BENCHMARK(plain_loop);
+}  // namespace
+BENCHMARK_MAIN();

@@ -1,0 +1,290 @@
+// What a researcher types and what comes back: output and exit code of the program itself.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "support/processes.hpp"
+#include "support/texts.hpp"
+using namespace tapstudy;
+using Catch::Matchers::Contains;
+using testing::replaced;
+using testing::TempDirectory;
+
+namespace {
+std::string paper(const std::string& name) {
+  return testing::shipped("paper/" + name).string();
+}
+std::string changed(const TempDirectory& directory, const std::string& name,
+                    const std::string& from, const std::string& to) {
+  const std::string file = directory / name;
+  testing::write(file, replaced(testing::contents(paper(name)), from, to));
+  return file;
+}
+std::vector<std::vector<std::string>> csv_rows(const std::string& text) {
+  std::vector<std::vector<std::string>> rows;
+  std::istringstream stream{text};
+  for (std::string line; std::getline(stream, line);) {
+    std::vector<std::string> cells;
+    std::istringstream cell_stream{line};
+    for (std::string cell; std::getline(cell_stream, cell, ',');) {
+      cells.push_back(cell);
+    }
+    rows.push_back(cells);
+  }
+  return rows;
+}
+std::vector<double> column(const std::string& csv, const std::string& name) {
+  const auto rows = csv_rows(csv);
+  const auto place = std::find(rows.front().begin(), rows.front().end(), name);
+  REQUIRE(place != rows.front().end());
+  std::vector<double> values;
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    values.push_back(std::stod(rows[i].at(static_cast<std::size_t>(place - rows.front().begin()))));
+  }
+  return values;
+}
+std::string tap(const std::string& technique, const std::string& at) {
+  const auto result =
+      testing::tapstudy({"tap", paper("reality_finger.yaml"), "--stimulus", "both", "--technique",
+                         technique, "--at", at, "--speed", "0.3", "--csv", "-"});
+  REQUIRE(result.exit_code == 0);
+  return result.standard_output;
+}
+double largest(const std::vector<double>& values) {
+  double most = 0.0;
+  for (const double value : values) {
+    most = std::max(most, std::abs(value));
+  }
+  return most;
+}
+}  // namespace
+
+TEST_CASE("help and version are results, nonsense is an error of usage", "[end_to_end]") {
+  CHECK(testing::tapstudy({"--help"}).exit_code == 0);
+  CHECK_THAT(testing::tapstudy({"--version"}).standard_output, Contains("tapstudy 0."));
+  for (const std::vector<std::string>& line :
+       std::vector<std::vector<std::string>>{{},
+                                             {"dance"},
+                                             {"modes"},
+                                             {"simulate", paper("discrimination.yaml")},
+                                             {"tap", paper("forces.yaml"), "--speed", "fast"}}) {
+    const auto result = testing::tapstudy(line);
+    CHECK(result.exit_code == 2);
+    CHECK(result.standard_output.empty());
+    CHECK_FALSE(result.standard_error.empty());
+  }
+}
+
+TEST_CASE("modes gives frequencies, damping, sizes and times as JSON", "[end_to_end]") {
+  const TempDirectory directory;
+  const auto result =
+      testing::tapstudy({"modes", paper("discrimination.yaml"), "--stimulus", "acrylic_two",
+                         "--json", "--mesh-out", directory / "plate"});
+  REQUIRE(result.exit_code == 0);
+  const auto json = nlohmann::json::parse(result.standard_output);
+  CHECK(json["schema_version"] == 1);
+  const std::vector<double> hz = json["frequencies_hz"];
+  CHECK(std::is_sorted(hz.begin(), hz.end()));
+  CHECK(hz.size() == 3);
+  // eq. 12 with Table 1's coefficients
+  const double omega = 2.0 * M_PI * hz[0];
+  CHECK(json["damping_ratios"][0].get<double>() == Approx(0.5 * (120.0 / omega + 8.5e-5 * omega)));
+  CHECK(json["elements"] == 445);
+  CHECK(json["dof"].get<int>() == 3 * 172 - 12);
+  CHECK(json["seconds"]["total"].get<double>() > 0.0);
+  CHECK_THAT(testing::contents(directory / "plate.ele"), Catch::StartsWith("445 4 0"));
+}
+
+TEST_CASE("the four techniques differ as they must", "[end_to_end]") {
+  const std::string none = tap("none", "P3");
+  CHECK(largest(column(none, "vibration_n")) == 0.0);
+  CHECK(largest(column(none, "sinusoid_n")) == 0.0);
+  CHECK(largest(column(none, "penalty_n")) > 1.0);
+  CHECK(column(tap("sinusoid", "P3"), "sinusoid_n") == column(tap("sinusoid", "P1"), "sinusoid_n"));
+  const std::string fem = tap("fem", "P3");
+  CHECK(largest(column(fem, "vibration_n")) >
+        5.0 * largest(column(tap("fem", "P1"), "vibration_n")));
+  CHECK(largest(column(fem, "sinusoid_n")) == 0.0);
+  const std::string both = tap("fem+sinusoid", "0.24,0.24");
+  CHECK(largest(column(both, "vibration_n")) > 0.0);
+  CHECK(largest(column(both, "sinusoid_n")) > 0.0);
+  const auto speeds = column(both, "velocity_y_m_s");
+  const auto struck = column(both, "struck");
+  const auto impact = std::find(struck.begin(), struck.end(), 1.0) - struck.begin();
+  CHECK(speeds.at(static_cast<std::size_t>(impact)) == Approx(-0.3));
+}
+
+TEST_CASE("a tap can be had twice to the last bit", "[end_to_end]") {
+  CHECK(tap("fem+sinusoid", "P2") == tap("fem+sinusoid", "P2"));
+}
+
+TEST_CASE("the demo study runs, is stored whole and is reported", "[end_to_end]") {
+  const TempDirectory directory;
+  const std::string study = directory / "study";
+  const auto run = testing::tapstudy({"simulate", paper("discrimination.yaml"), "--participants",
+                                      "10", "--seed", "1", "--out", study});
+  REQUIRE(run.exit_code == 0);
+  const auto sql = [&](const std::string& query) {
+    return testing::run_program({"/usr/bin/sqlite3", study + "/study.db", query}).standard_output;
+  };
+  CHECK(sql("PRAGMA integrity_check") == "ok\n");
+  CHECK(sql("PRAGMA foreign_key_check").empty());
+  CHECK(sql("SELECT count(*), sum(dropped_samples) FROM tick_statistics") == "80|0\n");
+  CHECK(sql("SELECT count(*) FROM (SELECT trial_id, sum(ticks) AS kept FROM trace_chunk "
+            "GROUP BY trial_id) JOIN tick_statistics USING (trial_id) WHERE kept = ticks") ==
+        "80\n");
+  const auto report = testing::tapstudy({"report", study});
+  REQUIRE(report.exit_code == 0);
+  CHECK_THAT(report.standard_output, Contains("presented \\ answered"));
+  CHECK_THAT(report.standard_output, Contains("SIMULATED"));
+  CHECK_THAT(testing::contents(study + "/report.html"), Contains("Simulated participants"));
+  const auto json = nlohmann::json::parse(testing::contents(study + "/report.json"));
+  int total = 0;
+  for (const auto& row : json["blocks"][0]["counts"]) {
+    for (const int count : row) {
+      total += count;
+    }
+  }
+  CHECK(total == 80);
+  SECTION("a report is not written over, unless asked") {
+    CHECK(testing::tapstudy({"report", study}).exit_code == 2);
+    CHECK(testing::tapstudy({"report", study, "--replace"}).exit_code == 0);
+  }
+  SECTION("the same participants are not simulated again into it") {
+    const auto again = testing::tapstudy(
+        {"simulate", paper("discrimination.yaml"), "--participants", "10", "--out", study});
+    CHECK(again.exit_code == 2);
+    CHECK_THAT(again.standard_error, Contains("already"));
+    CHECK(sql("SELECT count(*) FROM trial") == "80\n");
+  }
+  SECTION("another protocol is kept out") {
+    const auto other =
+        testing::tapstudy({"simulate", paper("reality_finger.yaml"), "--out", study});
+    CHECK(other.exit_code == 2);
+    CHECK_THAT(other.standard_error, Contains("another protocol"));
+  }
+}
+
+TEST_CASE("the same seed simulates the same study", "[end_to_end]") {
+  const TempDirectory directory;
+  const auto dump = [&](const std::string& name) {
+    const std::string study = directory / name;
+    REQUIRE(testing::tapstudy({"simulate", paper("reality_vibration.yaml"), "--participants", "3",
+                               "--seed", "42", "--out", study})
+                .exit_code == 0);
+    return testing::run_program(
+               {"/usr/bin/sqlite3", study + "/study.db",
+                "SELECT participant_id, trial.number, response, response_time_s, "
+                "hex(bytes) FROM trial JOIN response USING (trial_id) JOIN session "
+                "USING (session_id) JOIN trace_chunk USING (trial_id) "
+                "ORDER BY participant_id, trial.number, first_tick"})
+        .standard_output;
+  };
+  const std::string once = dump("once");
+  CHECK(once.size() > 10'000);
+  CHECK(once == dump("twice"));
+}
+
+TEST_CASE("report --counts takes the paper's Table 2", "[end_to_end]") {
+  const auto result = testing::tapstudy({"report", "--counts", paper("table2.csv")});
+  REQUIRE(result.exit_code == 0);
+  for (const char* said : {"correct: 43/80", "structure: 65/80", "material: 48/80",
+                           "material, given structure is right: 43/65"}) {
+    CHECK_THAT(result.standard_output, Contains(said));
+  }
+}
+
+TEST_CASE("check shows design, schedule, models and power", "[end_to_end]") {
+  const auto result = testing::tapstudy({"check", paper("discrimination.yaml")});
+  REQUIRE(result.exit_code == 0);
+  CHECK_THAT(result.standard_output, Contains("chance 25 %"));
+  CHECK_THAT(result.standard_output, Contains("of 80 answers 27 must be right"));
+  CHECK_THAT(result.standard_output, Contains("schedule of participant 10"));
+  CHECK_THAT(result.standard_output, Contains("445 tetrahedra"));
+}
+
+TEST_CASE("techniques without vibration build no model", "[end_to_end]") {
+  const TempDirectory directory;
+  std::string text = testing::contents(paper("forces.yaml"));
+  for (int i = 0; i < 6; ++i) {
+    text = replaced(text, "technique: fem", "technique: none");
+  }
+  testing::write(directory / "none.yaml", text);
+  CHECK_THAT(testing::tapstudy({"check", directory / "none.yaml"}).standard_output,
+             Contains("none: no technique here vibrates"));
+}
+
+TEST_CASE("bad input is one clear error and its own exit code", "[end_to_end]") {
+  const TempDirectory directory;
+  const auto refused = [&](const std::vector<std::string>& line, int code, const char* said) {
+    const auto result = testing::tapstudy(line);
+    INFO(result.standard_error);
+    CHECK(result.exit_code == code);
+    CHECK(result.standard_output.empty());
+    CHECK_THAT(result.standard_error, Contains(said));
+    CHECK(std::count(result.standard_error.begin(), result.standard_error.end(), '\n') == 1);
+  };
+  const std::string name = "discrimination.yaml";
+  const std::string out = directory / "out";
+  refused({"check", "/nowhere.yaml"}, 2, "/nowhere.yaml: cannot be read");
+  refused({"check", changed(directory, name, "notes: |", "notse: |")}, 2, "did you mean 'notes'?");
+  refused({"check", changed(directory, name, "poissons_ratio: 0.35", "poissons_ratio: 0.5")}, 2,
+          "materials.acrylic.poissons_ratio: 0.5 is not allowed");
+  const std::string off_plate =
+      changed(directory, name, "at_m: [-0.3, -0.3]", "at_m: [-0.7, -0.3]");
+  refused({"modes", off_plate, "--stimulus", "mdf_two"}, 4, "touches no node");
+  refused({"simulate", off_plate, "--out", out}, 4, "touches no node");
+  CHECK_FALSE(std::filesystem::exists(out));
+  refused({"modes",
+           changed(directory, name, "- {region: vertex, at_m: [-0.3, -0.3], face: both, axes: xyz}",
+                   "- {region: disc, radius_m: 2, at_m: [0, 0], face: through}"),
+           "--stimulus", "mdf_two"},
+          4, "nothing is left free");
+  refused({"modes", paper(name), "--stimulus", "oak"}, 2, "stimulus 'oak' is not in the protocol");
+  refused({"tap", paper(name), "--stimulus", "mdf_two", "--at", "7,0"}, 2, "is off the plate");
+  refused({"tap", paper(name), "--stimulus", "mdf_two", "--at", "P9"}, 2, "nor a tapping point");
+  refused({"tap", paper(name), "--stimulus", "mdf_two", "--speed", "-1"}, 2, "--speed");
+  refused({"report", directory.path()}, 2, "there is no study here");
+  refused({"simulate", paper("forces.yaml"), "--out", out}, 2, "has no blocks");
+  testing::write(directory / "a_file", "");
+  refused({"simulate", paper(name), "--out", directory / "a_file"}, 5, "a_file");
+  refused({"simulate", paper(name), "--out", "/proc/study"}, 5, "/proc/study");
+  refused({"run", paper(name), "--participant", "../P1", "--out", out}, 2, "--participant");
+}
+
+TEST_CASE("a full disk ends in one error and leaves whole trials", "[end_to_end]") {
+  // a file system of our own, 2 MB large, where the kernel lets us have one
+  const std::string script = R"sh(
+mount -t tmpfs -o size=2M tapstudy "$1" || exit 77
+"$2" simulate "$3" --participants 10 --seed 1 --out "$1/study" 2>"$4"; code=$?
+sqlite3 "$1/study/study.db" 'PRAGMA integrity_check; SELECT count(*) > 0 FROM trial;
+  SELECT count(*) FROM trial WHERE trial_id NOT IN (SELECT trial_id FROM tick_statistics)' >"$4.sql" 2>&1
+exit $code)sh";
+  const TempDirectory directory;
+  const TempDirectory small;
+  const auto result =
+      testing::run_program({"/usr/bin/unshare", "-rm", "/bin/sh", "-c", script, "sh", small.path(),
+                            TAPSTUDY_PROGRAM, paper("discrimination.yaml"), directory / "said"});
+  if (result.exit_code == 77 || result.exit_code == 1) {
+    WARN("no private mounts here: the full disk was not tried: " << result.standard_error);
+    return;
+  }
+  CHECK(result.exit_code == 5);
+  CHECK_THAT(testing::contents(directory / "said"), Contains("is the disk full?"));
+  CHECK(testing::contents(directory / "said.sql") == "ok\n1\n0\n");
+}
+
+TEST_CASE("the panels of Figures 4 and 5 are drawn by one command", "[end_to_end]") {
+  const TempDirectory directory;
+  const auto result =
+      testing::tapstudy({"tap", paper("forces.yaml"), "--panels", directory / "figures"});
+  INFO(result.standard_error);
+  REQUIRE(result.exit_code == 0);
+  for (const char* name : {"forces_two_fixations.svg", "forces_four_fixations.svg"}) {
+    const std::string svg = testing::contents((directory / "figures/") + name);
+    CHECK_THAT(svg, Contains("</svg>"));
+    CHECK_THAT(svg, Contains("aluminium"));
+  }
+}

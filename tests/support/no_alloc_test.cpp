@@ -1,0 +1,19 @@
+#include "support/no_alloc.hpp"
+
+#include <Eigen/Core>
+#include <catch2/catch.hpp>
+#include <memory>
+using namespace tapstudy::testing;
+
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+TEST_CASE("the counter of allocations sees new, malloc and Eigen's arrays", "[realtime]") {
+  const AllocationCount allocations;
+  const auto by_new = std::make_unique<double>(1.0);
+  const std::size_t after_new = allocations.count();
+  const Eigen::ArrayXd by_eigen = Eigen::ArrayXd::Zero(100);
+  const std::size_t after_eigen = allocations.count();
+  CHECK(by_eigen.sum() + *by_new == 1.0);
+  CHECK(after_new == 1);
+  CHECK(after_eigen == 2);
+}
+#endif

@@ -106,7 +106,8 @@ std::vector<std::string> factors_of(const ConfusionMatrix& matrix) {
   if (matrix.stimuli.empty()) {
     return names;
   }
-  for (const auto& [factor, level] : matrix.stimuli.front().factors) {
+  for (const auto& entry : matrix.stimuli.front().factors) {
+    const std::string& factor = entry.first;
     const bool is_everywhere = std::ranges::all_of(
         matrix.stimuli, [&](const Item& item) { return item.factors.contains(factor); });
     if (is_everywhere) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <set>
+#include <span>
 
 #include "core/error.hpp"
 namespace tapstudy::analysis {
@@ -19,6 +20,10 @@ constexpr int most_answers = 1'000'000;
 
 [[noreturn]] void refuse(const std::string& file, int line, const std::string& what) {
   throw core::InvalidInput{fmt::format("{}:{}: {}", file, line, what)};
+}
+
+bool has_name(const std::vector<Item>& items, const std::string& name) {
+  return std::ranges::find(items, name, &Item::name) != items.end();
 }
 
 std::string trimmed(const std::string& text) {
@@ -91,50 +96,60 @@ ConfusionMatrix from_answers(const std::vector<Line>& lines, const std::string& 
   return matrix;
 }
 
+std::vector<Item> stimuli_of(const std::vector<Line>& lines, const std::string& file) {
+  std::vector<Item> stimuli;
+  for (std::size_t i = 1; i < lines.size(); ++i) {
+    const std::string& name = lines[i].cells[0];
+    if (has_name(stimuli, name)) {
+      refuse(file, lines[i].number, fmt::format("stimulus '{}' is there twice", name));
+    }
+    stimuli.push_back({name, name, {}});
+  }
+  return stimuli;
+}
+
+// The first column that is named like a stimulus, or their number.
+std::size_t first_response(const std::vector<std::string>& header,
+                           const std::vector<Item>& stimuli) {
+  const auto found = std::find_if(header.begin() + 1, header.end(),
+                                  [&](const std::string& name) { return has_name(stimuli, name); });
+  return static_cast<std::size_t>(found - header.begin());
+}
+
+std::vector<Item> responses_of(const Line& header, std::size_t first,
+                               const std::vector<Item>& stimuli, const std::string& file) {
+  std::vector<Item> responses;
+  for (std::size_t column = first; column < header.cells.size(); ++column) {
+    const std::string& name = header.cells[column];
+    if (has_name(responses, name)) {
+      refuse(file, header.number, fmt::format("response '{}' is there twice", name));
+    }
+    const auto stimulus = std::ranges::find(stimuli, name, &Item::name);
+    responses.push_back(stimulus != stimuli.end() ? *stimulus : Item{name, name, {}});
+  }
+  if (responses.size() < 2) {
+    refuse(file, header.number, "has fewer than two responses");
+  }
+  return responses;
+}
+
 ConfusionMatrix from_matrix(const std::vector<Line>& lines, const std::string& file) {
   const std::vector<std::string>& header = lines.front().cells;
   if (std::max(lines.size(), header.size()) > most_classes) {
     refuse(file, lines.front().number,
            fmt::format("has more than {} stimuli or responses", most_classes));
   }
-  std::vector<Item> stimuli;
-  for (std::size_t i = 1; i < lines.size(); ++i) {
-    const std::string& name = lines[i].cells[0];
-    if (std::ranges::find(stimuli, name, &Item::name) != stimuli.end()) {
-      refuse(file, lines[i].number, fmt::format("stimulus '{}' is there twice", name));
-    }
-    stimuli.push_back({name, name, {}});
-  }
-  const auto stimulus_named = [&](const std::string& name) {
-    return std::ranges::find(stimuli, name, &Item::name);
-  };
-  const auto first_response =
-      std::find_if(header.begin() + 1, header.end(),
-                   [&](const std::string& name) { return stimulus_named(name) != stimuli.end(); });
-  const auto factors = static_cast<std::size_t>(first_response - header.begin());
-  for (std::size_t column = 1; column < factors; ++column) {
-    for (std::size_t i = 0; i < stimuli.size(); ++i) {
+  std::vector<Item> stimuli = stimuli_of(lines, file);
+  const std::size_t first = first_response(header, stimuli);
+  for (std::size_t i = 0; i < stimuli.size(); ++i) {
+    for (std::size_t column = 1; column < first; ++column) {
       stimuli[i].factors[header[column]] = lines[i + 1].cells[column];
     }
   }
-  std::vector<Item> responses;
-  for (std::size_t column = factors; column < header.size(); ++column) {
-    if (std::ranges::find(responses, header[column], &Item::name) != responses.end()) {
-      refuse(file, lines.front().number,
-             fmt::format("response '{}' is there twice", header[column]));
-    }
-    const auto stimulus = stimulus_named(header[column]);
-    responses.push_back(stimulus != stimuli.end() ? *stimulus
-                                                  : Item{header[column], header[column], {}});
-  }
-  if (responses.size() < 2) {
-    refuse(file, lines.front().number, "has fewer than two responses");
-  }
-  ConfusionMatrix matrix{stimuli, responses};
-  for (std::size_t i = 1; i < lines.size(); ++i) {
-    for (std::size_t column = factors; column < header.size(); ++column) {
-      matrix.add(lines[i].cells[0], header[column],
-                 count_in(lines[i].cells[column], file, lines[i].number));
+  ConfusionMatrix matrix{stimuli, responses_of(lines.front(), first, stimuli, file)};
+  for (const Line& line : std::span{lines}.subspan(1)) {
+    for (std::size_t column = first; column < header.size(); ++column) {
+      matrix.add(line.cells[0], header[column], count_in(line.cells[column], file, line.number));
     }
   }
   return matrix;

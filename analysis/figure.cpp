@@ -12,23 +12,23 @@
 #include "core/error.hpp"
 namespace tapstudy::analysis {
 namespace {
-constexpr int panel_width = 360;
-constexpr int panel_height = 220;
+constexpr std::size_t panel_width = 400;
+constexpr std::size_t panel_height = 230;
 
 struct Span {
   double low{0.0};
   double high{0.0};
 };
 
-Span y_span(const Figure& figure) {
+// What all panels' series on an axis need, zero included, with a margin.
+Span span_of(const Figure& figure, Axis axis) {
   Span span;
   for (const Panel& panel : figure.panels) {
     for (const Series& series : panel.series) {
-      if (series.y.empty()) {
-        continue;
+      if (series.axis == axis && !series.y.empty()) {
+        const auto [low, high] = std::ranges::minmax(series.y);
+        span = {std::min(span.low, low), std::max(span.high, high)};
       }
-      const auto [low, high] = std::ranges::minmax(series.y);
-      span = {std::min(span.low, low), std::max(span.high, high)};
     }
   }
   const double margin = 0.05 * std::max(span.high - span.low, 1e-12);
@@ -60,24 +60,38 @@ void write_panel(std::ostream& script, const Panel& panel, std::size_t index) {
   }
   script << "set title " << quoted(panel.title) << " noenhanced\nplot ";
   for (std::size_t i = 0; i < panel.series.size(); ++i) {
-    script << (i == 0 ? "" : ", ") << fmt::format("$data_{}_{} with lines lw 1.5 title ", index, i)
-           << quoted(panel.series[i].label);
+    const Series& series = panel.series[i];
+    script << (i == 0 ? "" : ", ")
+           << fmt::format("$data_{}_{} axes {} with lines lw 1.5 title ", index, i,
+                          series.axis == Axis::left ? "x1y1" : "x1y2")
+           << quoted(series.label);
   }
   script << '\n';
 }
 
+std::string axes(const Figure& figure) {
+  const Span left = span_of(figure, Axis::left);
+  std::string script =
+      fmt::format("set xlabel {}\nset ylabel {}\nset yrange [{:.9g}:{:.9g}]\n",
+                  quoted(figure.x_label), quoted(figure.y_label), left.low, left.high);
+  if (!figure.right_label.empty()) {
+    const Span right = span_of(figure, Axis::right);
+    script += fmt::format(
+        "set y2label {}\nset y2range [{:.9g}:{:.9g}]\nset ytics nomirror\n"
+        "set y2tics\n",
+        quoted(figure.right_label), right.low, right.high);
+  }
+  return script;
+}
+
 std::string gnuplot_script(const Figure& figure, const std::string& file) {
   const std::size_t rows = (figure.panels.size() + figure.columns - 1) / figure.columns;
-  const Span span = y_span(figure);
   std::ostringstream script;
   script << fmt::format("set terminal svg size {},{} font 'sans,11' background 'white'\n",
-                        static_cast<std::size_t>(panel_width) * figure.columns,
-                        panel_height * rows + 40)
+                        panel_width * figure.columns, panel_height * rows + 40)
          << "set output " << quoted(file) << "\nset grid\nset key top right\n"
-         << "set xlabel " << quoted(figure.x_label) << "\nset ylabel " << quoted(figure.y_label)
-         << fmt::format("\nset yrange [{:.9g}:{:.9g}]\n", span.low, span.high)
-         << fmt::format("set multiplot layout {},{} title ", rows, figure.columns)
-         << quoted(figure.title) << '\n';
+         << axes(figure) << fmt::format("set multiplot layout {},{} title ", rows, figure.columns)
+         << quoted(figure.title) << " noenhanced\n";
   for (std::size_t i = 0; i < figure.panels.size(); ++i) {
     write_panel(script, figure.panels[i], i);
   }

@@ -2,8 +2,10 @@
 #include <string>
 #include <vector>
 namespace tapstudy::analysis {
+enum class Axis { left, right };
 struct Series {
   std::string label;
+  Axis axis{Axis::left};
   std::vector<double> x;
   std::vector<double> y;  // as many as x
 };
@@ -11,11 +13,13 @@ struct Panel {
   std::string title;
   std::vector<Series> series;
 };
-// Panels in rows of `columns`, sharing axes' labels and ranges.
+// Panels in rows of `columns`, sharing axes' labels and ranges. The right axis is for series that
+// are far smaller or of another unit.
 struct Figure {
   std::string title;
   std::string x_label;
   std::string y_label;
+  std::string right_label;  // empty: there is no right axis
   std::size_t columns{1};
   std::vector<Panel> panels;
 };

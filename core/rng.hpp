@@ -9,7 +9,7 @@ namespace tapstudy::core {
 // anywhere.
 class Rng {
  public:
-  explicit Rng(std::uint64_t seed) noexcept : state_{0} {
+  explicit Rng(std::uint64_t seed) noexcept {
     (*this)();
     state_ += seed;
     (*this)();
@@ -47,7 +47,7 @@ class Rng {
   }
 
  private:
-  std::uint64_t state_;
+  std::uint64_t state_{0};
 };
 
 // What a random stream is for: streams of different purposes never share draws, so that a change

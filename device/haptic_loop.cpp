@@ -1,6 +1,7 @@
 #include "device/haptic_loop.hpp"
 
 #include <algorithm>
+#include <utility>
 namespace tapstudy::device {
 using core::TickFault;
 namespace {
@@ -10,11 +11,11 @@ std::array<double, 3> as_array(const core::Vec3& v) noexcept {
 }  // namespace
 
 HapticLoop::HapticLoop(Device& device, std::span<core::TapRenderer> alternatives,
-                       const LoopSettings& settings, core::SpscRing<core::TraceSample>& trace,
+                       LoopSettings settings, core::SpscRing<core::TraceSample>& trace,
                        TickClock& clock) noexcept
     : device_{device},
       alternatives_{alternatives},
-      settings_{settings},
+      settings_{std::move(settings)},
       trace_{trace},
       clock_{clock},
       start_{clock.now()},

@@ -30,9 +30,8 @@ struct LoopSettings {
 // no force law ever changes under the finger. All referenced objects must outlive the loop.
 class HapticLoop {
  public:
-  HapticLoop(Device& device, std::span<core::TapRenderer> alternatives,
-             const LoopSettings& settings, core::SpscRing<core::TraceSample>& trace,
-             TickClock& clock) noexcept;
+  HapticLoop(Device& device, std::span<core::TapRenderer> alternatives, LoopSettings settings,
+             core::SpscRing<core::TraceSample>& trace, TickClock& clock) noexcept;
 
   // May be called from any thread. index < number of alternatives.
   void request_alternative(std::size_t index) noexcept {

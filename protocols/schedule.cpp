@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <span>
 
 #include "core/rng.hpp"
 namespace tapstudy::protocols {
@@ -48,9 +49,9 @@ std::vector<Presentation> ordered(const Block& block, core::Rng& rng, int partic
     }
   }
   if (block.order == Order::shuffle_within_repetition) {
-    const auto size = static_cast<std::ptrdiff_t>(block.stimuli.size());
-    for (auto first = presentations.begin(); first != presentations.end(); first += size) {
-      rng.shuffle(std::ranges::subrange(first, first + size));
+    const std::size_t size = block.stimuli.size();
+    for (std::size_t first = 0; first < presentations.size(); first += size) {
+      rng.shuffle(std::span{presentations}.subspan(first, size));
     }
   }
   return presentations;
@@ -115,6 +116,6 @@ std::string described(const Schedule& schedule) {
 }
 
 std::string blind_label(std::size_t position) {
-  return std::string(1, static_cast<char>('A' + static_cast<char>(position)));
+  return {static_cast<char>('A' + static_cast<char>(position))};
 }
 }  // namespace tapstudy::protocols

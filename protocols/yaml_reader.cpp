@@ -67,7 +67,7 @@ MapReader::MapReader(const YAML::Node& node, std::string path, std::string patte
       pattern_{std::move(pattern)},
       problems_{&problems} {}
 MapReader::~MapReader() = default;
-MapReader::MapReader(MapReader&&) noexcept = default;
+MapReader::MapReader(MapReader&& other) noexcept = default;
 
 MapReader MapReader::whole_file(const std::string& text, const std::string& file,
                                 Problems& problems) {
@@ -180,7 +180,7 @@ bool MapReader::yes_or_no(const std::string& key, std::optional<bool> otherwise)
   return value;
 }
 
-std::string MapReader::text(const std::string& key, std::optional<std::string> otherwise) {
+std::string MapReader::text(const std::string& key, const std::optional<std::string>& otherwise) {
   const auto node = find(key, !otherwise);
   if (!node) {
     return otherwise.value_or("");
@@ -192,7 +192,8 @@ std::string MapReader::text(const std::string& key, std::optional<std::string> o
   return node->Scalar();
 }
 
-std::string MapReader::paragraphs(const std::string& key, std::optional<std::string> otherwise) {
+std::string MapReader::paragraphs(const std::string& key,
+                                  const std::optional<std::string>& otherwise) {
   const auto node = find(key, !otherwise);
   if (!node) {
     return otherwise.value_or("");
@@ -251,15 +252,15 @@ bool MapReader::is_allowed(const YAML::Node& node, const std::string& path, cons
 
 std::string MapReader::word(const std::string& key, const std::string& kind,
                             const std::vector<std::string>& allowed,
-                            std::optional<std::string> otherwise) {
+                            const std::optional<std::string>& otherwise) {
   const auto node = find(key, !otherwise);
   const std::string harmless = otherwise.value_or("");
   return node && is_allowed(*node, path_of(key), kind, allowed) ? node->Scalar() : harmless;
 }
 
-std::vector<std::string> MapReader::words(const std::string& key, const std::string& kind,
-                                          const std::vector<std::string>& allowed,
-                                          std::optional<std::vector<std::string>> otherwise) {
+std::vector<std::string> MapReader::words(
+    const std::string& key, const std::string& kind, const std::vector<std::string>& allowed,
+    const std::optional<std::vector<std::string>>& otherwise) {
   const auto node = find(key, !otherwise);
   if (!node) {
     return otherwise.value_or(std::vector<std::string>{});
@@ -302,7 +303,7 @@ void MapReader::map(const std::string& key, Presence presence, const ReadMap& re
 }
 
 std::optional<YAML::Node> MapReader::find_map(const std::string& key, Presence presence) {
-  const auto node = find(key, presence == Presence::required);
+  auto node = find(key, presence == Presence::required);
   if (node && (!node->IsMap() || node->size() == 0)) {
     reject_at(*node, path_of(key), "is not a mapping with at least one name");
     return std::nullopt;

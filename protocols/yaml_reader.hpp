@@ -14,8 +14,8 @@ class Node;
 namespace tapstudy::protocols {
 // Allowed numbers: from low to high, the ends included or not.
 struct Range {
-  double low;
-  double high;
+  double low{};
+  double high{};
   bool low_included{true};
   bool high_included{true};
   bool contains(double x) const;
@@ -35,18 +35,18 @@ class MapReader {
   // The whole file. Throws InvalidInput if it cannot be read or is not YAML.
   static MapReader whole_file(const std::string& text, const std::string& file, Problems& problems);
   ~MapReader();
-  MapReader(MapReader&&) noexcept;
-  MapReader(const MapReader&) = delete;
-  MapReader& operator=(const MapReader&) = delete;
-  MapReader& operator=(MapReader&&) = delete;
+  MapReader(MapReader&& other) noexcept;
+  MapReader(const MapReader& other) = delete;
+  MapReader& operator=(const MapReader& other) = delete;
+  MapReader& operator=(MapReader&& other) = delete;
 
   bool has(const std::string& key) const;
   double number(const std::string& key, const Range& range, std::optional<double> otherwise = {});
   int integer(const std::string& key, int low, int high, std::optional<int> otherwise = {});
   bool yes_or_no(const std::string& key, std::optional<bool> otherwise = {});
   // Any text on one line; paragraphs may have several.
-  std::string text(const std::string& key, std::optional<std::string> otherwise = {});
-  std::string paragraphs(const std::string& key, std::optional<std::string> otherwise = {});
+  std::string text(const std::string& key, const std::optional<std::string>& otherwise = {});
+  std::string paragraphs(const std::string& key, const std::optional<std::string>& otherwise = {});
   // A name that data, tables and file names can carry: see is_name.
   std::string name(const std::string& key);
   // `size` numbers in brackets.
@@ -54,18 +54,18 @@ class MapReader {
   // One of the given words; kind names what they are.
   std::string word(const std::string& key, const std::string& kind,
                    const std::vector<std::string>& allowed,
-                   std::optional<std::string> otherwise = {});
+                   const std::optional<std::string>& otherwise = {});
   std::vector<std::string> words(const std::string& key, const std::string& kind,
                                  const std::vector<std::string>& allowed,
-                                 std::optional<std::vector<std::string>> otherwise = {});
+                                 const std::optional<std::vector<std::string>>& otherwise = {});
   template <class Value>
   Value one_of(const std::string& key, const std::vector<std::pair<std::string, Value>>& table,
-               std::optional<std::string> otherwise = {}) {
+               const std::optional<std::string>& otherwise = {}) {
     std::vector<std::string> allowed;
     for (const auto& [name, value] : table) {
       allowed.push_back(name);
     }
-    const std::string chosen = word(key, "value", allowed, std::move(otherwise));
+    const std::string chosen = word(key, "value", allowed, otherwise);
     for (const auto& [name, value] : table) {
       if (name == chosen) {
         return value;

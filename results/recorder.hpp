@@ -15,8 +15,8 @@ class Recorder {
  public:
   explicit Recorder(Store& store);
   ~Recorder();  // saves what was handed in, then stops
-  Recorder(const Recorder&) = delete;
-  Recorder& operator=(const Recorder&) = delete;
+  Recorder(const Recorder& other) = delete;
+  Recorder& operator=(const Recorder& other) = delete;
 
   // Ready when the trial is in the database for good; carries the StoreError if it is not.
   std::future<void> save(TrialRecord record);

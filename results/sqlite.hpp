@@ -73,8 +73,8 @@ class Transaction {
  public:
   explicit Transaction(Database& database);
   ~Transaction();
-  Transaction(const Transaction&) = delete;
-  Transaction& operator=(const Transaction&) = delete;
+  Transaction(const Transaction& other) = delete;
+  Transaction& operator=(const Transaction& other) = delete;
   void commit();
 
  private:

@@ -19,10 +19,10 @@ class Store {
   static Store open_existing(const std::string& directory);
   // Leaves a writer's database as one plain file, without the journal's companions.
   ~Store();
-  Store(Store&&) noexcept = default;
-  Store& operator=(Store&&) noexcept = delete;
-  Store(const Store&) = delete;
-  Store& operator=(const Store&) = delete;
+  Store(Store&& other) noexcept = default;
+  Store& operator=(Store&& other) noexcept = delete;
+  Store(const Store& other) = delete;
+  Store& operator=(const Store& other) = delete;
 
   StudyRow study();
   // The index of an existing participant, or the next free one of the mode.

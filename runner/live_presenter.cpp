@@ -37,8 +37,8 @@ class Followed {
     recorder_.follow(collector);
   }
   ~Followed() { recorder_.leave(); }
-  Followed(const Followed&) = delete;
-  Followed& operator=(const Followed&) = delete;
+  Followed(const Followed& other) = delete;
+  Followed& operator=(const Followed& other) = delete;
 
  private:
   results::Recorder& recorder_;

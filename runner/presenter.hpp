@@ -1,6 +1,7 @@
 #pragma once
 #include <functional>
 #include <span>
+#include <utility>
 
 #include "core/tick/tap_renderer.hpp"
 #include "device/haptic_loop.hpp"
@@ -38,9 +39,8 @@ enum class Keep { trace, nothing };
 // In virtual time: the loop advances only while the explorer lets time pass, on one thread.
 class VirtualPresenter final : public Presenter {
  public:
-  VirtualPresenter(device::Device& device, const device::LoopSettings& settings,
-                   Keep keep = Keep::trace)
-      : device_{device}, settings_{settings}, keep_{keep} {}
+  VirtualPresenter(device::Device& device, device::LoopSettings settings, Keep keep = Keep::trace)
+      : device_{device}, settings_{std::move(settings)}, keep_{keep} {}
   Presented present(std::span<core::TapRenderer> alternatives, const Explore& explore) override;
 
  private:
@@ -52,9 +52,8 @@ class VirtualPresenter final : public Presenter {
 // In real time: the loop runs on its own thread, the recorder empties its ring.
 class LivePresenter final : public Presenter {
  public:
-  LivePresenter(device::Device& device, const device::LoopSettings& settings,
-                results::Recorder& recorder)
-      : device_{device}, settings_{settings}, recorder_{recorder} {}
+  LivePresenter(device::Device& device, device::LoopSettings settings, results::Recorder& recorder)
+      : device_{device}, settings_{std::move(settings)}, recorder_{recorder} {}
   Presented present(std::span<core::TapRenderer> alternatives, const Explore& explore) override;
 
  private:

@@ -9,8 +9,8 @@ class Progress {
  public:
   explicit Progress(std::string what);
   ~Progress();
-  Progress(const Progress&) = delete;
-  Progress& operator=(const Progress&) = delete;
+  Progress(const Progress& other) = delete;
+  Progress& operator=(const Progress& other) = delete;
 
  private:
   void talk(const std::stop_token& stop);

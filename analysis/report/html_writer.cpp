@@ -53,7 +53,7 @@ void write_matrix(std::ostream& out, const ConfusionMatrix& matrix) {
     for (std::size_t j = 0; j < matrix.responses.size(); ++j) {
       const Proportion cell{matrix.counts[i][j], matrix.row_total(i)};
       const bool is_correct = matrix.stimuli[i].name == matrix.responses[j].name;
-      fmt::print(out, "<td class=\"{}\" style=\"{}\"><b>{}</b><span>{}</span></td>",
+      fmt::print(out, R"(<td class="{}" style="{}"><b>{}</b><span>{}</span></td>)",
                  is_correct ? "correct" : "", cell_style(cell.trials == 0 ? 0.0 : cell.value()),
                  cell.successes, percent(cell));
     }
@@ -69,7 +69,7 @@ std::string dot_plot(const Proportion& proportion, double chance) {
   }
   const Interval interval = wilson_interval(proportion);
   return fmt::format(
-      "<svg class=dot viewBox=\"0 0 200 16\" role=img aria-label=\"{}\">"
+      R"(<svg class=dot viewBox="0 0 200 16" role=img aria-label="{}">)"
       "<line class=axis x1=0 y1=8 x2=200 y2=8 /><line class=chance x1={:.1f} y1=0 x2={:.1f} y2=16 "
       "/>"
       "<line class=interval x1={:.1f} y1=8 x2={:.1f} y2=8 /><circle cx={:.1f} cy=8 r=4 /></svg>",

@@ -71,5 +71,5 @@ StiffnessAndMass assemble(const TetMesh& mesh, const Material& material, const F
   matrices.K.setFromTriplets(stiffness.begin(), stiffness.end());
   matrices.M.setFromTriplets(mass.begin(), mass.end());
   return matrices;
-}
+}  // NOLINT(clang-analyzer-unix.Malloc): Eigen's own arrays, freed by their destructors
 }  // namespace tapstudy::core

@@ -149,7 +149,7 @@ Modes solve_modes(const StiffnessAndMass& matrices, double band_limit_hz) {
   Pairs pairs{Eigen::VectorXd{0}, Eigen::MatrixXd{size, 0}};
   if (count > 0) {
     const double shift = -1e-2 * band * band;
-    const bool is_small = size <= dense_size || 2 * count > size;
+    const bool is_small = size <= dense_size || Eigen::Index{2} * count > size;
     pairs = is_small ? lowest_dense(matrices, count) : lowest_by_lanczos(matrices, count, shift);
   }
   if (count > 0 && pairs.values.maxCoeff() >= band * band) {

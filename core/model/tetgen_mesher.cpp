@@ -33,6 +33,7 @@ void check_count(const Box& box, const MeshSize& size) {
 }
 
 // TetGen frees what it is handed with delete[]; its structures are filled the way it asks.
+// NOLINTBEGIN(cppcoreguidelines-owning-memory)
 tetgenio::polygon polygon_of(const std::vector<int>& vertices) {
   tetgenio::polygon polygon{};
   tetgenio::init(&polygon);
@@ -67,6 +68,8 @@ void fill(tetgenio& in, const BoxOutline& outline, const Vec3& low_m) {
     fill_facet(in.facetlist[i], outline.sides.at(i));
   }
 }
+
+// NOLINTEND(cppcoreguidelines-owning-memory)
 
 void make_volumes_positive(TetMesh& mesh) {
   for (Eigen::Index tet = 0; tet < mesh.tets.rows(); ++tet) {

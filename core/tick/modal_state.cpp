@@ -35,7 +35,8 @@ void ModalState::touch(const SurfacePoint& point, const Vec3& normal) noexcept {
     for (Eigen::Index axis = 0; axis < 3; ++axis) {
       const double weight = point.weights[i] * normal[axis];
       if (weight != 0.0) {
-        touched_ += weight * model_->shape.row(3 * point.nodes[i] + axis).transpose().array();
+        touched_ +=
+            weight * model_->shape.row(Eigen::Index{3} * point.nodes[i] + axis).transpose().array();
       }
     }
   }

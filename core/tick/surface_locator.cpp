@@ -13,7 +13,7 @@ std::size_t clamped_cell(double cells, std::size_t count) noexcept {
 SurfaceLocator::SurfaceLocator(const ModalModel& model) {
   const Eigen::RowVector3d low = model.touch_nodes_m.colwise().minCoeff();
   const Eigen::RowVector3d extent = model.touch_nodes_m.colwise().maxCoeff() - low;
-  const double triangles = static_cast<double>(model.touch_surface.rows());
+  const auto triangles = static_cast<double>(model.touch_surface.rows());
   const auto per_side = static_cast<std::size_t>(std::ceil(std::sqrt(triangles)));
   low_x_m_ = low.x();
   low_y_m_ = low.y();

@@ -22,7 +22,7 @@ struct TapOptions {
   std::string stimulus;
   std::string at{"0,0"};
   double speed_m_s{0.3};
-  double seconds{0.5};
+  double seconds{0.3};
   std::string technique;
   std::string csv;
   std::string panels;
@@ -93,17 +93,24 @@ protocols::Protocol protocol_with_technique(const TapOptions& options) {
   return protocol;
 }
 
+constexpr double shown_before_impact_s = 0.02;
+
+// Penalty on the left axis; what the technique adds on the right one, which is far smaller.
 analysis::Panel panel_of(const std::string& title, const std::vector<TraceSample>& trace) {
-  analysis::Panel panel{title, {{"penalty", {}, {}}, {"vibration", {}, {}}, {"total", {}, {}}}};
+  analysis::Panel panel{
+      title,
+      {{"penalty", analysis::Axis::left, {}, {}}, {"vibration", analysis::Axis::right, {}, {}}}};
   const auto impact = std::ranges::find(trace, true, &TraceSample::struck);
   const double start_s = impact == trace.end() ? 0.0 : seconds_of(*impact);
   for (const TraceSample& sample : trace) {
-    const std::array values{sample.penalty_n, sample.vibration_n + sample.sinusoid_n,
-                            sample.force_n[1]};
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      panel.series[i].x.push_back(seconds_of(sample) - start_s);
-      panel.series[i].y.push_back(values.at(i));
+    const double t_s = seconds_of(sample) - start_s;
+    if (t_s < -shown_before_impact_s) {
+      continue;
     }
+    panel.series[0].x.push_back(t_s);
+    panel.series[0].y.push_back(sample.penalty_n);
+    panel.series[1].x.push_back(t_s);
+    panel.series[1].y.push_back(1e3 * (sample.vibration_n + sample.sinusoid_n));
   }
   return panel;
 }
@@ -118,9 +125,10 @@ void draw_panels(const TapOptions& options, const protocols::Protocol& protocol)
     throw core::InvalidInput{options.panels + ": cannot be made a directory"};
   }
   for (const auto& [plate, spec] : protocol.plates) {
-    analysis::Figure figure{"Feedback force, " + plate,
+    analysis::Figure figure{"Feedback force, plate " + plate,
                             "time after impact [s]",
-                            "force [N]",
+                            "penalty [N]",
+                            "vibration [mN]",
                             protocol.tapping_points_m.size(),
                             {}};
     for (const protocols::Stimulus& stimulus : protocol.stimuli) {

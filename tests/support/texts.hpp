@@ -15,8 +15,8 @@ class TempDirectory {
  public:
   TempDirectory();
   ~TempDirectory();
-  TempDirectory(const TempDirectory&) = delete;
-  TempDirectory& operator=(const TempDirectory&) = delete;
+  TempDirectory(const TempDirectory& other) = delete;
+  TempDirectory& operator=(const TempDirectory& other) = delete;
   std::string path() const { return path_.string(); }
   std::string operator/(const std::string& name) const { return (path_ / name).string(); }
 

@@ -276,6 +276,33 @@ exit $code)sh";
   CHECK(testing::contents(directory / "said.sql") == "ok\n1\n0\n");
 }
 
+TEST_CASE("a read-only disk is an error of the store, and the study on it can still be reported",
+          "[end_to_end]") {
+  const std::string script = R"sh(
+mount -t tmpfs tapstudy "$1" || exit 77
+"$2" simulate "$3" --participants 1 --out "$1/study" >/dev/null || exit 78
+mount -o remount,ro "$1" || exit 77
+"$2" simulate "$3" --participants 1 --out "$1/new" 2>"$4"; echo $? >>"$4"
+"$2" simulate "$3" --participants 1 --out "$1/study" 2>>"$4"; echo $? >>"$4"
+"$2" report "$1/study" --out "$4.report" >/dev/null 2>>"$4"; echo $? >>"$4")sh";
+  const TempDirectory directory;
+  const TempDirectory disk;
+  const auto result =
+      testing::run_program({"/usr/bin/unshare", "-rm", "/bin/sh", "-c", script, "sh", disk.path(),
+                            TAPSTUDY_PROGRAM, paper("reality_vibration.yaml"), directory / "said"});
+  if (result.exit_code == 77 || result.exit_code == 1) {
+    WARN("no private mounts here: the read-only disk was not tried: " << result.standard_error);
+    return;
+  }
+  const auto lines = csv_rows(testing::contents(directory / "said"));
+  REQUIRE(lines.size() == 5);
+  CHECK_THAT(lines[0][0], Contains("Read-only file system"));
+  CHECK(lines[1][0] == "5");
+  CHECK_THAT(lines[2][0], Contains("readonly database"));
+  CHECK(lines[3][0] == "5");
+  CHECK(lines[4][0] == "0");
+}
+
 TEST_CASE("the panels of Figures 4 and 5 are drawn by one command", "[end_to_end]") {
   const TempDirectory directory;
   const auto result =

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "protocols/problems.hpp"
-namespace YAML {
+namespace YAML {  // NOLINT(readability-identifier-naming): the library's own name
 class Node;
 }
 namespace tapstudy::protocols {

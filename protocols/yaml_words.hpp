@@ -1,6 +1,6 @@
 #pragma once
 #include <string>
-namespace YAML {
+namespace YAML {  // NOLINT(readability-identifier-naming): the library's own name
 class Node;
 }
 namespace tapstudy::protocols {

@@ -9,15 +9,14 @@ struct Modes {
   Eigen::MatrixXd shapes;      // one column a mode, M-orthonormal [kg^-1/2], sign fixed
   int rigid_body_modes{0};     // found at zero frequency and left out
   int counted_in_band{0};      // by the inertia of K - sigma M, rigid-body modes included
-  // max over modes of |K x - w² M x| / (|K x| + w² |M x|), beyond what rounding explains
-  double worst_residual{0.0};
+  double worst_residual{0.0};  // max over modes of |K x - w² M x| / (|K x| + w² |M x|)
 };
 
 // Every mode below band_limit_hz, no more and no less: their number is first proven by the inertia
 // of K - sigma M (Sylvester's law: as many eigenvalues below sigma as negative pivots in L D L'),
 // then as many are sought by shift-invert Lanczos. K, M: n × n, symmetric, M positive definite,
 // K positive semidefinite.
-// Throws ModelError if the solver does not converge, a residual exceeds 1e-8, or what is found
-// disagrees with the count, or there are more than a thousand.
+// Throws ModelError if the solver does not converge, if a residual exceeds 1e-8 and what rounding
+// leaves, if what is found disagrees with the count, or if there are more than a thousand.
 Modes solve_modes(const StiffnessAndMass& matrices, double band_limit_hz);
 }  // namespace tapstudy::core

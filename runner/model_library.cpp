@@ -24,8 +24,15 @@ ModelLibrary::Plate ModelLibrary::plate_of(const protocols::Protocol& protocol,
     } catch (const core::ModelError& error) {
       throw core::ModelError{fmt::format("stimulus '{}': {}", stimulus.name, error.what())};
     }
-    ++built_;
   }
   return plate;
+}
+
+void ModelLibrary::build_all(const protocols::Protocol& protocol) {
+  for (const protocols::Stimulus& stimulus : protocol.stimuli) {
+    if (stimulus.technique->vibration) {
+      plate_of(protocol, stimulus);
+    }
+  }
 }
 }  // namespace tapstudy::runner

@@ -19,11 +19,11 @@ class ModelLibrary {
   using Plate = std::shared_ptr<const core::VibratingPlate>;
   // Throws InvalidInput or ModelError, naming the stimulus.
   Plate plate_of(const protocols::Protocol& protocol, const protocols::Stimulus& stimulus);
-  int built() const { return built_; }
+  // All that the protocol needs, so that what cannot be built is refused before anything else.
+  void build_all(const protocols::Protocol& protocol);
 
  private:
   std::mutex mutex_;
   std::map<std::string, Plate> plates_;
-  int built_{0};
 };
 }  // namespace tapstudy::runner

@@ -88,11 +88,7 @@ void run_session(const RunOptions& options) {
       options.rig.empty() ? protocols::simulated_rig() : protocols::read_rig(options.rig);
   const device::LoopSettings settings = loop_settings(protocol, rig);
   ModelLibrary models;
-  for (const protocols::Stimulus& stimulus : protocol.stimuli) {
-    if (stimulus.technique->vibration) {
-      models.plate_of(protocol, stimulus);
-    }
-  }
+  models.build_all(protocol);
   if (options.resume) {
     results::Store::open_existing(options.directory);  // or there is nothing to resume
   }

@@ -98,11 +98,7 @@ SimulatedTime simulate(const SimulatedStudy& study, const protocols::Protocol& p
   const protocols::Rig rig = protocols::simulated_rig();
   const device::LoopSettings settings = loop_settings(protocol, rig);
   ModelLibrary models;
-  for (const protocols::Stimulus& stimulus : protocol.stimuli) {
-    if (stimulus.technique->vibration) {
-      models.plate_of(protocol, stimulus);  // what cannot be built is refused before anything else
-    }
-  }
+  models.build_all(protocol);
   results::Store store =
       results::Store::open_or_create(study.directory, study_row(protocol, study.protocol_file));
   const std::vector<PlannedSession> sessions = add_sessions(study, protocol, rig, store);

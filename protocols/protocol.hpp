@@ -5,10 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/model/box.hpp"
-#include "core/model/fixation.hpp"
-#include "core/model/material.hpp"
-#include "core/model/tetgen_mesher.hpp"
+#include "core/model/plate_model.hpp"
 #include "core/placement.hpp"
 #include "core/technique.hpp"
 #include "core/tick/force_limiter.hpp"
@@ -18,8 +15,8 @@ namespace tapstudy::protocols {
 // names; lists keep the order of the file.
 
 struct Plate {
-  core::Box box;
-  core::MeshSize mesh;
+  core::Shape shape;
+  core::Meshing mesh;
   std::vector<core::Fixation> fixations;
 };
 

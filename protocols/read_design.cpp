@@ -3,10 +3,12 @@
 
 #include <algorithm>
 
+#include "core/model/shape/top_height.hpp"
 #include "protocols/read_sections.hpp"
 namespace tapstudy::protocols {
 namespace {
 using Presence = MapReader::Presence;
+constexpr double same_height_m = 1e-3;
 
 std::vector<std::string> technique_names() {
   std::vector<std::string> names;
@@ -21,10 +23,21 @@ void read_points(MapReader& top, Protocol& protocol) {
                  [&](const std::string& name, const Eigen::Vector2d& at_m) {
                    protocol.tapping_points_m[name] = at_m;
                  });
-  for (const auto& [point, at_m] : protocol.tapping_points_m) {
-    for (const auto& [name, plate] : protocol.plates) {
-      if ((at_m.cwiseAbs().array() > plate.box.high_m().head<2>().array()).any()) {
+  std::map<std::string, double> height_of_point_m;
+  for (const auto& [name, plate] : protocol.plates) {
+    const core::TopHeight top_height{plate.shape};
+    for (const auto& [point, at_m] : protocol.tapping_points_m) {
+      const auto height_m = top_height.at_m(at_m);
+      if (!height_m) {
         top.reject("tapping_points_m", fmt::format("{} is off plate '{}'", point, name));
+        continue;
+      }
+      const auto known = height_of_point_m.emplace(point, *height_m).first;
+      if (std::abs(known->second - *height_m) > same_height_m) {
+        top.reject("tapping_points_m",
+                   fmt::format("{}: plate '{}' is {:.4g} m high there, another {:.4g} m (a hand "
+                               "that meets them must not tell them apart by height; within {} m)",
+                               point, name, *height_m, known->second, same_height_m));
       }
     }
   }

@@ -1,4 +1,4 @@
-// Rendering, placement, materials and plates.
+// Rendering, placement and materials.
 #include <cmath>
 
 #include "protocols/read_sections.hpp"
@@ -6,38 +6,28 @@ namespace tapstudy::protocols {
 namespace {
 using Presence = MapReader::Presence;
 
+core::Damping read_fit(MapReader& damping) {
+  core::FittedDamping fitted;
+  damping.list("measured", Presence::required, [&](MapReader& point) {
+    fitted.points.push_back(
+        {point.number("frequency_hz", Range::positive(1e5)), point.number("ratio", {0.0, 100.0})});
+  });
+  return fitted;
+}
+
 core::Damping read_damping(MapReader& damping) {
+  if (damping.has("modal_ratios")) {
+    return core::ModalDamping{damping.number_list("modal_ratios", {0.0, 100.0})};
+  }
+  if (damping.has("measured")) {
+    return read_fit(damping);
+  }
   if (damping.has("first_ratio") || damping.has("last_ratio")) {
     return core::TwoRatioDamping{damping.number("first_ratio", {0.0, 100.0}),
                                  damping.number("last_ratio", {0.0, 100.0})};
   }
   return core::RayleighDamping{damping.number("alpha_per_s", {0.0, 1e6}),
                                damping.number("beta_s", {0.0, 1e3})};
-}
-
-std::array<bool, 3> read_axes(MapReader& fixation) {
-  const std::string axes = fixation.word(
-      "axes", "set of axes", {"xyz", "xy", "xz", "yz", "x", "y", "z"}, std::string{"xyz"});
-  const auto has = [&](char axis) { return axes.find(axis) != std::string::npos; };
-  return {has('x'), has('y'), has('z')};
-}
-
-void read_fixation(MapReader& reader, Plate& plate) {
-  core::Fixation fixation;
-  fixation.shape = reader.one_of<core::RegionShape>(
-      "region", {{"vertex", core::RegionShape::vertex}, {"disc", core::RegionShape::disc}});
-  fixation.at_m = reader.numbers("at_m", 2, {-100.0, 100.0});
-  fixation.face = reader.one_of<core::Face>("face",
-                                            {{"both", core::Face::both},
-                                             {"top", core::Face::top},
-                                             {"bottom", core::Face::bottom},
-                                             {"through", core::Face::through}},
-                                            "both");
-  if (fixation.shape == core::RegionShape::disc) {
-    fixation.radius_m = reader.number("radius_m", Range::positive(100.0));
-  }
-  fixation.holds = read_axes(reader);
-  plate.fixations.push_back(fixation);
 }
 
 core::Material read_material(MapReader& reader) {
@@ -98,23 +88,6 @@ void read_placement(MapReader& top, Presence presence,
 void read_materials(MapReader& top, Protocol& protocol) {
   top.each("materials", Presence::required, [&](const std::string& name, MapReader& reader) {
     protocol.materials[name] = read_material(reader);
-  });
-}
-
-void read_plates(MapReader& top, Protocol& protocol) {
-  top.each("plates", Presence::required, [&](const std::string& name, MapReader& reader) {
-    Plate plate;
-    plate.box.size_m = reader.numbers("size_m", 3, {1e-4, 100.0});
-    reader.map("mesh", Presence::optional, [&](MapReader& mesh) {
-      mesh.integer("order", 1, 1, 1);
-      if (mesh.has("max_tet_volume_m3")) {
-        plate.mesh.max_tet_volume_m3 = mesh.number("max_tet_volume_m3", Range::positive(1e6));
-      }
-      plate.mesh.radius_edge_ratio = mesh.number("radius_edge_ratio", {1.1, 10.0}, 1.414);
-    });
-    reader.list("fixations", Presence::required,
-                [&](MapReader& fixation) { read_fixation(fixation, plate); });
-    protocol.plates[name] = plate;
   });
 }
 }  // namespace tapstudy::protocols

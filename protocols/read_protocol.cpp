@@ -25,6 +25,7 @@ std::string contents_of(const std::string& file) {
 }
 
 Protocol parse(const std::string& text, const std::string& file, Problems& problems) {
+  const std::string directory = std::filesystem::path{file}.parent_path().string();
   MapReader top = MapReader::whole_file(text, file, problems);
   Protocol protocol;
   protocol.text = text;
@@ -35,7 +36,7 @@ Protocol parse(const std::string& text, const std::string& file, Problems& probl
   read_placement(top, MapReader::Presence::required,
                  [&](const core::Placement& placement) { protocol.placement = placement; });
   read_materials(top, protocol);
-  read_plates(top, protocol);
+  read_plates(top, protocol, directory);
   read_stimuli(top, protocol);
   read_blocks(top, protocol);
   read_hypotheses(top, protocol);
@@ -85,9 +86,9 @@ Rig simulated_rig() {
       "simulated rig");
 }
 
-std::set<std::string> keys_asked_for(const std::string& text) {
-  Problems problems{"protocol"};
-  parse(text, "protocol", problems);
+std::set<std::string> keys_asked_for(const std::string& text, const std::string& file) {
+  Problems problems{file};
+  parse(text, file, problems);
   return problems.asked();
 }
 }  // namespace tapstudy::protocols

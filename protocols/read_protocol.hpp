@@ -17,5 +17,5 @@ Rig read_rig(const std::string& file);
 Rig simulated_rig();
 
 // Every key the protocol reader asked for in this text (`*` any name, `[]` any place in a list).
-std::set<std::string> keys_asked_for(const std::string& text);
+std::set<std::string> keys_asked_for(const std::string& text, const std::string& file);
 }  // namespace tapstudy::protocols

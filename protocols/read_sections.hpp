@@ -10,7 +10,8 @@ void read_rendering(MapReader& top, Protocol& protocol);
 void read_placement(MapReader& top, MapReader::Presence presence,
                     const std::function<void(const core::Placement&)>& take);
 void read_materials(MapReader& top, Protocol& protocol);
-void read_plates(MapReader& top, Protocol& protocol);
+// directory: where names of surface files start from.
+void read_plates(MapReader& top, Protocol& protocol, const std::string& directory);
 void read_stimuli(MapReader& top, Protocol& protocol);
 void read_blocks(MapReader& top, Protocol& protocol);
 void read_hypotheses(MapReader& top, Protocol& protocol);

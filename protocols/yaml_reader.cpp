@@ -197,6 +197,23 @@ std::string MapReader::name(const std::string& key) {
   return node && check_name(*node, path_of(key)) ? node->Scalar() : "";
 }
 
+std::vector<double> MapReader::number_list(const std::string& key, const Range& range) {
+  std::vector<double> values;
+  const auto node = find(key, true);
+  if (!node) {
+    return values;
+  }
+  if (!node->IsSequence() || node->size() == 0) {
+    reject_at(*node, path_of(key), "is not a list of numbers");
+    return values;
+  }
+  for (std::size_t i = 0; i < node->size(); ++i) {
+    const std::string path = fmt::format("{}[{}]", path_of(key), i);
+    values.push_back(as_number((*node)[i], path, range).value_or(range.high));
+  }
+  return values;
+}
+
 Eigen::VectorXd MapReader::numbers(const std::string& key, Eigen::Index size, const Range& range) {
   Eigen::VectorXd values = Eigen::VectorXd::Constant(size, range.high);
   const auto node = find(key, true);

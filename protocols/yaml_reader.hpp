@@ -51,6 +51,8 @@ class MapReader {
   std::string name(const std::string& key);
   // `size` numbers in brackets.
   Eigen::VectorXd numbers(const std::string& key, Eigen::Index size, const Range& range);
+  // As many as there are, at least one.
+  std::vector<double> number_list(const std::string& key, const Range& range);
   // One of the given words; kind names what they are.
   std::string word(const std::string& key, const std::string& kind,
                    const std::vector<std::string>& allowed,

@@ -8,4 +8,8 @@ void set_up_logging() {
   logger->set_pattern("tapstudy: %^%v%$");
   spdlog::set_default_logger(logger);
 }
+
+void warn(const std::string& what) {
+  spdlog::warn("{}", what);
+}
 }  // namespace tapstudy::runner

@@ -2,30 +2,127 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "core/error.hpp"
 #include "runner/progress.hpp"
 namespace tapstudy::runner {
+namespace {
+// What is wrong with a model is wrong with the stimulus that asked for it.
+template <class Build>
+auto naming(const protocols::Stimulus& stimulus, const Build& build) {
+  try {
+    return build();
+  } catch (const core::ModelError& error) {
+    throw core::ModelError{fmt::format("stimulus '{}': {}", stimulus.name, error.what())};
+  }
+}
+
+std::string key_of(const core::Material& material) {
+  const auto exact = [](const core::Damping& damping) {
+    return std::visit(
+        [](const auto& given) -> std::string {
+          using Given = std::decay_t<decltype(given)>;
+          std::string key;
+          if constexpr (std::is_same_v<Given, core::RayleighDamping>) {
+            key = fmt::format("{:a} {:a}", given.alpha_per_s, given.beta_s);
+          } else if constexpr (std::is_same_v<Given, core::TwoRatioDamping>) {
+            key = fmt::format("{:a} {:a}", given.first_ratio, given.last_ratio);
+          } else if constexpr (std::is_same_v<Given, core::FittedDamping>) {
+            for (const auto& point : given.points) {
+              key += fmt::format("{:a} {:a} ", point.frequency_hz, point.ratio);
+            }
+          } else {
+            for (const double ratio : given.ratios) {
+              key += fmt::format("{:a} ", ratio);
+            }
+          }
+          return key;
+        },
+        damping);
+  };
+  return fmt::format("{:a} {:a} {:a} {} {}", material.youngs_modulus_pa, material.density_kg_per_m3,
+                     material.poissons_ratio, material.damping.index(), exact(material.damping));
+}
+}  // namespace
+
 core::PlateSpec plate_spec(const protocols::Protocol& protocol,
                            const protocols::Stimulus& stimulus) {
   const protocols::Plate& plate = protocol.plates.at(stimulus.plate);
-  return {plate.box, plate.mesh, plate.fixations, protocol.materials.at(stimulus.material),
+  return {plate.shape, plate.mesh, plate.fixations, protocol.materials.at(stimulus.material),
           protocol.band_limit_hz};
+}
+
+core::BodySpec body_spec(const protocols::Protocol& protocol, const protocols::Stimulus& stimulus) {
+  core::BodySpec body = core::body_of(plate_spec(protocol, stimulus));
+  for (const protocols::Stimulus& other : protocol.stimuli) {
+    const core::Material& material = protocol.materials.at(other.material);
+    if (other.technique->vibration && other.plate == stimulus.plate &&
+        material.poissons_ratio == body.poissons_ratio) {
+      body.band_limit_rad_per_m = std::max(body.band_limit_rad_per_m,
+                                           core::kappa_rad_per_m(protocol.band_limit_hz, material));
+    }
+  }
+  return body;
+}
+
+ModelLibrary::Body ModelLibrary::body(const protocols::Protocol& protocol,
+                                      const protocols::Stimulus& stimulus) {
+  core::check_material(protocol.materials.at(stimulus.material));
+  const core::BodySpec spec = body_spec(protocol, stimulus);
+  const std::string key = core::content_key(spec);
+  Body& body = bodies_[key];
+  if (body) {
+    return body;
+  }
+  if (auto kept = cache_.find(key)) {
+    body = std::make_shared<const core::BodyModes>(std::move(*kept));
+    return body;
+  }
+  Progress progress{fmt::format("building the model of '{}'", stimulus.name)};
+  body = std::make_shared<const core::BodyModes>(core::solve_body(spec, progress.hook()).modes);
+  ++solved_;
+  cache_.keep(key, *body);
+  return body;
+}
+
+ModelLibrary::Body ModelLibrary::body_of(const protocols::Protocol& protocol,
+                                         const protocols::Stimulus& stimulus) {
+  const std::lock_guard lock{mutex_};
+  return naming(stimulus, [&] { return body(protocol, stimulus); });
 }
 
 ModelLibrary::Plate ModelLibrary::plate_of(const protocols::Protocol& protocol,
                                            const protocols::Stimulus& stimulus) {
-  const core::PlateSpec spec = plate_spec(protocol, stimulus);
   const std::lock_guard lock{mutex_};
-  Plate& plate = plates_[core::content_key(spec)];
+  const core::PlateSpec spec = plate_spec(protocol, stimulus);
+  Plate& plate = plates_[fmt::format("{} {} {:a}", core::content_key(body_spec(protocol, stimulus)),
+                                     key_of(spec.material), spec.band_limit_hz)];
   if (!plate) {
-    const Progress progress{fmt::format("building the model of '{}'", stimulus.name)};
-    try {
-      plate = std::make_shared<const core::VibratingPlate>(core::build_plate_model(spec).modal);
-    } catch (const core::ModelError& error) {
-      throw core::ModelError{fmt::format("stimulus '{}': {}", stimulus.name, error.what())};
-    }
+    plate = naming(stimulus, [&] {
+      core::ModalModel model =
+          core::model_of(*body(protocol, stimulus), spec.material, spec.band_limit_hz);
+      return std::make_shared<const core::VibratingPlate>(
+          std::holds_alternative<core::Box>(spec.shape)
+              ? core::VibratingPlate{std::move(model)}
+              : core::VibratingPlate::touched_all_over(std::move(model)));
+    });
   }
   return plate;
+}
+
+core::TouchedShape ModelLibrary::touched_shape(const protocols::Protocol& protocol,
+                                               const std::string& plate) {
+  const core::Shape& shape = protocol.plates.at(plate).shape;
+  if (const auto* box = std::get_if<core::Box>(&shape)) {
+    return core::PlateFace{box->high_m().x(), box->high_m().y()};
+  }
+  const std::lock_guard lock{mutex_};
+  auto& touched = shapes_[core::content_key(shape)];
+  if (std::holds_alternative<core::PlateFace>(touched)) {
+    touched = std::make_shared<const core::TriangleTree>(std::get<core::TriangleSurface>(shape));
+  }
+  return touched;
 }
 
 void ModelLibrary::build_all(const protocols::Protocol& protocol) {

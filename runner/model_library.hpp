@@ -7,23 +7,43 @@
 #include "core/model/plate_model.hpp"
 #include "core/tick/tap_renderer.hpp"
 #include "protocols/protocol.hpp"
+#include "runner/model_cache.hpp"
 namespace tapstudy::runner {
 // What a stimulus's plate is to the model.
 core::PlateSpec plate_spec(const protocols::Protocol& protocol,
                            const protocols::Stimulus& stimulus);
 
-// Models of plates, each built once however many stimuli share it, and only when a technique that
-// vibrates asks for it. May be used by several threads.
+// The body that all vibrating stimuli of one plate and Poisson's ratio are scaled from: solved up
+// to the highest band that any of them needs.
+core::BodySpec body_spec(const protocols::Protocol& protocol, const protocols::Stimulus& stimulus);
+
+// Models of plates: each body solved once however many materials share it, and only when a
+// technique that vibrates asks for it. May be used by several threads.
 class ModelLibrary {
  public:
   using Plate = std::shared_ptr<const core::VibratingPlate>;
+  using Body = std::shared_ptr<const core::BodyModes>;
+  explicit ModelLibrary(ModelCache cache = ModelCache::of_this_user()) : cache_{std::move(cache)} {}
+
   // Throws InvalidInput or ModelError, naming the stimulus.
   Plate plate_of(const protocols::Protocol& protocol, const protocols::Stimulus& stimulus);
+  Body body_of(const protocols::Protocol& protocol, const protocols::Stimulus& stimulus);
   // All that the protocol needs, so that what cannot be built is refused before anything else.
   void build_all(const protocols::Protocol& protocol);
+  // What a finger meets where nothing vibrates.
+  core::TouchedShape touched_shape(const protocols::Protocol& protocol, const std::string& plate);
+
+  int bodies_solved() const { return solved_; }  // not found in memory or on disk
+  int bodies_used() const { return static_cast<int>(bodies_.size()); }
 
  private:
+  Body body(const protocols::Protocol& protocol, const protocols::Stimulus& stimulus);
+
   std::mutex mutex_;
+  ModelCache cache_;
+  std::map<std::string, Body> bodies_;  // by content key
   std::map<std::string, Plate> plates_;
+  std::map<std::string, core::TouchedShape> shapes_;
+  int solved_{0};
 };
 }  // namespace tapstudy::runner

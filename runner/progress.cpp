@@ -3,6 +3,8 @@
 #include <spdlog/spdlog.h>
 
 #include <chrono>
+
+#include "runner/stop_signal.hpp"
 namespace tapstudy::runner {
 Progress::Progress(std::string what)
     : what_{std::move(what)}, thread_{[this](const std::stop_token& stop) { talk(stop); }} {}
@@ -10,6 +12,16 @@ Progress::Progress(std::string what)
 Progress::~Progress() {
   thread_.request_stop();
   ended_.notify_all();
+}
+
+core::ProgressHook Progress::hook() {
+  return [this](std::string_view stage) {
+    {
+      const std::lock_guard lock{mutex_};
+      stage_ = stage;
+    }
+    stop_if_asked();
+  };
 }
 
 void Progress::talk(const std::stop_token& stop) {
@@ -20,7 +32,8 @@ void Progress::talk(const std::stop_token& stop) {
                           [&] { return stop.stop_requested(); })) {
     seconds = next;
     next += 5;
-    spdlog::info("{} … {} s", what_, seconds);
+    spdlog::info("{} … {} s{}{}{}", what_, seconds, stage_.empty() ? "" : ", ", stage_,
+                 stop_was_asked() ? ", stopping after this step (Ctrl-C again: at once)" : "");
   }
 }
 }  // namespace tapstudy::runner

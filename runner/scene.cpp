@@ -5,12 +5,11 @@ Scene build_scene(const protocols::Protocol& protocol, const std::vector<std::st
   Scene scene;
   for (const std::string& name : stimuli) {
     const protocols::Stimulus& stimulus = protocol.stimulus(name);
-    const core::Box& box = protocol.plates.at(stimulus.plate).box;
     const ModelLibrary::Plate plate =
         stimulus.technique->vibration ? models.plate_of(protocol, stimulus) : nullptr;
     scene.plates.push_back(plate);
-    scene.alternatives.emplace_back(*stimulus.technique, protocol.rendering, box.high_m().x(),
-                                    box.high_m().y(), plate.get());
+    scene.alternatives.emplace_back(*stimulus.technique, protocol.rendering,
+                                    models.touched_shape(protocol, stimulus.plate), plate.get());
   }
   return scene;
 }

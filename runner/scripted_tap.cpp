@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "core/error.hpp"
+#include "core/model/shape/top_height.hpp"
 #include "device/simulated_hand.hpp"
 #include "results/trace_codec.hpp"
 #include "runner/presenter.hpp"
@@ -16,12 +17,18 @@ namespace tapstudy::runner {
 namespace {
 constexpr double hover_m = 0.005;
 
-void check(const ScriptedTap& tap, const core::Box& box) {
-  if (!(tap.at_m.cwiseAbs().array() <= box.high_m().head<2>().array()).all()) {
-    throw core::InvalidInput{fmt::format("--at: ({}, {}) is off the plate (x in ±{} m, y in ±{} m)",
-                                         tap.at_m.x(), tap.at_m.y(), box.high_m().x(),
-                                         box.high_m().y())};
+double height_m(const ScriptedTap& tap, const core::Shape& shape) {
+  const auto height_m = core::TopHeight{shape}.at_m(tap.at_m);
+  if (!height_m) {
+    const core::Bounds body = core::bounds(shape);
+    throw core::InvalidInput{fmt::format(
+        "--at: ({}, {}) is off the plate (x from {} to {} m, y from {} to {} m)", tap.at_m.x(),
+        tap.at_m.y(), body.low_m.x(), body.high_m.x(), body.low_m.y(), body.high_m.y())};
   }
+  return *height_m;
+}
+
+void check(const ScriptedTap& tap) {
   if (!(tap.speed_m_s >= 0.001 && tap.speed_m_s <= 10.0)) {
     throw core::InvalidInput{
         fmt::format("--speed: {} is not allowed (from 0.001 to 10 m/s)", tap.speed_m_s)};
@@ -43,12 +50,13 @@ std::optional<double> number(const std::string& text) {
 std::vector<core::TraceSample> trace_of(const ScriptedTap& tap, const protocols::Protocol& protocol,
                                         const protocols::Rig& rig, ModelLibrary& models) {
   const protocols::Stimulus& stimulus = protocol.stimulus(tap.stimulus);
-  check(tap, protocol.plates.at(stimulus.plate).box);
+  check(tap);
+  const double z_m = height_m(tap, protocol.plates.at(stimulus.plate).shape);
   const device::LoopSettings settings = loop_settings(protocol, rig);
   device::SimulatedHand hand{hand_body(protocol.simulation.hand), protocol.rendering.dt_s,
                              device::SimulatedHand::Memory::none};
   device::PlannedTap planned;
-  planned.point_m = settings.placement.point_to_device({tap.at_m.x(), tap.at_m.y(), 0.0});
+  planned.point_m = settings.placement.point_to_device({tap.at_m.x(), tap.at_m.y(), z_m});
   planned.speed_m_s = tap.speed_m_s;
   planned.hover_m = hover_m;
   planned.run_up_m = 0.0;

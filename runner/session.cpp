@@ -9,7 +9,7 @@
 #include <ctime>
 
 #include "core/error.hpp"
-#include "results/sha256.hpp"
+#include "core/sha256.hpp"
 #include "runner/build_info.hpp"
 namespace tapstudy::runner {
 namespace {
@@ -31,7 +31,7 @@ std::string scheduler_in_force(results::Mode mode) {
 }  // namespace
 
 results::StudyRow study_row(const protocols::Protocol& protocol, const std::string& file) {
-  return {protocol.title, file, protocol.text, results::sha256(protocol.text)};
+  return {protocol.title, file, protocol.text, core::sha256(protocol.text)};
 }
 
 results::SessionRow session_row(const SessionPlan& plan, const protocols::Protocol& protocol,

@@ -1,6 +1,7 @@
 #include "core/model/fixation.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -10,10 +11,13 @@
 namespace tapstudy::core {
 namespace {
 constexpr int rim_points = 8;
+// A surface from a file has only its own points: the one meant by a vertex may be this far off, as
+// a fraction of the body's diagonal, because people type few digits.
+constexpr double vertex_reach = 1e-3;
 
-bool is_on_face(double z_m, Face face, const Box& box) {
-  const bool on_top = std::abs(z_m - box.high_m().z()) <= box.snap_m();
-  const bool on_bottom = std::abs(z_m - box.low_m().z()) <= box.snap_m();
+bool is_on_face(double z_m, Face face, const Bounds& body) {
+  const bool on_top = std::abs(z_m - body.high_m.z()) <= body.snap_m();
+  const bool on_bottom = std::abs(z_m - body.low_m.z()) <= body.snap_m();
   switch (face) {
     case Face::top:
       return on_top;
@@ -27,97 +31,172 @@ bool is_on_face(double z_m, Face face, const Box& box) {
   return false;
 }
 
-bool holds_node(const Fixation& fixation, const Vec3& node_m, const Box& box) {
-  const double reach_m = fixation.radius_m + box.snap_m();
-  return (node_m.head<2>() - fixation.at_m).norm() <= reach_m &&
-         is_on_face(node_m.z(), fixation.face, box);
+bool is_on_side(const Vec3& node_m, Side side, const Bounds& body) {
+  const auto number = static_cast<int>(side);
+  const Eigen::Index axis = number / 2;
+  const double at = number % 2 == 0 ? body.low_m[axis] : body.high_m[axis];
+  return std::abs(node_m[axis] - at) <= body.snap_m();
 }
 
-std::vector<Eigen::Vector2d> sideways_points(const Fixation& fixation) {
-  std::vector<Eigen::Vector2d> points{fixation.at_m};
+bool holds_node(const Fixation& fixation, const Vec3& node_m, const Bounds& body) {
+  const double snap_m = body.snap_m();
+  switch (fixation.shape) {
+    case RegionShape::vertex:
+    case RegionShape::disc:
+      return (node_m - fixation.at_m).head<2>().norm() <= fixation.radius_m + snap_m &&
+             is_on_face(node_m.z(), fixation.face, body);
+    case RegionShape::ball:
+      return (node_m - fixation.at_m).norm() <= fixation.radius_m + snap_m;
+    case RegionShape::box:
+      return ((node_m - fixation.low_m).array() >= -snap_m).all() &&
+             ((fixation.high_m - node_m).array() >= -snap_m).all();
+    case RegionShape::side:
+      return is_on_side(node_m, fixation.side, body);
+  }
+  return false;
+}
+
+std::vector<Eigen::Index> held_nodes(const Fixation& fixation, const TetMesh& mesh,
+                                     const Shape& shape) {
+  const Bounds body = bounds(shape);
+  std::vector<Eigen::Index> nodes;
+  if (fixation.shape == RegionShape::vertex && std::holds_alternative<TriangleSurface>(shape)) {
+    Eigen::Index nearest{};
+    const double distance_m =
+        (mesh.nodes_m.rowwise() - fixation.at_m.transpose()).rowwise().norm().minCoeff(&nearest);
+    if (distance_m <= vertex_reach * body.size_m().norm()) {
+      nodes.push_back(nearest);
+    }
+    return nodes;
+  }
+  for (Eigen::Index node = 0; node < mesh.nodes_m.rows(); ++node) {
+    if (holds_node(fixation, mesh.nodes_m.row(node).transpose(), body)) {
+      nodes.push_back(node);
+    }
+  }
+  return nodes;
+}
+
+std::vector<Vec3> wanted_points(const Fixation& fixation, const Bounds& body) {
+  std::vector<Vec3> points;
+  const auto on_faces = [&](const Vec3& at) {
+    if (fixation.face != Face::bottom) {
+      points.emplace_back(at.x(), at.y(), body.high_m.z());
+    }
+    if (fixation.face != Face::top) {
+      points.emplace_back(at.x(), at.y(), body.low_m.z());
+    }
+  };
+  if (fixation.shape == RegionShape::vertex || fixation.shape == RegionShape::disc) {
+    on_faces(fixation.at_m);
+  }
   if (fixation.shape == RegionShape::disc) {
     for (int i = 0; i < rim_points; ++i) {
       const double angle = 2.0 * std::numbers::pi * i / rim_points;
-      points.emplace_back(fixation.at_m +
-                          fixation.radius_m * Eigen::Vector2d{std::cos(angle), std::sin(angle)});
+      on_faces(fixation.at_m + fixation.radius_m * Vec3{std::cos(angle), std::sin(angle), 0.0});
+    }
+  }
+  if (fixation.shape == RegionShape::box) {
+    const Vec3 low = fixation.low_m.cwiseMax(body.low_m);
+    const Vec3 high = fixation.high_m.cwiseMin(body.high_m);
+    for (int corner = 0; corner < 8; ++corner) {
+      points.emplace_back((corner & 1) == 0 ? low.x() : high.x(),
+                          (corner & 2) == 0 ? low.y() : high.y(),
+                          (corner & 4) == 0 ? low.z() : high.z());
     }
   }
   return points;
 }
 
-std::vector<double> heights_m(Face face, const Box& box) {
-  switch (face) {
-    case Face::top:
-      return {box.high_m().z()};
-    case Face::bottom:
-      return {box.low_m().z()};
-    case Face::both:
-    case Face::through:
-      return {box.high_m().z(), box.low_m().z()};
-  }
-  return {};
-}
-
-// A point within rounding of an edge is on it.
-Eigen::Vector2d onto_edges(Eigen::Vector2d point, const Eigen::Vector2d& half_m, double snap_m) {
-  for (Eigen::Index axis = 0; axis < 2; ++axis) {
-    if (std::abs(std::abs(point[axis]) - half_m[axis]) <= snap_m) {
-      point[axis] = std::copysign(half_m[axis], point[axis]);
+// A point within rounding of a face is on it.
+Vec3 onto_faces(Vec3 point, const Bounds& body) {
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    for (const double face : {body.low_m[axis], body.high_m[axis]}) {
+      if (std::abs(point[axis] - face) <= body.snap_m()) {
+        point[axis] = face;
+      }
     }
   }
   return point;
 }
 
+bool is_on_boundary(const Vec3& point, const Bounds& body) {
+  const bool is_inside =
+      ((point - body.low_m).array() >= 0.0).all() && ((body.high_m - point).array() >= 0.0).all();
+  const bool touches =
+      ((point - body.low_m).array() == 0.0).any() || ((body.high_m - point).array() == 0.0).any();
+  return is_inside && touches;
+}
+
 std::string described(const Fixation& fixation) {
-  return fmt::format("{} at ({}, {}) m",
-                     fixation.shape == RegionShape::vertex
-                         ? std::string{"vertex"}
-                         : fmt::format("disc of radius {} m", fixation.radius_m),
-                     fixation.at_m.x(), fixation.at_m.y());
+  const auto text = [](const Vec3& v) { return fmt::format("({}, {}, {})", v.x(), v.y(), v.z()); };
+  switch (fixation.shape) {
+    case RegionShape::vertex:
+      return fmt::format("vertex at {} m", text(fixation.at_m));
+    case RegionShape::disc:
+      return fmt::format("disc of radius {} m at ({}, {}) m", fixation.radius_m, fixation.at_m.x(),
+                         fixation.at_m.y());
+    case RegionShape::ball:
+      return fmt::format("ball of radius {} m at {} m", fixation.radius_m, text(fixation.at_m));
+    case RegionShape::box:
+      return fmt::format("box from {} to {} m", text(fixation.low_m), text(fixation.high_m));
+    case RegionShape::side:
+      return "side";
+  }
+  return {};
 }
 }  // namespace
 
-std::vector<Vec3> points_to_mesh(const std::vector<Fixation>& fixations, const Box& box) {
+std::vector<Vec3> points_to_mesh(const std::vector<Fixation>& fixations, const Shape& shape) {
   std::vector<Vec3> points;
-  const Eigen::Vector2d half_m = box.high_m().head<2>();
+  if (!std::holds_alternative<Box>(shape)) {
+    return points;
+  }
+  const Bounds body = bounds(shape);
   for (const Fixation& fixation : fixations) {
-    for (const Eigen::Vector2d& sideways : sideways_points(fixation)) {
-      if ((sideways.cwiseAbs().array() > half_m.array() + box.snap_m()).any()) {
-        continue;
-      }
-      const Eigen::Vector2d inside = onto_edges(sideways, half_m, box.snap_m());
-      for (const double height : heights_m(fixation.face, box)) {
-        points.emplace_back(inside.x(), inside.y(), height);
+    for (const Vec3& wanted : wanted_points(fixation, body)) {
+      const Vec3 point = onto_faces(wanted, body);
+      if (is_on_boundary(point, body)) {
+        points.push_back(point);
       }
     }
   }
   return points;
 }
 
-std::vector<bool> held_dofs(const TetMesh& mesh, const Box& box,
+std::vector<bool> held_dofs(const TetMesh& mesh, const Shape& shape,
                             const std::vector<Fixation>& fixations) {
   std::vector<bool> held(static_cast<std::size_t>(3 * mesh.nodes_m.rows()), false);
   for (const Fixation& fixation : fixations) {
-    bool touches = false;
-    for (Eigen::Index node = 0; node < mesh.nodes_m.rows(); ++node) {
-      if (!holds_node(fixation, mesh.nodes_m.row(node).transpose(), box)) {
-        continue;
-      }
-      touches = true;
+    const auto nodes = held_nodes(fixation, mesh, shape);
+    for (const Eigen::Index node : nodes) {
       for (std::size_t axis = 0; axis < 3; ++axis) {
         const std::size_t dof = 3 * static_cast<std::size_t>(node) + axis;
         held[dof] = held[dof] || fixation.holds.at(axis);
       }
     }
-    if (!touches) {
-      throw ModelError{
-          fmt::format("fixation: the {} touches no node of the plate (x in ±{} m, y in ±{} m)",
-                      described(fixation), box.high_m().x(), box.high_m().y())};
+    if (nodes.empty()) {
+      const Bounds body = bounds(shape);
+      throw ModelError{fmt::format(
+          "fixation: the {} touches no node of the body (x from {:.4g} to {:.4g} m, y from {:.4g} "
+          "to {:.4g} m, z from {:.4g} to {:.4g} m)",
+          described(fixation), body.low_m.x(), body.high_m.x(), body.low_m.y(), body.high_m.y(),
+          body.low_m.z(), body.high_m.z())};
     }
   }
   if (std::find(held.begin(), held.end(), false) == held.end()) {
-    throw ModelError{"fixation: every node of the plate is held, nothing is left free to vibrate"};
+    throw ModelError{"fixation: every node of the body is held, nothing is left free to vibrate"};
   }
   return held;
+}
+
+std::string content_key(const Fixation& fixation) {
+  const auto exact = [](const Vec3& v) {
+    return fmt::format("{:a},{:a},{:a}", v.x(), v.y(), v.z());
+  };
+  return fmt::format("region{}({},{:a},{},{},{},{},{})", static_cast<int>(fixation.shape),
+                     exact(fixation.at_m), fixation.radius_m, static_cast<int>(fixation.face),
+                     exact(fixation.low_m), exact(fixation.high_m), static_cast<int>(fixation.side),
+                     fmt::join(fixation.holds, ""));
 }
 }  // namespace tapstudy::core

@@ -1,34 +1,46 @@
 #pragma once
-#include <Eigen/Core>
 #include <array>
 #include <string>
 #include <vector>
 
-#include "core/model/box.hpp"
-#include "core/model/tet_mesh.hpp"
+#include "core/model/mesh/tet_mesh.hpp"
+#include "core/model/shape/shape.hpp"
 namespace tapstudy::core {
-// Which of a region's nodes are meant: those on the tapped face, on the face below, on both (a
-// screw that pinches the plate), or everything in between as well (a bolt through it).
+// Which of a plate's nodes a vertex or disc means: those on the tapped face, on the face below, on
+// both (a screw that pinches the plate), or everything in between as well (a bolt through it).
 enum class Face { top, bottom, both, through };
-enum class RegionShape { vertex, disc };
+// The faces of a body's bounding box: left is low x, front low y, bottom low z.
+enum class Side { left, right, front, back, bottom, top };
+enum class RegionShape { vertex, disc, ball, box, side };
 
-// A region of the plate that does not move along the held axes. A vertex holds single nodes, as the
-// paper does; under mesh refinement its frequencies never settle, because a point cannot hold a
-// solid. A disc (a screw's head) does settle.
+// A region of the body that does not move along the held axes.
+//   vertex  a single node, as in the paper; under mesh refinement its frequencies never settle,
+//           because a point cannot hold a solid
+//   disc    of a plate: a screw's head, round at_m on its faces; does settle
+//   ball    what lies within a radius of a point
+//   box     what lies between two corners
+//   side    all that touches one side of the bounding box
 struct Fixation {
   RegionShape shape{RegionShape::vertex};
-  Eigen::Vector2d at_m{Eigen::Vector2d::Zero()};  // plate frame, sideways
-  double radius_m{0.0};                           // of a disc
-  Face face{Face::both};
+  Vec3 at_m{Vec3::Zero()};                      // vertex, disc (z unused), ball
+  double radius_m{0.0};                         // disc, ball
+  Face face{Face::both};                        // vertex and disc of a plate
+  Vec3 low_m{Vec3::Zero()};                     // box
+  Vec3 high_m{Vec3::Zero()};                    // box
+  Side side{Side::left};                        // side
   std::array<bool, 3> holds{true, true, true};  // x y z
 };
 
-// The points that a mesh must have as nodes for the fixations to find something to hold: the
-// vertices, and for a disc its centre and eight points on its rim, where they lie on the plate.
-std::vector<Vec3> points_to_mesh(const std::vector<Fixation>& fixations, const Box& box);
+// The points that a box's mesh must have as nodes for the fixations to find something to hold:
+// vertices, a disc's centre and eight points on its rim, the corners of a box region, where they
+// lie on the plate. Surfaces from files keep their own points.
+std::vector<Vec3> points_to_mesh(const std::vector<Fixation>& fixations, const Shape& shape);
 
 // One flag a degree of freedom (x0 y0 z0 x1 …): true where it is held.
 // Throws ModelError if a fixation touches no node or if nothing is left free.
-std::vector<bool> held_dofs(const TetMesh& mesh, const Box& box,
+std::vector<bool> held_dofs(const TetMesh& mesh, const Shape& shape,
                             const std::vector<Fixation>& fixations);
+
+// Equal text for equal fixations.
+std::string content_key(const Fixation& fixation);
 }  // namespace tapstudy::core

@@ -1,21 +1,24 @@
 #pragma once
 #include <Eigen/Core>
+#include <optional>
+#include <vector>
 
-#include "core/model/material.hpp"
+#include "core/model/elements/material.hpp"
 namespace tapstudy::core {
 // All that a tick needs of a plate: modes inside the band and the part of their shapes that can be
 // touched. Never changes once built; shared by trials and threads.
 struct ModalModel {
-  using Triangles = Eigen::Matrix<int, Eigen::Dynamic, 3, Eigen::RowMajor>;
+  using Triangles = Eigen::Matrix<int, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   using Points = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
   using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-  Eigen::ArrayXd frequency_hz;   // ascending
-  Eigen::ArrayXd damping_ratio;  // paper eq. 12
-  RayleighDamping damping;
+  Eigen::ArrayXd frequency_hz;             // ascending
+  Eigen::ArrayXd damping_ratio;            // paper eq. 12, or as measured
+  std::optional<RayleighDamping> damping;  // unless each mode has a ratio of its own
 
   Points touch_nodes_m;     // plate frame
-  Triangles touch_surface;  // into touch_nodes_m, normals outward
+  Triangles touch_surface;  // into touch_nodes_m: 3 corners, normals outward; of order 2 also the
+                            // middles of the edges 01 12 20
   // Row 3 i + a: displacement of touch node i along axis a, per unit of each modal coordinate
   // [kg^-1/2]; the touchable rows of the paper's P (eq. 9).
   Rows shape;
@@ -24,17 +27,28 @@ struct ModalModel {
 struct ModelCost {
   double mesh_s{};
   double assemble_s{};
-  double solve_s{};
+  double factor_s{};
+  double iterate_s{};
+  double total_s() const { return mesh_s + assemble_s + factor_s + iterate_s; }
+};
+
+// One round of refining a mesh until the modes hold still.
+struct RefinementRound {
+  int tets{};
+  int modes{};
+  double moved{};  // the largest relative change of a frequency since the round before
 };
 
 // What the building of a model found out, for people and for proof.
 struct ModelReport {
+  int order{};
   int nodes{};
   int tets{};
   int dofs{};  // free ones
   int rigid_body_modes{};
   int counted_in_band{};
   double worst_residual{};
-  ModelCost cost;
+  ModelCost cost;                           // of all rounds
+  std::vector<RefinementRound> refinement;  // empty unless an accuracy was asked for
 };
 }  // namespace tapstudy::core

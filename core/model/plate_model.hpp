@@ -2,28 +2,33 @@
 #include <string>
 #include <vector>
 
-#include "core/model/fixation.hpp"
-#include "core/model/modal_model.hpp"
-#include "core/model/tetgen_mesher.hpp"
+#include "core/model/body_modes.hpp"
 namespace tapstudy::core {
 struct PlateSpec {
-  Box box;
-  MeshSize mesh;
+  Shape shape;
+  Meshing mesh;
   std::vector<Fixation> fixations;
   Material material;
   double band_limit_hz{};  // > 0; modes above are left out
 };
 
-// Equal text for plates that have one and the same model.
-std::string content_key(const PlateSpec& plate);
+// kappa of a frequency in a material: 2 pi f / sqrt(E / rho).
+double kappa_rad_per_m(double frequency_hz, const Material& material);
+
+// The body that a plate's model is scaled from, solved up to the plate's own band limit.
+BodySpec body_of(const PlateSpec& plate);
+
+// The body made of a material: frequencies and shapes scaled, damping given, modes above the band
+// left out. Throws InvalidInput for properties out of range, ModelError if the damping does not fit
+// the modes or the body was solved for a lower band.
+ModalModel model_of(const BodyModes& body, const Material& material, double band_limit_hz);
 
 struct PlateModel {
   ModalModel modal;
-  TetMesh mesh;
-  ModelReport report;
+  SolvedBody body;
 };
 
-// Mesh, matrices, modes, damping (paper sections 4.2.1 and 4.2.2).
-// Throws InvalidInput for properties out of range, ModelError for what cannot be built.
-PlateModel build_plate_model(const PlateSpec& plate);
+// Body and model in one. Throws InvalidInput for properties out of range, ModelError for what
+// cannot be built.
+PlateModel build_plate_model(const PlateSpec& plate, const ProgressHook& progress = {});
 }  // namespace tapstudy::core

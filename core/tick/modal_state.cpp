@@ -31,7 +31,7 @@ ModalState::ModalState(const ModalModel& model, Integrator integrator, double dt
 
 void ModalState::touch(const SurfacePoint& point, const Vec3& normal) noexcept {
   touched_.setZero();
-  for (std::size_t i = 0; i < point.nodes.size(); ++i) {
+  for (std::size_t i = 0; i < point.count; ++i) {
     for (Eigen::Index axis = 0; axis < 3; ++axis) {
       const double weight = point.weights[i] * normal[axis];
       if (weight != 0.0) {

@@ -4,7 +4,7 @@
 #include "core/haptic_state.hpp"
 #include "core/model/modal_model.hpp"
 #include "core/tick/oscillator_step.hpp"
-#include "core/tick/surface_locator.hpp"
+#include "core/tick/surface_point.hpp"
 namespace tapstudy::core {
 // The moving half of a plate: one displacement and one velocity a mode (paper eq. 11). The model
 // must outlive it. The constructor allocates; nothing else does.

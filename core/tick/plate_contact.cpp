@@ -5,22 +5,23 @@
 namespace tapstudy::core {
 const Contact& PlateContact::tick(const HandState& tip) noexcept {
   const Vec3& at = tip.position_m;
-  const bool is_over = std::abs(at.x()) <= half_x_m_ && std::abs(at.y()) <= half_y_m_;
+  const bool was_above = approach_.has_tip && approach_.tip_m.z() >= 0.0;
+  const bool is_over = std::abs(at.x()) <= face_.half_x_m && std::abs(at.y()) <= face_.half_y_m;
   const bool is_below = at.z() < 0.0;
-  const bool enters = !contact_.touching && was_above_ && is_below && is_over;
+  const bool enters = !contact_.touching && was_above && is_below && is_over;
   contact_.touching = (contact_.touching || enters) && is_below && is_over;
-  contact_.struck = enters && may_strike_;
+  contact_.struck = enters && approach_.may_strike;
   contact_.impact_speed_m_s = contact_.struck ? std::max(0.0, -tip.velocity_m_s.z()) : 0.0;
   contact_.penetration_m = contact_.touching ? -at.z() : 0.0;
   contact_.god_object_m = contact_.touching ? Vec3{at.x(), at.y(), 0.0} : at;
-  may_strike_ = !contact_.struck && (may_strike_ || at.z() > release_height_m_);
-  was_above_ = !is_below;
+  approach_.may_strike = !contact_.struck && (approach_.may_strike || at.z() > release_height_m_);
+  approach_.tip_m = at;
+  approach_.has_tip = true;
   return contact_;
 }
 
-void PlateContact::continue_from(const PlateContact& other) noexcept {
+void PlateContact::continue_from(const Approach& approach) noexcept {
   contact_ = {};
-  was_above_ = other.was_above_;
-  may_strike_ = other.may_strike_;
+  approach_ = approach;
 }
 }  // namespace tapstudy::core

@@ -10,7 +10,7 @@ std::size_t clamped_cell(double cells, std::size_t count) noexcept {
 }
 }  // namespace
 
-SurfaceLocator::SurfaceLocator(const ModalModel& model) {
+SurfaceLocator::SurfaceLocator(const ModalModel& model) : surface_{model.touch_surface} {
   const Eigen::RowVector3d low = model.touch_nodes_m.colwise().minCoeff();
   const Eigen::RowVector3d extent = model.touch_nodes_m.colwise().maxCoeff() - low;
   const auto triangles = static_cast<double>(model.touch_surface.rows());
@@ -25,14 +25,12 @@ SurfaceLocator::SurfaceLocator(const ModalModel& model) {
   std::vector<std::vector<int>> listed(cells_x_ * cells_y_);
   for (Eigen::Index row = 0; row < model.touch_surface.rows(); ++row) {
     Corners corners{};
-    std::array<int, 3> nodes{};
     for (std::size_t i = 0; i < 3; ++i) {
-      nodes.at(i) = model.touch_surface(row, static_cast<Eigen::Index>(i));
-      corners.x.at(i) = model.touch_nodes_m(nodes.at(i), 0);
-      corners.y.at(i) = model.touch_nodes_m(nodes.at(i), 1);
+      const int node = model.touch_surface(row, static_cast<Eigen::Index>(i));
+      corners.x.at(i) = model.touch_nodes_m(node, 0);
+      corners.y.at(i) = model.touch_nodes_m(node, 1);
     }
     corners_.push_back(corners);
-    nodes_.push_back(nodes);
     const auto [min_x, max_x] = std::ranges::minmax(corners.x);
     const auto [min_y, max_y] = std::ranges::minmax(corners.y);
     const std::size_t first = cell_of(min_x, min_y);
@@ -66,7 +64,8 @@ std::array<double, 3> SurfaceLocator::barycentric(const Corners& corners, double
 
 SurfacePoint SurfaceLocator::locate(double x_m, double y_m) const noexcept {
   const std::size_t cell = cell_of(x_m, y_m);
-  SurfacePoint best;
+  int best = 0;
+  std::array<double, 3> best_weights{};
   double deepest = -HUGE_VAL;
   for (int k = first_in_cell_[cell]; k < first_in_cell_[cell + 1]; ++k) {
     const auto triangle = static_cast<std::size_t>(triangles_[static_cast<std::size_t>(k)]);
@@ -74,12 +73,13 @@ SurfacePoint SurfaceLocator::locate(double x_m, double y_m) const noexcept {
     const double depth = *std::ranges::min_element(weights);
     if (depth > deepest) {
       deepest = depth;
-      best = {nodes_[triangle], weights};
+      best = static_cast<int>(triangle);
+      best_weights = weights;
     }
     if (depth >= 0.0) {
       break;
     }
   }
-  return best;
+  return surface_point(surface_, best, best_weights);
 }
 }  // namespace tapstudy::core

@@ -3,14 +3,8 @@
 #include <vector>
 
 #include "core/model/modal_model.hpp"
+#include "core/tick/surface_point.hpp"
 namespace tapstudy::core {
-// A point of the touchable surface as its surrounding nodes and their shape functions (paper
-// eq. 15, 16). On a face the tetrahedron's fourth shape function is zero, so three nodes suffice.
-struct SurfacePoint {
-  std::array<int, 3> nodes{};
-  std::array<double, 3> weights{};
-};
-
 // Finds the triangle under a point of a flat face in constant time: a grid over the face, each cell
 // listing the few triangles that overlap it. Built once, never changed.
 class SurfaceLocator {
@@ -34,7 +28,7 @@ class SurfaceLocator {
   std::size_t cells_x_{1};
   std::size_t cells_y_{1};
   std::vector<Corners> corners_;
-  std::vector<std::array<int, 3>> nodes_;
+  ModalModel::Triangles surface_;
   std::vector<int> first_in_cell_;  // into triangles_, one more than cells
   std::vector<int> triangles_;
 };

@@ -1,11 +1,15 @@
 #pragma once
+#include <memory>
 #include <optional>
+#include <variant>
 
 #include "core/haptic_state.hpp"
 #include "core/technique.hpp"
 #include "core/tick/decaying_sinusoid.hpp"
 #include "core/tick/modal_state.hpp"
 #include "core/tick/plate_contact.hpp"
+#include "core/tick/surface_contact.hpp"
+#include "core/tick/surface_locator.hpp"
 namespace tapstudy::core {
 // The finger as the paper sees it: the mass that strikes (eq. 14, grip included) and the spring and
 // damper through which vibration is felt (eq. 17).
@@ -24,11 +28,23 @@ struct RenderSettings {
   SinusoidShape sinusoid;
 };
 
+// What the finger meets: the upper face of a plate, or every side of a surface of triangles.
+using TouchedShape = std::variant<PlateFace, std::shared_ptr<const TriangleTree>>;
+
 // The model of a plate together with what finds a place on it. Built once, shared by renderers.
 struct VibratingPlate {
-  explicit VibratingPlate(const ModalModel& modal) : model{modal}, locator{modal} {}
+  // A plate, of which the upper face is touched.
+  explicit VibratingPlate(ModalModel modal);
+  // A body that is touched on the very triangles of its model.
+  static VibratingPlate touched_all_over(ModalModel modal);
+
   ModalModel model;
-  SurfaceLocator locator;
+  std::optional<SurfaceLocator> locator;          // of a plate
+  std::shared_ptr<const TriangleTree> triangles;  // of any other body
+
+ private:
+  struct AllOver {};
+  VibratingPlate(ModalModel modal, AllOver all_over);
 };
 
 struct RenderedTick {
@@ -44,20 +60,23 @@ struct RenderedTick {
 // (eq. 15). Vibration is felt while touching, through the finger's spring and damper (eq. 16, 17).
 class TapRenderer {
  public:
-  // plate may be nullptr where the technique has no vibration; it must outlive the renderer.
-  TapRenderer(const Technique& technique, const RenderSettings& settings, double half_x_m,
-              double half_y_m, const VibratingPlate* plate);
+  // plate may be nullptr where the technique has no vibration; it must outlive the renderer. A body
+  // that vibrates is touched on its own model's triangles.
+  TapRenderer(const Technique& technique, const RenderSettings& settings, TouchedShape shape,
+              const VibratingPlate* plate);
   RenderedTick tick(const HandState& tip) noexcept;
-  bool is_touching() const noexcept { return contact_.now().touching; }
+  bool is_touching() const noexcept;
   // Goes on in silence where another renderer left the finger, off the plate.
   void take_over_from(const TapRenderer& other) noexcept;
 
  private:
   void excite(const Contact& contact) noexcept;
+  SurfacePoint place_of(const Contact& contact) const noexcept;
   ForceParts parts(const Contact& contact) const noexcept;
 
   RenderSettings settings_;
-  PlateContact contact_;
+  TouchedShape shape_;
+  std::variant<PlateContact, SurfaceContact> contact_;
   const VibratingPlate* plate_;
   std::optional<ModalState> vibration_;
   std::optional<DecayingSinusoid> sinusoid_;

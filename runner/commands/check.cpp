@@ -1,9 +1,7 @@
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <map>
 #include <memory>
 
 #include "analysis/proportion.hpp"
@@ -13,7 +11,6 @@
 #include "protocols/schedule.hpp"
 #include "runner/commands/commands.hpp"
 #include "runner/model_library.hpp"
-#include "runner/progress.hpp"
 #include "runner/seed.hpp"
 #include "runner/session.hpp"
 namespace tapstudy::runner {
@@ -27,23 +24,26 @@ constexpr double alpha = 0.05;
 
 void print_models(const protocols::Protocol& protocol) {
   fmt::print("\nmodels\n");
-  std::map<std::string, std::vector<std::string>> users;
+  ModelLibrary models;
   for (const protocols::Stimulus& stimulus : protocol.stimuli) {
-    if (stimulus.technique->vibration) {
-      users[core::content_key(plate_spec(protocol, stimulus))].push_back(stimulus.name);
+    if (!stimulus.technique->vibration) {
+      continue;
     }
+    const int solved_before = models.bodies_solved();
+    const int used_before = models.bodies_used();
+    const auto body = models.body_of(protocol, stimulus);
+    const auto plate = models.plate_of(protocol, stimulus);
+    const core::ModelReport& report = body->report;
+    const std::string cost =
+        models.bodies_solved() > solved_before ? fmt::format("{:.3f} s", report.cost.total_s())
+        : models.bodies_used() > used_before
+            ? fmt::format("kept from before, where it took {:.3f} s", report.cost.total_s())
+            : "scaled from the same body";
+    fmt::print("  {}: {} {} tetrahedra, {} dof, {} modes below {} Hz, {}\n", stimulus.name,
+               report.tets, report.order == 2 ? "quadratic" : "linear", report.dofs,
+               plate->model.frequency_hz.size(), protocol.band_limit_hz, cost);
   }
-  for (const auto& [key, names] : users) {
-    const Progress progress{fmt::format("building the model of '{}'", names.front())};
-    const core::PlateModel plate =
-        core::build_plate_model(plate_spec(protocol, protocol.stimulus(names.front())));
-    const core::ModelCost& cost = plate.report.cost;
-    fmt::print("  {}: {} tetrahedra, {} dof, {} modes below {} Hz, {:.3f} s\n",
-               fmt::join(names, ", "), plate.report.tets, plate.report.dofs,
-               plate.modal.frequency_hz.size(), protocol.band_limit_hz,
-               cost.mesh_s + cost.assemble_s + cost.solve_s);
-  }
-  if (users.empty()) {
+  if (models.bodies_used() == 0) {
     fmt::print("  none: no technique here vibrates\n");
   }
 }

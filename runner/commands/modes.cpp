@@ -1,6 +1,8 @@
 #include <fmt/format.h>
+#include <sys/resource.h>
 
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -17,16 +19,24 @@ struct ModesOptions {
   std::string mesh_out;
 };
 
+double peak_memory_bytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return 1024.0 * static_cast<double>(usage.ru_maxrss);
+}
+
 void print_json(const ModesOptions& options, const core::PlateModel& plate) {
-  const core::ModelReport& report = plate.report;
+  const core::ModelReport& report = plate.body.modes.report;
   nlohmann::ordered_json json{{"schema_version", 1}, {"stimulus", options.stimulus}};
   json["frequencies_hz"] =
       std::vector<double>(plate.modal.frequency_hz.begin(), plate.modal.frequency_hz.end());
   json["damping_ratios"] =
       std::vector<double>(plate.modal.damping_ratio.begin(), plate.modal.damping_ratio.end());
-  json["alpha_per_s"] = plate.modal.damping.alpha_per_s;
-  json["beta_s"] = plate.modal.damping.beta_s;
-  json["element_order"] = 1;
+  if (plate.modal.damping) {
+    json["alpha_per_s"] = plate.modal.damping->alpha_per_s;
+    json["beta_s"] = plate.modal.damping->beta_s;
+  }
+  json["element_order"] = report.order;
   json["nodes"] = report.nodes;
   json["elements"] = report.tets;
   json["dof"] = report.dofs;
@@ -35,17 +45,42 @@ void print_json(const ModesOptions& options, const core::PlateModel& plate) {
   json["worst_residual"] = report.worst_residual;
   json["seconds"] = {{"mesh", report.cost.mesh_s},
                      {"assemble", report.cost.assemble_s},
-                     {"solve", report.cost.solve_s},
-                     {"total", report.cost.mesh_s + report.cost.assemble_s + report.cost.solve_s}};
+                     {"factor", report.cost.factor_s},
+                     {"iterate", report.cost.iterate_s},
+                     {"total", report.cost.total_s()}};
+  json["peak_memory_bytes"] = peak_memory_bytes();
+  for (const core::RefinementRound& round : report.refinement) {
+    json["refinement"].push_back({{"elements", round.tets}, {"modes", round.modes}});
+    if (std::isfinite(round.moved)) {
+      json["refinement"].back()["moved"] = round.moved;
+    }
+  }
   fmt::print("{}\n", json.dump(2));
+}
+
+void print_refinement(const core::ModelReport& report) {
+  for (const core::RefinementRound& round : report.refinement) {
+    fmt::print("  {:>7} tetrahedra: {} modes", round.tets, round.modes);
+    fmt::print("{}\n", std::isfinite(round.moved)
+                           ? fmt::format(", moved {:.2g} % at most", 100.0 * round.moved)
+                           : std::string{});
+  }
+  if (!report.refinement.empty()) {
+    fmt::print("\n");
+  }
 }
 
 void print_table(const ModesOptions& options, const protocols::Protocol& protocol,
                  const core::PlateModel& plate) {
-  const core::ModelReport& report = plate.report;
-  fmt::print("{}: {} nodes, {} linear tetrahedra, {} free degrees of freedom, {:.3f} s\n\n",
-             options.stimulus, report.nodes, report.tets, report.dofs,
-             report.cost.mesh_s + report.cost.assemble_s + report.cost.solve_s);
+  const core::ModelReport& report = plate.body.modes.report;
+  fmt::print(
+      "{}: {} nodes, {} {} tetrahedra, {} free degrees of freedom\n"
+      "  {:.3f} s (mesh {:.3f}, assemble {:.3f}, factor {:.3f}, iterate {:.3f}), {:.0f} MB at "
+      "most\n\n",
+      options.stimulus, report.nodes, report.tets, report.order == 2 ? "quadratic" : "linear",
+      report.dofs, report.cost.total_s(), report.cost.mesh_s, report.cost.assemble_s,
+      report.cost.factor_s, report.cost.iterate_s, 1e-6 * peak_memory_bytes());
+  print_refinement(report);
   fmt::print("  mode  frequency_hz  damping_ratio\n");
   for (Eigen::Index i = 0; i < plate.modal.frequency_hz.size(); ++i) {
     fmt::print("  {:>4}  {:>12.3f}  {:>13.4f}\n", i + 1, plate.modal.frequency_hz[i],
@@ -63,11 +98,11 @@ void run_modes(const ModesOptions& options) {
   const protocols::Protocol protocol = protocols::read_protocol(options.protocol);
   const core::PlateSpec spec = plate_spec(protocol, protocol.stimulus(options.stimulus));
   const core::PlateModel plate = [&] {
-    const Progress progress{fmt::format("building the model of '{}'", options.stimulus)};
-    return core::build_plate_model(spec);
+    Progress progress{fmt::format("building the model of '{}'", options.stimulus)};
+    return core::build_plate_model(spec, progress.hook());
   }();
   if (!options.mesh_out.empty()) {
-    core::write_tetgen_files(plate.mesh, options.mesh_out);
+    core::write_tetgen_files(plate.body.mesh, options.mesh_out);
   }
   if (options.wants_json) {
     print_json(options, plate);

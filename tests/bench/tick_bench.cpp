@@ -48,7 +48,7 @@ RenderSettings settings() {
 
 void tick_in_contact(benchmark::State& state) {
   const VibratingPlate plate{made_up_model(state.range(0), static_cast<int>(state.range(1)))};
-  TapRenderer renderer{*find_technique("fem+sinusoid"), settings(), 0.3, 0.3, &plate};
+  TapRenderer renderer{*find_technique("fem+sinusoid"), settings(), PlateFace{0.3, 0.3}, &plate};
   renderer.tick({{0.0, 0.0, 0.001}, {0.0, 0.0, -0.3}});
   double angle = 0.0;
   for (auto _ : state) {
@@ -68,7 +68,7 @@ BENCHMARK(tick_in_contact)
 void modal_core(benchmark::State& state) {
   const VibratingPlate plate{made_up_model(55, 10)};
   ModalState modes{plate.model, Integrator::exact, dt_s};
-  modes.touch(plate.locator.locate(0.1, 0.1), {0.0, 0.0, 1.0});
+  modes.touch(plate.locator->locate(0.1, 0.1), {0.0, 0.0, 1.0});
   modes.strike(1.0);
   const bool is_silent = state.range(0) == 1;
   for (int tick = 0; is_silent && tick < 1'000'000; ++tick) {

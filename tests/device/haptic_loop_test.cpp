@@ -54,7 +54,8 @@ class CrankedClock final : public device::TickClock {
 struct Bench {
   explicit Bench(std::size_t ring = 4096) : trace{ring} {
     for (int i = 0; i < 2; ++i) {
-      renderers.emplace_back(core::techniques[0], core::RenderSettings{}, 0.3, 0.3, nullptr);
+      renderers.emplace_back(core::techniques[0], core::RenderSettings{}, core::PlateFace{0.3, 0.3},
+                             nullptr);
     }
   }
   std::vector<core::TraceSample> samples() {

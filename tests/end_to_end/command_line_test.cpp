@@ -202,7 +202,7 @@ TEST_CASE("check shows design, schedule, models and power", "[end_to_end]") {
   CHECK_THAT(result.standard_output, Contains("chance 25 %"));
   CHECK_THAT(result.standard_output, Contains("of 80 answers 27 must be right"));
   CHECK_THAT(result.standard_output, Contains("schedule of participant 10"));
-  CHECK_THAT(result.standard_output, Contains("445 tetrahedra"));
+  CHECK_THAT(result.standard_output, Contains("445 linear tetrahedra"));
 }
 
 TEST_CASE("techniques without vibration build no model", "[end_to_end]") {

@@ -33,9 +33,14 @@ void collect(const nlohmann::json& schema, const std::string& path, std::set<std
   }
 }
 
+// Surface files are looked for beside it.
+std::string every_key_file() {
+  return testing::source("tests/data/every_key.yaml");
+}
+
 bool reader_accepts(const std::string& text) {
   try {
-    protocols::parse_protocol(text, "study.yaml");
+    protocols::parse_protocol(text, every_key_file());
   } catch (const core::InvalidInput&) {
     return false;
   }
@@ -54,16 +59,16 @@ bool schema_accepts(const std::string& text) {
   return result.exit_code == 0;
 }
 std::string every_key() {
-  return testing::contents(testing::source("tests/data/every_key.yaml"));
+  return testing::contents(every_key_file());
 }
 }  // namespace
 
 TEST_CASE("the schema has exactly the keys that the reader asks for", "[protocols][schema]") {
-  REQUIRE_NOTHROW(protocols::parse_protocol(every_key(), "every_key.yaml"));
+  REQUIRE_NOTHROW(protocols::parse_protocol(every_key(), every_key_file()));
   std::set<std::string> in_schema;
   collect(nlohmann::json::parse(testing::contents(testing::shipped("schema/protocol.schema.json"))),
           "", in_schema);
-  CHECK(in_schema == protocols::keys_asked_for(every_key()));
+  CHECK(in_schema == protocols::keys_asked_for(every_key(), every_key_file()));
 }
 
 TEST_CASE("schema and reader accept the same protocols", "[protocols][schema][slow]") {
@@ -73,6 +78,15 @@ TEST_CASE("schema and reader accept the same protocols", "[protocols][schema][sl
   };
   const auto [from, to] = GENERATE(values<Change>({
       {"title: Every", "title: Every"},
+      {"order: 2", "order: 3"},
+      {"flattening: 1", "flattening: 0.5"},
+      {"accuracy: 0.01", "accuracy: 1"},
+      {"radius_m: 0.02}", "low_m: [0, 0, 0]}"},
+      {"side: left}", "side: under}"},
+      {"region: side, side: left", "region: side, side: left, radius_m: 1"},
+      {"metres_per_unit: 0.001", "metres_per_unit: 0"},
+      {"modal_ratios: [0.02, 0.01]", "modal_ratios: []"},
+      {"modal_ratios: [0.02, 0.01]", "modal_ratios: [0.02, 0.01], first_ratio: 0.1"},
       {"title: Every key there is\n", ""},
       {"title: Every", "titel: x\ntitle: Every"},
       {"tapstudy/1", "tapstudy/2"},
@@ -80,7 +94,7 @@ TEST_CASE("schema and reader accept the same protocols", "[protocols][schema][sl
       {"mass_kg: 0.058", "mass_kg: heavy"},
       {"rate_hz: 1000", "rate_hz: 100"},
       {"origin_m: [0, 0, 0]", "origin_m: [0, 0]"},
-      {"lateral_scale: 0.1", "lateral_scale: 0"},
+      {"lateral_scale: 1", "lateral_scale: 0"},
       {"poissons_ratio: 0.25", "poissons_ratio: 0.5"},
       {"poissons_ratio: 0.25", "poissons_ratio: 0.49"},
       {"alpha_per_s: 120, beta_s: 7.05e-5", "alpha_per_s: 120"},

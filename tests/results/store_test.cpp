@@ -4,8 +4,8 @@
 #include <filesystem>
 
 #include "core/error.hpp"
+#include "core/sha256.hpp"
 #include "results/recorder.hpp"
-#include "results/sha256.hpp"
 #include "results/store_error.hpp"
 #include "results/trace_codec.hpp"
 #include "support/processes.hpp"
@@ -13,6 +13,7 @@
 using namespace tapstudy;
 using namespace tapstudy::results;
 using Catch::Matchers::Contains;
+using tapstudy::core::sha256;
 
 namespace {
 const StudyRow study{"a study", "study.yaml", "format: tapstudy/1", sha256("format: tapstudy/1")};

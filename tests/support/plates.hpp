@@ -10,12 +10,12 @@ inline core::Material acrylic() {
 }
 inline core::Fixation corner_vertex(double sign_x, double sign_y) {
   core::Fixation fixation;
-  fixation.at_m = {0.3 * sign_x, 0.3 * sign_y};
+  fixation.at_m = {0.3 * sign_x, 0.3 * sign_y, 0.0};
   return fixation;
 }
 inline core::PlateSpec paper_plate(int corners, const core::Material& material) {
   const std::vector<core::Fixation> all{corner_vertex(-1, -1), corner_vertex(1, -1),
                                         corner_vertex(1, 1), corner_vertex(-1, 1)};
-  return {{{0.6, 0.6, 0.05}}, {}, {all.begin(), all.begin() + corners}, material, 300.0};
+  return {core::Box{{0.6, 0.6, 0.05}}, {}, {all.begin(), all.begin() + corners}, material, 300.0};
 }
 }  // namespace tapstudy::testing

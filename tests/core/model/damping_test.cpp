@@ -1,9 +1,9 @@
-#include "core/model/damping.hpp"
+#include "core/model/modes/damping.hpp"
 
 #include <catch2/catch.hpp>
 
 #include "core/error.hpp"
-#include "core/model/material.hpp"
+#include "core/model/elements/material.hpp"
 #include "support/plates.hpp"
 using namespace tapstudy;
 using Catch::Matchers::Contains;

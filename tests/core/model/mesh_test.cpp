@@ -3,7 +3,7 @@
 
 #include "core/error.hpp"
 #include "core/model/fixation.hpp"
-#include "core/model/tetgen_mesher.hpp"
+#include "core/model/mesh/tetgen_mesher.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;
 using Catch::Matchers::Contains;
@@ -17,7 +17,7 @@ bool has_node(const core::TetMesh& mesh, const core::Vec3& at_m) {
 core::Fixation disc(double x, double y, double radius, core::Face face) {
   core::Fixation fixation;
   fixation.shape = core::RegionShape::disc;
-  fixation.at_m = {x, y};
+  fixation.at_m = {x, y, 0.0};
   fixation.radius_m = radius;
   fixation.face = face;
   return fixation;
@@ -28,7 +28,7 @@ TEST_CASE("a meshed box has the box's volume and a closed surface", "[core][mesh
   const auto size = GENERATE(values<core::Vec3>(
       {{0.6, 0.6, 0.05}, {1.0, 0.05, 0.05}, {0.1, 0.2, 0.3}, {600.0, 600.0, 50.0}}));
   const Box box{size};
-  const core::TetMesh mesh = core::mesh_box(box, {});
+  const core::TetMesh mesh = core::mesh_shape(box, {});
   CHECK(core::volume_m3(mesh) == Approx(size.prod()));
   std::map<std::pair<int, int>, int> edges;
   for (const auto& triangle : mesh.surface.rowwise()) {
@@ -45,7 +45,7 @@ TEST_CASE("a meshed box has the box's volume and a closed surface", "[core][mesh
 TEST_CASE("a smaller tetrahedron limit is kept", "[core][mesh]") {
   core::MeshSize fine;
   fine.max_tet_volume_m3 = 1e-5;
-  const core::TetMesh mesh = core::mesh_box(plate, fine);
+  const core::TetMesh mesh = core::mesh_shape(plate, fine);
   for (Eigen::Index tet = 0; tet < mesh.tets.rows(); ++tet) {
     CHECK(core::tet_volume_m3(mesh, tet) <= 1e-5 * (1.0 + 1e-9));
   }
@@ -56,7 +56,7 @@ TEST_CASE("fixations find their nodes on faces, edges and corners", "[core][mesh
                                               disc(0.3, 0.0, 0.02, core::Face::top),
                                               disc(-0.3, -0.3, 0.01, core::Face::through)};
   const auto points = core::points_to_mesh(fixations, plate);
-  const core::TetMesh mesh = core::mesh_box(plate, {}, points);
+  const core::TetMesh mesh = core::mesh_shape(plate, {}, points);
   for (const core::Vec3& point : points) {
     CHECK(has_node(mesh, point));
   }
@@ -69,7 +69,7 @@ TEST_CASE("fixations find their nodes on faces, edges and corners", "[core][mesh
 TEST_CASE("a fixation holds just the axes it says", "[core][fixation]") {
   core::Fixation slider = disc(0.0, 0.0, 0.02, core::Face::top);
   slider.holds = {false, false, true};
-  const core::TetMesh mesh = core::mesh_box(plate, {}, core::points_to_mesh({slider}, plate));
+  const core::TetMesh mesh = core::mesh_shape(plate, {}, core::points_to_mesh({slider}, plate));
   const auto held = core::held_dofs(mesh, plate, {slider});
   for (std::size_t dof = 0; dof < held.size(); ++dof) {
     CHECK((!held[dof] || dof % 3 == 2));
@@ -79,7 +79,7 @@ TEST_CASE("a fixation holds just the axes it says", "[core][fixation]") {
 
 TEST_CASE("a fixation off the plate, or one that holds everything, is refused",
           "[core][fixation]") {
-  const core::TetMesh mesh = core::mesh_box(plate, {});
+  const core::TetMesh mesh = core::mesh_shape(plate, {});
   CHECK_THROWS_WITH(core::held_dofs(mesh, plate, {disc(2.0, 0.0, 0.1, core::Face::top)}),
                     Contains("touches no node"));
   CHECK_THROWS_WITH(core::held_dofs(mesh, plate, {disc(0.0, 0.0, 9.0, core::Face::through)}),
@@ -87,15 +87,15 @@ TEST_CASE("a fixation off the plate, or one that holds everything, is refused",
 }
 
 TEST_CASE("a sheet that would take millions of tetrahedra is refused", "[core][mesh]") {
-  CHECK_THROWS_WITH(core::mesh_box({{0.6, 0.6, 0.0005}}, {}), Contains("too thin"));
+  CHECK_THROWS_WITH(core::mesh_shape(Box{{0.6, 0.6, 0.0005}}, {}), Contains("too thin"));
   core::MeshSize tiny;
   tiny.max_tet_volume_m3 = 1e-12;
-  CHECK_THROWS_WITH(core::mesh_box(plate, tiny), Contains("max_tet_volume_m3"));
+  CHECK_THROWS_WITH(core::mesh_shape(plate, tiny), Contains("max_tet_volume_m3"));
 }
 
 TEST_CASE("a mesh is written in TetGen's form and never over a file", "[core][mesh]") {
   const testing::TempDirectory directory;
-  const core::TetMesh mesh = core::mesh_box(plate, {});
+  const core::TetMesh mesh = core::mesh_shape(plate, {});
   core::write_tetgen_files(mesh, directory / "plate");
   CHECK_THAT(testing::contents(directory / "plate.node"), Catch::StartsWith("172 3 0 0\n"));
   CHECK_THAT(testing::contents(directory / "plate.ele"), Catch::StartsWith("445 4 0\n"));

@@ -1,11 +1,11 @@
-#include "core/model/modal_solver.hpp"
+#include "core/model/modes/modal_solver.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <catch2/catch.hpp>
 #include <cmath>
 
 #include "core/error.hpp"
-#include "core/model/inertia.hpp"
+#include "core/model/modes/shifted_factor.hpp"
 #include "core/model/plate_model.hpp"
 #include "support/plates.hpp"
 using namespace tapstudy;
@@ -13,10 +13,10 @@ using core::StiffnessAndMass;
 
 namespace {
 StiffnessAndMass assembled(const core::PlateSpec& plate) {
-  const core::TetMesh mesh =
-      core::mesh_box(plate.box, plate.mesh, core::points_to_mesh(plate.fixations, plate.box));
+  const core::TetMesh mesh = core::mesh_shape(plate.shape, plate.mesh.size,
+                                              core::points_to_mesh(plate.fixations, plate.shape));
   return core::assemble(mesh, plate.material,
-                        core::free_dofs(core::held_dofs(mesh, plate.box, plate.fixations)));
+                        core::free_dofs(core::held_dofs(mesh, plate.shape, plate.fixations)));
 }
 // All eigenvalues by a dense solver that shares nothing with the sparse one.
 Eigen::VectorXd all_eigenvalues(const StiffnessAndMass& matrices) {
@@ -29,7 +29,7 @@ double cantilever_hz(double max_tet_volume_m3) {
   const core::Box bar{{1.0, 0.05, 0.05}};
   core::MeshSize size;
   size.max_tet_volume_m3 = max_tet_volume_m3;
-  const core::TetMesh mesh = core::mesh_box(bar, size);
+  const core::TetMesh mesh = core::mesh_shape(bar, size);
   std::vector<bool> held;
   for (const double x : mesh.nodes_m.col(0)) {
     held.insert(held.end(), 3, x < bar.low_m().x() + 1e-9);
@@ -46,8 +46,8 @@ TEST_CASE("the assembled mass is the plate's mass along each axis", "[core][mode
   const StiffnessAndMass matrices = assembled(plate);
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
     const Eigen::VectorXd shift = Eigen::Vector3d::Unit(axis).replicate(matrices.M.rows() / 3, 1);
-    CHECK(shift.dot(matrices.M * shift) == Approx(0.6 * 0.6 * 0.05 * 610.0));
-    CHECK((matrices.K * shift).norm() < 1e-9 * matrices.K.norm());
+    CHECK(shift.dot(matrices.mass() * shift) == Approx(0.6 * 0.6 * 0.05 * 610.0));
+    CHECK((matrices.stiffness() * shift).norm() < 1e-9 * matrices.K.norm());
   }
 }
 
@@ -56,7 +56,8 @@ TEST_CASE("the inertia of K - sigma M counts the eigenvalues below sigma", "[cor
   const Eigen::VectorXd eigenvalues = all_eigenvalues(matrices);
   for (const double hz : {10.0, 60.0, 210.0, 300.0, 1000.0, 3000.0}) {
     const double sigma = std::pow(2.0 * M_PI * hz, 2);
-    CHECK(core::eigenvalues_below(matrices, sigma) == (eigenvalues.array() < sigma).count());
+    CHECK(core::ShiftedFactor(matrices, sigma).eigenvalues_below() ==
+          (eigenvalues.array() < sigma).count());
   }
 }
 
@@ -70,7 +71,7 @@ TEST_CASE("all modes of the band are found, none beyond, M-orthonormal", "[core]
   for (Eigen::Index i = 0; i < modes.omega_rad_s.size(); ++i) {
     CHECK(std::pow(modes.omega_rad_s[i], 2) == Approx(eigenvalues[i]).epsilon(1e-9));
   }
-  const Eigen::MatrixXd gram = modes.shapes.transpose() * matrices.M * modes.shapes;
+  const Eigen::MatrixXd gram = modes.shapes.transpose() * (matrices.mass() * modes.shapes);
   CHECK((gram - Eigen::MatrixXd::Identity(gram.rows(), gram.cols())).cwiseAbs().sum() < 1e-9);
 }
 
@@ -116,7 +117,7 @@ TEST_CASE("a slender cantilever comes down to Euler-Bernoulli as far as T4 allow
 
 TEST_CASE("a body of a few nodes is solved as well", "[core][model]") {
   core::PlateSpec cube = testing::paper_plate(4, testing::mdf());
-  cube.box = {{0.1, 0.1, 0.1}};
+  cube.shape = core::Box{{0.1, 0.1, 0.1}};
   for (core::Fixation& corner : cube.fixations) {
     corner.at_m /= 6.0;
     corner.face = core::Face::bottom;

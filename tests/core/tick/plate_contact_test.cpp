@@ -10,7 +10,7 @@ HandState at(double z_m, double speed_m_s = 0.0, double x_m = 0.0) {
   return {{x_m, 0.0, z_m}, {0.0, 0.0, speed_m_s}};
 }
 int strikes(const std::vector<double>& heights_m) {
-  PlateContact contact{0.3, 0.3, release_height_m};
+  PlateContact contact{{0.3, 0.3}, release_height_m};
   int count = 0;
   for (const double z : heights_m) {
     count += contact.tick(at(z)).struck ? 1 : 0;
@@ -20,7 +20,7 @@ int strikes(const std::vector<double>& heights_m) {
 }  // namespace
 
 TEST_CASE("a finger that passes the face strikes once, with its speed", "[core][contact]") {
-  PlateContact contact{0.3, 0.3, release_height_m};
+  PlateContact contact{{0.3, 0.3}, release_height_m};
   contact.tick(at(0.01, -0.3));
   const Contact impact = contact.tick(at(-0.001, -0.3));
   CHECK(impact.struck);
@@ -37,7 +37,7 @@ TEST_CASE("chatter inside the release height does not strike again", "[core][con
 }
 
 TEST_CASE("a finger found below the face is not in contact", "[core][contact][safety]") {
-  PlateContact contact{0.3, 0.3, release_height_m};
+  PlateContact contact{{0.3, 0.3}, release_height_m};
   CHECK_FALSE(contact.tick(at(-0.01)).touching);
   CHECK_FALSE(contact.tick(at(-0.005)).touching);
   contact.tick(at(0.001));
@@ -45,14 +45,14 @@ TEST_CASE("a finger found below the face is not in contact", "[core][contact][sa
 }
 
 TEST_CASE("a finger that comes in from the side meets no force", "[core][contact][safety]") {
-  PlateContact contact{0.3, 0.3, release_height_m};
+  PlateContact contact{{0.3, 0.3}, release_height_m};
   contact.tick(at(0.01, 0.0, 0.4));
   contact.tick(at(-0.01, 0.0, 0.4));
   CHECK_FALSE(contact.tick(at(-0.01, 0.0, 0.2)).touching);
 }
 
 TEST_CASE("a finger that slides over the edge is free", "[core][contact]") {
-  PlateContact contact{0.3, 0.3, release_height_m};
+  PlateContact contact{{0.3, 0.3}, release_height_m};
   contact.tick(at(0.01, 0.0, 0.29));
   CHECK(contact.tick(at(-0.001, 0.0, 0.299)).touching);
   CHECK_FALSE(contact.tick(at(-0.001, 0.0, 0.301)).touching);

@@ -22,7 +22,7 @@ RenderSettings settings() {
 }
 // A finger that goes straight in at 0.3 m/s and stays 2 mm deep.
 std::vector<RenderedTick> tapped(const char* technique, double x_m, double y_m) {
-  TapRenderer renderer{*find_technique(technique), settings(), 0.3, 0.3, &plate()};
+  TapRenderer renderer{*find_technique(technique), settings(), PlateFace{0.3, 0.3}, &plate()};
   std::vector<RenderedTick> ticks;
   renderer.tick({{x_m, y_m, 0.001}, {0.0, 0.0, -0.3}});
   for (int tick = 0; tick < 300; ++tick) {
@@ -87,14 +87,14 @@ TEST_CASE("fem+sinusoid is fem and sinusoid together", "[core][technique]") {
 }
 
 TEST_CASE("nothing is felt off the plate", "[core][technique][safety]") {
-  TapRenderer renderer{*find_technique("fem+sinusoid"), settings(), 0.3, 0.3, &plate()};
+  TapRenderer renderer{*find_technique("fem+sinusoid"), settings(), PlateFace{0.3, 0.3}, &plate()};
   renderer.tick({{0.0, 0.0, 0.001}, {0.0, 0.0, -1.0}});
   renderer.tick({{0.0, 0.0, -0.001}, {0.0, 0.0, -1.0}});
   CHECK(renderer.tick({{0.0, 0.0, 0.0001}, {}}).force_n == Vec3::Zero());
 }
 
 TEST_CASE("rendering allocates nothing", "[core][technique][realtime]") {
-  TapRenderer renderer{*find_technique("fem+sinusoid"), settings(), 0.3, 0.3, &plate()};
+  TapRenderer renderer{*find_technique("fem+sinusoid"), settings(), PlateFace{0.3, 0.3}, &plate()};
   const testing::AllocationCount allocations;
   for (int tick = 0; tick < 10'000; ++tick) {
     renderer.tick({{0.0001 * (tick % 1000), 0.0, 0.002 * std::sin(0.05 * tick)}, {}});

@@ -1,0 +1,87 @@
+#pragma once
+#include <array>
+#include <vector>
+
+#include "core/geometry/triangle_surface.hpp"
+namespace tapstudy::core {
+// Finds the triangles near a point or along a segment in logarithmic time: a binary tree of boxes.
+// Built once; its questions neither allocate nor throw, so a tick may ask them.
+class TriangleTree {
+ public:
+  using Point = Eigen::Vector3d;
+  static constexpr int none = -1;
+  struct Entry {
+    int triangle{none};
+    double along{1.0};  // 0 at the segment's start, 1 at its end
+  };
+
+  // At least one triangle.
+  explicit TriangleTree(TriangleSurface surface);
+
+  // The first triangle through which the segment passes from its outer to its inner side. Edges
+  // belong to both their triangles, so nothing slips between two. A start no more than `skin` below
+  // a triangle counts as on it.
+  Entry first_entered(const Point& from, const Point& to, double skin) const noexcept;
+  // Whether some triangle comes within the distance.
+  bool is_near(const Point& point, double distance) const noexcept;
+
+  // Every triangle whose box the segment touches.
+  template <class Visit>
+  void visit_along(const Point& from, const Point& to, const Visit& visit) const noexcept {
+    const Segment segment{from, to};
+    walk([&](const Node& node) { return touches(node, segment); }, visit);
+  }
+  // Whether the segment passes through the triangle, in either direction.
+  bool is_pierced(int triangle, const Point& from, const Point& to) const noexcept;
+
+  const TriangleSurface& surface() const noexcept { return surface_; }
+  Point normal(int triangle) const noexcept { return normals_.row(triangle); }  // unit length
+  // Coordinates that sum to 1, of the nearest point of the triangle.
+  std::array<double, 3> barycentric(int triangle, const Point& point) const noexcept;
+
+ private:
+  struct Node {
+    Point middle;
+    Point half;
+    int first;  // leaf: into order_; inner: the right child, the left one follows its parent
+    int count;  // 0: inner
+  };
+  struct Segment {
+    Segment(const Point& from, const Point& to) noexcept
+        : middle{0.5 * (from + to)}, half{0.5 * (to - from)} {}
+    Point middle;
+    Point half;
+  };
+  static constexpr std::size_t deepest = 64;
+
+  static bool touches(const Node& node, const Segment& segment) noexcept;
+  template <class Descend, class Visit>
+  void walk(const Descend& descend, const Visit& visit) const noexcept {
+    std::array<int, deepest> waiting{};
+    std::size_t count = 1;
+    while (count > 0) {
+      const int at = waiting[--count];
+      const Node& node = nodes_[static_cast<std::size_t>(at)];
+      if (!descend(node)) {
+        continue;
+      }
+      for (int k = node.first; k < node.first + node.count; ++k) {
+        visit(order_[static_cast<std::size_t>(k)]);
+      }
+      if (node.count == 0) {
+        waiting[count++] = node.first;
+        waiting[count++] = at + 1;
+      }
+    }
+  }
+  int build(int first, int count);
+  Point corner(int triangle, int i) const noexcept;
+  bool is_crossed(int triangle, const Point& from, const Point& to) const noexcept;
+
+  TriangleSurface surface_;
+  TriangleSurface::Points normals_;
+  TriangleSurface::Points centres_;
+  std::vector<Node> nodes_;
+  std::vector<int> order_;
+};
+}  // namespace tapstudy::core

@@ -1,0 +1,129 @@
+#include "core/model/body_modes.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "core/error.hpp"
+#include "core/model/modes/modal_solver.hpp"
+#include "core/model/stopwatch.hpp"
+#include "core/model/touchable_part.hpp"
+namespace tapstudy::core {
+namespace {
+constexpr double tets_of_first_round = 200.0;
+constexpr double finer = 0.25;  // the volume of a tetrahedron, from round to round
+constexpr int most_rounds = 8;
+
+Eigen::MatrixXd all_rows(const Eigen::MatrixXd& free_rows, const FreeDofs& dofs) {
+  Eigen::MatrixXd rows =
+      Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(dofs.position.size()), free_rows.cols());
+  for (std::size_t i = 0; i < dofs.position.size(); ++i) {
+    if (dofs.position[i] >= 0) {
+      rows.row(static_cast<Eigen::Index>(i)) = free_rows.row(dofs.position[i]);
+    }
+  }
+  return rows;
+}
+
+void add(const ModelCost& more, ModelCost& to) {
+  to.mesh_s += more.mesh_s;
+  to.assemble_s += more.assemble_s;
+  to.factor_s += more.factor_s;
+  to.iterate_s += more.iterate_s;
+}
+
+SolvedBody solve_once(const BodySpec& body, const MeshSize& size, const ProgressHook& progress) {
+  SolvedBody solved;
+  ModelReport& report = solved.modes.report;
+  Stopwatch watch;
+  tell(progress, "meshing");
+  solved.mesh = mesh_shape(body.shape, size, points_to_mesh(body.fixations, body.shape));
+  if (body.mesh.order == 2) {
+    solved.mesh = with_middles(solved.mesh);
+  }
+  report.cost.mesh_s = watch.lap_s();
+  tell(progress, fmt::format("assembling {} tetrahedra", solved.mesh.tets.rows()));
+  const FreeDofs dofs = free_dofs(held_dofs(solved.mesh, body.shape, body.fixations));
+  const Material unit{1.0, 1.0, body.poissons_ratio, {}};
+  const StiffnessAndMass matrices = assemble(solved.mesh, unit, dofs);
+  report.cost.assemble_s = watch.lap_s();
+  const double turn = 2.0 * std::numbers::pi;
+  const Modes modes = solve_modes(matrices, body.band_limit_rad_per_m / turn, progress);
+  report.cost.factor_s = modes.factor_s;
+  report.cost.iterate_s = modes.iterate_s;
+  solved.modes.kappa_rad_per_m = modes.omega_rad_s;
+  solved.displacement = all_rows(modes.shapes, dofs);
+  report.order = solved.mesh.order();
+  report.nodes = static_cast<int>(solved.mesh.nodes_m.rows());
+  report.tets = static_cast<int>(solved.mesh.tets.rows());
+  report.dofs = dofs.count;
+  report.rigid_body_modes = modes.rigid_body_modes;
+  report.counted_in_band = modes.counted_in_band;
+  report.worst_residual = modes.worst_residual;
+  return solved;
+}
+
+double largest_move(const Eigen::ArrayXd& before, const Eigen::ArrayXd& after) {
+  const Eigen::Index both = std::min(before.size(), after.size());
+  return both == 0 ? 0.0 : (before.head(both) / after.head(both) - 1.0).abs().maxCoeff();
+}
+
+SolvedBody refine(const BodySpec& body, const ProgressHook& progress) {
+  const double volume = std::abs(volume_m3(body.shape));
+  MeshSize size = body.mesh.size;
+  size.max_tet_volume_m3 = size.max_tet_volume_m3.value_or(volume / tets_of_first_round);
+  SolvedBody solved = solve_once(body, size, progress);
+  std::vector<RefinementRound> rounds{
+      {solved.modes.report.tets, static_cast<int>(solved.modes.kappa_rad_per_m.size()), HUGE_VAL}};
+  ModelCost cost = solved.modes.report.cost;
+  for (int round = 1; round < most_rounds; ++round) {
+    if (rounds.back().tets > finer * most_tets) {
+      break;
+    }
+    *size.max_tet_volume_m3 *= finer;
+    const Eigen::ArrayXd before = solved.modes.kappa_rad_per_m;
+    solved = solve_once(body, size, progress);
+    const Eigen::ArrayXd& after = solved.modes.kappa_rad_per_m;
+    add(solved.modes.report.cost, cost);
+    rounds.push_back(
+        {solved.modes.report.tets, static_cast<int>(after.size()), largest_move(before, after)});
+    if (before.size() == after.size() && rounds.back().moved <= *body.mesh.accuracy) {
+      solved.modes.report.refinement = rounds;
+      solved.modes.report.cost = cost;
+      return solved;
+    }
+  }
+  std::string history;
+  for (const RefinementRound& round : rounds) {
+    history += fmt::format("; {} tetrahedra: {} modes", round.tets, round.modes);
+    history += std::isfinite(round.moved) ? fmt::format(", moved {:.2g} %", 100.0 * round.moved)
+                                          : std::string{};
+  }
+  throw ModelError{fmt::format(
+      "mesh: the frequencies still move by more than {} % within {:.0g} tetrahedra and {} rounds{} "
+      "(a body held at single points never settles: hold a disc)",
+      100.0 * *body.mesh.accuracy, most_tets, most_rounds, history)};
+}
+}  // namespace
+
+std::string content_key(const BodySpec& body) {
+  std::string key =
+      fmt::format("{} mesh(order {},{:a},{:a},{:a},{:a}) poisson({:a}) band({:a}) held",
+                  content_key(body.shape), body.mesh.order, body.mesh.size.radius_edge_ratio,
+                  body.mesh.size.max_tet_volume_m3.value_or(0.0), body.mesh.size.flattening,
+                  body.mesh.accuracy.value_or(0.0), body.poissons_ratio, body.band_limit_rad_per_m);
+  for (const Fixation& fixation : body.fixations) {
+    key += " " + content_key(fixation);
+  }
+  return key;
+}
+
+SolvedBody solve_body(const BodySpec& body, const ProgressHook& progress) {
+  SolvedBody solved =
+      body.mesh.accuracy ? refine(body, progress) : solve_once(body, body.mesh.size, progress);
+  keep_touchable_part(body.shape, solved);
+  return solved;
+}
+}  // namespace tapstudy::core

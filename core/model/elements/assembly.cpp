@@ -1,0 +1,167 @@
+#include "core/model/elements/assembly.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <utility>
+
+#include "core/error.hpp"
+#include "core/model/elements/node_graph.hpp"
+#include "core/model/elements/tet_element.hpp"
+namespace tapstudy::core {
+namespace {
+using Axes = std::array<int, 3>;
+
+// The places of K's and M's entries, known before the first element is added: nothing is searched
+// or sorted an entry, only once a pair of nodes.
+class Pattern {
+ public:
+  Pattern(const TetMesh& mesh, const FreeDofs& dofs) : dofs_{dofs}, graph_{node_graph(mesh)} {
+    stiffness_before_.reserve(graph_.neighbours.size());
+    mass_before_.reserve(graph_.neighbours.size());
+    for (int node = 0; node < mesh.nodes_m.rows(); ++node) {
+      count_column(node);
+    }
+  }
+
+  StiffnessAndMass empty_matrices() const {
+    StiffnessAndMass matrices{SparseMatrix(dofs_.count, dofs_.count),
+                              SparseMatrix(dofs_.count, dofs_.count)};
+    const auto nodes = static_cast<int>(graph_.first.size()) - 1;
+    for (int node = 0; node < nodes; ++node) {
+      add_columns(node, matrices);
+    }
+    matrices.K.finalize();
+    matrices.M.finalize();
+    return matrices;
+  }
+
+  // Adds what nodes row and column, row >= column, have in common.
+  void add(int row, int column, const Eigen::Matrix3d& stiffness, double mass,
+           StiffnessAndMass& to) const {
+    const auto place = static_cast<std::size_t>(graph_.place_of(column, row));
+    for (int b = 0; b < 3; ++b) {
+      const int in_column = position(column, b);
+      if (in_column < 0) {
+        continue;
+      }
+      int next = to.K.outerIndexPtr()[in_column] + stiffness_before_[place];
+      next -= row == column ? 0 : free_before(column, b);
+      for (int a = row == column ? b : 0; a < 3; ++a) {
+        if (position(row, a) >= 0) {
+          to.K.valuePtr()[next++] += stiffness(a, b);
+        }
+      }
+      if (position(row, b) >= 0) {
+        to.M.valuePtr()[to.M.outerIndexPtr()[in_column] +
+                        mass_before_[place].at(static_cast<std::size_t>(b))] += mass;
+      }
+    }
+  }
+
+ private:
+  int position(int node, int axis) const {
+    return dofs_.position[3 * static_cast<std::size_t>(node) + static_cast<std::size_t>(axis)];
+  }
+  int free_before(int node, int axis) const {
+    int count = 0;
+    for (int a = 0; a < axis; ++a) {
+      count += position(node, a) >= 0 ? 1 : 0;
+    }
+    return count;
+  }
+  void count_column(int node) {
+    const auto own = static_cast<std::size_t>(node);
+    int stiffness = 0;
+    Axes mass{};
+    for (int k = graph_.first[own]; k < graph_.first[own + 1]; ++k) {
+      const int row = graph_.neighbours[static_cast<std::size_t>(k)];
+      stiffness_before_.push_back(stiffness);
+      mass_before_.push_back(mass);
+      for (int a = 0; a < 3; ++a) {
+        const int is_free = position(row, a) >= 0 ? 1 : 0;
+        stiffness += is_free;
+        mass.at(static_cast<std::size_t>(a)) += is_free;
+      }
+    }
+  }
+  void add_columns(int node, StiffnessAndMass& matrices) const {
+    const auto own = static_cast<std::size_t>(node);
+    for (int b = 0; b < 3; ++b) {
+      const int column = position(node, b);
+      if (column < 0) {
+        continue;
+      }
+      matrices.K.startVec(column);
+      matrices.M.startVec(column);
+      for (int k = graph_.first[own]; k < graph_.first[own + 1]; ++k) {
+        const int row = graph_.neighbours[static_cast<std::size_t>(k)];
+        for (int a = row == node ? b : 0; a < 3; ++a) {
+          if (position(row, a) >= 0) {
+            matrices.K.insertBackByOuterInner(column, position(row, a)) = 0.0;
+          }
+        }
+        if (position(row, b) >= 0) {
+          matrices.M.insertBackByOuterInner(column, position(row, b)) = 0.0;
+        }
+      }
+    }
+  }
+
+  const FreeDofs& dofs_;
+  NodeGraph graph_;
+  // For each entry of the graph: the free degrees of freedom of the nodes before it in its list.
+  std::vector<int> stiffness_before_;
+  std::vector<Axes> mass_before_;
+};
+
+TetCorners corners_of(const TetMesh& mesh, Eigen::Index tet) {
+  TetCorners corners;
+  for (Eigen::Index i = 0; i < 4; ++i) {
+    corners.row(i) = mesh.nodes_m.row(mesh.tets(tet, i));
+  }
+  return corners;
+}
+
+template <int Nodes>
+void add_elements(const TetMesh& mesh, const Material& material, const Pattern& pattern,
+                  StiffnessAndMass& matrices) {
+  for (Eigen::Index tet = 0; tet < mesh.tets.rows(); ++tet) {
+    if (!(tet_volume_m3(mesh, tet) > 0.0)) {
+      throw ModelError{fmt::format("mesh: tetrahedron {} has no volume", tet)};
+    }
+    const TetElement<Nodes> element = tet_element<Nodes>(corners_of(mesh, tet), material);
+    for (Eigen::Index j = 0; j < Nodes; ++j) {
+      for (Eigen::Index i = 0; i < Nodes; ++i) {
+        if (mesh.tets(tet, i) >= mesh.tets(tet, j)) {
+          pattern.add(mesh.tets(tet, i), mesh.tets(tet, j),
+                      element.stiffness.template block<3, 3>(3 * i, 3 * j), element.mass(i, j),
+                      matrices);
+        }
+      }
+    }
+  }
+}
+}  // namespace
+
+FreeDofs free_dofs(const std::vector<bool>& held) {
+  FreeDofs dofs;
+  dofs.position.reserve(held.size());
+  for (const bool is_held : held) {
+    dofs.position.push_back(is_held ? -1 : dofs.count++);
+  }
+  return dofs;
+}
+
+StiffnessAndMass assemble(const TetMesh& mesh, const Material& material, const FreeDofs& dofs) {
+  check_material(material);
+  const Pattern pattern{mesh, dofs};
+  StiffnessAndMass matrices = pattern.empty_matrices();
+  if (mesh.order() == 2) {
+    add_elements<10>(mesh, material, pattern, matrices);
+  } else {
+    add_elements<4>(mesh, material, pattern, matrices);
+  }
+  return matrices;
+}
+}  // namespace tapstudy::core

@@ -1,0 +1,28 @@
+#pragma once
+#include <Eigen/SparseCore>
+#include <vector>
+
+#include "core/model/elements/material.hpp"
+#include "core/model/mesh/tet_mesh.hpp"
+namespace tapstudy::core {
+using SparseMatrix = Eigen::SparseMatrix<double>;
+
+// Where each degree of freedom of the mesh (x0 y0 z0 x1 …) stands among the free ones; -1 if held.
+struct FreeDofs {
+  std::vector<int> position;
+  int count{0};
+};
+FreeDofs free_dofs(const std::vector<bool>& held);
+
+// Symmetric, of the free degrees of freedom; only the lower triangles are stored.
+struct StiffnessAndMass {
+  SparseMatrix K;  // N/m
+  SparseMatrix M;  // kg
+  auto stiffness() const { return K.selfadjointView<Eigen::Lower>(); }
+  auto mass() const { return M.selfadjointView<Eigen::Lower>(); }
+};
+
+// Linear elasticity with the consistent mass, for meshes of order 1 and 2.
+// Throws ModelError if a tetrahedron has no volume.
+StiffnessAndMass assemble(const TetMesh& mesh, const Material& material, const FreeDofs& dofs);
+}  // namespace tapstudy::core

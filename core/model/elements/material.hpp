@@ -1,0 +1,40 @@
+#pragma once
+#include <variant>
+#include <vector>
+namespace tapstudy::core {
+// C = alpha M + beta K (paper eq. 3).
+struct RayleighDamping {
+  double alpha_per_s{0.0};
+  double beta_s{0.0};
+};
+// Rayleigh damping through the damping ratios of the lowest and the highest mode inside the band
+// (paper eq. 13).
+struct TwoRatioDamping {
+  double first_ratio{0.0};
+  double last_ratio{0.0};
+};
+// Rayleigh damping that comes nearest to ratios measured at some frequencies (least squares).
+struct FittedDamping {
+  struct Point {
+    double frequency_hz{};
+    double ratio{};
+  };
+  std::vector<Point> points;  // at least two different frequencies
+};
+// A ratio for each mode inside the band, lowest first.
+struct ModalDamping {
+  std::vector<double> ratios;
+};
+using Damping = std::variant<RayleighDamping, TwoRatioDamping, FittedDamping, ModalDamping>;
+
+// Homogeneous, isotropic, linearly elastic.
+struct Material {
+  double youngs_modulus_pa{};  // > 0
+  double density_kg_per_m3{};  // > 0
+  double poissons_ratio{};     // in (-1, 0.5)
+  Damping damping{};
+};
+
+// Throws InvalidInput naming the first property outside its range.
+void check_material(const Material& material);
+}  // namespace tapstudy::core

@@ -1,0 +1,125 @@
+#include "core/model/elements/tet_element.hpp"
+
+#include <Eigen/LU>
+#include <array>
+namespace tapstudy::core {
+namespace {
+template <int Nodes>
+using Gradients = Eigen::Matrix<double, Nodes, 3>;  // one node's shape function a row [1/m]
+
+// Lamé's constants [Pa].
+struct Lame {
+  double lambda;
+  double shear;
+};
+
+Lame lame_of(const Material& material) {
+  const double youngs = material.youngs_modulus_pa;
+  const double poisson = material.poissons_ratio;
+  return {youngs * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson)),
+          youngs / (2.0 * (1.0 + poisson))};
+}
+
+// Hooke's law between every two nodes a, b with gradients g_a, g_b:
+//   lambda g_a g_b' + shear (g_b g_a' + (g_a . g_b) I)
+// which is B_a' D B_b written out for an isotropic body.
+template <int Nodes>
+void add_stiffness(const Gradients<Nodes>& gradients, const Lame& lame, double volume,
+                   TetElement<Nodes>& element) {
+  for (Eigen::Index b = 0; b < Nodes; ++b) {
+    const Eigen::Vector3d gb = gradients.row(b);
+    for (Eigen::Index a = b; a < Nodes; ++a) {
+      const Eigen::Vector3d ga = gradients.row(a);
+      Eigen::Matrix3d block = volume * lame.lambda * ga * gb.transpose();
+      block += volume * lame.shear * gb * ga.transpose();
+      block.diagonal().array() += volume * lame.shear * ga.dot(gb);
+      element.stiffness.template block<3, 3>(3 * a, 3 * b) += block;
+    }
+  }
+}
+
+template <int Nodes>
+void mirror_lower(TetElement<Nodes>& element) {
+  element.stiffness.template triangularView<Eigen::StrictlyUpper>() = element.stiffness.transpose();
+}
+
+// T10's shape functions are L_i (2 L_i - 1) at corners and 4 L_i L_j on edges; their gradients at
+// the barycentric point L, from those of L.
+Gradients<10> quadratic_gradients(const Eigen::Vector4d& L, const Gradients<4>& linear) {
+  constexpr std::array<std::array<int, 2>, 6> edges{
+      {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
+  Gradients<10> gradients;
+  for (Eigen::Index i = 0; i < 4; ++i) {
+    gradients.row(i) = (4.0 * L[i] - 1.0) * linear.row(i);
+  }
+  for (std::size_t e = 0; e < edges.size(); ++e) {
+    const auto [i, j] = edges.at(e);
+    gradients.row(static_cast<Eigen::Index>(4 + e)) =
+        4.0 * (L[j] * linear.row(i) + L[i] * linear.row(j));
+  }
+  return gradients;
+}
+
+// The integrals of N_a N_b over a tetrahedron of volume 420, from the formula
+// integral of L1^p L2^q L3^r L4^s = 6 V p! q! r! s! / (p+q+r+s+3)!
+Eigen::Matrix<double, 10, 10> quadratic_mass() {
+  Eigen::Matrix<double, 10, 10> mass;
+  mass << 6, 1, 1, 1, -4, -6, -4, -4, -6, -6,  //
+      1, 6, 1, 1, -4, -4, -6, -6, -4, -6,      //
+      1, 1, 6, 1, -6, -4, -4, -6, -6, -4,      //
+      1, 1, 1, 6, -6, -6, -6, -4, -4, -4,      //
+      -4, -4, -6, -6, 32, 16, 16, 16, 16, 8,   //
+      -6, -4, -4, -6, 16, 32, 16, 8, 16, 16,   //
+      -4, -6, -4, -6, 16, 16, 32, 16, 8, 16,   //
+      -4, -6, -6, -4, 16, 8, 16, 32, 16, 16,   //
+      -6, -4, -6, -4, 16, 16, 8, 16, 32, 16,   //
+      -6, -6, -4, -4, 8, 16, 16, 16, 16, 32;
+  return mass;
+}
+
+struct Geometry {
+  double volume_m3;
+  Gradients<4> gradients;  // of the barycentric coordinates
+};
+
+// From L_i = a_i + b_i x + c_i y + d_i z.
+Geometry geometry_of(const TetCorners& corners_m) {
+  Eigen::Matrix4d coordinates;
+  coordinates << Eigen::Vector4d::Ones(), corners_m;
+  return {coordinates.determinant() / 6.0, coordinates.inverse().bottomRows<3>().transpose()};
+}
+}  // namespace
+
+template <>
+TetElement<4> tet_element<4>(const TetCorners& corners_m, const Material& material) {
+  const auto [volume, gradients] = geometry_of(corners_m);
+  TetElement<4> element;
+  element.stiffness.setZero();
+  add_stiffness<4>(gradients, lame_of(material), volume, element);
+  mirror_lower(element);
+  element.mass.setOnes();
+  element.mass.diagonal().setConstant(2.0);
+  element.mass *= material.density_kg_per_m3 * volume / 20.0;
+  return element;
+}
+
+// The stiffness is quadratic over the element: four points integrate it exactly.
+template <>
+TetElement<10> tet_element<10>(const TetCorners& corners_m, const Material& material) {
+  const auto [volume, gradients] = geometry_of(corners_m);
+  const double near = (5.0 + 3.0 * std::sqrt(5.0)) / 20.0;
+  const double far = (5.0 - std::sqrt(5.0)) / 20.0;
+  const Lame lame = lame_of(material);
+  TetElement<10> element;
+  element.stiffness.setZero();
+  for (Eigen::Index point = 0; point < 4; ++point) {
+    Eigen::Vector4d L = Eigen::Vector4d::Constant(far);
+    L[point] = near;
+    add_stiffness<10>(quadratic_gradients(L, gradients), lame, 0.25 * volume, element);
+  }
+  mirror_lower(element);
+  static const Eigen::Matrix<double, 10, 10> mass = quadratic_mass();
+  element.mass = material.density_kg_per_m3 * volume / 420.0 * mass;
+  return element;
+}
+}  // namespace tapstudy::core

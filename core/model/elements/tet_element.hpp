@@ -1,0 +1,18 @@
+#pragma once
+#include <Eigen/Core>
+
+#include "core/model/elements/material.hpp"
+namespace tapstudy::core {
+// The element matrices of a straight-sided tetrahedron with 4 nodes (T4, linear) or 10 (T10,
+// quadratic), numbered as in TetMesh. Both are integrated exactly (Zienkiewicz & Taylor, The Finite
+// Element Method, volume 1).
+template <int Nodes>
+struct TetElement {
+  Eigen::Matrix<double, 3 * Nodes, 3 * Nodes> stiffness;  // N/m; x0 y0 z0 x1 …
+  Eigen::Matrix<double, Nodes, Nodes> mass;               // kg, the same along x, y and z
+};
+using TetCorners = Eigen::Matrix<double, 4, 3>;  // one corner a row [m], positive volume
+
+template <int Nodes>
+TetElement<Nodes> tet_element(const TetCorners& corners_m, const Material& material);
+}  // namespace tapstudy::core

@@ -1,0 +1,64 @@
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include "core/model/mesh/tet_mesh.hpp"
+namespace tapstudy::core {
+namespace {
+using Edge = std::array<int, 2>;  // ascending
+
+constexpr std::array<Edge, 6> tet_edges{{{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
+constexpr std::array<Edge, 3> triangle_edges{{{0, 1}, {1, 2}, {2, 0}}};
+
+Edge edge_of(const TetMesh::Indices& corners, Eigen::Index row, const Edge& ends) {
+  const int a = corners(row, ends[0]);
+  const int b = corners(row, ends[1]);
+  return {std::min(a, b), std::max(a, b)};
+}
+
+std::vector<Edge> edges_of(const TetMesh& mesh) {
+  std::vector<Edge> edges;
+  edges.reserve(tet_edges.size() * static_cast<std::size_t>(mesh.tets.rows()));
+  for (Eigen::Index tet = 0; tet < mesh.tets.rows(); ++tet) {
+    for (const Edge& ends : tet_edges) {
+      edges.push_back(edge_of(mesh.tets, tet, ends));
+    }
+  }
+  std::ranges::sort(edges);
+  const auto repeated = std::ranges::unique(edges);
+  edges.erase(repeated.begin(), repeated.end());
+  return edges;
+}
+
+template <std::size_t Count>
+TetMesh::Indices with_middles_of(const TetMesh::Indices& corners,
+                                 const std::array<Edge, Count>& local_edges,
+                                 const std::vector<Edge>& edges, int first_middle) {
+  TetMesh::Indices rows{corners.rows(), corners.cols() + static_cast<Eigen::Index>(Count)};
+  rows.leftCols(corners.cols()) = corners;
+  for (Eigen::Index row = 0; row < corners.rows(); ++row) {
+    for (std::size_t i = 0; i < Count; ++i) {
+      const auto found = std::ranges::lower_bound(edges, edge_of(corners, row, local_edges.at(i)));
+      rows(row, corners.cols() + static_cast<Eigen::Index>(i)) =
+          first_middle + static_cast<int>(found - edges.begin());
+    }
+  }
+  return rows;
+}
+}  // namespace
+
+TetMesh with_middles(const TetMesh& mesh) {
+  const std::vector<Edge> edges = edges_of(mesh);
+  const Eigen::Index corners = mesh.nodes_m.rows();
+  TetMesh result;
+  result.nodes_m.resize(corners + static_cast<Eigen::Index>(edges.size()), 3);
+  result.nodes_m.topRows(corners) = mesh.nodes_m;
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    result.nodes_m.row(corners + static_cast<Eigen::Index>(i)) =
+        0.5 * (mesh.nodes_m.row(edges[i][0]) + mesh.nodes_m.row(edges[i][1]));
+  }
+  result.tets = with_middles_of(mesh.tets, tet_edges, edges, static_cast<int>(corners));
+  result.surface = with_middles_of(mesh.surface, triangle_edges, edges, static_cast<int>(corners));
+  return result;
+}
+}  // namespace tapstudy::core

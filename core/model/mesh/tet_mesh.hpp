@@ -1,0 +1,27 @@
+#pragma once
+#include <Eigen/Core>
+#include <string>
+namespace tapstudy::core {
+// A body cut into straight-sided tetrahedra of order 1 (T4: its corners) or 2 (T10: its corners,
+// then the middles of the edges 01 12 20 03 13 23).
+struct TetMesh {
+  using Indices = Eigen::Matrix<int, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+  Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor> nodes_m;  // one row a node
+  Indices tets;     // 4 or 10 nodes a row, positive volume
+  Indices surface;  // 3 or 6 nodes a row: corners, outward counter-clockwise, then the middles of
+                    // the edges 01 12 20
+  int order() const { return tets.cols() == 10 ? 2 : 1; }
+};
+
+double tet_volume_m3(const TetMesh& mesh, Eigen::Index tet);
+double volume_m3(const TetMesh& mesh);
+
+// The same body of order 2: every edge of an order 1 mesh gets a node in its middle, after the
+// nodes that are there.
+TetMesh with_middles(const TetMesh& mesh);
+
+// Writes PREFIX.node and PREFIX.ele in TetGen's own format, nodes numbered from 0, 17 digits.
+// Throws InvalidInput if a file exists already or cannot be written.
+void write_tetgen_files(const TetMesh& mesh, const std::string& prefix);
+}  // namespace tapstudy::core

@@ -1,0 +1,191 @@
+#include "core/model/modes/block_lanczos.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.hpp"
+#include "core/rng.hpp"
+namespace tapstudy::core {
+namespace {
+using Eigen::Index;
+using Eigen::MatrixXd;
+constexpr std::uint64_t start_seed = 1;
+constexpr Index largest_block = 8;
+constexpr double tolerance = 1e-11;  // of a Ritz pair's residual, relative to its nu
+constexpr double well_apart = 1e-5;  // of a column, what the ones before it may leave for Cholesky
+constexpr double dependent = 1e-12;  // what is left of a column that held nothing new
+
+// Vectors together with their product with the mass matrix, so that inner products in its metric
+// cost no more than others.
+struct Weighted {
+  MatrixXd vectors;
+  MatrixXd times_mass;
+  MatrixXd overlap_with(const Weighted& others) const {
+    return vectors.transpose() * others.times_mass;
+  }
+  void take_away(const Weighted& others, const MatrixXd& weights) {
+    vectors.noalias() -= others.vectors * weights;
+    times_mass.noalias() -= others.times_mass * weights;
+  }
+  void append(const Weighted& others) {
+    const Index columns = vectors.cols() + others.vectors.cols();
+    vectors.conservativeResize(others.vectors.rows(), columns);
+    times_mass.conservativeResize(others.vectors.rows(), columns);
+    vectors.rightCols(others.vectors.cols()) = others.vectors;
+    times_mass.rightCols(others.vectors.cols()) = others.times_mass;
+  }
+};
+
+class BlockKrylov {
+ public:
+  BlockKrylov(const StiffnessAndMass& matrices, const ShiftedFactor& factor, Index block)
+      : matrices_{matrices}, factor_{factor}, block_{block}, rng_{start_seed} {
+    next_.vectors.resize(matrices.K.rows(), block);
+    for (double& value : next_.vectors.reshaped()) {
+      value = rng_.normal();
+    }
+    weigh(next_);
+    coupling_ = orthonormalise(next_);
+  }
+
+  Index size() const { return basis_.vectors.cols(); }
+
+  // Takes the next block into the basis and prepares the one after.
+  void grow() {
+    const Index before = size();
+    basis_.append(next_);
+    projected_.conservativeResize(before + block_, before + block_);
+    projected_.rightCols(block_).setZero();
+    next_.vectors = next_.times_mass;
+    factor_.solve_in_place(next_.vectors);
+    weigh(next_);
+    for (int pass = 0; pass < 2; ++pass) {
+      const MatrixXd overlap = basis_.overlap_with(next_);
+      next_.take_away(basis_, overlap);
+      projected_.rightCols(block_) += overlap;
+    }
+    projected_.bottomRows(block_) = projected_.rightCols(block_).transpose();
+    coupling_ = orthonormalise(next_);
+  }
+
+  // The count wanted vectors, or none if they have not all converged.
+  MatrixXd converged(Index count) const {
+    const Eigen::SelfAdjointEigenSolver<MatrixXd> ritz{0.5 * (projected_ + projected_.transpose())};
+    const auto nu = ritz.eigenvalues().head(count).array();
+    const MatrixXd y = ritz.eigenvectors().leftCols(count);
+    const MatrixXd beyond = coupling_ * y.bottomRows(block_);
+    const bool all = (nu < 0.0).all() &&
+                     (beyond.colwise().norm().transpose().array() <= tolerance * nu.abs()).all();
+    if (!all) {
+      return {};
+    }
+    // one step of inverse iteration, for free: what lies outside the basis is known
+    return basis_.vectors * y + next_.vectors * (beyond * nu.inverse().matrix().asDiagonal());
+  }
+
+ private:
+  void weigh(Weighted& block) const { block.times_mass = matrices_.mass() * block.vectors; }
+
+  // Makes the block M-orthonormal and returns the triangle R of W = Q R: by Cholesky, twice
+  // (Yamamoto et al. 2015), or column by column where the columns nearly depend on one another.
+  MatrixXd orthonormalise(Weighted& block) {
+    MatrixXd R = MatrixXd::Identity(block_, block_);
+    for (int pass = 0; pass < 2; ++pass) {
+      const MatrixXd gram = block.overlap_with(block);
+      const Eigen::VectorXd lengths = gram.diagonal().cwiseMax(0.0).cwiseSqrt();
+      const Eigen::VectorXd scale = lengths.cwiseInverse();
+      const Eigen::LLT<MatrixXd> factor{scale.asDiagonal() * gram * scale.asDiagonal()};
+      const bool is_safe = scale.allFinite() && factor.info() == Eigen::Success &&
+                           factor.matrixLLT().diagonal().minCoeff() > well_apart;
+      if (!is_safe) {
+        return column_by_column(block) * R;
+      }
+      const MatrixXd U = MatrixXd{factor.matrixU()} * lengths.asDiagonal();
+      U.triangularView<Eigen::Upper>().solveInPlace<Eigen::OnTheRight>(block.vectors);
+      weigh(block);
+      R = U * R;
+    }
+    return R;
+  }
+  // Gram-Schmidt. A column with nothing new in it is replaced by a random one that has, and has no
+  // part in R.
+  MatrixXd column_by_column(Weighted& block) {
+    MatrixXd& columns = block.vectors;
+    MatrixXd R = MatrixXd::Zero(block_, block_);
+    for (Index k = 0; k < block_; ++k) {
+      const double original = length(columns.col(k));
+      R.col(k).head(k) = project_out(columns, k);
+      double left = length(columns.col(k));
+      R(k, k) = left;
+      if (!(left > dependent * original) || original == 0.0) {
+        R(k, k) = 0.0;
+        left = refill(columns, k);
+      }
+      columns.col(k) /= left;
+    }
+    weigh(block);
+    return R;
+  }
+  double length(const Eigen::VectorXd& x) const { return std::sqrt(x.dot(matrices_.mass() * x)); }
+  Eigen::VectorXd project_out(MatrixXd& columns, Index k) const {
+    Eigen::VectorXd weights = Eigen::VectorXd::Zero(k);
+    for (int pass = 0; pass < 2; ++pass) {
+      const Eigen::VectorXd weighted = matrices_.mass() * columns.col(k);
+      const Eigen::VectorXd overlap = columns.leftCols(k).transpose() * weighted;
+      columns.col(k) -= columns.leftCols(k) * overlap;
+      weights += overlap;
+    }
+    return weights;
+  }
+  double refill(MatrixXd& columns, Index k) {
+    for (double& value : columns.col(k)) {
+      value = rng_.normal();
+    }
+    for (int pass = 0; pass < 2; ++pass) {
+      const Eigen::VectorXd overlap = basis_.times_mass.transpose() * columns.col(k);
+      columns.col(k) -= basis_.vectors * overlap;
+      project_out(columns, k);
+    }
+    return length(columns.col(k));
+  }
+
+  const StiffnessAndMass& matrices_;
+  const ShiftedFactor& factor_;
+  Index block_;
+  Rng rng_;
+  Weighted basis_;      // M-orthonormal
+  MatrixXd projected_;  // basis' M (K - sigma M)^-1 M basis
+  Weighted next_;       // M-orthonormal, orthogonal to the basis
+  MatrixXd coupling_;   // what the last block's image has of next_
+};
+}  // namespace
+
+MatrixXd eigenvectors_below_shift(const StiffnessAndMass& matrices, const ShiftedFactor& factor,
+                                  int count, const ProgressHook& progress) {
+  const Index size = matrices.K.rows();
+  const Index block = std::clamp<Index>(count, 2, largest_block);
+  const Index most = std::min<Index>(size - block, 4 * Index{count} + 40 * block);
+  BlockKrylov krylov{matrices, factor, block};
+  Index next_look = Index{count} + 2 * block;
+  while (krylov.size() + block <= most) {
+    tell(progress, fmt::format("iterating, {} of at most {} vectors", krylov.size(), most));
+    krylov.grow();
+    if (krylov.size() >= next_look) {
+      const MatrixXd found = krylov.converged(count);
+      if (found.cols() == count) {
+        // inverse iteration once more, which takes out what rounding has left of high modes
+        MatrixXd polished = matrices.mass() * found;
+        factor.solve_in_place(polished);
+        return polished;
+      }
+      next_look = krylov.size() + std::max(block, krylov.size() / 8);
+    }
+  }
+  throw ModelError{
+      fmt::format("modes: {} modes did not converge in a basis of {} vectors", count, most)};
+}
+}  // namespace tapstudy::core

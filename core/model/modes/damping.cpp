@@ -1,0 +1,94 @@
+#include "core/model/modes/damping.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/QR>
+#include <numbers>
+
+#include "core/error.hpp"
+namespace tapstudy::core {
+namespace {
+RayleighDamping not_negative(const RayleighDamping& damping, const std::string& source) {
+  if (damping.alpha_per_s < 0.0 || damping.beta_s < 0.0) {
+    throw ModelError{fmt::format(
+        "damping: {} give alpha {:.4g} 1/s and beta {:.4g} s (neither may be negative: modes "
+        "elsewhere would gain energy)",
+        source, damping.alpha_per_s, damping.beta_s)};
+  }
+  return damping;
+}
+
+Eigen::ArrayXd as_measured(const ModalDamping& damping, Eigen::Index modes) {
+  const auto given = static_cast<Eigen::Index>(damping.ratios.size());
+  if (given < modes) {
+    throw ModelError{fmt::format(
+        "damping: {} modal ratios are given, {} modes lie inside the band (give one for each, or "
+        "lower band_limit_hz)",
+        given, modes)};
+  }
+  return Eigen::Map<const Eigen::ArrayXd>{damping.ratios.data(), given}.head(modes);
+}
+
+RayleighDamping rayleigh_of(const Damping& damping, const Eigen::ArrayXd& omega_rad_s) {
+  if (const auto* given = std::get_if<RayleighDamping>(&damping)) {
+    return *given;
+  }
+  if (const auto* measured = std::get_if<FittedDamping>(&damping)) {
+    return rayleigh_by_least_squares(*measured);
+  }
+  if (omega_rad_s.size() == 0) {
+    return {};
+  }
+  return rayleigh_from_two_ratios(std::get<TwoRatioDamping>(damping), omega_rad_s[0],
+                                  omega_rad_s[omega_rad_s.size() - 1]);
+}
+}  // namespace
+
+RayleighDamping rayleigh_from_two_ratios(const TwoRatioDamping& ratios, double first_rad_s,
+                                         double last_rad_s) {
+  if (!(0.0 < first_rad_s && first_rad_s < last_rad_s)) {
+    throw ModelError{"damping: two damping ratios need two different frequencies inside the band"};
+  }
+  const double scale =
+      2.0 * first_rad_s * last_rad_s / ((last_rad_s - first_rad_s) * (last_rad_s + first_rad_s));
+  const RayleighDamping damping{
+      scale * (last_rad_s * ratios.first_ratio - first_rad_s * ratios.last_ratio),
+      scale * (ratios.last_ratio / first_rad_s - ratios.first_ratio / last_rad_s)};
+  return not_negative(damping,
+                      fmt::format("the ratios {} and {}", ratios.first_ratio, ratios.last_ratio));
+}
+
+Eigen::ArrayXd damping_ratios(const RayleighDamping& damping, const Eigen::ArrayXd& omega_rad_s) {
+  return 0.5 * (damping.alpha_per_s / omega_rad_s + damping.beta_s * omega_rad_s);
+}
+
+RayleighDamping rayleigh_by_least_squares(const FittedDamping& measured) {
+  const auto count = static_cast<Eigen::Index>(measured.points.size());
+  Eigen::MatrixX2d share{count, 2};
+  Eigen::VectorXd ratio{count};
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const FittedDamping::Point& point = measured.points[static_cast<std::size_t>(i)];
+    const double omega = 2.0 * std::numbers::pi * point.frequency_hz;
+    share.row(i) << 0.5 / omega, 0.5 * omega;
+    ratio[i] = point.ratio;
+  }
+  // columns of like size, so that the rank is seen whatever the frequencies' size
+  const Eigen::RowVector2d size = share.colwise().norm();
+  const Eigen::ColPivHouseholderQR<Eigen::MatrixX2d> solver{share *
+                                                            size.cwiseInverse().asDiagonal()};
+  if (solver.rank() < 2) {
+    throw ModelError{"damping: a fit needs ratios at two different frequencies at least"};
+  }
+  const Eigen::Vector2d solution = solver.solve(ratio).cwiseQuotient(size.transpose());
+  return not_negative({solution[0], solution[1]},
+                      fmt::format("the {} ratios fitted", measured.points.size()));
+}
+
+DampedModes damp(const Damping& damping, const Eigen::ArrayXd& omega_rad_s) {
+  if (const auto* modal = std::get_if<ModalDamping>(&damping)) {
+    return {std::nullopt, as_measured(*modal, omega_rad_s.size())};
+  }
+  const RayleighDamping rayleigh = rayleigh_of(damping, omega_rad_s);
+  return {rayleigh, damping_ratios(rayleigh, omega_rad_s)};
+}
+}  // namespace tapstudy::core

@@ -1,0 +1,131 @@
+#include "core/model/modes/modal_solver.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "core/error.hpp"
+#include "core/model/modes/block_lanczos.hpp"
+#include "core/model/modes/shifted_factor.hpp"
+#include "core/model/stopwatch.hpp"
+namespace tapstudy::core {
+namespace {
+constexpr double residual_limit = 1e-8;
+// Of rounding that a solve and the products after it may add up to.
+constexpr double rounding_steps = 64.0;
+// Below this fraction of the band a frequency is zero to rounding: a motion of the rigid body.
+constexpr double rigid_fraction = 1e-4;
+// Up to this size the whole spectrum costs nothing, and Lanczos would have no room.
+constexpr Eigen::Index dense_size = 96;
+constexpr int most_modes = 1000;
+
+struct Pairs {
+  Eigen::VectorXd values;
+  Eigen::MatrixXd vectors;
+};
+
+Pairs lowest_dense(const StiffnessAndMass& matrices, int count) {
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver{
+      Eigen::MatrixXd{matrices.K}, Eigen::MatrixXd{matrices.M}};
+  if (solver.info() != Eigen::Success) {
+    throw ModelError{"modes: the dense eigenvalue solver did not converge"};
+  }
+  return {solver.eigenvalues().head(count), solver.eigenvectors().leftCols(count)};
+}
+
+// Rayleigh-Ritz: the modes within the span of some vectors, M-orthonormal to rounding, double ones
+// and those at zero frequency included.
+Pairs modes_in_span(const StiffnessAndMass& matrices, const Eigen::MatrixXd& vectors) {
+  const Eigen::MatrixXd stiffness = vectors.transpose() * (matrices.stiffness() * vectors);
+  const Eigen::MatrixXd mass = vectors.transpose() * (matrices.mass() * vectors);
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver{stiffness, mass};
+  return {solver.eigenvalues(), vectors * solver.eigenvectors()};
+}
+
+// The first component of at least half the largest size is positive.
+void fix_signs(Eigen::MatrixXd& vectors) {
+  for (auto column : vectors.colwise()) {
+    const double half = 0.5 * column.cwiseAbs().maxCoeff();
+    const auto leading =
+        std::find_if(column.begin(), column.end(), [&](double x) { return std::abs(x) > half; });
+    if (leading != column.end() && *leading < 0.0) {
+      column = -column;
+    }
+  }
+}
+
+// The norm of K in the sense that no |K x| exceeds it times |x|.
+double largest_row_sum(const StiffnessAndMass& matrices) {
+  const SparseMatrix sizes = matrices.K.cwiseAbs();
+  return (sizes.selfadjointView<Eigen::Lower>() * Eigen::VectorXd::Ones(sizes.rows())).maxCoeff();
+}
+
+// Of each mode, relative to the forces that it is the difference of; refused where it exceeds what
+// rounding can leave there, which grows with the stiffest element over the softest mode.
+double checked_residual(const StiffnessAndMass& matrices, const Modes& modes) {
+  const double rounding =
+      rounding_steps * std::numeric_limits<double>::epsilon() * largest_row_sum(matrices);
+  double worst = 0.0;
+  for (Eigen::Index i = 0; i < modes.omega_rad_s.size(); ++i) {
+    const auto shape = modes.shapes.col(i);
+    const Eigen::VectorXd elastic = matrices.stiffness() * shape;
+    Eigen::VectorXd inertial = matrices.mass() * shape;
+    inertial *= modes.omega_rad_s[i] * modes.omega_rad_s[i];
+    const double scale = elastic.norm() + inertial.norm();
+    const double residual = (elastic - inertial).norm() / scale;
+    const double allowed = residual_limit + rounding * shape.norm() / scale;
+    if (!(residual <= allowed)) {
+      throw ModelError{fmt::format("modes: mode {} has a residual of {:.1e} (at most {:.1e})",
+                                   i + 1, residual, allowed)};
+    }
+    worst = std::max(worst, residual);
+  }
+  return worst;
+}
+}  // namespace
+
+Modes solve_modes(const StiffnessAndMass& matrices, double band_limit_hz,
+                  const ProgressHook& progress) {
+  const double band = 2.0 * std::numbers::pi * band_limit_hz;
+  Stopwatch watch;
+  tell(progress, "factorising");
+  const ShiftedFactor factor{matrices, band * band};
+  Modes modes;
+  modes.counted_in_band = factor.eigenvalues_below();
+  modes.factor_s = watch.lap_s();
+  const int count = modes.counted_in_band;
+  if (count > most_modes) {
+    throw ModelError{
+        fmt::format("modes: {} lie below {} Hz, more than the {} that a tick could "
+                    "carry (lower band_limit_hz, or is the body too soft?)",
+                    count, band_limit_hz, most_modes)};
+  }
+  const Eigen::Index size = matrices.K.rows();
+  Pairs pairs{Eigen::VectorXd{0}, Eigen::MatrixXd{size, 0}};
+  if (count > 0) {
+    const bool is_small = size <= dense_size || Eigen::Index{4} * count > size;
+    pairs = is_small ? lowest_dense(matrices, count)
+                     : modes_in_span(matrices,
+                                     eigenvectors_below_shift(matrices, factor, count, progress));
+  }
+  if (count > 0 && pairs.values.maxCoeff() >= band * band) {
+    throw ModelError{
+        fmt::format("modes: {} lie below {} Hz by the inertia count, but the solver "
+                    "missed one of them",
+                    count, band_limit_hz)};
+  }
+  const double zero = rigid_fraction * rigid_fraction * band * band;
+  modes.rigid_body_modes = static_cast<int>((pairs.values.array() < zero).count());
+  const Eigen::Index kept = count - modes.rigid_body_modes;
+  modes.omega_rad_s = pairs.values.tail(kept).array().sqrt();
+  modes.shapes = pairs.vectors.rightCols(kept);
+  fix_signs(modes.shapes);
+  modes.worst_residual = checked_residual(matrices, modes);
+  modes.iterate_s = watch.lap_s();
+  return modes;
+}
+}  // namespace tapstudy::core

@@ -1,0 +1,25 @@
+#pragma once
+#include <Eigen/Core>
+
+#include "core/model/elements/assembly.hpp"
+#include "core/model/progress_hook.hpp"
+namespace tapstudy::core {
+// The natural modes of (K, M) from above zero up to a band limit.
+struct Modes {
+  Eigen::ArrayXd omega_rad_s;  // ascending; undamped natural angular frequencies
+  Eigen::MatrixXd shapes;      // one column a mode, M-orthonormal [kg^-1/2], sign fixed
+  int rigid_body_modes{0};     // found at zero frequency and left out
+  int counted_in_band{0};      // by the inertia of K - sigma M, rigid-body modes included
+  double worst_residual{0.0};  // max over modes of |K x - w² M x| / (|K x| + w² |M x|)
+  double factor_s{0.0};
+  double iterate_s{0.0};
+};
+
+// Every mode below band_limit_hz, no more and no less: the factors of K - sigma M at the band limit
+// prove how many there are, and serve to find them. K, M: n × n, M positive definite, K positive
+// semidefinite.
+// Throws ModelError if the solver does not converge, if a residual exceeds 1e-8 and what rounding
+// leaves, if what is found disagrees with the count, or if there are more than a thousand.
+Modes solve_modes(const StiffnessAndMass& matrices, double band_limit_hz,
+                  const ProgressHook& progress = {});
+}  // namespace tapstudy::core

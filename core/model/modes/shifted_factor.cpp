@@ -1,0 +1,137 @@
+#include "core/model/modes/shifted_factor.hpp"
+
+#include <dmumps_c.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <vector>
+
+#include "core/error.hpp"
+namespace tapstudy::core {
+namespace {
+// MUMPS numbers its controls from 1 and acts by job numbers.
+constexpr int icntl_error_stream = 0;
+constexpr int icntl_diagnostics = 1;
+constexpr int icntl_statistics = 2;
+constexpr int icntl_print_level = 3;
+constexpr int icntl_workspace_percent = 13;
+constexpr int job_begin = -1;
+constexpr int job_end = -2;
+constexpr int job_analyse = 1;
+constexpr int job_factorise = 2;
+constexpr int job_solve = 3;
+constexpr int symmetric_indefinite = 2;
+constexpr int use_comm_world = -987654;
+constexpr int infog_status = 0;
+constexpr int infog_detail = 1;
+constexpr int infog_negative_pivots = 11;
+constexpr int infog_estimated_megabytes = 15;
+constexpr int status_workspace_small = -9;
+constexpr int status_workspace_small_too = -8;
+constexpr int status_singular = -10;
+constexpr int most_workspace_percent = 640;
+
+double machine_megabytes() {
+  return 1e-6 * static_cast<double>(sysconf(_SC_PHYS_PAGES)) *
+         static_cast<double>(sysconf(_SC_PAGESIZE));
+}
+}  // namespace
+
+struct ShiftedFactor::Mumps {
+  DMUMPS_STRUC_C id{};
+  std::vector<int> rows;     // from 1
+  std::vector<int> columns;  // from 1
+  std::vector<double> values;
+
+  explicit Mumps(const SparseMatrix& lower) {
+    const auto entries = static_cast<std::size_t>(lower.nonZeros());
+    rows.reserve(entries);
+    columns.reserve(entries);
+    values.reserve(entries);
+    for (Eigen::Index column = 0; column < lower.outerSize(); ++column) {
+      for (SparseMatrix::InnerIterator entry{lower, column}; entry; ++entry) {
+        rows.push_back(static_cast<int>(entry.row()) + 1);
+        columns.push_back(static_cast<int>(entry.col()) + 1);
+        values.push_back(entry.value());
+      }
+    }
+    id.par = 1;
+    id.sym = symmetric_indefinite;
+    id.comm_fortran = use_comm_world;
+    run(job_begin);
+    id.icntl[icntl_error_stream] = 0;  // what goes wrong is said below
+    id.icntl[icntl_diagnostics] = 0;
+    id.icntl[icntl_statistics] = 0;
+    id.icntl[icntl_print_level] = 0;
+    id.n = static_cast<int>(lower.rows());
+    id.nnz = static_cast<MUMPS_INT8>(values.size());
+    id.irn = rows.data();
+    id.jcn = columns.data();
+    id.a = values.data();
+  }
+  ~Mumps() { run(job_end); }
+  Mumps(const Mumps&) = delete;
+  Mumps& operator=(const Mumps&) = delete;
+  Mumps(Mumps&&) = delete;
+  Mumps& operator=(Mumps&&) = delete;
+
+  int run(int job) {
+    id.job = job;
+    dmumps_c(&id);
+    return id.infog[infog_status];
+  }
+  void analyse() {
+    if (run(job_analyse) < 0) {
+      throw ModelError{fmt::format("modes: the stiffness matrix could not be ordered (MUMPS {})",
+                                   id.infog[infog_status])};
+    }
+    const double needed = id.infog[infog_estimated_megabytes];
+    if (needed > 0.8 * machine_megabytes()) {
+      throw ModelError{fmt::format(
+          "modes: {} degrees of freedom would take {:.1f} GB to solve, this machine has {:.1f} GB "
+          "(choose larger elements)",
+          id.n, 1e-3 * needed, 1e-3 * machine_megabytes())};
+    }
+  }
+  void factorise() {
+    int status = run(job_factorise);
+    while ((status == status_workspace_small || status == status_workspace_small_too) &&
+           id.icntl[icntl_workspace_percent] < most_workspace_percent) {
+      id.icntl[icntl_workspace_percent] *= 2;
+      status = run(job_factorise);
+    }
+    if (status == status_singular) {
+      throw ModelError{
+          "modes: a natural frequency lies on the band limit to the last digit (move "
+          "band_limit_hz)"};
+    }
+    if (status < 0) {
+      throw ModelError{
+          fmt::format("modes: the stiffness matrix could not be factorised (MUMPS {}, {})", status,
+                      id.infog[infog_detail])};
+    }
+  }
+};
+
+ShiftedFactor::ShiftedFactor(const StiffnessAndMass& matrices, double sigma)
+    : mumps_{std::make_unique<Mumps>(matrices.K - sigma * matrices.M)} {
+  mumps_->analyse();
+  mumps_->factorise();
+}
+
+ShiftedFactor::~ShiftedFactor() = default;
+
+int ShiftedFactor::eigenvalues_below() const {
+  return mumps_->id.infog[infog_negative_pivots];
+}
+
+void ShiftedFactor::solve_in_place(Eigen::MatrixXd& columns) const {
+  mumps_->id.rhs = columns.data();
+  mumps_->id.nrhs = static_cast<int>(columns.cols());
+  mumps_->id.lrhs = static_cast<int>(columns.rows());
+  if (mumps_->run(job_solve) < 0) {
+    throw ModelError{
+        fmt::format("modes: solving failed (MUMPS {})", mumps_->id.infog[infog_status])};
+  }
+}
+}  // namespace tapstudy::core

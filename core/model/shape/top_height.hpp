@@ -1,0 +1,19 @@
+#pragma once
+#include <memory>
+#include <optional>
+
+#include "core/geometry/triangle_tree.hpp"
+#include "core/model/shape/shape.hpp"
+namespace tapstudy::core {
+// Where a finger that comes down along -z first meets a body.
+class TopHeight {
+ public:
+  explicit TopHeight(const Shape& shape);
+  // z in the plate frame; nothing beside the body.
+  std::optional<double> at_m(const Eigen::Vector2d& sideways_m) const;
+
+ private:
+  Bounds bounds_;
+  std::shared_ptr<const TriangleTree> triangles_;  // none of a box
+};
+}  // namespace tapstudy::core

@@ -1,0 +1,27 @@
+#pragma once
+#include <array>
+
+#include "core/geometry/triangle_tree.hpp"
+#include "core/haptic_state.hpp"
+namespace tapstudy::core {
+// What the contact is this tick, in the plate frame.
+struct Contact {
+  bool touching{false};
+  bool struck{false};  // an impact that excites the plate: true in one tick only
+  double penetration_m{0.0};
+  double impact_speed_m_s{0.0};  // speed into the plate, in the tick of the impact
+  Vec3 god_object_m{Vec3::Zero()};
+  Vec3 normal{Vec3::UnitZ()};  // outward, unit length: where the penalty pushes
+  // On a surface of triangles: which one the god-object is on, and where on it.
+  int triangle{TriangleTree::none};
+  std::array<double, 3> barycentric{};
+};
+
+// Where a finger is before it touches: handed from one contact to the next when the alternative is
+// switched.
+struct Approach {
+  Vec3 tip_m{Vec3::Zero()};
+  bool has_tip{false};  // nothing is known before the first reading
+  bool may_strike{false};
+};
+}  // namespace tapstudy::core

@@ -1,0 +1,139 @@
+#include "core/tick/surface_contact.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <algorithm>
+namespace tapstudy::core {
+namespace {
+constexpr double skin_per_diagonal = 1e-9;
+// In one tick: how often the planes are left to look for new ones. What is not reached now is
+// reached in the next.
+constexpr int most_rounds = 8;
+constexpr double parallel = 1e-12;  // determinant of planes that nearly coincide
+}  // namespace
+
+SurfaceContact::SurfaceContact(const TriangleTree& tree, double release_height_m) noexcept
+    : tree_{&tree}, release_height_m_{release_height_m} {
+  const auto& points = tree.surface().points_m;
+  const Vec3 size = points.colwise().maxCoeff() - points.colwise().minCoeff();
+  skin_m_ = skin_per_diagonal * size.norm();
+}
+
+const Contact& SurfaceContact::tick(const HandState& tip) noexcept {
+  const Vec3& at = tip.position_m;
+  if (!approach_.has_tip) {
+    god_object_m_ = at;
+  }
+  const Planes planes = move_towards(at);
+  describe(planes, tip);
+  if (!contact_.touching && !approach_.may_strike) {
+    approach_.may_strike = !tree_->is_near(at, release_height_m_);
+  }
+  approach_.tip_m = at;
+  approach_.has_tip = true;
+  return contact_;
+}
+
+SurfaceContact::Planes SurfaceContact::move_towards(const Vec3& tip_m) noexcept {
+  Planes planes;
+  for (int round = 0; round < most_rounds; ++round) {
+    const Vec3 before = god_object_m_;
+    planes.count = 0;
+    Vec3 goal = tip_m;
+    for (;;) {
+      const auto entry = tree_->first_entered(god_object_m_, goal, skin_m_);
+      if (entry.triangle == TriangleTree::none) {
+        god_object_m_ = goal;
+        break;
+      }
+      const Vec3 normal = tree_->normal(entry.triangle);
+      const Vec3 on_triangle =
+          tree_->surface().points_m.row(tree_->surface().triangles(entry.triangle, 0));
+      const double offset = normal.dot(on_triangle) + skin_m_;
+      // stops where the way meets the plane's skin
+      const double start = normal.dot(god_object_m_) - offset;
+      const double end = normal.dot(goal) - offset;
+      const double along = start > 0.0 ? std::min(1.0, start / (start - end)) : 0.0;
+      god_object_m_ += along * (goal - god_object_m_);
+      if (planes.count == planes.held.size()) {
+        break;
+      }
+      planes.held[planes.count++] = {normal, offset, entry.triangle};
+      if (!nearest_allowed(planes, tip_m, goal)) {
+        break;
+      }
+    }
+    if (planes.count == 0 || (god_object_m_ - before).norm() <= skin_m_) {
+      break;
+    }
+  }
+  return planes;
+}
+
+// The nearest point that all planes allow lies on some of them: tries every choice of them.
+bool SurfaceContact::nearest_allowed(const Planes& planes, const Vec3& wanted_m,
+                                     Vec3& found_m) const noexcept {
+  double nearest = HUGE_VAL;
+  for (unsigned choice = 0; choice < (1U << planes.count); ++choice) {
+    Eigen::Matrix3d normals = Eigen::Matrix3d::Zero();
+    Vec3 missing = Vec3::Zero();
+    for (std::size_t i = 0; i < planes.count; ++i) {
+      const auto row = static_cast<Eigen::Index>(i);
+      if ((choice >> i & 1U) != 0) {
+        normals.row(row) = planes.held[i].normal;
+        missing[row] = planes.held[i].offset - planes.held[i].normal.dot(wanted_m);
+      }
+    }
+    Eigen::Matrix3d gram = normals * normals.transpose();
+    for (Eigen::Index i = 0; i < 3; ++i) {
+      gram(i, i) = gram(i, i) > 0.0 ? gram(i, i) : 1.0;
+    }
+    const double determinant = gram.determinant();
+    if (determinant < parallel) {
+      continue;
+    }
+    const Vec3 candidate = wanted_m + normals.transpose() * gram.ldlt().solve(missing);
+    const bool is_allowed = std::all_of(
+        planes.held.begin(), planes.held.begin() + planes.count, [&](const Plane& plane) {
+          return plane.normal.dot(candidate) >= plane.offset - 1e-3 * skin_m_;
+        });
+    const double distance = (candidate - wanted_m).norm();
+    if (is_allowed && distance < nearest) {
+      nearest = distance;
+      found_m = candidate;
+    }
+  }
+  return nearest < HUGE_VAL;
+}
+
+void SurfaceContact::describe(const Planes& planes, const HandState& tip) noexcept {
+  const bool was_touching = contact_.touching;
+  contact_ = {};
+  contact_.god_object_m = god_object_m_;
+  if (planes.count == 0) {
+    return;
+  }
+  const Vec3 push = god_object_m_ - tip.position_m;
+  const double depth = push.norm();
+  contact_.touching = true;
+  contact_.penetration_m = std::max(0.0, depth - skin_m_);
+  contact_.normal = depth > 2.0 * skin_m_ ? Vec3{push / depth} : planes.held[0].normal;
+  const auto* const main = std::max_element(
+      planes.held.begin(), planes.held.begin() + planes.count, [&](const Plane& a, const Plane& b) {
+        return a.normal.dot(contact_.normal) < b.normal.dot(contact_.normal);
+      });
+  contact_.triangle = main->triangle;
+  contact_.barycentric = tree_->barycentric(main->triangle, god_object_m_);
+  contact_.struck = !was_touching && approach_.may_strike;
+  if (contact_.struck) {
+    contact_.impact_speed_m_s = std::max(0.0, -main->normal.dot(tip.velocity_m_s));
+    approach_.may_strike = false;
+  }
+}
+
+void SurfaceContact::continue_from(const Approach& approach) noexcept {
+  contact_ = {};
+  approach_ = approach;
+  god_object_m_ = approach.tip_m;
+}
+}  // namespace tapstudy::core

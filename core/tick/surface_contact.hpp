@@ -1,0 +1,42 @@
+#pragma once
+#include <array>
+
+#include "core/tick/contact.hpp"
+namespace tapstudy::core {
+// The god-object (Zilles & Salisbury 1995) of any closed surface: where the finger would rest if it
+// could not enter. Every tick it moves towards the tip; each triangle that it meets becomes a plane
+// that it may not pass, up to three at once (a face, a concave edge, a concave corner), and it goes
+// on to the nearest point that they allow. At convex edges it leaves the planes that end there.
+//
+// A tip that is found inside without having entered (the first reading) is not in contact. Chatter
+// does not strike again: see PlateContact.
+class SurfaceContact {
+ public:
+  SurfaceContact(const TriangleTree& tree, double release_height_m) noexcept;
+  const Contact& tick(const HandState& tip) noexcept;
+  const Contact& now() const noexcept { return contact_; }
+  Approach approach() const noexcept { return approach_; }
+  void continue_from(const Approach& approach) noexcept;
+
+ private:
+  struct Plane {
+    Vec3 normal;
+    double offset;  // points p with normal . p >= offset are allowed
+    int triangle;
+  };
+  struct Planes {
+    std::array<Plane, 3> held;
+    std::size_t count{0};
+  };
+  Planes move_towards(const Vec3& tip_m) noexcept;
+  bool nearest_allowed(const Planes& planes, const Vec3& wanted_m, Vec3& found_m) const noexcept;
+  void describe(const Planes& planes, const HandState& tip) noexcept;
+
+  const TriangleTree* tree_;
+  double release_height_m_;
+  double skin_m_;  // the god-object keeps this far off, so that rounding cannot push it through
+  Vec3 god_object_m_{Vec3::Zero()};
+  Contact contact_;
+  Approach approach_;
+};
+}  // namespace tapstudy::core

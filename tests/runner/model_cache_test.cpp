@@ -1,0 +1,106 @@
+#include "runner/model_cache.hpp"
+
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <fstream>
+
+#include "core/model/plate_model.hpp"
+#include "protocols/read_protocol.hpp"
+#include "runner/model_library.hpp"
+#include "runner/scene.hpp"
+#include "support/plates.hpp"
+#include "support/texts.hpp"
+using namespace tapstudy;
+using runner::ModelCache;
+
+namespace {
+core::BodyModes some_modes() {
+  return core::solve_body(core::body_of(testing::paper_plate(2, testing::mdf()))).modes;
+}
+std::string only_file_in(const std::string& directory) {
+  std::vector<std::string> files;
+  for (const auto& entry : std::filesystem::directory_iterator{directory}) {
+    files.push_back(entry.path().string());
+  }
+  REQUIRE(files.size() == 1);
+  return files.front();
+}
+protocols::Protocol paper(const std::string& name) {
+  return protocols::read_protocol(testing::shipped("paper/" + name).string());
+}
+}  // namespace
+
+TEST_CASE("what was kept is found to the last bit, under its own key only", "[runner][cache]") {
+  const testing::TempDirectory directory;
+  const ModelCache cache{directory / "models"};
+  const core::BodyModes modes = some_modes();
+  CHECK_FALSE(cache.find("a plate"));
+  cache.keep("a plate", modes);
+  const auto found = cache.find("a plate");
+  REQUIRE(found);
+  CHECK((found->kappa_rad_per_m == modes.kappa_rad_per_m).all());
+  CHECK(found->shape == modes.shape);
+  CHECK(found->touch_surface == modes.touch_surface);
+  CHECK(found->touch_nodes_m == modes.touch_nodes_m);
+  CHECK(found->report.dofs == modes.report.dofs);
+  CHECK_FALSE(cache.find("another plate"));
+}
+
+TEST_CASE("a torn or altered file counts as absent and is replaced", "[runner][cache]") {
+  const testing::TempDirectory directory;
+  const ModelCache cache{directory / "models"};
+  cache.keep("a plate", some_modes());
+  const std::string file = only_file_in(directory / "models");
+  const std::string whole = testing::contents(file);
+  for (const std::size_t length : {std::size_t{0}, whole.size() / 2, whole.size() - 1}) {
+    std::ofstream{file, std::ios::binary} << whole.substr(0, length);
+    CHECK_FALSE(cache.find("a plate"));
+  }
+  std::string altered = whole;
+  altered[whole.size() / 2] ^= 1;
+  std::ofstream{file, std::ios::binary} << altered;
+  CHECK_FALSE(cache.find("a plate"));
+  cache.keep("a plate", some_modes());
+  CHECK(cache.find("a plate"));
+  only_file_in(directory / "models");
+}
+
+TEST_CASE("a cache without a place neither keeps nor fails", "[runner][cache]") {
+  const ModelCache nowhere{"/proc/no/such/place"};
+  nowhere.keep("a plate", some_modes());
+  CHECK_FALSE(nowhere.find("a plate"));
+}
+
+TEST_CASE("none and sinusoid build no mesh", "[runner][cache]") {
+  protocols::Protocol protocol = paper("discrimination.yaml");
+  for (const char* technique : {"none", "sinusoid"}) {
+    for (protocols::Stimulus& stimulus : protocol.stimuli) {
+      stimulus.technique = core::find_technique(technique);
+    }
+    runner::ModelLibrary models{ModelCache{""}};
+    models.build_all(protocol);
+    runner::build_scene(protocol, {protocol.stimuli.front().name}, models);
+    CHECK(models.bodies_solved() == 0);
+    CHECK(models.bodies_used() == 0);
+  }
+}
+
+TEST_CASE("materials of one Poisson's ratio share one solution", "[runner][cache]") {
+  protocols::Protocol protocol = paper("discrimination.yaml");
+  protocol.materials.at("mdf").poissons_ratio = protocol.materials.at("acrylic").poissons_ratio;
+  runner::ModelLibrary models{ModelCache{""}};
+  models.build_all(protocol);
+  CHECK(models.bodies_solved() == 2);  // four stimuli, two plates
+}
+
+TEST_CASE("a second library finds on disk what the first has solved", "[runner][cache]") {
+  const testing::TempDirectory directory;
+  const protocols::Protocol protocol = paper("discrimination.yaml");
+  runner::ModelLibrary first{ModelCache{directory / "models"}};
+  first.build_all(protocol);
+  CHECK(first.bodies_solved() == 4);
+  runner::ModelLibrary second{ModelCache{directory / "models"}};
+  second.build_all(protocol);
+  CHECK(second.bodies_solved() == 0);
+  CHECK(second.bodies_used() == 4);
+}

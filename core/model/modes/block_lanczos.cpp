@@ -68,7 +68,7 @@ class BlockKrylov {
       next_.take_away(basis_, overlap);
       projected_.rightCols(block_) += overlap;
     }
-    projected_.bottomRows(block_) = projected_.rightCols(block_).transpose();
+    projected_.bottomRows(block_) = projected_.rightCols(block_).transpose().eval();
     coupling_ = orthonormalise(next_);
   }
 

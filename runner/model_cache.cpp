@@ -18,18 +18,22 @@ namespace fs = std::filesystem;
 constexpr std::size_t hash_length = 64;
 constexpr std::int64_t most_entries = 1LL << 32;
 
+const char* as_bytes(const void* data) {
+  return static_cast<const char*>(data);
+}
+
 class Writer {
  public:
   template <class Value>
   void put(const Value& value) {
     static_assert(std::is_arithmetic_v<Value>);
-    bytes_.append(reinterpret_cast<const char*>(&value), sizeof value);
+    bytes_.append(as_bytes(&value), sizeof value);
   }
   template <class Matrix>
   void put_all(const Matrix& matrix) {
     put(static_cast<std::int64_t>(matrix.rows()));
     put(static_cast<std::int64_t>(matrix.cols()));
-    bytes_.append(reinterpret_cast<const char*>(matrix.data()),
+    bytes_.append(as_bytes(matrix.data()),
                   sizeof(*matrix.data()) * static_cast<std::size_t>(matrix.size()));
   }
   std::string take() { return std::move(bytes_); }

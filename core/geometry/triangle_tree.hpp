@@ -43,8 +43,8 @@ class TriangleTree {
   struct Node {
     Point middle;
     Point half;
-    int first;  // leaf: into order_; inner: the right child, the left one follows its parent
-    int count;  // 0: inner
+    int first{0};  // leaf: into order_; inner: the right child, the left one follows its parent
+    int count{0};  // 0: inner
   };
   struct Segment {
     Segment(const Point& from, const Point& to) noexcept

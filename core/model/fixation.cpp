@@ -77,6 +77,7 @@ std::vector<Eigen::Index> held_nodes(const Fixation& fixation, const TetMesh& me
   return nodes;
 }
 
+// NOLINTNEXTLINE(readability-function-cognitive-complexity): one plain step for each region
 std::vector<Vec3> wanted_points(const Fixation& fixation, const Bounds& body) {
   std::vector<Vec3> points;
   const auto on_faces = [&](const Vec3& at) {

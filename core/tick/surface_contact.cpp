@@ -34,6 +34,7 @@ const Contact& SurfaceContact::tick(const HandState& tip) noexcept {
   return contact_;
 }
 
+// NOLINTNEXTLINE(readability-function-cognitive-complexity): one loop in another, read as one rule
 SurfaceContact::Planes SurfaceContact::move_towards(const Vec3& tip_m) noexcept {
   Planes planes;
   for (int round = 0; round < most_rounds; ++round) {
@@ -71,6 +72,7 @@ SurfaceContact::Planes SurfaceContact::move_towards(const Vec3& tip_m) noexcept 
 }
 
 // The nearest point that all planes allow lies on some of them: tries every choice of them.
+// NOLINTNEXTLINE(readability-function-cognitive-complexity): small loops over three planes
 bool SurfaceContact::nearest_allowed(const Planes& planes, const Vec3& wanted_m,
                                      Vec3& found_m) const noexcept {
   double nearest = HUGE_VAL;

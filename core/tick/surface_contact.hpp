@@ -21,8 +21,8 @@ class SurfaceContact {
  private:
   struct Plane {
     Vec3 normal;
-    double offset;  // points p with normal . p >= offset are allowed
-    int triangle;
+    double offset{0.0};  // points p with normal . p >= offset are allowed
+    int triangle{TriangleTree::none};
   };
   struct Planes {
     std::array<Plane, 3> held;

@@ -12,21 +12,21 @@ struct SurfacePoint {
   std::size_t count{0};
 };
 
-// The place on one triangle of the model's surface, from its barycentric coordinates L: L_i, or
-// L_i (2 L_i - 1) at corners and 4 L_i L_j in the middle of edges.
+// The place on one triangle of the model's surface, from its barycentric coordinates L, `at`: L_i,
+// or L_i (2 L_i - 1) at corners and 4 L_i L_j in the middle of edges.
 inline SurfacePoint surface_point(const ModalModel::Triangles& surface, int triangle,
-                                  const std::array<double, 3>& L) noexcept {
+                                  const std::array<double, 3>& at) noexcept {
   SurfacePoint point;
   point.count = surface.cols() == 6 ? 6 : 3;
   for (std::size_t i = 0; i < point.count; ++i) {
     point.nodes[i] = surface(triangle, static_cast<Eigen::Index>(i));
   }
   if (point.count == 3) {
-    point.weights = {L[0], L[1], L[2]};
+    point.weights = {at[0], at[1], at[2]};
   } else {
-    point.weights = {L[0] * (2.0 * L[0] - 1.0), L[1] * (2.0 * L[1] - 1.0),
-                     L[2] * (2.0 * L[2] - 1.0), 4.0 * L[0] * L[1],
-                     4.0 * L[1] * L[2],         4.0 * L[2] * L[0]};
+    point.weights = {at[0] * (2.0 * at[0] - 1.0), at[1] * (2.0 * at[1] - 1.0),
+                     at[2] * (2.0 * at[2] - 1.0), 4.0 * at[0] * at[1],
+                     4.0 * at[1] * at[2],         4.0 * at[2] * at[0]};
   }
   return point;
 }

@@ -65,9 +65,9 @@ class TapRenderer {
   TapRenderer(const Technique& technique, const RenderSettings& settings, TouchedShape shape,
               const VibratingPlate* plate);
   RenderedTick tick(const HandState& tip) noexcept;
-  bool is_touching() const noexcept;
+  bool is_touching() const noexcept;  // NOLINT(bugprone-exception-escape)
   // Goes on in silence where another renderer left the finger, off the plate.
-  void take_over_from(const TapRenderer& other) noexcept;
+  void take_over_from(const TapRenderer& other) noexcept;  // NOLINT(bugprone-exception-escape)
 
  private:
   void excite(const Contact& contact) noexcept;

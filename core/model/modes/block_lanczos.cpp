@@ -93,7 +93,7 @@ class BlockKrylov {
   // Makes the block M-orthonormal and returns the triangle R of W = Q R: by Cholesky, twice
   // (Yamamoto et al. 2015), or column by column where the columns nearly depend on one another.
   MatrixXd orthonormalise(Weighted& block) {
-    MatrixXd R = MatrixXd::Identity(block_, block_);
+    MatrixXd triangle = MatrixXd::Identity(block_, block_);
     for (int pass = 0; pass < 2; ++pass) {
       const MatrixXd gram = block.overlap_with(block);
       const Eigen::VectorXd lengths = gram.diagonal().cwiseMax(0.0).cwiseSqrt();
@@ -102,33 +102,33 @@ class BlockKrylov {
       const bool is_safe = scale.allFinite() && factor.info() == Eigen::Success &&
                            factor.matrixLLT().diagonal().minCoeff() > well_apart;
       if (!is_safe) {
-        return column_by_column(block) * R;
+        return column_by_column(block) * triangle;
       }
-      const MatrixXd U = MatrixXd{factor.matrixU()} * lengths.asDiagonal();
-      U.triangularView<Eigen::Upper>().solveInPlace<Eigen::OnTheRight>(block.vectors);
+      const MatrixXd upper = MatrixXd{factor.matrixU()} * lengths.asDiagonal();
+      upper.triangularView<Eigen::Upper>().solveInPlace<Eigen::OnTheRight>(block.vectors);
       weigh(block);
-      R = U * R;
+      triangle = upper * triangle;
     }
-    return R;
+    return triangle;
   }
   // Gram-Schmidt. A column with nothing new in it is replaced by a random one that has, and has no
   // part in R.
   MatrixXd column_by_column(Weighted& block) {
     MatrixXd& columns = block.vectors;
-    MatrixXd R = MatrixXd::Zero(block_, block_);
+    MatrixXd triangle = MatrixXd::Zero(block_, block_);
     for (Index k = 0; k < block_; ++k) {
       const double original = length(columns.col(k));
-      R.col(k).head(k) = project_out(columns, k);
+      triangle.col(k).head(k) = project_out(columns, k);
       double left = length(columns.col(k));
-      R(k, k) = left;
+      triangle(k, k) = left;
       if (!(left > dependent * original) || original == 0.0) {
-        R(k, k) = 0.0;
+        triangle(k, k) = 0.0;
         left = refill(columns, k);
       }
       columns.col(k) /= left;
     }
     weigh(block);
-    return R;
+    return triangle;
   }
   double length(const Eigen::VectorXd& x) const { return std::sqrt(x.dot(matrices_.mass() * x)); }
   Eigen::VectorXd project_out(MatrixXd& columns, Index k) const {

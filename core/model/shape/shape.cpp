@@ -41,6 +41,7 @@ std::string content_key(const Shape& shape) {
   }
   const auto& surface = std::get<TriangleSurface>(shape);
   const auto bytes_of = [](const auto& matrix) {
+    // NOLINTNEXTLINE(cppcoreguidelines-pro-type-reinterpret-cast): bytes, for their hash
     return std::string_view{reinterpret_cast<const char*>(matrix.data()),
                             sizeof(*matrix.data()) * static_cast<std::size_t>(matrix.size())};
   };

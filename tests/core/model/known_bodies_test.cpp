@@ -141,7 +141,8 @@ TEST_CASE("one body scaled is every material of its Poisson's ratio", "[core][mo
   }
 }
 
-TEST_CASE("an accuracy is reached by refining, and out of reach is refused", "[core][model]") {
+TEST_CASE("an accuracy is reached by refining, and out of reach is refused",
+          "[core][model][slow]") {
   core::PlateSpec bar = body({0.3, 0.03, 0.01}, 0.3, 1e-6, 500.0);
   bar.mesh.size.max_tet_volume_m3.reset();
   bar.fixations = {held_side(core::Side::left)};

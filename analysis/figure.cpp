@@ -62,14 +62,19 @@ void write_panel(std::ostream& script, const Panel& panel, std::size_t index) {
   for (std::size_t i = 0; i < panel.series.size(); ++i) {
     const Series& series = panel.series[i];
     script << (i == 0 ? "" : ", ")
-           << fmt::format("$data_{}_{} axes {} with lines lw 1.5 title ", index, i,
-                          series.axis == Axis::left ? "x1y1" : "x1y2")
+           << fmt::format("$data_{}_{} axes {} with {} title ", index, i,
+                          series.axis == Axis::left ? "x1y1" : "x1y2",
+                          series.mark == Mark::line ? "lines lw 1.5" : "points pt 7 ps 0.5")
            << quoted(series.label);
   }
   script << '\n';
 }
 
 std::string axes(const Figure& figure) {
+  if (figure.scale == Scale::logarithmic) {
+    return fmt::format("set xlabel {}\nset ylabel {}\nset logscale xy\nset format xy '%g'\n",
+                       quoted(figure.x_label), quoted(figure.y_label));
+  }
   const Span left = span_of(figure, Axis::left);
   std::string script =
       fmt::format("set xlabel {}\nset ylabel {}\nset yrange [{:.9g}:{:.9g}]\n",

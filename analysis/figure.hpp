@@ -3,12 +3,15 @@
 #include <vector>
 namespace tapstudy::analysis {
 enum class Axis { left, right };
+enum class Mark { line, points };
 struct Series {
   std::string label;
   Axis axis{Axis::left};
   std::vector<double> x;
   std::vector<double> y;  // as many as x
+  Mark mark{Mark::line};
 };
+enum class Scale { linear, logarithmic };
 struct Panel {
   std::string title;
   std::vector<Series> series;
@@ -22,6 +25,7 @@ struct Figure {
   std::string right_label;  // empty: there is no right axis
   std::size_t columns{1};
   std::vector<Panel> panels;
+  Scale scale{Scale::linear};  // of both axes; a logarithmic one has no right axis
 };
 
 // Draws the figure with gnuplot as SVG. Throws InvalidInput if the file exists already or cannot be

@@ -2,13 +2,11 @@
 
 #include <cmath>
 namespace tapstudy::device {
-namespace {
 core::OscillatorStep muscle_step(const HandBody& body, double dt_s) noexcept {
   const double omega = std::sqrt(body.muscle_stiffness_n_per_m / body.mass_kg);
   const double ratio = body.muscle_damping_n_s_per_m / (2.0 * body.mass_kg * omega);
   return core::exact_step(omega, ratio, dt_s);
 }
-}  // namespace
 
 SimulatedHand::SimulatedHand(const HandBody& body, double dt_s, Memory memory)
     : body_{body}, dt_s_{dt_s}, memory_{memory}, step_{muscle_step(body, dt_s)} {}

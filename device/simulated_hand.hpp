@@ -12,6 +12,9 @@ struct HandBody {
   double muscle_damping_n_s_per_m{9.0};
 };
 
+// The motion of hand and muscle over dt round a fixed aim, as long as nothing pushes.
+core::OscillatorStep muscle_step(const HandBody& body, double dt_s) noexcept;
+
 // What a hand knows of one tick: where it was and the force it was given. Nothing about the plate.
 struct FeltTick {
   core::HandState hand;

@@ -19,6 +19,7 @@ ExitCode carry_out(int argc, const char* const* argv) {
   add_report(app);
   add_modes(app);
   add_tap(app);
+  add_trade(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& asked_for_help) {

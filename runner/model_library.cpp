@@ -66,6 +66,12 @@ core::BodySpec body_spec(const protocols::Protocol& protocol, const protocols::S
   return body;
 }
 
+core::VibratingPlate vibrating_plate(const core::Shape& shape, core::ModalModel model) {
+  return std::holds_alternative<core::Box>(shape)
+             ? core::VibratingPlate{std::move(model)}
+             : core::VibratingPlate::touched_all_over(std::move(model));
+}
+
 ModelLibrary::Body ModelLibrary::body(const protocols::Protocol& protocol,
                                       const protocols::Stimulus& stimulus) {
   core::check_material(protocol.materials.at(stimulus.material));
@@ -103,9 +109,7 @@ ModelLibrary::Plate ModelLibrary::plate_of(const protocols::Protocol& protocol,
       core::ModalModel model =
           core::model_of(*body(protocol, stimulus), spec.material, spec.band_limit_hz);
       return std::make_shared<const core::VibratingPlate>(
-          std::holds_alternative<core::Box>(spec.shape)
-              ? core::VibratingPlate{std::move(model)}
-              : core::VibratingPlate::touched_all_over(std::move(model)));
+          vibrating_plate(spec.shape, std::move(model)));
     });
   }
   return plate;

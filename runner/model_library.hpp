@@ -17,6 +17,9 @@ core::PlateSpec plate_spec(const protocols::Protocol& protocol,
 // to the highest band that any of them needs.
 core::BodySpec body_spec(const protocols::Protocol& protocol, const protocols::Stimulus& stimulus);
 
+// Ready to be touched: a box on its upper face, any other shape all over.
+core::VibratingPlate vibrating_plate(const core::Shape& shape, core::ModalModel model);
+
 // Models of plates: each body solved once however many materials share it, and only when a
 // technique that vibrates asks for it. May be used by several threads.
 class ModelLibrary {

@@ -66,6 +66,8 @@ class TapRenderer {
               const VibratingPlate* plate);
   RenderedTick tick(const HandState& tip) noexcept;
   bool is_touching() const noexcept;  // NOLINT(bugprone-exception-escape)
+  // Of the vibrating plate, kinetic plus elastic.
+  double plate_energy_j() const noexcept { return vibration_ ? vibration_->energy_j() : 0.0; }
   // Goes on in silence where another renderer left the finger, off the plate.
   void take_over_from(const TapRenderer& other) noexcept;  // NOLINT(bugprone-exception-escape)
 

@@ -7,10 +7,12 @@
 #include "analysis/proportion.hpp"
 #include "core/error.hpp"
 #include "core/rng.hpp"
+#include "device/penalty_limit.hpp"
 #include "protocols/read_protocol.hpp"
 #include "protocols/schedule.hpp"
 #include "runner/commands/commands.hpp"
 #include "runner/model_library.hpp"
+#include "runner/rig.hpp"
 #include "runner/seed.hpp"
 #include "runner/session.hpp"
 namespace tapstudy::runner {
@@ -45,6 +47,19 @@ void print_models(const protocols::Protocol& protocol) {
   }
   if (models.bodies_used() == 0) {
     fmt::print("  none: no technique here vibrates\n");
+  }
+}
+
+void print_contact(const protocols::Protocol& protocol) {
+  const double asked = protocol.rendering.penalty_stiffness_n_per_m;
+  const double limit = device::largest_stable_penalty_n_per_m(hand_body(protocol.simulation.hand),
+                                                              protocol.rendering.dt_s);
+  fmt::print("\ncontact\n  penalty {} N/m; at {} Hz the simulated hand rests on up to {:.0f} N/m\n",
+             asked, protocol.rate_hz, limit);
+  if (asked >= limit) {
+    fmt::print("  warning: it will chatter (lower penalty_stiffness_n_per_m or raise rate_hz)\n");
+  } else if (asked >= 0.5 * limit) {
+    fmt::print("  note: a hand with half its damping would chatter\n");
   }
 }
 
@@ -107,6 +122,7 @@ void run_check(const CheckOptions& options) {
   }
   print_design(protocol, options.participants);
   print_models(protocol);
+  print_contact(protocol);
   const int index = options.participants - 1;
   const std::uint64_t seed =
       core::derived_seed(seed_from(options.seed, "--seed"), core::Purpose::participant,

@@ -10,4 +10,5 @@ void add_simulate(CLI::App& app);
 void add_report(CLI::App& app);
 void add_modes(CLI::App& app);
 void add_tap(CLI::App& app);
+void add_trade(CLI::App& app);
 }  // namespace tapstudy::runner

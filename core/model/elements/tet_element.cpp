@@ -1,7 +1,9 @@
 #include "core/model/elements/tet_element.hpp"
 
 #include <Eigen/LU>
-#include <array>
+#include <cmath>
+
+#include "core/model/mesh/tet_mesh.hpp"
 namespace tapstudy::core {
 namespace {
 template <int Nodes>
@@ -46,14 +48,12 @@ void mirror_lower(TetElement<Nodes>& element) {
 // T10's shape functions are L_i (2 L_i - 1) at corners and 4 L_i L_j on edges; their gradients at
 // the barycentric point L, from those of L.
 Gradients<10> quadratic_gradients(const Eigen::Vector4d& L, const Gradients<4>& linear) {
-  constexpr std::array<std::array<int, 2>, 6> edges{
-      {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
   Gradients<10> gradients;
   for (Eigen::Index i = 0; i < 4; ++i) {
     gradients.row(i) = (4.0 * L[i] - 1.0) * linear.row(i);
   }
-  for (std::size_t e = 0; e < edges.size(); ++e) {
-    const auto [i, j] = edges.at(e);
+  for (std::size_t e = 0; e < tet_edges.size(); ++e) {
+    const auto [i, j] = tet_edges.at(e);
     gradients.row(static_cast<Eigen::Index>(4 + e)) =
         4.0 * (L[j] * linear.row(i) + L[i] * linear.row(j));
   }

@@ -7,9 +7,6 @@ namespace tapstudy::core {
 namespace {
 using Edge = std::array<int, 2>;  // ascending
 
-constexpr std::array<Edge, 6> tet_edges{{{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
-constexpr std::array<Edge, 3> triangle_edges{{{0, 1}, {1, 2}, {2, 0}}};
-
 Edge edge_of(const TetMesh::Indices& corners, Eigen::Index row, const Edge& ends) {
   const int a = corners(row, ends[0]);
   const int b = corners(row, ends[1]);
@@ -25,20 +22,18 @@ std::vector<Edge> edges_of(const TetMesh& mesh) {
     }
   }
   std::ranges::sort(edges);
-  const auto repeated = std::ranges::unique(edges);
-  edges.erase(repeated.begin(), repeated.end());
+  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
   return edges;
 }
 
-template <std::size_t Count>
-TetMesh::Indices with_middles_of(const TetMesh::Indices& corners,
-                                 const std::array<Edge, Count>& local_edges,
+// The rows with the middles of their first `count` edges behind the corners.
+TetMesh::Indices with_middles_of(const TetMesh::Indices& corners, std::size_t count,
                                  const std::vector<Edge>& edges, int first_middle) {
-  TetMesh::Indices rows{corners.rows(), corners.cols() + static_cast<Eigen::Index>(Count)};
+  TetMesh::Indices rows{corners.rows(), corners.cols() + static_cast<Eigen::Index>(count)};
   rows.leftCols(corners.cols()) = corners;
   for (Eigen::Index row = 0; row < corners.rows(); ++row) {
-    for (std::size_t i = 0; i < Count; ++i) {
-      const auto found = std::ranges::lower_bound(edges, edge_of(corners, row, local_edges.at(i)));
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto found = std::ranges::lower_bound(edges, edge_of(corners, row, tet_edges.at(i)));
       rows(row, corners.cols() + static_cast<Eigen::Index>(i)) =
           first_middle + static_cast<int>(found - edges.begin());
     }
@@ -57,8 +52,8 @@ TetMesh with_middles(const TetMesh& mesh) {
     result.nodes_m.row(corners + static_cast<Eigen::Index>(i)) =
         0.5 * (mesh.nodes_m.row(edges[i][0]) + mesh.nodes_m.row(edges[i][1]));
   }
-  result.tets = with_middles_of(mesh.tets, tet_edges, edges, static_cast<int>(corners));
-  result.surface = with_middles_of(mesh.surface, triangle_edges, edges, static_cast<int>(corners));
+  result.tets = with_middles_of(mesh.tets, 6, edges, static_cast<int>(corners));
+  result.surface = with_middles_of(mesh.surface, 3, edges, static_cast<int>(corners));
   return result;
 }
 }  // namespace tapstudy::core

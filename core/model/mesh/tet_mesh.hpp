@@ -1,9 +1,15 @@
 #pragma once
 #include <Eigen/Core>
+#include <array>
 #include <string>
 namespace tapstudy::core {
+// Corners at the ends of a tetrahedron's edges, in the order of the nodes in their middles; the
+// first three are the edges of a triangle.
+inline constexpr std::array<std::array<int, 2>, 6> tet_edges{
+    {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
+
 // A body cut into straight-sided tetrahedra of order 1 (T4: its corners) or 2 (T10: its corners,
-// then the middles of the edges 01 12 20 03 13 23).
+// then the middles of tet_edges).
 struct TetMesh {
   using Indices = Eigen::Matrix<int, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 

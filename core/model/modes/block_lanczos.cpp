@@ -175,12 +175,9 @@ MatrixXd eigenvectors_below_shift(const StiffnessAndMass& matrices, const Shifte
     tell(progress, fmt::format("iterating, {} of at most {} vectors", krylov.size(), most));
     krylov.grow();
     if (krylov.size() >= next_look) {
-      const MatrixXd found = krylov.converged(count);
+      MatrixXd found = krylov.converged(count);
       if (found.cols() == count) {
-        // inverse iteration once more, which takes out what rounding has left of high modes
-        MatrixXd polished = matrices.mass() * found;
-        factor.solve_in_place(polished);
-        return polished;
+        return found;
       }
       next_look = krylov.size() + std::max(block, krylov.size() / 8);
     }

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <vector>
 
 #include "core/error.hpp"
 #include "core/model/modes/block_lanczos.hpp"
@@ -16,12 +17,13 @@ namespace tapstudy::core {
 namespace {
 constexpr double residual_limit = 1e-8;
 // Of rounding that a solve and the products after it may add up to.
-constexpr double rounding_steps = 64.0;
+constexpr double rounding_steps = 8.0;
 // Below this fraction of the band a frequency is zero to rounding: a motion of the rigid body.
 constexpr double rigid_fraction = 1e-4;
 // Up to this size the whole spectrum costs nothing, and Lanczos would have no room.
 constexpr Eigen::Index dense_size = 96;
 constexpr int most_modes = 1000;
+constexpr int most_polishing_rounds = 4;
 
 struct Pairs {
   Eigen::VectorXd values;
@@ -64,25 +66,52 @@ double largest_row_sum(const StiffnessAndMass& matrices) {
   return (sizes.selfadjointView<Eigen::Lower>() * Eigen::VectorXd::Ones(sizes.rows())).maxCoeff();
 }
 
-// Of each mode, relative to the forces that it is the difference of; refused where it exceeds what
-// rounding can leave there, which grows with the stiffest element over the softest mode.
-double checked_residual(const StiffnessAndMass& matrices, const Modes& modes) {
+struct Residual {
+  double found{0.0};
+  double allowed{0.0};
+  bool is_small() const { return found <= allowed; }
+};
+
+// |K x - w² M x| relative to the forces that it is the difference of; what is allowed grows with
+// what rounding leaves there: the stiffest element over the softest mode.
+std::vector<Residual> residuals(const StiffnessAndMass& matrices, const Pairs& pairs) {
   const double rounding =
       rounding_steps * std::numeric_limits<double>::epsilon() * largest_row_sum(matrices);
-  double worst = 0.0;
-  for (Eigen::Index i = 0; i < modes.omega_rad_s.size(); ++i) {
-    const auto shape = modes.shapes.col(i);
+  std::vector<Residual> all;
+  for (Eigen::Index i = 0; i < pairs.values.size(); ++i) {
+    const auto shape = pairs.vectors.col(i);
     const Eigen::VectorXd elastic = matrices.stiffness() * shape;
     Eigen::VectorXd inertial = matrices.mass() * shape;
-    inertial *= modes.omega_rad_s[i] * modes.omega_rad_s[i];
+    inertial *= pairs.values[i];
     const double scale = elastic.norm() + inertial.norm();
-    const double residual = (elastic - inertial).norm() / scale;
-    const double allowed = residual_limit + rounding * shape.norm() / scale;
-    if (!(residual <= allowed)) {
-      throw ModelError{fmt::format("modes: mode {} has a residual of {:.1e} (at most {:.1e})",
-                                   i + 1, residual, allowed)};
+    all.push_back(
+        {(elastic - inertial).norm() / scale, residual_limit + rounding * shape.norm() / scale});
+  }
+  return all;
+}
+
+// What a basis of moderate size leaves of higher modes in the lowest, inverse iteration takes out.
+Pairs polished(const StiffnessAndMass& matrices, const ShiftedFactor& factor,
+               Eigen::MatrixXd vectors) {
+  for (int round = 1;; ++round) {
+    Pairs pairs = modes_in_span(matrices, vectors);
+    if (round == most_polishing_rounds ||
+        std::ranges::all_of(residuals(matrices, pairs), &Residual::is_small)) {
+      return pairs;
     }
-    worst = std::max(worst, residual);
+    vectors = matrices.mass() * pairs.vectors;
+    factor.solve_in_place(vectors);
+  }
+}
+
+double checked_residual(const StiffnessAndMass& matrices, const Pairs& pairs) {
+  double worst = 0.0;
+  for (const Residual& one : residuals(matrices, pairs)) {
+    if (!one.is_small()) {
+      throw ModelError{fmt::format("modes: a mode has a residual of {:.1e} (at most {:.1e})",
+                                   one.found, one.allowed)};
+    }
+    worst = std::max(worst, one.found);
   }
   return worst;
 }
@@ -100,23 +129,23 @@ Modes solve_modes(const StiffnessAndMass& matrices, double band_limit_hz,
   const int count = modes.counted_in_band;
   if (count > most_modes) {
     throw ModelError{
-        fmt::format("modes: {} lie below {} Hz, more than the {} that a tick could "
-                    "carry (lower band_limit_hz, or is the body too soft?)",
-                    count, band_limit_hz, most_modes)};
+        fmt::format("modes: {} lie below the band limit, more than the {} that a tick could carry "
+                    "(lower band_limit_hz, or is the body too soft?)",
+                    count, most_modes)};
   }
   const Eigen::Index size = matrices.K.rows();
   Pairs pairs{Eigen::VectorXd{0}, Eigen::MatrixXd{size, 0}};
   if (count > 0) {
     const bool is_small = size <= dense_size || Eigen::Index{4} * count > size;
     pairs = is_small ? lowest_dense(matrices, count)
-                     : modes_in_span(matrices,
-                                     eigenvectors_below_shift(matrices, factor, count, progress));
+                     : polished(matrices, factor,
+                                eigenvectors_below_shift(matrices, factor, count, progress));
   }
   if (count > 0 && pairs.values.maxCoeff() >= band * band) {
-    throw ModelError{
-        fmt::format("modes: {} lie below {} Hz by the inertia count, but the solver "
-                    "missed one of them",
-                    count, band_limit_hz)};
+    throw ModelError{fmt::format(
+        "modes: {} lie below the band limit by the inertia count, but the solver missed "
+        "one of them",
+        count)};
   }
   const double zero = rigid_fraction * rigid_fraction * band * band;
   modes.rigid_body_modes = static_cast<int>((pairs.values.array() < zero).count());
@@ -124,7 +153,7 @@ Modes solve_modes(const StiffnessAndMass& matrices, double band_limit_hz,
   modes.omega_rad_s = pairs.values.tail(kept).array().sqrt();
   modes.shapes = pairs.vectors.rightCols(kept);
   fix_signs(modes.shapes);
-  modes.worst_residual = checked_residual(matrices, modes);
+  modes.worst_residual = checked_residual(matrices, {pairs.values.tail(kept), modes.shapes});
   modes.iterate_s = watch.lap_s();
   return modes;
 }

@@ -1,0 +1,59 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "protocols/read_protocol.hpp"
+#include "runner/commands/commands.hpp"
+#include "runner/progress.hpp"
+#include "runner/trade/writers.hpp"
+namespace tapstudy::runner {
+namespace {
+struct TradeOptions {
+  std::string protocol;
+  std::string stimulus;
+  Tolerance tolerance;
+  bool wants_json{false};
+  std::string out;
+};
+
+void run_trade(const TradeOptions& options) {
+  const protocols::Protocol protocol = protocols::read_protocol(options.protocol);
+  const protocols::Stimulus& stimulus = protocol.stimulus(options.stimulus);
+  Progress progress{fmt::format("measuring '{}'", options.stimulus)};
+  const Trade trade = measure_trade(protocol, stimulus, options.tolerance, progress.hook());
+  const Stability stability = measure_stability(protocol, stimulus, progress.hook());
+  if (!options.out.empty()) {
+    write_files(options.out, trade, stability);
+  }
+  if (options.wants_json) {
+    fmt::print("{}\n", json_of(trade, stability));
+  } else {
+    print(trade, stability, options.out);
+  }
+}
+}  // namespace
+
+void add_trade(CLI::App& app) {
+  auto* const command =
+      app.add_subcommand("trade", "What speed costs in accuracy, and what extremes it stands");
+  const auto options = std::make_shared<TradeOptions>();
+  command->add_option("protocol", options->protocol, "Study (YAML)")->required();
+  command->add_option("--stimulus", options->stimulus, "Which stimulus")->required();
+  command
+      ->add_option("--frequency-tolerance", options->tolerance.frequency,
+                   "Largest relative error of a natural frequency")
+      ->check(CLI::Range(1e-6, 10.0))
+      ->capture_default_str();
+  command
+      ->add_option("--level-tolerance-db", options->tolerance.level_db,
+                   "Largest error of the vibration's level")
+      ->check(CLI::Range(1e-6, 100.0))
+      ->capture_default_str();
+  command->add_flag("--json", options->wants_json, "For programs");
+  command->add_option(
+      "--out", options->out,
+      "Write trade.csv, trade.json, trade.svg and stability.csv into this directory");
+  command->callback([options] { run_trade(*options); });
+}
+}  // namespace tapstudy::runner

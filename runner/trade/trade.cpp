@@ -1,0 +1,182 @@
+#include "runner/trade/trade.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "core/error.hpp"
+#include "runner/trade/errors.hpp"
+#include "runner/trade/workbench.hpp"
+namespace tapstudy::runner {
+namespace {
+constexpr double session_s = 600.0;
+constexpr std::array<double, 3> tets_tried{200.0, 700.0, 2500.0};
+constexpr double tets_of_reference = 8000.0;
+constexpr std::array<double, 3> rates_tried{1.0, 2.0, 4.0};  // of the protocol's
+constexpr double fastest_hz = 10000.0;
+
+// The widest of those tried is the reference's. A strike excites all frequencies there are, so the
+// force never settles as the band grows: what lies beyond is not counted as error but shown apart.
+struct Bands {
+  std::vector<double> tried_hz;
+  double beyond_hz;
+};
+
+// Beyond the protocol's band only where there are damping ratios for what lies there.
+Bands bands_of(const core::PlateSpec& plate) {
+  const double own = plate.band_limit_hz;
+  if (std::holds_alternative<core::ModalDamping>(plate.material.damping)) {
+    return {{0.5 * own, own}, own};
+  }
+  return {{0.5 * own, own, 2.0 * own}, 4.0 * own};
+}
+
+core::Meshing mesh_of(const core::PlateSpec& plate, int order, double tets) {
+  core::Meshing mesh = plate.mesh;
+  mesh.order = order;
+  mesh.accuracy.reset();
+  mesh.size.max_tet_volume_m3 = std::abs(core::volume_m3(plate.shape)) / tets;
+  return mesh;
+}
+
+class Tradeoff {
+ public:
+  Tradeoff(const protocols::Protocol& protocol, const protocols::Stimulus& stimulus,
+           const core::ProgressHook& progress)
+      : protocol_{protocol},
+        bench_{protocol, stimulus, progress},
+        bands_{bands_of(bench_.plate())} {}
+
+  Reference make_reference() {
+    const double band_hz = bands_.tried_hz.back();
+    const core::BodyModes fine = solved(tets_of_reference);
+    bench_.fix_damping(fine);
+    const core::BodyModes coarser = solved(tets_tried.back());
+    frequency_hz_ = bench_.model_of(fine, bands_.beyond_hz).frequency_hz;
+    const Eigen::Index modes = (frequency_hz_ < band_hz).count();
+    if (modes == 0) {
+      throw core::ModelError{fmt::format("nothing vibrates below {} Hz", band_hz)};
+    }
+    forces_n_ = exact_forces(fine, band_hz);
+    const Eigen::ArrayXd coarser_hz = bench_.model_of(coarser, band_hz).frequency_hz;
+    return {fine.report.tets,
+            fine.report.dofs,
+            band_hz,
+            static_cast<int>(modes),
+            fine.report.cost.total_s(),
+            coarser.report.tets,
+            frequency_error(frequency_hz_, coarser_hz, band_hz),
+            force_error(forces_n_, exact_forces(coarser, band_hz)),
+            force_error(exact_forces(fine, bands_.beyond_hz), forces_n_)};
+  }
+
+  std::vector<Traded> try_all() {
+    std::vector<Traded> all;
+    try_mesh(bench_.plate().mesh, true, all);
+    for (const int order : {1, 2}) {
+      for (const double tets : tets_tried) {
+        try_mesh(mesh_of(bench_.plate(), order, tets), false, all);
+      }
+    }
+    return all;
+  }
+
+ private:
+  core::BodyModes solved(double tets) const {
+    return bench_.solve(mesh_of(bench_.plate(), 2, tets), bands_.beyond_hz);
+  }
+  Forces exact_forces(const core::BodyModes& body, double band_hz) const {
+    return bench_.forces_n(bench_.model_of(body, band_hz), core::Integrator::exact,
+                           protocol_.rate_hz);
+  }
+
+  void try_mesh(const core::Meshing& mesh, bool is_own, std::vector<Traded>& all) const {
+    for (const double band_hz : bands_.tried_hz) {
+      const core::BodyModes body = bench_.solve(mesh, band_hz);
+      const core::ModalModel model = bench_.model_of(body, band_hz);
+      Traded built;
+      built.setting = {mesh, band_hz, core::Integrator::exact, 0.0, is_own};
+      built.tets = body.report.tets;
+      built.dofs = body.report.dofs;
+      built.modes = static_cast<int>(model.frequency_hz.size());
+      built.build_s = body.report.cost.total_s();
+      built.tick_ns = bench_.tick_ns(model);
+      try_rates(built, model, all);
+    }
+  }
+
+  void try_rates(const Traded& built, const core::ModalModel& model,
+                 std::vector<Traded>& all) const {
+    for (const double times : rates_tried) {
+      const double rate_hz = times * protocol_.rate_hz;
+      if (rate_hz > fastest_hz || built.setting.band_limit_hz >= 0.5 * rate_hz) {
+        continue;
+      }
+      for (const auto integrator : {core::Integrator::exact, core::Integrator::newmark}) {
+        Traded one = built;
+        one.setting.integrator = integrator;
+        one.setting.rate_hz = rate_hz;
+        one.setting.is_protocols = built.setting.is_protocols && times == 1.0 &&
+                                   built.setting.band_limit_hz == protocol_.band_limit_hz &&
+                                   integrator == protocol_.rendering.integrator;
+        measure(model, one);
+        all.push_back(one);
+      }
+    }
+  }
+
+  void measure(const core::ModalModel& model, Traded& one) const {
+    const auto [mesh, band_hz, integrator, rate_hz, is_own] = one.setting;
+    one.cost_s = one.build_s + 1e-9 * one.tick_ns * rate_hz * session_s;
+    one.frequency_error =
+        frequency_error(frequency_hz_, rung_hz(model.frequency_hz, integrator, rate_hz), band_hz);
+    one.force_error = force_error(forces_n_, bench_.forces_n(model, integrator, rate_hz));
+    core::ModalModel held = model;  // a shape counts twice, at the strike and at the finger
+    held.shape *= held_gain(model.frequency_hz, rate_hz).sqrt().matrix().asDiagonal();
+    one.level_error_db = level_error_db(forces_n_, bench_.forces_n(held, integrator, rate_hz));
+  }
+
+  const protocols::Protocol& protocol_;
+  Workbench bench_;
+  Bands bands_;
+  Eigen::ArrayXd frequency_hz_;  // of the reference's body, beyond its band too
+  Forces forces_n_;              // of the reference
+};
+}  // namespace
+
+Trade measure_trade(const protocols::Protocol& protocol, const protocols::Stimulus& stimulus,
+                    const Tolerance& tolerance, const core::ProgressHook& progress) {
+  if (!stimulus.technique->vibration) {
+    throw core::InvalidInput{
+        fmt::format("stimulus '{}': technique '{}' has no model to trade accuracy of",
+                    stimulus.name, stimulus.technique->name)};
+  }
+  Tradeoff tradeoff{protocol, stimulus, progress};
+  Trade trade;
+  trade.stimulus = stimulus.name;
+  trade.tolerance = tolerance;
+  trade.reference = tradeoff.make_reference();
+  trade.settings = tradeoff.try_all();
+  judge(trade);
+  return trade;
+}
+
+void judge(Trade& trade) {
+  std::ranges::stable_sort(trade.settings, {}, &Traded::cost_s);
+  trade.cheapest = -1;
+  double best = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < trade.settings.size(); ++i) {
+    Traded& one = trade.settings[i];
+    one.is_on_front = one.force_error < best;
+    best = std::min(best, one.force_error);
+    one.is_inside_tolerance = one.frequency_error <= trade.tolerance.frequency &&
+                              one.level_error_db <= trade.tolerance.level_db;
+    if (one.is_inside_tolerance && trade.cheapest < 0) {
+      trade.cheapest = static_cast<int>(i);
+    }
+  }
+}
+}  // namespace tapstudy::runner

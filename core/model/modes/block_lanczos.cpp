@@ -72,19 +72,21 @@ class BlockKrylov {
     coupling_ = orthonormalise(next_);
   }
 
-  // The count wanted vectors, or none if they have not all converged.
-  MatrixXd converged(Index count) const {
+  // None wanted if they have not all converged.
+  RitzVectors converged(Index count, double sigma) const {
     const Eigen::SelfAdjointEigenSolver<MatrixXd> ritz{0.5 * (projected_ + projected_.transpose())};
     const auto nu = ritz.eigenvalues().head(count).array();
-    const MatrixXd y = ritz.eigenvectors().leftCols(count);
-    const MatrixXd beyond = coupling_ * y.bottomRows(block_);
+    const MatrixXd beyond = coupling_ * ritz.eigenvectors().leftCols(count).bottomRows(block_);
     const bool all = (nu < 0.0).all() &&
                      (beyond.colwise().norm().transpose().array() <= tolerance * nu.abs()).all();
     if (!all) {
       return {};
     }
+    const Index guards = (ritz.eigenvalues().array() > 1.0 / sigma).count();
     // one step of inverse iteration, for free: what lies outside the basis is known
-    return basis_.vectors * y + next_.vectors * (beyond * nu.inverse().matrix().asDiagonal());
+    return {basis_.vectors * ritz.eigenvectors().leftCols(count) +
+                next_.vectors * (beyond * nu.inverse().matrix().asDiagonal()),
+            basis_.vectors * ritz.eigenvectors().rightCols(guards)};
   }
 
  private:
@@ -164,8 +166,8 @@ class BlockKrylov {
 };
 }  // namespace
 
-MatrixXd eigenvectors_below_shift(const StiffnessAndMass& matrices, const ShiftedFactor& factor,
-                                  int count, const ProgressHook& progress) {
+RitzVectors eigenvectors_below_shift(const StiffnessAndMass& matrices, const ShiftedFactor& factor,
+                                     int count, const ProgressHook& progress) {
   const Index size = matrices.K.rows();
   const Index block = std::clamp<Index>(count, 2, largest_block);
   const Index most = std::min<Index>(size - block, 4 * Index{count} + 40 * block);
@@ -175,8 +177,8 @@ MatrixXd eigenvectors_below_shift(const StiffnessAndMass& matrices, const Shifte
     tell(progress, fmt::format("iterating, {} of at most {} vectors", krylov.size(), most));
     krylov.grow();
     if (krylov.size() >= next_look) {
-      MatrixXd found = krylov.converged(count);
-      if (found.cols() == count) {
+      RitzVectors found = krylov.converged(count, factor.sigma());
+      if (found.wanted.cols() == count) {
         return found;
       }
       next_look = krylov.size() + std::max(block, krylov.size() / 8);

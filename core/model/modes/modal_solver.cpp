@@ -90,18 +90,34 @@ std::vector<Residual> residuals(const StiffnessAndMass& matrices, const Pairs& p
   return all;
 }
 
-// What a basis of moderate size leaves of higher modes in the lowest, inverse iteration takes out.
-Pairs polished(const StiffnessAndMass& matrices, const ShiftedFactor& factor,
-               Eigen::MatrixXd vectors) {
-  for (int round = 1;; ++round) {
-    Pairs pairs = modes_in_span(matrices, vectors);
-    if (round == most_polishing_rounds ||
-        std::ranges::all_of(residuals(matrices, pairs), &Residual::is_small)) {
-      return pairs;
-    }
-    vectors = matrices.mass() * pairs.vectors;
-    factor.solve_in_place(vectors);
+Pairs lowest(const Pairs& pairs, int count) {
+  return {pairs.values.head(count), pairs.vectors.leftCols(count)};
+}
+
+// The modes below the shift. Where a basis of moderate size has left too much of far higher modes
+// in the lowest, subspace iteration takes it out; the guards keep modes beyond the shift, which it
+// would enlarge, from coming in.
+Pairs modes_below_shift(const StiffnessAndMass& matrices, const ShiftedFactor& factor, int count,
+                        const ProgressHook& progress) {
+  RitzVectors ritz = eigenvectors_below_shift(matrices, factor, count, progress);
+  Pairs pairs = modes_in_span(matrices, ritz.wanted);
+  const auto is_good = [&] {
+    return std::ranges::all_of(residuals(matrices, pairs), &Residual::is_small);
+  };
+  if (is_good()) {
+    return pairs;
   }
+  Eigen::MatrixXd vectors{ritz.wanted.rows(), ritz.wanted.cols() + ritz.guards.cols()};
+  vectors << ritz.wanted, ritz.guards;
+  for (int round = 0; round < most_polishing_rounds && !is_good(); ++round) {
+    tell(progress, "polishing");
+    vectors = matrices.mass() * vectors;
+    factor.solve_in_place(vectors);
+    const Pairs all = modes_in_span(matrices, vectors);
+    vectors = all.vectors;
+    pairs = lowest(all, count);
+  }
+  return pairs;
 }
 
 double checked_residual(const StiffnessAndMass& matrices, const Pairs& pairs) {
@@ -138,8 +154,7 @@ Modes solve_modes(const StiffnessAndMass& matrices, double band_limit_hz,
   if (count > 0) {
     const bool is_small = size <= dense_size || Eigen::Index{4} * count > size;
     pairs = is_small ? lowest_dense(matrices, count)
-                     : polished(matrices, factor,
-                                eigenvectors_below_shift(matrices, factor, count, progress));
+                     : modes_below_shift(matrices, factor, count, progress);
   }
   if (count > 0 && pairs.values.maxCoeff() >= band * band) {
     throw ModelError{fmt::format(

@@ -114,7 +114,7 @@ struct ShiftedFactor::Mumps {
 };
 
 ShiftedFactor::ShiftedFactor(const StiffnessAndMass& matrices, double sigma)
-    : mumps_{std::make_unique<Mumps>(matrices.K - sigma * matrices.M)} {
+    : sigma_{sigma}, mumps_{std::make_unique<Mumps>(matrices.K - sigma * matrices.M)} {
   mumps_->analyse();
   mumps_->factorise();
 }

@@ -20,12 +20,14 @@ class ShiftedFactor {
   ShiftedFactor(ShiftedFactor&&) = delete;
   ShiftedFactor& operator=(ShiftedFactor&&) = delete;
 
+  double sigma() const { return sigma_; }
   int eigenvalues_below() const;
   // Replaces each column b by the solution of (K - sigma M) x = b.
   void solve_in_place(Eigen::MatrixXd& columns) const;
 
  private:
   struct Mumps;
+  double sigma_;
   std::unique_ptr<Mumps> mumps_;
 };
 }  // namespace tapstudy::core

@@ -125,3 +125,19 @@ TEST_CASE("a body of a few nodes is solved as well", "[core][model]") {
   cube.band_limit_hz = 20000.0;
   CHECK(core::build_plate_model(cube).modal.frequency_hz.size() > 0);
 }
+
+TEST_CASE("hundreds of modes of a soft body all swing as K x = w^2 M x says",
+          "[core][model][slow]") {
+  core::Material rubber = testing::mdf();
+  rubber.youngs_modulus_pa = 1e6;
+  core::PlateSpec plate = testing::paper_plate(3, rubber);
+  plate.mesh.size.max_tet_volume_m3 = 1.8e-5;
+  for (core::Fixation& fixation : plate.fixations) {
+    fixation.shape = core::RegionShape::disc;
+    fixation.radius_m = 0.04;
+  }
+  const core::Modes modes = core::solve_modes(assembled(plate), 300.0);
+  CHECK(modes.omega_rad_s.size() > 300);
+  CHECK(modes.omega_rad_s.size() == modes.counted_in_band);
+  CHECK(modes.worst_residual < 2e-8);
+}

@@ -58,6 +58,25 @@ TEST_CASE("an undamped mode swings at its own frequency", "[core][oscillator]") 
   CHECK(q == Approx(std::cos(omega * 1.0)).margin(1e-12 * 1000));
 }
 
+TEST_CASE("three hundred ticks of a damped mode are its closed form", "[core][oscillator]") {
+  const double hz = GENERATE(30.0, 100.0, 300.0);
+  const double zeta = GENERATE(0.0, 0.02, 0.5);
+  const double omega = 2.0 * M_PI * hz;
+  const double damped = omega * std::sqrt(1.0 - zeta * zeta);
+  const OscillatorStep step = exact_step(omega, zeta, dt_s);
+  double q = 0.0;
+  double v = omega;
+  for (int tick = 1; tick <= 300; ++tick) {
+    const double q_before = q;
+    q = step.qq * q + step.qv * v;
+    v = step.vq * q_before + step.vv * v;
+    const double t = tick * dt_s;
+    REQUIRE(
+        q ==
+        Approx(omega / damped * std::exp(-zeta * omega * t) * std::sin(damped * t)).margin(1e-12));
+  }
+}
+
 TEST_CASE("around critical damping nothing jumps", "[core][oscillator]") {
   const double omega = GENERATE(1.0, 300.0, 3000.0);
   const OscillatorStep critical = exact_step(omega, 1.0, dt_s);

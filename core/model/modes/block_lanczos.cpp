@@ -14,30 +14,38 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 constexpr std::uint64_t start_seed = 1;
-constexpr Index largest_block = 8;
-constexpr double tolerance = 1e-11;  // of a Ritz pair's residual, relative to its nu
+constexpr Index largest_block = 4;
+constexpr double tolerance = 1e-10;  // of a Ritz pair's residual, relative to its nu
 constexpr double well_apart = 1e-5;  // of a column, what the ones before it may leave for Cholesky
 constexpr double dependent = 1e-12;  // what is left of a column that held nothing new
+
+// Columns that come in one block after another.
+class GrowingColumns {
+ public:
+  auto all() const { return storage_.leftCols(used_); }
+  Index count() const { return used_; }
+  void append(const MatrixXd& more) {
+    if (used_ + more.cols() > storage_.cols()) {
+      storage_.conservativeResize(more.rows(), 2 * (used_ + more.cols()));
+    }
+    storage_.middleCols(used_, more.cols()) = more;
+    used_ += more.cols();
+  }
+
+ private:
+  MatrixXd storage_;
+  Index used_{0};
+};
 
 // Vectors together with their product with the mass matrix, so that inner products in its metric
 // cost no more than others.
 struct Weighted {
   MatrixXd vectors;
   MatrixXd times_mass;
-  MatrixXd overlap_with(const Weighted& others) const {
-    return vectors.transpose() * others.times_mass;
-  }
-  void take_away(const Weighted& others, const MatrixXd& weights) {
-    vectors.noalias() -= others.vectors * weights;
-    times_mass.noalias() -= others.times_mass * weights;
-  }
-  void append(const Weighted& others) {
-    const Index columns = vectors.cols() + others.vectors.cols();
-    vectors.conservativeResize(others.vectors.rows(), columns);
-    times_mass.conservativeResize(others.vectors.rows(), columns);
-    vectors.rightCols(others.vectors.cols()) = others.vectors;
-    times_mass.rightCols(others.vectors.cols()) = others.times_mass;
-  }
+};
+struct Basis {
+  GrowingColumns vectors;
+  GrowingColumns times_mass;
 };
 
 class BlockKrylov {
@@ -48,24 +56,23 @@ class BlockKrylov {
     for (double& value : next_.vectors.reshaped()) {
       value = rng_.normal();
     }
-    weigh(next_);
     coupling_ = orthonormalise(next_);
   }
 
-  Index size() const { return basis_.vectors.cols(); }
+  Index size() const { return basis_.vectors.count(); }
 
   // Takes the next block into the basis and prepares the one after.
   void grow() {
     const Index before = size();
-    basis_.append(next_);
+    basis_.vectors.append(next_.vectors);
+    basis_.times_mass.append(next_.times_mass);
     projected_.conservativeResize(before + block_, before + block_);
     projected_.rightCols(block_).setZero();
     next_.vectors = next_.times_mass;
     factor_.solve_in_place(next_.vectors);
-    weigh(next_);
     for (int pass = 0; pass < 2; ++pass) {
-      const MatrixXd overlap = basis_.overlap_with(next_);
-      next_.take_away(basis_, overlap);
+      const MatrixXd overlap = basis_.times_mass.all().transpose() * next_.vectors;
+      next_.vectors.noalias() -= basis_.vectors.all() * overlap;
       projected_.rightCols(block_) += overlap;
     }
     projected_.bottomRows(block_) = projected_.rightCols(block_).transpose().eval();
@@ -84,9 +91,9 @@ class BlockKrylov {
     }
     const Index guards = (ritz.eigenvalues().array() > 1.0 / sigma).count();
     // one step of inverse iteration, for free: what lies outside the basis is known
-    return {basis_.vectors * ritz.eigenvectors().leftCols(count) +
+    return {basis_.vectors.all() * ritz.eigenvectors().leftCols(count) +
                 next_.vectors * (beyond * nu.inverse().matrix().asDiagonal()),
-            basis_.vectors * ritz.eigenvectors().rightCols(guards)};
+            basis_.vectors.all() * ritz.eigenvectors().rightCols(guards)};
   }
 
  private:
@@ -97,7 +104,8 @@ class BlockKrylov {
   MatrixXd orthonormalise(Weighted& block) {
     MatrixXd triangle = MatrixXd::Identity(block_, block_);
     for (int pass = 0; pass < 2; ++pass) {
-      const MatrixXd gram = block.overlap_with(block);
+      weigh(block);
+      const MatrixXd gram = block.vectors.transpose() * block.times_mass;
       const Eigen::VectorXd lengths = gram.diagonal().cwiseMax(0.0).cwiseSqrt();
       const Eigen::VectorXd scale = lengths.cwiseInverse();
       const Eigen::LLT<MatrixXd> factor{scale.asDiagonal() * gram * scale.asDiagonal()};
@@ -107,8 +115,9 @@ class BlockKrylov {
         return column_by_column(block) * triangle;
       }
       const MatrixXd upper = MatrixXd{factor.matrixU()} * lengths.asDiagonal();
-      upper.triangularView<Eigen::Upper>().solveInPlace<Eigen::OnTheRight>(block.vectors);
-      weigh(block);
+      for (MatrixXd* columns : {&block.vectors, &block.times_mass}) {
+        upper.triangularView<Eigen::Upper>().solveInPlace<Eigen::OnTheRight>(*columns);
+      }
       triangle = upper * triangle;
     }
     return triangle;
@@ -148,8 +157,8 @@ class BlockKrylov {
       value = rng_.normal();
     }
     for (int pass = 0; pass < 2; ++pass) {
-      const Eigen::VectorXd overlap = basis_.times_mass.transpose() * columns.col(k);
-      columns.col(k) -= basis_.vectors * overlap;
+      const Eigen::VectorXd overlap = basis_.times_mass.all().transpose() * columns.col(k);
+      columns.col(k) -= basis_.vectors.all() * overlap;
       project_out(columns, k);
     }
     return length(columns.col(k));
@@ -159,7 +168,7 @@ class BlockKrylov {
   const ShiftedFactor& factor_;
   Index block_;
   Rng rng_;
-  Weighted basis_;      // M-orthonormal
+  Basis basis_;         // M-orthonormal
   MatrixXd projected_;  // basis' M (K - sigma M)^-1 M basis
   Weighted next_;       // M-orthonormal, orthogonal to the basis
   MatrixXd coupling_;   // what the last block's image has of next_

@@ -28,6 +28,8 @@ constexpr int most_polishing_rounds = 4;
 struct Pairs {
   Eigen::VectorXd values;
   Eigen::MatrixXd vectors;
+  Eigen::MatrixXd elastic;   // K times the vectors
+  Eigen::MatrixXd inertial;  // M times the vectors
 };
 
 Pairs lowest_dense(const StiffnessAndMass& matrices, int count) {
@@ -36,16 +38,20 @@ Pairs lowest_dense(const StiffnessAndMass& matrices, int count) {
   if (solver.info() != Eigen::Success) {
     throw ModelError{"modes: the dense eigenvalue solver did not converge"};
   }
-  return {solver.eigenvalues().head(count), solver.eigenvectors().leftCols(count)};
+  const Eigen::MatrixXd vectors = solver.eigenvectors().leftCols(count);
+  return {solver.eigenvalues().head(count), vectors, matrices.stiffness() * vectors,
+          matrices.mass() * vectors};
 }
 
 // Rayleigh-Ritz: the modes within the span of some vectors, M-orthonormal to rounding, double ones
 // and those at zero frequency included.
 Pairs modes_in_span(const StiffnessAndMass& matrices, const Eigen::MatrixXd& vectors) {
-  const Eigen::MatrixXd stiffness = vectors.transpose() * (matrices.stiffness() * vectors);
-  const Eigen::MatrixXd mass = vectors.transpose() * (matrices.mass() * vectors);
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver{stiffness, mass};
-  return {solver.eigenvalues(), vectors * solver.eigenvectors()};
+  const Eigen::MatrixXd elastic = matrices.stiffness() * vectors;
+  const Eigen::MatrixXd inertial = matrices.mass() * vectors;
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver{
+      vectors.transpose() * elastic, vectors.transpose() * inertial};
+  const Eigen::MatrixXd& mix = solver.eigenvectors();
+  return {solver.eigenvalues(), vectors * mix, elastic * mix, inertial * mix};
 }
 
 // The first component of at least half the largest size is positive.
@@ -61,9 +67,15 @@ void fix_signs(Eigen::MatrixXd& vectors) {
 }
 
 // The norm of K in the sense that no |K x| exceeds it times |x|.
-double largest_row_sum(const StiffnessAndMass& matrices) {
-  const SparseMatrix sizes = matrices.K.cwiseAbs();
-  return (sizes.selfadjointView<Eigen::Lower>() * Eigen::VectorXd::Ones(sizes.rows())).maxCoeff();
+double largest_row_sum(const SparseMatrix& lower) {
+  Eigen::VectorXd sums = Eigen::VectorXd::Zero(lower.rows());
+  for (Eigen::Index column = 0; column < lower.outerSize(); ++column) {
+    for (SparseMatrix::InnerIterator entry{lower, column}; entry; ++entry) {
+      sums[entry.row()] += std::abs(entry.value());
+      sums[column] += entry.row() == column ? 0.0 : std::abs(entry.value());
+    }
+  }
+  return sums.maxCoeff();
 }
 
 struct Residual {
@@ -76,22 +88,20 @@ struct Residual {
 // what rounding leaves there: the stiffest element over the softest mode.
 std::vector<Residual> residuals(const StiffnessAndMass& matrices, const Pairs& pairs) {
   const double rounding =
-      rounding_steps * std::numeric_limits<double>::epsilon() * largest_row_sum(matrices);
+      rounding_steps * std::numeric_limits<double>::epsilon() * largest_row_sum(matrices.K);
   std::vector<Residual> all;
   for (Eigen::Index i = 0; i < pairs.values.size(); ++i) {
-    const auto shape = pairs.vectors.col(i);
-    const Eigen::VectorXd elastic = matrices.stiffness() * shape;
-    Eigen::VectorXd inertial = matrices.mass() * shape;
-    inertial *= pairs.values[i];
-    const double scale = elastic.norm() + inertial.norm();
-    all.push_back(
-        {(elastic - inertial).norm() / scale, residual_limit + rounding * shape.norm() / scale});
+    const Eigen::VectorXd inertial = pairs.values[i] * pairs.inertial.col(i);
+    const double scale = pairs.elastic.col(i).norm() + inertial.norm();
+    all.push_back({(pairs.elastic.col(i) - inertial).norm() / scale,
+                   residual_limit + rounding * pairs.vectors.col(i).norm() / scale});
   }
   return all;
 }
 
-Pairs lowest(const Pairs& pairs, int count) {
-  return {pairs.values.head(count), pairs.vectors.leftCols(count)};
+Pairs part(const Pairs& pairs, Eigen::Index first, Eigen::Index count) {
+  return {pairs.values.segment(first, count), pairs.vectors.middleCols(first, count),
+          pairs.elastic.middleCols(first, count), pairs.inertial.middleCols(first, count)};
 }
 
 // The modes below the shift. Where a basis of moderate size has left too much of far higher modes
@@ -115,7 +125,7 @@ Pairs modes_below_shift(const StiffnessAndMass& matrices, const ShiftedFactor& f
     factor.solve_in_place(vectors);
     const Pairs all = modes_in_span(matrices, vectors);
     vectors = all.vectors;
-    pairs = lowest(all, count);
+    pairs = part(all, 0, count);
   }
   return pairs;
 }
@@ -150,7 +160,8 @@ Modes solve_modes(const StiffnessAndMass& matrices, double band_limit_hz,
                     count, most_modes)};
   }
   const Eigen::Index size = matrices.K.rows();
-  Pairs pairs{Eigen::VectorXd{0}, Eigen::MatrixXd{size, 0}};
+  const Eigen::MatrixXd none{size, 0};
+  Pairs pairs{Eigen::VectorXd{0}, none, none, none};
   if (count > 0) {
     const bool is_small = size <= dense_size || Eigen::Index{4} * count > size;
     pairs = is_small ? lowest_dense(matrices, count)
@@ -164,11 +175,11 @@ Modes solve_modes(const StiffnessAndMass& matrices, double band_limit_hz,
   }
   const double zero = rigid_fraction * rigid_fraction * band * band;
   modes.rigid_body_modes = static_cast<int>((pairs.values.array() < zero).count());
-  const Eigen::Index kept = count - modes.rigid_body_modes;
-  modes.omega_rad_s = pairs.values.tail(kept).array().sqrt();
-  modes.shapes = pairs.vectors.rightCols(kept);
+  const Pairs elastic = part(pairs, modes.rigid_body_modes, count - modes.rigid_body_modes);
+  modes.omega_rad_s = elastic.values.array().sqrt();
+  modes.shapes = elastic.vectors;
   fix_signs(modes.shapes);
-  modes.worst_residual = checked_residual(matrices, {pairs.values.tail(kept), modes.shapes});
+  modes.worst_residual = checked_residual(matrices, elastic);
   modes.iterate_s = watch.lap_s();
   return modes;
 }

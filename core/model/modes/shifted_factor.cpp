@@ -14,7 +14,9 @@ constexpr int icntl_error_stream = 0;
 constexpr int icntl_diagnostics = 1;
 constexpr int icntl_statistics = 2;
 constexpr int icntl_print_level = 3;
+constexpr int icntl_ordering = 6;
 constexpr int icntl_workspace_percent = 13;
+constexpr int ordering_by_pord = 4;
 constexpr int job_begin = -1;
 constexpr int job_end = -2;
 constexpr int job_analyse = 1;
@@ -63,6 +65,8 @@ struct ShiftedFactor::Mumps {
     id.icntl[icntl_diagnostics] = 0;
     id.icntl[icntl_statistics] = 0;
     id.icntl[icntl_print_level] = 0;
+    // Scotch, the default, orders by chance: factors and modes would differ in their last digits
+    id.icntl[icntl_ordering] = ordering_by_pord;
     id.n = static_cast<int>(lower.rows());
     id.nnz = static_cast<MUMPS_INT8>(values.size());
     id.irn = rows.data();

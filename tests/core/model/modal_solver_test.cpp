@@ -141,3 +141,15 @@ TEST_CASE("hundreds of modes of a soft body all swing as K x = w^2 M x says",
   CHECK(modes.omega_rad_s.size() == modes.counted_in_band);
   CHECK(modes.worst_residual < 2e-8);
 }
+
+TEST_CASE("the same body is solved to the same last bit every time", "[core][model][slow]") {
+  core::PlateSpec plate = testing::paper_plate(4, testing::mdf());
+  plate.mesh.order = 2;
+  plate.mesh.size.max_tet_volume_m3 = 1.5e-5;
+  const core::SolvedBody first = core::solve_body(core::body_of(plate));
+  for (int again = 0; again < 3; ++again) {
+    const core::SolvedBody second = core::solve_body(core::body_of(plate));
+    CHECK((second.modes.kappa_rad_per_m == first.modes.kappa_rad_per_m).all());
+    CHECK(second.displacement == first.displacement);
+  }
+}

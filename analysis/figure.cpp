@@ -3,13 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
-#include <cstdio>
-#include <filesystem>
-#include <memory>
 #include <sstream>
 
-#include "core/error.hpp"
+#include "analysis/gnuplot.hpp"
 namespace tapstudy::analysis {
 namespace {
 constexpr std::size_t panel_width = 400;
@@ -35,20 +31,6 @@ Span span_of(const Figure& figure, Axis axis) {
   return {span.low - margin, span.high + margin};
 }
 
-// gnuplot reads '' inside a single-quoted text as one quote and knows no other escape; a line's end
-// would end the command, so no control character gets through.
-std::string quoted(const std::string& text) {
-  std::string safe{"'"};
-  for (const char c : text) {
-    if (c == '\'') {
-      safe += "''";
-    } else {
-      safe += std::iscntrl(static_cast<unsigned char>(c)) != 0 ? ' ' : c;
-    }
-  }
-  return safe + "'";
-}
-
 void write_panel(std::ostream& script, const Panel& panel, std::size_t index) {
   for (std::size_t i = 0; i < panel.series.size(); ++i) {
     const Series& series = panel.series[i];
@@ -72,7 +54,7 @@ void write_panel(std::ostream& script, const Panel& panel, std::size_t index) {
 
 std::string axes(const Figure& figure) {
   if (figure.scale == Scale::logarithmic) {
-    return fmt::format("set xlabel {}\nset ylabel {}\nset logscale xy\nset format xy '%g'\n",
+    return fmt::format("set xlabel {}\nset ylabel {}\nset logscale xy\nset format xy '%g'\nset key bottom left\n",
                        quoted(figure.x_label), quoted(figure.y_label));
   }
   const Span left = span_of(figure, Axis::left);
@@ -103,25 +85,9 @@ std::string gnuplot_script(const Figure& figure, const std::string& file) {
   script << "unset multiplot\n";
   return script.str();
 }
-
-void run_gnuplot(const std::string& script) {
-  FILE* const gnuplot = popen("gnuplot >/dev/null 2>&1", "w");
-  const bool is_written =
-      gnuplot != nullptr && std::fwrite(script.data(), 1, script.size(), gnuplot) == script.size();
-  if (gnuplot == nullptr || pclose(gnuplot) != 0 || !is_written) {
-    throw core::InvalidInput{"figures need gnuplot, which is not installed or failed"};
-  }
-}
 }  // namespace
 
 void draw_svg(const Figure& figure, const std::string& file) {
-  std::error_code error;
-  if (std::filesystem::exists(file, error)) {
-    throw core::InvalidInput{file + ": exists already and is not overwritten"};
-  }
-  run_gnuplot(gnuplot_script(figure, file));
-  if (std::filesystem::file_size(file, error) == 0 || error) {
-    throw core::InvalidInput{file + ": cannot be written"};
-  }
+  draw_with_gnuplot(gnuplot_script(figure, file), file);
 }
 }  // namespace tapstudy::analysis

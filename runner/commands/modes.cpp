@@ -6,10 +6,13 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "core/error.hpp"
+#include "core/model/vtu_file.hpp"
 #include "protocols/read_protocol.hpp"
 #include "runner/commands/commands.hpp"
 #include "runner/model_library.hpp"
 #include "runner/progress.hpp"
+#include "runner/views/face_views.hpp"
 namespace tapstudy::runner {
 namespace {
 struct ModesOptions {
@@ -17,6 +20,8 @@ struct ModesOptions {
   std::string stimulus;
   bool wants_json{false};
   std::string mesh_out;
+  std::string vtu;
+  std::string figure;
 };
 
 double peak_memory_bytes() {
@@ -94,6 +99,18 @@ void print_table(const ModesOptions& options, const protocols::Protocol& protoco
   fmt::print("; worst residual {:.1e}\n", report.worst_residual);
 }
 
+void draw_modes(const ModesOptions& options, const core::Shape& shape, core::ModalModel model) {
+  const auto* const box = std::get_if<core::Box>(&shape);
+  if (box == nullptr) {
+    throw core::InvalidInput{"--figure: draws plates from above only (--vtu takes any shape)"};
+  }
+  if (model.frequency_hz.size() == 0) {
+    throw core::InvalidInput{"--figure: there is no mode inside the band"};
+  }
+  const core::VibratingPlate plate{std::move(model)};
+  analysis::draw_svg(map_of_modes(plate, *box, "Modes of " + options.stimulus), options.figure);
+}
+
 void run_modes(const ModesOptions& options) {
   const protocols::Protocol protocol = protocols::read_protocol(options.protocol);
   const core::PlateSpec spec = plate_spec(protocol, protocol.stimulus(options.stimulus));
@@ -103,6 +120,12 @@ void run_modes(const ModesOptions& options) {
   }();
   if (!options.mesh_out.empty()) {
     core::write_tetgen_files(plate.body.mesh, options.mesh_out);
+  }
+  if (!options.vtu.empty()) {
+    core::write_vtu(plate.body, plate.modal.frequency_hz, options.vtu);
+  }
+  if (!options.figure.empty()) {
+    draw_modes(options, spec.shape, plate.modal);
   }
   if (options.wants_json) {
     print_json(options, plate);
@@ -120,6 +143,8 @@ void add_modes(CLI::App& app) {
   command->add_option("--stimulus", options->stimulus, "Which stimulus")->required();
   command->add_flag("--json", options->wants_json, "For programs");
   command->add_option("--mesh-out", options->mesh_out, "Write the mesh as PREFIX.node, PREFIX.ele");
+  command->add_option("--vtu", options->vtu, "Write body and mode shapes for ParaView (.vtu)");
+  command->add_option("--figure", options->figure, "Draw the plate's modes from above (SVG)");
   command->callback([options] { run_modes(*options); });
 }
 }  // namespace tapstudy::runner

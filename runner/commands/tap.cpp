@@ -13,6 +13,7 @@
 #include "runner/commands/commands.hpp"
 #include "runner/output_file.hpp"
 #include "runner/scripted_tap.hpp"
+#include "runner/views/face_views.hpp"
 namespace tapstudy::runner {
 namespace {
 using core::TraceSample;
@@ -26,6 +27,7 @@ struct TapOptions {
   std::string technique;
   std::string csv;
   std::string panels;
+  std::string frames;
 };
 
 double seconds_of(const TraceSample& sample) {
@@ -150,6 +152,22 @@ void draw_panels(const TapOptions& options, const protocols::Protocol& protocol)
   }
 }
 
+// The paper's Figure 3.
+void draw_frames(const TapOptions& options, const protocols::Protocol& protocol,
+                 const Eigen::Vector2d& at_m, ModelLibrary& models) {
+  const protocols::Stimulus& stimulus = protocol.stimulus(options.stimulus);
+  const auto* const box = std::get_if<core::Box>(&protocol.plates.at(stimulus.plate).shape);
+  if (box == nullptr || !stimulus.technique->vibration) {
+    throw core::InvalidInput{"--frames: draws plates that vibrate only"};
+  }
+  const auto plate = models.plate_of(protocol, stimulus);
+  const std::string title =
+      fmt::format("{} struck at {}, {} m/s", options.stimulus, options.at, options.speed_m_s);
+  analysis::draw_svg(
+      map_of_strike(*plate, *box, protocol.rendering, {at_m, options.speed_m_s}, title),
+      options.frames);
+}
+
 void run_tap(const TapOptions& options) {
   const protocols::Protocol protocol = protocol_with_technique(options);
   if (!options.panels.empty()) {
@@ -163,6 +181,9 @@ void run_tap(const TapOptions& options) {
   const ScriptedTap tap{options.stimulus, point_on_plate(options.at, protocol), options.speed_m_s,
                         options.seconds};
   const auto trace = trace_of(tap, protocol, protocols::simulated_rig(), models);
+  if (!options.frames.empty()) {
+    draw_frames(options, protocol, tap.at_m, models);
+  }
   if (options.csv.empty()) {
     print_summary(options, trace);
     return;
@@ -189,6 +210,8 @@ void add_tap(CLI::App& app) {
   command->add_option("--csv", options->csv, "Write every tick to this new file (- for stdout)");
   command->add_option("--panels", options->panels,
                       "Draw all stimuli at all tapping points into this directory (SVG)");
+  command->add_option("--frames", options->frames,
+                      "Draw the plate's displacement after the strike, from above (SVG)");
   command->callback([options] { run_tap(*options); });
 }
 }  // namespace tapstudy::runner

@@ -7,13 +7,15 @@
 
 #include "core/rng.hpp"
 #include "core/tick/tap_renderer.hpp"
+#include "support/surfaces.hpp"
 
 using namespace tapstudy::core;
 namespace {
 constexpr double dt_s = 1e-3;
 
-// A square face of 2 × side² triangles with made-up modes: the tick sees only numbers.
-ModalModel made_up_model(Eigen::Index modes, int side) {
+// A square face of 2 × side² triangles with made-up modes: the tick sees only numbers. Of order 2
+// the middles of edges have nodes of their own.
+ModalModel made_up_model(Eigen::Index modes, int side, int order = 1) {
   ModalModel model;
   Rng rng{1};
   model.frequency_hz = Eigen::ArrayXd::LinSpaced(modes, 20.0, 300.0);
@@ -35,6 +37,17 @@ ModalModel made_up_model(Eigen::Index modes, int side) {
       model.touch_surface.row(row++) << low, high + 1, high;
     }
   }
+  if (order == 2) {
+    const auto corners = static_cast<int>(model.touch_nodes_m.rows());
+    model.touch_surface.conservativeResize(Eigen::NoChange, 6);
+    for (int i = 0; i < model.touch_surface.rows(); ++i) {
+      model.touch_surface.row(i).tail<3>() << corners + 3 * i, corners + 3 * i + 1,
+          corners + 3 * i + 2;
+    }
+    model.touch_nodes_m.conservativeResize(corners + 3 * model.touch_surface.rows(),
+                                           Eigen::NoChange);
+    model.touch_nodes_m.bottomRows(3 * model.touch_surface.rows()).setZero();
+  }
   model.shape = ModalModel::Rows::NullaryExpr(3 * model.touch_nodes_m.rows(), modes,
                                               [&] { return rng.normal(); });
   return model;
@@ -47,7 +60,8 @@ RenderSettings settings() {
 }
 
 void tick_in_contact(benchmark::State& state) {
-  const VibratingPlate plate{made_up_model(state.range(0), static_cast<int>(state.range(1)))};
+  const VibratingPlate plate{made_up_model(state.range(0), static_cast<int>(state.range(1)),
+                                         static_cast<int>(state.range(2)))};
   TapRenderer renderer{*find_technique("fem+sinusoid"), settings(), PlateFace{0.3, 0.3}, &plate};
   renderer.tick({{0.0, 0.0, 0.001}, {0.0, 0.0, -0.3}});
   double angle = 0.0;
@@ -58,11 +72,31 @@ void tick_in_contact(benchmark::State& state) {
   }
 }
 BENCHMARK(tick_in_contact)
-    ->ArgNames({"modes", "side"})
-    ->Args({14, 10})
-    ->Args({55, 10})
-    ->Args({220, 10})
-    ->Args({55, 100});
+    ->ArgNames({"modes", "side", "order"})
+    ->Args({14, 10, 2})
+    ->Args({55, 10, 1})
+    ->Args({55, 10, 2})
+    ->Args({220, 10, 2})
+    ->Args({55, 100, 2});
+
+// A finger that slides over a sphere of as many triangles, a millimetre inside.
+void tick_on_surface(benchmark::State& state) {
+  const TriangleTree sphere{
+      tapstudy::testing::sphere_surface(0.1, static_cast<int>(state.range(0)))};
+  SurfaceContact contact{sphere, 5e-4};
+  const double triangles = static_cast<double>(sphere.surface().triangles.rows());
+  double angle = 0.0;
+  contact.tick({{0.102, 0.0, 0.0}, {-0.3, 0.0, 0.0}});
+  for (auto _ : state) {
+    angle += 3e-3;  // 0.3 m/s
+    const HandState tip{{0.099 * std::cos(angle), 0.099 * std::sin(angle), 0.01 * std::sin(7 * angle)},
+                        {0.0, 0.0, 0.0}};
+    benchmark::DoNotOptimize(contact.tick(tip));
+  }
+  state.counters["triangles"] = triangles;
+  state.counters["touching"] = contact.now().touching ? 1.0 : 0.0;
+}
+BENCHMARK(tick_on_surface)->ArgName("rings")->Arg(10)->Arg(160);
 
 // Loud start and silent tail of the modes alone.
 void modal_core(benchmark::State& state) {

@@ -146,6 +146,20 @@ void add_elements(const TetMesh& mesh, const Material& material, const Pattern& 
     }
   }
 }
+
+std::vector<int> first_of_node(const FreeDofs& dofs) {
+  std::vector<int> first;
+  for (std::size_t node = 0; node < dofs.position.size() / 3; ++node) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (dofs.position[3 * node + axis] >= 0) {
+        first.push_back(dofs.position[3 * node + axis]);
+        break;
+      }
+    }
+  }
+  first.push_back(dofs.count);
+  return first;
+}
 }  // namespace
 
 FreeDofs free_dofs(const std::vector<bool>& held) {
@@ -166,6 +180,7 @@ StiffnessAndMass assemble(const TetMesh& mesh, const Material& material, const F
   } else {
     add_elements<4>(mesh, material, pattern, matrices);
   }
+  matrices.first_of_node = first_of_node(dofs);
   return matrices;
 }
 }  // namespace tapstudy::core

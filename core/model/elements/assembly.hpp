@@ -18,6 +18,8 @@ FreeDofs free_dofs(const std::vector<bool>& held);
 struct StiffnessAndMass {
   SparseMatrix K;  // N/m
   SparseMatrix M;  // kg
+  // Where each node's unknowns begin, and the end: what belongs together is ordered together.
+  std::vector<int> first_of_node{};
   auto stiffness() const { return K.selfadjointView<Eigen::Lower>(); }
   auto mass() const { return M.selfadjointView<Eigen::Lower>(); }
 };

@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <iterator>
 #include <vector>
 
 #include "core/error.hpp"
@@ -17,6 +19,7 @@ constexpr int icntl_print_level = 3;
 constexpr int icntl_ordering = 6;
 constexpr int icntl_workspace_percent = 13;
 constexpr int ordering_by_pord = 4;
+constexpr int icntl_blocks = 14;
 constexpr int job_begin = -1;
 constexpr int job_end = -2;
 constexpr int job_analyse = 1;
@@ -44,8 +47,9 @@ struct ShiftedFactor::Mumps {
   std::vector<int> rows;     // from 1
   std::vector<int> columns;  // from 1
   std::vector<double> values;
+  std::vector<int> blocks;  // from 1
 
-  explicit Mumps(const SparseMatrix& lower) {
+  Mumps(const SparseMatrix& lower, const std::vector<int>& first_of_block) {
     const auto entries = static_cast<std::size_t>(lower.nonZeros());
     rows.reserve(entries);
     columns.reserve(entries);
@@ -67,6 +71,13 @@ struct ShiftedFactor::Mumps {
     id.icntl[icntl_print_level] = 0;
     // Scotch, the default, orders by chance: factors and modes would differ in their last digits
     id.icntl[icntl_ordering] = ordering_by_pord;
+    if (!first_of_block.empty()) {
+      std::ranges::transform(first_of_block, std::back_inserter(blocks),
+                             [](int first) { return first + 1; });
+      id.icntl[icntl_blocks] = 1;
+      id.nblk = static_cast<int>(blocks.size()) - 1;
+      id.blkptr = blocks.data();
+    }
     id.n = static_cast<int>(lower.rows());
     id.nnz = static_cast<MUMPS_INT8>(values.size());
     id.irn = rows.data();
@@ -118,7 +129,8 @@ struct ShiftedFactor::Mumps {
 };
 
 ShiftedFactor::ShiftedFactor(const StiffnessAndMass& matrices, double sigma)
-    : sigma_{sigma}, mumps_{std::make_unique<Mumps>(matrices.K - sigma * matrices.M)} {
+    : sigma_{sigma},
+      mumps_{std::make_unique<Mumps>(matrices.K - sigma * matrices.M, matrices.first_of_node)} {
   mumps_->analyse();
   mumps_->factorise();
 }

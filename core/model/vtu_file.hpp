@@ -1,0 +1,11 @@
+#pragma once
+#include <string>
+
+#include "core/model/body_modes.hpp"
+namespace tapstudy::core {
+// Writes the body with its mode shapes as a VTK unstructured grid (ParaView's .vtu, text): cells of
+// 4 or 10 nodes, one vector a node and mode, named mode_1 …, scaled so that the largest is 1 long,
+// and the natural frequencies [Hz] as field data.
+// Throws InvalidInput if the file exists already or cannot be written.
+void write_vtu(const SolvedBody& body, const Eigen::ArrayXd& frequency_hz, const std::string& file);
+}  // namespace tapstudy::core

@@ -29,8 +29,7 @@ TEST_CASE("a .vtu holds the mesh and its modes as another program reads them", "
   const core::PlateModel built = core::build_plate_model(plate);
   const testing::TempDirectory directory;
   core::write_vtu(built.body, built.modal.frequency_hz, directory / "body.vtu");
-  const auto run =
-      testing::run_program({"/usr/bin/python3", "-c", reader, directory / "body.vtu"});
+  const auto run = testing::run_program({"/usr/bin/python3", "-c", reader, directory / "body.vtu"});
   INFO(run.standard_error);
   REQUIRE(run.exit_code == 0);
   const auto read = nlohmann::json::parse(run.standard_output);
@@ -43,8 +42,8 @@ TEST_CASE("a .vtu holds the mesh and its modes as another program reads them", "
   CHECK(read["cells"][3][2] == mesh.tets(3, 2));
   double longest = 0.0;
   for (const auto& node : read["modes"]["mode_1"]) {
-    longest = std::max(longest, std::hypot(node[0].get<double>(), node[1].get<double>(),
-                                           node[2].get<double>()));
+    longest = std::max(
+        longest, std::hypot(node[0].get<double>(), node[1].get<double>(), node[2].get<double>()));
   }
   CHECK(longest == Approx(1.0));
   CHECK_THROWS_AS(core::write_vtu(built.body, built.modal.frequency_hz, directory / "body.vtu"),

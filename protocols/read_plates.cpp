@@ -93,26 +93,22 @@ core::Meshing read_mesh(MapReader& mesh) {
 
 // A surface's own problems are told at its key; what else the study says of it is read on.
 core::Shape read_surface_shape(MapReader& plate, const std::string& directory, Protocol& protocol) {
-  core::TriangleSurface surface;
+  core::Shape shape = core::Box{core::Vec3::Constant(10.0)};  // until there is a better one
   plate.map("surface", Presence::required, [&](MapReader& reader) {
     const std::string file = reader.text("file");
     const double metres_per_unit = reader.number("metres_per_unit", Range::positive(1000.0));
     const auto path = std::filesystem::path{directory} / file;
     try {
-      surface = read_surface(path.string(), metres_per_unit);
+      core::TriangleSurface surface = read_surface(path.string(), metres_per_unit);
       core::check_surface(surface);
+      shape = core::Solid{std::move(surface)};
+      // part of the study's text, so that a session cannot go on with another body
+      protocol.text += fmt::format("# {}: {}\n", file, core::content_key(shape));
     } catch (const core::InvalidInput& error) {
       reader.reject("file", error.what());
-      surface = {};
-      return;
     }
-    // part of the study's text, so that a session cannot go on with another body
-    protocol.text += fmt::format("# {}: {}\n", file, core::content_key(surface));
   });
-  if (surface.triangles.rows() == 0) {
-    return core::Box{core::Vec3::Constant(10.0)};
-  }
-  return surface;
+  return shape;
 }
 }  // namespace
 

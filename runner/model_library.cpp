@@ -17,33 +17,6 @@ auto naming(const protocols::Stimulus& stimulus, const Build& build) {
     throw core::ModelError{fmt::format("stimulus '{}': {}", stimulus.name, error.what())};
   }
 }
-
-std::string key_of(const core::Material& material) {
-  const auto exact = [](const core::Damping& damping) {
-    return std::visit(
-        [](const auto& given) -> std::string {
-          using Given = std::decay_t<decltype(given)>;
-          std::string key;
-          if constexpr (std::is_same_v<Given, core::RayleighDamping>) {
-            key = fmt::format("{:a} {:a}", given.alpha_per_s, given.beta_s);
-          } else if constexpr (std::is_same_v<Given, core::TwoRatioDamping>) {
-            key = fmt::format("{:a} {:a}", given.first_ratio, given.last_ratio);
-          } else if constexpr (std::is_same_v<Given, core::FittedDamping>) {
-            for (const auto& point : given.points) {
-              key += fmt::format("{:a} {:a} ", point.frequency_hz, point.ratio);
-            }
-          } else {
-            for (const double ratio : given.ratios) {
-              key += fmt::format("{:a} ", ratio);
-            }
-          }
-          return key;
-        },
-        damping);
-  };
-  return fmt::format("{:a} {:a} {:a} {} {}", material.youngs_modulus_pa, material.density_kg_per_m3,
-                     material.poissons_ratio, material.damping.index(), exact(material.damping));
-}
 }  // namespace
 
 core::PlateSpec plate_spec(const protocols::Protocol& protocol,
@@ -103,7 +76,7 @@ ModelLibrary::Plate ModelLibrary::plate_of(const protocols::Protocol& protocol,
   const std::lock_guard lock{mutex_};
   const core::PlateSpec spec = plate_spec(protocol, stimulus);
   Plate& plate = plates_[fmt::format("{} {} {:a}", core::content_key(body_spec(protocol, stimulus)),
-                                     key_of(spec.material), spec.band_limit_hz)];
+                                     core::content_key(spec.material), spec.band_limit_hz)];
   if (!plate) {
     plate = naming(stimulus, [&] {
       core::ModalModel model =
@@ -115,18 +88,11 @@ ModelLibrary::Plate ModelLibrary::plate_of(const protocols::Protocol& protocol,
   return plate;
 }
 
-core::TouchedShape ModelLibrary::touched_shape(const protocols::Protocol& protocol,
-                                               const std::string& plate) {
-  const core::Shape& shape = protocol.plates.at(plate).shape;
+core::TouchedShape touched_shape(const core::Shape& shape) {
   if (const auto* box = std::get_if<core::Box>(&shape)) {
     return core::PlateFace{box->high_m().x(), box->high_m().y()};
   }
-  const std::lock_guard lock{mutex_};
-  auto& touched = shapes_[core::content_key(shape)];
-  if (std::holds_alternative<core::PlateFace>(touched)) {
-    touched = std::make_shared<const core::TriangleTree>(std::get<core::TriangleSurface>(shape));
-  }
-  return touched;
+  return std::get<core::Solid>(shape).triangles();
 }
 
 void ModelLibrary::build_all(const protocols::Protocol& protocol) {

@@ -17,6 +17,9 @@ core::PlateSpec plate_spec(const protocols::Protocol& protocol,
 // to the highest band that any of them needs.
 core::BodySpec body_spec(const protocols::Protocol& protocol, const protocols::Stimulus& stimulus);
 
+// What a finger meets where nothing vibrates.
+core::TouchedShape touched_shape(const core::Shape& shape);
+
 // Ready to be touched: a box on its upper face, any other shape all over.
 core::VibratingPlate vibrating_plate(const core::Shape& shape, core::ModalModel model);
 
@@ -33,8 +36,6 @@ class ModelLibrary {
   Body body_of(const protocols::Protocol& protocol, const protocols::Stimulus& stimulus);
   // All that the protocol needs, so that what cannot be built is refused before anything else.
   void build_all(const protocols::Protocol& protocol);
-  // What a finger meets where nothing vibrates.
-  core::TouchedShape touched_shape(const protocols::Protocol& protocol, const std::string& plate);
 
   int bodies_solved() const { return solved_; }  // not found in memory or on disk
   int bodies_used() const { return static_cast<int>(bodies_.size()); }
@@ -46,7 +47,6 @@ class ModelLibrary {
   ModelCache cache_;
   std::map<std::string, Body> bodies_;  // by content key
   std::map<std::string, Plate> plates_;
-  std::map<std::string, core::TouchedShape> shapes_;
   int solved_{0};
 };
 }  // namespace tapstudy::runner

@@ -9,7 +9,8 @@ Scene build_scene(const protocols::Protocol& protocol, const std::vector<std::st
         stimulus.technique->vibration ? models.plate_of(protocol, stimulus) : nullptr;
     scene.plates.push_back(plate);
     scene.alternatives.emplace_back(*stimulus.technique, protocol.rendering,
-                                    models.touched_shape(protocol, stimulus.plate), plate.get());
+                                    touched_shape(protocol.plates.at(stimulus.plate).shape),
+                                    plate.get());
   }
   return scene;
 }

@@ -56,14 +56,21 @@ bool holds_node(const Fixation& fixation, const Vec3& node_m, const Bounds& body
   return false;
 }
 
+// Of the surface's own triangles: neither nodes inside nor those in the middle of edges.
+int nearest_corner(const TetMesh& mesh, const Vec3& at_m) {
+  const auto corners = mesh.surface.leftCols<3>().reshaped();
+  return *std::ranges::min_element(corners, {}, [&](int node) {
+    return (mesh.nodes_m.row(node).transpose() - at_m).squaredNorm();
+  });
+}
+
 std::vector<Eigen::Index> held_nodes(const Fixation& fixation, const TetMesh& mesh,
                                      const Shape& shape) {
   const Bounds body = bounds(shape);
   std::vector<Eigen::Index> nodes;
-  if (fixation.shape == RegionShape::vertex && std::holds_alternative<TriangleSurface>(shape)) {
-    Eigen::Index nearest{};
-    const double distance_m =
-        (mesh.nodes_m.rowwise() - fixation.at_m.transpose()).rowwise().norm().minCoeff(&nearest);
+  if (fixation.shape == RegionShape::vertex && std::holds_alternative<Solid>(shape)) {
+    const int nearest = nearest_corner(mesh, fixation.at_m);
+    const double distance_m = (mesh.nodes_m.row(nearest).transpose() - fixation.at_m).norm();
     if (distance_m <= vertex_reach * body.size_m().norm()) {
       nodes.push_back(nearest);
     }
@@ -77,34 +84,48 @@ std::vector<Eigen::Index> held_nodes(const Fixation& fixation, const TetMesh& me
   return nodes;
 }
 
-// NOLINTNEXTLINE(readability-function-cognitive-complexity): one plain step for each region
+void add_on_faces(const Vec3& at_m, Face face, const Bounds& body, std::vector<Vec3>& points) {
+  if (face != Face::bottom) {
+    points.emplace_back(at_m.x(), at_m.y(), body.high_m.z());
+  }
+  if (face != Face::top) {
+    points.emplace_back(at_m.x(), at_m.y(), body.low_m.z());
+  }
+}
+
+void add_rim(const Fixation& disc, const Bounds& body, std::vector<Vec3>& points) {
+  for (int i = 0; i < rim_points; ++i) {
+    const double angle = 2.0 * std::numbers::pi * i / rim_points;
+    const Vec3 out{std::cos(angle), std::sin(angle), 0.0};
+    add_on_faces(disc.at_m + disc.radius_m * out, disc.face, body, points);
+  }
+}
+
+void add_corners(const Vec3& low_m, const Vec3& high_m, std::vector<Vec3>& points) {
+  for (int corner = 0; corner < 8; ++corner) {
+    points.emplace_back((corner & 1) == 0 ? low_m.x() : high_m.x(),
+                        (corner & 2) == 0 ? low_m.y() : high_m.y(),
+                        (corner & 4) == 0 ? low_m.z() : high_m.z());
+  }
+}
+
 std::vector<Vec3> wanted_points(const Fixation& fixation, const Bounds& body) {
   std::vector<Vec3> points;
-  const auto on_faces = [&](const Vec3& at) {
-    if (fixation.face != Face::bottom) {
-      points.emplace_back(at.x(), at.y(), body.high_m.z());
-    }
-    if (fixation.face != Face::top) {
-      points.emplace_back(at.x(), at.y(), body.low_m.z());
-    }
-  };
-  if (fixation.shape == RegionShape::vertex || fixation.shape == RegionShape::disc) {
-    on_faces(fixation.at_m);
-  }
-  if (fixation.shape == RegionShape::disc) {
-    for (int i = 0; i < rim_points; ++i) {
-      const double angle = 2.0 * std::numbers::pi * i / rim_points;
-      on_faces(fixation.at_m + fixation.radius_m * Vec3{std::cos(angle), std::sin(angle), 0.0});
-    }
-  }
-  if (fixation.shape == RegionShape::box) {
-    const Vec3 low = fixation.low_m.cwiseMax(body.low_m);
-    const Vec3 high = fixation.high_m.cwiseMin(body.high_m);
-    for (int corner = 0; corner < 8; ++corner) {
-      points.emplace_back((corner & 1) == 0 ? low.x() : high.x(),
-                          (corner & 2) == 0 ? low.y() : high.y(),
-                          (corner & 4) == 0 ? low.z() : high.z());
-    }
+  switch (fixation.shape) {
+    case RegionShape::disc:
+      add_on_faces(fixation.at_m, fixation.face, body, points);
+      add_rim(fixation, body, points);
+      break;
+    case RegionShape::vertex:
+      add_on_faces(fixation.at_m, fixation.face, body, points);
+      break;
+    case RegionShape::box:
+      add_corners(fixation.low_m.cwiseMax(body.low_m), fixation.high_m.cwiseMin(body.high_m),
+                  points);
+      break;
+    case RegionShape::ball:
+    case RegionShape::side:
+      break;
   }
   return points;
 }

@@ -12,7 +12,35 @@ void require(bool holds, const char* property, double value, const char* allowed
     throw InvalidInput{fmt::format("{}: {} is not allowed ({})", property, value, allowed)};
   }
 }
+
+std::string key_of(const RayleighDamping& damping) {
+  return fmt::format("rayleigh {:a} {:a}", damping.alpha_per_s, damping.beta_s);
+}
+std::string key_of(const TwoRatioDamping& damping) {
+  return fmt::format("two {:a} {:a}", damping.first_ratio, damping.last_ratio);
+}
+std::string key_of(const FittedDamping& damping) {
+  std::string key{"fitted"};
+  for (const FittedDamping::Point& point : damping.points) {
+    key += fmt::format(" {:a} {:a}", point.frequency_hz, point.ratio);
+  }
+  return key;
+}
+std::string key_of(const ModalDamping& damping) {
+  std::string key{"modal"};
+  for (const double ratio : damping.ratios) {
+    key += fmt::format(" {:a}", ratio);
+  }
+  return key;
+}
 }  // namespace
+
+std::string content_key(const Material& material) {
+  return fmt::format(
+      "material({:a},{:a},{:a},{})", material.youngs_modulus_pa, material.density_kg_per_m3,
+      material.poissons_ratio,
+      std::visit([](const auto& damping) { return key_of(damping); }, material.damping));
+}
 
 void check_material(const Material& material) {
   const double youngs = material.youngs_modulus_pa;

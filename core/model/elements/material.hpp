@@ -1,4 +1,5 @@
 #pragma once
+#include <string>
 #include <variant>
 #include <vector>
 namespace tapstudy::core {
@@ -34,6 +35,9 @@ struct Material {
   double poissons_ratio{};     // in (-1, 0.5)
   Damping damping{};
 };
+
+// Equal text for equal materials.
+std::string content_key(const Material& material);
 
 // Throws InvalidInput naming the first property outside its range.
 void check_material(const Material& material);

@@ -199,7 +199,7 @@ TetMesh mesh_shape(const Shape& shape, const MeshSize& size, const std::vector<V
   if (const auto* box = std::get_if<Box>(&shape)) {
     fill(in, outline(*box, points_m, bounds(shape).snap_m()), thickening);
   } else {
-    fill(in, std::get<TriangleSurface>(shape), thickening);
+    fill(in, std::get<Solid>(shape).surface(), thickening);
   }
   std::string switches = tetgen_switches(size);
   try {

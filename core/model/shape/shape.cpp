@@ -3,15 +3,36 @@
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
+#include <string_view>
+#include <utility>
 
 #include "core/sha256.hpp"
 namespace tapstudy::core {
+namespace {
+template <class Matrix>
+std::string_view bytes_of(const Matrix& matrix) {
+  // NOLINTNEXTLINE(cppcoreguidelines-pro-type-reinterpret-cast): bytes, for their hash
+  return {reinterpret_cast<const char*>(matrix.data()),
+          sizeof(*matrix.data()) * static_cast<std::size_t>(matrix.size())};
+}
+}  // namespace
+
+Solid::Solid(TriangleSurface surface) {
+  std::string bytes{bytes_of(surface.points_m)};
+  bytes += bytes_of(surface.triangles);
+  sha256_ = core::sha256(bytes);
+  triangles_ = std::make_shared<const TriangleTree>(std::move(surface));
+}
+
+Bounds bounds(const TriangleSurface& surface) {
+  return {surface.points_m.colwise().minCoeff(), surface.points_m.colwise().maxCoeff()};
+}
+
 Bounds bounds(const Shape& shape) {
   if (const auto* box = std::get_if<Box>(&shape)) {
     return {box->low_m(), box->high_m()};
   }
-  const auto& points = std::get<TriangleSurface>(shape).points_m;
-  return {points.colwise().minCoeff(), points.colwise().maxCoeff()};
+  return bounds(std::get<Solid>(shape).surface());
 }
 
 // The sum of the tetrahedra from one point to every triangle (divergence theorem).
@@ -32,22 +53,15 @@ double volume_m3(const TriangleSurface& surface) {
 
 double volume_m3(const Shape& shape) {
   const auto* box = std::get_if<Box>(&shape);
-  return box != nullptr ? box->size_m.prod() : volume_m3(std::get<TriangleSurface>(shape));
+  return box != nullptr ? box->size_m.prod() : volume_m3(std::get<Solid>(shape).surface());
 }
 
 std::string content_key(const Shape& shape) {
   if (const auto* box = std::get_if<Box>(&shape)) {
     return fmt::format("box({:a},{:a},{:a})", box->size_m.x(), box->size_m.y(), box->size_m.z());
   }
-  const auto& surface = std::get<TriangleSurface>(shape);
-  const auto bytes_of = [](const auto& matrix) {
-    // NOLINTNEXTLINE(cppcoreguidelines-pro-type-reinterpret-cast): bytes, for their hash
-    return std::string_view{reinterpret_cast<const char*>(matrix.data()),
-                            sizeof(*matrix.data()) * static_cast<std::size_t>(matrix.size())};
-  };
-  std::string bytes{bytes_of(surface.points_m)};
-  bytes += bytes_of(surface.triangles);
-  return fmt::format("surface({},{},{})", surface.points_m.rows(), surface.triangles.rows(),
-                     sha256(bytes));
+  const auto& solid = std::get<Solid>(shape);
+  return fmt::format("surface({},{},{})", solid.surface().points_m.rows(),
+                     solid.surface().triangles.rows(), solid.sha256());
 }
 }  // namespace tapstudy::core

@@ -1,8 +1,8 @@
 #include "core/model/shape/top_height.hpp"
 namespace tapstudy::core {
 TopHeight::TopHeight(const Shape& shape) : bounds_{bounds(shape)} {
-  if (const auto* surface = std::get_if<TriangleSurface>(&shape)) {
-    triangles_ = std::make_shared<const TriangleTree>(*surface);
+  if (const auto* solid = std::get_if<Solid>(&shape)) {
+    triangles_ = solid->triangles();
   }
 }
 

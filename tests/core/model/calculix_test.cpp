@@ -135,9 +135,9 @@ core::Fixation ball(const core::Vec3& at_m, double radius_m) {
 std::vector<core::PlateSpec> coarse_bodies() {
   core::PlateSpec plate = testing::paper_plate(4, testing::mdf());
   plate.mesh.order = 2;
-  core::PlateSpec block = with_shape(testing::notched_block(), 5e-5, 4000.0);
+  core::PlateSpec block = with_shape(core::Solid{testing::notched_block()}, 5e-5, 4000.0);
   block.fixations = {side(core::Side::bottom, {true, true, true})};
-  core::PlateSpec sphere = with_shape(testing::sphere_surface(0.1, 8), 5e-5, 6000.0);
+  core::PlateSpec sphere = with_shape(core::Solid{testing::sphere_surface(0.1, 8)}, 5e-5, 6000.0);
   sphere.fixations = {ball({0.0, 0.0, -0.1}, 0.03)};
   core::PlateSpec sliding = with_shape(core::Box{{0.3, 0.2, 0.02}}, 5e-6, 2000.0);
   sliding.fixations = {side(core::Side::left, {false, false, true}), ball({0.15, 0.1, 0.0}, 0.01)};

@@ -190,7 +190,7 @@ TEST_CASE("a box from a file has the modes of the box", "[core][surface][model]"
   left.side = core::Side::left;
   body.fixations = {left};
   const auto of_box = core::solve_body(body).modes;
-  body.shape = testing::box_surface(plate_size_m);
+  body.shape = core::Solid{testing::box_surface(plate_size_m)};
   const auto of_file = core::solve_body(body).modes;
   REQUIRE(of_box.kappa_rad_per_m.size() > 2);
   REQUIRE(of_file.kappa_rad_per_m.size() == of_box.kappa_rad_per_m.size());
@@ -198,9 +198,10 @@ TEST_CASE("a box from a file has the modes of the box", "[core][surface][model]"
 }
 
 TEST_CASE("a finger coming down meets a body at its top", "[core][surface]") {
-  const core::TopHeight ball{testing::sphere_surface(0.1, 60)};
+  const core::TopHeight ball{core::Solid{testing::sphere_surface(0.1, 60)}};
   CHECK(*ball.at_m({0.0, 0.0}) == Approx(0.1));
   CHECK(*ball.at_m({0.06, 0.0}) == Approx(0.08).epsilon(0.01));
   CHECK_FALSE(ball.at_m({0.099, 0.099}));
-  CHECK(*core::TopHeight{testing::notched_block()}.at_m({0.05, 0.05}) == Approx(-0.05));
+  CHECK(*core::TopHeight{core::Solid{testing::notched_block()}}.at_m({0.05, 0.05}) ==
+        Approx(-0.05));
 }

@@ -14,7 +14,7 @@ namespace tapstudy::core {
 namespace {
 constexpr double tets_of_first_round = 200.0;
 constexpr double finer = 0.25;  // the volume of a tetrahedron, from round to round
-constexpr int most_rounds = 8;
+constexpr std::size_t most_rounds = 8;
 
 Eigen::MatrixXd all_rows(const Eigen::MatrixXd& free_rows, const FreeDofs& dofs) {
   Eigen::MatrixXd rows =
@@ -70,31 +70,7 @@ double largest_move(const Eigen::ArrayXd& before, const Eigen::ArrayXd& after) {
   return both == 0 ? 0.0 : (before.head(both) / after.head(both) - 1.0).abs().maxCoeff();
 }
 
-SolvedBody refine(const BodySpec& body, const ProgressHook& progress) {
-  const double volume = std::abs(volume_m3(body.shape));
-  MeshSize size = body.mesh.size;
-  size.max_tet_volume_m3 = size.max_tet_volume_m3.value_or(volume / tets_of_first_round);
-  SolvedBody solved = solve_once(body, size, progress);
-  std::vector<RefinementRound> rounds{
-      {solved.modes.report.tets, static_cast<int>(solved.modes.kappa_rad_per_m.size()), HUGE_VAL}};
-  ModelCost cost = solved.modes.report.cost;
-  for (int round = 1; round < most_rounds; ++round) {
-    if (rounds.back().tets > finer * most_tets) {
-      break;
-    }
-    *size.max_tet_volume_m3 *= finer;
-    const Eigen::ArrayXd before = solved.modes.kappa_rad_per_m;
-    solved = solve_once(body, size, progress);
-    const Eigen::ArrayXd& after = solved.modes.kappa_rad_per_m;
-    add(solved.modes.report.cost, cost);
-    rounds.push_back(
-        {solved.modes.report.tets, static_cast<int>(after.size()), largest_move(before, after)});
-    if (before.size() == after.size() && rounds.back().moved <= *body.mesh.accuracy) {
-      solved.modes.report.refinement = rounds;
-      solved.modes.report.cost = cost;
-      return solved;
-    }
-  }
+[[noreturn]] void give_up(const std::vector<RefinementRound>& rounds, double accuracy) {
   std::string history;
   for (const RefinementRound& round : rounds) {
     history += fmt::format("; {} tetrahedra: {} modes", round.tets, round.modes);
@@ -104,7 +80,34 @@ SolvedBody refine(const BodySpec& body, const ProgressHook& progress) {
   throw ModelError{fmt::format(
       "mesh: the frequencies still move by more than {} % within {:.0g} tetrahedra and {} rounds{} "
       "(a body held at single points never settles: hold a disc)",
-      100.0 * *body.mesh.accuracy, most_tets, most_rounds, history)};
+      100.0 * accuracy, most_tets, most_rounds, history)};
+}
+
+SolvedBody refine(const BodySpec& body, const ProgressHook& progress) {
+  const double accuracy = body.mesh.accuracy.value();
+  MeshSize size = body.mesh.size;
+  double volume_m3 =
+      size.max_tet_volume_m3.value_or(std::abs(core::volume_m3(body.shape)) / tets_of_first_round);
+  std::vector<RefinementRound> rounds;
+  ModelCost cost;
+  Eigen::ArrayXd before;
+  while (rounds.size() < most_rounds &&
+         (rounds.empty() || rounds.back().tets <= finer * most_tets)) {
+    size.max_tet_volume_m3 = volume_m3;
+    SolvedBody solved = solve_once(body, size, progress);
+    const Eigen::ArrayXd& after = solved.modes.kappa_rad_per_m;
+    add(solved.modes.report.cost, cost);
+    const double moved = rounds.empty() ? HUGE_VAL : largest_move(before, after);
+    rounds.push_back({solved.modes.report.tets, static_cast<int>(after.size()), moved});
+    if (before.size() == after.size() && moved <= accuracy) {
+      solved.modes.report.refinement = rounds;
+      solved.modes.report.cost = cost;
+      return solved;
+    }
+    before = after;
+    volume_m3 *= finer;
+  }
+  give_up(rounds, accuracy);
 }
 }  // namespace
 

@@ -4,8 +4,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <string_view>
 
 #include "core/error.hpp"
 namespace tapstudy::core {
@@ -150,6 +152,12 @@ bool is_on_boundary(const Vec3& point, const Bounds& body) {
   return is_inside && touches;
 }
 
+std::string_view name(Side side) {
+  constexpr std::array<std::string_view, 6> names{"left", "right",  "front",
+                                                  "back", "bottom", "top"};
+  return names.at(static_cast<std::size_t>(side));
+}
+
 std::string described(const Fixation& fixation) {
   const auto text = [](const Vec3& v) { return fmt::format("({}, {}, {})", v.x(), v.y(), v.z()); };
   switch (fixation.shape) {
@@ -163,7 +171,7 @@ std::string described(const Fixation& fixation) {
     case RegionShape::box:
       return fmt::format("box from {} to {} m", text(fixation.low_m), text(fixation.high_m));
     case RegionShape::side:
-      return "side";
+      return fmt::format("side '{}'", name(fixation.side));
   }
   return {};
 }

@@ -34,36 +34,11 @@ const Contact& SurfaceContact::tick(const HandState& tip) noexcept {
   return contact_;
 }
 
-// NOLINTNEXTLINE(readability-function-cognitive-complexity): one loop in another, read as one rule
 SurfaceContact::Planes SurfaceContact::move_towards(const Vec3& tip_m) noexcept {
   Planes planes;
   for (int round = 0; round < most_rounds; ++round) {
     const Vec3 before = god_object_m_;
-    planes.count = 0;
-    Vec3 goal = tip_m;
-    for (;;) {
-      const auto entry = tree_->first_entered(god_object_m_, goal, skin_m_);
-      if (entry.triangle == TriangleTree::none) {
-        god_object_m_ = goal;
-        break;
-      }
-      const Vec3 normal = tree_->normal(entry.triangle);
-      const Vec3 on_triangle =
-          tree_->surface().points_m.row(tree_->surface().triangles(entry.triangle, 0));
-      const double offset = normal.dot(on_triangle) + skin_m_;
-      // stops where the way meets the plane's skin
-      const double start = normal.dot(god_object_m_) - offset;
-      const double end = normal.dot(goal) - offset;
-      const double along = start > 0.0 ? std::min(1.0, start / (start - end)) : 0.0;
-      god_object_m_ += along * (goal - god_object_m_);
-      if (planes.count == planes.held.size()) {
-        break;
-      }
-      planes.held[planes.count++] = {normal, offset, entry.triangle};
-      if (!nearest_allowed(planes, tip_m, goal)) {
-        break;
-      }
-    }
+    planes = slide_towards(tip_m);
     if (planes.count == 0 || (god_object_m_ - before).norm() <= skin_m_) {
       break;
     }
@@ -71,41 +46,77 @@ SurfaceContact::Planes SurfaceContact::move_towards(const Vec3& tip_m) noexcept 
   return planes;
 }
 
+// Straight there, or along the planes that are met on the way.
+SurfaceContact::Planes SurfaceContact::slide_towards(const Vec3& tip_m) noexcept {
+  Planes planes;
+  std::optional<Vec3> goal = tip_m;
+  while (goal) {
+    const auto entry = tree_->first_entered(god_object_m_, *goal, skin_m_);
+    if (entry.triangle == TriangleTree::none) {
+      god_object_m_ = *goal;
+      break;
+    }
+    const Plane met = plane_of(entry.triangle);
+    // stops where the way meets the plane's skin
+    const double start = met.normal.dot(god_object_m_) - met.offset;
+    const double end = met.normal.dot(*goal) - met.offset;
+    const double along = start > 0.0 ? std::min(1.0, start / (start - end)) : 0.0;
+    god_object_m_ += along * (*goal - god_object_m_);
+    if (planes.count == planes.held.size()) {
+      break;
+    }
+    planes.held[planes.count++] = met;
+    goal = nearest_allowed(planes, tip_m);
+  }
+  return planes;
+}
+
+SurfaceContact::Plane SurfaceContact::plane_of(int triangle) const noexcept {
+  const Vec3 normal = tree_->normal(triangle);
+  const Vec3 corner = tree_->surface().points_m.row(tree_->surface().triangles(triangle, 0));
+  return {normal, normal.dot(corner) + skin_m_, triangle};
+}
+
+bool SurfaceContact::allow(const Planes& planes, const Vec3& point_m) const noexcept {
+  return std::all_of(planes.held.begin(), planes.held.begin() + planes.count,
+                     [&](const Plane& plane) {
+                       return plane.normal.dot(point_m) >= plane.offset - 1e-3 * skin_m_;
+                     });
+}
+
 // The nearest point that all planes allow lies on some of them: tries every choice of them.
-// NOLINTNEXTLINE(readability-function-cognitive-complexity): small loops over three planes
-bool SurfaceContact::nearest_allowed(const Planes& planes, const Vec3& wanted_m,
-                                     Vec3& found_m) const noexcept {
-  double nearest = HUGE_VAL;
+std::optional<Vec3> SurfaceContact::nearest_allowed(const Planes& planes,
+                                                    const Vec3& wanted_m) const noexcept {
+  std::optional<Vec3> nearest;
   for (unsigned choice = 0; choice < (1U << planes.count); ++choice) {
-    Eigen::Matrix3d normals = Eigen::Matrix3d::Zero();
-    Vec3 missing = Vec3::Zero();
-    for (std::size_t i = 0; i < planes.count; ++i) {
-      const auto row = static_cast<Eigen::Index>(i);
-      if ((choice >> i & 1U) != 0) {
-        normals.row(row) = planes.held[i].normal;
-        missing[row] = planes.held[i].offset - planes.held[i].normal.dot(wanted_m);
-      }
-    }
-    Eigen::Matrix3d gram = normals * normals.transpose();
-    for (Eigen::Index i = 0; i < 3; ++i) {
-      gram(i, i) = gram(i, i) > 0.0 ? gram(i, i) : 1.0;
-    }
-    const double determinant = gram.determinant();
-    if (determinant < parallel) {
-      continue;
-    }
-    const Vec3 candidate = wanted_m + normals.transpose() * gram.ldlt().solve(missing);
-    const bool is_allowed = std::all_of(
-        planes.held.begin(), planes.held.begin() + planes.count, [&](const Plane& plane) {
-          return plane.normal.dot(candidate) >= plane.offset - 1e-3 * skin_m_;
-        });
-    const double distance = (candidate - wanted_m).norm();
-    if (is_allowed && distance < nearest) {
-      nearest = distance;
-      found_m = candidate;
+    const std::optional<Vec3> candidate = nearest_on(planes, choice, wanted_m);
+    if (candidate && allow(planes, *candidate) &&
+        (!nearest || (*candidate - wanted_m).norm() < (*nearest - wanted_m).norm())) {
+      nearest = candidate;
     }
   }
-  return nearest < HUGE_VAL;
+  return nearest;
+}
+
+// The nearest point that lies on each chosen plane (bit i: plane i); none if two are parallel.
+std::optional<Vec3> SurfaceContact::nearest_on(const Planes& planes, unsigned choice,
+                                               const Vec3& wanted_m) noexcept {
+  Eigen::Matrix3d normals = Eigen::Matrix3d::Zero();
+  Eigen::Matrix3d gram = Eigen::Matrix3d::Identity();  // of the planes left out
+  Vec3 missing = Vec3::Zero();
+  for (std::size_t i = 0; i < planes.count; ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    if ((choice >> i & 1U) != 0) {
+      normals.row(row) = planes.held[i].normal;
+      missing[row] = planes.held[i].offset - planes.held[i].normal.dot(wanted_m);
+      gram(row, row) = 0.0;
+    }
+  }
+  gram += normals * normals.transpose();
+  if (gram.determinant() < parallel) {
+    return std::nullopt;
+  }
+  return wanted_m + normals.transpose() * gram.ldlt().solve(missing);
 }
 
 void SurfaceContact::describe(const Planes& planes, const HandState& tip) noexcept {

@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <optional>
 
 #include "core/tick/contact.hpp"
 namespace tapstudy::core {
@@ -29,7 +30,12 @@ class SurfaceContact {
     std::size_t count{0};
   };
   Planes move_towards(const Vec3& tip_m) noexcept;
-  bool nearest_allowed(const Planes& planes, const Vec3& wanted_m, Vec3& found_m) const noexcept;
+  Planes slide_towards(const Vec3& tip_m) noexcept;
+  Plane plane_of(int triangle) const noexcept;
+  bool allow(const Planes& planes, const Vec3& point_m) const noexcept;
+  std::optional<Vec3> nearest_allowed(const Planes& planes, const Vec3& wanted_m) const noexcept;
+  static std::optional<Vec3> nearest_on(const Planes& planes, unsigned choice,
+                                        const Vec3& wanted_m) noexcept;
   void describe(const Planes& planes, const HandState& tip) noexcept;
 
   const TriangleTree* tree_;

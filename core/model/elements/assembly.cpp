@@ -88,26 +88,28 @@ class Pattern {
       }
     }
   }
-  // NOLINTNEXTLINE(readability-function-cognitive-complexity): three plain loops
   void add_columns(int node, StiffnessAndMass& matrices) const {
-    const auto own = static_cast<std::size_t>(node);
     for (int b = 0; b < 3; ++b) {
-      const int column = position(node, b);
-      if (column < 0) {
-        continue;
+      if (position(node, b) >= 0) {
+        add_column(node, b, matrices);
       }
-      matrices.K.startVec(column);
-      matrices.M.startVec(column);
-      for (int k = graph_.first[own]; k < graph_.first[own + 1]; ++k) {
-        const int row = graph_.neighbours[static_cast<std::size_t>(k)];
-        for (int a = row == node ? b : 0; a < 3; ++a) {
-          if (position(row, a) >= 0) {
-            matrices.K.insertBackByOuterInner(column, position(row, a)) = 0.0;
-          }
+    }
+  }
+  // Zeros where the matrices have entries, from the diagonal down.
+  void add_column(int node, int axis, StiffnessAndMass& matrices) const {
+    const int column = position(node, axis);
+    const auto own = static_cast<std::size_t>(node);
+    matrices.K.startVec(column);
+    matrices.M.startVec(column);
+    for (int k = graph_.first[own]; k < graph_.first[own + 1]; ++k) {
+      const int row = graph_.neighbours[static_cast<std::size_t>(k)];
+      for (int a = row == node ? axis : 0; a < 3; ++a) {
+        if (position(row, a) >= 0) {
+          matrices.K.insertBackByOuterInner(column, position(row, a)) = 0.0;
         }
-        if (position(row, b) >= 0) {
-          matrices.M.insertBackByOuterInner(column, position(row, b)) = 0.0;
-        }
+      }
+      if (position(row, axis) >= 0) {
+        matrices.M.insertBackByOuterInner(column, position(row, axis)) = 0.0;
       }
     }
   }

@@ -54,8 +54,9 @@ void write_panel(std::ostream& script, const Panel& panel, std::size_t index) {
 
 std::string axes(const Figure& figure) {
   if (figure.scale == Scale::logarithmic) {
-    return fmt::format("set xlabel {}\nset ylabel {}\nset logscale xy\nset format xy '%g'\nset key bottom left\n",
-                       quoted(figure.x_label), quoted(figure.y_label));
+    return fmt::format(
+        "set xlabel {}\nset ylabel {}\nset logscale xy\nset format xy '%g'\nset key bottom left\n",
+        quoted(figure.x_label), quoted(figure.y_label));
   }
   const Span left = span_of(figure, Axis::left);
   std::string script =

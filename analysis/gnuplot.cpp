@@ -3,6 +3,8 @@
 #include <cctype>
 #include <cstdio>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 
 #include "core/error.hpp"
 namespace tapstudy::analysis {
@@ -14,6 +16,13 @@ void run_gnuplot(const std::string& script) {
   if (gnuplot == nullptr || pclose(gnuplot) != 0 || !is_written) {
     throw core::InvalidInput{"figures need gnuplot, which is not installed or failed"};
   }
+}
+
+// gnuplot does not say when the disk is full.
+bool is_whole(const std::string& file) {
+  std::ifstream stream{file};
+  const std::string text{std::istreambuf_iterator<char>{stream}, {}};
+  return text.find("</svg>") != std::string::npos;
 }
 }  // namespace
 
@@ -36,9 +45,17 @@ void draw_with_gnuplot(const std::string& script, const std::string& file) {
   if (std::filesystem::exists(file, error)) {
     throw core::InvalidInput{file + ": exists already and is not overwritten"};
   }
-  run_gnuplot(script);
-  if (std::filesystem::file_size(file, error) == 0 || error) {
+  if (!std::ofstream{file}) {
     throw core::InvalidInput{file + ": cannot be written"};
+  }
+  try {
+    run_gnuplot(script);
+    if (!is_whole(file)) {
+      throw core::InvalidInput{file + ": writing failed (is the disk full?)"};
+    }
+  } catch (const core::InvalidInput&) {
+    std::filesystem::remove(file, error);
+    throw;
   }
 }
 }  // namespace tapstudy::analysis

@@ -84,7 +84,7 @@ core::Meshing read_mesh(MapReader& mesh) {
     meshing.size.max_tet_volume_m3 = mesh.number("max_tet_volume_m3", Range::positive(1e6));
   }
   meshing.size.radius_edge_ratio = mesh.number("radius_edge_ratio", {1.1, 10.0}, 1.414);
-  meshing.size.flattening = mesh.number("flattening", {1.0, 1000.0}, 1.0);
+  meshing.size.flattening = mesh.number("flattening", {1.0, core::most_flattening}, 1.0);
   if (mesh.has("accuracy")) {
     meshing.accuracy = mesh.number("accuracy", {1e-5, 1.0, true, false});
   }

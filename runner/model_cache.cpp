@@ -167,7 +167,8 @@ std::string ModelCache::file_of(const std::string& key) const {
 }
 
 std::optional<core::BodyModes> ModelCache::find(const std::string& key) const {
-  if (directory_.empty()) {
+  std::error_code error;
+  if (directory_.empty() || !fs::is_regular_file(file_of(key), error)) {
     return std::nullopt;
   }
   std::ifstream file{file_of(key), std::ios::binary};

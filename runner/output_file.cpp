@@ -20,11 +20,15 @@ void write_file(const std::string& file, const Write& write) {
 }
 }  // namespace
 
-void write_new_file(const std::string& file, const Write& write) {
+void check_is_new(const std::string& file) {
   std::error_code error;
   if (std::filesystem::exists(file, error)) {
     throw core::InvalidInput{file + ": exists already and is not overwritten"};
   }
+}
+
+void write_new_file(const std::string& file, const Write& write) {
+  check_is_new(file);
   write_file(file, write);
 }
 

@@ -92,6 +92,9 @@ void write_vtu(const SolvedBody& body, const Eigen::ArrayXd& frequency_hz,
     throw InvalidInput{file + ": exists already and is not overwritten"};
   }
   std::ofstream out{file};
+  if (!out) {
+    throw InvalidInput{file + ": cannot be written"};
+  }
   out << "<?xml version=\"1.0\"?>\n"
          "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\">\n"
          "<UnstructuredGrid>\n";
@@ -103,7 +106,8 @@ void write_vtu(const SolvedBody& body, const Eigen::ArrayXd& frequency_hz,
   write_modes(out, body.displacement.leftCols(frequency_hz.size()));
   out << "</Piece>\n</UnstructuredGrid>\n</VTKFile>\n";
   if (!out.flush()) {
-    throw InvalidInput{file + ": cannot be written"};
+    std::filesystem::remove(file, error);
+    throw InvalidInput{file + ": writing failed (is the disk full?)"};
   }
 }
 }  // namespace tapstudy::core

@@ -11,6 +11,7 @@
 #include "protocols/read_protocol.hpp"
 #include "runner/commands/commands.hpp"
 #include "runner/model_library.hpp"
+#include "runner/output_file.hpp"
 #include "runner/progress.hpp"
 #include "runner/views/face_views.hpp"
 namespace tapstudy::runner {
@@ -99,6 +100,19 @@ void print_table(const ModesOptions& options, const protocols::Protocol& protoco
   fmt::print("; worst residual {:.1e}\n", report.worst_residual);
 }
 
+std::vector<std::string> outputs(const ModesOptions& options) {
+  std::vector<std::string> files;
+  if (!options.mesh_out.empty()) {
+    files = {options.mesh_out + ".node", options.mesh_out + ".ele"};
+  }
+  for (const std::string& file : {options.vtu, options.figure}) {
+    if (!file.empty()) {
+      files.push_back(file);
+    }
+  }
+  return files;
+}
+
 void draw_modes(const ModesOptions& options, const core::Shape& shape, core::ModalModel model) {
   const auto* const box = std::get_if<core::Box>(&shape);
   if (box == nullptr) {
@@ -114,6 +128,9 @@ void draw_modes(const ModesOptions& options, const core::Shape& shape, core::Mod
 void run_modes(const ModesOptions& options) {
   const protocols::Protocol protocol = protocols::read_protocol(options.protocol);
   const core::PlateSpec spec = plate_spec(protocol, protocol.stimulus(options.stimulus));
+  for (const std::string& file : outputs(options)) {
+    check_is_new(file);
+  }
   const core::PlateModel plate = [&] {
     Progress progress{fmt::format("building the model of '{}'", options.stimulus)};
     return core::build_plate_model(spec, progress.hook());

@@ -1,8 +1,10 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <memory>
 
+#include "core/error.hpp"
 #include "protocols/read_protocol.hpp"
 #include "runner/commands/commands.hpp"
 #include "runner/progress.hpp"
@@ -17,9 +19,20 @@ struct TradeOptions {
   std::string out;
 };
 
+// A range check lets what is not a number through.
+void check(const Tolerance& tolerance) {
+  if (std::isnan(tolerance.frequency) || std::isnan(tolerance.level_db)) {
+    throw core::InvalidInput{"--frequency-tolerance, --level-tolerance-db: must be numbers"};
+  }
+}
+
 void run_trade(const TradeOptions& options) {
   const protocols::Protocol protocol = protocols::read_protocol(options.protocol);
   const protocols::Stimulus& stimulus = protocol.stimulus(options.stimulus);
+  check(options.tolerance);
+  if (!options.out.empty()) {
+    make_room(options.out);
+  }
   Progress progress{fmt::format("measuring '{}'", options.stimulus)};
   const Trade trade = measure_trade(protocol, stimulus, options.tolerance, progress.hook());
   const Stability stability = measure_stability(protocol, stimulus, progress.hook());

@@ -97,6 +97,9 @@ class Tradeoff {
     for (const double band_hz : bands_.tried_hz) {
       const core::BodyModes body = bench_.solve(mesh, band_hz);
       const core::ModalModel model = bench_.model_of(body, band_hz);
+      if (model.frequency_hz.size() == 0) {
+        continue;  // silence is no setting
+      }
       Traded built;
       built.setting = {mesh, band_hz, core::Integrator::exact, 0.0, is_own};
       built.tets = body.report.tets;

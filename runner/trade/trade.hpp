@@ -66,8 +66,8 @@ struct Trade {
   std::string stimulus;
   Tolerance tolerance;
   Reference reference;
-  std::vector<Traded> settings;
-  int cheapest{-1};  // inside the tolerance; -1: there is none
+  std::vector<Traded> settings;  // those that have a mode, cheapest first
+  int cheapest{-1};              // inside the tolerance; -1: there is none
 };
 
 // Builds the stimulus's plate in some twenty ways, and measures each with both integrators and up

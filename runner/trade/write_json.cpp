@@ -41,7 +41,7 @@ std::string json_of(const Trade& trade, const Stability& stability) {
   nlohmann::ordered_json json{{"schema_version", 1}, {"stimulus", trade.stimulus}};
   json["tolerance"] = {{"frequency", trade.tolerance.frequency},
                        {"level_db", trade.tolerance.level_db},
-                       {"source", "Israr & Tan 2006"}};
+                       {"default_from", "Israr & Tan 2006"}};
   json["reference"] = json_of(trade.reference);
   json["settings"] = nlohmann::ordered_json::array();
   for (const Traded& one : trade.settings) {

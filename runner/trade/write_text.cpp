@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "runner/trade/writers.hpp"
 namespace tapstudy::runner {
 namespace {
@@ -71,6 +73,10 @@ void print(const Trade& trade, const Stability& stability, const std::string& di
       trade.settings.size(),
       directory.empty() ? " (--out DIR writes all)" : fmt::format(", all in {}", directory),
       100.0 * trade.tolerance.frequency, trade.tolerance.level_db);
+  if (std::ranges::none_of(trade.settings,
+                           [](const Traded& one) { return one.setting.is_protocols; })) {
+    fmt::print("  the protocol's own setting finds no mode inside its band\n");
+  }
   if (trade.cheapest < 0) {
     fmt::print("  none of them is inside it\n");
   }

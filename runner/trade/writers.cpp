@@ -1,19 +1,36 @@
 #include "runner/trade/writers.hpp"
 
+#include <unistd.h>
+
 #include <filesystem>
 
+#include "core/error.hpp"
 #include "runner/output_file.hpp"
 namespace tapstudy::runner {
-void write_files(const std::string& directory, const Trade& trade, const Stability& stability) {
-  const auto file = [&](const char* name) {
-    return (std::filesystem::path{directory} / name).string();
-  };
+namespace {
+std::string in(const std::string& directory, const char* name) {
+  return (std::filesystem::path{directory} / name).string();
+}
+}  // namespace
+
+void make_room(const std::string& directory) {
   std::error_code error;
   std::filesystem::create_directories(directory, error);
-  write_new_file(file("trade.csv"), [&](std::ostream& out) { write_csv(out, trade); });
-  write_new_file(file("stability.csv"), [&](std::ostream& out) { write_csv(out, stability); });
-  write_new_file(file("trade.json"),
+  if (!std::filesystem::is_directory(directory, error) ||
+      access(directory.c_str(), W_OK | X_OK) != 0) {
+    throw core::InvalidInput{"--out: " + directory + " cannot be made a directory to write into"};
+  }
+  for (const char* const name : {"trade.csv", "stability.csv", "trade.json", "trade.svg"}) {
+    check_is_new(in(directory, name));
+  }
+}
+
+void write_files(const std::string& directory, const Trade& trade, const Stability& stability) {
+  write_new_file(in(directory, "trade.csv"), [&](std::ostream& out) { write_csv(out, trade); });
+  write_new_file(in(directory, "stability.csv"),
+                 [&](std::ostream& out) { write_csv(out, stability); });
+  write_new_file(in(directory, "trade.json"),
                  [&](std::ostream& out) { out << json_of(trade, stability) << '\n'; });
-  analysis::draw_svg(figure_of(trade), file("trade.svg"));
+  analysis::draw_svg(figure_of(trade), in(directory, "trade.svg"));
 }
 }  // namespace tapstudy::runner

@@ -315,3 +315,21 @@ TEST_CASE("the panels of Figures 4 and 5 are drawn by one command", "[end_to_end
     CHECK_THAT(svg, Contains("aluminium"));
   }
 }
+
+TEST_CASE("a figure that does not fit on the disk is an error and leaves nothing", "[end_to_end]") {
+  const TempDirectory directory;
+  const std::string figure = directory / "modes.svg";
+  const std::string command =
+      "trap '' XFSZ; ulimit -f 8; exec \"$0\" modes \"$1\" --stimulus mdf_two --figure \"$2\"";
+  const auto run = testing::run_program(
+      {"/bin/sh", "-c", command, TAPSTUDY_PROGRAM, paper("discrimination.yaml"), figure});
+  CHECK(run.exit_code == 2);
+  CHECK_THAT(run.standard_error, Contains("disk full"));
+  CHECK_FALSE(std::filesystem::exists(figure));
+}
+
+TEST_CASE("a file that is no protocol is refused however long it is", "[end_to_end]") {
+  const auto run = testing::tapstudy({"check", "/dev/zero"});
+  CHECK(run.exit_code == 2);
+  CHECK_THAT(run.standard_error, Contains("too long"));
+}

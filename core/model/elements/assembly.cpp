@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
 #include <array>
 #include <utility>
 
@@ -11,6 +13,9 @@
 namespace tapstudy::core {
 namespace {
 using Axes = std::array<int, 3>;
+// Of a held node's share in a motion of the body, squared: rounding is far below, a screw's head on
+// a plate far above.
+constexpr double nothing_holds = 1e-14;
 
 // The places of K's and M's entries, known before the first element is added: nothing is searched
 // or sorted an entry, only once a pair of nodes.
@@ -149,6 +154,27 @@ void add_elements(const TetMesh& mesh, const Material& material, const Pattern& 
   }
 }
 
+// How many of the six ways to move and turn the body as a whole leave every held degree of freedom
+// where it is: the null space of those motions' values there, lengths relative to the body's.
+int free_rigid_motions(const TetMesh& mesh, const FreeDofs& dofs) {
+  const Eigen::RowVector3d middle = mesh.nodes_m.colwise().mean();
+  const double size_m = (mesh.nodes_m.rowwise() - middle).rowwise().norm().maxCoeff();
+  Eigen::Matrix<double, 6, 6> held = Eigen::Matrix<double, 6, 6>::Zero();
+  for (Eigen::Index node = 0; node < mesh.nodes_m.rows(); ++node) {
+    const Eigen::Vector3d arm = (mesh.nodes_m.row(node) - middle) / size_m;
+    for (Eigen::Index axis = 0; axis < 3; ++axis) {
+      if (dofs.position[static_cast<std::size_t>(3 * node + axis)] < 0) {
+        Eigen::Matrix<double, 6, 1> motion;
+        motion << Eigen::Vector3d::Unit(axis), arm.cross(Eigen::Vector3d::Unit(axis));
+        held += motion * motion.transpose();
+      }
+    }
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> solver{held,
+                                                                          Eigen::EigenvaluesOnly};
+  return static_cast<int>((solver.eigenvalues().array() < nothing_holds).count());
+}
+
 std::vector<int> first_of_node(const FreeDofs& dofs) {
   std::vector<int> first;
   for (std::size_t node = 0; node < dofs.position.size() / 3; ++node) {
@@ -183,6 +209,7 @@ StiffnessAndMass assemble(const TetMesh& mesh, const Material& material, const F
     add_elements<4>(mesh, material, pattern, matrices);
   }
   matrices.first_of_node = first_of_node(dofs);
+  matrices.rigid_body_modes = free_rigid_motions(mesh, dofs);
   return matrices;
 }
 }  // namespace tapstudy::core

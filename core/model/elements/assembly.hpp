@@ -20,6 +20,7 @@ struct StiffnessAndMass {
   SparseMatrix M;  // kg
   // Where each node's unknowns begin, and the end: what belongs together is ordered together.
   std::vector<int> first_of_node{};
+  int rigid_body_modes{0};  // motions of the body as a whole that nothing holds: 0 to 6
   auto stiffness() const { return K.selfadjointView<Eigen::Lower>(); }
   auto mass() const { return M.selfadjointView<Eigen::Lower>(); }
 };

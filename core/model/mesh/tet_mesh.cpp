@@ -60,6 +60,9 @@ void write_tetgen_files(const TetMesh& mesh, const std::string& prefix) {
     fmt::print(elements, "\n");
   }
   if (!nodes.flush() || !elements.flush()) {
+    std::error_code ignored;
+    std::filesystem::remove(prefix + ".node", ignored);
+    std::filesystem::remove(prefix + ".ele", ignored);
     throw InvalidInput{prefix + ".node, .ele: writing failed (is the disk full?)"};
   }
 }

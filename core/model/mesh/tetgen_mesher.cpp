@@ -34,10 +34,13 @@ void check_count(const Shape& shape, const MeshSize& size) {
   if (from_shape > most_tets) {
     const double enough =
         size.flattening * std::cbrt(from_shape / 1e4) * std::cbrt(from_shape / 1e4);
-    advice = fmt::format(
-        "it is too thin for tetrahedra of good shape; mesh.flattening: {:.0f} makes them wider "
-        "than thick, order: 2 keeps them accurate",
-        std::ceil(enough));
+    advice = enough <= most_flattening
+                 ? fmt::format(
+                       "it is too thin for tetrahedra of good shape; mesh.flattening: {:.0f} "
+                       "makes them wider than thick, order: 2 and an accuracy show whether "
+                       "they are fine enough",
+                       std::ceil(enough))
+                 : std::string{"it is too thin for solid elements"};
   }
   throw ModelError{fmt::format(
       "mesh: a body of {:.4g} × {:.4g} × {:.4g} m would take about {:.2g} tetrahedra (at most "

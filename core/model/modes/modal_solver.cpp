@@ -16,10 +16,10 @@
 namespace tapstudy::core {
 namespace {
 constexpr double residual_limit = 1e-8;
+// However stiff the stiffest element is: beyond, the mode is not one.
+constexpr double largest_residual = 1e-6;
 // Of rounding that a solve and the products after it may add up to.
 constexpr double rounding_steps = 8.0;
-// Below this fraction of the band a frequency is zero to rounding: a motion of the rigid body.
-constexpr double rigid_fraction = 1e-4;
 // Up to this size the whole spectrum costs nothing, and Lanczos would have no room.
 constexpr Eigen::Index dense_size = 96;
 constexpr int most_modes = 1000;
@@ -94,7 +94,8 @@ std::vector<Residual> residuals(const StiffnessAndMass& matrices, const Pairs& p
     const Eigen::VectorXd inertial = pairs.values[i] * pairs.inertial.col(i);
     const double scale = pairs.elastic.col(i).norm() + inertial.norm();
     all.push_back({(pairs.elastic.col(i) - inertial).norm() / scale,
-                   residual_limit + rounding * pairs.vectors.col(i).norm() / scale});
+                   std::min(largest_residual,
+                            residual_limit + rounding * pairs.vectors.col(i).norm() / scale)});
   }
   return all;
 }
@@ -134,8 +135,10 @@ double checked_residual(const StiffnessAndMass& matrices, const Pairs& pairs) {
   double worst = 0.0;
   for (const Residual& one : residuals(matrices, pairs)) {
     if (!one.is_small()) {
-      throw ModelError{fmt::format("modes: a mode has a residual of {:.1e} (at most {:.1e})",
-                                   one.found, one.allowed)};
+      throw ModelError{
+          fmt::format("modes: a mode has a residual of {:.1e} (at most {:.1e}): are there "
+                      "elements far flatter, or a body far softer, than the band is for?",
+                      one.found, one.allowed)};
     }
     worst = std::max(worst, one.found);
   }
@@ -173,8 +176,7 @@ Modes solve_modes(const StiffnessAndMass& matrices, double band_limit_hz,
         "one of them",
         count)};
   }
-  const double zero = rigid_fraction * rigid_fraction * band * band;
-  modes.rigid_body_modes = static_cast<int>((pairs.values.array() < zero).count());
+  modes.rigid_body_modes = std::min(matrices.rigid_body_modes, count);
   const Pairs elastic = part(pairs, modes.rigid_body_modes, count - modes.rigid_body_modes);
   modes.omega_rad_s = elastic.values.array().sqrt();
   modes.shapes = elastic.vectors;

@@ -8,7 +8,7 @@ namespace tapstudy::core {
 struct Modes {
   Eigen::ArrayXd omega_rad_s;  // ascending; undamped natural angular frequencies
   Eigen::MatrixXd shapes;      // one column a mode, M-orthonormal [kg^-1/2], sign fixed
-  int rigid_body_modes{0};     // found at zero frequency and left out
+  int rigid_body_modes{0};     // at zero frequency, left out
   int counted_in_band{0};      // by the inertia of K - sigma M, rigid-body modes included
   double worst_residual{0.0};  // max over modes of |K x - w² M x| / (|K x| + w² |M x|)
   double factor_s{0.0};
@@ -19,7 +19,7 @@ struct Modes {
 // prove how many there are, and serve to find them. K, M: n × n, M positive definite, K positive
 // semidefinite.
 // Throws ModelError if the solver does not converge, if a residual exceeds 1e-8 and what rounding
-// leaves, if what is found disagrees with the count, or if there are more than a thousand.
+// leaves, or 1e-6, if what is found disagrees with the count, or if there are more than a thousand.
 Modes solve_modes(const StiffnessAndMass& matrices, double band_limit_hz,
                   const ProgressHook& progress = {});
 }  // namespace tapstudy::core

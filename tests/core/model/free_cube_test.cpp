@@ -10,7 +10,7 @@
 using namespace tapstudy;
 
 namespace {
-constexpr int highest_degree = 9;
+constexpr int highest_degree = 11;
 
 // Over [-1, 1]: of P_i P_j, P_i P_j', P_i' P_j, P_i' P_j'.
 double integral(int i, bool is_derived_i, int j, bool is_derived_j) {

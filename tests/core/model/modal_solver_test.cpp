@@ -126,6 +126,24 @@ TEST_CASE("a body of a few nodes is solved as well", "[core][model]") {
   CHECK(core::build_plate_model(cube).modal.frequency_hz.size() > 0);
 }
 
+TEST_CASE("only motions that nothing holds are of the rigid body, however soft the body",
+          "[core][model]") {
+  core::PlateSpec plate = testing::paper_plate(4, testing::mdf());
+  const auto rigid = [&] { return core::solve_body(core::body_of(plate)).modes.report; };
+  CHECK(rigid().rigid_body_modes == 0);
+  plate.material.youngs_modulus_pa = 1e3;  // all far below the band
+  plate.band_limit_hz = 20.0;
+  CHECK(rigid().rigid_body_modes == 0);
+  plate.fixations.resize(1);  // pinched at one point of each face: it turns about the line between
+  CHECK(rigid().rigid_body_modes == 1);
+  plate.fixations[0].face = core::Face::top;  // at one point it turns about three axes
+  CHECK(rigid().rigid_body_modes == 3);
+  plate.fixations[0].holds = {false, false, true};
+  CHECK(rigid().rigid_body_modes == 5);
+  plate.fixations.clear();
+  CHECK(rigid().rigid_body_modes == 6);
+}
+
 TEST_CASE("hundreds of modes of a soft body all swing as K x = w^2 M x says",
           "[core][model][slow]") {
   core::Material rubber = testing::mdf();

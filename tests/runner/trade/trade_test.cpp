@@ -131,3 +131,24 @@ TEST_CASE("nothing is traded where nothing vibrates", "[runner][trade]") {
   CHECK(run.exit_code == 2);
   CHECK_THAT(run.standard_error, Catch::Matchers::Contains("technique 'none'"));
 }
+
+TEST_CASE("trade refuses what it cannot write or compare with before it measures",
+          "[runner][trade]") {
+  const TempDirectory directory;
+  testing::write(directory / "study.yaml", cantilever());
+  testing::write(directory / "trade.svg", "kept");
+  const std::vector<std::string> command{"trade", directory / "study.yaml", "--stimulus", "block"};
+  const std::vector<std::vector<std::string>> additions{{"--out", directory / "."},
+                                                        {"--out", directory / "study.yaml"},
+                                                        {"--frequency-tolerance", "nan"},
+                                                        {"--level-tolerance-db", "0"}};
+  for (const auto& more : additions) {
+    std::vector<std::string> line = command;
+    line.insert(line.end(), more.begin(), more.end());
+    const auto run = testing::tapstudy(line);
+    CAPTURE(more, run.standard_error);
+    CHECK(run.exit_code == 2);
+    CHECK_THAT(run.standard_error, !Catch::Matchers::Contains("iterating"));
+  }
+  CHECK(testing::contents(directory / "trade.svg") == "kept");
+}

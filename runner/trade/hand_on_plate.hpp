@@ -20,6 +20,6 @@ struct LoopBehaviour {
 };
 
 // The hand taps once and stays. No force limit and no safety: this is what they guard against.
-LoopBehaviour tap_and_stay(core::TapRenderer& renderer, const device::HandBody& hand, double dt_s,
+LoopBehaviour tap_and_stay(core::TapRenderer& renderer, const device::HandBody& body, double dt_s,
                            const TestTap& tap);
 }  // namespace tapstudy::runner

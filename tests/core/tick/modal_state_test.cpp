@@ -81,6 +81,16 @@ TEST_CASE("a damped plate never gains energy and falls silent, not denormal", "[
   CHECK(state.energy_j() == 0.0);
 }
 
+TEST_CASE("a hundred million ticks after a strike there is silence, and no denormal",
+          "[core][modal][slow]") {
+  ModalState state = struck(0.1, 0.1, 1.0);
+  for (int tick = 0; tick < 100'000'000; ++tick) {
+    state.tick();
+  }
+  CHECK(state.energy_j() == 0.0);
+  CHECK(state.displacement_m() == 0.0);
+}
+
 TEST_CASE("ten thousand ticks of a vibrating plate allocate nothing", "[core][realtime]") {
   ModalState state = struck(0.1, 0.1, 1.0);
   const testing::AllocationCount allocations;

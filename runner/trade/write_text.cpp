@@ -34,19 +34,23 @@ void print_reference(const Reference& reference, const Tolerance& tolerance) {
   fmt::print("\n");
 }
 
+char mark_of(const Traded& one, bool is_cheapest) {
+  if (is_cheapest) {
+    return '>';
+  }
+  return one.is_on_front ? '*' : ' ';
+}
+
 void print_settings(const Trade& trade) {
   fmt::print(
       "  order   tets band_hz modes integrator rate_hz  build_s tick_ns  cost_s "
       "frequency% level_db  force%\n");
-  for (std::size_t i = 0; i < trade.settings.size(); ++i) {
-    const Traded& one = trade.settings[i];
-    const bool is_cheapest = static_cast<int>(i) == trade.cheapest;
+  int place = 0;
+  for (const Traded& one : trade.settings) {
+    const bool is_cheapest = place++ == trade.cheapest;
     if (one.is_on_front || one.setting.is_protocols || is_cheapest) {
-      fmt::print("{} {}{}{}\n",
-                 is_cheapest       ? '>'
-                 : one.is_on_front ? '*'
-                                   : ' ',
-                 row(one), one.setting.is_protocols ? "  the protocol's own" : "",
+      fmt::print("{} {}{}{}\n", mark_of(one, is_cheapest), row(one),
+                 one.setting.is_protocols ? "  the protocol's own" : "",
                  is_cheapest ? "  cheapest inside the tolerance" : "");
     }
   }

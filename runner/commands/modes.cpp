@@ -28,6 +28,7 @@ struct ModesOptions {
 double peak_memory_bytes() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
+  // NOLINTNEXTLINE(cppcoreguidelines-pro-type-union-access): the C library hides it in one
   return 1024.0 * static_cast<double>(usage.ru_maxrss);
 }
 

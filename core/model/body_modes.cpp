@@ -1,7 +1,6 @@
 #include "core/model/body_modes.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <cmath>
 #include <numbers>

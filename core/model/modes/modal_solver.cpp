@@ -86,54 +86,56 @@ struct Residual {
 
 // |K x - w² M x| relative to the forces that it is the difference of; what is allowed grows with
 // what rounding leaves there: the stiffest element over the softest mode.
-std::vector<Residual> residuals(const StiffnessAndMass& matrices, const Pairs& pairs) {
-  const double rounding =
-      rounding_steps * std::numeric_limits<double>::epsilon() * largest_row_sum(matrices.K);
+// A motion of the rigid body is left out: it has no forces to compare with.
+std::vector<Residual> residuals(const Pairs& pairs, int rigid_body_modes, double rounding_n_per_m) {
   std::vector<Residual> all;
-  for (Eigen::Index i = 0; i < pairs.values.size(); ++i) {
+  for (Eigen::Index i = rigid_body_modes; i < pairs.values.size(); ++i) {
     const Eigen::VectorXd inertial = pairs.values[i] * pairs.inertial.col(i);
     const double scale = pairs.elastic.col(i).norm() + inertial.norm();
-    all.push_back({(pairs.elastic.col(i) - inertial).norm() / scale,
-                   std::min(largest_residual,
-                            residual_limit + rounding * pairs.vectors.col(i).norm() / scale)});
+    all.push_back(
+        {(pairs.elastic.col(i) - inertial).norm() / scale,
+         std::min(largest_residual,
+                  residual_limit + rounding_n_per_m * pairs.vectors.col(i).norm() / scale)});
   }
   return all;
 }
 
-Pairs part(const Pairs& pairs, Eigen::Index first, Eigen::Index count) {
-  return {pairs.values.segment(first, count), pairs.vectors.middleCols(first, count),
-          pairs.elastic.middleCols(first, count), pairs.inertial.middleCols(first, count)};
+Pairs lowest(const Pairs& pairs, int count) {
+  return {pairs.values.head(count), pairs.vectors.leftCols(count), pairs.elastic.leftCols(count),
+          pairs.inertial.leftCols(count)};
 }
 
 // The modes below the shift. Where a basis of moderate size has left too much of far higher modes
 // in the lowest, subspace iteration takes it out; the guards keep modes beyond the shift, which it
 // would enlarge, from coming in.
 Pairs modes_below_shift(const StiffnessAndMass& matrices, const ShiftedFactor& factor, int count,
-                        const ProgressHook& progress) {
-  RitzVectors ritz = eigenvectors_below_shift(matrices, factor, count, progress);
+                        double rounding_n_per_m, const ProgressHook& progress) {
+  const RitzVectors ritz = eigenvectors_below_shift(matrices, factor, count, progress);
   Pairs pairs = modes_in_span(matrices, ritz.wanted);
   const auto is_good = [&] {
-    return std::ranges::all_of(residuals(matrices, pairs), &Residual::is_small);
+    return std::ranges::all_of(residuals(pairs, matrices.rigid_body_modes, rounding_n_per_m),
+                               &Residual::is_small);
   };
   if (is_good()) {
     return pairs;
   }
   Eigen::MatrixXd vectors{ritz.wanted.rows(), ritz.wanted.cols() + ritz.guards.cols()};
   vectors << ritz.wanted, ritz.guards;
-  for (int round = 0; round < most_polishing_rounds && !is_good(); ++round) {
+  int rounds = 0;
+  do {
     tell(progress, "polishing");
     vectors = matrices.mass() * vectors;
     factor.solve_in_place(vectors);
     const Pairs all = modes_in_span(matrices, vectors);
     vectors = all.vectors;
-    pairs = part(all, 0, count);
-  }
+    pairs = lowest(all, count);
+  } while (++rounds < most_polishing_rounds && !is_good());
   return pairs;
 }
 
-double checked_residual(const StiffnessAndMass& matrices, const Pairs& pairs) {
+double checked_worst(const std::vector<Residual>& all) {
   double worst = 0.0;
-  for (const Residual& one : residuals(matrices, pairs)) {
+  for (const Residual& one : all) {
     if (!one.is_small()) {
       throw ModelError{
           fmt::format("modes: a mode has a residual of {:.1e} (at most {:.1e}): are there "
@@ -162,13 +164,15 @@ Modes solve_modes(const StiffnessAndMass& matrices, double band_limit_hz,
                     "(lower band_limit_hz, or is the body too soft?)",
                     count, most_modes)};
   }
+  const double rounding_n_per_m =
+      rounding_steps * std::numeric_limits<double>::epsilon() * largest_row_sum(matrices.K);
   const Eigen::Index size = matrices.K.rows();
   const Eigen::MatrixXd none{size, 0};
   Pairs pairs{Eigen::VectorXd{0}, none, none, none};
   if (count > 0) {
     const bool is_small = size <= dense_size || Eigen::Index{4} * count > size;
     pairs = is_small ? lowest_dense(matrices, count)
-                     : modes_below_shift(matrices, factor, count, progress);
+                     : modes_below_shift(matrices, factor, count, rounding_n_per_m, progress);
   }
   if (count > 0 && pairs.values.maxCoeff() >= band * band) {
     throw ModelError{fmt::format(
@@ -177,11 +181,11 @@ Modes solve_modes(const StiffnessAndMass& matrices, double band_limit_hz,
         count)};
   }
   modes.rigid_body_modes = std::min(matrices.rigid_body_modes, count);
-  const Pairs elastic = part(pairs, modes.rigid_body_modes, count - modes.rigid_body_modes);
-  modes.omega_rad_s = elastic.values.array().sqrt();
-  modes.shapes = elastic.vectors;
+  modes.worst_residual = checked_worst(residuals(pairs, modes.rigid_body_modes, rounding_n_per_m));
+  const Eigen::Index kept = count - modes.rigid_body_modes;
+  modes.omega_rad_s = pairs.values.tail(kept).array().sqrt();
+  modes.shapes = pairs.vectors.rightCols(kept);
   fix_signs(modes.shapes);
-  modes.worst_residual = checked_residual(matrices, elastic);
   modes.iterate_s = watch.lap_s();
   return modes;
 }

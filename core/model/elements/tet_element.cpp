@@ -45,17 +45,17 @@ void mirror_lower(TetElement<Nodes>& element) {
   element.stiffness.template triangularView<Eigen::StrictlyUpper>() = element.stiffness.transpose();
 }
 
-// T10's shape functions are L_i (2 L_i - 1) at corners and 4 L_i L_j on edges; their gradients at
-// the barycentric point L, from those of L.
-Gradients<10> quadratic_gradients(const Eigen::Vector4d& L, const Gradients<4>& linear) {
+// T10's shape functions are l_i (2 l_i - 1) at corners and 4 l_i l_j on edges; their gradients at
+// the barycentric point l, from those of l.
+Gradients<10> quadratic_gradients(const Eigen::Vector4d& l, const Gradients<4>& linear) {
   Gradients<10> gradients;
   for (Eigen::Index i = 0; i < 4; ++i) {
-    gradients.row(i) = (4.0 * L[i] - 1.0) * linear.row(i);
+    gradients.row(i) = (4.0 * l[i] - 1.0) * linear.row(i);
   }
   for (std::size_t e = 0; e < tet_edges.size(); ++e) {
     const auto [i, j] = tet_edges.at(e);
     gradients.row(static_cast<Eigen::Index>(4 + e)) =
-        4.0 * (L[j] * linear.row(i) + L[i] * linear.row(j));
+        4.0 * (l[j] * linear.row(i) + l[i] * linear.row(j));
   }
   return gradients;
 }
@@ -113,9 +113,9 @@ TetElement<10> tet_element<10>(const TetCorners& corners_m, const Material& mate
   TetElement<10> element;
   element.stiffness.setZero();
   for (Eigen::Index point = 0; point < 4; ++point) {
-    Eigen::Vector4d L = Eigen::Vector4d::Constant(far);
-    L[point] = near;
-    add_stiffness<10>(quadratic_gradients(L, gradients), lame, 0.25 * volume, element);
+    Eigen::Vector4d l = Eigen::Vector4d::Constant(far);
+    l[point] = near;
+    add_stiffness<10>(quadratic_gradients(l, gradients), lame, 0.25 * volume, element);
   }
   mirror_lower(element);
   static const Eigen::Matrix<double, 10, 10> mass = quadratic_mass();

@@ -6,6 +6,7 @@
 
 #include "core/error.hpp"
 #include "core/model/stopwatch.hpp"
+#include "runner/model_library.hpp"
 namespace tapstudy::runner {
 namespace {
 constexpr double above_m = 1e-3;
@@ -17,9 +18,7 @@ constexpr int ticks_a_batch = 1000;
 // In contact from its second tick on.
 core::TapRenderer renderer_of(const core::VibratingPlate& plate, const core::Shape& shape,
                               const core::RenderSettings& settings, const Strike& strike) {
-  const core::Vec3 high_m = core::bounds(shape).high_m;
-  core::TapRenderer renderer{*core::find_technique("fem"), settings,
-                             core::PlateFace{high_m.x(), high_m.y()}, &plate};
+  core::TapRenderer renderer{*core::find_technique("fem"), settings, touched_shape(shape), &plate};
   renderer.tick(
       {strike.at_m + core::Vec3{0.0, 0.0, above_m}, core::Vec3{0.0, 0.0, -strike.speed_m_s}});
   return renderer;

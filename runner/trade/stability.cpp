@@ -5,11 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <numbers>
 #include <optional>
 
 #include "core/error.hpp"
-#include "core/model/modes/damping.hpp"
 #include "core/model/shape/top_height.hpp"
 #include "device/penalty_limit.hpp"
 #include "runner/model_library.hpp"
@@ -80,9 +78,8 @@ StabilityCase play(const std::string& property, double value, const Stage& stage
       played.words = described(built);
       plate.emplace(vibrating_plate(stage.plate.shape, std::move(built.modal)));
     }
-    const core::Vec3 high_m = core::bounds(stage.plate.shape).high_m;
     core::TapRenderer renderer{*core::find_technique(plate ? "fem" : "none"), stage.rendering,
-                               core::PlateFace{high_m.x(), high_m.y()}, plate ? &*plate : nullptr};
+                               touched_shape(stage.plate.shape), plate ? &*plate : nullptr};
     TestTap tap = stage.tap;
     tap.z_m = core::TopHeight{stage.plate.shape}.at_m({0.0, 0.0}).value_or(0.0);
     const LoopBehaviour seen = tap_and_stay(renderer, stage.hand, stage.rendering.dt_s, tap);

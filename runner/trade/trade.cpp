@@ -42,13 +42,20 @@ core::Meshing mesh_of(const core::PlateSpec& plate, int order, double tets) {
   return mesh;
 }
 
+// What an output that is held from tick to tick leaves of a model. A shape counts twice in a force,
+// at the strike and at the finger.
+core::ModalModel held_from_tick_to_tick(core::ModalModel model, double rate_hz) {
+  model.shape *= held_gain(model.frequency_hz, rate_hz).sqrt().matrix().asDiagonal();
+  return model;
+}
+
 class Tradeoff {
  public:
   Tradeoff(const protocols::Protocol& protocol, const protocols::Stimulus& stimulus,
            const core::ProgressHook& progress)
       : protocol_{protocol},
         bench_{protocol, stimulus, progress},
-        bands_{bands_of(bench_.plate())} {}
+        bands_{bands_of(bench_.spec())} {}
 
   Reference make_reference() {
     const double band_hz = bands_.tried_hz.back();
@@ -75,10 +82,10 @@ class Tradeoff {
 
   std::vector<Traded> try_all() {
     std::vector<Traded> all;
-    try_mesh(bench_.plate().mesh, true, all);
+    try_mesh(bench_.spec().mesh, true, all);
     for (const int order : {1, 2}) {
       for (const double tets : tets_tried) {
-        try_mesh(mesh_of(bench_.plate(), order, tets), false, all);
+        try_mesh(mesh_of(bench_.spec(), order, tets), false, all);
       }
     }
     return all;
@@ -86,60 +93,65 @@ class Tradeoff {
 
  private:
   core::BodyModes solved(double tets) const {
-    return bench_.solve(mesh_of(bench_.plate(), 2, tets), bands_.beyond_hz);
+    return bench_.solve(mesh_of(bench_.spec(), 2, tets), bands_.beyond_hz);
   }
   Forces exact_forces(const core::BodyModes& body, double band_hz) const {
-    return bench_.forces_n(bench_.model_of(body, band_hz), core::Integrator::exact,
+    return bench_.forces_n(bench_.plate_of(bench_.model_of(body, band_hz)), core::Integrator::exact,
                            protocol_.rate_hz);
   }
 
   void try_mesh(const core::Meshing& mesh, bool is_own, std::vector<Traded>& all) const {
     for (const double band_hz : bands_.tried_hz) {
       const core::BodyModes body = bench_.solve(mesh, band_hz);
-      const core::ModalModel model = bench_.model_of(body, band_hz);
-      if (model.frequency_hz.size() == 0) {
+      const core::VibratingPlate plate = bench_.plate_of(bench_.model_of(body, band_hz));
+      if (plate.model.frequency_hz.size() == 0) {
         continue;  // silence is no setting
       }
       Traded built;
-      built.setting = {mesh, band_hz, core::Integrator::exact, 0.0, is_own};
+      built.setting.mesh = mesh;
+      built.setting.band_limit_hz = band_hz;
+      built.setting.is_protocols = is_own && band_hz == protocol_.band_limit_hz;
       built.tets = body.report.tets;
       built.dofs = body.report.dofs;
-      built.modes = static_cast<int>(model.frequency_hz.size());
+      built.modes = static_cast<int>(plate.model.frequency_hz.size());
       built.build_s = body.report.cost.total_s();
-      built.tick_ns = bench_.tick_ns(model);
-      try_rates(built, model, all);
+      built.tick_ns = bench_.tick_ns(plate);
+      try_rates(built, plate, all);
     }
   }
 
-  void try_rates(const Traded& built, const core::ModalModel& model,
+  void try_rates(const Traded& built, const core::VibratingPlate& plate,
                  std::vector<Traded>& all) const {
     for (const double times : rates_tried) {
       const double rate_hz = times * protocol_.rate_hz;
       if (rate_hz > fastest_hz || built.setting.band_limit_hz >= 0.5 * rate_hz) {
         continue;
       }
+      const core::VibratingPlate held =
+          bench_.plate_of(held_from_tick_to_tick(plate.model, rate_hz));
       for (const auto integrator : {core::Integrator::exact, core::Integrator::newmark}) {
         Traded one = built;
         one.setting.integrator = integrator;
         one.setting.rate_hz = rate_hz;
         one.setting.is_protocols = built.setting.is_protocols && times == 1.0 &&
-                                   built.setting.band_limit_hz == protocol_.band_limit_hz &&
                                    integrator == protocol_.rendering.integrator;
-        measure(model, one);
+        measure(plate, held, one);
         all.push_back(one);
       }
     }
   }
 
-  void measure(const core::ModalModel& model, Traded& one) const {
-    const auto [mesh, band_hz, integrator, rate_hz, is_own] = one.setting;
-    one.cost_s = one.build_s + 1e-9 * one.tick_ns * rate_hz * session_s;
-    one.frequency_error =
-        frequency_error(frequency_hz_, rung_hz(model.frequency_hz, integrator, rate_hz), band_hz);
-    one.force_error = force_error(forces_n_, bench_.forces_n(model, integrator, rate_hz));
-    core::ModalModel held = model;  // a shape counts twice, at the strike and at the finger
-    held.shape *= held_gain(model.frequency_hz, rate_hz).sqrt().matrix().asDiagonal();
-    one.level_error_db = level_error_db(forces_n_, bench_.forces_n(held, integrator, rate_hz));
+  void measure(const core::VibratingPlate& plate, const core::VibratingPlate& held,
+               Traded& one) const {
+    const Setting& setting = one.setting;
+    one.cost_s = one.build_s + 1e-9 * one.tick_ns * setting.rate_hz * session_s;
+    one.frequency_error = frequency_error(
+        frequency_hz_, rung_hz(plate.model.frequency_hz, setting.integrator, setting.rate_hz),
+        setting.band_limit_hz);
+    one.force_error =
+        force_error(forces_n_, bench_.forces_n(plate, setting.integrator, setting.rate_hz));
+    one.level_error_db =
+        level_error_db(forces_n_, bench_.forces_n(held, setting.integrator, setting.rate_hz));
   }
 
   const protocols::Protocol& protocol_;

@@ -45,12 +45,15 @@ core::ModalModel Workbench::model_of(const core::BodyModes& body, double band_li
   return core::model_of(body, spec_.material, band_limit_hz);
 }
 
-Forces Workbench::forces_n(core::ModalModel model, core::Integrator integrator,
+core::VibratingPlate Workbench::plate_of(core::ModalModel model) const {
+  return vibrating_plate(spec_.shape, std::move(model));
+}
+
+Forces Workbench::forces_n(const core::VibratingPlate& plate, core::Integrator integrator,
                            double rate_hz) const {
   core::RenderSettings settings = protocol_.rendering;
   settings.integrator = integrator;
   settings.dt_s = 1.0 / rate_hz;
-  const core::VibratingPlate plate = vibrating_plate(spec_.shape, std::move(model));
   const auto stride = static_cast<Eigen::Index>(std::lround(rate_hz / protocol_.rate_hz));
   const Eigen::Index rows = std::lround(compared_s * protocol_.rate_hz);
   Forces forces{rows, strikes_.size()};
@@ -62,8 +65,7 @@ Forces Workbench::forces_n(core::ModalModel model, core::Integrator integrator,
   return forces;
 }
 
-double Workbench::tick_ns(core::ModalModel model) const {
-  const core::VibratingPlate plate = vibrating_plate(spec_.shape, std::move(model));
+double Workbench::tick_ns(const core::VibratingPlate& plate) const {
   return runner::tick_ns(plate, spec_.shape, protocol_.rendering, strikes_.front());
 }
 }  // namespace tapstudy::runner

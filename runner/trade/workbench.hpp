@@ -13,16 +13,18 @@ class Workbench {
   Workbench(const protocols::Protocol& protocol, const protocols::Stimulus& stimulus,
             core::ProgressHook progress);
 
-  const core::PlateSpec& plate() const { return spec_; }
+  const core::PlateSpec& spec() const { return spec_; }
   core::BodyModes solve(const core::Meshing& mesh, double band_limit_hz) const;
   // Two damping ratios are the damping of the modes that a body happens to have; from now on it is
   // that of this body's, in the protocol's band.
   void fix_damping(const core::BodyModes& body);
   core::ModalModel model_of(const core::BodyModes& body, double band_limit_hz) const;
+  core::VibratingPlate plate_of(core::ModalModel model) const;
   // For 0.3 s after a strike on each tapping point, at the protocol's ticks whatever the rate,
   // which must be a whole multiple of the protocol's.
-  Forces forces_n(core::ModalModel model, core::Integrator integrator, double rate_hz) const;
-  double tick_ns(core::ModalModel model) const;
+  Forces forces_n(const core::VibratingPlate& plate, core::Integrator integrator,
+                  double rate_hz) const;
+  double tick_ns(const core::VibratingPlate& plate) const;
 
  private:
   const protocols::Protocol& protocol_;

@@ -52,13 +52,14 @@ void print_models(const protocols::Protocol& protocol) {
 
 void print_contact(const protocols::Protocol& protocol) {
   const double asked = protocol.rendering.penalty_stiffness_n_per_m;
-  const double limit = device::largest_stable_penalty_n_per_m(hand_body(protocol.simulation.hand),
-                                                              protocol.rendering.dt_s);
+  device::HandBody hand = hand_body(protocol.simulation.hand);
+  const double limit = device::largest_stable_penalty_n_per_m(hand, protocol.rendering.dt_s);
   fmt::print("\ncontact\n  penalty {} N/m; at {} Hz the simulated hand rests on up to {:.0f} N/m\n",
              asked, protocol.rate_hz, limit);
+  hand.muscle_damping_n_s_per_m *= 0.5;
   if (asked >= limit) {
     fmt::print("  warning: it will chatter (lower penalty_stiffness_n_per_m or raise rate_hz)\n");
-  } else if (asked >= 0.5 * limit) {
+  } else if (asked >= device::largest_stable_penalty_n_per_m(hand, protocol.rendering.dt_s)) {
     fmt::print("  note: a hand with half its damping would chatter\n");
   }
 }

@@ -333,3 +333,16 @@ TEST_CASE("a file that is no protocol is refused however long it is", "[end_to_e
   CHECK(run.exit_code == 2);
   CHECK_THAT(run.standard_error, Contains("too long"));
 }
+
+TEST_CASE("check warns of a contact that the hand cannot rest on", "[end_to_end]") {
+  const TempDirectory directory;
+  const auto checked = [&](const std::string& stiffness) {
+    return testing::tapstudy({"check", changed(directory, "discrimination.yaml",
+                                               "penalty_stiffness_n_per_m: 3000",
+                                               "penalty_stiffness_n_per_m: " + stiffness)})
+        .standard_output;
+  };
+  CHECK_THAT(checked("3000"), Contains("rests on up to") && !Contains("chatter"));
+  CHECK_THAT(checked("15000"), Contains("half its damping would chatter"));
+  CHECK_THAT(checked("25000"), Contains("it will chatter"));
+}

@@ -7,6 +7,7 @@
 #include <iterator>
 
 #include "core/error.hpp"
+#include "core/output_file.hpp"
 namespace tapstudy::analysis {
 namespace {
 void run_gnuplot(const std::string& script) {
@@ -41,19 +42,14 @@ std::string quoted(const std::string& text) {
 }
 
 void draw_with_gnuplot(const std::string& script, const std::string& file) {
-  std::error_code error;
-  if (std::filesystem::exists(file, error)) {
-    throw core::InvalidInput{file + ": exists already and is not overwritten"};
-  }
-  if (!std::ofstream{file}) {
-    throw core::InvalidInput{file + ": cannot be written"};
-  }
+  core::write_new_file(file, [](std::ostream&) {});  // gnuplot does not say why it cannot
   try {
     run_gnuplot(script);
     if (!is_whole(file)) {
       throw core::InvalidInput{file + ": writing failed (is the disk full?)"};
     }
   } catch (const core::InvalidInput&) {
+    std::error_code error;
     std::filesystem::remove(file, error);
     throw;
   }

@@ -3,11 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ostream.h>
 
-#include <algorithm>
-#include <filesystem>
-#include <fstream>
-
-#include "core/error.hpp"
+#include "core/output_file.hpp"
 namespace tapstudy::core {
 namespace {
 constexpr int vtk_tetra = 10;
@@ -87,27 +83,17 @@ void write_frequencies(std::ostream& out, const Eigen::ArrayXd& frequency_hz) {
 
 void write_vtu(const SolvedBody& body, const Eigen::ArrayXd& frequency_hz,
                const std::string& file) {
-  std::error_code error;
-  if (std::filesystem::exists(file, error)) {
-    throw InvalidInput{file + ": exists already and is not overwritten"};
-  }
-  std::ofstream out{file};
-  if (!out) {
-    throw InvalidInput{file + ": cannot be written"};
-  }
-  out << "<?xml version=\"1.0\"?>\n"
-         "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\">\n"
-         "<UnstructuredGrid>\n";
-  write_frequencies(out, frequency_hz);
-  fmt::print(out, "<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n", body.mesh.nodes_m.rows(),
-             body.mesh.tets.rows());
-  write_nodes(out, body.mesh);
-  write_cells(out, body.mesh);
-  write_modes(out, body.displacement.leftCols(frequency_hz.size()));
-  out << "</Piece>\n</UnstructuredGrid>\n</VTKFile>\n";
-  if (!out.flush()) {
-    std::filesystem::remove(file, error);
-    throw InvalidInput{file + ": writing failed (is the disk full?)"};
-  }
+  write_new_file(file, [&](std::ostream& out) {
+    out << "<?xml version=\"1.0\"?>\n"
+           "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\">\n"
+           "<UnstructuredGrid>\n";
+    write_frequencies(out, frequency_hz);
+    fmt::print(out, "<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n",
+               body.mesh.nodes_m.rows(), body.mesh.tets.rows());
+    write_nodes(out, body.mesh);
+    write_cells(out, body.mesh);
+    write_modes(out, body.displacement.leftCols(frequency_hz.size()));
+    out << "</Piece>\n</UnstructuredGrid>\n</VTKFile>\n";
+  });
 }
 }  // namespace tapstudy::core

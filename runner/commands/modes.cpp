@@ -8,10 +8,10 @@
 
 #include "core/error.hpp"
 #include "core/model/vtu_file.hpp"
+#include "core/output_file.hpp"
 #include "protocols/read_protocol.hpp"
 #include "runner/commands/commands.hpp"
 #include "runner/model_library.hpp"
-#include "runner/output_file.hpp"
 #include "runner/progress.hpp"
 #include "runner/views/face_views.hpp"
 namespace tapstudy::runner {
@@ -130,7 +130,7 @@ void run_modes(const ModesOptions& options) {
   const protocols::Protocol protocol = protocols::read_protocol(options.protocol);
   const core::PlateSpec spec = plate_spec(protocol, protocol.stimulus(options.stimulus));
   for (const std::string& file : outputs(options)) {
-    check_is_new(file);
+    core::check_is_new(file);
   }
   const core::PlateModel plate = [&] {
     Progress progress{fmt::format("building the model of '{}'", options.stimulus)};

@@ -12,11 +12,11 @@
 #include "analysis/counts_csv.hpp"
 #include "analysis/report/writers.hpp"
 #include "core/error.hpp"
+#include "core/output_file.hpp"
 #include "protocols/read_protocol.hpp"
 #include "results/store.hpp"
 #include "runner/commands/commands.hpp"
 #include "runner/design.hpp"
-#include "runner/output_file.hpp"
 namespace tapstudy::runner {
 namespace {
 namespace fs = std::filesystem;
@@ -109,12 +109,12 @@ void write_files(const ReportOptions& options, const Summary& summary) {
   if (!fs::is_directory(options.out, error)) {
     throw core::InvalidInput{options.out + ": cannot be made a directory"};
   }
-  const auto write = [&](const std::string& name, const Write& content) {
+  const auto write = [&](const std::string& name, const core::Write& content) {
     const std::string file = (fs::path{options.out} / name).string();
     if (options.replace) {
-      replace_file(file, content);
+      core::replace_file(file, content);
     } else {
-      write_new_file(file, content);
+      core::write_new_file(file, content);
     }
     fmt::print("{}\n", file);
   };

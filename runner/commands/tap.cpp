@@ -9,9 +9,9 @@
 
 #include "analysis/figure.hpp"
 #include "core/error.hpp"
+#include "core/output_file.hpp"
 #include "protocols/read_protocol.hpp"
 #include "runner/commands/commands.hpp"
-#include "runner/output_file.hpp"
 #include "runner/scripted_tap.hpp"
 #include "runner/views/face_views.hpp"
 namespace tapstudy::runner {
@@ -192,7 +192,7 @@ void run_tap(const TapOptions& options) {
     write_csv(std::cout, trace);
     return;
   }
-  write_new_file(options.csv, [&](std::ostream& out) { write_csv(out, trace); });
+  core::write_new_file(options.csv, [&](std::ostream& out) { write_csv(out, trace); });
   print_summary(options, trace);
 }
 }  // namespace

@@ -5,7 +5,7 @@
 #include <filesystem>
 
 #include "core/error.hpp"
-#include "runner/output_file.hpp"
+#include "core/output_file.hpp"
 namespace tapstudy::runner {
 namespace {
 std::string in(const std::string& directory, const char* name) {
@@ -21,16 +21,17 @@ void make_room(const std::string& directory) {
     throw core::InvalidInput{"--out: " + directory + " cannot be made a directory to write into"};
   }
   for (const char* const name : {"trade.csv", "stability.csv", "trade.json", "trade.svg"}) {
-    check_is_new(in(directory, name));
+    core::check_is_new(in(directory, name));
   }
 }
 
 void write_files(const std::string& directory, const Trade& trade, const Stability& stability) {
-  write_new_file(in(directory, "trade.csv"), [&](std::ostream& out) { write_csv(out, trade); });
-  write_new_file(in(directory, "stability.csv"),
-                 [&](std::ostream& out) { write_csv(out, stability); });
-  write_new_file(in(directory, "trade.json"),
-                 [&](std::ostream& out) { out << json_of(trade, stability) << '\n'; });
+  core::write_new_file(in(directory, "trade.csv"),
+                       [&](std::ostream& out) { write_csv(out, trade); });
+  core::write_new_file(in(directory, "stability.csv"),
+                       [&](std::ostream& out) { write_csv(out, stability); });
+  core::write_new_file(in(directory, "trade.json"),
+                       [&](std::ostream& out) { out << json_of(trade, stability) << '\n'; });
   analysis::draw_svg(figure_of(trade), in(directory, "trade.svg"));
 }
 }  // namespace tapstudy::runner

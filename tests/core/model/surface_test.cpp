@@ -32,16 +32,20 @@ core::TriangleSurface shifted(core::TriangleSurface surface, const Eigen::RowVec
   surface.points_m.rowwise() += by_m;
   return surface;
 }
-std::string as_off(const core::TriangleSurface& surface) {
-  std::ostringstream text;
-  text << "OFF\n" << surface.points_m.rows() << ' ' << surface.triangles.rows() << " 0\n";
-  text.precision(17);
+// As OFF and PLY have them.
+void write_points_and_faces(std::ostream& text, const core::TriangleSurface& surface) {
   for (const auto& p : surface.points_m.rowwise()) {
     text << p << '\n';
   }
   for (const auto& t : surface.triangles.rowwise()) {
     text << "3 " << t << '\n';
   }
+}
+std::string as_off(const core::TriangleSurface& surface) {
+  std::ostringstream text;
+  text << "OFF\n" << surface.points_m.rows() << ' ' << surface.triangles.rows() << " 0\n";
+  text.precision(17);
+  write_points_and_faces(text, surface);
   return text.str();
 }
 std::string as_obj(const core::TriangleSurface& surface) {
@@ -59,12 +63,7 @@ std::string as_ply(const core::TriangleSurface& surface) {
   text << "ply\nformat ascii 1.0\nelement vertex " << surface.points_m.rows()
        << "\nproperty double x\nproperty double y\nproperty double z\nelement face "
        << surface.triangles.rows() << "\nproperty list uchar int vertex_indices\nend_header\n";
-  for (const auto& p : surface.points_m.rowwise()) {
-    text << p << '\n';
-  }
-  for (const auto& t : surface.triangles.rowwise()) {
-    text << "3 " << t << '\n';
-  }
+  write_points_and_faces(text, surface);
   return text.str();
 }
 std::string as_ascii_stl(const core::TriangleSurface& surface) {

@@ -3,7 +3,7 @@
 #include <functional>
 #include <ostream>
 #include <string>
-namespace tapstudy::runner {
+namespace tapstudy::core {
 using Write = std::function<void(std::ostream&)>;
 // Throws InvalidInput if there is something of that name: to be asked before long work.
 void check_is_new(const std::string& file);
@@ -12,4 +12,4 @@ void check_is_new(const std::string& file);
 void write_new_file(const std::string& file, const Write& write);
 // The same, but takes the place of a file of that name once everything is on the disk.
 void replace_file(const std::string& file, const Write& write);
-}  // namespace tapstudy::runner
+}  // namespace tapstudy::core

@@ -1,21 +1,21 @@
-#include "runner/output_file.hpp"
+#include "core/output_file.hpp"
 
 #include <filesystem>
 
 #include "core/error.hpp"
-namespace tapstudy::runner {
+namespace tapstudy::core {
 namespace {
 void write_file(const std::string& file, const Write& write) {
   std::ofstream stream{file, std::ios::binary};
   if (!stream) {
-    throw core::InvalidInput{file + ": cannot be written"};
+    throw InvalidInput{file + ": cannot be written"};
   }
   write(stream);
   stream.close();
   if (!stream) {
     std::error_code ignored;
     std::filesystem::remove(file, ignored);
-    throw core::InvalidInput{file + ": writing failed (is the disk full?)"};
+    throw InvalidInput{file + ": writing failed (is the disk full?)"};
   }
 }
 }  // namespace
@@ -23,7 +23,7 @@ void write_file(const std::string& file, const Write& write) {
 void check_is_new(const std::string& file) {
   std::error_code error;
   if (std::filesystem::exists(file, error)) {
-    throw core::InvalidInput{file + ": exists already and is not overwritten"};
+    throw InvalidInput{file + ": exists already and is not overwritten"};
   }
 }
 
@@ -38,7 +38,7 @@ void replace_file(const std::string& file, const Write& write) {
   std::error_code error;
   std::filesystem::rename(unfinished, file, error);
   if (error) {
-    throw core::InvalidInput{file + ": cannot be replaced: " + error.message()};
+    throw InvalidInput{file + ": cannot be replaced: " + error.message()};
   }
 }
-}  // namespace tapstudy::runner
+}  // namespace tapstudy::core

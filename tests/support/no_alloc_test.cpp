@@ -5,7 +5,7 @@
 #include <memory>
 using namespace tapstudy::testing;
 
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#if !TAPSTUDY_SANITIZED
 TEST_CASE("the counter of allocations sees new, malloc and Eigen's arrays", "[realtime]") {
   const AllocationCount allocations;
   const auto by_new = std::make_unique<double>(1.0);

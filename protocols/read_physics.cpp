@@ -1,4 +1,5 @@
 // Rendering, placement and materials.
+#include <algorithm>
 #include <cmath>
 
 #include "protocols/read_sections.hpp"
@@ -12,6 +13,12 @@ core::Damping read_fit(MapReader& damping) {
     fitted.points.push_back(
         {point.number("frequency_hz", Range::positive(1e5)), point.number("ratio", {0.0, 100.0})});
   });
+  const auto lies_elsewhere = [&](const core::FittedDamping::Point& point) {
+    return point.frequency_hz != fitted.points.front().frequency_hz;
+  };
+  if (!fitted.points.empty() && std::ranges::none_of(fitted.points, lies_elsewhere)) {
+    damping.reject("measured", "has one frequency only (a fit needs two different ones at least)");
+  }
   return fitted;
 }
 

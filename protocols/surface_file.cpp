@@ -23,7 +23,9 @@ struct Soup {
 Soup soup_of(const std::string& file) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(file, error)) {
-    throw core::InvalidInput{file + ": cannot be read (no such file)"};
+    throw core::InvalidInput{
+        fmt::format("{}: cannot be read ({})", file,
+                    std::filesystem::exists(file, error) ? "not a file" : "no such file")};
   }
   Soup soup;
   bool is_read = false;

@@ -8,6 +8,31 @@
 #include "runner/build_info.hpp"
 #include "runner/commands/commands.hpp"
 namespace tapstudy::runner {
+namespace {
+// An empty value, from an unset variable in a script, is not the same as no value.
+void refuse_empty_values(CLI::App& app) {
+  const CLI::Validator not_empty{[](const std::string& value) {
+                                   return value.empty() ? std::string{"must not be empty"}
+                                                        : std::string{};
+                                 },
+                                 ""};
+  for (CLI::App* const command : app.get_subcommands({})) {
+    for (CLI::Option* const option : command->get_options()) {
+      if (option->get_items_expected_max() > 0) {
+        option->check(not_empty);
+      }
+    }
+  }
+}
+}  // namespace
+
+CLI::Validator ends_in(const std::string& suffix) {
+  return {[suffix](const std::string& name) {
+            return name.ends_with(suffix) ? std::string{} : "must end in " + suffix;
+          },
+          ""};
+}
+
 ExitCode carry_out(int argc, const char* const* argv) {
   CLI::App app{"User studies of tapped virtual objects, from a YAML protocol to the report.",
                "tapstudy"};
@@ -20,6 +45,7 @@ ExitCode carry_out(int argc, const char* const* argv) {
   add_modes(app);
   add_tap(app);
   add_trade(app);
+  refuse_empty_values(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& asked_for_help) {

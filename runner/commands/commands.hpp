@@ -1,7 +1,9 @@
 #pragma once
+#include <string>
 namespace CLI {
 class App;
-}
+class Validator;
+}  // namespace CLI
 namespace tapstudy::runner {
 // Each adds one command to the command line; the command runs when the line is parsed.
 void add_check(CLI::App& app);
@@ -11,4 +13,7 @@ void add_report(CLI::App& app);
 void add_modes(CLI::App& app);
 void add_tap(CLI::App& app);
 void add_trade(CLI::App& app);
+
+// A file's name must say what the file will hold.
+CLI::Validator ends_in(const std::string& suffix);
 }  // namespace tapstudy::runner

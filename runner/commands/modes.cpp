@@ -161,8 +161,10 @@ void add_modes(CLI::App& app) {
   command->add_option("--stimulus", options->stimulus, "Which stimulus")->required();
   command->add_flag("--json", options->wants_json, "For programs");
   command->add_option("--mesh-out", options->mesh_out, "Write the mesh as PREFIX.node, PREFIX.ele");
-  command->add_option("--vtu", options->vtu, "Write body and mode shapes for ParaView (.vtu)");
-  command->add_option("--figure", options->figure, "Draw the plate's modes from above (SVG)");
+  command->add_option("--vtu", options->vtu, "Write body and mode shapes for ParaView (.vtu)")
+      ->check(ends_in(".vtu"));
+  command->add_option("--figure", options->figure, "Draw the plate's modes from above (.svg)")
+      ->check(ends_in(".svg"));
   command->callback([options] { run_modes(*options); });
 }
 }  // namespace tapstudy::runner

@@ -11,6 +11,7 @@
 #include "core/error.hpp"
 #include "core/output_file.hpp"
 #include "protocols/read_protocol.hpp"
+#include "protocols/read_rig.hpp"
 #include "runner/commands/commands.hpp"
 #include "runner/scripted_tap.hpp"
 #include "runner/views/face_views.hpp"
@@ -177,6 +178,11 @@ void run_tap(const TapOptions& options) {
   if (options.stimulus.empty()) {
     throw core::InvalidInput{"--stimulus is required (or --panels DIR for all of them)"};
   }
+  for (const std::string& file : {options.csv, options.frames}) {
+    if (!file.empty() && file != "-") {
+      core::check_is_new(file);
+    }
+  }
   ModelLibrary models;
   const ScriptedTap tap{options.stimulus, point_on_plate(options.at, protocol), options.speed_m_s,
                         options.seconds};
@@ -210,8 +216,10 @@ void add_tap(CLI::App& app) {
   command->add_option("--csv", options->csv, "Write every tick to this new file (- for stdout)");
   command->add_option("--panels", options->panels,
                       "Draw all stimuli at all tapping points into this directory (SVG)");
-  command->add_option("--frames", options->frames,
-                      "Draw the plate's displacement after the strike, from above (SVG)");
+  command
+      ->add_option("--frames", options->frames,
+                   "Draw the plate's displacement after the strike, from above (.svg)")
+      ->check(ends_in(".svg"));
   command->callback([options] { run_tap(*options); });
 }
 }  // namespace tapstudy::runner

@@ -54,7 +54,10 @@ class Tradeoff {
   Tradeoff(const protocols::Protocol& protocol, const protocols::Stimulus& stimulus,
            const core::ProgressHook& progress)
       : protocol_{protocol},
-        bench_{protocol, stimulus, progress},
+        bench_{protocol, stimulus,
+               [this, progress](std::string_view stage) {
+                 core::tell(progress, fmt::format("{}, {}", building_, stage));
+               }},
         bands_{bands_of(bench_.spec())} {}
 
   Reference make_reference() {
@@ -80,15 +83,20 @@ class Tradeoff {
             force_error(exact_forces(fine, bands_.beyond_hz), forces_n_)};
   }
 
-  std::vector<Traded> try_all() {
-    std::vector<Traded> all;
-    try_mesh(bench_.spec().mesh, true, all);
+  void try_all(Trade& trade) {
+    std::vector<core::Meshing> meshes{bench_.spec().mesh};
     for (const int order : {1, 2}) {
       for (const double tets : tets_tried) {
-        try_mesh(mesh_of(bench_.spec(), order, tets), false, all);
+        meshes.push_back(mesh_of(bench_.spec(), order, tets));
       }
     }
-    return all;
+    std::size_t number = 0;
+    for (std::size_t i = 0; i < meshes.size(); ++i) {
+      for (const double band_hz : bands_.tried_hz) {
+        building_ = fmt::format("model {} of {}", ++number, meshes.size() * bands_.tried_hz.size());
+        try_model(meshes[i], band_hz, i == 0, trade);
+      }
+    }
   }
 
  private:
@@ -100,23 +108,26 @@ class Tradeoff {
                            protocol_.rate_hz);
   }
 
-  void try_mesh(const core::Meshing& mesh, bool is_own, std::vector<Traded>& all) const {
-    for (const double band_hz : bands_.tried_hz) {
+  void try_model(const core::Meshing& mesh, double band_hz, bool is_own, Trade& trade) const {
+    const bool is_protocols = is_own && band_hz == protocol_.band_limit_hz;
+    try {
       const core::BodyModes body = bench_.solve(mesh, band_hz);
       const core::VibratingPlate plate = bench_.plate_of(bench_.model_of(body, band_hz));
       if (plate.model.frequency_hz.size() == 0) {
-        continue;  // silence is no setting
+        throw core::ModelError{"no mode lies inside the band"};  // silence is no setting
       }
       Traded built;
       built.setting.mesh = mesh;
       built.setting.band_limit_hz = band_hz;
-      built.setting.is_protocols = is_own && band_hz == protocol_.band_limit_hz;
+      built.setting.is_protocols = is_protocols;
       built.tets = body.report.tets;
       built.dofs = body.report.dofs;
       built.modes = static_cast<int>(plate.model.frequency_hz.size());
       built.build_s = body.report.cost.total_s();
       built.tick_ns = bench_.tick_ns(plate);
-      try_rates(built, plate, all);
+      try_rates(built, plate, trade.settings);
+    } catch (const core::ModelError& error) {
+      trade.refused.push_back({mesh, band_hz, is_protocols, error.what()});
     }
   }
 
@@ -155,6 +166,7 @@ class Tradeoff {
   }
 
   const protocols::Protocol& protocol_;
+  std::string building_{"reference"};  // for the progress
   Workbench bench_;
   Bands bands_;
   Eigen::ArrayXd frequency_hz_;  // of the reference's body, beyond its band too
@@ -174,7 +186,7 @@ Trade measure_trade(const protocols::Protocol& protocol, const protocols::Stimul
   trade.stimulus = stimulus.name;
   trade.tolerance = tolerance;
   trade.reference = tradeoff.make_reference();
-  trade.settings = tradeoff.try_all();
+  tradeoff.try_all(trade);
   judge(trade);
   return trade;
 }

@@ -62,17 +62,27 @@ struct Reference {
   }
 };
 
+// A mesh and a band that give no model to measure.
+struct Refused {
+  core::Meshing mesh;
+  double band_limit_hz{};
+  bool is_protocols{false};
+  std::string words;  // why
+};
+
 struct Trade {
   std::string stimulus;
   Tolerance tolerance;
   Reference reference;
-  std::vector<Traded> settings;  // those that have a mode, cheapest first
-  int cheapest{-1};              // inside the tolerance; -1: there is none
+  std::vector<Traded> settings;  // cheapest first
+  std::vector<Refused> refused;
+  int cheapest{-1};  // inside the tolerance; -1: there is none
 };
 
 // Builds the stimulus's plate in some twenty ways, and measures each with both integrators and up
 // to three rates. A finger strikes every tapping point at the simulated participants' speed.
-// Throws InvalidInput if the stimulus does not vibrate, ModelError for what cannot be built.
+// Throws InvalidInput if the stimulus does not vibrate, ModelError if the reference cannot be
+// built.
 Trade measure_trade(const protocols::Protocol& protocol, const protocols::Stimulus& stimulus,
                     const Tolerance& tolerance, const core::ProgressHook& progress = {});
 

@@ -47,6 +47,14 @@ std::string json_of(const Trade& trade, const Stability& stability) {
   for (const Traded& one : trade.settings) {
     json["settings"].push_back(json_of(one));
   }
+  json["refused"] = nlohmann::ordered_json::array();
+  for (const Refused& one : trade.refused) {
+    json["refused"].push_back({{"order", one.mesh.order},
+                               {"max_tet_volume_m3", one.mesh.size.max_tet_volume_m3.value_or(0.0)},
+                               {"band_limit_hz", one.band_limit_hz},
+                               {"is_protocols", one.is_protocols},
+                               {"words", one.words}});
+  }
   json["cheapest"] = nullptr;
   if (trade.cheapest >= 0) {
     json["cheapest"] = trade.cheapest;

@@ -1,7 +1,5 @@
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "runner/trade/writers.hpp"
 namespace tapstudy::runner {
 namespace {
@@ -56,6 +54,17 @@ void print_settings(const Trade& trade) {
   }
 }
 
+void print_refused(const std::vector<Refused>& all) {
+  for (const Refused& one : all) {
+    fmt::print("  not built: {}order {}, {}, band {:.0f} Hz: {}\n",
+               one.is_protocols ? "the protocol's own, " : "", one.mesh.order,
+               one.mesh.size.max_tet_volume_m3
+                   ? fmt::format("{:.2g} m3 a tetrahedron", *one.mesh.size.max_tet_volume_m3)
+                   : std::string{"as coarse as can be"},
+               one.band_limit_hz, one.words);
+  }
+}
+
 void print_stability(const Stability& stability) {
   fmt::print("\nstability: the simulated hand rests on a penalty stiffness of up to {:.0f} N/m\n",
              stability.penalty_limit_n_per_m);
@@ -77,10 +86,7 @@ void print(const Trade& trade, const Stability& stability, const std::string& di
       trade.settings.size(),
       directory.empty() ? " (--out DIR writes all)" : fmt::format(", all in {}", directory),
       100.0 * trade.tolerance.frequency, trade.tolerance.level_db);
-  if (std::ranges::none_of(trade.settings,
-                           [](const Traded& one) { return one.setting.is_protocols; })) {
-    fmt::print("  the protocol's own setting finds no mode inside its band\n");
-  }
+  print_refused(trade.refused);
   if (trade.cheapest < 0) {
     fmt::print("  none of them is inside it\n");
   }

@@ -346,3 +346,34 @@ TEST_CASE("check warns of a contact that the hand cannot rest on", "[end_to_end]
   CHECK_THAT(checked("15000"), Contains("half its damping would chatter"));
   CHECK_THAT(checked("25000"), Contains("it will chatter"));
 }
+
+TEST_CASE("a value that is empty, or a file's name that promises another format, is refused",
+          "[end_to_end]") {
+  const std::string study = testing::shipped("paper/forces.yaml").string();
+  const std::vector<std::vector<std::string>> lines{
+      {"modes", study, "--stimulus", "mdf_four", "--vtu", ""},
+      {"modes", study, "--stimulus", "mdf_four", "--vtu", "modes.vtk"},
+      {"modes", study, "--stimulus", "mdf_four", "--figure", "modes.png"},
+      {"tap", study, "--stimulus", "mdf_four", "--at", "P1", "--frames", "-"},
+      {"tap", study, "--stimulus", "mdf_four", "--at", "P1", "--csv", ""},
+      {"report", "--counts", ""}};
+  for (const auto& line : lines) {
+    const auto run = testing::tapstudy(line);
+    CAPTURE(line, run.standard_error);
+    CHECK(run.exit_code == 2);
+    CHECK_THAT(run.standard_error, Contains("must not be empty") || Contains("must end in"));
+  }
+}
+
+TEST_CASE("too little memory for a fine mesh is one sentence", "[end_to_end]") {
+  const TempDirectory directory;
+  const std::string study =
+      changed(directory, "forces.yaml", "  four_fixations:\n",
+              "  four_fixations:\n    mesh: {order: 2, max_tet_volume_m3: 2.0e-6}\n");
+  const auto run = testing::run_program(
+      {"/bin/sh", "-c",
+       "ulimit -v 700000; exec " TAPSTUDY_PROGRAM " modes " + study + " --stimulus mdf_four"});
+  CAPTURE(run.standard_error);
+  CHECK(run.exit_code == 4);
+  CHECK_THAT(run.standard_error, Contains("memory"));
+}

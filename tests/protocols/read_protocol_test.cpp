@@ -79,6 +79,9 @@ TEST_CASE("what makes no sense as a study is refused", "[protocols]") {
       {"title: Structure", "title: A\ntitle: Structure", "title: is there twice"},
       {"format: tapstudy/1", "format: tapstudy/9", "'tapstudy/9' is not a known format"},
       {"blocks:\n  - name", "blocks:\n  name", "not YAML"},
+      {"damping: {alpha_per_s: 120.0, beta_s: 7.05e-5}",
+       "damping: {measured: [{frequency_hz: 90, ratio: 0.02}, {frequency_hz: 90, ratio: 0.03}]}",
+       "damping.measured: has one frequency only"},
       {"finger:\n", "finger: soft\nfinger2:\n", "finger: 'soft' is not a mapping"},
   }));
   INFO(from << " → " << to);

@@ -1,5 +1,8 @@
 #include "runner/model_cache.hpp"
 
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>
@@ -62,6 +65,32 @@ TEST_CASE("a torn or altered file counts as absent and is replaced", "[runner][c
   CHECK_FALSE(cache.find("a plate"));
   cache.keep("a plate", some_modes());
   CHECK(cache.find("a plate"));
+  only_file_in(directory / "models");
+}
+
+TEST_CASE("processes that keep and find at once find all or nothing", "[runner][cache]") {
+  const testing::TempDirectory directory;
+  const ModelCache cache{directory / "models"};
+  const core::BodyModes modes = some_modes();
+  const std::string kept = runner::encoded(modes);
+  std::vector<pid_t> children;
+  for (int child = 0; child < 3; ++child) {
+    children.push_back(fork());
+    if (children.back() == 0) {
+      bool is_whole = true;
+      for (int turn = 0; turn < 200; ++turn) {
+        cache.keep("a plate", modes);
+        const auto found = cache.find("a plate");
+        is_whole = is_whole && found && runner::encoded(*found) == kept;
+      }
+      _exit(is_whole ? 0 : 1);
+    }
+  }
+  for (const pid_t child : children) {
+    int status = -1;
+    REQUIRE(waitpid(child, &status, 0) == child);
+    CHECK(status == 0);
+  }
   only_file_in(directory / "models");
 }
 

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <iterator>
 #include <vector>
 
@@ -34,6 +35,8 @@ constexpr int infog_estimated_megabytes = 15;
 constexpr int status_workspace_small = -9;
 constexpr int status_workspace_small_too = -8;
 constexpr int status_singular = -10;
+constexpr std::array<int, 5> statuses_without_memory{-5, -7, -13, status_workspace_small,
+                                                     status_workspace_small_too};
 constexpr int most_workspace_percent = 640;
 
 double machine_megabytes() {
@@ -95,11 +98,20 @@ struct ShiftedFactor::Mumps {
     dmumps_c(&id);
     return id.infog[infog_status];
   }
-  void analyse() {
-    if (run(job_analyse) < 0) {
-      throw ModelError{fmt::format("modes: the stiffness matrix could not be ordered (MUMPS {})",
-                                   id.infog[infog_status])};
+  void check(int status, const char* what) const {
+    if (std::ranges::count(statuses_without_memory, status) > 0) {
+      throw ModelError{
+          fmt::format("modes: {} degrees of freedom: {} found too little memory (choose larger "
+                      "elements)",
+                      id.n, what)};
     }
+    if (status < 0) {
+      throw ModelError{
+          fmt::format("modes: {} failed (MUMPS {}, {})", what, status, id.infog[infog_detail])};
+    }
+  }
+  void analyse() {
+    check(run(job_analyse), "ordering");
     const double needed = id.infog[infog_estimated_megabytes];
     if (needed > 0.8 * machine_megabytes()) {
       throw ModelError{fmt::format(
@@ -120,11 +132,7 @@ struct ShiftedFactor::Mumps {
           "modes: a natural frequency lies on the band limit to the last digit (move "
           "band_limit_hz)"};
     }
-    if (status < 0) {
-      throw ModelError{
-          fmt::format("modes: the stiffness matrix could not be factorised (MUMPS {}, {})", status,
-                      id.infog[infog_detail])};
-    }
+    check(status, "factorising");
   }
 };
 
@@ -145,9 +153,6 @@ void ShiftedFactor::solve_in_place(Eigen::MatrixXd& columns) const {
   mumps_->id.rhs = columns.data();
   mumps_->id.nrhs = static_cast<int>(columns.cols());
   mumps_->id.lrhs = static_cast<int>(columns.rows());
-  if (mumps_->run(job_solve) < 0) {
-    throw ModelError{
-        fmt::format("modes: solving failed (MUMPS {})", mumps_->id.infog[infog_status])};
-  }
+  mumps_->check(mumps_->run(job_solve), "solving");
 }
 }  // namespace tapstudy::core

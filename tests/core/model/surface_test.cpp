@@ -124,6 +124,7 @@ TEST_CASE("a surface is read alike from every kind of file", "[core][surface]") 
 TEST_CASE("files that are no surface are refused with their name", "[core][surface]") {
   const testing::TempDirectory directory;
   CHECK_THROWS_WITH(protocols::read_surface(directory / "none.stl", 1.0), Contains("no such file"));
+  CHECK_THROWS_WITH(protocols::read_surface(directory.path(), 1.0), Contains("not a file"));
   testing::write(directory / "words.stl", "this is not a surface");
   testing::write(directory / "cut.off", "OFF\n8 12 0\n0 0 0\n1 0");
   testing::write(directory / "body.step", as_off(testing::box_surface(plate_size_m)));

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/rng.hpp"
+#include "protocols/read_protocol.hpp"
 #include "support/processes.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;
@@ -121,6 +122,21 @@ TEST_CASE("trade finds what the elements, the band and the integrator cost in ac
   }
   for (const char* const file : {"trade.csv", "trade.json", "trade.svg", "stability.csv"}) {
     CHECK(std::filesystem::file_size(directory / ("trade/" + std::string{file})) > 100);
+  }
+}
+
+TEST_CASE("a setting that finds no mode is refused in words, the protocol's own too",
+          "[runner][trade][slow]") {
+  const TempDirectory directory;
+  testing::write(directory / "study.yaml",
+                 testing::replaced(cantilever(), "band_limit_hz: 400", "band_limit_hz: 30"));
+  const protocols::Protocol protocol = protocols::read_protocol(directory / "study.yaml");
+  const Trade trade = runner::measure_trade(protocol, protocol.stimulus("block"), {});
+  CHECK(!trade.settings.empty());
+  CHECK(trade.refused.size() == 14);  // seven meshes, below 15 and below 30 Hz
+  CHECK(std::ranges::count(trade.refused, true, &runner::Refused::is_protocols) == 1);
+  for (const runner::Refused& one : trade.refused) {
+    CHECK_THAT(one.words, Catch::Matchers::Contains("no mode"));
   }
 }
 

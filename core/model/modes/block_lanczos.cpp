@@ -6,8 +6,10 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "core/error.hpp"
+#include "core/model/modes/tall_products.hpp"
 #include "core/rng.hpp"
 namespace tapstudy::core {
 namespace {
@@ -60,6 +62,9 @@ class BlockKrylov {
   }
 
   Index size() const { return basis_.vectors.count(); }
+  MatrixXd combined(const MatrixXd& weights) const {
+    return combination(basis_.vectors.all(), weights);
+  }
 
   // Takes the next block into the basis and prepares the one after.
   void grow() {
@@ -70,17 +75,18 @@ class BlockKrylov {
     projected_.rightCols(block_).setZero();
     next_.vectors = next_.times_mass;
     factor_.solve_in_place(next_.vectors);
-    for (int pass = 0; pass < 2; ++pass) {
-      const MatrixXd overlap = basis_.times_mass.all().transpose() * next_.vectors;
-      next_.vectors.noalias() -= basis_.vectors.all() * overlap;
-      projected_.rightCols(block_) += overlap;
-    }
+    project_out_of_next(std::min(size(), 2 * block_));
+    project_out_of_next(size());
     projected_.bottomRows(block_) = projected_.rightCols(block_).transpose().eval();
     coupling_ = orthonormalise(next_);
   }
 
   // None wanted if they have not all converged.
-  RitzVectors converged(Index count, double sigma) const {
+  struct Converged {
+    MatrixXd wanted;
+    MatrixXd guard_weights;
+  };
+  Converged converged(Index count, double sigma) const {
     const Eigen::SelfAdjointEigenSolver<MatrixXd> ritz{0.5 * (projected_ + projected_.transpose())};
     const auto nu = ritz.eigenvalues().head(count).array();
     const MatrixXd beyond = coupling_ * ritz.eigenvectors().leftCols(count).bottomRows(block_);
@@ -91,21 +97,29 @@ class BlockKrylov {
     }
     const Index guards = (ritz.eigenvalues().array() > 1.0 / sigma).count();
     // one step of inverse iteration, for free: what lies outside the basis is known
-    return {basis_.vectors.all() * ritz.eigenvectors().leftCols(count) +
+    return {combined(ritz.eigenvectors().leftCols(count)) +
                 next_.vectors * (beyond * nu.inverse().matrix().asDiagonal()),
-            basis_.vectors.all() * ritz.eigenvectors().rightCols(guards)};
+            ritz.eigenvectors().rightCols(guards)};
   }
 
  private:
+  // The image of the last block meets, but for rounding, the last two blocks only (Lanczos); all
+  // are taken out once more, or what rounding leaves would grow.
+  void project_out_of_next(Index latest) {
+    const MatrixXd overlap =
+        inner_products(basis_.times_mass.all().rightCols(latest), next_.vectors);
+    subtract_combination(basis_.vectors.all().rightCols(latest), overlap, next_.vectors);
+    projected_.bottomRightCorner(latest, block_) += overlap;
+  }
   void weigh(Weighted& block) const { block.times_mass = matrices_.mass() * block.vectors; }
 
   // Makes the block M-orthonormal and returns the triangle R of W = Q R: by Cholesky, twice
   // (Yamamoto et al. 2015), or column by column where the columns nearly depend on one another.
   MatrixXd orthonormalise(Weighted& block) {
     MatrixXd triangle = MatrixXd::Identity(block_, block_);
+    weigh(block);
     for (int pass = 0; pass < 2; ++pass) {
-      weigh(block);
-      const MatrixXd gram = block.vectors.transpose() * block.times_mass;
+      const MatrixXd gram = inner_products(block.vectors, block.times_mass);
       const Eigen::VectorXd lengths = gram.diagonal().cwiseMax(0.0).cwiseSqrt();
       const Eigen::VectorXd scale = lengths.cwiseInverse();
       const Eigen::LLT<MatrixXd> factor{scale.asDiagonal() * gram * scale.asDiagonal()};
@@ -180,17 +194,18 @@ RitzVectors eigenvectors_below_shift(const StiffnessAndMass& matrices, const Shi
   const Index size = matrices.K.rows();
   const Index block = std::clamp<Index>(count, 2, largest_block);
   const Index most = std::min<Index>(size - block, 4 * Index{count} + 40 * block);
-  BlockKrylov krylov{matrices, factor, block};
+  const auto krylov = std::make_shared<BlockKrylov>(matrices, factor, block);
   Index next_look = Index{count} + 2 * block;
-  while (krylov.size() + block <= most) {
-    tell(progress, fmt::format("iterating, {} of at most {} vectors", krylov.size(), most));
-    krylov.grow();
-    if (krylov.size() >= next_look) {
-      RitzVectors found = krylov.converged(count, factor.sigma());
+  while (krylov->size() + block <= most) {
+    tell(progress, fmt::format("iterating, {} of at most {} vectors", krylov->size(), most));
+    krylov->grow();
+    if (krylov->size() >= next_look) {
+      const auto found = krylov->converged(count, factor.sigma());
       if (found.wanted.cols() == count) {
-        return found;
+        return {found.wanted,
+                [krylov, weights = found.guard_weights] { return krylov->combined(weights); }};
       }
-      next_look = krylov.size() + std::max(block, krylov.size() / 8);
+      next_look = krylov->size() + std::max(block, krylov->size() / 32);
     }
   }
   throw ModelError{

@@ -1,5 +1,6 @@
 #pragma once
 #include <Eigen/Core>
+#include <functional>
 
 #include "core/model/elements/assembly.hpp"
 #include "core/model/modes/shifted_factor.hpp"
@@ -8,7 +9,8 @@ namespace tapstudy::core {
 // Columns, not normalised, in no order.
 struct RitzVectors {
   Eigen::MatrixXd wanted;
-  Eigen::MatrixXd guards;  // near eigenvectors from the shift up to twice the shift
+  // Near eigenvectors from the shift up to twice the shift; made when asked for, which few do.
+  std::function<Eigen::MatrixXd()> guards;
 };
 
 // The `count` eigenvectors of K x = lambda M x whose eigenvalues lie below the factor's shift, and

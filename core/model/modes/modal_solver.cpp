@@ -119,8 +119,9 @@ Pairs modes_below_shift(const StiffnessAndMass& matrices, const ShiftedFactor& f
   if (is_good()) {
     return pairs;
   }
-  Eigen::MatrixXd vectors{ritz.wanted.rows(), ritz.wanted.cols() + ritz.guards.cols()};
-  vectors << ritz.wanted, ritz.guards;
+  const Eigen::MatrixXd guards = ritz.guards();
+  Eigen::MatrixXd vectors{ritz.wanted.rows(), ritz.wanted.cols() + guards.cols()};
+  vectors << ritz.wanted, guards;
   int rounds = 0;
   do {
     tell(progress, "polishing");

@@ -19,7 +19,9 @@ constexpr int icntl_statistics = 2;
 constexpr int icntl_print_level = 3;
 constexpr int icntl_ordering = 6;
 constexpr int icntl_workspace_percent = 13;
+constexpr int ordering_by_minimum_fill = 2;
 constexpr int ordering_by_pord = 4;
+constexpr Eigen::Index small_size = 30'000;
 constexpr int icntl_blocks = 14;
 constexpr int job_begin = -1;
 constexpr int job_end = -2;
@@ -72,8 +74,10 @@ struct ShiftedFactor::Mumps {
     id.icntl[icntl_diagnostics] = 0;
     id.icntl[icntl_statistics] = 0;
     id.icntl[icntl_print_level] = 0;
-    // Scotch, the default, orders by chance: factors and modes would differ in their last digits
-    id.icntl[icntl_ordering] = ordering_by_pord;
+    // Scotch, the default, orders by chance: factors and modes would differ in their last digits.
+    // Nested dissection takes longer than minimum fill, and pays for it by far in a large body.
+    id.icntl[icntl_ordering] =
+        lower.rows() < small_size ? ordering_by_minimum_fill : ordering_by_pord;
     if (!first_of_block.empty()) {
       std::ranges::transform(first_of_block, std::back_inserter(blocks),
                              [](int first) { return first + 1; });

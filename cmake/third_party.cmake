@@ -12,12 +12,24 @@ set(CGAL_DATA_DIR "unused")
 set(CGAL_DO_NOT_WARN_ABOUT_CMAKE_BUILD_TYPE TRUE)
 find_package(CGAL REQUIRED)
 
-# TetGen and MUMPS come without CMake packages.
+# These come without CMake packages.
+find_path(LIBUSB_INCLUDE libusb.h PATH_SUFFIXES libusb-1.0 REQUIRED)
+find_library(LIBUSB_LIBRARY usb-1.0 REQUIRED)
+add_library(libusb::libusb INTERFACE IMPORTED)
+target_include_directories(libusb::libusb SYSTEM INTERFACE ${LIBUSB_INCLUDE})
+target_link_libraries(libusb::libusb INTERFACE ${LIBUSB_LIBRARY})
+
 find_path(TETGEN_INCLUDE tetgen.h REQUIRED)
 find_library(TETGEN_LIBRARY tet REQUIRED)
 add_library(tetgen::tetgen INTERFACE IMPORTED)
 target_include_directories(tetgen::tetgen SYSTEM INTERFACE ${TETGEN_INCLUDE})
 target_link_libraries(tetgen::tetgen INTERFACE ${TETGEN_LIBRARY})
+
+find_path(CBLAS_INCLUDE cblas.h REQUIRED)
+find_library(BLAS_LIBRARY openblas REQUIRED)
+add_library(blas::blas INTERFACE IMPORTED)
+target_include_directories(blas::blas SYSTEM INTERFACE ${CBLAS_INCLUDE})
+target_link_libraries(blas::blas INTERFACE ${BLAS_LIBRARY})
 
 find_path(MUMPS_INCLUDE dmumps_c.h REQUIRED)
 find_library(MUMPS_LIBRARY dmumps_seq REQUIRED)

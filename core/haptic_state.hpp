@@ -18,7 +18,22 @@ struct HandState {
   Vec3 position_m{Vec3::Zero()};
   Vec3 velocity_m_s{Vec3::Zero()};
 };
-enum class TickFault : std::uint8_t { none, device_read, device_write, non_finite_force };
+// What ends a trial at once, with no force left on.
+enum class TickFault : std::uint8_t {
+  none,
+  device_gone,        // unplugged
+  no_reply,           // in time
+  bad_reply,          // of the wrong length, or the transfer failed
+  wrong_echo,         // the device says it got what was never sent
+  counter_jumped,     // an encoder moved faster than a string can
+  strings_disagree,   // no pose fits all of them: one is slack, slipped or miscounted
+  not_homed,          // nobody has shown the device where its middle is
+  outside_workspace,  // where the device could not keep its promise of force
+  too_fast,           // the hand
+  non_finite_force,   // or position
+  too_late,           // a run of late ticks
+  heartbeat_lost      // the program around the loop has stopped
+};
 
 // The parts of the force on the finger along the outward normal of the plate, before the limiter.
 struct ForceParts {
@@ -29,7 +44,8 @@ struct ForceParts {
 };
 
 // One row of the trace; plain bytes so it can cross the ring buffer without allocating.
-// Vectors are in the device frame; force_n is what was written to the device, after the limiter.
+// Vectors are in the device frame; force_n is what was written to the device, after the limiter,
+// and achieved_n what the device says it made of it.
 struct TraceSample {
   std::int64_t t_ns;
   std::array<double, 3> position_m;
@@ -39,6 +55,9 @@ struct TraceSample {
   double vibration_n;
   double sinusoid_n;
   std::array<double, 3> force_n;
+  std::array<double, 3> achieved_n;
+  double pose_residual_m;    // of devices that measure more than their pose
+  double closure_margin;     // of devices on strings: above zero they can hold their grip still
   std::uint8_t alternative;  // which of the trial's alternatives was rendered
   bool touching;
   bool struck;     // an impact: the tick in which the plate was excited

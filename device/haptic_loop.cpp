@@ -8,6 +8,11 @@ namespace {
 std::array<double, 3> as_array(const core::Vec3& v) noexcept {
   return {v.x(), v.y(), v.z()};
 }
+
+GateSettings at_rate(GateSettings gate, Nanoseconds period) noexcept {
+  gate.dt_s = 1e-9 * static_cast<double>(period);
+  return gate;
+}
 }  // namespace
 
 HapticLoop::HapticLoop(Device& device, std::span<core::TapRenderer> alternatives,
@@ -18,11 +23,13 @@ HapticLoop::HapticLoop(Device& device, std::span<core::TapRenderer> alternatives
       settings_{std::move(settings)},
       trace_{trace},
       clock_{clock},
-      start_{clock.now()},
-      deadline_{start_} {}
+      gate_{at_rate(settings_.gate, settings_.period)} {}
 
 void HapticLoop::run(const std::stop_token& stop) noexcept {
   while (!stop.stop_requested() && step()) {
+  }
+  gate_.stop();
+  while (gate_.state() != ForceGate::State::at_rest && step()) {
   }
   rest();
 }
@@ -33,34 +40,66 @@ void HapticLoop::run_ticks(std::int64_t count) noexcept {
 }
 
 void HapticLoop::rest() noexcept {
-  static_cast<void>(device_.write(core::Vec3::Zero()));
+  if (report_.stopped_by == TickFault::none) {
+    device_.rest();
+  }
 }
 
 bool HapticLoop::step() noexcept {
   if (report_.stopped_by != TickFault::none) {
     return false;
   }
+  if (!has_begun_) {
+    begin();
+  }
   const Nanoseconds woke_at = clock_.wait_until(deadline_);
   note_lateness(woke_at);
-  const core::TraceSample sample = tick(woke_at - start_);
+  core::TraceSample sample{};
+  sample.fault = fault_of_time(woke_at);
+  if (sample.fault == TickFault::none) {
+    sample = tick(woke_at - start_);
+  } else {
+    sample.t_ns = woke_at - start_;
+  }
+  if (sample.fault != TickFault::none) {
+    device_.drop();
+  }
   trace_.try_push(sample);
   ++report_.ticks;
   report_.saturated += sample.saturated ? 1 : 0;
   report_.stopped_by = sample.fault;
-  if (sample.fault != TickFault::none) {
-    rest();
-  }
   return sample.fault == TickFault::none;
+}
+
+// Time counts from here: what its thread had to get ready is not lateness.
+void HapticLoop::begin() noexcept {
+  device_.begin();
+  start_ = deadline_ = last_beat_ = clock_.now();
+  has_begun_ = true;
 }
 
 // A period that has passed is skipped, never caught up in a burst; the rhythm stays.
 void HapticLoop::note_lateness(Nanoseconds woke_at) noexcept {
   const Nanoseconds lateness = woke_at - deadline_;
   const Nanoseconds missed = lateness / settings_.period;
-  report_.worst_lateness = std::max(report_.worst_lateness, lateness);
-  report_.late += lateness > settings_.period / 2 ? 1 : 0;
+  const bool is_late = lateness > settings_.period / 2;
+  report_.lateness.add(lateness);
+  report_.late += is_late ? 1 : 0;
+  late_in_a_row_ = is_late ? late_in_a_row_ + 1 : 0;
   report_.skipped += missed;
   deadline_ += (missed + 1) * settings_.period;
+}
+
+TickFault HapticLoop::fault_of_time(Nanoseconds woke_at) noexcept {
+  if (has_beaten_.exchange(false, std::memory_order_acq_rel)) {
+    last_beat_ = woke_at;
+  }
+  if (settings_.longest_without_beat > 0 && woke_at - last_beat_ > settings_.longest_without_beat) {
+    return TickFault::heartbeat_lost;
+  }
+  const bool gives_up =
+      settings_.most_late_in_a_row > 0 && late_in_a_row_ > settings_.most_late_in_a_row;
+  return gives_up ? TickFault::too_late : TickFault::none;
 }
 
 void HapticLoop::take_requested_alternative() noexcept {
@@ -73,38 +112,39 @@ void HapticLoop::take_requested_alternative() noexcept {
 
 core::TraceSample HapticLoop::tick(Nanoseconds now) noexcept {
   take_requested_alternative();
-  const double dt_s = 1e-9 * static_cast<double>(settings_.period);
   core::TraceSample sample{};
   sample.t_ns = now;
   sample.alternative = static_cast<std::uint8_t>(current_);
   core::HandState hand;
-  if (device_.read(hand) == Io::failed) {
-    sample.fault = TickFault::device_read;
-    return sample;
+  sample.fault = device_.read(hand);
+  if (sample.fault == TickFault::none) {
+    render(hand, sample);
   }
+  return sample;
+}
+
+void HapticLoop::render(const core::HandState& hand, core::TraceSample& sample) noexcept {
   const core::RenderedTick rendered =
       alternatives_[current_].tick(settings_.placement.to_plate(hand));
-  const core::Vec3 wanted_n = core::Placement::force_to_device(rendered.force_n);
-  const core::LimitedForce limited =
-      core::limit_force(wanted_n, previous_force_n_, settings_.limits, dt_s);
-  if (!limited.was_finite || !hand.position_m.allFinite() || !hand.velocity_m_s.allFinite()) {
-    sample.fault = TickFault::non_finite_force;
-    return sample;
+  const PassedForce passed = gate_.pass(core::Placement::force_to_device(rendered.force_n), hand);
+  sample.fault = passed.fault;
+  if (passed.fault != TickFault::none) {
+    return;
   }
-  if (device_.write(limited.force_n) == Io::failed) {
-    sample.fault = TickFault::device_write;
-  }
-  previous_force_n_ = limited.force_n;
+  sample.fault = device_.write(passed.force_n);
+  const DeviceDetail detail = device_.detail();
   sample.position_m = as_array(hand.position_m);
   sample.velocity_m_s = as_array(hand.velocity_m_s);
   sample.penetration_m = rendered.contact.penetration_m;
   sample.penalty_n = rendered.parts.penalty_n;
   sample.vibration_n = rendered.parts.vibration_n;
   sample.sinusoid_n = rendered.parts.sinusoid_n;
-  sample.force_n = as_array(limited.force_n);
+  sample.force_n = as_array(passed.force_n);
+  sample.achieved_n = as_array(detail.achieved_n);
+  sample.pose_residual_m = detail.pose_residual_m;
+  sample.closure_margin = detail.closure_margin;
   sample.touching = rendered.contact.touching;
   sample.struck = rendered.contact.struck;
-  sample.saturated = limited.was_changed;
-  return sample;
+  sample.saturated = passed.was_changed;
 }
 }  // namespace tapstudy::device

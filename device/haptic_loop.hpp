@@ -4,10 +4,11 @@
 #include <stop_token>
 
 #include "core/placement.hpp"
-#include "core/tick/force_limiter.hpp"
 #include "core/tick/tap_renderer.hpp"
 #include "core/tick/trace_ring.hpp"
 #include "device/device.hpp"
+#include "device/force_gate.hpp"
+#include "device/lateness.hpp"
 #include "device/tick_clock.hpp"
 namespace tapstudy::device {
 struct LoopReport {
@@ -15,14 +16,16 @@ struct LoopReport {
   std::int64_t late{};     // woke more than half a period after the deadline
   std::int64_t skipped{};  // periods in which no tick was made
   std::int64_t saturated{};
-  Nanoseconds worst_lateness{};
+  LatenessCount lateness;
   core::TickFault stopped_by{core::TickFault::none};
 };
 
 struct LoopSettings {
   Nanoseconds period{1'000'000};
-  core::ForceLimits limits;
+  GateSettings gate;  // its dt_s is the period
   core::Placement placement;
+  int most_late_in_a_row{0};            // beyond it the loop gives up; 0: never
+  Nanoseconds longest_without_beat{0};  // likewise, for the heartbeat; 0: there is none
 };
 
 // wait → read → render → limit → write → record, once a period, for one trial. The renderers are
@@ -37,7 +40,10 @@ class HapticLoop {
   void request_alternative(std::size_t index) noexcept {
     requested_.store(index, std::memory_order_release);
   }
-  // Until asked to stop or a fault. Leaves the device at zero force.
+  // "I live", from the thread that looks after the trial.
+  void beat() noexcept { has_beaten_.store(true, std::memory_order_release); }
+  // Until asked to stop, which lets force fall gently, or a fault, which drops it. Leaves the
+  // device at zero force.
   void run(const std::stop_token& stop) noexcept;
   // Some ticks and no more; the next call goes on from there.
   void run_ticks(std::int64_t count) noexcept;
@@ -47,8 +53,11 @@ class HapticLoop {
   const LoopReport& report() const noexcept { return report_; }
 
  private:
+  void begin() noexcept;
   bool step() noexcept;  // false after a fault
+  core::TickFault fault_of_time(Nanoseconds woke_at) noexcept;
   core::TraceSample tick(Nanoseconds now) noexcept;
+  void render(const core::HandState& hand, core::TraceSample& sample) noexcept;
   void take_requested_alternative() noexcept;
   void note_lateness(Nanoseconds woke_at) noexcept;
 
@@ -57,11 +66,15 @@ class HapticLoop {
   LoopSettings settings_;
   core::SpscRing<core::TraceSample>& trace_;
   TickClock& clock_;
+  ForceGate gate_;
   std::atomic<std::size_t> requested_{0};
+  std::atomic<bool> has_beaten_{false};
   std::size_t current_{0};
-  Nanoseconds start_;
-  Nanoseconds deadline_;
-  core::Vec3 previous_force_n_{core::Vec3::Zero()};
+  Nanoseconds start_{0};
+  Nanoseconds deadline_{0};
+  Nanoseconds last_beat_{0};
+  int late_in_a_row_{0};
+  bool has_begun_{false};
   LoopReport report_;
 };
 }  // namespace tapstudy::device

@@ -25,12 +25,13 @@ double SimulatedHand::follow(std::vector<PlannedTap> taps) {
   return path_.duration_s();
 }
 
-Io SimulatedHand::read(core::HandState& hand) noexcept {
+core::TickFault SimulatedHand::read(core::HandState& hand) noexcept {
   hand = hand_;
-  return Io::ok;
+  return core::TickFault::none;
 }
 
-Io SimulatedHand::write(const core::Vec3& force_n) noexcept {
+core::TickFault SimulatedHand::write(const core::Vec3& force_n) noexcept {
+  force_n_ = force_n;
   if (memory_ == Memory::kept && felt_.size() < felt_.capacity()) {
     felt_.push_back({hand_, force_n});
   }
@@ -43,6 +44,6 @@ Io SimulatedHand::write(const core::Vec3& force_n) noexcept {
   const core::Vec3 relative_m_s = hand_.velocity_m_s - drift_m_s;
   hand_.position_m = next.position_m + rest_m + step_.qq * offset_m + step_.qv * relative_m_s;
   hand_.velocity_m_s = drift_m_s + step_.vq * offset_m + step_.vv * relative_m_s;
-  return Io::ok;
+  return core::TickFault::none;
 }
 }  // namespace tapstudy::device

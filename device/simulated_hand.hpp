@@ -36,8 +36,9 @@ class SimulatedHand final : public Device {
   const std::vector<FeltTick>& felt() const noexcept { return felt_; }
   void forget() noexcept { felt_.clear(); }
 
-  Io read(core::HandState& hand) noexcept override;
-  Io write(const core::Vec3& force_n) noexcept override;
+  core::TickFault read(core::HandState& hand) noexcept override;
+  core::TickFault write(const core::Vec3& force_n) noexcept override;
+  DeviceDetail detail() const noexcept override { return {force_n_}; }
   std::string description() const override { return "simulated hand"; }
 
  private:
@@ -49,6 +50,7 @@ class SimulatedHand final : public Device {
   std::int64_t ticks_{0};
   bool has_started_{false};
   core::HandState hand_;
+  core::Vec3 force_n_{core::Vec3::Zero()};
   std::vector<FeltTick> felt_;
 };
 }  // namespace tapstudy::device

@@ -113,12 +113,4 @@ struct Protocol {
   const Stimulus& stimulus(const std::string& name) const;
   const Block& block(const std::string& name) const;
 };
-
-// What surrounds the study: the device and what it may do.
-struct Rig {
-  std::string text;
-  std::string device;
-  core::ForceLimits limits;
-  std::optional<core::Placement> placement;  // instead of the protocol's
-};
 }  // namespace tapstudy::protocols

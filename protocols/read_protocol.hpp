@@ -7,14 +7,9 @@ namespace tapstudy::protocols {
 // The study in a YAML text; `file` is its name in messages.
 // Throws InvalidInput with every problem of the file, one a line.
 Protocol parse_protocol(const std::string& text, const std::string& file);
-Rig parse_rig(const std::string& text, const std::string& file);
 
 // The same from a file. Throws InvalidInput also if it cannot be read.
 Protocol read_protocol(const std::string& file);
-Rig read_rig(const std::string& file);
-
-// The rig of a study without hardware: the simulated hand, 10 N.
-Rig simulated_rig();
 
 // Every key the protocol reader asked for in this text (`*` any name, `[]` any place in a list).
 std::set<std::string> keys_asked_for(const std::string& text, const std::string& file);

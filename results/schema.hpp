@@ -2,7 +2,7 @@
 namespace tapstudy::results {
 // PRAGMA application_id of a study's database ("taps") and PRAGMA user_version of its schema.
 inline constexpr int application_id = 0x74617073;
-inline constexpr int schema_version = 1;
+inline constexpr int schema_version = 2;
 
 inline constexpr const char* schema_sql = R"sql(
 CREATE TABLE study (
@@ -86,6 +86,7 @@ CREATE TABLE tick_statistics (
   skipped INTEGER NOT NULL,
   saturated INTEGER NOT NULL,
   dropped_samples INTEGER NOT NULL,
+  lateness_p999_s REAL NOT NULL,
   worst_lateness_s REAL NOT NULL,
   fault TEXT NOT NULL
 ) STRICT;

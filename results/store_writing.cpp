@@ -133,13 +133,14 @@ void Store::add_details(std::int64_t trial_id, const TrialRecord& record) {
         .finish();
   }
   const TickStatisticsRow& statistics = record.statistics;
-  Statement{database_, "INSERT INTO tick_statistics VALUES (?, ?, ?, ?, ?, ?, ?, ?)"}
+  Statement{database_, "INSERT INTO tick_statistics VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)"}
       .bind(trial_id)
       .bind(statistics.ticks)
       .bind(statistics.late)
       .bind(statistics.skipped)
       .bind(statistics.saturated)
       .bind(statistics.dropped_samples)
+      .bind(statistics.lateness_p999_s)
       .bind(statistics.worst_lateness_s)
       .bind(statistics.fault)
       .finish();

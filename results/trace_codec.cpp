@@ -11,7 +11,7 @@ namespace tapstudy::results {
 namespace {
 using core::TraceSample;
 using Word = std::uint64_t;
-constexpr std::size_t words = 14;  // time and thirteen numbers
+constexpr std::size_t words = 19;  // time and eighteen numbers
 constexpr std::size_t flags = 5;
 constexpr std::size_t bytes_per_tick = words * sizeof(Word) + flags;
 constexpr int compression_level = 1;
@@ -27,7 +27,9 @@ Packed packed(const TraceSample& s) {
       {static_cast<Word>(s.t_ns), bits(s.position_m[0]), bits(s.position_m[1]),
        bits(s.position_m[2]), bits(s.velocity_m_s[0]), bits(s.velocity_m_s[1]),
        bits(s.velocity_m_s[2]), bits(s.penetration_m), bits(s.penalty_n), bits(s.vibration_n),
-       bits(s.sinusoid_n), bits(s.force_n[0]), bits(s.force_n[1]), bits(s.force_n[2])},
+       bits(s.sinusoid_n), bits(s.force_n[0]), bits(s.force_n[1]), bits(s.force_n[2]),
+       bits(s.achieved_n[0]), bits(s.achieved_n[1]), bits(s.achieved_n[2]), bits(s.pose_residual_m),
+       bits(s.closure_margin)},
       {s.alternative, static_cast<std::uint8_t>(s.touching), static_cast<std::uint8_t>(s.struck),
        static_cast<std::uint8_t>(s.saturated), static_cast<std::uint8_t>(s.fault)}};
 }
@@ -42,6 +44,9 @@ TraceSample unpacked(const Packed& p) {
           number(9),
           number(10),
           {number(11), number(12), number(13)},
+          {number(14), number(15), number(16)},
+          number(17),
+          number(18),
           p.flag[0],
           p.flag[1] != 0,
           p.flag[2] != 0,

@@ -45,6 +45,8 @@ ExitCode carry_out(int argc, const char* const* argv) {
   add_modes(app);
   add_tap(app);
   add_trade(app);
+  add_devices(app);
+  add_doctor(app);
   refuse_empty_values(app);
   try {
     app.parse(argc, argv);

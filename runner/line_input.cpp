@@ -6,7 +6,7 @@
 #include <array>
 namespace tapstudy::runner {
 namespace {
-constexpr int glance_ms = 50;
+constexpr int glance_ms = 20;
 constexpr std::size_t longest_line = 4096;
 }  // namespace
 

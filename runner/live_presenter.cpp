@@ -19,7 +19,11 @@ class LiveExploration final : public Exploration {
       std::this_thread::sleep_for(glance);
     }
   }
-  bool is_running() const override { return !has_ended_.load(std::memory_order_acquire); }
+  // Whoever looks after the trial asks this all the time: it is the loop's sign of life.
+  bool is_running() const override {
+    loop_.beat();
+    return !has_ended_.load(std::memory_order_acquire);
+  }
   double time_s() const override {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
   }
@@ -55,6 +59,7 @@ Presented LivePresenter::present(std::span<core::TapRenderer> alternatives,
   {
     const Followed followed{recorder_, collector};
     const std::jthread haptic_thread{[&](const std::stop_token& stop) {
+      device::ask_for_realtime(realtime_);  // what was got is in the session's row
       loop.run(stop);
       has_ended.store(true, std::memory_order_release);
     }};

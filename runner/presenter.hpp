@@ -5,6 +5,7 @@
 
 #include "core/tick/tap_renderer.hpp"
 #include "device/haptic_loop.hpp"
+#include "device/realtime.hpp"
 #include "results/recorder.hpp"
 #include "results/trace_collector.hpp"
 namespace tapstudy::runner {
@@ -52,13 +53,15 @@ class VirtualPresenter final : public Presenter {
 // In real time: the loop runs on its own thread, the recorder empties its ring.
 class LivePresenter final : public Presenter {
  public:
-  LivePresenter(device::Device& device, device::LoopSettings settings, results::Recorder& recorder)
-      : device_{device}, settings_{std::move(settings)}, recorder_{recorder} {}
+  LivePresenter(device::Device& device, device::LoopSettings settings,
+                const device::RealtimeRequest& realtime, results::Recorder& recorder)
+      : device_{device}, settings_{std::move(settings)}, realtime_{realtime}, recorder_{recorder} {}
   Presented present(std::span<core::TapRenderer> alternatives, const Explore& explore) override;
 
  private:
   device::Device& device_;
   device::LoopSettings settings_;
+  device::RealtimeRequest realtime_;
   results::Recorder& recorder_;
 };
 }  // namespace tapstudy::runner

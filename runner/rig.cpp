@@ -5,11 +5,24 @@
 #include <cmath>
 
 #include "core/error.hpp"
+#include "core/model/shape/top_height.hpp"
 namespace tapstudy::runner {
+namespace {
+constexpr device::Nanoseconds longest_without_beat = 100'000'000;
+}
+
 device::LoopSettings loop_settings(const protocols::Protocol& protocol, const protocols::Rig& rig) {
   device::LoopSettings settings;
   settings.period = std::llround(1e9 / protocol.rate_hz);
-  settings.limits = rig.limits;
+  settings.gate.limits = rig.limits;
+  settings.gate.max_speed_m_s = rig.max_hand_speed_m_s;
+  settings.gate.workspace_radius_m = rig.workspace_radius_m;
+  settings.gate.rise_s = rig.force_rise_s;
+  settings.gate.fall_s = rig.force_fall_s;
+  settings.most_late_in_a_row = rig.loop.most_late_ticks_in_a_row;
+  if (rig.device != "simulated_hand") {
+    settings.longest_without_beat = longest_without_beat;
+  }
   settings.placement = rig.placement.value_or(protocol.placement);
   for (const auto& [name, plate] : protocol.plates) {
     if (settings.placement.lateral_scale != 1.0 &&
@@ -22,6 +35,46 @@ device::LoopSettings loop_settings(const protocols::Protocol& protocol, const pr
     }
   }
   return settings;
+}
+
+void check_workspace(const protocols::Protocol& protocol, const protocols::Rig& rig) {
+  const core::Placement placement = rig.placement.value_or(protocol.placement);
+  std::string out_of_reach;
+  for (const auto& [plate, spec] : protocol.plates) {
+    const core::TopHeight top{spec.shape};
+    for (const auto& [point, at_m] : protocol.tapping_points_m) {
+      const auto z_m = top.at_m(at_m);
+      const core::Vec3 on_device_m =
+          placement.point_to_device({at_m.x(), at_m.y(), z_m.value_or(0.0)});
+      if (z_m && on_device_m.norm() > rig.workspace_radius_m) {
+        out_of_reach += fmt::format("\n  {} on plate '{}' is {:.1f} mm from the device's middle",
+                                    point, plate, 1e3 * on_device_m.norm());
+      }
+    }
+  }
+  if (!out_of_reach.empty()) {
+    throw core::InvalidInput{
+        fmt::format("these tapping points lie beyond workspace_radius_m, {:.1f} mm (lower "
+                    "placement.lateral_scale, {}, or move origin_m):{}",
+                    1e3 * rig.workspace_radius_m, placement.lateral_scale, out_of_reach)};
+  }
+}
+
+device::SpidarSettings spidar_settings(const protocols::SpidarRig& rig, double dt_s) {
+  device::SpidarSettings settings;
+  settings.geometry = device::spidar_geometry(rig.type);
+  for (std::size_t i = 0; i < rig.strings.size(); ++i) {
+    const protocols::StringRig& string = rig.strings.at(i);
+    settings.calibration.string.at(i) = {string.metres_per_count, string.volts_per_newton,
+                                         string.digits_per_volt};
+  }
+  settings.calibration.range = {rig.min_tension_n, rig.max_tension_n};
+  settings.dt_s = dt_s;
+  return settings;
+}
+
+device::RealtimeRequest realtime_request(const protocols::LoopRig& rig) {
+  return {rig.fifo_priority, rig.lock_memory, rig.cpu};
 }
 
 device::HandBody hand_body(const protocols::SimulatedHandSettings& hand) {

@@ -4,6 +4,7 @@
 
 #include "core/haptic_state.hpp"
 #include "protocols/protocol.hpp"
+#include "protocols/rig.hpp"
 #include "runner/model_library.hpp"
 namespace tapstudy::runner {
 // One tap by the simulated hand that arrives at exactly this speed, and the trace of it.

@@ -2,7 +2,6 @@
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
-#include <sched.h>
 
 #include <algorithm>
 #include <cctype>
@@ -14,20 +13,6 @@
 namespace tapstudy::runner {
 namespace {
 constexpr double most_ticks = 4e6;
-
-std::string scheduler_in_force(results::Mode mode) {
-  if (mode == results::Mode::simulated) {
-    return "virtual time";
-  }
-  switch (sched_getscheduler(0)) {
-    case SCHED_FIFO:
-      return "SCHED_FIFO";
-    case SCHED_RR:
-      return "SCHED_RR";
-    default:
-      return "SCHED_OTHER";
-  }
-}
 }  // namespace
 
 results::StudyRow study_row(const protocols::Protocol& protocol, const std::string& file) {
@@ -45,7 +30,7 @@ results::SessionRow session_row(const SessionPlan& plan, const protocols::Protoc
   session.rate_hz = protocol.rate_hz;
   session.rig_text = rig.text;
   session.device = plan.device;
-  session.scheduler = scheduler_in_force(plan.mode);
+  session.scheduler = plan.scheduler;
   session.program_version = program_version();
   session.git_hash = git_hash();
   session.compiler = compiler();

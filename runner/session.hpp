@@ -3,6 +3,7 @@
 #include <string>
 
 #include "protocols/protocol.hpp"
+#include "protocols/rig.hpp"
 #include "protocols/schedule.hpp"
 #include "results/rows.hpp"
 namespace tapstudy::runner {
@@ -16,6 +17,7 @@ struct SessionPlan {
   results::Mode mode{};
   std::uint64_t seed{};
   std::string device;
+  std::string scheduler;  // what the loop got of the machine
 };
 results::SessionRow session_row(const SessionPlan& plan, const protocols::Protocol& protocol,
                                 const protocols::Rig& rig, const protocols::Schedule& schedule);

@@ -9,6 +9,7 @@
 #include "core/rng.hpp"
 #include "device/penalty_limit.hpp"
 #include "protocols/read_protocol.hpp"
+#include "protocols/read_rig.hpp"
 #include "protocols/schedule.hpp"
 #include "runner/commands/commands.hpp"
 #include "runner/model_library.hpp"
@@ -21,6 +22,7 @@ struct CheckOptions {
   std::string protocol;
   int participants{10};
   std::string seed{"1"};
+  std::string rig;
 };
 constexpr double alpha = 0.05;
 
@@ -121,6 +123,11 @@ void run_check(const CheckOptions& options) {
     throw core::InvalidInput{
         fmt::format("--participants: {} is not allowed (from 1 to 10000)", options.participants)};
   }
+  if (!options.rig.empty()) {
+    const protocols::Rig rig = protocols::read_rig(options.rig);
+    loop_settings(protocol, rig);
+    check_workspace(protocol, rig);
+  }
   print_design(protocol, options.participants);
   print_models(protocol);
   print_contact(protocol);
@@ -142,6 +149,7 @@ void add_check(CLI::App& app) {
   command->add_option("--participants", options->participants, "How many are planned")
       ->capture_default_str();
   command->add_option("--seed", options->seed, "Of the schedule shown")->capture_default_str();
+  command->add_option("--rig", options->rig, "Check that this device can reach the tapping points");
   command->callback([options] { run_check(*options); });
 }
 }  // namespace tapstudy::runner

@@ -5,16 +5,18 @@
 #include <memory>
 #include <optional>
 #include <random>
+#include <thread>
 
 #include "core/error.hpp"
 #include "core/rng.hpp"
 #include "protocols/read_protocol.hpp"
+#include "protocols/read_rig.hpp"
 #include "runner/commands/commands.hpp"
 #include "runner/console_participant.hpp"
 #include "runner/rig.hpp"
 #include "runner/seed.hpp"
 #include "runner/session.hpp"
-#include "runner/simulated/tap_drawing.hpp"
+#include "runner/session_device.hpp"
 #include "runner/stop_signal.hpp"
 #include "runner/trial_engine.hpp"
 namespace tapstudy::runner {
@@ -40,11 +42,21 @@ struct OpenedSession {
   std::set<int> done;
 };
 
+struct Surroundings {
+  std::string device;
+  std::string scheduler;
+};
+
 // A new session, or one that goes on with the order of the participant's last.
 OpenedSession open_session(const RunOptions& options, const protocols::Protocol& protocol,
-                           const protocols::Rig& rig, results::Store& store) {
-  SessionPlan plan{options.participant, 0,
-                   options.pilot ? results::Mode::pilot : results::Mode::real, 0, rig.device};
+                           const protocols::Rig& rig, const Surroundings& surroundings,
+                           results::Store& store) {
+  SessionPlan plan{options.participant,
+                   0,
+                   options.pilot ? results::Mode::pilot : results::Mode::real,
+                   0,
+                   surroundings.device,
+                   surroundings.scheduler};
   plan.participant_index = store.index_of(plan.participant_id, plan.mode);
   const auto earlier = store.latest_session(plan.participant_id);
   if (earlier && !options.resume) {
@@ -77,8 +89,16 @@ OpenedSession open_session(const RunOptions& options, const protocols::Protocol&
   return session;
 }
 
-// A simulated hand that keeps tapping, for a session without a device.
-constexpr int taps_without_end = 2000;
+bool is_simulated(const protocols::Rig& rig) {
+  return rig.device == "simulated_hand";
+}
+
+// Asked for in a thread like the loop's, and told to the record before the first trial.
+std::string realtime_in_force(const device::RealtimeRequest& request) {
+  std::string got;
+  std::jthread{[&] { got = device::ask_for_realtime(request); }}.join();
+  return got;
+}
 
 void run_session(const RunOptions& options) {
   const protocols::Protocol protocol = protocols::read_protocol(options.protocol);
@@ -87,25 +107,32 @@ void run_session(const RunOptions& options) {
   const protocols::Rig rig =
       options.rig.empty() ? protocols::simulated_rig() : protocols::read_rig(options.rig);
   const device::LoopSettings settings = loop_settings(protocol, rig);
+  check_workspace(protocol, rig);
   ModelLibrary models;
   models.build_all(protocol);
   if (options.resume) {
     results::Store::open_existing(options.directory);  // or there is nothing to resume
   }
+  listen_for_stop();
+  LineInput input{STDIN_FILENO};
+  std::unique_ptr<SessionDevice> hardware;
+  if (!is_simulated(rig)) {
+    hardware = plugged_in_spidar(*rig.spidar, protocol.rendering.dt_s, input);
+  }
   results::Store store =
       results::Store::open_or_create(options.directory, study_row(protocol, options.protocol));
-  const OpenedSession session = open_session(options, protocol, rig, store);
-  listen_for_stop();
-
-  device::SimulatedHand hand{hand_body(protocol.simulation.hand), protocol.rendering.dt_s,
-                             device::SimulatedHand::Memory::none};
-  core::Rng hand_rng{core::derived_seed(session.row.seed, core::Purpose::hand)};
-  LineInput input{STDIN_FILENO};
-  ConsoleParticipant participant{
-      input,
-      [&] { hand.follow(draw_taps(protocol, settings.placement, taps_without_end, hand_rng)); }};
+  const device::RealtimeRequest realtime = realtime_request(rig.loop);
+  const OpenedSession session = open_session(
+      options, protocol, rig,
+      {hardware ? hardware->device().description() : rig.device, realtime_in_force(realtime)},
+      store);
+  if (!hardware) {
+    hardware = simulated_device(protocol, settings.placement,
+                                core::derived_seed(session.row.seed, core::Purpose::hand));
+  }
+  ConsoleParticipant participant{input, [&] { hardware->get_ready(); }};
   results::Recorder recorder{store};
-  LivePresenter presenter{hand, settings, recorder};
+  LivePresenter presenter{hardware->device(), settings, realtime, recorder};
   TrialEngine engine{protocol, models, presenter, participant, recorder};
   engine.run(session.row.id, session.schedule, session.done);
   fmt::print("participant {}: all {} trials are stored in {}/study.db\n", options.participant,

@@ -12,6 +12,7 @@
 #include "core/error.hpp"
 #include "core/rng.hpp"
 #include "protocols/read_protocol.hpp"
+#include "protocols/read_rig.hpp"
 #include "protocols/schedule.hpp"
 #include "results/recorder.hpp"
 #include "runner/progress.hpp"
@@ -34,9 +35,12 @@ std::vector<PlannedSession> add_sessions(const SimulatedStudy& study,
   std::vector<PlannedSession> sessions;
   for (int i = 0; i < study.participants; ++i) {
     SessionPlan plan{
-        fmt::format("sim-{:02}", i + 1), 0, results::Mode::simulated,
+        fmt::format("sim-{:02}", i + 1),
+        0,
+        results::Mode::simulated,
         core::derived_seed(study.seed, core::Purpose::participant, static_cast<std::uint64_t>(i)),
-        "simulated hand"};
+        "simulated hand",
+        "virtual time"};
     plan.participant_index = store.index_of(plan.participant_id, plan.mode);
     if (store.has_sessions(plan.participant_id)) {
       throw core::InvalidInput{

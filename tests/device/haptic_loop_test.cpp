@@ -12,18 +12,24 @@ namespace {
 // In a plate 2 mm deep from the second reading on; fails on cue.
 class FakeDevice final : public device::Device {
  public:
-  device::Io read(core::HandState& hand) noexcept override {
+  core::TickFault read(core::HandState& hand) noexcept override {
     hand.position_m = {0.0, ++reads_ == 1 ? 0.01 : height_m, 0.0};
     hand.velocity_m_s.y() = speed_m_s;
-    return reads_ == fail_read_at ? device::Io::failed : device::Io::ok;
+    return reads_ == fail_read_at ? core::TickFault::no_reply : core::TickFault::none;
   }
-  device::Io write(const Vec3& force_n) noexcept override {
+  core::TickFault write(const Vec3& force_n) noexcept override {
     last_force_n = force_n;
     ++writes_;
-    return writes_ == fail_write_at ? device::Io::failed : device::Io::ok;
+    return writes_ == fail_write_at ? core::TickFault::device_gone : core::TickFault::none;
+  }
+  device::DeviceDetail detail() const noexcept override { return {last_force_n}; }
+  void drop() noexcept override {
+    last_force_n = Vec3::Zero();
+    ++drops;
   }
   std::string description() const override { return "fake"; }
 
+  int drops{0};
   double height_m{-0.002};
   double speed_m_s{0.0};
   int fail_read_at{-1};
@@ -53,6 +59,7 @@ class CrankedClock final : public device::TickClock {
 
 struct Bench {
   explicit Bench(std::size_t ring = 4096) : trace{ring} {
+    settings.gate.limits = {10.0, 1e5};
     for (int i = 0; i < 2; ++i) {
       renderers.emplace_back(core::techniques[0], core::RenderSettings{}, core::PlateFace{0.3, 0.3},
                              nullptr);
@@ -70,7 +77,7 @@ struct Bench {
   FakeDevice hand;
   CrankedClock clock;
   std::vector<core::TapRenderer> renderers;
-  device::LoopSettings settings{1'000'000, {10.0, 1e5}, {}};
+  device::LoopSettings settings;
   core::SpscRing<core::TraceSample> trace;
 };
 }  // namespace
@@ -103,7 +110,7 @@ TEST_CASE("the loop ends at zero force, whatever ended it", "[device][loop][safe
     bench.hand.fail_read_at = 5;
     device::HapticLoop loop = bench.loop();
     loop.run_ticks(100);
-    CHECK(loop.report().stopped_by == core::TickFault::device_read);
+    CHECK(loop.report().stopped_by == core::TickFault::no_reply);
     CHECK(loop.report().ticks == 5);
     loop.run_ticks(100);
     CHECK(loop.report().ticks == 5);  // a fault is latched
@@ -112,7 +119,7 @@ TEST_CASE("the loop ends at zero force, whatever ended it", "[device][loop][safe
     bench.hand.fail_write_at = 7;
     device::HapticLoop loop = bench.loop();
     loop.run_ticks(100);
-    CHECK(loop.report().stopped_by == core::TickFault::device_write);
+    CHECK(loop.report().stopped_by == core::TickFault::device_gone);
   }
   SECTION("the position was not a number") {
     bench.hand.height_m = std::numeric_limits<double>::quiet_NaN();
@@ -141,7 +148,7 @@ TEST_CASE("late ticks are counted, missed ones skipped, and the rhythm stays", "
   CHECK(times == std::vector<std::int64_t>{0, 1'600'000, 2'000'000, 6'200'000, 7'000'000});
   CHECK(loop.report().late == 2);
   CHECK(loop.report().skipped == 3);
-  CHECK(loop.report().worst_lateness == 3'200'000);
+  CHECK(loop.report().lateness.worst() == 3'200'000);
 }
 
 TEST_CASE("another alternative is taken only off the plate", "[device][loop][safety]") {
@@ -181,4 +188,58 @@ TEST_CASE("a thousand ticks of the loop allocate nothing", "[device][loop][realt
   const testing::AllocationCount allocations;
   loop.run_ticks(1000);
   CHECK(allocations.count() == 0);
+}
+
+TEST_CASE("a loop that nobody looks after drops its force within the time allowed",
+          "[device][loop][safety]") {
+  Bench bench;
+  bench.settings.longest_without_beat = 100'000'000;
+  device::HapticLoop loop = bench.loop();
+  for (int i = 0; i < 10; ++i) {
+    loop.beat();
+    loop.run_ticks(90);
+  }
+  CHECK(loop.report().stopped_by == core::TickFault::none);
+  loop.run_ticks(90);
+  CHECK(loop.report().stopped_by == core::TickFault::heartbeat_lost);
+  CHECK(loop.report().ticks <= 900 + 101);
+  CHECK(bench.hand.drops == 1);
+  CHECK(bench.hand.last_force_n == Vec3::Zero());
+}
+
+TEST_CASE("a run of late ticks is a fault where the rig says so", "[device][loop][safety]") {
+  Bench bench;
+  bench.clock.lateness = std::vector<device::Nanoseconds>(20, 600'000);
+  SECTION("it does") {
+    bench.settings.most_late_in_a_row = 5;
+    device::HapticLoop loop = bench.loop();
+    loop.run_ticks(20);
+    CHECK(loop.report().stopped_by == core::TickFault::too_late);
+    CHECK(loop.report().ticks == 6);
+    CHECK(bench.hand.drops == 1);
+  }
+  SECTION("it does not") {
+    device::HapticLoop loop = bench.loop();
+    loop.run_ticks(20);
+    CHECK(loop.report().stopped_by == core::TickFault::none);
+    CHECK(loop.report().late == 20);
+  }
+}
+
+TEST_CASE("asked to stop, the loop lets force fall gently where the rig says so",
+          "[device][loop][safety]") {
+  Bench bench;
+  bench.settings.gate.fall_s = 0.1;
+  device::HapticLoop loop = bench.loop();
+  loop.run_ticks(10);
+  std::stop_source stop;
+  stop.request_stop();
+  loop.run(stop.get_token());
+  const auto samples = bench.samples();
+  REQUIRE(samples.size() == Approx(110).margin(2));
+  for (std::size_t i = 11; i < samples.size(); ++i) {
+    CHECK(samples[i].force_n[1] <= samples[i - 1].force_n[1]);
+    CHECK(samples[i - 1].force_n[1] - samples[i].force_n[1] < 0.07);
+  }
+  CHECK(bench.hand.last_force_n == Vec3::Zero());
 }

@@ -10,11 +10,11 @@ namespace {
 constexpr double dt_s = 1e-3;
 core::HandState state_of(device::SimulatedHand& hand) {
   core::HandState state;
-  CHECK(hand.read(state) == device::Io::ok);
+  CHECK(hand.read(state) == core::TickFault::none);
   return state;
 }
 void push(device::SimulatedHand& hand, const Vec3& force_n) {
-  CHECK(hand.write(force_n) == device::Io::ok);
+  CHECK(hand.write(force_n) == core::TickFault::none);
 }
 }  // namespace
 

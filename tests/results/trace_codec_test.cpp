@@ -24,11 +24,14 @@ std::vector<TraceSample> wild_samples(std::size_t count) {
     s.vibration_n = std::numeric_limits<double>::quiet_NaN();
     s.sinusoid_n = -rng.uniform();
     s.force_n = {0.0, rng.normal(), 0.0};
+    s.achieved_n = {rng.normal(), 1.0, -0.0};
+    s.pose_residual_m = rng.uniform();
+    s.closure_margin = -rng.uniform();
     s.alternative = static_cast<std::uint8_t>(rng.below(256));
     s.touching = rng.below(2) == 1;
     s.struck = rng.below(2) == 1;
     s.saturated = rng.below(2) == 1;
-    s.fault = core::TickFault::device_write;
+    s.fault = core::TickFault::device_gone;
     samples.push_back(s);
   }
   return samples;
@@ -49,11 +52,14 @@ TEST_CASE("a trace comes back to the last bit, NaN and denormals included", "[re
       CHECK(same_bits(decoded[i].position_m.at(axis), samples[i].position_m.at(axis)));
       CHECK(same_bits(decoded[i].velocity_m_s.at(axis), samples[i].velocity_m_s.at(axis)));
       CHECK(same_bits(decoded[i].force_n.at(axis), samples[i].force_n.at(axis)));
+      CHECK(same_bits(decoded[i].achieved_n.at(axis), samples[i].achieved_n.at(axis)));
     }
     CHECK(same_bits(decoded[i].penetration_m, samples[i].penetration_m));
     CHECK(same_bits(decoded[i].penalty_n, samples[i].penalty_n));
     CHECK(same_bits(decoded[i].vibration_n, samples[i].vibration_n));
     CHECK(same_bits(decoded[i].sinusoid_n, samples[i].sinusoid_n));
+    CHECK(same_bits(decoded[i].pose_residual_m, samples[i].pose_residual_m));
+    CHECK(same_bits(decoded[i].closure_margin, samples[i].closure_margin));
     CHECK(decoded[i].alternative == samples[i].alternative);
     CHECK(decoded[i].touching == samples[i].touching);
     CHECK(decoded[i].struck == samples[i].struck);

@@ -1,0 +1,44 @@
+#pragma once
+#include <limits>
+
+#include "core/tick/force_limiter.hpp"
+namespace tapstudy::device {
+struct GateSettings {
+  core::ForceLimits limits;
+  double max_speed_m_s{std::numeric_limits<double>::infinity()};       // of the hand
+  double workspace_radius_m{std::numeric_limits<double>::infinity()};  // round the middle
+  double rise_s{0.0};  // from no force to the whole, when it is let on; 0: at once
+  double fall_s{0.0};  // from the whole to none, when it is taken off
+  double dt_s{1e-3};
+};
+
+struct PassedForce {
+  core::Vec3 force_n;
+  bool was_changed;
+  core::TickFault fault;
+};
+
+// The one place that every force passes on its way to a device. It is armed first: nothing comes
+// out until what is asked for has been small for some ticks, for a finger that rests inside a plate
+// must not be thrown out; then force rises gently. What is no number, a hand too fast and a hand
+// outside its workspace are faults, and no force. Size and rate are limited always.
+class ForceGate {
+ public:
+  enum class State { armed, rendering, stopping, at_rest };
+  explicit ForceGate(const GateSettings& settings) noexcept;
+  PassedForce pass(const core::Vec3& wanted_n, const core::HandState& hand) noexcept;
+  // From now on force falls to none.
+  void stop() noexcept;
+  State state() const noexcept { return state_; }
+
+ private:
+  core::TickFault fault_of(const core::Vec3& wanted_n, const core::HandState& hand) const noexcept;
+  void advance(double wanted_size_n) noexcept;
+
+  GateSettings settings_;
+  State state_;
+  int quiet_ticks_{0};
+  double share_{0.0};
+  core::Vec3 previous_n_{core::Vec3::Zero()};
+};
+}  // namespace tapstudy::device

@@ -1,0 +1,15 @@
+#include "device/spidar/board.hpp"
+
+#include "device/spidar/sh4_board.hpp"
+#include "device/spidar/simple_board.hpp"
+namespace tapstudy::device {
+std::unique_ptr<SpidarBoard> board_of(std::uint16_t product) {
+  if (product == sh4_product) {
+    return std::make_unique<Sh4Board>();
+  }
+  if (product == simple_product) {
+    return std::make_unique<SimpleBoard>();
+  }
+  return nullptr;
+}
+}  // namespace tapstudy::device

@@ -1,0 +1,102 @@
+#pragma once
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <cstdint>
+namespace tapstudy::device {
+// Minimise x'Qx / 2 - c'x within low <= x <= high, with Q symmetric positive definite.
+template <int N>
+struct BoxQp {
+  using Vector = Eigen::Matrix<double, N, 1>;
+  Eigen::Matrix<double, N, N> Q;
+  Vector c;
+  Vector low;
+  Vector high;
+};
+
+template <int N>
+struct BoxQpSolution {
+  typename BoxQp<N>::Vector x;
+  int rounds{};
+  bool is_optimal{};
+};
+
+// The primal active-set method (Nocedal & Wright 2006, section 16.5) with bounds as the only
+// constraints: from a point in the box, towards the minimum of what is free, until a bound stops it
+// or lets go. Every round lowers the objective, so it ends; where rounding makes it circle, it says
+// so. Does not allocate.
+template <int N>
+class BoxQpSolver {
+ public:
+  using Vector = typename BoxQp<N>::Vector;
+  static constexpr int most_rounds = 8 * N;
+
+  BoxQpSolution<N> solve(const BoxQp<N>& problem, const Vector& start) noexcept {
+    Vector x = start.cwiseMax(problem.low).cwiseMin(problem.high);
+    for (Eigen::Index i = 0; i < N; ++i) {
+      held_[i] = x[i] <= problem.low[i] ? -1 : x[i] >= problem.high[i] ? 1 : 0;
+    }
+    for (int round = 1; round <= most_rounds; ++round) {
+      if (!go_to_minimum_of_free(problem, x) && !let_go(problem, x)) {
+        return {x, round, true};
+      }
+    }
+    return {x, most_rounds, false};
+  }
+
+ private:
+  // False if it got there, true if a bound stopped it.
+  bool go_to_minimum_of_free(const BoxQp<N>& problem, Vector& x) noexcept {
+    const Vector step = step_of_free(problem, x);
+    double share = 1.0;
+    Eigen::Index stopped_by = -1;
+    for (Eigen::Index i = 0; i < N; ++i) {
+      const double room = step[i] < 0.0 ? problem.low[i] - x[i] : problem.high[i] - x[i];
+      if (held_[i] == 0 && step[i] != 0.0 && room / step[i] < share) {
+        share = room / step[i];
+        stopped_by = i;
+      }
+    }
+    x += share * step;
+    if (stopped_by < 0) {
+      return false;
+    }
+    held_[stopped_by] = step[stopped_by] < 0.0 ? -1 : 1;
+    x[stopped_by] = step[stopped_by] < 0.0 ? problem.low[stopped_by] : problem.high[stopped_by];
+    return true;
+  }
+
+  // Held unknowns take the rows of the unit matrix.
+  Vector step_of_free(const BoxQp<N>& problem, const Vector& x) const noexcept {
+    Eigen::Matrix<double, N, N> reduced = problem.Q;
+    Vector downhill = problem.c - problem.Q * x;
+    for (Eigen::Index i = 0; i < N; ++i) {
+      if (held_[i] != 0) {
+        reduced.row(i).setZero();
+        reduced.col(i).setZero();
+        reduced(i, i) = 1.0;
+        downhill[i] = 0.0;
+      }
+    }
+    return reduced.llt().solve(downhill);
+  }
+
+  // Frees the held unknown that gains most by leaving its bound; false if none does.
+  bool let_go(const BoxQp<N>& problem, const Vector& x) noexcept {
+    const Vector downhill = problem.c - problem.Q * x;
+    double most = 1e-12 * (problem.c.cwiseAbs().maxCoeff() + (problem.Q * x).cwiseAbs().maxCoeff());
+    Eigen::Index best = -1;
+    for (Eigen::Index i = 0; i < N; ++i) {
+      if (-held_[i] * downhill[i] > most && problem.low[i] < problem.high[i]) {
+        most = -held_[i] * downhill[i];
+        best = i;
+      }
+    }
+    if (best >= 0) {
+      held_[best] = 0;
+    }
+    return best >= 0;
+  }
+
+  Eigen::Matrix<std::int8_t, N, 1> held_{Eigen::Matrix<std::int8_t, N, 1>::Zero()};
+};
+}  // namespace tapstudy::device

@@ -1,0 +1,54 @@
+#include "device/spidar/sh4_board.hpp"
+
+#include "device/spidar/little_endian.hpp"
+namespace tapstudy::device {
+namespace {
+constexpr std::uint8_t update_all = 0x01;
+constexpr std::uint8_t base_analyser = 0x0E;
+constexpr std::size_t outputs_at = 2;
+constexpr std::size_t echo_at = 0;
+constexpr std::size_t counters_at = 16;
+constexpr std::size_t lines_at = 48;
+}  // namespace
+
+Sh4Board::Packet Sh4Board::request(const Digits& digits) noexcept {
+  Packet packet{};
+  packet[0] = update_all;
+  packet[1] = base_analyser;
+  for (std::size_t i = 0; i < digits.size(); ++i) {
+    put_u16(packet, outputs_at + 2 * i, digits[i]);
+  }
+  return packet;
+}
+
+BoardReading Sh4Board::reading_of(const Packet& reply) noexcept {
+  BoardReading reading;
+  Digits echo{};
+  for (std::size_t i = 0; i < echo.size(); ++i) {
+    echo[i] = get_u16(reply, echo_at + 2 * i);
+    reading.counter[i] = get_u16(reply, counters_at + 2 * i);
+  }
+  reading.echo = echo;
+  reading.lines = get_u16(reply, lines_at);
+  return reading;
+}
+
+// Replies that an earlier program left behind would shift every answer by one.
+UsbOutcome Sh4Board::begin(UsbPipe& pipe, BoardReading& reading) noexcept {
+  pipe.drain();
+  return exchange(pipe, Digits{}, reading);
+}
+
+UsbOutcome Sh4Board::exchange(UsbPipe& pipe, const Digits& digits, BoardReading& reading) noexcept {
+  const UsbOutcome outcome = pipe.exchange(request(digits), reply_);
+  if (outcome == UsbOutcome::ok) {
+    reading = reading_of(reply_);
+  }
+  return outcome;
+}
+
+std::vector<std::uint8_t> Sh4Board::no_force() const {
+  const Packet packet = request({});
+  return {packet.begin(), packet.end()};
+}
+}  // namespace tapstudy::device

@@ -1,0 +1,66 @@
+#include "device/spidar/simple_board.hpp"
+
+#include "device/spidar/little_endian.hpp"
+namespace tapstudy::device {
+namespace {
+constexpr std::uint8_t encoders = 0xA2;
+constexpr std::uint8_t direction = 0x1A;
+constexpr std::uint8_t clear = 0x19;
+constexpr std::uint8_t all_strings = 0xFF;
+constexpr std::uint8_t set_outputs = 0x52;
+constexpr std::uint8_t latch = 0x51;
+constexpr std::size_t lines_at = 24;
+
+SimpleBoard::Packet command(std::uint8_t first, std::uint8_t second = 0,
+                            std::uint8_t third = 0) noexcept {
+  return {first, second, third};
+}
+}  // namespace
+
+SimpleBoard::Packet SimpleBoard::outputs(const Digits& digits) noexcept {
+  Packet packet = command(set_outputs);
+  for (std::size_t i = 0; i < digits.size(); ++i) {
+    put_u16(packet, 1 + 2 * i, digits[i]);
+  }
+  return packet;
+}
+
+BoardReading SimpleBoard::reading_of(const Packet& reply) noexcept {
+  BoardReading reading;
+  for (std::size_t i = 0; i < reading.counter.size(); ++i) {
+    reading.counter[i] = get_u24(reply, 3 * i);
+  }
+  reading.lines = reply[lines_at];
+  return reading;
+}
+
+UsbOutcome SimpleBoard::begin(UsbPipe& pipe, BoardReading& reading) noexcept {
+  pipe.drain();
+  const UsbOutcome outcome = pipe.send(command(encoders, direction, all_strings));
+  if (outcome != UsbOutcome::ok) {
+    return outcome;
+  }
+  if (const UsbOutcome cleared = pipe.send(command(encoders, clear, all_strings));
+      cleared != UsbOutcome::ok) {
+    return cleared;
+  }
+  return exchange(pipe, Digits{}, reading);
+}
+
+UsbOutcome SimpleBoard::exchange(UsbPipe& pipe, const Digits& digits,
+                                 BoardReading& reading) noexcept {
+  if (const UsbOutcome outcome = pipe.send(outputs(digits)); outcome != UsbOutcome::ok) {
+    return outcome;
+  }
+  const UsbOutcome outcome = pipe.exchange(command(latch), reply_);
+  if (outcome == UsbOutcome::ok) {
+    reading = reading_of(reply_);
+  }
+  return outcome;
+}
+
+std::vector<std::uint8_t> SimpleBoard::no_force() const {
+  const Packet packet = outputs({});
+  return {packet.begin(), packet.end()};
+}
+}  // namespace tapstudy::device

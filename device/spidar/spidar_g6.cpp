@@ -1,0 +1,163 @@
+#include "device/spidar/spidar_g6.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+namespace tapstudy::device {
+using core::TickFault;
+namespace {
+constexpr int rounds_a_tick = 4;
+constexpr int rounds_from_anywhere = 20;
+constexpr int zeros_on_drop = 3;
+// A difference of positions a tick apart is mostly the encoder's steps; smoothed over some ticks.
+constexpr double velocity_time_s = 3e-3;
+
+TickFault fault_of(UsbOutcome outcome) noexcept {
+  switch (outcome) {
+    case UsbOutcome::ok:
+      return TickFault::none;
+    case UsbOutcome::timed_out:
+      return TickFault::no_reply;
+    case UsbOutcome::gone:
+      return TickFault::device_gone;
+    default:
+      return TickFault::bad_reply;
+  }
+}
+}  // namespace
+
+SpidarG6::SpidarG6(UsbPipe& pipe, SpidarBoard& board, SpidarSettings settings)
+    : pipe_{pipe},
+      board_{board},
+      settings_{std::move(settings)},
+      tension_solver_{settings_.calibration.range},
+      counters_{board.counter_bits()},
+      length_at_rest_m_{strings_at(settings_.geometry, {}).length_m},
+      strings_{strings_at(settings_.geometry, {})} {
+  if (const UsbOutcome outcome = board_.begin(pipe_, reading_); outcome != UsbOutcome::ok) {
+    throw DeviceError{fmt::format("SPIDAR-G6: the {} board does not answer: {}", board_.name(),
+                                  to_text(outcome))};
+  }
+}
+
+SpidarG6::~SpidarG6() {
+  SpidarG6::drop();
+}
+
+std::string SpidarG6::description() const {
+  return fmt::format("SPIDAR-G6 {}, {} board, rotary switch {}", settings_.geometry.type,
+                     board_.name(), reading_.rotary_switch());
+}
+
+TickFault SpidarG6::exchange() noexcept {
+  const UsbOutcome outcome = board_.exchange(pipe_, digits_, reading_);
+  if (outcome != UsbOutcome::ok) {
+    return fault_of(outcome);
+  }
+  sent_before_ = std::exchange(sent_, digits_);
+  if (!is_echo_right(reading_)) {
+    return TickFault::wrong_echo;
+  }
+  largest_step_ = counters_.take(reading_.counter);
+  return TickFault::none;
+}
+
+// Whether the echo is of this request or of the one before is not documented.
+bool SpidarG6::is_echo_right(const BoardReading& reading) const noexcept {
+  return !reading.echo || *reading.echo == sent_ || *reading.echo == sent_before_;
+}
+
+TickFault SpidarG6::tighten(double share) noexcept {
+  const double tension_n = share * settings_.calibration.range.least_n;
+  digits_ = digits_of(PerString::Constant(tension_n), settings_.calibration);
+  return exchange();
+}
+
+TickFault SpidarG6::home() noexcept {
+  counters_.forget();
+  is_homed_ = false;
+  const TickFault fault = exchange();
+  if (fault == TickFault::none) {
+    pose_ = {};
+    strings_ = strings_at(settings_.geometry, pose_);
+    has_position_ = false;
+    is_homed_ = true;
+  }
+  return fault;
+}
+
+void SpidarG6::begin() noexcept {
+  has_position_ = false;
+}
+
+TickFault SpidarG6::read(core::HandState& hand) noexcept {
+  if (!is_homed_) {
+    return TickFault::not_homed;
+  }
+  const TickFault fault = exchange();
+  return fault == TickFault::none ? follow(hand) : fault;
+}
+
+// After a pause nothing is known of the way between: the first tick has no velocity and no bound on
+// its step.
+TickFault SpidarG6::follow(core::HandState& hand) noexcept {
+  PerString length_m = length_at_rest_m_;
+  double largest_m_per_count = 0.0;
+  for (std::size_t i = 0; i < counters_.counts().size(); ++i) {
+    const double metres_per_count = settings_.calibration.string[i].metres_per_count;
+    length_m[static_cast<Eigen::Index>(i)] +=
+        metres_per_count * static_cast<double>(counters_.counts()[i]);
+    largest_m_per_count = std::max(largest_m_per_count, std::abs(metres_per_count));
+  }
+  const double step_m = largest_m_per_count * static_cast<double>(largest_step_);
+  if (has_position_ && step_m > settings_.limits.largest_string_speed_m_s * settings_.dt_s) {
+    return TickFault::counter_jumped;
+  }
+  const FoundPose found = find_pose(settings_.geometry, length_m, pose_,
+                                    has_position_ ? rounds_a_tick : rounds_from_anywhere);
+  detail_.pose_residual_m = found.residual_m;
+  if (!found.has_converged || !(found.residual_m <= settings_.limits.largest_residual_m)) {
+    return TickFault::strings_disagree;
+  }
+  const core::Vec3 difference_m_s = (found.pose.position_m - pose_.position_m) / settings_.dt_s;
+  const double share = 1.0 - std::exp(-settings_.dt_s / velocity_time_s);
+  velocity_m_s_ = has_position_ ? velocity_m_s_ + share * (difference_m_s - velocity_m_s_)
+                                : core::Vec3::Zero().eval();
+  has_position_ = true;
+  pose_ = found.pose;
+  strings_ = strings_at(settings_.geometry, pose_);
+  detail_.closure_margin = closure_margin(strings_);
+  hand = {with_z_turned(pose_.position_m), with_z_turned(velocity_m_s_)};
+  const bool is_turned_too_far =
+      rotation_vector_rad(pose_.rotation).norm() > settings_.limits.largest_turn_rad;
+  return is_turned_too_far || detail_.closure_margin <= 0.0 ? TickFault::outside_workspace
+                                                            : TickFault::none;
+}
+
+TickFault SpidarG6::write(const core::Vec3& force_n) noexcept {
+  const Tensions tensions =
+      tension_solver_.solve(strings_, {with_z_turned(force_n), core::Vec3::Zero()});
+  digits_ = digits_of(tensions.tension_n, settings_.calibration);
+  detail_.achieved_n = with_z_turned(tensions.achieved.force_n);
+  return TickFault::none;
+}
+
+// The strings stay taut, so that the grip stays known.
+void SpidarG6::rest() noexcept {
+  static_cast<void>(write(core::Vec3::Zero()));
+  if (exchange() != TickFault::none) {
+    drop();
+  }
+}
+
+void SpidarG6::drop() noexcept {
+  is_homed_ = false;
+  digits_ = {};
+  for (int i = 0; i < zeros_on_drop; ++i) {
+    BoardReading ignored;
+    static_cast<void>(board_.exchange(pipe_, digits_, ignored));
+  }
+}
+}  // namespace tapstudy::device

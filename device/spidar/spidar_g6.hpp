@@ -1,0 +1,77 @@
+#pragma once
+#include <memory>
+#include <optional>
+
+#include "device/device.hpp"
+#include "device/spidar/calibration.hpp"
+namespace tapstudy::device {
+struct SpidarLimits {
+  double largest_residual_m{2e-4};       // beyond it a string is slack, slipped or miscounted
+  double largest_string_speed_m_s{5.0};  // beyond it a counter has jumped
+  double largest_turn_rad{0.5};          // of the grip
+};
+
+struct SpidarSettings {
+  SpidarGeometry geometry;
+  SpidarCalibration calibration;
+  SpidarLimits limits;
+  double dt_s{1e-3};
+};
+
+// A SPIDAR-G6 on a board on the USB. Its states: open (outputs zero) → taut (least tension, raised
+// gently) → homed (the grip was held in the middle, all lengths known), and from there read and
+// write. One exchange a tick: read() sends the tensions that the last write() found and gets the
+// counters, so a force is on the strings one tick after the position it answers to.
+//
+// The torque asked for is zero: a tap is a force at the finger. Whatever goes wrong on the wire, in
+// the counters or in the pose is a fault; drop() then makes all outputs zero, strings may go slack,
+// and the grip must be homed anew.
+class SpidarG6 final : public Device {
+ public:
+  // The pipe and the board must outlive it. Throws DeviceError if the board does not answer.
+  SpidarG6(UsbPipe& pipe, SpidarBoard& board, SpidarSettings settings);
+  ~SpidarG6() override;
+  SpidarG6(const SpidarG6& other) = delete;
+  SpidarG6& operator=(const SpidarG6& other) = delete;
+  SpidarG6(SpidarG6&& other) = delete;
+  SpidarG6& operator=(SpidarG6&& other) = delete;
+
+  // One step of raising the tension, 0 to 1 of the least; to be called at the loop's rate.
+  [[nodiscard]] core::TickFault tighten(double share) noexcept;
+  // Takes the grip to be held in the middle and not turned, now.
+  [[nodiscard]] core::TickFault home() noexcept;
+  bool is_homed() const noexcept { return is_homed_; }
+  int rotary_switch() const noexcept { return reading_.rotary_switch(); }
+
+  [[nodiscard]] core::TickFault read(core::HandState& hand) noexcept override;
+  [[nodiscard]] core::TickFault write(const core::Vec3& force_n) noexcept override;
+  void begin() noexcept override;
+  void rest() noexcept override;
+  void drop() noexcept override;
+  DeviceDetail detail() const noexcept override { return detail_; }
+  std::string description() const override;
+
+ private:
+  core::TickFault exchange() noexcept;
+  core::TickFault follow(core::HandState& hand) noexcept;
+  bool is_echo_right(const BoardReading& reading) const noexcept;
+
+  UsbPipe& pipe_;
+  SpidarBoard& board_;
+  SpidarSettings settings_;
+  TensionSolver tension_solver_;
+  UnwrappedCounters counters_;
+  PerString length_at_rest_m_;
+  Pose pose_;
+  Strings strings_;
+  core::Vec3 velocity_m_s_{core::Vec3::Zero()};
+  Digits digits_{};
+  Digits sent_{};
+  Digits sent_before_{};
+  BoardReading reading_;
+  std::int64_t largest_step_{0};
+  bool is_homed_{false};
+  bool has_position_{false};
+  DeviceDetail detail_;
+};
+}  // namespace tapstudy::device

@@ -1,0 +1,28 @@
+#pragma once
+#include <sys/types.h>
+
+#include <cstdint>
+#include <vector>
+
+#include "device/usb/usb_node.hpp"
+namespace tapstudy::device {
+// A process that outlives this one. The boards are not known to have a watchdog: should tapstudy
+// die with force on, whatever from, SIGKILL included, the strings would keep pulling. So a child
+// holds the device's open node and waits for a pipe of which only tapstudy has the other end; when
+// that closes it sends the packet of no force, three times, by itself, and ends.
+class Guardian {
+ public:
+  // To be made before any thread is. Throws DeviceError if there can be none.
+  Guardian(const UsbNode& node, std::uint8_t out_endpoint, std::vector<std::uint8_t> no_force);
+  // The packet is sent at an orderly end too.
+  ~Guardian();
+  Guardian(const Guardian& other) = delete;
+  Guardian& operator=(const Guardian& other) = delete;
+  Guardian(Guardian&& other) = delete;
+  Guardian& operator=(Guardian&& other) = delete;
+
+ private:
+  pid_t child_{-1};
+  int life_{-1};  // closed by the kernel when this process ends
+};
+}  // namespace tapstudy::device

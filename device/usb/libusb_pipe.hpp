@@ -1,0 +1,35 @@
+#pragma once
+#include <chrono>
+#include <memory>
+
+#include "device/usb/usb_node.hpp"
+#include "device/usb/usb_pipe.hpp"
+namespace tapstudy::device {
+struct BulkEndpoints {
+  std::uint8_t out{0x02};
+  std::uint8_t in{0x86};
+};
+
+// libusb-1.0 on an open node: the request and the wait for its reply are under way together.
+// libusb itself takes a little memory for each transfer; nothing else here does.
+class LibusbPipe final : public UsbPipe {
+ public:
+  // Claims interface 0. The node must outlive the pipe. Throws DeviceError.
+  LibusbPipe(const UsbNode& node, const BulkEndpoints& endpoints,
+             std::chrono::milliseconds time_out);
+  ~LibusbPipe() override;
+  LibusbPipe(const LibusbPipe& other) = delete;
+  LibusbPipe& operator=(const LibusbPipe& other) = delete;
+  LibusbPipe(LibusbPipe&& other) = delete;
+  LibusbPipe& operator=(LibusbPipe&& other) = delete;
+
+  UsbOutcome send(std::span<const std::uint8_t> out) noexcept override;
+  UsbOutcome exchange(std::span<const std::uint8_t> out,
+                      std::span<std::uint8_t> in) noexcept override;
+  void drain() noexcept override;
+
+ private:
+  struct Libusb;  // keeps libusb.h out of this header
+  std::unique_ptr<Libusb> libusb_;
+};
+}  // namespace tapstudy::device

@@ -1,0 +1,121 @@
+#include "protocols/read_rig.hpp"
+
+#include <filesystem>
+
+#include "protocols/read_sections.hpp"
+#include "protocols/text_file.hpp"
+namespace tapstudy::protocols {
+namespace {
+using Presence = MapReader::Presence;
+
+void read_loop(MapReader& top, LoopRig& loop) {
+  top.map("loop", Presence::optional, [&](MapReader& reader) {
+    loop.fifo_priority = reader.integer("fifo_priority", 0, 99, loop.fifo_priority);
+    loop.lock_memory = reader.yes_or_no("lock_memory", loop.lock_memory);
+    if (reader.has("cpu")) {
+      loop.cpu = reader.integer("cpu", 0, 1023);
+    }
+    loop.most_late_ticks_in_a_row =
+        reader.integer("most_late_ticks_in_a_row", 0, 1'000'000, loop.most_late_ticks_in_a_row);
+  });
+}
+
+StringRig read_string(MapReader& reader) {
+  StringRig string;
+  string.metres_per_count = reader.number("metres_per_count", {-1e-3, 1e-3});
+  string.volts_per_newton = reader.number("volts_per_newton", Range::positive(100.0));
+  string.digits_per_volt = reader.number("digits_per_volt", Range::positive(1e5));
+  if (string.metres_per_count == 0.0) {
+    reader.reject("metres_per_count", "is zero (measure it: pull 0.1 m of string)");
+  }
+  return string;
+}
+
+// The file of one device, apart from the rig: other studies on the same device share it.
+void read_calibration(const std::string& file, SpidarRig& spidar) {
+  spidar.calibration_text = contents_of(file);
+  Problems problems{file};
+  MapReader top = MapReader::whole_file(spidar.calibration_text, file, problems);
+  top.word("format", "format", {"tapstudy-calibration/1"});
+  top.word("device", "device", {"spidar-g6"});
+  top.word("type", "type of this rig", {spidar.type});
+  spidar.min_tension_n = top.number("min_tension_n", Range::positive(5.0));
+  spidar.max_tension_n = top.number("max_tension_n", Range::positive(20.0));
+  if (spidar.min_tension_n >= spidar.max_tension_n) {
+    top.reject("max_tension_n", "is not above min_tension_n");
+  }
+  std::size_t count = 0;
+  top.list("strings", Presence::required, [&](MapReader& reader) {
+    const StringRig string = read_string(reader);
+    if (count < spidar.strings.size()) {
+      spidar.strings.at(count) = string;
+    }
+    ++count;
+  });
+  if (count != spidar.strings.size()) {
+    top.reject("strings", "must be eight, one for each string, in the order of the motors");
+  }
+  top.finish();
+  problems.throw_if_any();
+}
+
+SpidarRig read_spidar(MapReader& reader, const std::string& directory) {
+  SpidarRig spidar;
+  spidar.type = reader.word("type", "type", {"X3R", "X3L"});
+  if (reader.has("rotary_switch")) {
+    spidar.rotary_switch = reader.integer("rotary_switch", 0, 15);
+  }
+  const std::string calibration = reader.text("calibration");
+  if (!spidar.type.empty() && !calibration.empty()) {
+    read_calibration((std::filesystem::path{directory} / calibration).string(), spidar);
+  }
+  return spidar;
+}
+
+// A simulated hand cannot be hurt: only hardware must have limits to its motion.
+void read_hardware(MapReader& top, const std::string& file, Rig& rig) {
+  rig.max_hand_speed_m_s = top.number("max_hand_speed_m_s", Range::positive(10.0));
+  rig.workspace_radius_m = top.number("workspace_radius_m", Range::positive(1.0));
+  rig.force_rise_s = top.number("force_rise_s", {0.1, 10.0}, 0.5);
+  rig.force_fall_s = top.number("force_fall_s", {0.01, 1.0}, 0.1);
+  if (rig.device == "spidar-g6") {
+    top.map("spidar", Presence::required, [&](MapReader& reader) {
+      rig.spidar = read_spidar(reader, std::filesystem::path{file}.parent_path().string());
+    });
+  }
+}
+}  // namespace
+
+Rig parse_rig(const std::string& text, const std::string& file) {
+  Problems problems{file};
+  MapReader top = MapReader::whole_file(text, file, problems);
+  Rig rig;
+  rig.text = text;
+  top.word("format", "format", {"tapstudy-rig/1"});
+  rig.device = top.word("device", "device", {"simulated_hand", "spidar-g6"});
+  rig.limits.max_force_n = top.number("max_force_n", Range::positive(100.0));
+  rig.limits.max_rate_n_per_s = top.number("max_force_rate_n_per_s", Range::positive(1e6));
+  if (rig.device != "simulated_hand") {
+    read_hardware(top, file, rig);
+  }
+  read_loop(top, rig.loop);
+  read_placement(top, Presence::optional,
+                 [&](const core::Placement& placement) { rig.placement = placement; });
+  top.finish();
+  problems.throw_if_any();
+  return rig;
+}
+
+Rig read_rig(const std::string& file) {
+  return parse_rig(contents_of(file), file);
+}
+
+Rig simulated_rig() {
+  return parse_rig(
+      "format: tapstudy-rig/1\n"
+      "device: simulated_hand\n"
+      "max_force_n: 10\n"
+      "max_force_rate_n_per_s: 10000\n",
+      "simulated rig");
+}
+}  // namespace tapstudy::protocols

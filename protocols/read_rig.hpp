@@ -1,0 +1,13 @@
+#pragma once
+#include <string>
+
+#include "protocols/rig.hpp"
+namespace tapstudy::protocols {
+// The rig in a YAML text; `file` is its name in messages, and where the name of a calibration file
+// starts from. Throws InvalidInput with every problem of the file, one a line.
+Rig parse_rig(const std::string& text, const std::string& file);
+// The same from a file. Throws InvalidInput also if it cannot be read.
+Rig read_rig(const std::string& file);
+// The rig of a study without hardware: the simulated hand, 10 N.
+Rig simulated_rig();
+}  // namespace tapstudy::protocols

@@ -1,0 +1,46 @@
+#pragma once
+#include <array>
+#include <limits>
+#include <optional>
+#include <string>
+
+#include "core/placement.hpp"
+#include "core/tick/force_limiter.hpp"
+namespace tapstudy::protocols {
+// What is asked of the machine for the loop, and how much lateness ends a trial.
+struct LoopRig {
+  int fifo_priority{80};  // 0: not asked for
+  bool lock_memory{true};
+  std::optional<int> cpu;
+  int most_late_ticks_in_a_row{0};  // 0: any
+};
+
+// What was measured on one SPIDAR, string by string.
+struct StringRig {
+  double metres_per_count{};  // the sign says which way the encoder counts
+  double volts_per_newton{};
+  double digits_per_volt{};
+};
+struct SpidarRig {
+  std::string type;
+  std::optional<int> rotary_switch;  // of the board that is meant, where there are several
+  double min_tension_n{};
+  double max_tension_n{};
+  std::array<StringRig, 8> strings;
+  std::string calibration_text;
+};
+
+// What surrounds the study: the device and what it may do.
+struct Rig {
+  std::string text;
+  std::string device;
+  core::ForceLimits limits;
+  double max_hand_speed_m_s{std::numeric_limits<double>::infinity()};
+  double workspace_radius_m{std::numeric_limits<double>::infinity()};
+  double force_rise_s{0.0};
+  double force_fall_s{0.0};
+  LoopRig loop;
+  std::optional<SpidarRig> spidar;
+  std::optional<core::Placement> placement;  // instead of the protocol's
+};
+}  // namespace tapstudy::protocols

@@ -1,0 +1,33 @@
+#pragma once
+#include <memory>
+#include <string>
+
+#include "device/lateness.hpp"
+#include "device/realtime.hpp"
+namespace tapstudy::runner {
+struct ProbedLoop {
+  std::string realtime;  // what was got of the machine
+  device::LatenessCount lateness;
+  std::int64_t late{0};  // by more than half a period
+};
+
+// Wakes at a rate for so long, with nothing to do, and counts how late; in a thread of its own that
+// asks for what the haptic thread asks for.
+ProbedLoop probe_loop(const device::RealtimeRequest& request, device::Nanoseconds period,
+                      double seconds);
+
+// Work for all processors and the disk, for as long as it lives.
+class Load {
+ public:
+  Load();
+  ~Load();
+  Load(const Load& other) = delete;
+  Load& operator=(const Load& other) = delete;
+  Load(Load&& other) = delete;
+  Load& operator=(Load&& other) = delete;
+
+ private:
+  struct Workers;
+  std::unique_ptr<Workers> workers_;
+};
+}  // namespace tapstudy::runner

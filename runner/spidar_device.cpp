@@ -1,0 +1,97 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <thread>
+#include <vector>
+
+#include "device/usb/guardian.hpp"
+#include "device/usb/libusb_pipe.hpp"
+#include "runner/exit_code.hpp"
+#include "runner/session_device.hpp"
+#include "runner/stop_signal.hpp"
+#include "runner/trial_record.hpp"
+namespace tapstudy::runner {
+namespace {
+constexpr std::chrono::milliseconds longest_reply{3};
+constexpr int tightening_steps = 500;
+constexpr std::chrono::milliseconds tightening_step{1};
+
+// Everything between the plug and the loop, in the order of its making.
+class SpidarDevice final : public SessionDevice {
+ public:
+  SpidarDevice(const device::UsbListing& listing, const protocols::SpidarRig& rig, double dt_s,
+               LineInput& operator_input)
+      : input_{operator_input},
+        node_{listing.node},
+        board_{device::board_of(listing.product)},
+        guardian_{node_, device::BulkEndpoints{}.out, board_->no_force()},
+        pipe_{node_, {}, longest_reply},
+        spidar_{pipe_, *board_, spidar_settings(rig, dt_s)} {}
+  device::Device& device() override { return spidar_; }
+  int rotary_switch() const { return spidar_.rotary_switch(); }
+  void get_ready() override {
+    if (!spidar_.is_homed()) {
+      tighten();
+      home();
+    }
+  }
+
+ private:
+  static void check(core::TickFault fault) {
+    if (fault != core::TickFault::none) {
+      throw device::DeviceError{"SPIDAR-G6: " + to_text(fault)};
+    }
+  }
+  void tighten() {
+    for (int step = 1; step <= tightening_steps; ++step) {
+      check(spidar_.tighten(static_cast<double>(step) / tightening_steps));
+      std::this_thread::sleep_for(tightening_step);
+    }
+  }
+  void home() {
+    fmt::print(stderr, "\nHold the grip in the middle of the frame, not turned, and press Enter. ");
+    if (!input_.next([] { return !stop_was_asked(); })) {
+      throw Stopped{"stopped before the grip was in the middle"};
+    }
+    check(spidar_.home());
+  }
+
+  LineInput& input_;
+  device::UsbNode node_;
+  std::unique_ptr<device::SpidarBoard> board_;
+  device::Guardian guardian_;
+  device::LibusbPipe pipe_;
+  device::SpidarG6 spidar_;
+};
+
+std::vector<device::UsbListing> spidars() {
+  std::vector<device::UsbListing> all = device::usb_devices();
+  std::erase_if(all, [](const device::UsbListing& one) {
+    return one.vendor != device::cyverse_vendor || device::board_of(one.product) == nullptr;
+  });
+  return all;
+}
+}  // namespace
+
+std::unique_ptr<SessionDevice> plugged_in_spidar(const protocols::SpidarRig& rig, double dt_s,
+                                                 LineInput& operator_input) {
+  const std::vector<device::UsbListing> all = spidars();
+  if (all.empty()) {
+    throw device::DeviceError{
+        "no SPIDAR-G6 is plugged in (0cec:0205 or 0cec:0203; `tapstudy devices` lists what is)"};
+  }
+  if (all.size() > 1 && !rig.rotary_switch) {
+    throw device::DeviceError{fmt::format(
+        "{} SPIDAR-G6 are plugged in: say in the rig which (spidar.rotary_switch)", all.size())};
+  }
+  for (const device::UsbListing& listing : all) {
+    auto found = std::make_unique<SpidarDevice>(listing, rig, dt_s, operator_input);
+    if (!rig.rotary_switch || found->rotary_switch() == *rig.rotary_switch) {
+      return found;
+    }
+  }
+  throw device::DeviceError{
+      fmt::format("no SPIDAR-G6 with its rotary switch on {} is plugged in", *rig.rotary_switch)};
+}
+}  // namespace tapstudy::runner

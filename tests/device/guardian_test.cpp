@@ -1,0 +1,63 @@
+#include "device/usb/guardian.hpp"
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <catch2/catch.hpp>
+#include <csignal>
+
+#include "device/spidar/sh4_board.hpp"
+#include "support/usb/fake_bus.hpp"
+using namespace tapstudy;
+using testing::Bytes;
+using testing::FakeBus;
+
+namespace {
+// Everything that arrives until all writers are gone.
+Bytes all_from(int descriptor) {
+  Bytes all;
+  std::array<std::uint8_t, 512> some{};
+  for (ssize_t count = 1; (count = read(descriptor, some.data(), some.size())) > 0;) {
+    all.insert(all.end(), some.begin(), some.begin() + count);
+  }
+  return all;
+}
+}  // namespace
+
+TEST_CASE("however the program dies, the last packets are of no force, three of them",
+          "[device][usb][guardian]") {
+  const int end = GENERATE(0, SIGKILL, SIGSEGV, SIGTERM, SIGABRT);
+  std::array<int, 2> ends{};
+  REQUIRE(pipe(ends.data()) == 0);
+  FakeBus bus{device::cyverse_vendor, device::sh4_product,
+              [](std::span<const std::uint8_t>) { return Bytes{}; }};
+  bus.copy_plain_bulk_to(ends[1]);
+  const pid_t program = fork();
+  if (program == 0) {
+    std::signal(SIGSEGV, SIG_DFL);
+    std::signal(SIGABRT, SIG_DFL);
+    std::signal(SIGTERM, SIG_DFL);
+    const device::UsbNode node{bus.open()};
+    const auto no_force = device::Sh4Board::request({});
+    {
+      const device::Guardian guardian{node, 0x02, {no_force.begin(), no_force.end()}};
+      if (end != 0) {
+        kill(getpid(), end);
+        pause();
+      }
+    }
+    _exit(0);
+  }
+  close(ends[1]);
+  int status = 0;
+  REQUIRE(waitpid(program, &status, 0) == program);
+  CHECK((end == 0 ? WIFEXITED(status) : WIFSIGNALED(status)));
+  const Bytes sent = all_from(ends[0]);
+  close(ends[0]);
+  const auto no_force = device::Sh4Board::request({});
+  REQUIRE(sent.size() == 3 * no_force.size());
+  for (std::size_t i = 0; i < sent.size(); ++i) {
+    REQUIRE(sent[i] == no_force.at(i % no_force.size()));
+  }
+}

@@ -1,0 +1,194 @@
+#include "device/spidar/spidar_g6.hpp"
+
+#include <libusb.h>
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "device/usb/libusb_pipe.hpp"
+#include "support/usb/simulated_spidar.hpp"
+using namespace tapstudy;
+using core::TickFault;
+using core::Vec3;
+using testing::FakeBus;
+using testing::SimulatedSpidar;
+using Trouble = FakeBus::Trouble;
+
+namespace {
+// The real libusb between a SpidarG6 and a simulated one.
+struct Bench {
+  SimulatedSpidar hardware;
+  FakeBus bus{device::cyverse_vendor, device::sh4_product,
+              [this](auto request) { return hardware.answer(request); }};
+  device::UsbNode node{node_of(bus)};
+  device::LibusbPipe pipe{node, {}, std::chrono::milliseconds{3}};
+  std::unique_ptr<device::SpidarBoard> board{device::board_of(device::sh4_product)};
+  device::SpidarG6 spidar{
+      pipe, *board, {device::spidar_geometry("X3R"), SimulatedSpidar::calibration(), {}, 1e-3}};
+
+  static device::UsbNode node_of(FakeBus& bus) {
+    // no bus to list: the descriptor is all there is
+    libusb_set_option(nullptr, LIBUSB_OPTION_NO_DEVICE_DISCOVERY);
+    return device::UsbNode{bus.open()};
+  }
+
+  void start() {
+    for (int step = 1; step <= 500; ++step) {
+      REQUIRE(spidar.tighten(step / 500.0) == TickFault::none);
+    }
+    REQUIRE(spidar.home() == TickFault::none);
+    home_m = hardware.position_m();
+  }
+  TickFault tick(const Vec3& force_n) {
+    core::HandState hand;
+    const TickFault fault = spidar.read(hand);
+    seen = fault == TickFault::none ? hand : seen;
+    return fault == TickFault::none ? spidar.write(force_n) : fault;
+  }
+  core::HandState seen;
+  Vec3 home_m{Vec3::Zero()};  // the strings' own pull displaces the hand a little
+};
+
+bool is_all_zero(const testing::Bytes& request) {
+  return std::all_of(request.begin() + 2, request.begin() + 18,
+                     [](std::uint8_t byte) { return byte == 0; });
+}
+}  // namespace
+
+TEST_CASE("a SPIDAR starts with no force, tightens to its least tension and is homed",
+          "[device][spidar][usb]") {
+  Bench bench;
+  for (const auto& request : bench.bus.requests()) {
+    CHECK(is_all_zero(request));
+  }
+  core::HandState hand;
+  CHECK(bench.spidar.read(hand) == TickFault::not_homed);
+  bench.start();
+  CHECK(bench.hardware.tension_n().minCoeff() == Approx(0.3).epsilon(0.03));
+  CHECK(bench.hardware.tension_n().maxCoeff() <= 0.3);
+  CHECK(bench.tick(Vec3::Zero()) == TickFault::none);
+  CHECK(bench.seen.position_m.norm() < 1e-5);
+  CHECK_THAT(bench.spidar.description(), Catch::Matchers::Contains("rotary switch 3"));
+}
+
+TEST_CASE("a hundred thousand ticks follow the hand and give it the force that was asked",
+          "[device][spidar][usb][slow]") {
+  Bench bench;
+  bench.hardware.start_counters_at(GENERATE(0, 65500));
+  bench.start();
+  double furthest_m = 0.0;
+  for (int i = 0; i < 100000; ++i) {
+    const double t = 1e-3 * i;
+    bench.hardware.hold_at({0.015 * std::sin(7.0 * t), 0.012 * std::sin(5.0 * t), 0.0});
+    const Vec3 force_n{std::sin(t), 2.0 * std::cos(3.0 * t), 0.5};
+    REQUIRE(bench.tick(force_n) == TickFault::none);
+    const Vec3 truth_m = device::with_z_turned(bench.hardware.position_m() - bench.home_m);
+    furthest_m = std::max(furthest_m, (truth_m - bench.seen.position_m).norm());
+    CHECK((bench.spidar.detail().achieved_n - force_n).norm() < 1e-5);
+  }
+  CHECK(furthest_m < 2e-5);  // an encoder's step and a half
+}
+
+TEST_CASE("a force on the grip displaces the hand as its muscle's spring says",
+          "[device][spidar][usb]") {
+  Bench bench;
+  bench.start();
+  const Vec3 force_n = GENERATE(Vec3{2, 0, 0}, Vec3{0, -3, 0}, Vec3{0, 0, 2});
+  for (int i = 0; i < 2000; ++i) {
+    REQUIRE(bench.tick(force_n) == TickFault::none);
+  }
+  // tensions are whole digits, 6.6 mN each, always rounded down
+  CHECK((bench.seen.position_m - force_n / 400.0).norm() < 1e-4);
+}
+
+TEST_CASE("a loop on the grip ends in zero outputs, said three times, whatever goes wrong",
+          "[device][spidar][usb]") {
+  struct Case {
+    Trouble trouble;
+    int delay_ms;
+    TickFault fault;
+  };
+  const Case one = GENERATE(Case{Trouble::late, 50, TickFault::no_reply},
+                            Case{Trouble::missing, 0, TickFault::no_reply},
+                            Case{Trouble::short_reply, 0, TickFault::bad_reply},
+                            Case{Trouble::stalled, 0, TickFault::bad_reply},
+                            Case{Trouble::protocol, 0, TickFault::bad_reply},
+                            Case{Trouble::overflow, 0, TickFault::bad_reply},
+                            Case{Trouble::not_accepted, 0, TickFault::bad_reply});
+  Bench bench;
+  bench.start();
+  for (int i = 0; i < 50; ++i) {
+    REQUIRE(bench.tick({3, 0, 0}) == TickFault::none);
+  }
+  bench.bus.plan(one.trouble, 0, std::chrono::milliseconds{one.delay_ms});
+  CHECK(bench.tick({3, 0, 0}) == one.fault);
+  bench.bus.forget_requests();
+  bench.spidar.drop();
+  const auto sent = bench.bus.requests();
+  REQUIRE(sent.size() == 3);
+  CHECK(std::ranges::all_of(sent, is_all_zero));
+  core::HandState hand;
+  CHECK(bench.spidar.read(hand) == TickFault::not_homed);
+}
+
+TEST_CASE("a late reply within the time allowed is no fault", "[device][spidar][usb]") {
+  Bench bench;
+  bench.start();
+  bench.bus.plan(Trouble::late, 0, std::chrono::milliseconds{1});
+  CHECK(bench.tick(Vec3::Zero()) == TickFault::none);
+}
+
+TEST_CASE("what the board gets wrong is seen", "[device][spidar][usb]") {
+  Bench bench;
+  bench.start();
+  REQUIRE(bench.tick({1, 0, 0}) == TickFault::none);
+  SECTION("an echo of what was never sent") {
+    bench.hardware.echo_wrongly();
+    CHECK(bench.tick({1, 0, 0}) == TickFault::wrong_echo);
+  }
+  SECTION("a counter that jumps") {
+    bench.hardware.jump(3, 400);
+    CHECK(bench.tick({1, 0, 0}) == TickFault::counter_jumped);
+  }
+  SECTION("a string that slips") {
+    bench.hardware.jump(3, 120);
+    CHECK(bench.tick({1, 0, 0}) == TickFault::strings_disagree);
+  }
+}
+
+TEST_CASE("an unplugged device is told in every phase, without hanging", "[device][spidar][usb]") {
+  Bench bench;
+  const int phase = GENERATE(0, 1, 2, 3);
+  if (phase == 0) {
+    bench.bus.unplug();
+    CHECK(bench.spidar.tighten(0.1) == TickFault::device_gone);
+    return;
+  }
+  bench.start();
+  if (phase == 1) {
+    bench.bus.unplug();
+  } else if (phase == 2) {
+    bench.bus.plan(Trouble::unplugged);
+  } else {
+    REQUIRE(bench.tick({1, 0, 0}) == TickFault::none);
+    bench.bus.plan(Trouble::unplugged);
+  }
+  CHECK(bench.tick({1, 0, 0}) == TickFault::device_gone);
+  CHECK(bench.tick({1, 0, 0}) != TickFault::none);
+  bench.spidar.drop();
+}
+
+TEST_CASE("a board that does not answer is refused at once", "[device][spidar][usb]") {
+  SimulatedSpidar hardware;
+  FakeBus bus{device::cyverse_vendor, device::sh4_product,
+              [](std::span<const std::uint8_t>) { return testing::Bytes{}; }};
+  const device::UsbNode node{Bench::node_of(bus)};
+  device::LibusbPipe pipe{node, {}, std::chrono::milliseconds{3}};
+  const auto board = device::board_of(device::sh4_product);
+  CHECK_THROWS_WITH(
+      (device::SpidarG6{
+          pipe,
+          *board,
+          {device::spidar_geometry("X3R"), SimulatedSpidar::calibration(), {}, 1e-3}}),
+      Catch::Matchers::Contains("does not answer: no reply in time"));
+}

@@ -1,0 +1,39 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "device/spidar/calibration.hpp"
+#include "support/usb/fake_bus.hpp"
+namespace tapstudy::testing {
+// A SPIDAR-G6 X3R with an SH4 board as it would be: a grip with mass, held by a hand's spring and
+// by eight motors whose currents follow the board's outputs, and encoders that count. Time passes
+// with every request, one tick each. It knows requests and replies only by their bytes.
+class SimulatedSpidar {
+ public:
+  static device::SpidarCalibration calibration();
+
+  Bytes answer(std::span<const std::uint8_t> request);
+  void hold_at(const core::Vec3& position_m) { aim_m_ = position_m; }
+  const core::Vec3& position_m() const { return position_m_; }
+  const device::PerString& tension_n() const { return tension_n_; }
+  void start_counters_at(std::int64_t count) { first_count_ = count; }
+  // What the board gets wrong.
+  void jump(std::size_t string, int counts) { slip_.at(string) += counts; }
+  void echo_wrongly() { echoes_wrongly_ = true; }
+
+ private:
+  void pass_a_tick();
+  Bytes reply() const;
+  device::SpidarGeometry geometry_{device::spidar_geometry("X3R")};
+  device::PerString length_at_rest_m_{strings_at(geometry_, {}).length_m};
+  device::PerString tension_n_{device::PerString::Zero()};
+  std::array<std::uint16_t, 8> digits_{};
+  core::Vec3 position_m_{core::Vec3::Zero()};
+  core::Vec3 velocity_m_s_{core::Vec3::Zero()};
+  core::Vec3 aim_m_{core::Vec3::Zero()};
+  std::int64_t first_count_{0};
+  std::array<int, 8> slip_{};
+  bool echoes_wrongly_{false};
+};
+}  // namespace tapstudy::testing

@@ -94,7 +94,10 @@ TickFault HapticLoop::fault_of_time(Nanoseconds woke_at) noexcept {
   if (has_beaten_.exchange(false, std::memory_order_acq_rel)) {
     last_beat_ = woke_at;
   }
-  if (settings_.longest_without_beat > 0 && woke_at - last_beat_ > settings_.longest_without_beat) {
+  // force that falls already needs nobody to look after it
+  const bool is_looked_after =
+      settings_.longest_without_beat > 0 && gate_.state() != ForceGate::State::stopping;
+  if (is_looked_after && woke_at - last_beat_ > settings_.longest_without_beat) {
     return TickFault::heartbeat_lost;
   }
   const bool gives_up =

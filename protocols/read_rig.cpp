@@ -72,17 +72,31 @@ SpidarRig read_spidar(MapReader& reader, const std::string& directory) {
   return spidar;
 }
 
-// A simulated hand cannot be hurt: only hardware must have limits to its motion.
-void read_hardware(MapReader& top, const std::string& file, Rig& rig) {
+ReplayRig read_replay(MapReader& reader, const std::string& directory) {
+  return {(std::filesystem::path{directory} / reader.text("directory")).string(),
+          reader.integer("trial_id", 1, 2'000'000'000)};
+}
+
+void read_device(MapReader& top, const std::string& directory, Rig& rig) {
+  if (rig.device == "spidar-g6") {
+    top.map("spidar", Presence::required,
+            [&](MapReader& reader) { rig.spidar = read_spidar(reader, directory); });
+  } else if (rig.device == "remote") {
+    top.map("remote", Presence::required, [&](MapReader& reader) {
+      rig.remote_port = static_cast<std::uint16_t>(reader.integer("port", 1024, 65535));
+    });
+  } else if (rig.device == "replay") {
+    top.map("replay", Presence::required,
+            [&](MapReader& reader) { rig.replay = read_replay(reader, directory); });
+  }
+}
+
+// A hand that is simulated or was recorded cannot be hurt: others must have limits to their motion.
+void read_limits_of_motion(MapReader& top, Rig& rig) {
   rig.max_hand_speed_m_s = top.number("max_hand_speed_m_s", Range::positive(10.0));
   rig.workspace_radius_m = top.number("workspace_radius_m", Range::positive(1.0));
   rig.force_rise_s = top.number("force_rise_s", {0.1, 10.0}, 0.5);
   rig.force_fall_s = top.number("force_fall_s", {0.01, 1.0}, 0.1);
-  if (rig.device == "spidar-g6") {
-    top.map("spidar", Presence::required, [&](MapReader& reader) {
-      rig.spidar = read_spidar(reader, std::filesystem::path{file}.parent_path().string());
-    });
-  }
 }
 }  // namespace
 
@@ -92,11 +106,12 @@ Rig parse_rig(const std::string& text, const std::string& file) {
   Rig rig;
   rig.text = text;
   top.word("format", "format", {"tapstudy-rig/1"});
-  rig.device = top.word("device", "device", {"simulated_hand", "spidar-g6"});
+  rig.device = top.word("device", "device", {"simulated_hand", "spidar-g6", "remote", "replay"});
   rig.limits.max_force_n = top.number("max_force_n", Range::positive(100.0));
   rig.limits.max_rate_n_per_s = top.number("max_force_rate_n_per_s", Range::positive(1e6));
-  if (rig.device != "simulated_hand") {
-    read_hardware(top, file, rig);
+  read_device(top, std::filesystem::path{file}.parent_path().string(), rig);
+  if (rig.spidar || rig.remote_port) {
+    read_limits_of_motion(top, rig);
   }
   read_loop(top, rig.loop);
   read_placement(top, Presence::optional,

@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <cstdint>
 #include <limits>
 #include <optional>
 #include <string>
@@ -30,6 +31,12 @@ struct SpidarRig {
   std::string calibration_text;
 };
 
+// The hand of a trial that is stored already.
+struct ReplayRig {
+  std::string directory;  // of its study
+  std::int64_t trial_id{};
+};
+
 // What surrounds the study: the device and what it may do.
 struct Rig {
   std::string text;
@@ -41,6 +48,8 @@ struct Rig {
   double force_fall_s{0.0};
   LoopRig loop;
   std::optional<SpidarRig> spidar;
+  std::optional<std::uint16_t> remote_port;
+  std::optional<ReplayRig> replay;
   std::optional<core::Placement> placement;  // instead of the protocol's
 };
 }  // namespace tapstudy::protocols

@@ -20,7 +20,7 @@ device::LoopSettings loop_settings(const protocols::Protocol& protocol, const pr
   settings.gate.rise_s = rig.force_rise_s;
   settings.gate.fall_s = rig.force_fall_s;
   settings.most_late_in_a_row = rig.loop.most_late_ticks_in_a_row;
-  if (rig.device != "simulated_hand") {
+  if (rig.spidar || rig.remote_port) {
     settings.longest_without_beat = longest_without_beat;
   }
   settings.placement = rig.placement.value_or(protocol.placement);

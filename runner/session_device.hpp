@@ -16,6 +16,11 @@ class SessionDevice {
   virtual void get_ready() = 0;
 };
 
+// The device of the rig; nothing where the hand is simulated. Throws DeviceError if it does not
+// answer, InvalidInput if the rig asks for what is not there.
+std::unique_ptr<SessionDevice> device_of_rig(const protocols::Rig& rig, double dt_s,
+                                             LineInput& operator_input);
+
 // A hand that taps by itself, on points drawn from the seed.
 std::unique_ptr<SessionDevice> simulated_device(const protocols::Protocol& protocol,
                                                 const core::Placement& placement,

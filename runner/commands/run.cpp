@@ -89,10 +89,6 @@ OpenedSession open_session(const RunOptions& options, const protocols::Protocol&
   return session;
 }
 
-bool is_simulated(const protocols::Rig& rig) {
-  return rig.device == "simulated_hand";
-}
-
 // Asked for in a thread like the loop's, and told to the record before the first trial.
 std::string realtime_in_force(const device::RealtimeRequest& request) {
   std::string got;
@@ -106,6 +102,9 @@ void run_session(const RunOptions& options) {
   check_participant_id(options.participant);
   const protocols::Rig rig =
       options.rig.empty() ? protocols::simulated_rig() : protocols::read_rig(options.rig);
+  if (rig.replay && !options.pilot) {
+    throw core::InvalidInput{"a replayed hand is no participant: give --pilot too"};
+  }
   const device::LoopSettings settings = loop_settings(protocol, rig);
   check_workspace(protocol, rig);
   ModelLibrary models;
@@ -115,10 +114,7 @@ void run_session(const RunOptions& options) {
   }
   listen_for_stop();
   LineInput input{STDIN_FILENO};
-  std::unique_ptr<SessionDevice> hardware;
-  if (!is_simulated(rig)) {
-    hardware = plugged_in_spidar(*rig.spidar, protocol.rendering.dt_s, input);
-  }
+  std::unique_ptr<SessionDevice> hardware = device_of_rig(rig, protocol.rendering.dt_s, input);
   results::Store store =
       results::Store::open_or_create(options.directory, study_row(protocol, options.protocol));
   const device::RealtimeRequest realtime = realtime_request(rig.loop);

@@ -230,6 +230,7 @@ TEST_CASE("asked to stop, the loop lets force fall gently where the rig says so"
           "[device][loop][safety]") {
   Bench bench;
   bench.settings.gate.fall_s = 0.1;
+  bench.settings.longest_without_beat = 20'000'000;  // nobody beats while it falls
   device::HapticLoop loop = bench.loop();
   loop.run_ticks(10);
   std::stop_source stop;

@@ -3,6 +3,8 @@
 #include <Eigen/Core>
 #include <catch2/catch.hpp>
 #include <memory>
+
+#include "support/sanitized.hpp"
 using namespace tapstudy::testing;
 
 #if !TAPSTUDY_SANITIZED

@@ -1,0 +1,125 @@
+#include "device/remote/remote_hand.hpp"
+
+#include <arpa/inet.h>
+#include <fmt/format.h>
+#include <netinet/in.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <bit>
+#include <cerrno>
+
+#include "device/remote/packets.hpp"
+namespace tapstudy::device {
+using core::TickFault;
+namespace {
+using Clock = std::chrono::steady_clock;
+constexpr int attempts = 20;
+constexpr std::chrono::milliseconds patience{50};  // for an attempt
+constexpr int zeros_on_drop = 3;
+
+int connected_socket(std::uint16_t port) noexcept {
+  const int descriptor = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_port = htons(port);
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  const auto generic = std::bit_cast<sockaddr>(address);
+  if (descriptor >= 0 && connect(descriptor, &generic, sizeof generic) != 0) {
+    close(descriptor);
+    return -1;
+  }
+  return descriptor;
+}
+}  // namespace
+
+RemoteHand::RemoteHand(std::uint16_t port, std::chrono::microseconds longest_reply)
+    : port_{port}, longest_reply_{patience}, socket_{connected_socket(port)} {
+  core::HandState ignored;
+  for (int i = 0; socket_ >= 0 && i < attempts; ++i) {
+    if (RemoteHand::read(ignored) == TickFault::none) {
+      longest_reply_ = longest_reply;
+      return;
+    }
+    usleep(static_cast<useconds_t>(std::chrono::microseconds{patience}.count()));
+  }
+  if (socket_ >= 0) {
+    close(socket_);
+  }
+  throw DeviceError{fmt::format(
+      "remote: nobody answers at 127.0.0.1, UDP port {} (is the program that drives the device "
+      "running?)",
+      port)};
+}
+
+RemoteHand::~RemoteHand() {
+  RemoteHand::drop();
+  close(socket_);
+}
+
+std::string RemoteHand::description() const {
+  return fmt::format("remote device at UDP port {}", port_);
+}
+
+TickFault RemoteHand::send(bool wants_reply) noexcept {
+  const auto bytes =
+      encoded({wants_reply ? RequestKind::reply : RequestKind::no_reply, ++number_, force_n_});
+  const ssize_t sent = ::send(socket_, bytes.data(), bytes.size(), 0);
+  if (sent == static_cast<ssize_t>(bytes.size())) {
+    return TickFault::none;
+  }
+  return errno == ECONNREFUSED ? TickFault::device_gone : TickFault::bad_reply;
+}
+
+bool RemoteHand::wait_until(Clock::time_point end) const noexcept {
+  const auto left = std::chrono::duration_cast<std::chrono::nanoseconds>(end - Clock::now());
+  if (left.count() <= 0) {
+    return false;
+  }
+  pollfd waiting{socket_, POLLIN, 0};
+  const timespec patience_left{0, left.count()};
+  return ppoll(&waiting, 1, &patience_left, nullptr) > 0;
+}
+
+// Replies to earlier requests, that came too late, are passed over.
+TickFault RemoteHand::receive(core::HandState& hand) noexcept {
+  const Clock::time_point end = Clock::now() + longest_reply_;
+  while (wait_until(end)) {
+    std::array<std::uint8_t, reply_bytes + 1> bytes{};
+    const ssize_t count = recv(socket_, bytes.data(), bytes.size(), 0);
+    if (count < 0) {
+      if (errno == ECONNREFUSED) {
+        return TickFault::device_gone;
+      }
+      continue;
+    }
+    const auto reply = decoded_reply(std::span{bytes}.first(static_cast<std::size_t>(count)));
+    if (!reply) {
+      return TickFault::bad_reply;
+    }
+    if (reply->number == number_) {
+      hand = reply->hand;
+      return TickFault::none;
+    }
+  }
+  return TickFault::no_reply;
+}
+
+TickFault RemoteHand::read(core::HandState& hand) noexcept {
+  const TickFault fault = send(true);
+  return fault == TickFault::none ? receive(hand) : fault;
+}
+
+TickFault RemoteHand::write(const core::Vec3& force_n) noexcept {
+  force_n_ = force_n;
+  return send(false);
+}
+
+void RemoteHand::drop() noexcept {
+  force_n_ = core::Vec3::Zero();
+  for (int i = 0; i < zeros_on_drop; ++i) {
+    static_cast<void>(send(false));
+  }
+}
+}  // namespace tapstudy::device

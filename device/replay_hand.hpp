@@ -1,0 +1,26 @@
+#pragma once
+#include <cstddef>
+#include <vector>
+
+#include "device/device.hpp"
+namespace tapstudy::device {
+// A hand that moves as another did, tick by tick, whatever force it is given; at the end it stays
+// where it is.
+class ReplayHand final : public Device {
+ public:
+  // At least one state. The source is for the record.
+  ReplayHand(std::vector<core::HandState> states, std::string source);
+  void rewind() noexcept { next_ = 0; }
+
+  [[nodiscard]] core::TickFault read(core::HandState& hand) noexcept override;
+  [[nodiscard]] core::TickFault write(const core::Vec3& force_n) noexcept override;
+  DeviceDetail detail() const noexcept override { return {force_n_}; }
+  std::string description() const override { return "replay of " + source_; }
+
+ private:
+  std::vector<core::HandState> states_;
+  std::string source_;
+  std::size_t next_{0};
+  core::Vec3 force_n_{core::Vec3::Zero()};
+};
+}  // namespace tapstudy::device

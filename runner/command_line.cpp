@@ -47,6 +47,7 @@ ExitCode carry_out(int argc, const char* const* argv) {
   add_trade(app);
   add_devices(app);
   add_doctor(app);
+  add_calibrate(app);
   refuse_empty_values(app);
   try {
     app.parse(argc, argv);

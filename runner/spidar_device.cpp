@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <chrono>
 #include <thread>
 #include <vector>
@@ -8,6 +7,7 @@
 #include "device/usb/guardian.hpp"
 #include "device/usb/libusb_pipe.hpp"
 #include "runner/exit_code.hpp"
+#include "runner/plugged_in.hpp"
 #include "runner/session_device.hpp"
 #include "runner/stop_signal.hpp"
 #include "runner/trial_record.hpp"
@@ -64,23 +64,11 @@ class SpidarDevice final : public SessionDevice {
   device::LibusbPipe pipe_;
   device::SpidarG6 spidar_;
 };
-
-std::vector<device::UsbListing> spidars() {
-  std::vector<device::UsbListing> all = device::usb_devices();
-  std::erase_if(all, [](const device::UsbListing& one) {
-    return one.vendor != device::cyverse_vendor || device::board_of(one.product) == nullptr;
-  });
-  return all;
-}
 }  // namespace
 
 std::unique_ptr<SessionDevice> plugged_in_spidar(const protocols::SpidarRig& rig, double dt_s,
                                                  LineInput& operator_input) {
-  const std::vector<device::UsbListing> all = spidars();
-  if (all.empty()) {
-    throw device::DeviceError{
-        "no SPIDAR-G6 is plugged in (0cec:0205 or 0cec:0203; `tapstudy devices` lists what is)"};
-  }
+  const std::vector<device::UsbListing> all = plugged_in_spidars();
   if (all.size() > 1 && !rig.rotary_switch) {
     throw device::DeviceError{fmt::format(
         "{} SPIDAR-G6 are plugged in: say in the rig which (spidar.rotary_switch)", all.size())};

@@ -15,6 +15,7 @@ void add_tap(CLI::App& app);
 void add_trade(CLI::App& app);
 void add_devices(CLI::App& app);
 void add_doctor(CLI::App& app);
+void add_calibrate(CLI::App& app);
 
 // A file's name must say what the file will hold.
 CLI::Validator ends_in(const std::string& suffix);

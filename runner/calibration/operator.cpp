@@ -1,0 +1,35 @@
+#include "runner/calibration/operator.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+
+#include "runner/exit_code.hpp"
+#include "runner/stop_signal.hpp"
+namespace tapstudy::runner {
+std::string OperatorAtTerminal::next_line() {
+  const auto line = input_.next([] { return !stop_was_asked(); });
+  if (!line) {
+    throw Stopped{"stopped; nothing was written"};
+  }
+  return *line;
+}
+
+void OperatorAtTerminal::please(const std::string& task) {
+  fmt::print(stderr, "{}, then press Enter. ", task);
+  next_line();
+}
+
+double OperatorAtTerminal::how_much(const std::string& task, double most) {
+  while (true) {
+    fmt::print(stderr, "{}: ", task);
+    const std::string line = next_line();
+    double value = 0.0;
+    const auto [end, error] = std::from_chars(line.data(), line.data() + line.size(), value);
+    if (error == std::errc{} && end == line.data() + line.size() && value > 0.0 && value <= most) {
+      return value;
+    }
+    fmt::print(stderr, "  please type a number above 0, at most {}\n", most);
+  }
+}
+}  // namespace tapstudy::runner

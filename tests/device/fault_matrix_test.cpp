@@ -1,0 +1,200 @@
+// What every fault does in every state of the loop, on a simulated SPIDAR behind the real libusb.
+#include <fmt/format.h>
+#include <libusb.h>
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/technique.hpp"
+#include "device/haptic_loop.hpp"
+#include "device/spidar/spidar_g6.hpp"
+#include "device/usb/libusb_pipe.hpp"
+#include "support/usb/simulated_spidar.hpp"
+using namespace tapstudy;
+using core::TickFault;
+using device::ForceGate;
+using testing::FakeBus;
+using testing::SimulatedSpidar;
+using Trouble = FakeBus::Trouble;
+
+namespace {
+// Time that passes as told, late from now on if so told.
+class SteadyClock final : public device::TickClock {
+ public:
+  device::Nanoseconds now() noexcept override { return now_; }
+  device::Nanoseconds wait_until(device::Nanoseconds deadline) noexcept override {
+    return now_ = deadline + lateness;
+  }
+  device::Nanoseconds lateness{0};
+
+ private:
+  device::Nanoseconds now_{0};
+};
+
+struct Stage {
+  SimulatedSpidar hardware;
+  FakeBus bus{device::cyverse_vendor, device::sh4_product,
+              [this](auto request) { return hardware.answer(request); }};
+  device::UsbNode node{node_of(bus)};
+  device::LibusbPipe pipe{node, {}, std::chrono::milliseconds{3}};
+  std::unique_ptr<device::SpidarBoard> board{device::board_of(device::sh4_product)};
+  device::SpidarG6 spidar{
+      pipe, *board, {device::spidar_geometry("X3R"), SimulatedSpidar::calibration(), {}, 1e-3}};
+  std::vector<core::TapRenderer> renderers;
+  core::SpscRing<core::TraceSample> trace{8192};
+  SteadyClock clock;
+  std::unique_ptr<device::HapticLoop> loop;
+  std::stop_source stop;
+
+  static device::UsbNode node_of(FakeBus& bus) {
+    libusb_set_option(nullptr, LIBUSB_OPTION_NO_DEVICE_DISCOVERY);
+    return device::UsbNode{bus.open()};
+  }
+
+  Stage() {
+    renderers.emplace_back(*core::find_technique("none"), core::RenderSettings{},
+                           core::PlateFace{0.3, 0.3}, nullptr);
+    device::LoopSettings settings;
+    settings.gate = {{5.0, 5000.0}, 1.0, 0.02, 0.1, 0.1};
+    settings.most_late_in_a_row = 5;
+    settings.longest_without_beat = 100'000'000;
+    loop = std::make_unique<device::HapticLoop>(spidar, renderers, settings, trace, clock);
+    hardware.hold_at({0.0, 0.005, 0.0});
+    for (int step = 1; step <= 500; ++step) {
+      REQUIRE(spidar.tighten(step / 500.0) == TickFault::none);
+    }
+    hardware.hold_at({0.0, 0.0, 0.0});
+    for (int step = 0; step < 500; ++step) {
+      REQUIRE(spidar.tighten(1.0) == TickFault::none);
+    }
+    REQUIRE(spidar.home() == TickFault::none);
+  }
+  void tick(int count) {
+    for (int i = 0; i < count; ++i) {
+      loop->beat();
+      loop->run_ticks(1);
+    }
+  }
+  void arm() {
+    hardware.hold_at({0.0, 0.01, 0.0});
+    tick(5);
+  }
+  void press() {
+    arm();
+    tick(400);
+    hardware.hold_at({0.0, -0.012, 0.0});
+    tick(400);
+  }
+  TickFault last_stored() {
+    core::TraceSample sample{};
+    while (trace.try_pop(sample)) {
+    }
+    return sample.fault;
+  }
+};
+
+bool is_all_zero(const testing::Bytes& request) {
+  return std::all_of(request.begin() + 2, request.begin() + 18,
+                     [](std::uint8_t byte) { return byte == 0; });
+}
+
+struct Fault {
+  const char* name;
+  std::function<void(Stage&)> happen;
+  std::vector<TickFault> seen_as;
+};
+
+std::vector<Fault> all_faults() {
+  const auto on_the_wire = [](Trouble trouble, int delay_ms = 0) {
+    return [=](Stage& stage) { stage.bus.plan(trouble, 0, std::chrono::milliseconds{delay_ms}); };
+  };
+  return {
+      {"reply 50 ms late", on_the_wire(Trouble::late, 50), {TickFault::no_reply}},
+      {"no reply", on_the_wire(Trouble::missing), {TickFault::no_reply}},
+      {"half a reply", on_the_wire(Trouble::short_reply), {TickFault::bad_reply}},
+      {"stall", on_the_wire(Trouble::stalled), {TickFault::bad_reply}},
+      {"protocol error", on_the_wire(Trouble::protocol), {TickFault::bad_reply}},
+      {"overflow", on_the_wire(Trouble::overflow), {TickFault::bad_reply}},
+      {"kernel out of memory", on_the_wire(Trouble::not_accepted), {TickFault::bad_reply}},
+      {"unplugged", [](Stage& stage) { stage.bus.unplug(); }, {TickFault::device_gone}},
+      {"unplugged in a tick", on_the_wire(Trouble::unplugged), {TickFault::device_gone}},
+      {"wrong echo", [](Stage& stage) { stage.hardware.echo_wrongly(); }, {TickFault::wrong_echo}},
+      {"counter jumps",
+       [](Stage& stage) { stage.hardware.jump(3, 400); },
+       {TickFault::counter_jumped}},
+      {"string slips",
+       [](Stage& stage) { stage.hardware.jump(3, 100); },
+       {TickFault::strings_disagree}},
+      {"hand torn away",
+       [](Stage& stage) {
+         stage.hardware.hold_at({0.3, 0.3, 0.0});
+       },
+       {TickFault::too_fast, TickFault::outside_workspace, TickFault::counter_jumped}},
+      {"ticks late", [](Stage& stage) { stage.clock.lateness = 700'000; }, {TickFault::too_late}}};
+}
+
+struct State {
+  const char* name;
+  std::function<void(Stage&)> reach;
+};
+
+// How many packets with force on left after the fault began, and that it stays off.
+void check_and_print(const Fault& fault, const State& state) {
+  Stage stage;
+  state.reach(stage);
+  REQUIRE(stage.loop->report().stopped_by == TickFault::none);
+  fault.happen(stage);
+  stage.bus.forget_requests();
+  const std::int64_t before = stage.loop->report().ticks;
+  stage.tick(200);
+  const TickFault seen = stage.loop->report().stopped_by;
+  const std::int64_t detected = stage.loop->report().ticks - before;
+  const auto sent = stage.bus.requests();
+  const auto with_force = std::ranges::count_if(
+      sent, [](const testing::Bytes& request) { return !is_all_zero(request); });
+  fmt::print("  {:<22}{:<12}{:>9}{:>12}   {}\n", fault.name, state.name, detected, with_force,
+             static_cast<int>(seen));
+  CAPTURE(fault.name, state.name, static_cast<int>(seen));
+  CHECK(std::ranges::count(fault.seen_as, seen) == 1);
+  CHECK(stage.last_stored() == seen);
+  CHECK(with_force <= detected);  // none after the tick that found it
+  const bool is_reachable = seen != TickFault::device_gone;
+  CHECK((sent.size() >= 3 || !is_reachable));
+  CHECK((!is_reachable || std::all_of(sent.end() - 3, sent.end(), is_all_zero)));
+  const std::int64_t stopped_at = stage.loop->report().ticks;
+  stage.tick(50);
+  CHECK(stage.loop->report().ticks == stopped_at);  // latched
+  CHECK(!stage.spidar.is_homed());
+}
+}  // namespace
+
+TEST_CASE("the fault matrix: force is off by the tick that finds the fault, and stays off",
+          "[device][safety][usb]") {
+  const std::vector<State> states{{"armed", &Stage::arm}, {"rendering", &Stage::press}};
+  fmt::print("  fault                 state       detected  with force   as\n");
+  for (const Fault& fault : all_faults()) {
+    for (const State& state : states) {
+      check_and_print(fault, state);
+    }
+  }
+}
+
+TEST_CASE("pressing on a plate through the whole chain gives the plate's force",
+          "[device][safety][usb]") {
+  Stage stage;
+  stage.press();
+  core::TraceSample sample{};
+  core::TraceSample last{};
+  while (stage.trace.try_pop(sample)) {
+    last = sample;
+  }
+  CHECK(last.touching);
+  CHECK(last.force_n[1] == Approx(3000.0 * last.penetration_m));
+  CHECK(last.achieved_n[1] == Approx(last.force_n[1]).epsilon(1e-4));
+  // the muscle aims 12 mm deep and meets a spring of 3000 N/m: k d / (k + K)
+  CHECK(last.penetration_m == Approx(400.0 * 0.012 / 3400.0).epsilon(0.05));
+  CHECK(last.closure_margin > 0.0);
+}

@@ -1,0 +1,121 @@
+#include "runner/calibration/calibrate_spidar.hpp"
+
+#include <libusb.h>
+
+#include <catch2/catch.hpp>
+#include <fstream>
+
+#include "core/error.hpp"
+#include "device/device.hpp"
+#include "device/usb/libusb_pipe.hpp"
+#include "protocols/read_rig.hpp"
+#include "support/texts.hpp"
+#include "support/usb/fake_bus.hpp"
+using namespace tapstudy;
+using Catch::Matchers::Contains;
+
+namespace {
+// A board whose eight strings differ: metres a count, newtons a digit, friction.
+struct Workbench {
+  std::array<int, 8> count{};
+  std::array<int, 8> digits{};
+  int most_digits{0};
+  testing::FakeBus bus{device::cyverse_vendor, device::sh4_product,
+                       [this](auto request) { return reply(request); }};
+  device::UsbNode node{node_of(bus)};
+  device::LibusbPipe pipe{node, {}, std::chrono::milliseconds{100}};
+  std::unique_ptr<device::SpidarBoard> board{device::board_of(device::sh4_product)};
+
+  static device::UsbNode node_of(testing::FakeBus& bus) {
+    libusb_set_option(nullptr, LIBUSB_OPTION_NO_DEVICE_DISCOVERY);
+    return device::UsbNode{bus.open()};
+  }
+  static double metres_per_count(std::size_t i) {
+    return (i % 2 == 0 ? 1.0 : -1.0) * (1.6e-5 + 1e-7 * static_cast<double>(i));
+  }
+  static double newtons_per_digit(std::size_t i) { return 0.006 + 0.0005 * static_cast<double>(i); }
+  static constexpr double friction_n = 0.2;
+
+  testing::Bytes reply(std::span<const std::uint8_t> request) {
+    testing::Bytes bytes(512, 0);
+    for (std::size_t i = 0; i < 8; ++i) {
+      digits.at(i) = request[2 + 2 * i] | request[3 + 2 * i] << 8;
+      most_digits = std::max(most_digits, digits.at(i));
+      bytes[16 + 2 * i] = static_cast<std::uint8_t>(count.at(i) & 0xFF);
+      bytes[17 + 2 * i] = static_cast<std::uint8_t>(count.at(i) >> 8 & 0xFF);
+    }
+    return bytes;
+  }
+};
+
+// Does what is asked, on the string whose turn it is.
+class SkilledOperator final : public runner::Operator {
+ public:
+  explicit SkilledOperator(Workbench& bench) : bench_{bench} {}
+  void please(const std::string& /*task*/) override { ++string_; }
+  double how_much(const std::string& task, double /*most*/) override {
+    const auto i = static_cast<std::size_t>(string_);
+    if (task.find("metres") != std::string::npos) {
+      bench_.count.at(i) += static_cast<int>(0.1 / Workbench::metres_per_count(i));
+      return 0.1;
+    }
+    return Workbench::newtons_per_digit(i) * bench_.digits.at(i) + Workbench::friction_n;
+  }
+
+ private:
+  Workbench& bench_;
+  int string_{-1};
+};
+
+class IdleOperator final : public runner::Operator {
+ public:
+  void please(const std::string& /*task*/) override {}
+  double how_much(const std::string& /*task*/, double /*most*/) override { return 0.1; }
+};
+}  // namespace
+
+TEST_CASE("what a skilled operator measures is what the strings are", "[runner][calibration]") {
+  Workbench bench;
+  SkilledOperator person{bench};
+  const auto strings = runner::calibrate_spidar(*bench.board, bench.pipe, person);
+  for (std::size_t i = 0; i < 8; ++i) {
+    CHECK(strings.at(i).metres_per_count == Approx(Workbench::metres_per_count(i)).epsilon(1e-3));
+    const double newtons_per_digit =
+        1.0 / (strings.at(i).volts_per_newton * strings.at(i).digits_per_volt);
+    CHECK(newtons_per_digit == Approx(Workbench::newtons_per_digit(i)).epsilon(1e-9));
+  }
+  CHECK(bench.most_digits <= runner::calibration_digits);
+  CHECK(std::ranges::all_of(bench.digits, [](int digits) { return digits == 0; }));
+}
+
+TEST_CASE("what calibration writes, a rig reads", "[runner][calibration]") {
+  const testing::TempDirectory directory;
+  Workbench bench;
+  SkilledOperator person{bench};
+  const auto strings = runner::calibrate_spidar(*bench.board, bench.pipe, person);
+  {
+    std::ofstream file{directory / "spidar_calibration.yaml"};
+    runner::write_calibration(file, "X3R", strings);
+  }
+  testing::write(directory / "rig.yaml",
+                 testing::contents(testing::shipped("rigs/spidar_g6.yaml")));
+  const protocols::Rig rig = protocols::read_rig(directory / "rig.yaml");
+  CHECK(rig.spidar->strings[3].metres_per_count ==
+        Approx(strings[3].metres_per_count).epsilon(1e-5));
+}
+
+TEST_CASE("an encoder that does not move ends calibration, with all outputs zero",
+          "[runner][calibration]") {
+  Workbench bench;
+  IdleOperator person;
+  CHECK_THROWS_WITH(runner::calibrate_spidar(*bench.board, bench.pipe, person),
+                    Contains("string 1: its encoder counted 0"));
+  CHECK(std::ranges::all_of(bench.digits, [](int digits) { return digits == 0; }));
+}
+
+TEST_CASE("a board that is unplugged ends calibration", "[runner][calibration]") {
+  Workbench bench;
+  SkilledOperator person{bench};
+  bench.bus.plan(testing::FakeBus::Trouble::unplugged, 10);
+  CHECK_THROWS_AS(runner::calibrate_spidar(*bench.board, bench.pipe, person), device::DeviceError);
+}

@@ -18,6 +18,7 @@ constexpr int icntl_diagnostics = 1;
 constexpr int icntl_statistics = 2;
 constexpr int icntl_print_level = 3;
 constexpr int icntl_ordering = 6;
+constexpr int icntl_scaling = 7;
 constexpr int icntl_workspace_percent = 13;
 constexpr int ordering_by_minimum_fill = 2;
 constexpr int ordering_by_pord = 4;
@@ -78,6 +79,7 @@ struct ShiftedFactor::Mumps {
     // Nested dissection takes longer than minimum fill, and pays for it by far in a large body.
     id.icntl[icntl_ordering] =
         lower.rows() < small_size ? ordering_by_minimum_fill : ordering_by_pord;
+    id.icntl[icntl_scaling] = 0;  // stiffness is of one unit throughout
     if (!first_of_block.empty()) {
       std::ranges::transform(first_of_block, std::back_inserter(blocks),
                              [](int first) { return first + 1; });

@@ -16,6 +16,7 @@
 #include <cstdlib>
 #include <cstring>
 
+// NOLINTBEGIN(cppcoreguidelines-pro-type-reinterpret-cast): sockets take addresses in no other way
 namespace {
 constexpr timeval longest_silence{0, 100'000};
 
@@ -83,3 +84,4 @@ int main(int argc, char** argv) {
     }
   }
 }
+// NOLINTEND(cppcoreguidelines-pro-type-reinterpret-cast)

@@ -5,9 +5,9 @@
 #include "device/spidar/calibration.hpp"
 #include "runner/calibration/operator.hpp"
 namespace tapstudy::runner {
-// Nothing stronger is put out before a string's force is known: some four newtons by the largest
-// scale that was ever published, a little over one by the smallest.
-inline constexpr std::uint16_t calibration_digits = 600;
+// Nothing stronger is put out before a string's force is known: two newtons if a newton takes
+// 0.365 V, six if it takes 0.114 V, the two scales that were published for one frame.
+inline constexpr std::uint16_t calibration_digits = 300;
 
 // One string after the other: pulled out by a measured length, which gives metres a count and the
 // encoder's sign; then held by a force gauge at two outputs, whose difference gives newtons a digit

@@ -32,10 +32,11 @@ StringRig read_string(MapReader& reader) {
 }
 
 // The file of one device, apart from the rig: other studies on the same device share it.
-void read_calibration(const std::string& file, SpidarRig& spidar) {
-  spidar.calibration_text = contents_of(file);
+void read_calibration(const std::string& file, SpidarRig& spidar, std::string& rig_text) {
+  const std::string text = contents_of(file);
+  rig_text += "\n---\n" + text;
   Problems problems{file};
-  MapReader top = MapReader::whole_file(spidar.calibration_text, file, problems);
+  MapReader top = MapReader::whole_file(text, file, problems);
   top.word("format", "format", {"tapstudy-calibration/1"});
   top.word("device", "device", {"spidar-g6"});
   top.word("type", "type of this rig", {spidar.type});
@@ -59,7 +60,7 @@ void read_calibration(const std::string& file, SpidarRig& spidar) {
   problems.throw_if_any();
 }
 
-SpidarRig read_spidar(MapReader& reader, const std::string& directory) {
+SpidarRig read_spidar(MapReader& reader, const std::string& directory, std::string& rig_text) {
   SpidarRig spidar;
   spidar.type = reader.word("type", "type", {"X3R", "X3L"});
   if (reader.has("rotary_switch")) {
@@ -67,7 +68,7 @@ SpidarRig read_spidar(MapReader& reader, const std::string& directory) {
   }
   const std::string calibration = reader.text("calibration");
   if (!spidar.type.empty() && !calibration.empty()) {
-    read_calibration((std::filesystem::path{directory} / calibration).string(), spidar);
+    read_calibration((std::filesystem::path{directory} / calibration).string(), spidar, rig_text);
   }
   return spidar;
 }
@@ -80,7 +81,7 @@ ReplayRig read_replay(MapReader& reader, const std::string& directory) {
 void read_device(MapReader& top, const std::string& directory, Rig& rig) {
   if (rig.device == "spidar-g6") {
     top.map("spidar", Presence::required,
-            [&](MapReader& reader) { rig.spidar = read_spidar(reader, directory); });
+            [&](MapReader& reader) { rig.spidar = read_spidar(reader, directory, rig.text); });
   } else if (rig.device == "remote") {
     top.map("remote", Presence::required, [&](MapReader& reader) {
       rig.remote_port = static_cast<std::uint16_t>(reader.integer("port", 1024, 65535));

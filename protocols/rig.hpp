@@ -28,7 +28,6 @@ struct SpidarRig {
   double min_tension_n{};
   double max_tension_n{};
   std::array<StringRig, 8> strings;
-  std::string calibration_text;
 };
 
 // The hand of a trial that is stored already.
@@ -39,7 +38,7 @@ struct ReplayRig {
 
 // What surrounds the study: the device and what it may do.
 struct Rig {
-  std::string text;
+  std::string text;  // all that it was read from, a calibration as a second document
   std::string device;
   core::ForceLimits limits;
   double max_hand_speed_m_s{std::numeric_limits<double>::infinity()};

@@ -24,8 +24,7 @@ std::string contents_of(const std::string& file) {
   }
   text.resize(static_cast<std::size_t>(stream.gcount()));
   if (text.size() > largest_file) {
-    throw core::InvalidInput{
-        fmt::format("{}: is too long for a protocol (at most {} bytes)", file, largest_file)};
+    throw core::InvalidInput{fmt::format("{}: is too long (at most {} bytes)", file, largest_file)};
   }
   return text;
 }

@@ -36,6 +36,7 @@ TEST_CASE("a rig with hardware brings its limits and its device's calibration",
   testing::write(directory / "spidar_calibration.yaml", calibration_text());
   const protocols::Rig rig = protocols::read_rig(directory / "rig.yaml");
   REQUIRE(rig.spidar);
+  CHECK_THAT(rig.text, Contains(rig_text()) && Contains(calibration_text()));  // for the record
   CHECK(rig.spidar->type == "X3R");
   CHECK(rig.spidar->strings[0].metres_per_count == -1.66555e-5);
   CHECK(rig.spidar->strings[2].metres_per_count == 1.66555e-5);

@@ -9,6 +9,9 @@ class DeviceError : public core::Error {
   using core::Error::Error;
 };
 
+// How often "no force" is said after a fault, for a packet may get lost.
+inline constexpr int times_no_force_is_said = 3;
+
 // What a device makes of its last tick.
 struct DeviceDetail {
   core::Vec3 achieved_n{core::Vec3::Zero()};

@@ -8,8 +8,9 @@ constexpr double quiet_n = 0.2;
 constexpr int quiet_ticks_needed = 10;
 }  // namespace
 
-ForceGate::ForceGate(const GateSettings& settings) noexcept
+ForceGate::ForceGate(const GateSettings& settings, double dt_s) noexcept
     : settings_{settings},
+      dt_s_{dt_s},
       state_{settings.rise_s > 0.0 ? State::armed : State::rendering},
       share_{settings.rise_s > 0.0 ? 0.0 : 1.0} {}
 
@@ -36,9 +37,9 @@ void ForceGate::advance(double wanted_size_n) noexcept {
     quiet_ticks_ = wanted_size_n < quiet_n ? quiet_ticks_ + 1 : 0;
     state_ = quiet_ticks_ >= quiet_ticks_needed ? State::rendering : State::armed;
   } else if (state_ == State::rendering && share_ < 1.0) {
-    share_ = std::min(1.0, share_ + settings_.dt_s / settings_.rise_s);
+    share_ = std::min(1.0, share_ + dt_s_ / settings_.rise_s);
   } else if (state_ == State::stopping) {
-    share_ = settings_.fall_s > 0.0 ? share_ - settings_.dt_s / settings_.fall_s : 0.0;
+    share_ = settings_.fall_s > 0.0 ? share_ - dt_s_ / settings_.fall_s : 0.0;
     if (share_ <= 0.0) {
       share_ = 0.0;
       state_ = State::at_rest;
@@ -54,7 +55,7 @@ PassedForce ForceGate::pass(const core::Vec3& wanted_n, const core::HandState& h
   }
   advance(wanted_n.norm());
   const core::LimitedForce limited =
-      core::limit_force(share_ * wanted_n, previous_n_, settings_.limits, settings_.dt_s);
+      core::limit_force(share_ * wanted_n, previous_n_, settings_.limits, dt_s_);
   previous_n_ = limited.force_n;
   return {limited.force_n, limited.was_changed || share_ < 1.0, TickFault::none};
 }

@@ -9,7 +9,6 @@ struct GateSettings {
   double workspace_radius_m{std::numeric_limits<double>::infinity()};  // round the middle
   double rise_s{0.0};  // from no force to the whole, when it is let on; 0: at once
   double fall_s{0.0};  // from the whole to none, when it is taken off
-  double dt_s{1e-3};
 };
 
 struct PassedForce {
@@ -25,7 +24,7 @@ struct PassedForce {
 class ForceGate {
  public:
   enum class State { armed, rendering, stopping, at_rest };
-  explicit ForceGate(const GateSettings& settings) noexcept;
+  ForceGate(const GateSettings& settings, double dt_s) noexcept;
   PassedForce pass(const core::Vec3& wanted_n, const core::HandState& hand) noexcept;
   // From now on force falls to none.
   void stop() noexcept;
@@ -36,6 +35,7 @@ class ForceGate {
   void advance(double wanted_size_n) noexcept;
 
   GateSettings settings_;
+  double dt_s_;
   State state_;
   int quiet_ticks_{0};
   double share_{0.0};

@@ -8,11 +8,6 @@ namespace {
 std::array<double, 3> as_array(const core::Vec3& v) noexcept {
   return {v.x(), v.y(), v.z()};
 }
-
-GateSettings at_rate(GateSettings gate, Nanoseconds period) noexcept {
-  gate.dt_s = 1e-9 * static_cast<double>(period);
-  return gate;
-}
 }  // namespace
 
 HapticLoop::HapticLoop(Device& device, std::span<core::TapRenderer> alternatives,
@@ -23,7 +18,7 @@ HapticLoop::HapticLoop(Device& device, std::span<core::TapRenderer> alternatives
       settings_{std::move(settings)},
       trace_{trace},
       clock_{clock},
-      gate_{at_rate(settings_.gate, settings_.period)} {}
+      gate_{settings_.gate, 1e-9 * static_cast<double>(settings_.period)} {}
 
 void HapticLoop::run(const std::stop_token& stop) noexcept {
   while (!stop.stop_requested() && step()) {

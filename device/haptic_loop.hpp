@@ -22,7 +22,7 @@ struct LoopReport {
 
 struct LoopSettings {
   Nanoseconds period{1'000'000};
-  GateSettings gate;  // its dt_s is the period
+  GateSettings gate;
   core::Placement placement;
   int most_late_in_a_row{0};            // beyond it the loop gives up; 0: never
   Nanoseconds longest_without_beat{0};  // likewise, for the heartbeat; 0: there is none

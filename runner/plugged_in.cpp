@@ -3,13 +3,14 @@
 #include <fmt/format.h>
 
 #include "device/device.hpp"
-#include "device/spidar/board.hpp"
 namespace tapstudy::runner {
+bool is_spidar(const device::UsbListing& listing) {
+  return listing.vendor == device::cyverse_vendor && device::board_of(listing.product) != nullptr;
+}
+
 std::vector<device::UsbListing> plugged_in_spidars() {
   std::vector<device::UsbListing> all = device::usb_devices();
-  std::erase_if(all, [](const device::UsbListing& one) {
-    return one.vendor != device::cyverse_vendor || device::board_of(one.product) == nullptr;
-  });
+  std::erase_if(all, [](const device::UsbListing& one) { return !is_spidar(one); });
   if (all.empty()) {
     throw device::DeviceError{
         "no SPIDAR-G6 is plugged in (0cec:0205 or 0cec:0203; `tapstudy devices` lists what is)"};
@@ -25,4 +26,10 @@ device::UsbListing the_only_spidar() {
   }
   return all.front();
 }
+
+OpenBoard::OpenBoard(const device::UsbListing& listing, std::chrono::milliseconds longest_reply)
+    : node{listing.node},
+      board{device::board_of(listing.product)},
+      guardian{node, device::BulkEndpoints{}.out, board->no_force()},
+      pipe{node, {}, longest_reply} {}
 }  // namespace tapstudy::runner

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
 #include <utility>
 
 #include "core/error.hpp"
@@ -11,8 +10,6 @@
 #include "results/store.hpp"
 namespace tapstudy::runner {
 namespace {
-constexpr std::chrono::milliseconds longest_reply{3};
-
 class RemoteDevice final : public SessionDevice {
  public:
   explicit RemoteDevice(std::uint16_t port) : hand_{port, longest_reply} {}

@@ -4,8 +4,6 @@
 #include <thread>
 #include <vector>
 
-#include "device/usb/guardian.hpp"
-#include "device/usb/libusb_pipe.hpp"
 #include "runner/exit_code.hpp"
 #include "runner/plugged_in.hpp"
 #include "runner/session_device.hpp"
@@ -13,7 +11,6 @@
 #include "runner/trial_record.hpp"
 namespace tapstudy::runner {
 namespace {
-constexpr std::chrono::milliseconds longest_reply{3};
 constexpr int tightening_steps = 500;
 constexpr std::chrono::milliseconds tightening_step{1};
 
@@ -23,11 +20,8 @@ class SpidarDevice final : public SessionDevice {
   SpidarDevice(const device::UsbListing& listing, const protocols::SpidarRig& rig, double dt_s,
                LineInput& operator_input)
       : input_{operator_input},
-        node_{listing.node},
-        board_{device::board_of(listing.product)},
-        guardian_{node_, device::BulkEndpoints{}.out, board_->no_force()},
-        pipe_{node_, {}, longest_reply},
-        spidar_{pipe_, *board_, spidar_settings(rig, dt_s)} {}
+        open_{listing, longest_reply},
+        spidar_{open_.pipe, *open_.board, spidar_settings(rig, dt_s)} {}
   device::Device& device() override { return spidar_; }
   int rotary_switch() const { return spidar_.rotary_switch(); }
   void get_ready() override {
@@ -58,10 +52,7 @@ class SpidarDevice final : public SessionDevice {
   }
 
   LineInput& input_;
-  device::UsbNode node_;
-  std::unique_ptr<device::SpidarBoard> board_;
-  device::Guardian guardian_;
-  device::LibusbPipe pipe_;
+  OpenBoard open_;
   device::SpidarG6 spidar_;
 };
 }  // namespace

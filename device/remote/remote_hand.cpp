@@ -17,7 +17,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 constexpr int attempts = 20;
 constexpr std::chrono::milliseconds patience{50};  // for an attempt
-constexpr int zeros_on_drop = 3;
 
 int connected_socket(std::uint16_t port) noexcept {
   const int descriptor = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
@@ -118,7 +117,7 @@ TickFault RemoteHand::write(const core::Vec3& force_n) noexcept {
 
 void RemoteHand::drop() noexcept {
   force_n_ = core::Vec3::Zero();
-  for (int i = 0; i < zeros_on_drop; ++i) {
+  for (int i = 0; i < times_no_force_is_said; ++i) {
     static_cast<void>(send(false));
   }
 }

@@ -10,8 +10,7 @@ namespace {
 // middle. (Springhead's table of types.)
 constexpr double out_m = 0.060 * std::numbers::sqrt2;
 constexpr double up_m = 0.076;
-constexpr double grip_m = 0.0225;
-constexpr double side_m = grip_m / std::numbers::sqrt2;
+constexpr double side_m = grip_radius_m / std::numbers::sqrt2;
 
 // The second four strings are the first four seen in a mirror on the floor.
 SpidarGeometry mirrored(std::string type, const std::array<core::Vec3, 4>& motors,
@@ -39,13 +38,16 @@ SpidarGeometry spidar_geometry(const std::string& type) {
         {{{-out_m, -up_m, 0.0}, {0.0, -up_m, out_m}, {out_m, -up_m, 0.0}, {0.0, -up_m, -out_m}}},
         {{{-side_m, 0.0, -side_m},
           {side_m, 0.0, side_m},
-          {0.0, -grip_m, 0.0},
-          {0.0, -grip_m, 0.0}}});
+          {0.0, -grip_radius_m, 0.0},
+          {0.0, -grip_radius_m, 0.0}}});
   }
   if (type == "X3L") {
     return mirrored(
         type, {{{out_m, up_m, 0.0}, {0.0, up_m, out_m}, {-out_m, up_m, 0.0}, {0.0, up_m, -out_m}}},
-        {{{side_m, 0.0, -side_m}, {-side_m, 0.0, side_m}, {0.0, grip_m, 0.0}, {0.0, grip_m, 0.0}}});
+        {{{side_m, 0.0, -side_m},
+          {-side_m, 0.0, side_m},
+          {0.0, grip_radius_m, 0.0},
+          {0.0, grip_radius_m, 0.0}}});
   }
   throw core::InvalidInput{
       "type: '" + type + "' is not a known SPIDAR-G6 (one of: X3R, X3L" +

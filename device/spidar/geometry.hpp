@@ -7,6 +7,8 @@
 #include "core/haptic_state.hpp"
 namespace tapstudy::device {
 inline constexpr int strings = 8;
+// From the grip's middle to its four points; also what makes a turn and a shift alike in size.
+inline constexpr double grip_radius_m = 0.0225;
 using PerString = Eigen::Matrix<double, strings, 1>;
 
 // A grip held by eight strings, each from its motor's exit to a point of the grip. The frame is

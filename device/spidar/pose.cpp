@@ -5,7 +5,6 @@
 namespace tapstudy::device {
 namespace {
 using Vec6 = Eigen::Matrix<double, 6, 1>;
-constexpr double grip_radius_m = 0.0225;  // makes turns and shifts alike in size
 constexpr double settled_m = 1e-7;
 }  // namespace
 
@@ -35,17 +34,18 @@ Strings strings_at(const SpidarGeometry& geometry, const Pose& pose) noexcept {
 
 FoundPose find_pose(const SpidarGeometry& geometry, const PerString& length_m, const Pose& guess,
                     int most_rounds) noexcept {
-  FoundPose found{guess, 0.0, false};
+  FoundPose found{guess, strings_at(geometry, guess)};
   for (int round = 0; round < most_rounds && !found.has_converged; ++round) {
-    Strings now = strings_at(geometry, found.pose);
+    Strings now = found.strings;
     now.pull.rightCols<3>() /= grip_radius_m;
     const Eigen::Matrix<double, 6, 6> normal = now.pull.transpose() * now.pull;
     const Vec6 step_m = normal.ldlt().solve(now.pull.transpose() * (now.length_m - length_m));
     found.pose.position_m += step_m.head<3>();
     found.pose.rotation = rotation_of(step_m.tail<3>() / grip_radius_m) * found.pose.rotation;
+    found.strings = strings_at(geometry, found.pose);
     found.has_converged = step_m.norm() < settled_m;
   }
-  found.residual_m = (strings_at(geometry, found.pose).length_m - length_m).cwiseAbs().maxCoeff();
+  found.residual_m = (found.strings.length_m - length_m).cwiseAbs().maxCoeff();
   return found;
 }
 }  // namespace tapstudy::device

@@ -24,6 +24,7 @@ Strings strings_at(const SpidarGeometry& geometry, const Pose& pose) noexcept;
 
 struct FoundPose {
   Pose pose;
+  Strings strings;      // at the pose
   double residual_m{};  // largest difference between a string as measured and as the pose has it
   bool has_converged{};
 };

@@ -10,7 +10,6 @@ using core::TickFault;
 namespace {
 constexpr int rounds_a_tick = 4;
 constexpr int rounds_from_anywhere = 20;
-constexpr int zeros_on_drop = 3;
 // A difference of positions a tick apart is mostly the encoder's steps; smoothed over some ticks.
 constexpr double velocity_time_s = 3e-3;
 
@@ -127,7 +126,7 @@ TickFault SpidarG6::follow(core::HandState& hand) noexcept {
                                 : core::Vec3::Zero().eval();
   has_position_ = true;
   pose_ = found.pose;
-  strings_ = strings_at(settings_.geometry, pose_);
+  strings_ = found.strings;
   detail_.closure_margin = closure_margin(strings_);
   hand = {with_z_turned(pose_.position_m), with_z_turned(velocity_m_s_)};
   const bool is_turned_too_far =
@@ -155,7 +154,7 @@ void SpidarG6::rest() noexcept {
 void SpidarG6::drop() noexcept {
   is_homed_ = false;
   digits_ = {};
-  for (int i = 0; i < zeros_on_drop; ++i) {
+  for (int i = 0; i < times_no_force_is_said; ++i) {
     BoardReading ignored;
     static_cast<void>(board_.exchange(pipe_, digits_, ignored));
   }

@@ -6,7 +6,6 @@
 namespace tapstudy::device {
 namespace {
 using Vec6 = Eigen::Matrix<double, 6, 1>;
-constexpr double grip_radius_m = 0.0225;
 constexpr double tension_weight = 1e-8;
 constexpr double share_weight =
     1e-3;  // above tension_weight × 8 × most², or strength would be lost

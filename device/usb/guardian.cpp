@@ -13,7 +13,6 @@
 #include "device/device.hpp"
 namespace tapstudy::device {
 namespace {
-constexpr int times_sent = 3;
 constexpr unsigned time_out_ms = 100;
 
 // Between fork and _exit only what is safe in a signal handler.
@@ -29,7 +28,7 @@ constexpr unsigned time_out_ms = 100;
   do {
     count = read(life, &byte, 1);
   } while (count > 0 || (count < 0 && errno == EINTR));
-  for (int i = 0; i < times_sent; ++i) {
+  for (int i = 0; i < times_no_force_is_said; ++i) {
     usbdevfs_bulktransfer packet{endpoint, static_cast<unsigned>(no_force.size()), time_out_ms,
                                  no_force.data()};
     ioctl(node, USBDEVFS_BULK, &packet);  // NOLINT(cppcoreguidelines-pro-type-vararg)

@@ -6,15 +6,13 @@
 #include <memory>
 
 #include "core/output_file.hpp"
-#include "device/usb/guardian.hpp"
-#include "device/usb/libusb_pipe.hpp"
 #include "runner/calibration/calibrate_spidar.hpp"
 #include "runner/commands/commands.hpp"
 #include "runner/plugged_in.hpp"
 #include "runner/stop_signal.hpp"
 namespace tapstudy::runner {
 namespace {
-constexpr std::chrono::milliseconds longest_reply{100};
+constexpr std::chrono::milliseconds patience{100};
 
 struct CalibrateOptions {
   std::string type;
@@ -26,17 +24,14 @@ void run_calibrate(const CalibrateOptions& options) {
   core::check_is_new(options.out);
   const device::UsbListing listing = the_only_spidar();
   listen_for_stop();
-  const device::UsbNode node{listing.node};
-  const auto board = device::board_of(listing.product);
-  const device::Guardian guardian{node, device::BulkEndpoints{}.out, board->no_force()};
-  device::LibusbPipe pipe{node, {}, longest_reply};
+  OpenBoard open{listing, patience};
   LineInput input{STDIN_FILENO};
   OperatorAtTerminal person{input};
   fmt::print(stderr,
              "You need a ruler and a force gauge. Strings are numbered as in the frame's drawing, "
              "from 1;\nnothing pulls but the string that is measured, and that with little "
              "force.\n");
-  const auto strings = calibrate_spidar(*board, pipe, person);
+  const auto strings = calibrate_spidar(*open.board, open.pipe, person);
   core::write_new_file(options.out,
                        [&](std::ostream& out) { write_calibration(out, options.type, strings); });
   fmt::print("{}\n", options.out);

@@ -2,15 +2,14 @@
 
 #include <CLI/CLI.hpp>
 
-#include "device/spidar/board.hpp"
-#include "device/usb/usb_node.hpp"
 #include "runner/commands/commands.hpp"
+#include "runner/plugged_in.hpp"
 namespace tapstudy::runner {
 namespace {
 std::string name_of(const device::UsbListing& listing) {
-  const auto board =
-      listing.vendor == device::cyverse_vendor ? device::board_of(listing.product) : nullptr;
-  return board ? fmt::format("SPIDAR-G6, {} board", board->name()) : std::string{};
+  return is_spidar(listing)
+             ? fmt::format("SPIDAR-G6, {} board", device::board_of(listing.product)->name())
+             : std::string{};
 }
 
 void run_devices() {

@@ -1,15 +1,12 @@
 // A tick of a SPIDAR-G6: what it computes, and the whole of it through the real libusb over a bus
 // that answers at once.
 #include <benchmark/benchmark.h>
-#include <libusb.h>
 
 #include <algorithm>
 #include <memory>
 #include <vector>
 
-#include "device/spidar/spidar_g6.hpp"
-#include "device/usb/libusb_pipe.hpp"
-#include "support/usb/simulated_spidar.hpp"
+#include "support/usb/spidar_on_bus.hpp"
 using namespace tapstudy;
 using testing::SimulatedSpidar;
 namespace {
@@ -56,8 +53,7 @@ class PlayedBack final : public device::UsbPipe {
 
 void run(benchmark::State& state, device::UsbPipe& pipe) {
   const auto board = device::board_of(device::sh4_product);
-  device::SpidarG6 spidar{
-      pipe, *board, {device::spidar_geometry("X3R"), SimulatedSpidar::calibration(), {}, 1e-3}};
+  device::SpidarG6 spidar{pipe, *board, testing::simulated_settings()};
   if (spidar.home() != core::TickFault::none) {
     state.SkipWithError("cannot be homed");
   }
@@ -79,14 +75,13 @@ void spidar_tick_computed(benchmark::State& state) {
 }
 
 void spidar_tick_through_libusb(benchmark::State& state) {
-  libusb_set_option(nullptr, LIBUSB_OPTION_NO_DEVICE_DISCOVERY);
   const std::vector<testing::Bytes> all = replies();
   std::size_t next = 0;
   testing::FakeBus bus{device::cyverse_vendor, device::sh4_product, [&](auto request) {
                          return with_echo(all[next++ % kept_replies], request);
                        }};
   bus.forget_requests_as_they_come();
-  const device::UsbNode node{bus.open()};
+  const device::UsbNode node{testing::node_of(bus)};
   device::LibusbPipe pipe{node, {}, std::chrono::milliseconds{100}};
   run(state, pipe);
 }

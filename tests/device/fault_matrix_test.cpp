@@ -1,6 +1,5 @@
 // What every fault does in every state of the loop, on a simulated SPIDAR behind the real libusb.
 #include <fmt/format.h>
-#include <libusb.h>
 
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -10,9 +9,7 @@
 
 #include "core/technique.hpp"
 #include "device/haptic_loop.hpp"
-#include "device/spidar/spidar_g6.hpp"
-#include "device/usb/libusb_pipe.hpp"
-#include "support/usb/simulated_spidar.hpp"
+#include "support/usb/spidar_on_bus.hpp"
 using namespace tapstudy;
 using core::TickFault;
 using device::ForceGate;
@@ -34,25 +31,12 @@ class SteadyClock final : public device::TickClock {
   device::Nanoseconds now_{0};
 };
 
-struct Stage {
-  SimulatedSpidar hardware;
-  FakeBus bus{device::cyverse_vendor, device::sh4_product,
-              [this](auto request) { return hardware.answer(request); }};
-  device::UsbNode node{node_of(bus)};
-  device::LibusbPipe pipe{node, {}, std::chrono::milliseconds{3}};
-  std::unique_ptr<device::SpidarBoard> board{device::board_of(device::sh4_product)};
-  device::SpidarG6 spidar{
-      pipe, *board, {device::spidar_geometry("X3R"), SimulatedSpidar::calibration(), {}, 1e-3}};
+struct Stage : testing::SpidarOnBus {
   std::vector<core::TapRenderer> renderers;
   core::SpscRing<core::TraceSample> trace{8192};
   SteadyClock clock;
   std::unique_ptr<device::HapticLoop> loop;
   std::stop_source stop;
-
-  static device::UsbNode node_of(FakeBus& bus) {
-    libusb_set_option(nullptr, LIBUSB_OPTION_NO_DEVICE_DISCOVERY);
-    return device::UsbNode{bus.open()};
-  }
 
   Stage() {
     renderers.emplace_back(*core::find_technique("none"), core::RenderSettings{},
@@ -95,11 +79,6 @@ struct Stage {
     return sample.fault;
   }
 };
-
-bool is_all_zero(const testing::Bytes& request) {
-  return std::all_of(request.begin() + 2, request.begin() + 18,
-                     [](std::uint8_t byte) { return byte == 0; });
-}
 
 struct Fault {
   const char* name;
@@ -154,7 +133,7 @@ void check_and_print(const Fault& fault, const State& state) {
   const std::int64_t detected = stage.loop->report().ticks - before;
   const auto sent = stage.bus.requests();
   const auto with_force = std::ranges::count_if(
-      sent, [](const testing::Bytes& request) { return !is_all_zero(request); });
+      sent, [](const testing::Bytes& request) { return !testing::has_no_force(request); });
   fmt::print("  {:<22}{:<12}{:>9}{:>12}   {}\n", fault.name, state.name, detected, with_force,
              static_cast<int>(seen));
   CAPTURE(fault.name, state.name, static_cast<int>(seen));
@@ -163,7 +142,7 @@ void check_and_print(const Fault& fault, const State& state) {
   CHECK(with_force <= detected);  // none after the tick that found it
   const bool is_reachable = seen != TickFault::device_gone;
   CHECK((sent.size() >= 3 || !is_reachable));
-  CHECK((!is_reachable || std::all_of(sent.end() - 3, sent.end(), is_all_zero)));
+  CHECK((!is_reachable || std::all_of(sent.end() - 3, sent.end(), testing::has_no_force)));
   const std::int64_t stopped_at = stage.loop->report().ticks;
   stage.tick(50);
   CHECK(stage.loop->report().ticks == stopped_at);  // latched

@@ -23,6 +23,7 @@ GateSettings for_hardware() {
   return settings;
 }
 const core::HandState still{};
+constexpr double dt_s = 1e-3;
 
 void let_on(ForceGate& gate, int ticks = 600) {
   for (int i = 0; i < ticks; ++i) {
@@ -32,7 +33,7 @@ void let_on(ForceGate& gate, int ticks = 600) {
 }  // namespace
 
 TEST_CASE("a finger that rests inside a plate is not thrown out", "[device][safety]") {
-  ForceGate gate{for_hardware()};
+  ForceGate gate{for_hardware(), dt_s};
   for (int i = 0; i < 1000; ++i) {
     CHECK(gate.pass({0, 3, 0}, still).force_n == Vec3::Zero());
   }
@@ -43,7 +44,7 @@ TEST_CASE("a finger that rests inside a plate is not thrown out", "[device][safe
 
 TEST_CASE("force rises evenly once it is let on, and falls evenly when it is taken off",
           "[device][safety]") {
-  ForceGate gate{for_hardware()};
+  ForceGate gate{for_hardware(), dt_s};
   let_on(gate, 10);
   double before = 0.0;
   for (int i = 1; i <= 500; ++i) {
@@ -64,7 +65,7 @@ TEST_CASE("force rises evenly once it is let on, and falls evenly when it is tak
 TEST_CASE("whatever is asked, what comes out is finite, bounded in size and in rate",
           "[device][safety]") {
   const GateSettings settings = for_hardware();
-  ForceGate gate{settings};
+  ForceGate gate{settings, dt_s};
   let_on(gate);
   core::Rng rng{1};
   Vec3 before = Vec3::Zero();
@@ -86,7 +87,7 @@ TEST_CASE("whatever is asked, what comes out is finite, bounded in size and in r
 }
 
 TEST_CASE("a hand too fast, outside or nowhere is a fault and no force", "[device][safety]") {
-  ForceGate gate{for_hardware()};
+  ForceGate gate{for_hardware(), dt_s};
   let_on(gate);
   const double nan = std::numeric_limits<double>::quiet_NaN();
   struct Case {
@@ -106,7 +107,7 @@ TEST_CASE("without a rise the gate is open at once and changes nothing within it
           "[device][safety]") {
   GateSettings settings;
   settings.limits = {10.0, 1e5};
-  ForceGate gate{settings};
+  ForceGate gate{settings, dt_s};
   const Vec3 wanted{0.123456789, 1.0 / 3.0, -2.0};
   const auto passed = gate.pass(wanted, still);
   CHECK(passed.force_n == wanted);

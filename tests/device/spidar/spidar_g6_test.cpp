@@ -1,12 +1,9 @@
 #include "device/spidar/spidar_g6.hpp"
 
-#include <libusb.h>
-
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "device/usb/libusb_pipe.hpp"
-#include "support/usb/simulated_spidar.hpp"
+#include "support/usb/spidar_on_bus.hpp"
 using namespace tapstudy;
 using core::TickFault;
 using core::Vec3;
@@ -15,23 +12,7 @@ using testing::SimulatedSpidar;
 using Trouble = FakeBus::Trouble;
 
 namespace {
-// The real libusb between a SpidarG6 and a simulated one.
-struct Bench {
-  SimulatedSpidar hardware;
-  FakeBus bus{device::cyverse_vendor, device::sh4_product,
-              [this](auto request) { return hardware.answer(request); }};
-  device::UsbNode node{node_of(bus)};
-  device::LibusbPipe pipe{node, {}, std::chrono::milliseconds{3}};
-  std::unique_ptr<device::SpidarBoard> board{device::board_of(device::sh4_product)};
-  device::SpidarG6 spidar{
-      pipe, *board, {device::spidar_geometry("X3R"), SimulatedSpidar::calibration(), {}, 1e-3}};
-
-  static device::UsbNode node_of(FakeBus& bus) {
-    // no bus to list: the descriptor is all there is
-    libusb_set_option(nullptr, LIBUSB_OPTION_NO_DEVICE_DISCOVERY);
-    return device::UsbNode{bus.open()};
-  }
-
+struct Bench : testing::SpidarOnBus {
   void start() {
     for (int step = 1; step <= 500; ++step) {
       REQUIRE(spidar.tighten(step / 500.0) == TickFault::none);
@@ -49,17 +30,13 @@ struct Bench {
   Vec3 home_m{Vec3::Zero()};  // the strings' own pull displaces the hand a little
 };
 
-bool is_all_zero(const testing::Bytes& request) {
-  return std::all_of(request.begin() + 2, request.begin() + 18,
-                     [](std::uint8_t byte) { return byte == 0; });
-}
 }  // namespace
 
 TEST_CASE("a SPIDAR starts with no force, tightens to its least tension and is homed",
           "[device][spidar][usb]") {
   Bench bench;
   for (const auto& request : bench.bus.requests()) {
-    CHECK(is_all_zero(request));
+    CHECK(testing::has_no_force(request));
   }
   core::HandState hand;
   CHECK(bench.spidar.read(hand) == TickFault::not_homed);
@@ -126,7 +103,7 @@ TEST_CASE("a loop on the grip ends in zero outputs, said three times, whatever g
   bench.spidar.drop();
   const auto sent = bench.bus.requests();
   REQUIRE(sent.size() == 3);
-  CHECK(std::ranges::all_of(sent, is_all_zero));
+  CHECK(std::ranges::all_of(sent, testing::has_no_force));
   core::HandState hand;
   CHECK(bench.spidar.read(hand) == TickFault::not_homed);
 }
@@ -187,13 +164,9 @@ TEST_CASE("a board that does not answer is refused at once", "[device][spidar][u
   SimulatedSpidar hardware;
   FakeBus bus{device::cyverse_vendor, device::sh4_product,
               [](std::span<const std::uint8_t>) { return testing::Bytes{}; }};
-  const device::UsbNode node{Bench::node_of(bus)};
+  const device::UsbNode node{testing::node_of(bus)};
   device::LibusbPipe pipe{node, {}, std::chrono::milliseconds{3}};
   const auto board = device::board_of(device::sh4_product);
-  CHECK_THROWS_WITH(
-      (device::SpidarG6{
-          pipe,
-          *board,
-          {device::spidar_geometry("X3R"), SimulatedSpidar::calibration(), {}, 1e-3}}),
-      Catch::Matchers::Contains("does not answer: no reply in time"));
+  CHECK_THROWS_WITH((device::SpidarG6{pipe, *board, testing::simulated_settings()}),
+                    Catch::Matchers::Contains("does not answer: no reply in time"));
 }

@@ -1,16 +1,13 @@
 #include "runner/calibration/calibrate_spidar.hpp"
 
-#include <libusb.h>
-
 #include <catch2/catch.hpp>
 #include <fstream>
 
 #include "core/error.hpp"
 #include "device/device.hpp"
-#include "device/usb/libusb_pipe.hpp"
 #include "protocols/read_rig.hpp"
 #include "support/texts.hpp"
-#include "support/usb/fake_bus.hpp"
+#include "support/usb/spidar_on_bus.hpp"
 using namespace tapstudy;
 using Catch::Matchers::Contains;
 
@@ -22,14 +19,10 @@ struct Workbench {
   int most_digits{0};
   testing::FakeBus bus{device::cyverse_vendor, device::sh4_product,
                        [this](auto request) { return reply(request); }};
-  device::UsbNode node{node_of(bus)};
+  device::UsbNode node{testing::node_of(bus)};
   device::LibusbPipe pipe{node, {}, std::chrono::milliseconds{100}};
   std::unique_ptr<device::SpidarBoard> board{device::board_of(device::sh4_product)};
 
-  static device::UsbNode node_of(testing::FakeBus& bus) {
-    libusb_set_option(nullptr, LIBUSB_OPTION_NO_DEVICE_DISCOVERY);
-    return device::UsbNode{bus.open()};
-  }
   static double metres_per_count(std::size_t i) {
     return (i % 2 == 0 ? 1.0 : -1.0) * (1.6e-5 + 1e-7 * static_cast<double>(i));
   }

@@ -3,6 +3,8 @@
 #include <array>
 #include <cstdint>
 #include <type_traits>
+
+#include "core/tick_fault.hpp"
 namespace tapstudy::core {
 using Vec3 = Eigen::Vector3d;
 
@@ -18,23 +20,6 @@ struct HandState {
   Vec3 position_m{Vec3::Zero()};
   Vec3 velocity_m_s{Vec3::Zero()};
 };
-// What ends a trial at once, with no force left on.
-enum class TickFault : std::uint8_t {
-  none,
-  device_gone,        // unplugged
-  no_reply,           // in time
-  bad_reply,          // of the wrong length, or the transfer failed
-  wrong_echo,         // the device says it got what was never sent
-  counter_jumped,     // an encoder moved faster than a string can
-  strings_disagree,   // no pose fits all of them: one is slack, slipped or miscounted
-  not_homed,          // nobody has shown the device where its middle is
-  outside_workspace,  // where the device could not keep its promise of force
-  too_fast,           // the hand
-  non_finite_force,   // or position
-  too_late,           // a run of late ticks
-  heartbeat_lost      // the program around the loop has stopped
-};
-
 // The parts of the force on the finger along the outward normal of the plate, before the limiter.
 struct ForceParts {
   double penalty_n{0.0};    // paper eq. 1

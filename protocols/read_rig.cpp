@@ -66,6 +66,8 @@ SpidarRig read_spidar(MapReader& reader, const std::string& directory, std::stri
   if (reader.has("rotary_switch")) {
     spidar.rotary_switch = reader.integer("rotary_switch", 0, 15);
   }
+  spidar.max_turn_rad = reader.number("max_turn_rad", Range::positive(0.5), spidar.max_turn_rad);
+  spidar.longest_reply_s = reader.number("longest_reply_s", {0.001, 0.1}, spidar.longest_reply_s);
   const std::string calibration = reader.text("calibration");
   if (!spidar.type.empty() && !calibration.empty()) {
     read_calibration((std::filesystem::path{directory} / calibration).string(), spidar, rig_text);

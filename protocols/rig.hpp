@@ -25,6 +25,8 @@ struct StringRig {
 struct SpidarRig {
   std::string type;
   std::optional<int> rotary_switch;  // of the board that is meant, where there are several
+  double max_turn_rad{0.3};          // of the grip, from how it was homed
+  double longest_reply_s{0.003};     // of the board to a tick's question
   double min_tension_n{};
   double max_tension_n{};
   std::array<StringRig, 8> strings;

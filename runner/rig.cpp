@@ -69,6 +69,7 @@ device::SpidarSettings spidar_settings(const protocols::SpidarRig& rig, double d
                                          string.digits_per_volt};
   }
   settings.calibration.range = {rig.min_tension_n, rig.max_tension_n};
+  settings.limits.largest_turn_rad = rig.max_turn_rad;
   settings.dt_s = dt_s;
   return settings;
 }

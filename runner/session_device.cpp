@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <chrono>
 #include <utility>
 
 #include "core/error.hpp"
@@ -10,6 +11,9 @@
 #include "results/store.hpp"
 namespace tapstudy::runner {
 namespace {
+// Of another program to a tick's question.
+constexpr std::chrono::milliseconds longest_reply{3};
+
 class RemoteDevice final : public SessionDevice {
  public:
   explicit RemoteDevice(std::uint16_t port) : hand_{port, longest_reply} {}

@@ -1,5 +1,4 @@
 #pragma once
-#include <chrono>
 #include <memory>
 
 #include "core/rng.hpp"
@@ -8,9 +7,6 @@
 #include "runner/line_input.hpp"
 #include "runner/rig.hpp"
 namespace tapstudy::runner {
-// Of a device to a tick's question.
-inline constexpr std::chrono::milliseconds longest_reply{3};
-
 // What the participant's hand meets in a session, with all that must live as long.
 class SessionDevice {
  public:

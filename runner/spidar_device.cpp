@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <cmath>
 #include <thread>
 #include <vector>
 
@@ -20,7 +21,7 @@ class SpidarDevice final : public SessionDevice {
   SpidarDevice(const device::UsbListing& listing, const protocols::SpidarRig& rig, double dt_s,
                LineInput& operator_input)
       : input_{operator_input},
-        open_{listing, longest_reply},
+        open_{listing, std::chrono::milliseconds{std::llround(1e3 * rig.longest_reply_s)}},
         spidar_{open_.pipe, *open_.board, spidar_settings(rig, dt_s)} {}
   device::Device& device() override { return spidar_; }
   int rotary_switch() const { return spidar_.rotary_switch(); }
@@ -34,7 +35,7 @@ class SpidarDevice final : public SessionDevice {
  private:
   static void check(core::TickFault fault) {
     if (fault != core::TickFault::none) {
-      throw device::DeviceError{"SPIDAR-G6: " + to_text(fault)};
+      throw device::DeviceError{fmt::format("SPIDAR-G6: {}", to_text(fault))};
     }
   }
   void tighten() {

@@ -56,38 +56,6 @@ results::TrialRecord trial_record(std::int64_t session_id, const protocols::Plan
   return record;
 }
 
-std::string to_text(core::TickFault fault) {
-  switch (fault) {
-    case core::TickFault::none:
-      return "";
-    case core::TickFault::device_gone:
-      return "the device is gone";
-    case core::TickFault::no_reply:
-      return "the device did not reply in time";
-    case core::TickFault::bad_reply:
-      return "the device's reply was broken";
-    case core::TickFault::wrong_echo:
-      return "the device got what was never sent";
-    case core::TickFault::counter_jumped:
-      return "an encoder jumped";
-    case core::TickFault::strings_disagree:
-      return "the strings' lengths fit no pose (slack, slipped or miscounted)";
-    case core::TickFault::not_homed:
-      return "the device must be homed first";
-    case core::TickFault::outside_workspace:
-      return "the hand left the workspace";
-    case core::TickFault::too_fast:
-      return "the hand was too fast";
-    case core::TickFault::non_finite_force:
-      return "a force or position was not a number";
-    case core::TickFault::too_late:
-      return "the loop was late too many times in a row";
-    case core::TickFault::heartbeat_lost:
-      return "the program around the loop stood still";
-  }
-  return "";
-}
-
 std::string to_text(protocols::Task task) {
   return task == protocols::Task::identification ? "identification" : "choice";
 }

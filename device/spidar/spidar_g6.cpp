@@ -56,16 +56,26 @@ TickFault SpidarG6::exchange() noexcept {
     return fault_of(outcome);
   }
   sent_before_ = std::exchange(sent_, digits_);
-  if (!is_echo_right(reading_)) {
+  if (!is_echo_right()) {
     return TickFault::wrong_echo;
   }
   largest_step_ = counters_.take(reading_.counter);
   return TickFault::none;
 }
 
-// Whether the echo is of this request or of the one before is not documented.
-bool SpidarG6::is_echo_right(const BoardReading& reading) const noexcept {
-  return !reading.echo || *reading.echo == sent_ || *reading.echo == sent_before_;
+// Whether the echo is of this request or of the one before is not documented: the board shows it
+// as soon as the two differ, and is held to it. A reply that came a tick too late is none of
+// either.
+bool SpidarG6::is_echo_right() noexcept {
+  if (!reading_.echo) {
+    return true;
+  }
+  const bool is_of_this = *reading_.echo == sent_;
+  const bool is_of_the_one_before = *reading_.echo == sent_before_;
+  if (is_of_this != is_of_the_one_before && !echoes_this_request_) {
+    echoes_this_request_ = is_of_this;
+  }
+  return echoes_this_request_.value_or(is_of_this) ? is_of_this : is_of_the_one_before;
 }
 
 TickFault SpidarG6::tighten(double share) noexcept {
@@ -158,5 +168,6 @@ void SpidarG6::drop() noexcept {
     BoardReading ignored;
     static_cast<void>(board_.exchange(pipe_, digits_, ignored));
   }
+  sent_ = sent_before_ = digits_;
 }
 }  // namespace tapstudy::device

@@ -54,7 +54,7 @@ class SpidarG6 final : public Device {
  private:
   core::TickFault exchange() noexcept;
   core::TickFault follow(core::HandState& hand) noexcept;
-  bool is_echo_right(const BoardReading& reading) const noexcept;
+  bool is_echo_right() noexcept;
 
   UsbPipe& pipe_;
   SpidarBoard& board_;
@@ -68,6 +68,7 @@ class SpidarG6 final : public Device {
   Digits digits_{};
   Digits sent_{};
   Digits sent_before_{};
+  std::optional<bool> echoes_this_request_;
   BoardReading reading_;
   std::int64_t largest_step_{0};
   bool is_homed_{false};

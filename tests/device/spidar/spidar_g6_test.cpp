@@ -138,6 +138,20 @@ TEST_CASE("what the board gets wrong is seen", "[device][spidar][usb]") {
   }
 }
 
+TEST_CASE("a reply of a tick ago is told from this one's, whichever request the board echoes",
+          "[device][spidar][usb]") {
+  Bench bench;
+  if (GENERATE(false, true)) {
+    bench.hardware.echo_the_request_before();
+  }
+  bench.start();
+  for (int i = 0; i < 100; ++i) {
+    REQUIRE(bench.tick({0.02 * i, 0, 0}) == TickFault::none);
+  }
+  bench.bus.plan(Trouble::stale);
+  CHECK(bench.tick({3, 0, 0}) == TickFault::wrong_echo);
+}
+
 TEST_CASE("an unplugged device is told in every phase, without hanging", "[device][spidar][usb]") {
   Bench bench;
   const int phase = GENERATE(0, 1, 2, 3);

@@ -47,7 +47,8 @@ Bytes SimulatedSpidar::reply() const {
     const auto k = static_cast<Eigen::Index>(i);
     const auto counts =
         std::llround(sign.at(i) * (length_m[k] - length_at_rest_m_[k]) / metres_per_count);
-    put(2 * i, digits_.at(i) + (echoes_wrongly_ ? 1 : 0));
+    const auto& echoed = echoes_the_request_before_ ? digits_before_ : digits_;
+    put(2 * i, echoed.at(i) + (echoes_wrongly_ ? 1 : 0));
     put(16 + 2 * i, first_count_ + counts + slip_.at(i));
   }
   put(48, 0x30);
@@ -58,6 +59,7 @@ Bytes SimulatedSpidar::answer(std::span<const std::uint8_t> request) {
   if (request.size() != 512 || request[0] != 0x01 || request[1] != 0x0E) {
     return {};
   }
+  digits_before_ = digits_;
   for (std::size_t i = 0; i < 8; ++i) {
     digits_.at(i) = static_cast<std::uint16_t>(request[2 + 2 * i] | request[3 + 2 * i] << 8);
     tension_n_[static_cast<Eigen::Index>(i)] = newtons_per_digit * digits_.at(i);

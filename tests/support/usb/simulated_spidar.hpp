@@ -21,6 +21,8 @@ class SimulatedSpidar {
   // What the board gets wrong.
   void jump(std::size_t string, int counts) { slip_.at(string) += counts; }
   void echo_wrongly() { echoes_wrongly_ = true; }
+  // Which of the two a real board does is not known.
+  void echo_the_request_before() { echoes_the_request_before_ = true; }
 
  private:
   void pass_a_tick();
@@ -29,11 +31,13 @@ class SimulatedSpidar {
   device::PerString length_at_rest_m_{strings_at(geometry_, {}).length_m};
   device::PerString tension_n_{device::PerString::Zero()};
   std::array<std::uint16_t, 8> digits_{};
+  std::array<std::uint16_t, 8> digits_before_{};
   core::Vec3 position_m_{core::Vec3::Zero()};
   core::Vec3 velocity_m_s_{core::Vec3::Zero()};
   core::Vec3 aim_m_{core::Vec3::Zero()};
   std::int64_t first_count_{0};
   std::array<int, 8> slip_{};
   bool echoes_wrongly_{false};
+  bool echoes_the_request_before_{false};
 };
 }  // namespace tapstudy::testing

@@ -1,0 +1,34 @@
+#include "core/tick_fault.hpp"
+namespace tapstudy::core {
+const char* to_text(TickFault fault) noexcept {
+  switch (fault) {
+    case TickFault::none:
+      return "";
+    case TickFault::device_gone:
+      return "the device is gone";
+    case TickFault::no_reply:
+      return "the device did not reply in time";
+    case TickFault::bad_reply:
+      return "the device's reply was broken";
+    case TickFault::wrong_echo:
+      return "the device got what was never sent";
+    case TickFault::counter_jumped:
+      return "an encoder jumped";
+    case TickFault::strings_disagree:
+      return "the strings' lengths fit no pose (slack, slipped or miscounted)";
+    case TickFault::not_homed:
+      return "the device must be homed first";
+    case TickFault::outside_workspace:
+      return "the hand left the workspace";
+    case TickFault::too_fast:
+      return "the hand was too fast";
+    case TickFault::non_finite_force:
+      return "a force or position was not a number";
+    case TickFault::too_late:
+      return "the loop was late too many times in a row";
+    case TickFault::heartbeat_lost:
+      return "the program around the loop stood still";
+  }
+  return "";
+}
+}  // namespace tapstudy::core

@@ -14,7 +14,7 @@ constexpr int interface_number = 0;
 constexpr std::size_t largest_packet = 512;
 constexpr int most_left_replies = 16;
 constexpr timeval one_wait{0, 10'000};
-constexpr int most_waits = 100;
+constexpr std::chrono::seconds longest_wait{1};
 
 UsbOutcome outcome_of(int error) noexcept {
   switch (error) {
@@ -89,7 +89,8 @@ class Transfer {
   // Every transfer has its own time-out, so this ends; should the kernel never give it back, this
   // ends too.
   UsbOutcome wait(libusb_context* context) noexcept {
-    for (int waits = 0; is_under_way() && waits < most_waits; ++waits) {
+    const auto give_up = std::chrono::steady_clock::now() + longest_wait;
+    while (is_under_way() && std::chrono::steady_clock::now() < give_up) {
       timeval patience = one_wait;
       libusb_handle_events_timeout_completed(context, &patience, &has_ended_);
     }

@@ -15,69 +15,12 @@
 #include <utility>
 namespace tapstudy::testing {
 namespace {
-constexpr std::uint8_t out_endpoint = 0x02;
 constexpr std::uint64_t full = 0xFFFFFFFFFFFFFFFEULL;  // an eventfd that cannot be written to
 
 std::mutex buses_mutex;
 std::map<int, FakeBus*>& buses() {
   static std::map<int, FakeBus*> all;
   return all;
-}
-
-// A device of high speed with one interface and two bulk endpoints of 512 bytes.
-Bytes descriptors_of(std::uint16_t vendor, std::uint16_t product) {
-  const auto low = [](std::uint16_t v) { return static_cast<std::uint8_t>(v & 0xFF); };
-  const auto high = [](std::uint16_t v) { return static_cast<std::uint8_t>(v >> 8); };
-  return {18,
-          1,
-          0,
-          2,
-          0xFF,
-          0,
-          0xFF,
-          64,
-          low(vendor),
-          high(vendor),
-          low(product),
-          high(product),
-          0,
-          1,
-          0,
-          0,
-          0,
-          1,
-          9,
-          2,
-          32,
-          0,
-          1,
-          1,
-          0,
-          0x80,
-          250,
-          9,
-          4,
-          0,
-          0,
-          2,
-          0xFF,
-          0,
-          0,
-          0,
-          7,
-          5,
-          out_endpoint,
-          2,
-          0,
-          2,
-          0,
-          7,
-          5,
-          0x86,
-          2,
-          0,
-          2,
-          0};
 }
 
 int refused(int error) {

@@ -8,11 +8,11 @@
 #include <span>
 #include <vector>
 
+#include "support/usb/descriptors.hpp"
+
 struct usbdevfs_urb;
 struct pollfd;
 namespace tapstudy::testing {
-using Bytes = std::vector<std::uint8_t>;
-
 // A USB device of one request and one reply, behind the kernel's interface to user space. The test
 // program's own ioctl, read and poll answer for its descriptor; libusb above them is the real one.
 class FakeBus {

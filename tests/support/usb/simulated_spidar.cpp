@@ -3,8 +3,7 @@
 #include <cmath>
 namespace tapstudy::testing {
 namespace {
-constexpr double tick_s = 1e-3;
-constexpr int steps_a_tick = 10;
+constexpr int steps_a_tick = 20;
 constexpr double mass_kg = 0.1;
 constexpr double muscle_n_per_m = 400.0;
 constexpr double muscle_n_s_per_m = 9.0;
@@ -30,8 +29,8 @@ void SimulatedSpidar::pass_a_tick() {
     const core::Vec3 pull_n = strings.pull.leftCols<3>().transpose() * tension_n_;
     const core::Vec3 force_n =
         pull_n + muscle_n_per_m * (aim_m_ - position_m_) - muscle_n_s_per_m * velocity_m_s_;
-    velocity_m_s_ += tick_s / steps_a_tick / mass_kg * force_n;
-    position_m_ += tick_s / steps_a_tick * velocity_m_s_;
+    velocity_m_s_ += tick_s_ / steps_a_tick / mass_kg * force_n;
+    position_m_ += tick_s_ / steps_a_tick * velocity_m_s_;
   }
 }
 
@@ -51,7 +50,7 @@ Bytes SimulatedSpidar::reply() const {
     put(2 * i, echoed.at(i) + (echoes_wrongly_ ? 1 : 0));
     put(16 + 2 * i, first_count_ + counts + slip_.at(i));
   }
-  put(48, 0x30);
+  put(48, rotary_switch_ << 4);
   return bytes;
 }
 

@@ -4,7 +4,7 @@
 #include <span>
 
 #include "device/spidar/calibration.hpp"
-#include "support/usb/fake_bus.hpp"
+#include "support/usb/descriptors.hpp"
 namespace tapstudy::testing {
 // A SPIDAR-G6 X3R with an SH4 board as it would be: a grip with mass, held by a hand's spring and
 // by eight motors whose currents follow the board's outputs, and encoders that count. Time passes
@@ -18,6 +18,8 @@ class SimulatedSpidar {
   const core::Vec3& position_m() const { return position_m_; }
   const device::PerString& tension_n() const { return tension_n_; }
   void start_counters_at(std::int64_t count) { first_count_ = count; }
+  void turn_rotary_switch_to(int position) { rotary_switch_ = position; }
+  void pass_with_each_request(double seconds) { tick_s_ = seconds; }
   // What the board gets wrong.
   void jump(std::size_t string, int counts) { slip_.at(string) += counts; }
   void echo_wrongly() { echoes_wrongly_ = true; }
@@ -36,6 +38,8 @@ class SimulatedSpidar {
   core::Vec3 velocity_m_s_{core::Vec3::Zero()};
   core::Vec3 aim_m_{core::Vec3::Zero()};
   std::int64_t first_count_{0};
+  double tick_s_{1e-3};
+  int rotary_switch_{3};
   std::array<int, 8> slip_{};
   bool echoes_wrongly_{false};
   bool echoes_the_request_before_{false};

@@ -1,0 +1,229 @@
+// A laboratory in a box: tapstudy, unmodified, in a process of its own, on a kernel that is mocked
+// (umockdev must be preloaded), with simulated SPIDARs plugged in and somebody at the terminal who
+// holds the grip in the middle when asked to, taps while a trial runs, and answers at random.
+//
+//   tapstudy_lab REPORT.json [options] -- PROGRAM ARGUMENT...
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/prctl.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <csignal>
+#include <fstream>
+#include <linux/capability.h>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <random>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "lab/mocked_board.hpp"
+using namespace tapstudy;
+using lab::MockedBoard;
+
+namespace {
+constexpr int exchanges_a_trial = 500;
+constexpr int exchanges_a_tap = 200;
+constexpr unsigned longest_run_s = 240;
+
+struct Options {
+  std::string report;
+  int boards{1};
+  double tick_s{2e-3};
+  bool is_forbidden{false};
+  int kill_after{0};
+  int signal{SIGKILL};
+  int unplug_after{0};
+  int silent_after{0};
+  std::vector<std::string> command;
+};
+
+struct Pipe {
+  std::array<int, 2> ends{};
+  Pipe() {
+    if (pipe2(ends.data(), O_CLOEXEC) != 0) {
+      throw std::runtime_error{"no pipe"};
+    }
+  }
+};
+
+class Lab {
+ public:
+  explicit Lab(const Options& options) : options_{options}, bed_{umockdev_testbed_new()} {
+    for (int i = 0; i < options.boards; ++i) {
+      auto& board = boards_.emplace_back(std::make_unique<MockedBoard>(
+          bed_, 7 + i, [this, i](int exchange) { after_exchange(i, exchange); }));
+      board->with_hardware([&](testing::SimulatedSpidar& spidar) {
+        spidar.turn_rotary_switch_to(3 + i);
+        spidar.pass_with_each_request(options_.tick_s);
+        spidar.start_counters_at(65'000);
+      });
+      board->plug_in();
+      if (options.is_forbidden) {
+        g_autofree gchar* root = umockdev_testbed_get_root_dir(bed_);
+        chmod((root + board->node()).c_str(), 0);
+      }
+    }
+  }
+  ~Lab() {
+    boards_.clear();
+    g_object_unref(bed_);
+  }
+  Lab(const Lab&) = delete;
+  Lab& operator=(const Lab&) = delete;
+  Lab(Lab&&) = delete;
+  Lab& operator=(Lab&&) = delete;
+
+  int run() {
+    start();
+    attend();
+    int status = 0;
+    waitpid(child_, &status, 0);
+    const int code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+    nlohmann::json report{{"exit_code", code}};
+    for (const auto& board : boards_) {
+      const MockedBoard::Log log = board->log();
+      report["boards"].push_back(
+          {{"requests", log.requests},
+           {"most_digits", log.most_digits},
+           {"requests_without_force_at_the_end", log.requests_without_force_at_the_end}});
+    }
+    std::ofstream{options_.report} << report.dump(2) << '\n';
+    return code;
+  }
+
+ private:
+  // Root may open what nobody may, unless it has given that right away.
+  void start() {
+    child_ = fork();
+    if (child_ == 0) {
+      dup2(keyboard_.ends[0], STDIN_FILENO);
+      dup2(screen_.ends[1], STDERR_FILENO);
+      if (options_.is_forbidden) {
+        prctl(PR_CAPBSET_DROP, CAP_DAC_OVERRIDE);
+        prctl(PR_CAPBSET_DROP, CAP_DAC_READ_SEARCH);
+      }
+      std::vector<char*> words;
+      for (const std::string& word : options_.command) {
+        words.push_back(const_cast<char*>(word.c_str()));
+      }
+      words.push_back(nullptr);
+      execv(words.front(), words.data());
+      _exit(127);
+    }
+    close(keyboard_.ends[0]);
+    close(screen_.ends[1]);
+  }
+
+  // Until tapstudy and its guardian have let go of the screen.
+  void attend() {
+    std::array<char, 512> bytes{};
+    while (true) {
+      pollfd waiting{screen_.ends[0], POLLIN, 0};
+      const int ready = poll(&waiting, 1, 10);
+      if (ready > 0) {
+        const ssize_t count = read(screen_.ends[0], bytes.data(), bytes.size());
+        if (count <= 0) {
+          return;
+        }
+        unanswered_.append(bytes.data(), static_cast<std::size_t>(count));
+        fwrite(bytes.data(), 1, static_cast<std::size_t>(count), stderr);
+      }
+      answer();
+    }
+  }
+
+  void answer() {
+    if (unanswered_.ends_with("press Enter. ")) {
+      if (unanswered_.find("again") != std::string::npos) {
+        boards_.front()->plug_in();
+      }
+      type("\n");
+    } else if (unanswered_.ends_with("> ")) {
+      if (!is_tapping_.exchange(true)) {
+        trial_began_ = exchange_.load();
+      } else if (exchange_ >= trial_began_ + exchanges_a_trial) {
+        is_tapping_ = false;
+        type(std::to_string(1 + dice_() % 4) + "\n");
+      }
+    }
+  }
+  void type(const std::string& text) {
+    unanswered_.clear();
+    fwrite(text.data(), 1, text.size(), stderr);
+    if (write(keyboard_.ends[1], text.data(), text.size()) < 0) {
+      perror("keyboard");
+    }
+  }
+
+  // tapstudy's youngest child.
+  pid_t guardian() const {
+    std::ifstream children{"/proc/" + std::to_string(child_) + "/task/" + std::to_string(child_) +
+                           "/children"};
+    pid_t youngest = -1;
+    while (children >> youngest) {
+    }
+    return youngest;
+  }
+
+  // The plate's face lies in the middle; up is +y in the frame of the maker.
+  void after_exchange(int board, int exchange) {
+    exchange_ = exchange;
+    if (exchange == 1) {
+      boards_.at(static_cast<std::size_t>(board))->set_heir(guardian());
+    }
+    const bool is_down = exchange / (exchanges_a_tap / 2) % 2 == 1;
+    const double height_m = !is_tapping_ ? 0.0 : is_down ? -0.006 : 0.006;
+    boards_.at(static_cast<std::size_t>(board))
+        ->with_hardware(
+            [&](testing::SimulatedSpidar& spidar) { spidar.hold_at({0.0, height_m, 0.0}); });
+    if (exchange == options_.kill_after) {
+      kill(child_, options_.signal);
+    }
+    if (exchange == options_.silent_after) {
+      boards_.front()->fall_silent();
+    }
+    if (exchange == options_.unplug_after) {
+      boards_.front()->unplug();
+    }
+  }
+
+  Options options_;
+  UMockdevTestbed* bed_;
+  std::vector<std::unique_ptr<MockedBoard>> boards_;
+  Pipe keyboard_;
+  Pipe screen_;
+  pid_t child_{-1};
+  std::string unanswered_;
+  std::atomic<bool> is_tapping_{false};
+  std::atomic<int> exchange_{0};
+  int trial_began_{0};
+  std::mt19937 dice_{5};
+};
+}  // namespace
+
+int main(int count, char** words) {
+  alarm(longest_run_s);
+  Options options;
+  CLI::App app{"tapstudy in a laboratory in a box"};
+  app.add_option("report", options.report)->required();
+  app.add_option("--boards", options.boards);
+  app.add_option("--tick-s", options.tick_s);
+  app.add_flag("--forbidden", options.is_forbidden);
+  app.add_option("--kill-after", options.kill_after);
+  app.add_option("--signal", options.signal);
+  app.add_option("--unplug-after", options.unplug_after);
+  app.add_option("--silent-after", options.silent_after);
+  char** const end = words + count;
+  char** const dashes = std::find(words, end, std::string_view{"--"});
+  options.command.assign(std::min(dashes + 1, end), end);
+  CLI11_PARSE(app, static_cast<int>(dashes - words), words);
+  return Lab{options}.run();
+}

@@ -54,7 +54,7 @@ Presented LivePresenter::present(std::span<core::TapRenderer> alternatives,
   core::SpscRing<core::TraceSample> ring{ring_capacity};
   results::TraceCollector collector{ring};
   device::MonotonicClock clock;
-  device::HapticLoop loop{device_, alternatives, settings_, ring, clock};
+  device::HapticLoop loop{*device_, alternatives, settings_, ring, clock};
   std::atomic<bool> has_ended{false};
   {
     const Followed followed{recorder_, collector};

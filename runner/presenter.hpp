@@ -55,11 +55,16 @@ class LivePresenter final : public Presenter {
  public:
   LivePresenter(device::Device& device, device::LoopSettings settings,
                 const device::RealtimeRequest& realtime, results::Recorder& recorder)
-      : device_{device}, settings_{std::move(settings)}, realtime_{realtime}, recorder_{recorder} {}
+      : device_{&device},
+        settings_{std::move(settings)},
+        realtime_{realtime},
+        recorder_{recorder} {}
+  // From the next trial on.
+  void use(device::Device& device) { device_ = &device; }
   Presented present(std::span<core::TapRenderer> alternatives, const Explore& explore) override;
 
  private:
-  device::Device& device_;
+  device::Device* device_;
   device::LoopSettings settings_;
   device::RealtimeRequest realtime_;
   results::Recorder& recorder_;

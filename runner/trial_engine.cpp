@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include "device/device.hpp"
 #include "runner/exit_code.hpp"
 #include "runner/scene.hpp"
 #include "runner/stop_signal.hpp"
@@ -11,16 +10,29 @@ namespace tapstudy::runner {
 using protocols::PlannedTrial;
 using protocols::Task;
 
-std::int64_t TrialEngine::run(std::int64_t session_id, const protocols::Schedule& schedule,
-                              const std::set<int>& done_trials) {
-  std::int64_t ticks = 0;
+std::string to_text(const Interruption& interruption) {
+  return fmt::format(
+      "trial {}: {}; force is off, {}", interruption.trial, core::to_text(interruption.fault),
+      interruption.is_answered ? "the answer is stored" : "the trial is stored as interrupted");
+}
+
+std::optional<Interruption> TrialEngine::run(std::int64_t session_id,
+                                             const protocols::Schedule& schedule,
+                                             std::set<int>& done_trials) {
   for (const PlannedTrial& trial : schedule) {
-    if (!done_trials.contains(trial.number)) {
-      stop_if_asked();
-      ticks += run_trial(session_id, trial, static_cast<int>(schedule.size()));
+    if (done_trials.contains(trial.number)) {
+      continue;
+    }
+    stop_if_asked();
+    const auto interruption = run_trial(session_id, trial, static_cast<int>(schedule.size()));
+    if (!interruption || interruption->is_answered) {
+      done_trials.insert(trial.number);
+    }
+    if (interruption) {
+      return interruption;
     }
   }
-  return ticks;
+  return std::nullopt;
 }
 
 Presentation TrialEngine::presentation_of(const PlannedTrial& trial, int total) const {
@@ -41,7 +53,8 @@ Presentation TrialEngine::presentation_of(const PlannedTrial& trial, int total) 
   return presentation;
 }
 
-std::int64_t TrialEngine::run_trial(std::int64_t session_id, const PlannedTrial& trial, int total) {
+std::optional<Interruption> TrialEngine::run_trial(std::int64_t session_id,
+                                                   const PlannedTrial& trial, int total) {
   const Presentation presentation = presentation_of(trial, total);
   Scene scene = build_scene(protocol_, trial.stimuli, models_);
   participant_.get_ready(presentation);
@@ -55,13 +68,13 @@ std::int64_t TrialEngine::run_trial(std::int64_t session_id, const PlannedTrial&
     }
   });
   const core::TickFault fault = presented.loop.stopped_by;
-  const std::int64_t ticks = presented.loop.ticks;
-  recorder_.save(trial_record(session_id, trial, answer, std::move(presented))).get();
+  ticks_ += presented.loop.ticks;
+  recorder_
+      .save(
+          trial_record(session_id, trial, ++attempts_[trial.number], answer, std::move(presented)))
+      .get();
   if (fault != core::TickFault::none) {
-    throw device::DeviceError{
-        fmt::format("trial {}: {}; force is off, the trial is stored as "
-                    "interrupted (go on with --resume)",
-                    trial.number, to_text(fault))};
+    return Interruption{trial.number, fault, answer.has_value()};
   }
   if (!answer) {
     throw Stopped{
@@ -70,6 +83,6 @@ std::int64_t TrialEngine::run_trial(std::int64_t session_id, const PlannedTrial&
                     trial.number, total)};
   }
   participant_.saved(presentation);
-  return ticks;
+  return std::nullopt;
 }
 }  // namespace tapstudy::runner

@@ -23,11 +23,12 @@ results::ResponseRow response_row(const protocols::PlannedTrial& trial, const An
 }  // namespace
 
 results::TrialRecord trial_record(std::int64_t session_id, const protocols::PlannedTrial& trial,
-                                  const std::optional<Answer>& answer, Presented presented) {
+                                  int attempt, const std::optional<Answer>& answer,
+                                  Presented presented) {
   results::TrialRecord record;
   record.trial = {session_id,
                   trial.number,
-                  1,
+                  attempt,
                   trial.block,
                   to_text(trial.task),
                   trial.is_practice,

@@ -11,6 +11,7 @@ struct Answer {
 };
 // A trial as the store takes it. Without an answer it is one that was interrupted.
 results::TrialRecord trial_record(std::int64_t session_id, const protocols::PlannedTrial& trial,
-                                  const std::optional<Answer>& answer, Presented presented);
+                                  int attempt, const std::optional<Answer>& answer,
+                                  Presented presented);
 std::string to_text(protocols::Task task);
 }  // namespace tapstudy::runner

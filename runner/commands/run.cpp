@@ -13,6 +13,7 @@
 #include "protocols/read_rig.hpp"
 #include "runner/commands/commands.hpp"
 #include "runner/console_participant.hpp"
+#include "runner/repaired_device.hpp"
 #include "runner/rig.hpp"
 #include "runner/seed.hpp"
 #include "runner/session.hpp"
@@ -118,7 +119,7 @@ void run_session(const RunOptions& options) {
   results::Store store =
       results::Store::open_or_create(options.directory, study_row(protocol, options.protocol));
   const device::RealtimeRequest realtime = realtime_request(rig.loop);
-  const OpenedSession session = open_session(
+  OpenedSession session = open_session(
       options, protocol, rig,
       {hardware ? hardware->device().description() : rig.device, realtime_in_force(realtime)},
       store);
@@ -130,7 +131,11 @@ void run_session(const RunOptions& options) {
   results::Recorder recorder{store};
   LivePresenter presenter{hardware->device(), settings, realtime, recorder};
   TrialEngine engine{protocol, models, presenter, participant, recorder};
-  engine.run(session.row.id, session.schedule, session.done);
+  while (const auto interruption = engine.run(session.row.id, session.schedule, session.done)) {
+    hardware =
+        repaired_device(*interruption, rig, protocol.rendering.dt_s, input, std::move(hardware));
+    presenter.use(hardware->device());
+  }
   fmt::print("participant {}: all {} trials are stored in {}/study.db\n", options.participant,
              session.schedule.size(), options.directory);
 }

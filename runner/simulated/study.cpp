@@ -6,11 +6,13 @@
 #include <chrono>
 #include <exception>
 #include <mutex>
+#include <set>
 #include <thread>
 #include <vector>
 
 #include "core/error.hpp"
 #include "core/rng.hpp"
+#include "device/device.hpp"
 #include "protocols/read_protocol.hpp"
 #include "protocols/read_rig.hpp"
 #include "protocols/schedule.hpp"
@@ -114,7 +116,11 @@ SimulatedTime simulate(const SimulatedStudy& study, const protocols::Protocol& p
     SimulatedParticipant participant{protocol, settings, models, session.seed};
     VirtualPresenter presenter{participant.hand(), settings};
     TrialEngine engine{protocol, models, presenter, participant, recorder};
-    ticks += engine.run(session.id, session.schedule);
+    std::set<int> done;
+    if (const auto interruption = engine.run(session.id, session.schedule, done)) {
+      throw device::DeviceError{to_text(*interruption)};
+    }
+    ticks += engine.ticks();
     trials += static_cast<int>(session.schedule.size());
   });
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;

@@ -4,6 +4,7 @@
 //
 //   tapstudy_lab REPORT.json [options] -- PROGRAM ARGUMENT...
 #include <fcntl.h>
+#include <linux/capability.h>
 #include <poll.h>
 #include <sys/prctl.h>
 #include <sys/stat.h>
@@ -16,7 +17,6 @@
 #include <atomic>
 #include <csignal>
 #include <fstream>
-#include <linux/capability.h>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <random>
@@ -58,18 +58,7 @@ class Lab {
  public:
   explicit Lab(const Options& options) : options_{options}, bed_{umockdev_testbed_new()} {
     for (int i = 0; i < options.boards; ++i) {
-      auto& board = boards_.emplace_back(std::make_unique<MockedBoard>(
-          bed_, 7 + i, [this, i](int exchange) { after_exchange(i, exchange); }));
-      board->with_hardware([&](testing::SimulatedSpidar& spidar) {
-        spidar.turn_rotary_switch_to(3 + i);
-        spidar.pass_with_each_request(options_.tick_s);
-        spidar.start_counters_at(65'000);
-      });
-      board->plug_in();
-      if (options.is_forbidden) {
-        g_autofree gchar* root = umockdev_testbed_get_root_dir(bed_);
-        chmod((root + board->node()).c_str(), 0);
-      }
+      plug_in_another();
     }
   }
   ~Lab() {
@@ -100,6 +89,22 @@ class Lab {
   }
 
  private:
+  void plug_in_another() {
+    const int i = static_cast<int>(boards_.size());
+    auto& board = boards_.emplace_back(std::make_unique<MockedBoard>(
+        bed_, 7 + i, [this, i](int exchange) { after_exchange(i, exchange); }));
+    board->with_hardware([&](testing::SimulatedSpidar& spidar) {
+      spidar.turn_rotary_switch_to(3 + i);
+      spidar.pass_with_each_request(options_.tick_s);
+      spidar.start_counters_at(65'000);
+    });
+    board->plug_in();
+    if (options_.is_forbidden) {
+      g_autofree gchar* root = umockdev_testbed_get_root_dir(bed_);
+      chmod((root + board->node()).c_str(), 0);
+    }
+  }
+
   // Root may open what nobody may, unless it has given that right away.
   void start() {
     child_ = fork();
@@ -142,9 +147,11 @@ class Lab {
 
   void answer() {
     if (unanswered_.ends_with("press Enter. ")) {
-      if (unanswered_.find("again") != std::string::npos) {
-        boards_.front()->plug_in();
+      if (unanswered_.find("not there yet") != std::string::npos) {
+        plug_in_another();
       }
+      is_tapping_ = false;
+      boards_.back()->set_heir(guardian());  // the device may have been opened anew
       type("\n");
     } else if (unanswered_.ends_with("> ")) {
       if (!is_tapping_.exchange(true)) {
@@ -182,8 +189,12 @@ class Lab {
     const bool is_down = exchange / (exchanges_a_tap / 2) % 2 == 1;
     const double height_m = !is_tapping_ ? 0.0 : is_down ? -0.006 : 0.006;
     boards_.at(static_cast<std::size_t>(board))
-        ->with_hardware(
-            [&](testing::SimulatedSpidar& spidar) { spidar.hold_at({0.0, height_m, 0.0}); });
+        ->with_hardware([&](testing::SimulatedSpidar& spidar) {
+          spidar.hold_at({0.0, height_m, 0.0});
+        });
+    if (board > 0) {
+      return;  // trouble comes to the first
+    }
     if (exchange == options_.kill_after) {
       kill(child_, options_.signal);
     }

@@ -97,7 +97,6 @@ std::string MockedBoard::node() const {
 }
 
 void MockedBoard::plug_in() {
-  is_gone_ = false;
   umockdev_testbed_attach_ioctl(bed_, node().c_str(), base_, nullptr);
   const std::string description = fmt::format(
       "P: /devices/usb1/1-{0}\nN: bus/usb/001/{0:03}={1}\nE: SUBSYSTEM=usb\nE: DEVTYPE=usb_device\n"

@@ -32,6 +32,7 @@ struct SessionRow {
   std::string rig_text;
   std::string device;
   std::string scheduler;
+  std::string doctor;  // what the machine could do before the session, JSON
   std::string program_version;
   std::string git_hash;
   std::string compiler;

@@ -2,7 +2,7 @@
 namespace tapstudy::results {
 // PRAGMA application_id of a study's database ("taps") and PRAGMA user_version of its schema.
 inline constexpr int application_id = 0x74617073;
-inline constexpr int schema_version = 2;
+inline constexpr int schema_version = 3;
 
 inline constexpr const char* schema_sql = R"sql(
 CREATE TABLE study (
@@ -29,6 +29,7 @@ CREATE TABLE session (
   rig_text TEXT NOT NULL,
   device TEXT NOT NULL,
   scheduler TEXT NOT NULL,
+  doctor TEXT NOT NULL,             -- JSON; empty where time is virtual
   program_version TEXT NOT NULL,
   git_hash TEXT NOT NULL,
   compiler TEXT NOT NULL,

@@ -15,7 +15,7 @@ std::uint64_t seed_from(const std::string& text) {
 
 constexpr const char* session_columns =
     "session_id, participant_id, participant_index, mode, seed, planned_order, resumes, rate_hz, "
-    "rig_text, device, scheduler, program_version, git_hash, compiler, started_utc";
+    "rig_text, device, scheduler, doctor, program_version, git_hash, compiler, started_utc";
 
 SessionRow session_from(Statement& row) {
   SessionRow session;
@@ -30,10 +30,11 @@ SessionRow session_from(Statement& row) {
   session.rig_text = row.text(8);
   session.device = row.text(9);
   session.scheduler = row.text(10);
-  session.program_version = row.text(11);
-  session.git_hash = row.text(12);
-  session.compiler = row.text(13);
-  session.started_utc = row.text(14);
+  session.doctor = row.text(11);
+  session.program_version = row.text(12);
+  session.git_hash = row.text(13);
+  session.compiler = row.text(14);
+  session.started_utc = row.text(15);
   return session;
 }
 }  // namespace

@@ -37,10 +37,11 @@ void Store::add_session(SessionRow& session) {
       .bind(to_text(session.mode))
       .bind(session.participant_index)
       .finish();
-  Statement{database_,
-            "INSERT INTO session (participant_id, seed, planned_order, resumes, rate_hz, "
-            "rig_text, device, scheduler, program_version, git_hash, compiler, started_utc) "
-            "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)"}
+  Statement{
+      database_,
+      "INSERT INTO session (participant_id, seed, planned_order, resumes, rate_hz, "
+      "rig_text, device, scheduler, doctor, program_version, git_hash, compiler, started_utc) "
+      "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)"}
       .bind(session.participant_id)
       .bind(std::to_string(session.seed))
       .bind(session.planned_order)
@@ -49,6 +50,7 @@ void Store::add_session(SessionRow& session) {
       .bind(session.rig_text)
       .bind(session.device)
       .bind(session.scheduler)
+      .bind(session.doctor)
       .bind(session.program_version)
       .bind(session.git_hash)
       .bind(session.compiler)

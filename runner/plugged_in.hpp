@@ -3,6 +3,7 @@
 #include <memory>
 #include <vector>
 
+#include "device/lateness.hpp"
 #include "device/spidar/board.hpp"
 #include "device/usb/guardian.hpp"
 #include "device/usb/libusb_pipe.hpp"
@@ -22,4 +23,10 @@ struct OpenBoard {
   device::Guardian guardian;
   device::LibusbPipe pipe;
 };
+
+// How long the board takes from request to reply, over some of them, without force. Throws
+// DeviceError if it does not answer.
+device::LatenessCount round_trips(OpenBoard& open);
+// The same of a board that is opened for it.
+device::LatenessCount probed_round_trip(const device::UsbListing& listing);
 }  // namespace tapstudy::runner

@@ -31,6 +31,7 @@ results::SessionRow session_row(const SessionPlan& plan, const protocols::Protoc
   session.rig_text = rig.text;
   session.device = plan.device;
   session.scheduler = plan.scheduler;
+  session.doctor = plan.doctor;
   session.program_version = program_version();
   session.git_hash = git_hash();
   session.compiler = compiler();

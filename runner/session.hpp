@@ -18,6 +18,7 @@ struct SessionPlan {
   std::uint64_t seed{};
   std::string device;
   std::string scheduler;  // what the loop got of the machine
+  std::string doctor;     // what the machine could do, JSON
 };
 results::SessionRow session_row(const SessionPlan& plan, const protocols::Protocol& protocol,
                                 const protocols::Rig& rig, const protocols::Schedule& schedule);

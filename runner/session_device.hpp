@@ -1,7 +1,9 @@
 #pragma once
 #include <memory>
+#include <optional>
 
 #include "core/rng.hpp"
+#include "device/lateness.hpp"
 #include "protocols/protocol.hpp"
 #include "protocols/rig.hpp"
 #include "runner/line_input.hpp"
@@ -14,6 +16,8 @@ class SessionDevice {
   virtual device::Device& device() = 0;
   // Before every trial, with the device's loop at rest. May ask the operator for something.
   virtual void get_ready() = 0;
+  // From request to reply, where the device is asked over a wire.
+  virtual std::optional<device::LatenessCount> round_trip() const { return std::nullopt; }
 };
 
 // The device of the rig; nothing where the hand is simulated. Throws DeviceError if it does not

@@ -22,9 +22,11 @@ class SpidarDevice final : public SessionDevice {
                LineInput& operator_input)
       : input_{operator_input},
         open_{listing, std::chrono::milliseconds{std::llround(1e3 * rig.longest_reply_s)}},
-        spidar_{open_.pipe, *open_.board, spidar_settings(rig, dt_s)} {}
+        spidar_{open_.pipe, *open_.board, spidar_settings(rig, dt_s)},
+        round_trip_{round_trips(open_)} {}
   device::Device& device() override { return spidar_; }
   int rotary_switch() const { return spidar_.rotary_switch(); }
+  std::optional<device::LatenessCount> round_trip() const override { return round_trip_; }
   void get_ready() override {
     if (!spidar_.is_homed()) {
       tighten();
@@ -55,6 +57,7 @@ class SpidarDevice final : public SessionDevice {
   LineInput& input_;
   OpenBoard open_;
   device::SpidarG6 spidar_;
+  device::LatenessCount round_trip_;
 };
 }  // namespace
 

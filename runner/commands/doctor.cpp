@@ -1,16 +1,15 @@
 #include <fmt/format.h>
-#include <sys/prctl.h>
 
 #include <CLI/CLI.hpp>
-#include <fstream>
 #include <memory>
+#include <optional>
 
 #include "analysis/figure.hpp"
 #include "device/device.hpp"
 #include "protocols/read_rig.hpp"
 #include "runner/commands/commands.hpp"
-#include "runner/doctor/loop_probe.hpp"
-#include "runner/rig.hpp"
+#include "runner/doctor/diagnosis.hpp"
+#include "runner/plugged_in.hpp"
 namespace tapstudy::runner {
 namespace {
 struct DoctorOptions {
@@ -20,22 +19,31 @@ struct DoctorOptions {
   std::string figure;
 };
 
-std::string governor() {
-  std::ifstream file{"/sys/devices/system/cpu/cpu0/cpufreq/scaling_governor"};
-  std::string word;
-  return file >> word ? word : "not told (a virtual machine?)";
-}
-
 double microseconds(device::Nanoseconds time) {
   return 1e-3 * static_cast<double>(time);
 }
 
-void print(const char* name, const ProbedLoop& probed) {
-  fmt::print("  {:<6}{:>10.1f}{:>10.1f}{:>10.1f}{:>10.1f}{:>8}\n", name,
-             microseconds(probed.lateness.quantile(0.5)),
-             microseconds(probed.lateness.quantile(0.99)),
-             microseconds(probed.lateness.quantile(0.999)), microseconds(probed.lateness.worst()),
-             probed.late);
+void print(const char* name, const device::LatenessCount& times, const std::string& late) {
+  fmt::print("  {:<11}{:>10.1f}{:>10.1f}{:>10.1f}{:>10.1f}{:>8}\n", name,
+             microseconds(times.quantile(0.5)), microseconds(times.quantile(0.99)),
+             microseconds(times.quantile(0.999)), microseconds(times.worst()), late);
+}
+
+void print(const Diagnosis& diagnosis) {
+  fmt::print("loop       {}\n", diagnosis.idle.realtime);
+  fmt::print("governor   {}\n", diagnosis.governor);
+  fmt::print("timer      slack {} ns\n", diagnosis.timer_slack_ns);
+  fmt::print("\nlateness [us] of {} ticks at {} Hz\n", diagnosis.idle.lateness.count(),
+             1e9 / static_cast<double>(diagnosis.period));
+  fmt::print("               median       p99     p99.9     worst    late\n");
+  print("idle", diagnosis.idle.lateness, std::to_string(diagnosis.idle.late));
+  if (diagnosis.loaded) {
+    print("loaded", diagnosis.loaded->lateness, std::to_string(diagnosis.loaded->late));
+  }
+  if (diagnosis.round_trip) {
+    fmt::print("\nround trip [us] of {} requests to the device\n", diagnosis.round_trip->count());
+    print("", *diagnosis.round_trip, "");
+  }
 }
 
 analysis::Series series_of(const char* label, const ProbedLoop& probed) {
@@ -49,49 +57,47 @@ analysis::Series series_of(const char* label, const ProbedLoop& probed) {
   return series;
 }
 
-// A tick that comes half a period late is felt as a click; a p99.9 of a quarter leaves room for the
-// tick's own work.
-bool is_fit(const ProbedLoop& probed, device::Nanoseconds period) {
-  return probed.late == 0 && probed.lateness.quantile(0.999) < period / 4;
+void draw(const Diagnosis& diagnosis, const std::string& file) {
+  analysis::draw_svg(
+      {"Lateness of the loop",
+       "lateness [us]",
+       "share of ticks that are later",
+       "",
+       1,
+       {{"", {series_of("idle", diagnosis.idle), series_of("loaded", *diagnosis.loaded)}}},
+       analysis::Scale::logarithmic},
+      file);
+}
+
+// Of the SPIDAR that the rig means; without a rig of any that is plugged in and may be opened.
+std::optional<device::LatenessCount> round_trip(const protocols::Rig& rig) {
+  if (rig.spidar) {
+    return probed_round_trip(the_only_spidar());
+  }
+  for (const device::UsbListing& listing : device::usb_devices()) {
+    if (is_spidar(listing) && listing.may_open) {
+      return probed_round_trip(listing);
+    }
+  }
+  return std::nullopt;
 }
 
 void run_doctor(const DoctorOptions& options) {
   const protocols::Rig rig =
       options.rig.empty() ? protocols::simulated_rig() : protocols::read_rig(options.rig);
-  const device::RealtimeRequest request = realtime_request(rig.loop);
-  const auto period = static_cast<device::Nanoseconds>(1e9 / options.rate_hz);
-  const ProbedLoop idle = probe_loop(request, period, options.seconds);
-  const ProbedLoop loaded = [&] {
-    const Load load;
-    return probe_loop(request, period, options.seconds);
-  }();
-  fmt::print("loop       {}\n", idle.realtime);
-  fmt::print("governor   {}\n", governor());
-  // NOLINTNEXTLINE(cppcoreguidelines-pro-type-vararg): the C library's own
-  fmt::print("timer      slack {} ns\n", prctl(PR_GET_TIMERSLACK));
-  fmt::print("\nlateness [us] of {} ticks at {} Hz\n", idle.lateness.count(), options.rate_hz);
-  fmt::print("          median       p99     p99.9     worst    late\n");
-  print("idle", idle);
-  print("loaded", loaded);
+  const auto answered = round_trip(rig);
+  Diagnosis diagnosis = diagnose(rig.loop, static_cast<device::Nanoseconds>(1e9 / options.rate_hz),
+                                 options.seconds, Under::load_too);
+  diagnosis.round_trip = answered;
+  print(diagnosis);
   if (!options.figure.empty()) {
-    analysis::draw_svg({"Lateness of the loop",
-                        "lateness [us]",
-                        "share of ticks that are later",
-                        "",
-                        1,
-                        {{"", {series_of("idle", idle), series_of("loaded", loaded)}}},
-                        analysis::Scale::logarithmic},
-                       options.figure);
+    draw(diagnosis, options.figure);
   }
-  if (!is_fit(idle, period)) {
-    throw device::DeviceError{
-        "\nverdict: this machine cannot hold the loop, even with nothing else to do"};
+  const Verdict verdict = verdict_of(diagnosis);
+  if (!verdict.holds) {
+    throw device::DeviceError{"\nverdict: " + verdict.words};
   }
-  fmt::print("\nverdict: {}\n",
-             is_fit(loaded, period)
-                 ? "this machine holds the loop, under load too"
-                 : "this machine holds the loop as long as nothing else runs on it: close other "
-                   "programs during a session");
+  fmt::print("\nverdict: {}\n", verdict.words);
 }
 }  // namespace
 

@@ -1,11 +1,11 @@
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <memory>
 #include <optional>
 #include <random>
-#include <thread>
 
 #include "core/error.hpp"
 #include "core/rng.hpp"
@@ -13,6 +13,7 @@
 #include "protocols/read_rig.hpp"
 #include "runner/commands/commands.hpp"
 #include "runner/console_participant.hpp"
+#include "runner/doctor/diagnosis.hpp"
 #include "runner/repaired_device.hpp"
 #include "runner/rig.hpp"
 #include "runner/seed.hpp"
@@ -22,6 +23,8 @@
 #include "runner/trial_engine.hpp"
 namespace tapstudy::runner {
 namespace {
+constexpr double glance_s = 0.5;  // at the machine, before the first trial
+
 struct RunOptions {
   std::string protocol;
   std::string participant;
@@ -43,9 +46,10 @@ struct OpenedSession {
   std::set<int> done;
 };
 
+// What the session has around it, measured before its first trial.
 struct Surroundings {
   std::string device;
-  std::string scheduler;
+  Diagnosis diagnosis;
 };
 
 // A new session, or one that goes on with the order of the participant's last.
@@ -57,7 +61,8 @@ OpenedSession open_session(const RunOptions& options, const protocols::Protocol&
                    options.pilot ? results::Mode::pilot : results::Mode::real,
                    0,
                    surroundings.device,
-                   surroundings.scheduler};
+                   surroundings.diagnosis.idle.realtime,
+                   to_json(surroundings.diagnosis)};
   plan.participant_index = store.index_of(plan.participant_id, plan.mode);
   const auto earlier = store.latest_session(plan.participant_id);
   if (earlier && !options.resume) {
@@ -90,11 +95,18 @@ OpenedSession open_session(const RunOptions& options, const protocols::Protocol&
   return session;
 }
 
-// Asked for in a thread like the loop's, and told to the record before the first trial.
-std::string realtime_in_force(const device::RealtimeRequest& request) {
-  std::string got;
-  std::jthread{[&] { got = device::ask_for_realtime(request); }}.join();
-  return got;
+Surroundings look_around(const protocols::Rig& rig, SessionDevice* hardware,
+                         device::Nanoseconds period) {
+  Surroundings surroundings{hardware != nullptr ? hardware->device().description() : rig.device,
+                            diagnose(rig.loop, period, glance_s, Under::no_load)};
+  if (hardware != nullptr) {
+    surroundings.diagnosis.round_trip = hardware->round_trip();
+  }
+  const Verdict verdict = verdict_of(surroundings.diagnosis);
+  if (!verdict.holds) {
+    spdlog::warn("{} (recorded with the session; `tapstudy doctor` says more)", verdict.words);
+  }
+  return surroundings;
 }
 
 void run_session(const RunOptions& options) {
@@ -118,18 +130,15 @@ void run_session(const RunOptions& options) {
   std::unique_ptr<SessionDevice> hardware = device_of_rig(rig, protocol.rendering.dt_s, input);
   results::Store store =
       results::Store::open_or_create(options.directory, study_row(protocol, options.protocol));
-  const device::RealtimeRequest realtime = realtime_request(rig.loop);
-  OpenedSession session = open_session(
-      options, protocol, rig,
-      {hardware ? hardware->device().description() : rig.device, realtime_in_force(realtime)},
-      store);
+  OpenedSession session = open_session(options, protocol, rig,
+                                       look_around(rig, hardware.get(), settings.period), store);
   if (!hardware) {
     hardware = simulated_device(protocol, settings.placement,
                                 core::derived_seed(session.row.seed, core::Purpose::hand));
   }
   ConsoleParticipant participant{input, [&] { hardware->get_ready(); }};
   results::Recorder recorder{store};
-  LivePresenter presenter{hardware->device(), settings, realtime, recorder};
+  LivePresenter presenter{hardware->device(), settings, realtime_request(rig.loop), recorder};
   TrialEngine engine{protocol, models, presenter, participant, recorder};
   while (const auto interruption = engine.run(session.row.id, session.schedule, session.done)) {
     hardware =

@@ -42,7 +42,8 @@ std::vector<PlannedSession> add_sessions(const SimulatedStudy& study,
         results::Mode::simulated,
         core::derived_seed(study.seed, core::Purpose::participant, static_cast<std::uint64_t>(i)),
         "simulated hand",
-        "virtual time"};
+        "virtual time",
+        ""};
     plan.participant_index = store.index_of(plan.participant_id, plan.mode);
     if (store.has_sessions(plan.participant_id)) {
       throw core::InvalidInput{

@@ -41,7 +41,7 @@ struct Options {
   int kill_after{0};
   int signal{SIGKILL};
   int unplug_after{0};
-  int silent_after{0};
+  bool is_silent{false};
   std::vector<std::string> command;
 };
 
@@ -98,6 +98,9 @@ class Lab {
       spidar.pass_with_each_request(options_.tick_s);
       spidar.start_counters_at(65'000);
     });
+    if (options_.is_silent) {
+      board->fall_silent();
+    }
     board->plug_in();
     if (options_.is_forbidden) {
       g_autofree gchar* root = umockdev_testbed_get_root_dir(bed_);
@@ -198,9 +201,6 @@ class Lab {
     if (exchange == options_.kill_after) {
       kill(child_, options_.signal);
     }
-    if (exchange == options_.silent_after) {
-      boards_.front()->fall_silent();
-    }
     if (exchange == options_.unplug_after) {
       boards_.front()->unplug();
     }
@@ -231,7 +231,7 @@ int main(int count, char** words) {
   app.add_option("--kill-after", options.kill_after);
   app.add_option("--signal", options.signal);
   app.add_option("--unplug-after", options.unplug_after);
-  app.add_option("--silent-after", options.silent_after);
+  app.add_flag("--silent", options.is_silent);
   char** const end = words + count;
   char** const dashes = std::find(words, end, std::string_view{"--"});
   options.command.assign(std::min(dashes + 1, end), end);

@@ -6,6 +6,7 @@
 
 #include "device/spidar/spidar_g6.hpp"
 #include "device/usb/libusb_pipe.hpp"
+#include "support/usb/fake_bus.hpp"
 #include "support/usb/simulated_spidar.hpp"
 namespace tapstudy::testing {
 // There is no bus to list: the descriptor is all there is.

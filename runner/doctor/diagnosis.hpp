@@ -1,0 +1,30 @@
+#pragma once
+#include <optional>
+#include <string>
+
+#include "protocols/rig.hpp"
+#include "runner/doctor/loop_probe.hpp"
+namespace tapstudy::runner {
+// What a machine can do for the loop, measured.
+struct Diagnosis {
+  device::Nanoseconds period{};
+  std::string governor;
+  int timer_slack_ns{};  // of a thread that got no real-time priority
+  ProbedLoop idle;
+  std::optional<ProbedLoop> loaded;
+  std::optional<device::LatenessCount> round_trip;  // of the device's board, request to reply
+};
+
+enum class Under { no_load, load_too };
+// Takes `seconds`, twice that under load too. The round trip is the device's to tell.
+Diagnosis diagnose(const protocols::LoopRig& rig, device::Nanoseconds period, double seconds,
+                   Under under);
+// A sentence; `holds` is false if even the idle machine does not hold the loop.
+struct Verdict {
+  bool holds{};
+  std::string words;
+};
+Verdict verdict_of(const Diagnosis& diagnosis);
+// For the session's record.
+std::string to_json(const Diagnosis& diagnosis);
+}  // namespace tapstudy::runner

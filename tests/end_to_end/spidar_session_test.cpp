@@ -1,0 +1,136 @@
+// tapstudy as it is, in a process of its own, against SPIDARs that are plugged into a mocked
+// kernel.
+#include <catch2/catch.hpp>
+#include <csignal>
+#include <nlohmann/json.hpp>
+
+#include "support/processes.hpp"
+#include "support/sanitized.hpp"
+#include "support/texts.hpp"
+using namespace tapstudy;
+using Catch::Matchers::Contains;
+using testing::replaced;
+
+#if !TAPSTUDY_SANITIZED  // two libraries cannot both be the first to be loaded
+namespace {
+// A study slow enough for the mocked kernel, and a rig that is patient with it.
+class Laboratory {
+ public:
+  Laboratory() {
+    std::string study = testing::contents(testing::shipped("paper/discrimination.yaml"));
+    study = replaced(study, "rate_hz: 1000", "rate_hz: 500");
+    study = replaced(study, "band_limit_hz: 300", "band_limit_hz: 200");
+    study = replaced(study, "penalty_stiffness_n_per_m: 3000", "penalty_stiffness_n_per_m: 1000");
+    testing::write(directory_ / "study.yaml", study);
+    testing::write(directory_ / "spidar_calibration.yaml",
+                   testing::contents(testing::source("tests/data/spidar_calibration.yaml")));
+    std::string rig = testing::contents(testing::shipped("rigs/spidar_g6.yaml"));
+    rig = replaced(rig, "force_rise_s: 0.5", "force_rise_s: 0.1");
+    rig = replaced(rig, "fifo_priority: 80", "fifo_priority: 0");
+    rig = replaced(rig, ", most_late_ticks_in_a_row: 20", "");
+    rig = replaced(rig, "longest_reply_s: 0.003}", "longest_reply_s: 0.1}");
+    testing::write(directory_ / "rig.yaml", rig);
+  }
+  testing::ProgramResult operator()(const std::vector<std::string>& options,
+                                    const std::vector<std::string>& arguments) {
+    std::vector<std::string> line{"/usr/bin/env", "LD_PRELOAD=libumockdev-preload.so.0",
+                                  TAPSTUDY_LAB, directory_ / "report.json"};
+    line.insert(line.end(), options.begin(), options.end());
+    line.insert(line.end(), {"--", TAPSTUDY_PROGRAM});
+    line.insert(line.end(), arguments.begin(), arguments.end());
+    auto result = testing::run_program(line);
+    report = nlohmann::json::parse(testing::contents(directory_ / "report.json"));
+    return result;
+  }
+  testing::ProgramResult session(const std::vector<std::string>& options) {
+    return (*this)(options, {"run", directory_ / "study.yaml", "--rig", directory_ / "rig.yaml",
+                             "--participant", "P01", "--out", directory_ / "out"});
+  }
+  std::string sql(const std::string& query) const {
+    return testing::run_program({"/usr/bin/sqlite3", (directory_ / "out") + "/study.db", query})
+        .standard_output;
+  }
+  nlohmann::json report;
+
+ private:
+  testing::TempDirectory directory_;
+};
+}  // namespace
+
+TEST_CASE("what is plugged in is listed, with the way to get permission", "[end_to_end][usb]") {
+  Laboratory laboratory;
+  CHECK_THAT(laboratory({"--boards", "2"}, {"devices"}).standard_output,
+             Contains("0cec:0205  /dev/bus/usb/001/007  SPIDAR-G6, SH4 board") &&
+                 Contains("0cec:0205  /dev/bus/usb/001/008  SPIDAR-G6, SH4 board"));
+  CHECK_THAT(laboratory({"--forbidden"}, {"devices"}).standard_output,
+             Contains("no permission: install device/udev/70-tapstudy.rules"));
+}
+
+TEST_CASE("a device that cannot be used is one clear error, and no force is ever sent",
+          "[end_to_end][usb][safety]") {
+  struct Case {
+    std::vector<std::string> options;
+    const char* said;
+  };
+  const auto [options, said] = GENERATE(values<Case>({
+      {{"--boards", "0"}, "no SPIDAR-G6 is plugged in"},
+      {{"--boards", "2"}, "2 SPIDAR-G6 are plugged in: say in the rig which"},
+      {{"--forbidden"}, "no permission (copy device/udev/70-tapstudy.rules"},
+      {{"--silent"}, "does not answer: no reply in time"},
+  }));
+  Laboratory laboratory;
+  const auto result = laboratory.session(options);
+  CHECK(result.exit_code == 3);
+  CHECK_THAT(result.standard_error, Contains(said));
+  for (const auto& board : laboratory.report["boards"]) {
+    CHECK(board["most_digits"] == 0);
+  }
+}
+
+TEST_CASE("a whole study runs through the USB stack", "[end_to_end][usb][slow]") {
+  Laboratory laboratory;
+  const auto result = laboratory.session({});
+  INFO(result.standard_error);
+  REQUIRE(result.exit_code == 0);
+  CHECK(laboratory.sql("SELECT count(*) FROM response") == "8\n");
+  CHECK(laboratory.sql("SELECT device FROM session") ==
+        "SPIDAR-G6 X3R, SH4 board, rotary switch 3\n");
+  CHECK(laboratory.sql("SELECT count(DISTINCT trial_id) FROM event WHERE kind = 'impact'") ==
+        "8\n");
+  CHECK(laboratory.sql("SELECT sum(dropped_samples) FROM tick_statistics") == "0\n");
+  CHECK(laboratory.sql("PRAGMA integrity_check") == "ok\n");
+  const auto& board = laboratory.report["boards"][0];
+  CHECK(board["most_digits"] > 150);  // a newton and more on a string
+  CHECK(board["requests_without_force_at_the_end"] >= 3);
+}
+
+TEST_CASE("killed in the middle of a tap, the last the device gets is no force, three times",
+          "[end_to_end][usb][safety][slow]") {
+  const int signal = GENERATE(SIGKILL, SIGSEGV);
+  Laboratory laboratory;
+  const auto result =
+      laboratory.session({"--kill-after", "990", "--signal", std::to_string(signal)});
+  CHECK(result.exit_code == 128 + signal);
+  const auto& board = laboratory.report["boards"][0];
+  CHECK(board["most_digits"] > 150);
+  CHECK(board["requests"] == 990 + 3);
+  CHECK(board["requests_without_force_at_the_end"] == 3);
+  CHECK(laboratory.sql("PRAGMA integrity_check") == "ok\n");
+}
+
+TEST_CASE("unplugged in a trial, all is kept, and plugged in again the trial is repeated",
+          "[end_to_end][usb][safety][slow]") {
+  Laboratory laboratory;
+  const auto result = laboratory.session({"--unplug-after", "1500"});
+  INFO(result.standard_error);
+  REQUIRE(result.exit_code == 0);
+  CHECK_THAT(result.standard_error, Contains("trial 2: the device is gone; force is off") &&
+                                        Contains("It is not there yet"));
+  CHECK(laboratory.sql("SELECT number || ' ' || attempt || ' ' || status FROM trial "
+                       "WHERE number < 4") ==
+        "1 1 answered\n2 1 interrupted\n2 2 answered\n3 1 answered\n");
+  CHECK(laboratory.sql("SELECT count(*) FROM response") == "8\n");
+  // the grip of the second device is homed with its own counters
+  CHECK(laboratory.report["boards"][1]["requests_without_force_at_the_end"] >= 3);
+}
+#endif

@@ -1,15 +1,21 @@
 #include "device/realtime.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <pthread.h>
 #include <sched.h>
 #include <sys/mman.h>
+#include <sys/prctl.h>
+#include <unistd.h>
 
 #include <cerrno>
+#include <cstdint>
 #include <cstring>
 namespace tapstudy::device {
 namespace {
+// Without priority the kernel may wake a thread late by its slack, 50 us unless it is told less.
 std::string scheduler(int priority) {
+  prctl(PR_SET_TIMERSLACK, 1UL);  // NOLINT(cppcoreguidelines-pro-type-vararg): the C library's own
   if (priority <= 0) {
     return "SCHED_OTHER";
   }
@@ -39,10 +45,26 @@ std::string processor(std::optional<int> cpu) {
   return error == 0 ? fmt::format("processor {}", *cpu)
                     : fmt::format("any processor ({} refused: {})", *cpu, std::strerror(error));
 }
+// A processor that sleeps deeply takes long to wake. The kernel keeps them awake for as long as the
+// file is open: until this process ends.
+std::string sleep_of_processors(int priority) {
+  if (priority <= 0) {
+    return "processors may sleep";
+  }
+  static const bool are_kept_awake = [] {
+    constexpr std::int32_t longest_wake_us = 0;
+    // NOLINTNEXTLINE(cppcoreguidelines-pro-type-vararg): the C library's own
+    const int file = open("/dev/cpu_dma_latency", O_WRONLY | O_CLOEXEC);
+    return file >= 0 &&
+           write(file, &longest_wake_us, sizeof longest_wake_us) == sizeof longest_wake_us;
+  }();
+  return are_kept_awake ? "processors kept awake" : "processors may sleep";
+}
 }  // namespace
 
 std::string ask_for_realtime(const RealtimeRequest& request) {
-  return fmt::format("{}; {}; {}", scheduler(request.fifo_priority), memory(request.lock_memory),
-                     processor(request.cpu));
+  return fmt::format("{}; {}; {}; {}", scheduler(request.fifo_priority),
+                     memory(request.lock_memory), processor(request.cpu),
+                     sleep_of_processors(request.fifo_priority));
 }
 }  // namespace tapstudy::device

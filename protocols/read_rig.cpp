@@ -32,10 +32,8 @@ StringRig read_string(MapReader& reader) {
 }
 
 // The file of one device, apart from the rig: other studies on the same device share it.
-void read_calibration(const std::string& file, SpidarRig& spidar, std::string& rig_text) {
-  const std::string text = contents_of(file);
-  rig_text += "\n---\n" + text;
-  Problems problems{file};
+void parse_calibration(const std::string& text, const std::string& file, SpidarRig& spidar,
+                       Problems& problems) {
   MapReader top = MapReader::whole_file(text, file, problems);
   top.word("format", "format", {"tapstudy-calibration/1"});
   top.word("device", "device", {"spidar-g6"});
@@ -57,6 +55,13 @@ void read_calibration(const std::string& file, SpidarRig& spidar, std::string& r
     top.reject("strings", "must be eight, one for each string, in the order of the motors");
   }
   top.finish();
+}
+
+void read_calibration(const std::string& file, SpidarRig& spidar, std::string& rig_text) {
+  const std::string text = contents_of(file);
+  rig_text += "\n---\n" + text;
+  Problems problems{file};
+  parse_calibration(text, file, spidar, problems);
   problems.throw_if_any();
 }
 
@@ -101,10 +106,7 @@ void read_limits_of_motion(MapReader& top, Rig& rig) {
   rig.force_rise_s = top.number("force_rise_s", {0.1, 10.0}, 0.5);
   rig.force_fall_s = top.number("force_fall_s", {0.01, 1.0}, 0.1);
 }
-}  // namespace
-
-Rig parse_rig(const std::string& text, const std::string& file) {
-  Problems problems{file};
+Rig parse(const std::string& text, const std::string& file, Problems& problems) {
   MapReader top = MapReader::whole_file(text, file, problems);
   Rig rig;
   rig.text = text;
@@ -120,8 +122,29 @@ Rig parse_rig(const std::string& text, const std::string& file) {
   read_placement(top, Presence::optional,
                  [&](const core::Placement& placement) { rig.placement = placement; });
   top.finish();
+  return rig;
+}
+}  // namespace
+
+Rig parse_rig(const std::string& text, const std::string& file) {
+  Problems problems{file};
+  Rig rig = parse(text, file, problems);
   problems.throw_if_any();
   return rig;
+}
+
+std::set<std::string> rig_keys_asked_for(const std::string& text, const std::string& file) {
+  Problems problems{file};
+  parse(text, file, problems);
+  return problems.asked();
+}
+
+std::set<std::string> calibration_keys_asked_for(const std::string& text, const std::string& file) {
+  Problems problems{file};
+  SpidarRig spidar;
+  spidar.type = "X3R";
+  parse_calibration(text, file, spidar, problems);
+  return problems.asked();
 }
 
 Rig read_rig(const std::string& file) {

@@ -1,4 +1,5 @@
 #pragma once
+#include <set>
 #include <string>
 
 #include "protocols/rig.hpp"
@@ -10,4 +11,7 @@ Rig parse_rig(const std::string& text, const std::string& file);
 Rig read_rig(const std::string& file);
 // The rig of a study without hardware: the simulated hand, 10 N.
 Rig simulated_rig();
+// Every key that the reader asked for while reading this text, for the schemas' test.
+std::set<std::string> rig_keys_asked_for(const std::string& text, const std::string& file);
+std::set<std::string> calibration_keys_asked_for(const std::string& text, const std::string& file);
 }  // namespace tapstudy::protocols

@@ -7,6 +7,7 @@
 
 #include "core/error.hpp"
 #include "protocols/read_protocol.hpp"
+#include "protocols/read_rig.hpp"
 #include "support/processes.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;
@@ -47,13 +48,23 @@ bool reader_accepts(const std::string& text) {
   return true;
 }
 
+std::string schema_file(const std::string& schema) {
+  return testing::shipped("schema/" + schema + ".schema.json").string();
+}
+
+std::set<std::string> keys_in(const std::string& schema) {
+  std::set<std::string> keys;
+  collect(nlohmann::json::parse(testing::contents(schema_file(schema))), "", keys);
+  return keys;
+}
+
 // By the jsonschema library of Python, which knows nothing of our reader.
-bool schema_accepts(const std::string& text) {
+bool schema_accepts(const std::string& text, const std::string& schema = "protocol") {
   const testing::TempDirectory directory;
-  testing::write(directory / "study.yaml", text);
-  const auto result = testing::run_program(
-      {"/usr/bin/python3", testing::source("tests/protocols/validate.py"),
-       testing::shipped("schema/protocol.schema.json").string(), directory / "study.yaml"});
+  testing::write(directory / "file.yaml", text);
+  const auto result =
+      testing::run_program({"/usr/bin/python3", testing::source("tests/protocols/validate.py"),
+                            schema_file(schema), directory / "file.yaml"});
   INFO(result.standard_error);
   REQUIRE((result.exit_code == 0 || result.exit_code == 1));
   return result.exit_code == 0;
@@ -65,10 +76,7 @@ std::string every_key() {
 
 TEST_CASE("the schema has exactly the keys that the reader asks for", "[protocols][schema]") {
   REQUIRE_NOTHROW(protocols::parse_protocol(every_key(), every_key_file()));
-  std::set<std::string> in_schema;
-  collect(nlohmann::json::parse(testing::contents(testing::shipped("schema/protocol.schema.json"))),
-          "", in_schema);
-  CHECK(in_schema == protocols::keys_asked_for(every_key(), every_key_file()));
+  CHECK(keys_in("protocol") == protocols::keys_asked_for(every_key(), every_key_file()));
 }
 
 TEST_CASE("schema and reader accept the same protocols", "[protocols][schema][slow]") {
@@ -122,4 +130,105 @@ TEST_CASE("schema and reader accept the same protocols", "[protocols][schema][sl
   INFO(from << " → " << to);
   const std::string text = testing::replaced(every_key(), from, to);
   CHECK(reader_accepts(text) == schema_accepts(text));
+}
+
+namespace {
+std::string shipped_rig(const std::string& name) {
+  return testing::contents(testing::shipped("rigs/" + name + ".yaml"));
+}
+std::string calibration() {
+  return testing::contents(testing::source("tests/data/spidar_calibration.yaml"));
+}
+const std::string replay_rig =
+    "format: tapstudy-rig/1\ndevice: replay\nmax_force_n: 5\nmax_force_rate_n_per_s: 5000\n"
+    "replay: {directory: some_study, trial_id: 1}\n";
+
+// A rig and the calibration that it names, side by side.
+bool reader_accepts_rig(const std::string& rig, const std::string& measured = calibration()) {
+  const testing::TempDirectory directory;
+  testing::write(directory / "spidar_calibration.yaml", measured);
+  try {
+    protocols::parse_rig(rig, directory / "rig.yaml");
+  } catch (const core::InvalidInput&) {
+    return false;
+  }
+  return true;
+}
+
+struct RigChange {
+  const char* rig;
+  const char* from;
+  const char* to;
+};
+}  // namespace
+
+TEST_CASE("the schemas of rigs and calibrations have exactly the keys that the reader asks for",
+          "[protocols][rig][schema]") {
+  const testing::TempDirectory directory;
+  testing::write(directory / "spidar_calibration.yaml", calibration());
+  std::set<std::string> asked;
+  for (const std::string& rig : {shipped_rig("spidar_g6"), shipped_rig("remote"), replay_rig}) {
+    asked.merge(protocols::rig_keys_asked_for(rig, directory / "rig.yaml"));
+  }
+  // these are asked for only where they stand
+  asked.insert({"loop.cpu", "spidar.rotary_switch"});
+  CHECK(keys_in("rig") == asked);
+  CHECK(keys_in("calibration") ==
+        protocols::calibration_keys_asked_for(calibration(), "calibration.yaml"));
+}
+
+TEST_CASE("schema and reader accept the same rigs", "[protocols][rig][schema][slow]") {
+  const auto [name, from, to] = GENERATE(values<RigChange>({
+      {"spidar_g6", "format", "format"},
+      {"remote", "format", "format"},
+      {"simulated_hand", "format", "format"},
+      {"replay", "format", "format"},
+      {"spidar_g6", "device: spidar-g6", "device: remote"},
+      {"remote", "device: remote", "device: simulated_hand"},
+      {"spidar_g6", "max_hand_speed_m_s: 1.5\n", ""},
+      {"simulated_hand", "max_force_n: 10\n", "max_force_n: 10\nmax_hand_speed_m_s: 1\n"},
+      {"simulated_hand", "max_force_n: 10\n", "max_force_n: 0\n"},
+      {"simulated_hand", "max_force_n: 10\n", "max_force_n: 10\nloop: {cpu: 1}\n"},
+      {"simulated_hand", "max_force_n: 10\n", "max_force_n: 10\nloop: {cpu: -1}\n"},
+      {"spidar_g6", "fifo_priority: 80", "fifo_priority: 100"},
+      {"spidar_g6", "lock_memory: true", "lock_memory: 1"},
+      {"spidar_g6", "type: X3R,", ""},
+      {"spidar_g6", "type: X3R", "type: X3F"},
+      {"spidar_g6", "type: X3R", "type: X3R, rotary_switch: 3"},
+      {"spidar_g6", "type: X3R", "type: X3R, rotary_switch: 16"},
+      {"spidar_g6", "max_turn_rad: 0.3,", ""},
+      {"spidar_g6", "max_turn_rad: 0.3,", "max_turn_rad: 0.6,"},
+      {"spidar_g6", "longest_reply_s: 0.003}", "longest_reply_s: 3}"},
+      {"spidar_g6", "force_rise_s: 0.5", "force_rise_s: 0"},
+      {"spidar_g6", "lateral_scale: 0.05", "lateral_scale: 0"},
+      {"remote", "port: 50607", "port: 80"},
+      {"replay", "trial_id: 1", "trial_id: 0"},
+      {"replay", ", trial_id: 1", ""},
+  }));
+  INFO(name << ": " << from << " → " << to);
+  const std::string rig =
+      testing::replaced(std::string{name} == "replay" ? replay_rig : shipped_rig(name), from, to);
+  CHECK(reader_accepts_rig(rig) == schema_accepts(rig, "rig"));
+}
+
+TEST_CASE("schema and reader accept the same calibrations", "[protocols][rig][schema][slow]") {
+  struct Change {
+    const char* from;
+    const char* to;
+  };
+  const auto [from, to] = GENERATE(values<Change>({
+      {"format", "format"},
+      {"metres_per_count: -1.66555e-5", "metres_per_count: 0"},
+      {"metres_per_count: -1.66555e-5", "metres_per_count: 0.01"},
+      {"volts_per_newton: 0.3653", "volts_per_newton: 0"},
+      {"digits_per_volt: 415", "digits_per_volt: many"},
+      {", digits_per_volt: 415", ""},
+      {"min_tension_n: 0.3\n", ""},
+      {"max_tension_n: 10", "max_tension_n: 21"},
+      {"device: spidar-g6", "device: remote"},
+      {"  - {metres_per_count: -1.66555e-5, volts_per_newton: 0.3653, digits_per_volt: 415}\n", ""},
+  }));
+  INFO(from << " → " << to);
+  const std::string text = testing::replaced(calibration(), from, to);
+  CHECK(reader_accepts_rig(shipped_rig("spidar_g6"), text) == schema_accepts(text, "calibration"));
 }

@@ -40,6 +40,9 @@ TEST_CASE("a session asks every question and stores every answer", "[end_to_end]
                  "SELECT mode, seed, device, scheduler FROM session "
                  "JOIN participant USING (participant_id)"),
              Catch::Matchers::StartsWith("real|5|simulated_hand|SCHED_"));
+  CHECK(sql(directory,
+            "SELECT doctor ->> '$.idle.count', length(doctor ->> '$.verdict') > 20 "
+            "FROM session") == "500|1\n");
   CHECK(sql(directory, "SELECT sum(dropped_samples) FROM tick_statistics") == "0\n");
   CHECK(sql(directory, "PRAGMA integrity_check") == "ok\n");
 }

@@ -66,6 +66,15 @@ TEST_CASE("what is plugged in is listed, with the way to get permission", "[end_
              Contains("no permission: install device/udev/70-tapstudy.rules"));
 }
 
+TEST_CASE("doctor tells how long the device takes to reply, and sends it no force",
+          "[end_to_end][usb]") {
+  Laboratory laboratory;
+  const auto result = laboratory({}, {"doctor", "--seconds", "0.1"});
+  CHECK_THAT(result.standard_output, Contains("round trip [us] of 200 requests to the device"));
+  CHECK(laboratory.report["boards"][0]["requests"] == 200 + 3);  // and the guardian's
+  CHECK(laboratory.report["boards"][0]["most_digits"] == 0);
+}
+
 TEST_CASE("a device that cannot be used is one clear error, and no force is ever sent",
           "[end_to_end][usb][safety]") {
   struct Case {
@@ -95,6 +104,7 @@ TEST_CASE("a whole study runs through the USB stack", "[end_to_end][usb][slow]")
   CHECK(laboratory.sql("SELECT count(*) FROM response") == "8\n");
   CHECK(laboratory.sql("SELECT device FROM session") ==
         "SPIDAR-G6 X3R, SH4 board, rotary switch 3\n");
+  CHECK(laboratory.sql("SELECT doctor ->> '$.round_trip.count' FROM session") == "200\n");
   CHECK(laboratory.sql("SELECT count(DISTINCT trial_id) FROM event WHERE kind = 'impact'") ==
         "8\n");
   CHECK(laboratory.sql("SELECT sum(dropped_samples) FROM tick_statistics") == "0\n");

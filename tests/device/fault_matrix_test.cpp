@@ -173,7 +173,7 @@ Outcome outcome_of(const Fault& fault, const State& state) {
   const auto with_force = std::ranges::count_if(
       sent, [](const testing::Bytes& request) { return !testing::has_no_force(request); });
   const bool is_reachable = seen != TickFault::device_gone;
-  CHECK((sent.size() >= 3 || !is_reachable));
+  REQUIRE((sent.size() >= 3 || !is_reachable));
   CHECK((!is_reachable || std::all_of(sent.end() - 3, sent.end(), testing::has_no_force)));
   const std::int64_t stopped_at = stage.loop->report().ticks;
   stage.tick(50);

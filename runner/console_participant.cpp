@@ -43,6 +43,7 @@ std::optional<std::size_t> index_of(const std::string& label,
 
 void ConsoleParticipant::get_ready(const Presentation& presentation) {
   move_hand_();
+  input_.forget_typed_ahead();
   say("\nTrial {} of {}{}. {}\n", presentation.number, presentation.total,
       presentation.is_practice ? " (practice)" : "", presentation.question);
   if (presentation.task == protocols::Task::identification) {

@@ -1,6 +1,7 @@
 #include "runner/line_input.hpp"
 
 #include <poll.h>
+#include <termios.h>
 #include <unistd.h>
 
 #include <array>
@@ -21,6 +22,13 @@ std::optional<std::string> LineInput::take_line() {
     line.pop_back();
   }
   return line;
+}
+
+void LineInput::forget_typed_ahead() {
+  if (isatty(descriptor_) != 0) {
+    tcflush(descriptor_, TCIFLUSH);
+    received_.clear();
+  }
 }
 
 std::optional<std::string> LineInput::next(const std::function<bool()>& keep_waiting) {

@@ -10,6 +10,8 @@ class LineInput {
   explicit LineInput(int descriptor) : descriptor_{descriptor} {}
   // Nothing at the end of the input or when keep_waiting says no.
   std::optional<std::string> next(const std::function<bool()>& keep_waiting);
+  // What a person typed before being asked. A file or another program does not type ahead.
+  void forget_typed_ahead();
 
  private:
   std::optional<std::string> take_line();

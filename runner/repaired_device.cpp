@@ -5,8 +5,8 @@
 #include <algorithm>
 
 #include "device/device.hpp"
+#include "runner/operator_prompt.hpp"
 #include "runner/plugged_in.hpp"
-#include "runner/stop_signal.hpp"
 namespace tapstudy::runner {
 namespace {
 bool is_there(const protocols::Rig& rig) {
@@ -30,18 +30,15 @@ std::unique_ptr<SessionDevice> repaired_device(const Interruption& interruption,
   if (!has_hardware) {
     throw gives_up(interruption);
   }
-  fmt::print(stderr,
-             "\n{}.\nType quit to stop here; or see to the device, its power and its plug, and to "
-             "go on press Enter. ",
-             to_text(interruption));
-  while (const auto line = operator_input.next([] { return !stop_was_asked(); })) {
-    if (!line->empty()) {
-      break;
-    }
+  std::string task = fmt::format(
+      "\n{}.\nType quit to stop here; or see to the device, its power and its plug, and to "
+      "go on",
+      to_text(interruption));
+  while (asked_and_done(operator_input, task)) {
     if (is_there(rig)) {
       return device_of_rig(rig, dt_s, operator_input);
     }
-    fmt::print(stderr, "It is not there yet. To try again press Enter. ");
+    task = "It is not there yet. To try again";
   }
   throw gives_up(interruption);
 }

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "runner/exit_code.hpp"
+#include "runner/operator_prompt.hpp"
 #include "runner/plugged_in.hpp"
 #include "runner/session_device.hpp"
-#include "runner/stop_signal.hpp"
 #include "runner/trial_record.hpp"
 namespace tapstudy::runner {
 namespace {
@@ -47,8 +47,7 @@ class SpidarDevice final : public SessionDevice {
     }
   }
   void home() {
-    fmt::print(stderr, "\nHold the grip in the middle of the frame, not turned, and press Enter. ");
-    if (!input_.next([] { return !stop_was_asked(); })) {
+    if (!asked_and_done(input_, "\nHold the grip in the middle of the frame, not turned, and")) {
       throw Stopped{"stopped before the grip was in the middle"};
     }
     check(spidar_.home());

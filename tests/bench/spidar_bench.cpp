@@ -2,55 +2,13 @@
 // that answers at once.
 #include <benchmark/benchmark.h>
 
-#include <algorithm>
 #include <memory>
 #include <vector>
 
+#include "support/usb/played_back.hpp"
 #include "support/usb/spidar_on_bus.hpp"
 using namespace tapstudy;
-using testing::SimulatedSpidar;
 namespace {
-constexpr std::size_t kept_replies = 4096;
-
-// What a SPIDAR that is moved about replies, made before anything is timed.
-std::vector<testing::Bytes> replies() {
-  SimulatedSpidar hardware;
-  std::vector<testing::Bytes> all;
-  std::vector<std::uint8_t> request(512, 0);
-  request[0] = 0x01;
-  request[1] = 0x0E;
-  for (std::size_t i = 0; i < kept_replies; ++i) {
-    const double turn = 2.0 * M_PI * static_cast<double>(i) / kept_replies;
-    hardware.hold_at({0.015 * std::sin(turn), 0.01 * std::sin(2.0 * turn), 0.0});
-    all.push_back(hardware.answer(request));
-  }
-  return all;
-}
-
-// Echoes the request, as the board does.
-testing::Bytes with_echo(testing::Bytes reply, std::span<const std::uint8_t> request) {
-  std::copy_n(request.begin() + 2, 16, reply.begin());
-  return reply;
-}
-
-class PlayedBack final : public device::UsbPipe {
- public:
-  device::UsbOutcome send(std::span<const std::uint8_t> /*out*/) noexcept override {
-    return device::UsbOutcome::ok;
-  }
-  device::UsbOutcome exchange(std::span<const std::uint8_t> out,
-                              std::span<std::uint8_t> in) noexcept override {
-    std::ranges::copy(replies_[next_++ % kept_replies], in.begin());
-    std::copy_n(out.begin() + 2, 16, in.begin());
-    return device::UsbOutcome::ok;
-  }
-  void drain() noexcept override {}
-
- private:
-  std::vector<testing::Bytes> replies_{replies()};
-  std::size_t next_{0};
-};
-
 void run(benchmark::State& state, device::UsbPipe& pipe) {
   const auto board = device::board_of(device::sh4_product);
   device::SpidarG6 spidar{pipe, *board, testing::simulated_settings()};
@@ -70,15 +28,15 @@ void run(benchmark::State& state, device::UsbPipe& pipe) {
 }
 
 void spidar_tick_computed(benchmark::State& state) {
-  PlayedBack pipe;
+  testing::PlayedBack pipe;
   run(state, pipe);
 }
 
 void spidar_tick_through_libusb(benchmark::State& state) {
-  const std::vector<testing::Bytes> all = replies();
+  const std::vector<testing::Bytes> all = testing::replies_of_a_moving_grip();
   std::size_t next = 0;
   testing::FakeBus bus{device::cyverse_vendor, device::sh4_product, [&](auto request) {
-                         return with_echo(all[next++ % kept_replies], request);
+                         return testing::with_echo(all[next++ % all.size()], request);
                        }};
   bus.forget_requests_as_they_come();
   const device::UsbNode node{testing::node_of(bus)};

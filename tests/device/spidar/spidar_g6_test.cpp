@@ -3,6 +3,10 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "core/technique.hpp"
+#include "device/haptic_loop.hpp"
+#include "support/no_alloc.hpp"
+#include "support/usb/played_back.hpp"
 #include "support/usb/spidar_on_bus.hpp"
 using namespace tapstudy;
 using core::TickFault;
@@ -150,6 +154,25 @@ TEST_CASE("a reply of a tick ago is told from this one's, whichever request the 
   }
   bench.bus.plan(Trouble::stale);
   CHECK(bench.tick({3, 0, 0}) == TickFault::wrong_echo);
+}
+
+TEST_CASE("a thousand ticks of the loop on a SPIDAR allocate nothing",
+          "[device][spidar][realtime]") {
+  testing::PlayedBack pipe;
+  const auto board = device::board_of(device::sh4_product);
+  device::SpidarG6 spidar{pipe, *board, testing::simulated_settings()};
+  REQUIRE(spidar.home() == TickFault::none);
+  std::vector<core::TapRenderer> renderers;
+  renderers.emplace_back(*core::find_technique("none"), core::RenderSettings{},
+                         core::PlateFace{0.3, 0.3}, nullptr);
+  core::SpscRing<core::TraceSample> trace{2048};
+  device::VirtualClock clock;
+  device::HapticLoop loop{spidar, renderers, {}, trace, clock};
+  const testing::AllocationCount allocations;
+  loop.run_ticks(1000);
+  CHECK(allocations.count() == 0);
+  CHECK(loop.report().stopped_by == TickFault::none);
+  CHECK(loop.report().ticks == 1000);
 }
 
 TEST_CASE("an unplugged device is told in every phase, without hanging", "[device][spidar][usb]") {

@@ -26,6 +26,10 @@ const char* to_text(TickFault fault) noexcept {
       return "a force or position was not a number";
     case TickFault::too_late:
       return "the loop was late too many times in a row";
+    case TickFault::stood_still:
+      return "the program stood still, its guardian took the force off";
+    case TickFault::guardian_lost:
+      return "the process that guards the force has ended";
     case TickFault::heartbeat_lost:
       return "the program around the loop stood still";
   }

@@ -15,7 +15,9 @@ enum class TickFault : std::uint8_t {
   too_fast,           // the hand
   non_finite_force,   // or position
   too_late,           // a run of late ticks
-  heartbeat_lost      // the program around the loop has stopped
+  heartbeat_lost,     // the program around the loop has stopped
+  stood_still,        // the whole program did; its guardian took the force off
+  guardian_lost       // nobody would take the force off should the program die
 };
 // In words, for people and for the record; empty for none.
 const char* to_text(TickFault fault) noexcept;

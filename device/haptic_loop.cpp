@@ -69,7 +69,7 @@ bool HapticLoop::step() noexcept {
 // Time counts from here: what its thread had to get ready is not lateness.
 void HapticLoop::begin() noexcept {
   device_.begin();
-  start_ = deadline_ = last_beat_ = clock_.now();
+  start_ = deadline_ = last_beat_ = last_tick_ = clock_.now();
   has_begun_ = true;
 }
 
@@ -92,9 +92,11 @@ TickFault HapticLoop::fault_of_time(Nanoseconds woke_at) noexcept {
   // force that falls already needs nobody to look after it
   const bool is_looked_after =
       settings_.longest_without_beat > 0 && gate_.state() != ForceGate::State::stopping;
-  if (is_looked_after && woke_at - last_beat_ > settings_.longest_without_beat) {
-    return TickFault::heartbeat_lost;
+  if (is_looked_after && (woke_at - last_beat_ > settings_.longest_without_beat ||
+                          woke_at - last_tick_ > settings_.longest_without_beat)) {
+    return TickFault::heartbeat_lost;  // or the loop itself, for as long, and all with it
   }
+  last_tick_ = woke_at;
   const bool gives_up =
       settings_.most_late_in_a_row > 0 && late_in_a_row_ > settings_.most_late_in_a_row;
   return gives_up ? TickFault::too_late : TickFault::none;

@@ -73,6 +73,7 @@ class HapticLoop {
   Nanoseconds start_{0};
   Nanoseconds deadline_{0};
   Nanoseconds last_beat_{0};
+  Nanoseconds last_tick_{0};
   int late_in_a_row_{0};
   bool has_begun_{false};
   LoopReport report_;

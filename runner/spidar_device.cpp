@@ -22,7 +22,7 @@ class SpidarDevice final : public SessionDevice {
                LineInput& operator_input)
       : input_{operator_input},
         open_{listing, std::chrono::milliseconds{std::llround(1e3 * rig.longest_reply_s)}},
-        spidar_{open_.pipe, *open_.board, spidar_settings(rig, dt_s)},
+        spidar_{open_.pipe, *open_.board, watched(spidar_settings(rig, dt_s), open_.guardian)},
         round_trip_{round_trips(open_)} {}
   device::Device& device() override { return spidar_; }
   int rotary_switch() const { return spidar_.rotary_switch(); }
@@ -35,6 +35,11 @@ class SpidarDevice final : public SessionDevice {
   }
 
  private:
+  static device::SpidarSettings watched(device::SpidarSettings settings,
+                                        device::Guardian& guardian) {
+    settings.watch = &guardian.watch();
+    return settings;
+  }
   static void check(core::TickFault fault) {
     if (fault != core::TickFault::none) {
       throw device::DeviceError{fmt::format("SPIDAR-G6: {}", to_text(fault))};

@@ -17,7 +17,7 @@ void note(int /*signal*/) {
 }  // namespace
 
 void listen_for_stop() {
-  for (const int signal : std::array{SIGINT, SIGTERM}) {
+  for (const int signal : std::array{SIGINT, SIGTERM, SIGHUP, SIGQUIT}) {
     struct sigaction action {};
     action.sa_handler = note;
     action.sa_flags = static_cast<int>(SA_RESETHAND);

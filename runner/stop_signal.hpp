@@ -1,6 +1,7 @@
 #pragma once
 namespace tapstudy::runner {
-// From here on Ctrl-C and SIGTERM ask to stop instead of ending the process; a second one ends it.
+// From here on Ctrl-C, a terminal that is closed, SIGTERM and SIGQUIT ask to stop instead of ending
+// the process; a second one ends it.
 void listen_for_stop();
 bool stop_was_asked();
 // Throws Stopped if so.

@@ -12,6 +12,7 @@ constexpr int rounds_a_tick = 4;
 constexpr int rounds_from_anywhere = 20;
 // A difference of positions a tick apart is mostly the encoder's steps; smoothed over some ticks.
 constexpr double velocity_time_s = 3e-3;
+constexpr double longest_guardian_silence_s = 1.0;
 
 TickFault fault_of(UsbOutcome outcome) noexcept {
   switch (outcome) {
@@ -50,7 +51,27 @@ std::string SpidarG6::description() const {
                      board_.name(), reading_.rotary_switch());
 }
 
+// The guardian watches us and is watched.
+TickFault SpidarG6::fault_of_watch() noexcept {
+  ForceWatch* const watch = settings_.watch;
+  if (watch == nullptr || !watch->is_on()) {
+    return TickFault::none;
+  }
+  watch->beat();
+  const bool is_silent = watch->rounds() == guardian_rounds_;
+  guardian_rounds_ = watch->rounds();
+  guardian_silent_s_ = is_silent ? guardian_silent_s_ + settings_.dt_s : 0.0;
+  if (watch->has_acted()) {
+    return TickFault::stood_still;
+  }
+  return guardian_silent_s_ > longest_guardian_silence_s ? TickFault::guardian_lost
+                                                         : TickFault::none;
+}
+
 TickFault SpidarG6::exchange() noexcept {
+  if (const TickFault fault = fault_of_watch(); fault != TickFault::none) {
+    return fault;
+  }
   const UsbOutcome outcome = board_.exchange(pipe_, digits_, reading_);
   if (outcome != UsbOutcome::ok) {
     return fault_of(outcome);
@@ -99,6 +120,10 @@ TickFault SpidarG6::home() noexcept {
 
 void SpidarG6::begin() noexcept {
   has_position_ = false;
+  guardian_silent_s_ = 0.0;
+  if (settings_.watch != nullptr) {
+    settings_.watch->begin();
+  }
 }
 
 TickFault SpidarG6::read(core::HandState& hand) noexcept {
@@ -159,6 +184,13 @@ void SpidarG6::rest() noexcept {
   if (exchange() != TickFault::none) {
     drop();
   }
+  end_watch();
+}
+
+void SpidarG6::end_watch() noexcept {
+  if (settings_.watch != nullptr) {
+    settings_.watch->end();
+  }
 }
 
 void SpidarG6::drop() noexcept {
@@ -169,5 +201,6 @@ void SpidarG6::drop() noexcept {
     static_cast<void>(board_.exchange(pipe_, digits_, ignored));
   }
   sent_ = sent_before_ = digits_;
+  end_watch();
 }
 }  // namespace tapstudy::device

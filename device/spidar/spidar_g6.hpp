@@ -4,6 +4,7 @@
 
 #include "device/device.hpp"
 #include "device/spidar/calibration.hpp"
+#include "device/usb/force_watch.hpp"
 namespace tapstudy::device {
 struct SpidarLimits {
   double largest_residual_m{2e-4};       // beyond it a string is slack, slipped or miscounted
@@ -16,6 +17,7 @@ struct SpidarSettings {
   SpidarCalibration calibration;
   SpidarLimits limits;
   double dt_s{1e-3};
+  ForceWatch* watch{nullptr};  // of the guardian, if there is one; must outlive the device
 };
 
 // A SPIDAR-G6 on a board on the USB. Its states: open (outputs zero) → taut (least tension, raised
@@ -52,7 +54,9 @@ class SpidarG6 final : public Device {
   std::string description() const override;
 
  private:
+  core::TickFault fault_of_watch() noexcept;
   core::TickFault exchange() noexcept;
+  void end_watch() noexcept;
   core::TickFault follow(core::HandState& hand) noexcept;
   bool is_echo_right() noexcept;
 
@@ -71,6 +75,8 @@ class SpidarG6 final : public Device {
   std::optional<bool> echoes_this_request_;
   BoardReading reading_;
   std::int64_t largest_step_{0};
+  std::uint64_t guardian_rounds_{0};
+  double guardian_silent_s_{0.0};
   bool is_homed_{false};
   bool has_position_{false};
   DeviceDetail detail_;

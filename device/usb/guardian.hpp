@@ -4,12 +4,14 @@
 #include <cstdint>
 #include <vector>
 
+#include "device/usb/force_watch.hpp"
 #include "device/usb/usb_node.hpp"
 namespace tapstudy::device {
 // A process that outlives this one. The boards are not known to have a watchdog: should tapstudy
 // die with force on, whatever from, SIGKILL included, the strings would keep pulling. So a child
 // holds the device's open node and waits for a pipe of which only tapstudy has the other end; when
-// that closes it sends the packet of no force, three times, by itself, and ends.
+// that closes it sends the packet of no force, three times, by itself, and ends. It does the same,
+// and lives on, if tapstudy stands still with force on: suspended, or starved.
 class Guardian {
  public:
   // To be made before any thread is. Throws DeviceError if there can be none.
@@ -20,8 +22,10 @@ class Guardian {
   Guardian& operator=(const Guardian& other) = delete;
   Guardian(Guardian&& other) = delete;
   Guardian& operator=(Guardian&& other) = delete;
+  ForceWatch& watch() noexcept { return *watch_; }
 
  private:
+  ForceWatch* watch_{nullptr};  // in memory shared with the child
   pid_t child_{-1};
   int life_{-1};  // closed by the kernel when this process ends
 };

@@ -128,6 +128,28 @@ TEST_CASE("killed in the middle of a tap, the last the device gets is no force, 
   CHECK(laboratory.sql("PRAGMA integrity_check") == "ok\n");
 }
 
+TEST_CASE(
+    "suspended in the middle of a tap, the program leaves no force on, and the trial is no answer",
+    "[end_to_end][usb][safety][slow]") {
+  Laboratory laboratory;
+  const auto result = laboratory.session({"--stop-after", "990"});
+  INFO(result.standard_error);
+  REQUIRE(result.exit_code == 0);  // the trial was repeated
+  CHECK(laboratory.report["without_force_while_stopped"] == 3);
+  CHECK(laboratory.sql("SELECT status || ': ' || fault FROM trial JOIN tick_statistics "
+                       "USING (trial_id) WHERE number = 1 ORDER BY attempt LIMIT 1") ==
+        "interrupted: the program around the loop stood still\n");
+  CHECK(laboratory.sql("SELECT count(*) FROM response") == "8\n");
+}
+
+TEST_CASE("without its guardian the program renders no force", "[end_to_end][usb][safety][slow]") {
+  Laboratory laboratory;
+  const auto result = laboratory.session({"--kill-guardian-after", "990"});
+  INFO(result.standard_error);
+  REQUIRE(result.exit_code == 0);  // the device was opened anew, with another
+  CHECK_THAT(result.standard_error, Contains("the process that guards the force has ended"));
+}
+
 TEST_CASE("unplugged in a trial, all is kept, and plugged in again the trial is repeated",
           "[end_to_end][usb][safety][slow]") {
   Laboratory laboratory;

@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <chrono>
 #include <csignal>
 #include <fstream>
 #include <memory>
@@ -22,6 +23,7 @@
 #include <random>
 #include <string>
 #include <string_view>
+#include <thread>
 #include <vector>
 
 #include "lab/mocked_board.hpp"
@@ -40,6 +42,8 @@ struct Options {
   bool is_forbidden{false};
   int kill_after{0};
   int signal{SIGKILL};
+  int stop_after{0};
+  int kill_guardian_after{0};
   int unplug_after{0};
   bool is_silent{false};
   std::vector<std::string> command;
@@ -76,7 +80,11 @@ class Lab {
     int status = 0;
     waitpid(child_, &status, 0);
     const int code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-    nlohmann::json report{{"exit_code", code}};
+    if (stopped_.joinable()) {
+      stopped_.join();
+    }
+    nlohmann::json report{{"exit_code", code},
+                          {"without_force_while_stopped", without_force_while_stopped_.load()}};
     for (const auto& board : boards_) {
       const MockedBoard::Log log = board->log();
       report["boards"].push_back(
@@ -173,6 +181,14 @@ class Lab {
     }
   }
 
+  // As Ctrl-Z does.
+  void suspend_for_a_while() {
+    kill(child_, SIGSTOP);
+    std::this_thread::sleep_for(std::chrono::seconds{1});
+    without_force_while_stopped_ = boards_.front()->log().requests_without_force_at_the_end;
+    kill(child_, SIGCONT);
+  }
+
   // tapstudy's youngest child.
   pid_t guardian() const {
     std::ifstream children{"/proc/" + std::to_string(child_) + "/task/" + std::to_string(child_) +
@@ -201,6 +217,12 @@ class Lab {
     if (exchange == options_.kill_after) {
       kill(child_, options_.signal);
     }
+    if (exchange == options_.stop_after && !stopped_.joinable()) {
+      stopped_ = std::thread{[this] { suspend_for_a_while(); }};
+    }
+    if (exchange == options_.kill_guardian_after) {
+      kill(guardian(), SIGKILL);
+    }
     if (exchange == options_.unplug_after) {
       boards_.front()->unplug();
     }
@@ -217,6 +239,8 @@ class Lab {
   std::atomic<int> exchange_{0};
   int trial_began_{0};
   std::mt19937 dice_{5};
+  std::thread stopped_;
+  std::atomic<int> without_force_while_stopped_{0};
 };
 }  // namespace
 
@@ -230,6 +254,8 @@ int main(int count, char** words) {
   app.add_flag("--forbidden", options.is_forbidden);
   app.add_option("--kill-after", options.kill_after);
   app.add_option("--signal", options.signal);
+  app.add_option("--stop-after", options.stop_after);
+  app.add_option("--kill-guardian-after", options.kill_guardian_after);
   app.add_option("--unplug-after", options.unplug_after);
   app.add_flag("--silent", options.is_silent);
   char** const end = words + count;

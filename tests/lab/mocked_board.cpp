@@ -33,8 +33,8 @@ constexpr glong high_speed = 3;
 // The answer of an ioctl that asks for a value.
 template <class Value>
 void tell(UMockdevIoctlClient* client, const Value& value) {
-  UMockdevIoctlData* const data = umockdev_ioctl_data_resolve(
-      umockdev_ioctl_client_get_arg(client), 0, sizeof(Value), nullptr);
+  UMockdevIoctlData* const data =
+      umockdev_ioctl_data_resolve(umockdev_ioctl_client_get_arg(client), 0, sizeof(Value), nullptr);
   std::memcpy(data->data, &value, sizeof(Value));
   umockdev_ioctl_client_complete(client, 0, 0);
   g_object_unref(data);
@@ -206,12 +206,11 @@ void MockedBoard::submit(UMockdevIoctlClient* client) {
     complete_with(client, ENODEV);
     return;
   }
-  UMockdevIoctlData* const data = umockdev_ioctl_data_resolve(
-      umockdev_ioctl_client_get_arg(client), 0, sizeof(usbdevfs_urb), nullptr);
+  UMockdevIoctlData* const data = umockdev_ioctl_data_resolve(umockdev_ioctl_client_get_arg(client),
+                                                              0, sizeof(usbdevfs_urb), nullptr);
   usbdevfs_urb* const urb = urb_of(data);
-  UMockdevIoctlData* const buffer =
-      umockdev_ioctl_data_resolve(data, offsetof(usbdevfs_urb, buffer),
-                                  static_cast<gsize>(urb->buffer_length), nullptr);
+  UMockdevIoctlData* const buffer = umockdev_ioctl_data_resolve(
+      data, offsetof(usbdevfs_urb, buffer), static_cast<gsize>(urb->buffer_length), nullptr);
   if (urb->endpoint == testing::out_endpoint) {
     take_request({buffer->data, buffer->data + urb->buffer_length});
     urb->actual_length = urb->buffer_length;
@@ -229,9 +228,8 @@ void MockedBoard::deliver() {
   while (!waiting_.empty() && !replies_.empty()) {
     UMockdevIoctlData* const data = waiting_.front();
     usbdevfs_urb* const urb = urb_of(data);
-    UMockdevIoctlData* const buffer =
-        umockdev_ioctl_data_resolve(data, offsetof(usbdevfs_urb, buffer),
-                                    static_cast<gsize>(urb->buffer_length), nullptr);
+    UMockdevIoctlData* const buffer = umockdev_ioctl_data_resolve(
+        data, offsetof(usbdevfs_urb, buffer), static_cast<gsize>(urb->buffer_length), nullptr);
     const auto length =
         std::min(static_cast<std::size_t>(urb->buffer_length), replies_.front().size());
     std::memcpy(buffer->data, replies_.front().data(), length);
@@ -260,8 +258,8 @@ void MockedBoard::reap(UMockdevIoctlClient* client) {
     exchange_that_ended_ = waiting_.empty() ? log_.requests : 0;
     return;
   }
-  UMockdevIoctlData* const pointer = umockdev_ioctl_data_resolve(
-      umockdev_ioctl_client_get_arg(client), 0, sizeof(void*), nullptr);
+  UMockdevIoctlData* const pointer =
+      umockdev_ioctl_data_resolve(umockdev_ioctl_client_get_arg(client), 0, sizeof(void*), nullptr);
   umockdev_ioctl_data_set_ptr(pointer, 0, done_.front());
   done_.pop_front();
   complete_with(client, 0);

@@ -22,8 +22,13 @@ void write_file(const std::string& file, const Write& write) {
 
 void check_is_new(const std::string& file) {
   std::error_code error;
-  if (std::filesystem::exists(file, error)) {
+  if (std::filesystem::symlink_status(file, error).type() !=
+      std::filesystem::file_type::not_found) {
     throw InvalidInput{file + ": exists already and is not overwritten"};
+  }
+  const std::filesystem::path folder = std::filesystem::absolute(file).parent_path();
+  if (!std::filesystem::is_directory(folder, error)) {
+    throw InvalidInput{file + ": cannot be written, there is no directory " + folder.string()};
   }
 }
 

@@ -14,16 +14,23 @@ ForceGate::ForceGate(const GateSettings& settings, double dt_s) noexcept
       state_{settings.rise_s > 0.0 ? State::armed : State::rendering},
       share_{settings.rise_s > 0.0 ? 0.0 : 1.0} {}
 
-TickFault ForceGate::fault_of(const core::Vec3& wanted_n,
-                              const core::HandState& hand) const noexcept {
+bool ForceGate::has_jumped(const core::Vec3& position_m, double elapsed_s) const noexcept {
+  return previous_m_ && (position_m - *previous_m_).norm() >
+                            2.0 * settings_.max_speed_m_s * std::max(elapsed_s, dt_s_);
+}
+
+TickFault ForceGate::fault_of(const core::Vec3& wanted_n, const core::HandState& hand,
+                              double elapsed_s) const noexcept {
   if (!wanted_n.allFinite() || !hand.position_m.allFinite() || !hand.velocity_m_s.allFinite()) {
     return TickFault::non_finite_force;
   }
   if (hand.velocity_m_s.norm() > settings_.max_speed_m_s) {
     return TickFault::too_fast;
   }
-  return hand.position_m.norm() > settings_.workspace_radius_m ? TickFault::outside_workspace
-                                                               : TickFault::none;
+  if (hand.position_m.norm() > settings_.workspace_radius_m) {
+    return TickFault::outside_workspace;
+  }
+  return has_jumped(hand.position_m, elapsed_s) ? TickFault::too_fast : TickFault::none;
 }
 
 void ForceGate::stop() noexcept {
@@ -47,8 +54,10 @@ void ForceGate::advance(double wanted_size_n) noexcept {
   }
 }
 
-PassedForce ForceGate::pass(const core::Vec3& wanted_n, const core::HandState& hand) noexcept {
-  const TickFault fault = fault_of(wanted_n, hand);
+PassedForce ForceGate::pass(const core::Vec3& wanted_n, const core::HandState& hand,
+                            double elapsed_s) noexcept {
+  const TickFault fault = fault_of(wanted_n, hand, elapsed_s);
+  previous_m_ = hand.position_m;
   if (fault != TickFault::none) {
     previous_n_ = core::Vec3::Zero();
     return {core::Vec3::Zero(), true, fault};

@@ -1,5 +1,6 @@
 #pragma once
 #include <limits>
+#include <optional>
 
 #include "core/tick/force_limiter.hpp"
 namespace tapstudy::device {
@@ -25,13 +26,18 @@ class ForceGate {
  public:
   enum class State { armed, rendering, stopping, at_rest };
   ForceGate(const GateSettings& settings, double dt_s) noexcept;
-  PassedForce pass(const core::Vec3& wanted_n, const core::HandState& hand) noexcept;
+  // elapsed_s: since the tick before. A position that jumps is a hand too fast, whatever velocity
+  // the device tells: twice the limit, for a position's own error.
+  PassedForce pass(const core::Vec3& wanted_n, const core::HandState& hand,
+                   double elapsed_s) noexcept;
   // From now on force falls to none.
   void stop() noexcept;
   State state() const noexcept { return state_; }
 
  private:
-  core::TickFault fault_of(const core::Vec3& wanted_n, const core::HandState& hand) const noexcept;
+  core::TickFault fault_of(const core::Vec3& wanted_n, const core::HandState& hand,
+                           double elapsed_s) const noexcept;
+  bool has_jumped(const core::Vec3& position_m, double elapsed_s) const noexcept;
   void advance(double wanted_size_n) noexcept;
 
   GateSettings settings_;
@@ -40,5 +46,6 @@ class ForceGate {
   int quiet_ticks_{0};
   double share_{0.0};
   core::Vec3 previous_n_{core::Vec3::Zero()};
+  std::optional<core::Vec3> previous_m_;
 };
 }  // namespace tapstudy::device

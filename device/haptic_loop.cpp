@@ -118,15 +118,18 @@ core::TraceSample HapticLoop::tick(Nanoseconds now) noexcept {
   core::HandState hand;
   sample.fault = device_.read(hand);
   if (sample.fault == TickFault::none) {
-    render(hand, sample);
+    render(hand, 1e-9 * static_cast<double>(now - previous_now_), sample);
   }
+  previous_now_ = now;
   return sample;
 }
 
-void HapticLoop::render(const core::HandState& hand, core::TraceSample& sample) noexcept {
+void HapticLoop::render(const core::HandState& hand, double elapsed_s,
+                        core::TraceSample& sample) noexcept {
   const core::RenderedTick rendered =
       alternatives_[current_].tick(settings_.placement.to_plate(hand));
-  const PassedForce passed = gate_.pass(core::Placement::force_to_device(rendered.force_n), hand);
+  const PassedForce passed =
+      gate_.pass(core::Placement::force_to_device(rendered.force_n), hand, elapsed_s);
   sample.fault = passed.fault;
   if (passed.fault != TickFault::none) {
     return;

@@ -57,7 +57,7 @@ class HapticLoop {
   bool step() noexcept;  // false after a fault
   core::TickFault fault_of_time(Nanoseconds woke_at) noexcept;
   core::TraceSample tick(Nanoseconds now) noexcept;
-  void render(const core::HandState& hand, core::TraceSample& sample) noexcept;
+  void render(const core::HandState& hand, double elapsed_s, core::TraceSample& sample) noexcept;
   void take_requested_alternative() noexcept;
   void note_lateness(Nanoseconds woke_at) noexcept;
 
@@ -74,6 +74,7 @@ class HapticLoop {
   Nanoseconds deadline_{0};
   Nanoseconds last_beat_{0};
   Nanoseconds last_tick_{0};
+  Nanoseconds previous_now_{0};
   int late_in_a_row_{0};
   bool has_begun_{false};
   LoopReport report_;

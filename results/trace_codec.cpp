@@ -98,7 +98,11 @@ std::vector<std::byte> compressed(const std::vector<std::byte>& plain) {
   return bytes;
 }
 
+// The chunk itself says how large it is: a damaged row must not ask for all memory there is.
 std::vector<std::byte> decompressed(std::span<const std::byte> bytes, std::size_t size) {
+  if (ZSTD_getFrameContentSize(bytes.data(), bytes.size()) != size) {
+    throw StoreError{"trace: a chunk does not hold the ticks that it should"};
+  }
   std::vector<std::byte> plain(size);
   const std::size_t found = ZSTD_decompress(plain.data(), plain.size(), bytes.data(), bytes.size());
   if (ZSTD_isError(found) != 0U || found != size) {

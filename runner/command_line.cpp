@@ -33,6 +33,17 @@ CLI::Validator ends_in(const std::string& suffix) {
           ""};
 }
 
+CLI::Validator within(double low, double high) {
+  return {[low, high](const std::string& text) {
+            double value = 0.0;
+            const bool is_number = CLI::detail::lexical_cast(text, value);
+            return is_number && value >= low && value <= high
+                       ? std::string{}
+                       : fmt::format("{} is not allowed (from {} to {})", text, low, high);
+          },
+          ""};
+}
+
 ExitCode carry_out(int argc, const char* const* argv) {
   CLI::App app{"User studies of tapped virtual objects, from a YAML protocol to the report.",
                "tapstudy"};

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/error.hpp"
@@ -57,6 +59,42 @@ void check_workspace(const protocols::Protocol& protocol, const protocols::Rig& 
         fmt::format("these tapping points lie beyond workspace_radius_m, {:.1f} mm (lower "
                     "placement.lateral_scale, {}, or move origin_m):{}",
                     1e3 * rig.workspace_radius_m, placement.lateral_scale, out_of_reach)};
+  }
+}
+
+namespace {
+constexpr double largest_ratio = 3.0;
+
+void check_alike(const char* what, std::array<double, 8> of_string) {
+  for (double& value : of_string) {
+    value = std::abs(value);
+  }
+  const auto [least, most] = std::ranges::minmax_element(of_string);
+  if (*most > largest_ratio * *least) {
+    throw core::InvalidInput{fmt::format(
+        "calibration: {} is {:.3g} for string {} and {:.3g} for string {} (motors of one kind do "
+        "not differ more than threefold: measure again)",
+        what, *least, least - of_string.begin() + 1, *most, most - of_string.begin() + 1)};
+  }
+}
+}  // namespace
+
+void check_strings(const protocols::SpidarRig& rig) {
+  std::array<double, 8> metres_per_count{};
+  std::array<double, 8> digits_per_newton{};
+  for (std::size_t i = 0; i < rig.strings.size(); ++i) {
+    metres_per_count.at(i) = rig.strings.at(i).metres_per_count;
+    digits_per_newton.at(i) =
+        rig.strings.at(i).volts_per_newton * rig.strings.at(i).digits_per_volt;
+  }
+  check_alike("metres_per_count", metres_per_count);
+  check_alike("volts_per_newton times digits_per_volt", digits_per_newton);
+  const double most_digits = rig.max_tension_n * std::ranges::max(digits_per_newton);
+  if (most_digits > device::most_digits) {
+    throw core::InvalidInput{
+        fmt::format("calibration: max_tension_n, {} N, would take {:.0f} digits (the board has {}: "
+                    "lower it, or measure again)",
+                    rig.max_tension_n, most_digits, device::most_digits)};
   }
 }
 

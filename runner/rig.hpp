@@ -11,6 +11,9 @@ namespace tapstudy::runner {
 device::LoopSettings loop_settings(const protocols::Protocol& protocol, const protocols::Rig& rig);
 // Throws InvalidInput if a tapping point lies where the rig's device cannot go, taps included.
 void check_workspace(const protocols::Protocol& protocol, const protocols::Rig& rig);
+// Throws InvalidInput if a calibration cannot be true: eight motors of one kind differ by more than
+// threefold, or the largest tension takes more digits than the board has.
+void check_strings(const protocols::SpidarRig& rig);
 // Of a rig that has a SPIDAR.
 device::SpidarSettings spidar_settings(const protocols::SpidarRig& rig, double dt_s);
 device::RealtimeRequest realtime_request(const protocols::LoopRig& rig);

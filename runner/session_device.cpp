@@ -9,6 +9,7 @@
 #include "device/remote/remote_hand.hpp"
 #include "device/replay_hand.hpp"
 #include "results/store.hpp"
+#include "runner/only_one.hpp"
 namespace tapstudy::runner {
 namespace {
 // Of another program to a tick's question.
@@ -16,11 +17,15 @@ constexpr std::chrono::milliseconds longest_reply{3};
 
 class RemoteDevice final : public SessionDevice {
  public:
-  explicit RemoteDevice(std::uint16_t port) : hand_{port, longest_reply} {}
+  explicit RemoteDevice(std::uint16_t port)
+      : only_one_{fmt::format("remote device at port {}", port),
+                  fmt::format("remote: UDP port {} is in use by another session", port)},
+        hand_{port, longest_reply} {}
   device::Device& device() override { return hand_; }
   void get_ready() override {}
 
  private:
+  OnlyOne only_one_;
   device::RemoteHand hand_;
 };
 

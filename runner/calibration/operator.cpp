@@ -5,19 +5,21 @@
 #include <charconv>
 
 #include "runner/exit_code.hpp"
+#include "runner/operator_prompt.hpp"
 #include "runner/stop_signal.hpp"
 namespace tapstudy::runner {
 std::string OperatorAtTerminal::next_line() {
   const auto line = input_.next([] { return !stop_was_asked(); });
-  if (!line) {
+  if (!line || *line == "quit") {
     throw Stopped{"stopped; nothing was written"};
   }
   return *line;
 }
 
 void OperatorAtTerminal::please(const std::string& task) {
-  fmt::print(stderr, "{}, then press Enter. ", task);
-  next_line();
+  if (!asked_and_done(input_, task + ", then")) {
+    throw Stopped{"stopped; nothing was written"};
+  }
 }
 
 double OperatorAtTerminal::how_much(const std::string& task, double most) {

@@ -127,6 +127,9 @@ void run_check(const CheckOptions& options) {
     const protocols::Rig rig = protocols::read_rig(options.rig);
     loop_settings(protocol, rig);
     check_workspace(protocol, rig);
+    if (rig.spidar) {
+      check_strings(*rig.spidar);
+    }
   }
   print_design(protocol, options.participants);
   print_models(protocol);

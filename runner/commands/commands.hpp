@@ -19,4 +19,6 @@ void add_calibrate(CLI::App& app);
 
 // A file's name must say what the file will hold.
 CLI::Validator ends_in(const std::string& suffix);
+// A number from low to high; what is no number is not.
+CLI::Validator within(double low, double high);
 }  // namespace tapstudy::runner

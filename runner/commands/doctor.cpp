@@ -107,10 +107,10 @@ void add_doctor(CLI::App& app) {
   const auto options = std::make_shared<DoctorOptions>();
   command->add_option("--rig", options->rig, "What to ask of the machine (YAML)");
   command->add_option("--rate-hz", options->rate_hz, "Of the loop")
-      ->check(CLI::Range(500.0, 10000.0))
+      ->check(within(500.0, 10000.0))
       ->capture_default_str();
   command->add_option("--seconds", options->seconds, "To measure, idle and under load each")
-      ->check(CLI::Range(0.1, 600.0))
+      ->check(within(0.1, 600.0))
       ->capture_default_str();
   command->add_option("--figure", options->figure, "Draw the lateness (.svg)")
       ->check(ends_in(".svg"));

@@ -1,8 +1,8 @@
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <random>
@@ -14,6 +14,8 @@
 #include "runner/commands/commands.hpp"
 #include "runner/console_participant.hpp"
 #include "runner/doctor/diagnosis.hpp"
+#include "runner/logging.hpp"
+#include "runner/only_one.hpp"
 #include "runner/repaired_device.hpp"
 #include "runner/rig.hpp"
 #include "runner/seed.hpp"
@@ -104,7 +106,7 @@ Surroundings look_around(const protocols::Rig& rig, SessionDevice* hardware,
   }
   const Verdict verdict = verdict_of(surroundings.diagnosis);
   if (!verdict.holds) {
-    spdlog::warn("{} (recorded with the session; `tapstudy doctor` says more)", verdict.words);
+    warn(verdict.words + " (recorded with the session; `tapstudy doctor` says more)");
   }
   return surroundings;
 }
@@ -120,11 +122,18 @@ void run_session(const RunOptions& options) {
   }
   const device::LoopSettings settings = loop_settings(protocol, rig);
   check_workspace(protocol, rig);
+  if (rig.spidar) {
+    check_strings(*rig.spidar);
+  }
   ModelLibrary models;
   models.build_all(protocol);
   if (options.resume) {
     results::Store::open_existing(options.directory);  // or there is nothing to resume
   }
+  const OnlyOne only_one{
+      std::filesystem::absolute(options.directory).lexically_normal().string() + " " +
+          options.participant,
+      fmt::format("participant '{}' is in a session of this study right now", options.participant)};
   listen_for_stop();
   LineInput input{STDIN_FILENO};
   std::unique_ptr<SessionDevice> hardware = device_of_rig(rig, protocol.rendering.dt_s, input);

@@ -56,12 +56,12 @@ void add_trade(CLI::App& app) {
   command
       ->add_option("--frequency-tolerance", options->tolerance.frequency,
                    "Largest relative error of a natural frequency")
-      ->check(CLI::Range(1e-6, 10.0))
+      ->check(within(1e-6, 10.0))
       ->capture_default_str();
   command
       ->add_option("--level-tolerance-db", options->tolerance.level_db,
                    "Largest error of the vibration's level")
-      ->check(CLI::Range(1e-6, 100.0))
+      ->check(within(1e-6, 100.0))
       ->capture_default_str();
   command->add_flag("--json", options->wants_json, "For programs");
   command->add_option(

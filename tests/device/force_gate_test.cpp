@@ -27,7 +27,7 @@ constexpr double dt_s = 1e-3;
 
 void let_on(ForceGate& gate, int ticks = 600) {
   for (int i = 0; i < ticks; ++i) {
-    gate.pass(Vec3::Zero(), still);
+    gate.pass(Vec3::Zero(), still, dt_s);
   }
 }
 }  // namespace
@@ -35,7 +35,7 @@ void let_on(ForceGate& gate, int ticks = 600) {
 TEST_CASE("a finger that rests inside a plate is not thrown out", "[device][safety]") {
   ForceGate gate{for_hardware(), dt_s};
   for (int i = 0; i < 1000; ++i) {
-    CHECK(gate.pass({0, 3, 0}, still).force_n == Vec3::Zero());
+    CHECK(gate.pass({0, 3, 0}, still, dt_s).force_n == Vec3::Zero());
   }
   CHECK(gate.state() == ForceGate::State::armed);
   let_on(gate, 20);
@@ -48,7 +48,7 @@ TEST_CASE("force rises evenly once it is let on, and falls evenly when it is tak
   let_on(gate, 10);
   double before = 0.0;
   for (int i = 1; i <= 500; ++i) {
-    const double now = gate.pass({0, 2, 0}, still).force_n.y();
+    const double now = gate.pass({0, 2, 0}, still, dt_s).force_n.y();
     CHECK(now - before == Approx(2.0 / 500).margin(1e-9));
     before = now;
   }
@@ -56,10 +56,10 @@ TEST_CASE("force rises evenly once it is let on, and falls evenly when it is tak
   gate.stop();
   int ticks = 0;
   while (gate.state() != ForceGate::State::at_rest && ticks++ < 1000) {
-    gate.pass({0, 2, 0}, still);
+    gate.pass({0, 2, 0}, still, dt_s);
   }
   CHECK(ticks == Approx(100).margin(2));
-  CHECK(gate.pass({0, 2, 0}, still).force_n == Vec3::Zero());
+  CHECK(gate.pass({0, 2, 0}, still, dt_s).force_n == Vec3::Zero());
 }
 
 TEST_CASE("whatever is asked, what comes out is finite, bounded in size and in rate",
@@ -76,7 +76,7 @@ TEST_CASE("whatever is asked, what comes out is finite, bounded in size and in r
             ? Vec3::Constant(rng.below(2) == 1 ? std::numeric_limits<double>::quiet_NaN()
                                                : std::numeric_limits<double>::infinity())
             : testing::random_vector(rng, size);
-    const auto passed = gate.pass(wanted, still);
+    const auto passed = gate.pass(wanted, still, dt_s);
     REQUIRE(passed.force_n.allFinite());
     CHECK(passed.force_n.norm() <= 5.0 + 1e-9);
     const bool is_fault = passed.fault != TickFault::none;
@@ -98,7 +98,7 @@ TEST_CASE("a hand too fast, outside or nowhere is a fault and no force", "[devic
                                  Case{{{0.021, 0, 0}, {0, 0, 0}}, TickFault::outside_workspace},
                                  Case{{{nan, 0, 0}, {0, 0, 0}}, TickFault::non_finite_force},
                                  Case{{{0, 0, 0}, {0, nan, 0}}, TickFault::non_finite_force});
-  const auto passed = gate.pass({0, 1, 0}, one.hand);
+  const auto passed = gate.pass({0, 1, 0}, one.hand, dt_s);
   CHECK(passed.fault == one.fault);
   CHECK(passed.force_n == Vec3::Zero());
 }
@@ -109,7 +109,22 @@ TEST_CASE("without a rise the gate is open at once and changes nothing within it
   settings.limits = {10.0, 1e5};
   ForceGate gate{settings, dt_s};
   const Vec3 wanted{0.123456789, 1.0 / 3.0, -2.0};
-  const auto passed = gate.pass(wanted, still);
+  const auto passed = gate.pass(wanted, still, dt_s);
   CHECK(passed.force_n == wanted);
   CHECK(!passed.was_changed);
+}
+
+TEST_CASE("a position that jumps is a hand too fast, whatever velocity the device tells",
+          "[device][safety]") {
+  ForceGate gate{for_hardware(), dt_s};
+  let_on(gate);
+  core::HandState hand;
+  hand.position_m = {0.0, -0.0019, 0.0};
+  CHECK(gate.pass({0, 1, 0}, hand, dt_s).fault == TickFault::none);
+  hand.position_m = {0.0, 0.0021, 0.0};
+  CHECK(gate.pass({0, 1, 0}, hand, 2.0 * dt_s).fault == TickFault::none);  // a tick was skipped
+  hand.position_m = {0.0, -0.0021, 0.0};
+  const auto passed = gate.pass({0, 1, 0}, hand, dt_s);
+  CHECK(passed.fault == TickFault::too_fast);
+  CHECK(passed.force_n == Vec3::Zero());
 }

@@ -207,6 +207,22 @@ TEST_CASE("a loop that nobody looks after drops its force within the time allowe
   CHECK(bench.hand.last_force_n == Vec3::Zero());
 }
 
+TEST_CASE("a loop that stood still itself is a fault, however fast somebody beats when it wakes",
+          "[device][loop][safety]") {
+  Bench bench;
+  bench.settings.longest_without_beat = 100'000'000;
+  bench.clock.lateness = std::vector<device::Nanoseconds>(20, 0);
+  bench.clock.lateness[10] = 2'000'000'000;
+  device::HapticLoop loop = bench.loop();
+  for (int i = 0; i < 20; ++i) {
+    loop.beat();
+    loop.run_ticks(1);
+  }
+  CHECK(loop.report().stopped_by == core::TickFault::heartbeat_lost);
+  CHECK(loop.report().ticks == 11);
+  CHECK(bench.hand.last_force_n == Vec3::Zero());
+}
+
 TEST_CASE("a run of late ticks is a fault where the rig says so", "[device][loop][safety]") {
   Bench bench;
   bench.clock.lateness = std::vector<device::Nanoseconds>(20, 600'000);

@@ -253,6 +253,9 @@ TEST_CASE("bad input is one clear error and its own exit code", "[end_to_end]") 
   refused({"simulate", paper(name), "--out", directory / "a_file"}, 5, "a_file");
   refused({"simulate", paper(name), "--out", "/proc/study"}, 5, "/proc/study");
   refused({"run", paper(name), "--participant", "../P1", "--out", out}, 2, "--participant");
+  refused({"doctor", "--seconds", "nan"}, 2, "nan is not allowed (from 0.1 to 600)");
+  refused({"calibrate", "--type", "X3R", "--out", directory / "none/c.yaml"}, 2,
+          "there is no directory");
 }
 
 TEST_CASE("a full disk ends in one error and leaves whole trials", "[end_to_end]") {
@@ -380,3 +383,25 @@ TEST_CASE("too little memory for a fine mesh is one sentence", "[end_to_end]") {
   CHECK_THAT(run.standard_error, Contains("memory"));
 }
 #endif
+
+TEST_CASE("a calibration that no eight motors of one kind can have is refused", "[end_to_end]") {
+  const TempDirectory directory;
+  const auto said_of = [&](const std::string& from, const std::string& to) {
+    testing::write(directory / "rig.yaml",
+                   testing::contents(testing::shipped("rigs/spidar_g6.yaml")));
+    testing::write(
+        directory / "spidar_calibration.yaml",
+        testing::replaced(testing::contents(testing::source("tests/data/spidar_calibration.yaml")),
+                          from, to));
+    const auto result =
+        testing::tapstudy({"check", paper("discrimination.yaml"), "--rig", directory / "rig.yaml"});
+    return std::to_string(result.exit_code) + " " + result.standard_error;
+  };
+  CHECK_THAT(said_of("format", "format"), Catch::Matchers::StartsWith("0 "));
+  CHECK_THAT(said_of("-1.66555e-5", "-1.0e-7"),
+             Contains("metres_per_count is 1e-07 for string 1 and 1.67e-05"));
+  CHECK_THAT(said_of("volts_per_newton: 0.3653", "volts_per_newton: 99"), Contains("string 1"));
+  CHECK_THAT(said_of("digits_per_volt: 415", "digits_per_volt: 1300"), Contains("string 1"));
+  CHECK_THAT(said_of("digits_per_volt: 415", "digits_per_volt: 1200"),
+             Contains("max_tension_n, 10 N, would take 4384 digits (the board has 4095"));
+}

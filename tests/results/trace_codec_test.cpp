@@ -72,6 +72,7 @@ TEST_CASE("bytes that are no trace are refused", "[results][codec]") {
   auto bytes = results::encode_trace(wild_samples(100));
   CHECK_THROWS_AS(results::decode_trace(bytes, 99), results::StoreError);
   CHECK_THROWS_AS(results::decode_trace(bytes, 101), results::StoreError);
+  CHECK_THROWS_AS(results::decode_trace(bytes, 1'000'000'000'000), results::StoreError);
   bytes.resize(bytes.size() / 2);
   CHECK_THROWS_AS(results::decode_trace(bytes, 100), results::StoreError);
 }

@@ -1,0 +1,31 @@
+#include "runner/only_one.hpp"
+
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstddef>
+
+#include "core/error.hpp"
+#include "core/sha256.hpp"
+namespace tapstudy::runner {
+// A socket's name in the kernel's own space is not a file: it cannot be left behind.
+OnlyOne::OnlyOne(const std::string& what, const std::string& refusal)
+    : socket_{socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0)} {
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  const std::string name = "tapstudy " + core::sha256(what);
+  std::ranges::copy(name, address.sun_path + 1);  // the first byte is zero
+  const auto size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + name.size());
+  // NOLINTNEXTLINE(cppcoreguidelines-pro-type-reinterpret-cast): the way of the C library
+  if (bind(socket_, reinterpret_cast<const sockaddr*>(&address), size) != 0) {
+    close(socket_);
+    throw core::InvalidInput{refusal};
+  }
+}
+
+OnlyOne::~OnlyOne() {
+  close(socket_);
+}
+}  // namespace tapstudy::runner

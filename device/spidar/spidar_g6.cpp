@@ -187,7 +187,7 @@ void SpidarG6::rest() noexcept {
   end_watch();
 }
 
-void SpidarG6::end_watch() noexcept {
+void SpidarG6::end_watch() const noexcept {
   if (settings_.watch != nullptr) {
     settings_.watch->end();
   }

@@ -56,7 +56,7 @@ class SpidarG6 final : public Device {
  private:
   core::TickFault fault_of_watch() noexcept;
   core::TickFault exchange() noexcept;
-  void end_watch() noexcept;
+  void end_watch() const noexcept;
   core::TickFault follow(core::HandState& hand) noexcept;
   bool is_echo_right() noexcept;
 

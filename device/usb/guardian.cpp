@@ -11,7 +11,7 @@
 #include <array>
 #include <cerrno>
 #include <csignal>
-#include <new>
+#include <memory>
 
 #include "device/device.hpp"
 namespace tapstudy::device {
@@ -83,7 +83,7 @@ ForceWatch* shared_watch() {
   if (memory == MAP_FAILED) {  // NOLINT(cppcoreguidelines-pro-type-cstyle-cast): the C library's
     throw DeviceError{"the guardian of the device has no memory"};
   }
-  return new (memory) ForceWatch;
+  return std::construct_at(static_cast<ForceWatch*>(memory));
 }
 }  // namespace
 

@@ -40,6 +40,11 @@ SpidarG6::SpidarG6(UsbPipe& pipe, SpidarBoard& board, SpidarSettings settings)
     throw DeviceError{fmt::format("SPIDAR-G6: the {} board does not answer: {}", board_.name(),
                                   to_text(outcome))};
   }
+  // the second, for the first may echo what an earlier program sent
+  if (const TickFault fault = exchange(); fault != TickFault::none) {
+    throw DeviceError{fmt::format("SPIDAR-G6: the {} board answers nonsense: {}", board_.name(),
+                                  core::to_text(fault))};
+  }
 }
 
 SpidarG6::~SpidarG6() {

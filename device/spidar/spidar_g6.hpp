@@ -30,7 +30,8 @@ struct SpidarSettings {
 // and the grip must be homed anew.
 class SpidarG6 final : public Device {
  public:
-  // The pipe and the board must outlive it. Throws DeviceError if the board does not answer.
+  // The pipe and the board must outlive it. Throws DeviceError if the board does not answer, or
+  // answers what cannot be.
   SpidarG6(UsbPipe& pipe, SpidarBoard& board, SpidarSettings settings);
   ~SpidarG6() override;
   SpidarG6(const SpidarG6& other) = delete;

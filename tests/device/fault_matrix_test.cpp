@@ -159,6 +159,7 @@ struct Outcome {
   TickFault seen;
   std::int64_t packets_to_detect;
   std::int64_t packets_with_force;  // of these
+  bool is_latched;
   std::string stored;
 };
 
@@ -177,10 +178,12 @@ Outcome outcome_of(const Fault& fault, const State& state) {
   CHECK((!is_reachable || std::all_of(sent.end() - 3, sent.end(), testing::has_no_force)));
   const std::int64_t stopped_at = stage.loop->report().ticks;
   stage.tick(50);
-  CHECK((!state.is_in_the_loop || stage.loop->report().ticks == stopped_at));  // latched
-  CHECK(!stage.spidar.is_homed());
+  core::HandState hand;
+  const bool is_latched = (!state.is_in_the_loop || stage.loop->report().ticks == stopped_at) &&
+                          !stage.spidar.is_homed() &&
+                          stage.spidar.read(hand) == TickFault::not_homed;
   const auto detected = static_cast<std::int64_t>(sent.size()) - (is_reachable ? 3 : 0);
-  return {seen, detected, with_force,
+  return {seen, detected, with_force, is_latched,
           state.is_in_the_loop ? core::to_text(stage.last_stored()) : "no trial yet: said"};
 }
 
@@ -188,11 +191,13 @@ Outcome outcome_of(const Fault& fault, const State& state) {
 void check_and_print(const Fault& fault, const State& state) {
   CAPTURE(fault.name, state.name);
   const Outcome outcome = outcome_of(fault, state);
-  fmt::print("  {:<22}{:<12}{:>6}{:>12}    {}\n", fault.name, state.name, outcome.packets_to_detect,
-             outcome.packets_with_force, outcome.stored);
+  fmt::print("  {:<22}{:<12}{:>6}{:>12}{:>9}    {}\n", fault.name, state.name,
+             outcome.packets_to_detect, outcome.packets_with_force,
+             outcome.is_latched ? "yes" : "no", outcome.stored);
   CAPTURE(core::to_text(outcome.seen));
   CHECK(std::ranges::count(fault.seen_as, outcome.seen) == 1);
   CHECK((!state.is_in_the_loop || outcome.stored == core::to_text(outcome.seen)));
+  CHECK(outcome.is_latched);
   // none after the tick that found it
   CHECK(outcome.packets_with_force <= outcome.packets_to_detect);
 }
@@ -204,7 +209,9 @@ TEST_CASE("the fault matrix: force is off by the tick that finds the fault, and 
                                   {"armed", &Stage::arm, &Stage::go_on, true},
                                   {"rendering", &Stage::press, &Stage::go_on, true},
                                   {"stopping", &Stage::press, &Stage::go_on_and_stop, true}};
-  fmt::print("  fault                 state     packets  with force    the trial is stored with\n");
+  fmt::print(
+      "  fault                 state      ticks  with force  latched    the trial is stored "
+      "with\n");
   for (const Fault& fault : all_faults()) {
     for (const State& state : states) {
       if (state.is_in_the_loop || fault.is_seen_before_homing) {

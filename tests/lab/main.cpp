@@ -46,6 +46,7 @@ struct Options {
   int kill_guardian_after{0};
   int unplug_after{0};
   bool is_silent{false};
+  bool answers_nonsense{false};
   std::vector<std::string> command;
 };
 
@@ -105,6 +106,9 @@ class Lab {
       spidar.turn_rotary_switch_to(3 + i);
       spidar.pass_with_each_request(options_.tick_s);
       spidar.start_counters_at(65'000);
+      if (options_.answers_nonsense) {
+        spidar.echo_wrongly();
+      }
     });
     if (options_.is_silent) {
       board->fall_silent();
@@ -258,6 +262,7 @@ int main(int count, char** words) {
   app.add_option("--kill-guardian-after", options.kill_guardian_after);
   app.add_option("--unplug-after", options.unplug_after);
   app.add_flag("--silent", options.is_silent);
+  app.add_flag("--nonsense", options.answers_nonsense);
   char** const end = words + count;
   char** const dashes = std::find(words, end, std::string_view{"--"});
   options.command.assign(std::min(dashes + 1, end), end);

@@ -20,6 +20,7 @@ struct HandState {
   Vec3 position_m{Vec3::Zero()};
   Vec3 velocity_m_s{Vec3::Zero()};
 };
+
 // The parts of the force on the finger along the outward normal of the plate, before the limiter.
 struct ForceParts {
   double penalty_n{0.0};    // paper eq. 1

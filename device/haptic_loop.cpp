@@ -49,10 +49,11 @@ bool HapticLoop::step() noexcept {
   }
   const Nanoseconds woke_at = clock_.wait_until(deadline_);
   note_lateness(woke_at);
+  const Nanoseconds elapsed = woke_at - std::exchange(last_tick_, woke_at);
   core::TraceSample sample{};
-  sample.fault = fault_of_time(woke_at);
+  sample.fault = fault_of_time(woke_at, elapsed);
   if (sample.fault == TickFault::none) {
-    sample = tick(woke_at - start_);
+    sample = tick(woke_at - start_, elapsed);
   } else {
     sample.t_ns = woke_at - start_;
   }
@@ -85,7 +86,7 @@ void HapticLoop::note_lateness(Nanoseconds woke_at) noexcept {
   deadline_ += (missed + 1) * settings_.period;
 }
 
-TickFault HapticLoop::fault_of_time(Nanoseconds woke_at) noexcept {
+TickFault HapticLoop::fault_of_time(Nanoseconds woke_at, Nanoseconds elapsed) noexcept {
   if (has_beaten_.exchange(false, std::memory_order_acq_rel)) {
     last_beat_ = woke_at;
   }
@@ -93,10 +94,9 @@ TickFault HapticLoop::fault_of_time(Nanoseconds woke_at) noexcept {
   const bool is_looked_after =
       settings_.longest_without_beat > 0 && gate_.state() != ForceGate::State::stopping;
   if (is_looked_after && (woke_at - last_beat_ > settings_.longest_without_beat ||
-                          woke_at - last_tick_ > settings_.longest_without_beat)) {
+                          elapsed > settings_.longest_without_beat)) {
     return TickFault::heartbeat_lost;  // or the loop itself, for as long, and all with it
   }
-  last_tick_ = woke_at;
   const bool gives_up =
       settings_.most_late_in_a_row > 0 && late_in_a_row_ > settings_.most_late_in_a_row;
   return gives_up ? TickFault::too_late : TickFault::none;
@@ -110,7 +110,7 @@ void HapticLoop::take_requested_alternative() noexcept {
   }
 }
 
-core::TraceSample HapticLoop::tick(Nanoseconds now) noexcept {
+core::TraceSample HapticLoop::tick(Nanoseconds now, Nanoseconds elapsed) noexcept {
   take_requested_alternative();
   core::TraceSample sample{};
   sample.t_ns = now;
@@ -118,9 +118,8 @@ core::TraceSample HapticLoop::tick(Nanoseconds now) noexcept {
   core::HandState hand;
   sample.fault = device_.read(hand);
   if (sample.fault == TickFault::none) {
-    render(hand, 1e-9 * static_cast<double>(now - previous_now_), sample);
+    render(hand, 1e-9 * static_cast<double>(elapsed), sample);
   }
-  previous_now_ = now;
   return sample;
 }
 

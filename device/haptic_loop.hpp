@@ -55,8 +55,8 @@ class HapticLoop {
  private:
   void begin() noexcept;
   bool step() noexcept;  // false after a fault
-  core::TickFault fault_of_time(Nanoseconds woke_at) noexcept;
-  core::TraceSample tick(Nanoseconds now) noexcept;
+  core::TickFault fault_of_time(Nanoseconds woke_at, Nanoseconds elapsed) noexcept;
+  core::TraceSample tick(Nanoseconds now, Nanoseconds elapsed) noexcept;
   void render(const core::HandState& hand, double elapsed_s, core::TraceSample& sample) noexcept;
   void take_requested_alternative() noexcept;
   void note_lateness(Nanoseconds woke_at) noexcept;
@@ -74,7 +74,6 @@ class HapticLoop {
   Nanoseconds deadline_{0};
   Nanoseconds last_beat_{0};
   Nanoseconds last_tick_{0};
-  Nanoseconds previous_now_{0};
   int late_in_a_row_{0};
   bool has_begun_{false};
   LoopReport report_;

@@ -45,6 +45,7 @@ std::string processor(std::optional<int> cpu) {
   return error == 0 ? fmt::format("processor {}", *cpu)
                     : fmt::format("any processor ({} refused: {})", *cpu, std::strerror(error));
 }
+
 // A processor that sleeps deeply takes long to wake. The kernel keeps them awake for as long as the
 // file is open: until this process ends.
 std::string sleep_of_processors(int priority) {

@@ -106,6 +106,7 @@ void read_limits_of_motion(MapReader& top, Rig& rig) {
   rig.force_rise_s = top.number("force_rise_s", {0.1, 10.0}, 0.5);
   rig.force_fall_s = top.number("force_fall_s", {0.01, 1.0}, 0.1);
 }
+
 Rig parse(const std::string& text, const std::string& file, Problems& problems) {
   MapReader top = MapReader::whole_file(text, file, problems);
   Rig rig;
@@ -115,7 +116,7 @@ Rig parse(const std::string& text, const std::string& file, Problems& problems) 
   rig.limits.max_force_n = top.number("max_force_n", Range::positive(100.0));
   rig.limits.max_rate_n_per_s = top.number("max_force_rate_n_per_s", Range::positive(1e6));
   read_device(top, std::filesystem::path{file}.parent_path().string(), rig);
-  if (rig.spidar || rig.remote_port) {
+  if (rig.has_hardware()) {
     read_limits_of_motion(top, rig);
   }
   read_loop(top, rig.loop);

@@ -52,5 +52,8 @@ struct Rig {
   std::optional<std::uint16_t> remote_port;
   std::optional<ReplayRig> replay;
   std::optional<core::Placement> placement;  // instead of the protocol's
+
+  // A hand that is neither simulated nor recorded, and can be hurt.
+  bool has_hardware() const noexcept { return spidar || remote_port; }
 };
 }  // namespace tapstudy::protocols

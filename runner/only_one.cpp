@@ -1,11 +1,14 @@
 #include "runner/only_one.hpp"
 
+#include <fmt/format.h>
 #include <sys/socket.h>
 #include <sys/un.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cstddef>
+#include <cstring>
 
 #include "core/error.hpp"
 #include "core/sha256.hpp"
@@ -20,8 +23,12 @@ OnlyOne::OnlyOne(const std::string& what, const std::string& refusal)
   const auto size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + name.size());
   // NOLINTNEXTLINE(cppcoreguidelines-pro-type-reinterpret-cast): the way of the C library
   if (bind(socket_, reinterpret_cast<const sockaddr*>(&address), size) != 0) {
+    const int error = errno;
     close(socket_);
-    throw core::InvalidInput{refusal};
+    throw core::InvalidInput{error == EADDRINUSE
+                                 ? refusal
+                                 : fmt::format("whether this is the only session is not known: {}",
+                                               std::strerror(error))};
   }
 }
 

@@ -10,10 +10,10 @@
 namespace tapstudy::runner {
 namespace {
 bool is_there(const protocols::Rig& rig) {
-  const auto all = device::usb_devices();
-  return !rig.spidar || std::ranges::any_of(all, [](const device::UsbListing& listing) {
-    return is_spidar(listing) && listing.may_open;
-  });
+  return !rig.spidar ||
+         std::ranges::any_of(device::usb_devices(), [](const device::UsbListing& listing) {
+           return is_spidar(listing) && listing.may_open;
+         });
 }
 
 device::DeviceError gives_up(const Interruption& interruption) {
@@ -25,11 +25,10 @@ std::unique_ptr<SessionDevice> repaired_device(const Interruption& interruption,
                                                const protocols::Rig& rig, double dt_s,
                                                LineInput& operator_input,
                                                std::unique_ptr<SessionDevice> broken) {
-  const bool has_hardware = rig.spidar || rig.remote_port;
-  broken.reset();  // only one can hold the device
-  if (!has_hardware) {
+  if (!rig.has_hardware()) {
     throw gives_up(interruption);
   }
+  broken.reset();  // only one can hold the device
   std::string task = fmt::format(
       "\n{}.\nType quit to stop here; or see to the device, its power and its plug, and to "
       "go on",

@@ -11,34 +11,9 @@
 namespace tapstudy::runner {
 namespace {
 constexpr device::Nanoseconds longest_without_beat = 100'000'000;
-}
+constexpr double largest_ratio = 3.0;
 
-device::LoopSettings loop_settings(const protocols::Protocol& protocol, const protocols::Rig& rig) {
-  device::LoopSettings settings;
-  settings.period = std::llround(1e9 / protocol.rate_hz);
-  settings.gate.limits = rig.limits;
-  settings.gate.max_speed_m_s = rig.max_hand_speed_m_s;
-  settings.gate.workspace_radius_m = rig.workspace_radius_m;
-  settings.gate.rise_s = rig.force_rise_s;
-  settings.gate.fall_s = rig.force_fall_s;
-  settings.most_late_in_a_row = rig.loop.most_late_ticks_in_a_row;
-  if (rig.spidar || rig.remote_port) {
-    settings.longest_without_beat = longest_without_beat;
-  }
-  settings.placement = rig.placement.value_or(protocol.placement);
-  for (const auto& [name, plate] : protocol.plates) {
-    if (settings.placement.lateral_scale != 1.0 &&
-        std::holds_alternative<core::Solid>(plate.shape)) {
-      throw core::InvalidInput{
-          fmt::format("rig: placement.lateral_scale: {} is not allowed with plate '{}' (1: only a "
-                      "flat plate can "
-                      "be scaled sideways)",
-                      settings.placement.lateral_scale, name)};
-    }
-  }
-  return settings;
-}
-
+// Every tapping point must lie where the device can go.
 void check_workspace(const protocols::Protocol& protocol, const protocols::Rig& rig) {
   const core::Placement placement = rig.placement.value_or(protocol.placement);
   std::string out_of_reach;
@@ -62,9 +37,6 @@ void check_workspace(const protocols::Protocol& protocol, const protocols::Rig& 
   }
 }
 
-namespace {
-constexpr double largest_ratio = 3.0;
-
 void check_alike(const char* what, std::array<double, 8> of_string) {
   for (double& value : of_string) {
     value = std::abs(value);
@@ -77,8 +49,7 @@ void check_alike(const char* what, std::array<double, 8> of_string) {
         what, *least, least - of_string.begin() + 1, *most, most - of_string.begin() + 1)};
   }
 }
-}  // namespace
-
+// Eight motors of one kind are alike, and the largest tension takes no more digits than there are.
 void check_strings(const protocols::SpidarRig& rig) {
   std::array<double, 8> metres_per_count{};
   std::array<double, 8> digits_per_newton{};
@@ -95,6 +66,40 @@ void check_strings(const protocols::SpidarRig& rig) {
         fmt::format("calibration: max_tension_n, {} N, would take {:.0f} digits (the board has {}: "
                     "lower it, or measure again)",
                     rig.max_tension_n, most_digits, device::most_digits)};
+  }
+}
+}  // namespace
+
+device::LoopSettings loop_settings(const protocols::Protocol& protocol, const protocols::Rig& rig) {
+  device::LoopSettings settings;
+  settings.period = std::llround(1e9 / protocol.rate_hz);
+  settings.gate.limits = rig.limits;
+  settings.gate.max_speed_m_s = rig.max_hand_speed_m_s;
+  settings.gate.workspace_radius_m = rig.workspace_radius_m;
+  settings.gate.rise_s = rig.force_rise_s;
+  settings.gate.fall_s = rig.force_fall_s;
+  settings.most_late_in_a_row = rig.loop.most_late_ticks_in_a_row;
+  if (rig.has_hardware()) {
+    settings.longest_without_beat = longest_without_beat;
+  }
+  settings.placement = rig.placement.value_or(protocol.placement);
+  for (const auto& [name, plate] : protocol.plates) {
+    if (settings.placement.lateral_scale != 1.0 &&
+        std::holds_alternative<core::Solid>(plate.shape)) {
+      throw core::InvalidInput{
+          fmt::format("rig: placement.lateral_scale: {} is not allowed with plate '{}' (1: only a "
+                      "flat plate can "
+                      "be scaled sideways)",
+                      settings.placement.lateral_scale, name)};
+    }
+  }
+  return settings;
+}
+
+void check_fits(const protocols::Protocol& protocol, const protocols::Rig& rig) {
+  check_workspace(protocol, rig);
+  if (rig.spidar) {
+    check_strings(*rig.spidar);
   }
 }
 

@@ -9,11 +9,10 @@ namespace tapstudy::runner {
 // From what the YAML files say to what the device layer takes. Throws InvalidInput if they do not
 // go together.
 device::LoopSettings loop_settings(const protocols::Protocol& protocol, const protocols::Rig& rig);
-// Throws InvalidInput if a tapping point lies where the rig's device cannot go, taps included.
-void check_workspace(const protocols::Protocol& protocol, const protocols::Rig& rig);
-// Throws InvalidInput if a calibration cannot be true: eight motors of one kind differ by more than
-// threefold, or the largest tension takes more digits than the board has.
-void check_strings(const protocols::SpidarRig& rig);
+// Throws InvalidInput if a tapping point lies where the rig's device cannot go, taps included, or
+// if its calibration cannot be true: motors of one kind that differ by more than threefold, or a
+// largest tension that takes more digits than the board has.
+void check_fits(const protocols::Protocol& protocol, const protocols::Rig& rig);
 // Of a rig that has a SPIDAR.
 device::SpidarSettings spidar_settings(const protocols::SpidarRig& rig, double dt_s);
 device::RealtimeRequest realtime_request(const protocols::LoopRig& rig);

@@ -9,7 +9,6 @@
 #include "runner/operator_prompt.hpp"
 #include "runner/plugged_in.hpp"
 #include "runner/session_device.hpp"
-#include "runner/trial_record.hpp"
 namespace tapstudy::runner {
 namespace {
 constexpr int tightening_steps = 500;

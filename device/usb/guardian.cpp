@@ -76,17 +76,20 @@ class Watchman {
   std::uint64_t beats_{0};
   int still_rounds_{0};
 };
+}  // namespace
 
-ForceWatch* shared_watch() {
+void Guardian::Unmap::operator()(ForceWatch* watch) const noexcept {
+  munmap(watch, sizeof(ForceWatch));
+}
+
+std::unique_ptr<ForceWatch, Guardian::Unmap> Guardian::shared_watch() {
   void* const memory =
       mmap(nullptr, sizeof(ForceWatch), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
   if (memory == MAP_FAILED) {  // NOLINT(cppcoreguidelines-pro-type-cstyle-cast): the C library's
     throw DeviceError{"the guardian of the device has no memory"};
   }
-  return std::construct_at(static_cast<ForceWatch*>(memory));
+  return std::unique_ptr<ForceWatch, Unmap>{std::construct_at(static_cast<ForceWatch*>(memory))};
 }
-}  // namespace
-
 Guardian::Guardian(const UsbNode& node, std::uint8_t out_endpoint,
                    std::vector<std::uint8_t> no_force)
     : watch_{shared_watch()} {
@@ -113,6 +116,5 @@ Guardian::~Guardian() {
   int status = 0;
   while (waitpid(child_, &status, 0) < 0 && errno == EINTR) {
   }
-  munmap(watch_, sizeof(ForceWatch));
 }
 }  // namespace tapstudy::device

@@ -2,6 +2,7 @@
 #include <sys/types.h>
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "device/usb/force_watch.hpp"
@@ -14,7 +15,8 @@ namespace tapstudy::device {
 // and lives on, if tapstudy stands still with force on: suspended, or starved.
 class Guardian {
  public:
-  // To be made before any thread is. Throws DeviceError if there can be none.
+  // Other threads may run: the child calls nothing that they could hold. Throws DeviceError if
+  // there can be none.
   Guardian(const UsbNode& node, std::uint8_t out_endpoint, std::vector<std::uint8_t> no_force);
   // The packet is sent at an orderly end too.
   ~Guardian();
@@ -25,7 +27,12 @@ class Guardian {
   ForceWatch& watch() noexcept { return *watch_; }
 
  private:
-  ForceWatch* watch_{nullptr};  // in memory shared with the child
+  struct Unmap {
+    void operator()(ForceWatch* watch) const noexcept;
+  };
+  static std::unique_ptr<ForceWatch, Unmap> shared_watch();
+
+  std::unique_ptr<ForceWatch, Unmap> watch_;  // in memory shared with the child
   pid_t child_{-1};
   int life_{-1};  // closed by the kernel when this process ends
 };

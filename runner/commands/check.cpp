@@ -126,10 +126,7 @@ void run_check(const CheckOptions& options) {
   if (!options.rig.empty()) {
     const protocols::Rig rig = protocols::read_rig(options.rig);
     loop_settings(protocol, rig);
-    check_workspace(protocol, rig);
-    if (rig.spidar) {
-      check_strings(*rig.spidar);
-    }
+    check_fits(protocol, rig);
   }
   print_design(protocol, options.participants);
   print_models(protocol);

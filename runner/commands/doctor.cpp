@@ -32,7 +32,7 @@ void print(const char* name, const device::LatenessCount& times, const std::stri
 void print(const Diagnosis& diagnosis) {
   fmt::print("loop       {}\n", diagnosis.idle.realtime);
   fmt::print("governor   {}\n", diagnosis.governor);
-  fmt::print("timer      slack {} ns\n", diagnosis.timer_slack_ns);
+  fmt::print("timer      slack {} ns\n", diagnosis.idle.timer_slack_ns);
   fmt::print("\nlateness [us] of {} ticks at {} Hz\n", diagnosis.idle.lateness.count(),
              1e9 / static_cast<double>(diagnosis.period));
   fmt::print("               median       p99     p99.9     worst    late\n");

@@ -121,10 +121,7 @@ void run_session(const RunOptions& options) {
     throw core::InvalidInput{"a replayed hand is no participant: give --pilot too"};
   }
   const device::LoopSettings settings = loop_settings(protocol, rig);
-  check_workspace(protocol, rig);
-  if (rig.spidar) {
-    check_strings(*rig.spidar);
-  }
+  check_fits(protocol, rig);
   ModelLibrary models;
   models.build_all(protocol);
   if (options.resume) {

@@ -1,7 +1,5 @@
 #include "runner/doctor/diagnosis.hpp"
 
-#include <sys/prctl.h>
-
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -48,8 +46,6 @@ Diagnosis diagnose(const protocols::LoopRig& rig, device::Nanoseconds period, do
   Diagnosis diagnosis;
   diagnosis.period = period;
   diagnosis.governor = governor();
-  // NOLINTNEXTLINE(cppcoreguidelines-pro-type-vararg): the C library's own
-  diagnosis.timer_slack_ns = prctl(PR_GET_TIMERSLACK);
   diagnosis.idle = probe_loop(request, period, seconds);
   if (under == Under::load_too) {
     const Load load;
@@ -78,7 +74,7 @@ Verdict verdict_of(const Diagnosis& diagnosis) {
 std::string to_json(const Diagnosis& diagnosis) {
   Json json{{"rate_hz", 1e9 / static_cast<double>(diagnosis.period)},
             {"governor", diagnosis.governor},
-            {"timer_slack_ns", diagnosis.timer_slack_ns},
+            {"timer_slack_ns", diagnosis.idle.timer_slack_ns},
             {"idle", json_of(diagnosis.idle)}};
   if (diagnosis.loaded) {
     json["loaded"] = json_of(*diagnosis.loaded);

@@ -9,7 +9,6 @@ namespace tapstudy::runner {
 struct Diagnosis {
   device::Nanoseconds period{};
   std::string governor;
-  int timer_slack_ns{};  // of a thread that got no real-time priority
   ProbedLoop idle;
   std::optional<ProbedLoop> loaded;
   std::optional<device::LatenessCount> round_trip;  // of the device's board, request to reply

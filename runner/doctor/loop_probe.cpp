@@ -1,6 +1,7 @@
 #include "runner/doctor/loop_probe.hpp"
 
 #include <fcntl.h>
+#include <sys/prctl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -50,6 +51,8 @@ ProbedLoop probe_loop(const device::RealtimeRequest& request, device::Nanosecond
       static_cast<std::int64_t>(std::llround(1e9 * seconds / static_cast<double>(period)));
   std::jthread{[&] {
     probed.realtime = device::ask_for_realtime(request);
+    // NOLINTNEXTLINE(cppcoreguidelines-pro-type-vararg): the C library's own
+    probed.timer_slack_ns = prctl(PR_GET_TIMERSLACK);
     device::MonotonicClock clock;
     device::Nanoseconds deadline = clock.now();
     for (std::int64_t i = 0; i < ticks; ++i) {

@@ -7,6 +7,7 @@
 namespace tapstudy::runner {
 struct ProbedLoop {
   std::string realtime;  // what was got of the machine
+  int timer_slack_ns{};  // of the loop's own thread
   device::LatenessCount lateness;
   std::int64_t late{0};  // by more than half a period
 };

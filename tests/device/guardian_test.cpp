@@ -61,3 +61,29 @@ TEST_CASE("however the program dies, the last packets are of no force, three of 
     REQUIRE(sent[i] == no_force.at(i % no_force.size()));
   }
 }
+
+TEST_CASE("a program that stands still with force on loses it, and may find out",
+          "[device][usb][guardian]") {
+  const bool has_force = GENERATE(false, true);
+  std::array<int, 2> ends{};
+  REQUIRE(pipe(ends.data()) == 0);
+  FakeBus bus{device::cyverse_vendor, device::sh4_product,
+              [](std::span<const std::uint8_t>) { return Bytes{}; }};
+  bus.copy_plain_bulk_to(ends[1]);
+  const device::UsbNode node{bus.open()};
+  const auto no_force = device::Sh4Board::request({});
+  {
+    device::Guardian guardian{node, 0x02, {no_force.begin(), no_force.end()}};
+    if (has_force) {
+      guardian.watch().begin();
+    }
+    while (guardian.watch().rounds() < 10 && !guardian.watch().has_acted()) {
+      usleep(1000);
+    }
+    CHECK(guardian.watch().has_acted() == has_force);
+  }
+  close(ends[1]);
+  const Bytes sent = all_from(ends[0]);
+  close(ends[0]);
+  CHECK(sent.size() == (has_force ? 6U : 3U) * no_force.size());  // and at the orderly end
+}

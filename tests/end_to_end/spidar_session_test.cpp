@@ -3,34 +3,45 @@
 #include <catch2/catch.hpp>
 #include <csignal>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "support/processes.hpp"
 #include "support/sanitized.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;
 using Catch::Matchers::Contains;
-using testing::replaced;
 
 #if !TAPSTUDY_SANITIZED  // two libraries cannot both be the first to be loaded
 namespace {
+std::string changed(const std::string& name,
+                    const std::vector<std::pair<std::string, std::string>>& changes) {
+  std::string text = testing::contents(testing::shipped(name));
+  for (const auto& [from, to] : changes) {
+    text = testing::replaced(text, from, to);
+  }
+  return text;
+}
+
 // A study slow enough for the mocked kernel, and a rig that is patient with it.
 class Laboratory {
  public:
   Laboratory() {
-    std::string study = testing::contents(testing::shipped("paper/discrimination.yaml"));
-    study = replaced(study, "rate_hz: 1000", "rate_hz: 500");
-    study = replaced(study, "band_limit_hz: 300", "band_limit_hz: 200");
-    study = replaced(study, "penalty_stiffness_n_per_m: 3000", "penalty_stiffness_n_per_m: 1000");
-    study = replaced(study, "repetitions: 2", "repetitions: 1");
-    testing::write(directory_ / "study.yaml", study);
+    testing::write(directory_ / "study.yaml",
+                   changed("paper/discrimination.yaml",
+                           {{"rate_hz: 1000", "rate_hz: 500"},
+                            {"band_limit_hz: 300", "band_limit_hz: 200"},
+                            {"penalty_stiffness_n_per_m: 3000", "penalty_stiffness_n_per_m: 1000"},
+                            {"repetitions: 2", "repetitions: 1"}}));
     testing::write(directory_ / "spidar_calibration.yaml",
                    testing::contents(testing::source("tests/data/spidar_calibration.yaml")));
-    std::string rig = testing::contents(testing::shipped("rigs/spidar_g6.yaml"));
-    rig = replaced(rig, "force_rise_s: 0.5", "force_rise_s: 0.1");
-    rig = replaced(rig, "fifo_priority: 80", "fifo_priority: 0");
-    rig = replaced(rig, ", most_late_ticks_in_a_row: 20", "");
-    rig = replaced(rig, "longest_reply_s: 0.003}", "longest_reply_s: 0.1}");
-    testing::write(directory_ / "rig.yaml", rig);
+    testing::write(
+        directory_ / "rig.yaml",
+        changed("rigs/spidar_g6.yaml", {{"force_rise_s: 0.5", "force_rise_s: 0.1"},
+                                        {"fifo_priority: 80", "fifo_priority: 0"},
+                                        {", most_late_ticks_in_a_row: 20", ""},
+                                        {"longest_reply_s: 0.003}", "longest_reply_s: 0.1}"}}));
   }
   testing::ProgramResult operator()(const std::vector<std::string>& options,
                                     const std::vector<std::string>& arguments) {

@@ -13,6 +13,11 @@
 using namespace tapstudy;
 
 namespace {
+struct Change {
+  const char* from;
+  const char* to;
+};
+
 void collect(const nlohmann::json& schema, const std::string& path, std::set<std::string>& keys) {
   if (schema.contains("properties")) {
     for (const auto& [key, inner] : schema["properties"].items()) {
@@ -80,10 +85,6 @@ TEST_CASE("the schema has exactly the keys that the reader asks for", "[protocol
 }
 
 TEST_CASE("schema and reader accept the same protocols", "[protocols][schema][slow]") {
-  struct Change {
-    const char* from;
-    const char* to;
-  };
   const auto [from, to] = GENERATE(values<Change>({
       {"title: Every", "title: Every"},
       {"order: 2", "order: 3"},
@@ -212,10 +213,6 @@ TEST_CASE("schema and reader accept the same rigs", "[protocols][rig][schema][sl
 }
 
 TEST_CASE("schema and reader accept the same calibrations", "[protocols][rig][schema][slow]") {
-  struct Change {
-    const char* from;
-    const char* to;
-  };
   const auto [from, to] = GENERATE(values<Change>({
       {"format", "format"},
       {"metres_per_count: -1.66555e-5", "metres_per_count: 0"},

@@ -156,6 +156,50 @@ TEST_CASE("a reply of a tick ago is told from this one's, whichever request the 
   CHECK(bench.tick({3, 0, 0}) == TickFault::wrong_echo);
 }
 
+TEST_CASE("with force on, a SPIDAR is watched and its guardian with it",
+          "[device][spidar][safety]") {
+  testing::PlayedBack pipe;
+  const auto board = device::board_of(device::sh4_product);
+  device::ForceWatch watch;
+  device::SpidarSettings settings = testing::simulated_settings();
+  settings.watch = &watch;
+  device::SpidarG6 spidar{pipe, *board, settings};
+  REQUIRE(spidar.home() == TickFault::none);
+  CHECK_FALSE(watch.is_on());
+  spidar.begin();
+  CHECK(watch.is_on());
+  core::HandState hand;
+  const auto tick = [&] {
+    const std::uint64_t beats = watch.beats();
+    const TickFault fault = spidar.read(hand);
+    CHECK(watch.beats() == beats + 1);
+    return fault;
+  };
+  SECTION("a guardian that acted ends it") {
+    REQUIRE(tick() == TickFault::none);
+    watch.act();
+    CHECK(tick() == TickFault::stood_still);
+  }
+  SECTION("a guardian that is silent for a second ends it") {
+    int ticks = 0;
+    for (; ticks < 3000 && tick() == TickFault::none; ++ticks) {
+      if (ticks < 1000 && ticks % 900 == 0) {
+        watch.complete_round();
+      }
+    }
+    CHECK(ticks == Approx(1900).margin(2));
+    CHECK(tick() == TickFault::guardian_lost);
+  }
+  SECTION("at rest nobody need watch") {
+    spidar.rest();
+    CHECK_FALSE(watch.is_on());
+  }
+  SECTION("nor after a fault") {
+    spidar.drop();
+    CHECK_FALSE(watch.is_on());
+  }
+}
+
 TEST_CASE("a thousand ticks of the loop on a SPIDAR allocate nothing",
           "[device][spidar][realtime]") {
   testing::PlayedBack pipe;

@@ -46,7 +46,7 @@ struct TraceSample {
   double closure_margin;     // of devices on strings: above zero they can hold their grip still
   std::uint8_t alternative;  // which of the trial's alternatives was rendered
   bool touching;
-  bool struck;     // an impact: the tick in which the plate was excited
+  bool impact;     // an impact: the tick in which the plate was excited
   bool saturated;  // the limiter changed the force
   TickFault fault;
 };

@@ -1,6 +1,15 @@
 #pragma once
 #include "core/haptic_state.hpp"
 namespace tapstudy::core {
+// The plate's outward normal is the device frame's +y: said here, and used from here.
+inline constexpr Eigen::Index normal_axis = 1;
+inline double along_normal(const Vec3& device_vector) noexcept {
+  return device_vector[normal_axis];
+}
+inline double along_normal(const std::array<double, 3>& device_vector) noexcept {
+  return device_vector[static_cast<std::size_t>(normal_axis)];
+}
+
 // Where the plate lies in the device's workspace. Along the normal, plate and device agree 1 : 1,
 // so that speed of impact and penetration are physical; sideways one metre of plate is
 // `lateral_scale` metres of device, because a plate is wide and a workspace is a few centimetres.

@@ -1,38 +1,33 @@
 #pragma once
 #include <Eigen/Core>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "core/model/plate_model.hpp"
+#include "core/model/plate.hpp"
 #include "core/placement.hpp"
-#include "core/technique.hpp"
-#include "core/tick/force_limiter.hpp"
-#include "core/tick/tap_renderer.hpp"
+#include "core/settings/hand_body.hpp"
+#include "core/settings/render_settings.hpp"
+#include "core/techniques/technique.hpp"
+#include "protocols/surface/surface_source.hpp"
+#include "protocols/tasks/task.hpp"
 namespace tapstudy::protocols {
-// A study as its YAML file says it, every name in it resolved. Maps are in the order of their
-// names; lists keep the order of the file.
+// A study as its YAML file says it. Maps are in the order of their names; lists keep the order of
+// the file.
 
-struct Plate {
-  core::Shape shape;
-  core::Meshing mesh;
-  std::vector<core::Fixation> fixations;
-};
-
-// What can be presented: a plate of a material, rendered by a technique.
+// What can be presented: a plate of a material, rendered by a technique. Stimuli of one plate, or
+// of one material, share it.
 struct Stimulus {
   std::string name;
   std::string label;  // what participants read
-  std::string plate;
-  std::string material;
+  std::shared_ptr<const core::Plate> plate;
+  std::shared_ptr<const core::Material> material;
   const core::Technique* technique{};
   std::map<std::string, std::string> factors;  // factor → level, for reports
 };
 
-// identification: one stimulus is presented, the answer names the one it is like.
-// choice: several stimuli are switched between freely, the answer is one of them.
-enum class Task { identification, choice };
 // How the trials of a block follow one another.
 //   listed                     as in the file, repetition after repetition
 //   shuffle                    all presentations in one random order
@@ -42,17 +37,16 @@ enum class Order { listed, shuffle, shuffle_within_repetition, williams };
 
 struct Block {
   std::string name;
-  Task task{};
+  const Task* task{};
   std::string question;
   std::vector<std::string> stimuli;
-  std::vector<std::string> responses;  // identification: names of stimuli that can be answered
+  std::vector<std::string> responses;  // names of stimuli that can be answered, if not the above
   int repetitions{1};
   Order order{Order::shuffle};
   bool is_practice{false};
 };
 
 // What the study expected before it was run; reports test these and no others as planned.
-enum class Claim { accuracy_above_chance, chosen_above_chance };
 struct Hypothesis {
   std::string name;
   std::string statement;
@@ -62,18 +56,13 @@ struct Hypothesis {
 };
 
 // Participants made of equations, for studies without people.
-struct SimulatedHandSettings {
-  double mass_kg{0.1};
-  double muscle_stiffness_n_per_m{400.0};
-  double muscle_damping_n_s_per_m{9.0};
-};
 struct SimulatedTapSettings {
   std::vector<std::string> points;  // names of tapping points, visited in random order
-  int taps_per_visit{8};            // identification: a trial is one visit
-  int visits{2};                    // choice: to each alternative
-  double scatter_m{0.01};           // standard deviation of the place hit, on the plate
-  double speed_m_s{0.3};            // median speed
-  double speed_spread{0.2};         // standard deviation of its logarithm
+  int taps_per_visit{8};
+  int visits{2};             // to each alternative, where there are several
+  double scatter_m{0.01};    // standard deviation of the place hit, on the plate
+  double speed_m_s{0.3};     // median speed
+  double speed_spread{0.2};  // standard deviation of its logarithm
   double dwell_s{0.25};
   double pause_s{0.35};
   double hover_m{0.02};
@@ -85,24 +74,25 @@ struct SimulatedObserverSettings {
   double noise_db{9.0};
   double threshold_n{1e-4};      // force amplitudes well below are not felt
   int familiarisation_taps{24};  // on each real plate, before the study
-  std::string reference;         // choice: the stimulus that reality feels like to it
+  std::string reference;         // the stimulus that reality feels like to it, where one is needed
 };
 struct Simulation {
-  SimulatedHandSettings hand;
+  core::HandBody hand;
   SimulatedTapSettings taps;
   SimulatedObserverSettings observer;
 };
 
 struct Protocol {
-  std::string text;  // the file, whole
+  std::string text;                     // the file, whole
+  std::vector<SurfaceSource> surfaces;  // the files that its plates name, whole
   std::string title;
   std::string notes;
   double band_limit_hz{};
   double rate_hz{};
   core::RenderSettings rendering;
   core::Placement placement;
-  std::map<std::string, core::Material> materials;
-  std::map<std::string, Plate> plates;
+  std::map<std::string, std::shared_ptr<const core::Material>> materials;
+  std::map<std::string, std::shared_ptr<const core::Plate>> plates;
   std::map<std::string, Eigen::Vector2d> tapping_points_m;  // plate frame
   std::vector<Stimulus> stimuli;
   std::vector<Block> blocks;

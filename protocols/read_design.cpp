@@ -10,12 +10,12 @@ namespace {
 using Presence = MapReader::Presence;
 constexpr double same_height_m = 1e-3;
 
-std::vector<std::string> technique_names() {
-  std::vector<std::string> names;
-  for (const core::Technique& technique : core::techniques) {
-    names.emplace_back(technique.name);
-  }
-  return names;
+// Nothing for a name that was refused.
+template <class Value>
+std::shared_ptr<const Value> named(const std::map<std::string, std::shared_ptr<const Value>>& all,
+                                   const std::string& name) {
+  const auto found = all.find(name);
+  return found == all.end() ? nullptr : found->second;
 }
 
 void read_points(MapReader& top, Protocol& protocol) {
@@ -25,7 +25,7 @@ void read_points(MapReader& top, Protocol& protocol) {
                  });
   std::map<std::string, double> height_of_point_m;
   for (const auto& [name, plate] : protocol.plates) {
-    const core::TopHeight top_height{plate.shape};
+    const core::TopHeight top_height{plate->shape};
     for (const auto& [point, at_m] : protocol.tapping_points_m) {
       const auto height_m = top_height.at_m(at_m);
       if (!height_m) {
@@ -56,26 +56,31 @@ void check_factors(MapReader& reader, const Stimulus& stimulus, const Protocol& 
   }
 }
 
-void check_sinusoid(MapReader& reader, const Stimulus& stimulus, const Protocol& protocol) {
-  if (stimulus.technique != nullptr && stimulus.technique->sinusoid &&
-      !(protocol.rendering.sinusoid.amplitude_n_s_per_m > 0.0)) {
-    reader.reject("technique",
-                  fmt::format("'{}' needs rendering.sinusoid with an amplitude above 0",
-                              stimulus.technique->name));
+void check_technique(MapReader& reader, const Stimulus& stimulus, const Protocol& protocol) {
+  if (stimulus.technique == nullptr) {
+    return;
+  }
+  const std::string_view missing = stimulus.technique->missing(protocol.rendering);
+  if (!missing.empty()) {
+    reader.reject("technique", fmt::format("'{}' needs {}", stimulus.technique->name, missing));
   }
 }
 
+std::vector<std::string> task_names() {
+  std::vector<std::string> names;
+  for (const Task* const task : tasks()) {
+    names.emplace_back(task->name());
+  }
+  return names;
+}
+
+// The keys that blocks of every task have; the task reads its own.
 Block read_block(MapReader& reader, const Protocol& protocol) {
   Block block;
   block.name = reader.name("name");
-  block.task = reader.one_of<Task>(
-      "task", {{"identification", Task::identification}, {"choice", Task::choice}});
+  block.task = find_task(reader.word("task", "task", task_names()));
   block.question = reader.text("question");
   block.stimuli = reader.words("stimuli", "stimulus", stimulus_names(protocol));
-  if (block.task == Task::identification) {
-    block.responses =
-        reader.words("responses", "stimulus", stimulus_names(protocol), block.stimuli);
-  }
   block.repetitions = reader.integer("repetitions", 1, 1000, 1);
   block.order =
       reader.one_of<Order>("order",
@@ -85,6 +90,9 @@ Block read_block(MapReader& reader, const Protocol& protocol) {
                             {"williams", Order::williams}},
                            "shuffle");
   block.is_practice = reader.yes_or_no("practice", false);
+  if (block.task != nullptr) {
+    block.task->read(reader, protocol, block);
+  }
   return block;
 }
 
@@ -92,22 +100,8 @@ void check_block(MapReader& reader, const Block& block, const Protocol& protocol
   if (std::ranges::find(protocol.blocks, block.name, &Block::name) != protocol.blocks.end()) {
     reader.reject("name", fmt::format("'{}' is the name of an earlier block", block.name));
   }
-  if (block.task == Task::choice && block.stimuli.size() < 2) {
-    reader.reject("stimuli", "a choice needs at least two stimuli to choose from");
-  }
-  if (block.task == Task::identification && block.responses.size() < 2) {
-    reader.reject("responses", "an identification needs at least two possible answers");
-  }
   if (block.stimuli.size() > 26) {
     reader.reject("stimuli", "a block has at most 26 stimuli");
-  }
-  for (const std::string& stimulus : block.stimuli) {
-    const bool can_be_answered =
-        block.task == Task::choice ||
-        std::ranges::find(block.responses, stimulus) != block.responses.end();
-    if (!can_be_answered) {
-      reader.reject("responses", fmt::format("'{}' is presented but cannot be answered", stimulus));
-    }
   }
 }
 }  // namespace
@@ -124,16 +118,18 @@ void read_stimuli(MapReader& top, Protocol& protocol) {
     Stimulus stimulus;
     stimulus.name = name;
     stimulus.label = reader.text("label", name);
-    stimulus.plate = reader.word("plate", "plate", keys_of(protocol.plates));
-    stimulus.material = reader.word("material", "material", keys_of(protocol.materials));
+    stimulus.plate =
+        named(protocol.plates, reader.word("plate", "plate", keys_of(protocol.plates)));
+    stimulus.material =
+        named(protocol.materials, reader.word("material", "material", keys_of(protocol.materials)));
     stimulus.technique =
-        core::find_technique(reader.word("technique", "technique", technique_names()));
+        core::find_technique(reader.word("technique", "technique", core::technique_names()));
     reader.each_text("factors", Presence::optional,
                      [&](const std::string& factor, const std::string& level) {
                        stimulus.factors[factor] = level;
                      });
     check_factors(reader, stimulus, protocol);
-    check_sinusoid(reader, stimulus, protocol);
+    check_technique(reader, stimulus, protocol);
     protocol.stimuli.push_back(stimulus);
   });
 }
@@ -158,13 +154,12 @@ void read_hypotheses(MapReader& top, Protocol& protocol) {
         reader.one_of<Claim>("claim", {{"accuracy_above_chance", Claim::accuracy_above_chance},
                                        {"chosen_above_chance", Claim::chosen_above_chance}});
     const auto block = std::ranges::find(protocol.blocks, hypothesis.block, &Block::name);
-    const bool is_choice = block != protocol.blocks.end() && block->task == Task::choice;
+    const bool is_known = block != protocol.blocks.end() && block->task != nullptr;
     if (hypothesis.claim == Claim::chosen_above_chance) {
       hypothesis.stimulus = reader.word("stimulus", "stimulus of the block",
-                                        is_choice ? block->stimuli : stimulus_names(protocol));
+                                        is_known ? block->stimuli : stimulus_names(protocol));
     }
-    if (block != protocol.blocks.end() &&
-        is_choice != (hypothesis.claim == Claim::chosen_above_chance)) {
+    if (is_known && block->task->claim() != hypothesis.claim) {
       reader.reject("claim", "does not fit the task of the block");
     }
     protocol.hypotheses.push_back(hypothesis);

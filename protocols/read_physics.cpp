@@ -94,7 +94,7 @@ void read_placement(MapReader& top, Presence presence,
 
 void read_materials(MapReader& top, Protocol& protocol) {
   top.each("materials", Presence::required, [&](const std::string& name, MapReader& reader) {
-    protocol.materials[name] = read_material(reader);
+    protocol.materials[name] = std::make_shared<const core::Material>(read_material(reader));
   });
 }
 }  // namespace tapstudy::protocols

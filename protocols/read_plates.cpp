@@ -1,13 +1,10 @@
 // Plates: shape, mesh and fixations.
-#include <fmt/format.h>
-
-#include <filesystem>
+#include <algorithm>
 
 #include "core/error.hpp"
-#include "core/model/shape/check_surface.hpp"
-#include "core/sha256.hpp"
 #include "protocols/read_sections.hpp"
-#include "protocols/surface_file.hpp"
+#include "protocols/surface/check_surface.hpp"
+#include "protocols/surface/surface_file.hpp"
 namespace tapstudy::protocols {
 namespace {
 using Presence = MapReader::Presence;
@@ -73,7 +70,7 @@ core::Fixation read_fixation(MapReader& reader, bool is_box) {
   if (fixation.shape == RegionShape::disc || fixation.shape == RegionShape::ball) {
     fixation.radius_m = reader.number("radius_m", Range::positive(10.0));
   }
-  fixation.holds = read_axes(reader);
+  fixation.constrained_axes = read_axes(reader);
   return fixation;
 }
 
@@ -84,7 +81,7 @@ core::Meshing read_mesh(MapReader& mesh) {
     meshing.size.max_tet_volume_m3 = mesh.number("max_tet_volume_m3", Range::positive(1e6));
   }
   meshing.size.radius_edge_ratio = mesh.number("radius_edge_ratio", {1.1, 10.0}, 1.414);
-  meshing.size.flattening = mesh.number("flattening", {1.0, core::most_flattening}, 1.0);
+  meshing.size.flattening = mesh.number("flattening", {1.0, core::max_flattening}, 1.0);
   if (mesh.has("accuracy")) {
     meshing.accuracy = mesh.number("accuracy", {1e-5, 1.0, true, false});
   }
@@ -92,18 +89,20 @@ core::Meshing read_mesh(MapReader& mesh) {
 }
 
 // A surface's own problems are told at its key; what else the study says of it is read on.
-core::Shape read_surface_shape(MapReader& plate, const std::string& directory, Protocol& protocol) {
+core::Shape read_surface_shape(MapReader& plate, const ReadFile& read_file, Protocol& protocol) {
   core::Shape shape = core::Box{core::Vec3::Constant(10.0)};  // until there is a better one
   plate.map("surface", Presence::required, [&](MapReader& reader) {
     const std::string file = reader.text("file");
     const double metres_per_unit = reader.number("metres_per_unit", Range::positive(1000.0));
-    const auto path = std::filesystem::path{directory} / file;
     try {
-      core::TriangleSurface surface = read_surface(path.string(), metres_per_unit);
-      core::check_surface(surface);
+      SurfaceSource source = surface_source(file, read_file(file));
+      core::TriangleSurface surface = read_surface(source, metres_per_unit);
+      check_surface(surface);
       shape = core::Solid{std::move(surface)};
-      // part of the study's text, so that a session cannot go on with another body
-      protocol.text += fmt::format("# {}: {}\n", file, core::content_key(shape));
+      if (std::ranges::find(protocol.surfaces, file, &SurfaceSource::file) ==
+          protocol.surfaces.end()) {
+        protocol.surfaces.push_back(std::move(source));
+      }
     } catch (const core::InvalidInput& error) {
       reader.reject("file", error.what());
     }
@@ -112,12 +111,12 @@ core::Shape read_surface_shape(MapReader& plate, const std::string& directory, P
 }
 }  // namespace
 
-void read_plates(MapReader& top, Protocol& protocol, const std::string& directory) {
+void read_plates(MapReader& top, Protocol& protocol, const ReadFile& read_file) {
   top.each("plates", Presence::required, [&](const std::string& name, MapReader& reader) {
-    Plate plate;
+    core::Plate plate;
     const bool is_box = !reader.has("surface");
     plate.shape = is_box ? core::Shape{core::Box{reader.numbers("size_m", 3, {1e-4, 10.0})}}
-                         : read_surface_shape(reader, directory, protocol);
+                         : read_surface_shape(reader, read_file, protocol);
     reader.map("mesh", Presence::optional, [&](MapReader& mesh) { plate.mesh = read_mesh(mesh); });
     reader.list("fixations", Presence::required, [&](MapReader& fixation) {
       plate.fixations.push_back(read_fixation(fixation, is_box));
@@ -126,7 +125,7 @@ void read_plates(MapReader& top, Protocol& protocol, const std::string& director
       reader.reject("surface",
                     "needs placement.lateral_scale: 1 (only a flat plate can be scaled sideways)");
     }
-    protocol.plates[name] = plate;
+    protocol.plates[name] = std::make_shared<const core::Plate>(std::move(plate));
   });
 }
 }  // namespace tapstudy::protocols

@@ -3,11 +3,18 @@
 #include <filesystem>
 
 #include "protocols/read_sections.hpp"
-#include "protocols/text_file.hpp"
+#include "protocols/yaml/text_file.hpp"
 namespace tapstudy::protocols {
 namespace {
-Protocol parse(const std::string& text, const std::string& file, Problems& problems) {
-  const std::string directory = std::filesystem::path{file}.parent_path().string();
+// Names of files start from where the study's own file lies.
+ReadFile beside(const std::string& file) {
+  return [directory = std::filesystem::path{file}.parent_path()](const std::string& name) {
+    return contents_of((directory / name).string(), max_surface_bytes);
+  };
+}
+
+Protocol parse(const std::string& text, const std::string& file, const ReadFile& read_file,
+               Problems& problems) {
   MapReader top = MapReader::whole_file(text, file, problems);
   Protocol protocol;
   protocol.text = text;
@@ -18,7 +25,7 @@ Protocol parse(const std::string& text, const std::string& file, Problems& probl
   read_placement(top, MapReader::Presence::required,
                  [&](const core::Placement& placement) { protocol.placement = placement; });
   read_materials(top, protocol);
-  read_plates(top, protocol, directory);
+  read_plates(top, protocol, read_file);
   read_stimuli(top, protocol);
   read_blocks(top, protocol);
   read_hypotheses(top, protocol);
@@ -29,8 +36,13 @@ Protocol parse(const std::string& text, const std::string& file, Problems& probl
 }  // namespace
 
 Protocol parse_protocol(const std::string& text, const std::string& file) {
+  return parse_protocol(text, file, beside(file));
+}
+
+Protocol parse_protocol(const std::string& text, const std::string& file,
+                        const ReadFile& read_file) {
   Problems problems{file};
-  Protocol protocol = parse(text, file, problems);
+  Protocol protocol = parse(text, file, read_file, problems);
   problems.throw_if_any();
   return protocol;
 }
@@ -41,7 +53,7 @@ Protocol read_protocol(const std::string& file) {
 
 std::set<std::string> keys_asked_for(const std::string& text, const std::string& file) {
   Problems problems{file};
-  parse(text, file, problems);
+  parse(text, file, beside(file), problems);
   return problems.asked();
 }
 }  // namespace tapstudy::protocols

@@ -2,7 +2,8 @@
 #include <functional>
 
 #include "protocols/protocol.hpp"
-#include "protocols/yaml_reader.hpp"
+#include "protocols/surface/surface_file.hpp"
+#include "protocols/yaml/yaml_reader.hpp"
 namespace tapstudy::protocols {
 // The sections of a protocol, each reading its part of the file into its part of the Protocol.
 // Sections that name things of other sections are read after them.
@@ -10,8 +11,8 @@ void read_rendering(MapReader& top, Protocol& protocol);
 void read_placement(MapReader& top, MapReader::Presence presence,
                     const std::function<void(const core::Placement&)>& take);
 void read_materials(MapReader& top, Protocol& protocol);
-// directory: where names of surface files start from.
-void read_plates(MapReader& top, Protocol& protocol, const std::string& directory);
+// read_file: the bytes of a surface, by the name that the study gives it.
+void read_plates(MapReader& top, Protocol& protocol, const ReadFile& read_file);
 void read_stimuli(MapReader& top, Protocol& protocol);
 void read_blocks(MapReader& top, Protocol& protocol);
 void read_hypotheses(MapReader& top, Protocol& protocol);

@@ -1,10 +1,12 @@
 // Simulated participants.
+#include <algorithm>
+
 #include "protocols/read_sections.hpp"
 namespace tapstudy::protocols {
 namespace {
 using Presence = MapReader::Presence;
 
-void read_hand(MapReader& reader, SimulatedHandSettings& hand) {
+void read_hand(MapReader& reader, core::HandBody& hand) {
   hand.mass_kg = reader.number("mass_kg", {1e-3, 10.0}, hand.mass_kg);
   hand.muscle_stiffness_n_per_m =
       reader.number("muscle_stiffness_n_per_m", {1.0, 1e5}, hand.muscle_stiffness_n_per_m);
@@ -26,13 +28,13 @@ void read_taps(MapReader& reader, const Protocol& protocol, SimulatedTapSettings
   taps.press_m = reader.number("press_m", {0.0, 0.1}, taps.press_m);
 }
 
-void read_observer(MapReader& reader, const Protocol& protocol, bool has_choice,
+void read_observer(MapReader& reader, const Protocol& protocol, bool needs_reference,
                    SimulatedObserverSettings& observer) {
   observer.noise_db = reader.number("noise_db", {0.0, 1000.0}, observer.noise_db);
   observer.threshold_n = reader.number("threshold_n", Range::positive(10.0), observer.threshold_n);
   observer.familiarisation_taps =
       reader.integer("familiarisation_taps", 4, 1000, observer.familiarisation_taps);
-  if (has_choice) {
+  if (needs_reference) {
     observer.reference = reader.word("reference", "stimulus", stimulus_names(protocol));
   }
 }
@@ -41,18 +43,17 @@ void read_observer(MapReader& reader, const Protocol& protocol, bool has_choice,
 void read_simulation(MapReader& top, Protocol& protocol) {
   Simulation& simulation = protocol.simulation;
   simulation.taps.points = keys_of(protocol.tapping_points_m);
-  bool has_choice = false;
-  for (const Block& block : protocol.blocks) {
-    has_choice = has_choice || block.task == Task::choice;
-  }
-  const Presence needed = has_choice ? Presence::required : Presence::optional;
+  const bool needs_reference = std::ranges::any_of(protocol.blocks, [](const Block& block) {
+    return block.task != nullptr && block.task->needs_reference();
+  });
+  const Presence needed = needs_reference ? Presence::required : Presence::optional;
   top.map("simulation", needed, [&](MapReader& section) {
     section.map("hand", Presence::optional,
                 [&](MapReader& reader) { read_hand(reader, simulation.hand); });
     section.map("taps", Presence::optional,
                 [&](MapReader& reader) { read_taps(reader, protocol, simulation.taps); });
     section.map("observer", needed, [&](MapReader& reader) {
-      read_observer(reader, protocol, has_choice, simulation.observer);
+      read_observer(reader, protocol, needs_reference, simulation.observer);
     });
   });
 }

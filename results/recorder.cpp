@@ -17,11 +17,11 @@ Recorder::~Recorder() {
 }
 
 std::future<void> Recorder::save(TrialRecord record) {
-  Parcel parcel{std::move(record), {}};
-  std::future<void> saved = parcel.saved.get_future();
+  PendingTrial trial{std::move(record), {}};
+  std::future<void> saved = trial.saved.get_future();
   {
     const std::lock_guard lock{mutex_};
-    parcels_.push_back(std::move(parcel));
+    pending_.push_back(std::move(trial));
   }
   arrived_.notify_all();
   return saved;
@@ -37,15 +37,15 @@ void Recorder::leave() {
   followed_ = nullptr;
 }
 
-void Recorder::write(Parcel& parcel) {
+void Recorder::write(PendingTrial& trial) {
   try {
     if (drain_failure_) {
       std::rethrow_exception(std::exchange(drain_failure_, nullptr));
     }
-    store_.add_trial(parcel.record);
-    parcel.saved.set_value();
+    store_.add_trial(trial.record);
+    trial.saved.set_value();
   } catch (...) {  // whatever it is, it belongs to the one who waits for the trial
-    parcel.saved.set_exception(std::current_exception());
+    trial.saved.set_exception(std::current_exception());
   }
 }
 
@@ -62,14 +62,14 @@ void Recorder::drain_followed() noexcept {
 
 void Recorder::run(const std::stop_token& stop) {
   std::unique_lock lock{mutex_};
-  while (!stop.stop_requested() || !parcels_.empty()) {
-    arrived_.wait_for(lock, stop, drain_every, [this] { return !parcels_.empty(); });
+  while (!stop.stop_requested() || !pending_.empty()) {
+    arrived_.wait_for(lock, stop, drain_every, [this] { return !pending_.empty(); });
     drain_followed();
-    while (!parcels_.empty()) {
-      Parcel parcel = std::move(parcels_.front());
-      parcels_.pop_front();
+    while (!pending_.empty()) {
+      PendingTrial trial = std::move(pending_.front());
+      pending_.pop_front();
       lock.unlock();
-      write(parcel);
+      write(trial);
       lock.lock();
     }
   }

@@ -28,17 +28,17 @@ class Recorder {
 
  private:
   void run(const std::stop_token& stop);
-  struct Parcel {
+  struct PendingTrial {
     TrialRecord record;
     std::promise<void> saved;
   };
-  void write(Parcel& parcel);
+  void write(PendingTrial& trial);
   void drain_followed() noexcept;
 
   Store& store_;
   std::mutex mutex_;
   std::condition_variable_any arrived_;
-  std::deque<Parcel> parcels_;
+  std::deque<PendingTrial> pending_;
   TraceCollector* followed_{nullptr};
   std::exception_ptr drain_failure_;  // given to the next trial that is to be saved
   std::jthread thread_;

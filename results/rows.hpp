@@ -12,11 +12,19 @@ enum class Mode { real, pilot, simulated };
 std::string to_text(Mode mode);
 Mode mode_from(const std::string& text);
 
+// A file that the protocol names, whole; compressed in the database.
+struct SurfaceRow {
+  std::string file;  // as the protocol names it
+  std::string sha256;
+  std::string bytes;
+};
+
 struct StudyRow {
   std::string title;
   std::string protocol_file;
   std::string protocol_text;
   std::string protocol_sha256;
+  std::vector<SurfaceRow> surfaces;
 };
 
 // One visit of one participant. Stored before the first trial, with all that its repetition takes.
@@ -41,12 +49,12 @@ struct SessionRow {
 
 struct AlternativeRow {
   int position{};     // from 0
-  std::string label;  // what the participant saw instead of a name; empty in identification
+  std::string label;  // what the participant saw instead of a name; empty if there was one only
   std::string stimulus;
 };
 struct ResponseRow {
-  std::string response;                             // a stimulus's name
-  std::optional<bool> is_correct;                   // identification only
+  std::string response;                             // as the task stores it: a stimulus's name
+  std::optional<bool> is_correct;                   // nothing where no answer is right
   double response_time_s{};                         // from the start of the trial
   std::optional<double> time_from_first_contact_s;  // nothing if the plate was never touched
 };
@@ -75,7 +83,7 @@ struct TrialRow {
   int number{};    // in the planned order, from 1
   int attempt{1};  // an interrupted trial that is repeated has a second
   std::string block;
-  std::string task;  // identification, choice
+  std::string task;
   bool is_practice{};
   int repetition{};
   std::string status;  // answered, interrupted
@@ -100,8 +108,9 @@ struct AnswerRow {
   std::string task;
   bool is_practice{};
   int number{};
-  std::string stimulus;  // identification: presented; choice: empty
+  std::string stimulus;  // that was presented; empty if there were several to choose from
   std::string response;
+  std::optional<bool> is_correct;
   double response_time_s{};
   std::int64_t ticks{};
   std::int64_t late{};
@@ -109,7 +118,7 @@ struct AnswerRow {
   std::int64_t dropped_samples{};
 };
 
-// How long and how often each alternative of a choice was tried.
+// How long and how often each alternative was felt, where there were several.
 struct VisitRow {
   std::string participant_id;
   std::string block;

@@ -2,7 +2,7 @@
 namespace tapstudy::results {
 // PRAGMA application_id of a study's database ("taps") and PRAGMA user_version of its schema.
 inline constexpr int application_id = 0x74617073;
-inline constexpr int schema_version = 3;
+inline constexpr int schema_version = 4;
 
 inline constexpr const char* schema_sql = R"sql(
 CREATE TABLE study (
@@ -12,6 +12,12 @@ CREATE TABLE study (
   protocol_text TEXT NOT NULL,
   protocol_sha256 TEXT NOT NULL,
   created_utc TEXT NOT NULL
+) STRICT;
+CREATE TABLE surface (
+  file TEXT PRIMARY KEY,            -- as the protocol names it
+  sha256 TEXT NOT NULL,             -- of the file as it was
+  size INTEGER NOT NULL,            -- in bytes, before compression
+  zstd BLOB NOT NULL                -- the file whole, one Zstandard frame
 ) STRICT;
 CREATE TABLE participant (
   participant_id TEXT PRIMARY KEY,
@@ -41,7 +47,7 @@ CREATE TABLE trial (
   number INTEGER NOT NULL,
   attempt INTEGER NOT NULL,
   block TEXT NOT NULL,
-  task TEXT NOT NULL CHECK (task IN ('identification', 'choice')),
+  task TEXT NOT NULL,
   is_practice INTEGER NOT NULL,
   repetition INTEGER NOT NULL,
   status TEXT NOT NULL CHECK (status IN ('answered', 'interrupted')),
@@ -59,10 +65,9 @@ CREATE TABLE response (
   response_id INTEGER PRIMARY KEY,
   trial_id INTEGER NOT NULL REFERENCES trial,
   response TEXT NOT NULL,
-  is_correct INTEGER,
+  is_correct INTEGER,               -- NULL where no answer is right
   response_time_s REAL NOT NULL,
-  time_from_first_contact_s REAL,
-  supersedes INTEGER UNIQUE REFERENCES response  -- a correction names what it corrects
+  time_from_first_contact_s REAL
 ) STRICT;
 CREATE INDEX response_of_trial ON response (trial_id);
 CREATE TABLE event (

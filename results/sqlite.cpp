@@ -95,6 +95,9 @@ std::string Statement::text(int column) {
   const void* const raw = text;
   return text == nullptr ? std::string{} : std::string{static_cast<const char*>(raw), size};
 }
+bool Statement::is_null(int column) {
+  return sqlite3_column_type(handle_.get(), column) == SQLITE_NULL;
+}
 std::int64_t Statement::integer(int column) {
   return sqlite3_column_int64(handle_.get(), column);
 }

@@ -53,6 +53,7 @@ class Statement {
     while (step()) {
     }
   }
+  bool is_null(int column);
   std::string text(int column);
   std::int64_t integer(int column);
   double real(int column);

@@ -3,11 +3,14 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <ctime>
 #include <filesystem>
+#include <span>
 #include <thread>
 
+#include "results/compression.hpp"
 #include "results/schema.hpp"
 #include "results/store_error.hpp"
 namespace tapstudy::results {
@@ -113,6 +116,7 @@ void Store::create_or_check(const StudyRow& study) {
                       "study, start a new one)",
                       database_.file(), present.title)};
     }
+    check_surfaces(present, study);
     return;
   }
   database_.run(schema_sql);
@@ -127,7 +131,33 @@ void Store::create_or_check(const StudyRow& study) {
       .bind(study.protocol_sha256)
       .bind(fmt::format("{:%FT%TZ}", fmt::gmtime(std::time(nullptr))))
       .finish();
+  add_surfaces(study);
   all.commit();
+}
+
+void Store::add_surfaces(const StudyRow& study) {
+  for (const SurfaceRow& surface : study.surfaces) {
+    const auto packed = compressed(std::as_bytes(std::span{surface.bytes}));
+    Statement{database_, "INSERT INTO surface (file, sha256, size, zstd) VALUES (?, ?, ?, ?)"}
+        .bind(surface.file)
+        .bind(surface.sha256)
+        .bind(static_cast<std::int64_t>(surface.bytes.size()))
+        .bind(std::span<const std::byte>{packed})
+        .finish();
+  }
+}
+
+// A session must not go on with another body.
+void Store::check_surfaces(const StudyRow& stored, const StudyRow& present) const {
+  for (const SurfaceRow& surface : present.surfaces) {
+    const auto before = std::ranges::find(stored.surfaces, surface.file, &SurfaceRow::file);
+    if (before == stored.surfaces.end() || before->sha256 != surface.sha256) {
+      throw core::InvalidInput{fmt::format(
+          "{}: '{}' is not the surface that the study began with (put that one back, or "
+          "start a new study)",
+          database_.file(), surface.file)};
+    }
+  }
 }
 
 StudyRow Store::study() {
@@ -136,6 +166,6 @@ StudyRow Store::study() {
   if (!row.step()) {
     throw StoreError{database_.file() + ": the study's own row is missing"};
   }
-  return {row.text(0), row.text(1), row.text(2), row.text(3)};
+  return {row.text(0), row.text(1), row.text(2), row.text(3), surfaces()};
 }
 }  // namespace tapstudy::results

@@ -13,7 +13,8 @@ namespace tapstudy::results {
 class Store {
  public:
   // Opens the study of this protocol in the directory, or creates both.
-  // Throws InvalidInput if the directory holds the study of another protocol.
+  // Throws InvalidInput if the directory holds the study of another protocol, or one whose surfaces
+  // were others.
   static Store open_or_create(const std::string& directory, const StudyRow& study);
   // For reading. Throws InvalidInput if there is no study.
   static Store open_existing(const std::string& directory);
@@ -24,6 +25,7 @@ class Store {
   Store(const Store& other) = delete;
   Store& operator=(const Store& other) = delete;
 
+  // Its surfaces are read too, and unpacked.
   StudyRow study();
   // The index of an existing participant, or the next free one of the mode.
   // Throws InvalidInput if the participant is there already in another mode.
@@ -38,14 +40,20 @@ class Store {
   std::optional<SessionRow> latest_session(const std::string& participant_id);
   // Numbers of the trials that the participant has answered, in any session.
   std::vector<int> answered_trials(const std::string& participant_id);
+  // Of all participants and modes, practice included: the caller chooses. By participant index and
+  // number of the trial; participants of different modes can have the same index.
   std::vector<AnswerRow> answers();
   std::vector<VisitRow> visits();
   std::vector<SessionRow> sessions();
+  // Every tick of a trial, in order; nothing if there is no such trial.
   std::vector<core::TraceSample> trace(std::int64_t trial_id);
 
  private:
   explicit Store(Database database) : database_{std::move(database)} {}
   void check_schema();
+  std::vector<SurfaceRow> surfaces();
+  void add_surfaces(const StudyRow& study);
+  void check_surfaces(const StudyRow& stored, const StudyRow& present) const;
   bool is_empty();
   void create_or_check(const StudyRow& study);
   void check_not_answered(const TrialRow& trial);

@@ -1,8 +1,10 @@
 // What reads a study's rows back.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 
+#include "results/compression.hpp"
 #include "results/store.hpp"
 #include "results/trace_codec.hpp"
 namespace tapstudy::results {
@@ -72,22 +74,23 @@ std::vector<int> Store::answered_trials(const std::string& participant_id) {
 }
 
 std::vector<AnswerRow> Store::answers() {
-  Statement row{
-      database_,
-      "SELECT participant_id, mode, block, task, is_practice, number, "
-      "  CASE task WHEN 'identification' THEN (SELECT stimulus FROM alternative "
-      "    WHERE alternative.trial_id = trial.trial_id AND position = 0) ELSE '' END, "
-      "  response, response_time_s, ticks, late, skipped, dropped_samples "
-      "FROM trial JOIN session USING (session_id) JOIN response USING (trial_id) "
-      "JOIN tick_statistics USING (trial_id) JOIN participant USING (participant_id) "
-      "WHERE response_id NOT IN (SELECT supersedes FROM response WHERE supersedes IS NOT NULL) "
-      "ORDER BY participant_index, number"};
+  Statement row{database_,
+                "SELECT participant_id, mode, block, task, is_practice, number, "
+                "  CASE WHEN EXISTS (SELECT 1 FROM alternative AS second "
+                "    WHERE second.trial_id = trial.trial_id AND second.position = 1) THEN '' "
+                "  ELSE (SELECT stimulus FROM alternative "
+                "    WHERE alternative.trial_id = trial.trial_id AND position = 0) END, "
+                "  response, is_correct, response_time_s, ticks, late, skipped, dropped_samples "
+                "FROM trial JOIN session USING (session_id) JOIN response USING (trial_id) "
+                "JOIN tick_statistics USING (trial_id) JOIN participant USING (participant_id) "
+                "ORDER BY participant_index, number"};
   std::vector<AnswerRow> answers;
   while (row.step()) {
-    answers.push_back({row.text(0), mode_from(row.text(1)), row.text(2), row.text(3),
-                       row.integer(4) != 0, static_cast<int>(row.integer(5)), row.text(6),
-                       row.text(7), row.real(8), row.integer(9), row.integer(10), row.integer(11),
-                       row.integer(12)});
+    answers.push_back(
+        {row.text(0), mode_from(row.text(1)), row.text(2), row.text(3), row.integer(4) != 0,
+         static_cast<int>(row.integer(5)), row.text(6), row.text(7),
+         row.is_null(8) ? std::nullopt : std::optional{row.integer(8) != 0}, row.real(9),
+         row.integer(10), row.integer(11), row.integer(12), row.integer(13)});
   }
   return answers;
 }
@@ -103,7 +106,8 @@ std::vector<VisitRow> Store::visits() {
       "  sum(coalesce(until_s, duration_s) - t_s) "
       "FROM visit JOIN trial USING (trial_id) JOIN session USING (session_id) "
       "JOIN participant USING (participant_id) JOIN alternative USING (trial_id, position) "
-      "WHERE task = 'choice' AND status = 'answered' "
+      "WHERE status = 'answered' AND EXISTS (SELECT 1 FROM alternative AS second "
+      "  WHERE second.trial_id = visit.trial_id AND second.position = 1) "
       "GROUP BY participant_index, block, stimulus ORDER BY participant_index, block, stimulus"};
   std::vector<VisitRow> visits;
   while (row.step()) {
@@ -111,6 +115,19 @@ std::vector<VisitRow> Store::visits() {
         {row.text(0), row.text(1), row.text(2), static_cast<int>(row.integer(3)), row.real(4)});
   }
   return visits;
+}
+
+std::vector<SurfaceRow> Store::surfaces() {
+  Statement row{database_, "SELECT file, sha256, size, zstd FROM surface ORDER BY file"};
+  std::vector<SurfaceRow> surfaces;
+  while (row.step()) {
+    const auto bytes = decompressed(row.bytes(3), static_cast<std::size_t>(row.integer(2)));
+    std::string text(bytes.size(), '\0');
+    std::ranges::transform(bytes, text.begin(),
+                           [](std::byte byte) { return std::to_integer<char>(byte); });
+    surfaces.push_back({row.text(0), row.text(1), std::move(text)});
+  }
+  return surfaces;
 }
 
 std::vector<core::TraceSample> Store::trace(std::int64_t trial_id) {

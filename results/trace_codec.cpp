@@ -1,168 +1,95 @@
 #include "results/trace_codec.hpp"
 
-#include <zstd.h>
-
+#include <Eigen/Core>
 #include <array>
 #include <bit>
+#include <cstdint>
 #include <cstring>
 
-#include "results/store_error.hpp"
+#include "results/compression.hpp"
 namespace tapstudy::results {
 namespace {
 using core::TraceSample;
-using Word = std::uint64_t;
+static_assert(std::endian::native == std::endian::little, "records are copied as they lie");
 constexpr std::size_t words = 19;  // time and eighteen numbers
 constexpr std::size_t flags = 5;
-constexpr std::size_t bytes_per_tick = words * sizeof(Word) + flags;
-constexpr int compression_level = 1;
+constexpr std::size_t record_bytes = 160;
+static_assert(words * sizeof(double) + flags <= record_bytes);
 
-struct Packed {
-  std::array<Word, words> word;
-  std::array<std::uint8_t, flags> flag;
-};
+using Record = std::array<std::byte, record_bytes>;
+using Bytes = Eigen::Matrix<std::uint8_t, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-Packed packed(const TraceSample& s) {
-  const auto bits = [](double x) { return std::bit_cast<Word>(x); };
-  return {
-      {static_cast<Word>(s.t_ns), bits(s.position_m[0]), bits(s.position_m[1]),
-       bits(s.position_m[2]), bits(s.velocity_m_s[0]), bits(s.velocity_m_s[1]),
-       bits(s.velocity_m_s[2]), bits(s.penetration_m), bits(s.penalty_n), bits(s.vibration_n),
-       bits(s.sinusoid_n), bits(s.force_n[0]), bits(s.force_n[1]), bits(s.force_n[2]),
-       bits(s.achieved_n[0]), bits(s.achieved_n[1]), bits(s.achieved_n[2]), bits(s.pose_residual_m),
-       bits(s.closure_margin)},
-      {s.alternative, static_cast<std::uint8_t>(s.touching), static_cast<std::uint8_t>(s.struck),
-       static_cast<std::uint8_t>(s.saturated), static_cast<std::uint8_t>(s.fault)}};
+Record packed(const TraceSample& s) {
+  const std::array<double, words - 1> numbers{
+      s.position_m[0],   s.position_m[1],   s.position_m[2], s.velocity_m_s[0], s.velocity_m_s[1],
+      s.velocity_m_s[2], s.penetration_m,   s.penalty_n,     s.vibration_n,     s.sinusoid_n,
+      s.force_n[0],      s.force_n[1],      s.force_n[2],    s.achieved_n[0],   s.achieved_n[1],
+      s.achieved_n[2],   s.pose_residual_m, s.closure_margin};
+  const std::array<std::uint8_t, flags> flag{
+      s.alternative, static_cast<std::uint8_t>(s.touching), static_cast<std::uint8_t>(s.impact),
+      static_cast<std::uint8_t>(s.saturated), static_cast<std::uint8_t>(s.fault)};
+  Record record{};
+  std::memcpy(record.data(), &s.t_ns, sizeof s.t_ns);
+  std::memcpy(record.data() + sizeof s.t_ns, numbers.data(), sizeof numbers);
+  std::memcpy(record.data() + sizeof s.t_ns + sizeof numbers, flag.data(), sizeof flag);
+  return record;
 }
 
-TraceSample unpacked(const Packed& p) {
-  const auto number = [&](std::size_t i) { return std::bit_cast<double>(p.word.at(i)); };
-  return {static_cast<std::int64_t>(p.word[0]),
-          {number(1), number(2), number(3)},
-          {number(4), number(5), number(6)},
-          number(7),
-          number(8),
-          number(9),
-          number(10),
-          {number(11), number(12), number(13)},
-          {number(14), number(15), number(16)},
-          number(17),
-          number(18),
-          p.flag[0],
-          p.flag[1] != 0,
-          p.flag[2] != 0,
-          p.flag[3] != 0,
-          static_cast<core::TickFault>(p.flag[4])};
+TraceSample unpacked(const Record& record) {
+  std::int64_t t_ns{};
+  std::array<double, words - 1> n{};
+  std::array<std::uint8_t, flags> flag{};
+  std::memcpy(&t_ns, record.data(), sizeof t_ns);
+  std::memcpy(n.data(), record.data() + sizeof t_ns, sizeof n);
+  std::memcpy(flag.data(), record.data() + sizeof t_ns + sizeof n, sizeof flag);
+  return {t_ns,
+          {n[0], n[1], n[2]},
+          {n[3], n[4], n[5]},
+          n[6],
+          n[7],
+          n[8],
+          n[9],
+          {n[10], n[11], n[12]},
+          {n[13], n[14], n[15]},
+          n[16],
+          n[17],
+          flag[0],
+          flag[1] != 0,
+          flag[2] != 0,
+          flag[3] != 0,
+          static_cast<core::TickFault>(flag[4])};
 }
 
-// The columns side by side: for each, all lowest bytes, then all second lowest, and so on.
-class Planes {
- public:
-  explicit Planes(std::size_t ticks) : ticks_{ticks}, bytes_(ticks * bytes_per_tick) {}
-  explicit Planes(std::size_t ticks, std::vector<std::byte> bytes)
-      : ticks_{ticks}, bytes_{std::move(bytes)} {}
-  std::span<std::byte> of_word(std::size_t column, std::size_t place) {
-    return plane(column * sizeof(Word) + place);
-  }
-  std::span<std::byte> of_flag(std::size_t column) { return plane(words * sizeof(Word) + column); }
-  const std::vector<std::byte>& bytes() const { return bytes_; }
-
- private:
-  std::span<std::byte> plane(std::size_t index) {
-    return std::span{bytes_}.subspan(index * ticks_, ticks_);
-  }
-  std::size_t ticks_;
-  std::vector<std::byte> bytes_;
-};
-
-// What a column's words change by from tick to tick: time by subtraction, numbers by exclusive or.
-std::vector<Word> changes(const std::vector<Packed>& samples, std::size_t column) {
-  std::vector<Word> changes;
-  changes.reserve(samples.size());
-  Word before = 0;
-  for (const Packed& sample : samples) {
-    const Word now = sample.word[column];
-    changes.push_back(column == 0 ? now - before : now ^ before);
-    before = now;
-  }
-  return changes;
-}
-
-std::vector<std::byte> compressed(const std::vector<std::byte>& plain) {
-  std::vector<std::byte> bytes(ZSTD_compressBound(plain.size()));
-  const std::size_t size =
-      ZSTD_compress(bytes.data(), bytes.size(), plain.data(), plain.size(), compression_level);
-  if (ZSTD_isError(size) != 0U) {
-    throw StoreError{std::string{"trace: compression failed: "} + ZSTD_getErrorName(size)};
-  }
-  bytes.resize(size);
-  return bytes;
-}
-
-// The chunk itself says how large it is: a damaged row must not ask for all memory there is.
-std::vector<std::byte> decompressed(std::span<const std::byte> bytes, std::size_t size) {
-  if (ZSTD_getFrameContentSize(bytes.data(), bytes.size()) != size) {
-    throw StoreError{"trace: a chunk does not hold the ticks that it should"};
-  }
-  std::vector<std::byte> plain(size);
-  const std::size_t found = ZSTD_decompress(plain.data(), plain.size(), bytes.data(), bytes.size());
-  if (ZSTD_isError(found) != 0U || found != size) {
-    throw StoreError{"trace: a chunk does not hold the ticks that it should"};
-  }
-  return plain;
+// The matrix of bytes with rows and columns exchanged.
+template <class From, class To>
+void transpose(const std::vector<From>& from, Eigen::Index rows, Eigen::Index columns,
+               std::vector<To>& to) {
+  const void* const source = from.data();
+  void* const goal = to.data();
+  const Eigen::Map<const Bytes> matrix{static_cast<const std::uint8_t*>(source), rows, columns};
+  Eigen::Map<Bytes>{static_cast<std::uint8_t*>(goal), columns, rows} = matrix.transpose();
 }
 }  // namespace
 
 std::vector<std::byte> encode_trace(std::span<const TraceSample> samples) {
-  std::vector<Packed> rows;
-  rows.reserve(samples.size());
+  std::vector<Record> records;
+  records.reserve(samples.size());
   for (const TraceSample& sample : samples) {
-    rows.push_back(packed(sample));
+    records.push_back(packed(sample));
   }
-  Planes planes{samples.size()};
-  for (std::size_t column = 0; column < words; ++column) {
-    const std::vector<Word> column_changes = changes(rows, column);
-    for (std::size_t place = 0; place < sizeof(Word); ++place) {
-      const std::span<std::byte> plane = planes.of_word(column, place);
-      for (std::size_t tick = 0; tick < rows.size(); ++tick) {
-        plane[tick] = static_cast<std::byte>(column_changes[tick] >> (8 * place));
-      }
-    }
-  }
-  for (std::size_t column = 0; column < flags; ++column) {
-    const std::span<std::byte> plane = planes.of_flag(column);
-    for (std::size_t tick = 0; tick < rows.size(); ++tick) {
-      plane[tick] = static_cast<std::byte>(rows[tick].flag[column]);
-    }
-  }
-  return compressed(planes.bytes());
+  std::vector<std::byte> rows(samples.size() * record_bytes);
+  transpose(records, static_cast<Eigen::Index>(samples.size()), record_bytes, rows);
+  return compressed(rows);
 }
 
 std::vector<TraceSample> decode_trace(std::span<const std::byte> bytes, std::size_t ticks) {
-  Planes planes{ticks, decompressed(bytes, ticks * bytes_per_tick)};
-  std::vector<Packed> rows(ticks);
-  for (std::size_t column = 0; column < words; ++column) {
-    for (std::size_t place = 0; place < sizeof(Word); ++place) {
-      const std::span<const std::byte> plane = planes.of_word(column, place);
-      for (std::size_t tick = 0; tick < ticks; ++tick) {
-        rows[tick].word[column] |= std::to_integer<Word>(plane[tick]) << (8 * place);
-      }
-    }
-    for (std::size_t tick = 1; tick < ticks; ++tick) {
-      Word& now = rows[tick].word[column];
-      const Word before = rows[tick - 1].word[column];
-      now = column == 0 ? before + now : before ^ now;
-    }
-  }
-  for (std::size_t column = 0; column < flags; ++column) {
-    const std::span<const std::byte> plane = planes.of_flag(column);
-    for (std::size_t tick = 0; tick < ticks; ++tick) {
-      rows[tick].flag[column] = std::to_integer<std::uint8_t>(plane[tick]);
-    }
-  }
+  const std::vector<std::byte> rows = decompressed(bytes, ticks * record_bytes);
+  std::vector<Record> records(ticks);
+  transpose(rows, record_bytes, static_cast<Eigen::Index>(ticks), records);
   std::vector<TraceSample> samples;
   samples.reserve(ticks);
-  for (const Packed& row : rows) {
-    samples.push_back(unpacked(row));
+  for (const Record& record : records) {
+    samples.push_back(unpacked(record));
   }
   return samples;
 }

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "core/placement.hpp"
 #include "results/trace_codec.hpp"
 namespace tapstudy::results {
 namespace {
@@ -25,7 +26,12 @@ void TraceCollector::discard() {
   }
 }
 
+// A tick with a fault tells no contact and no release: what it would show did not happen.
 void TraceCollector::note_events(const core::TraceSample& sample) {
+  collected_.duration_s = 1e-9 * static_cast<double>(sample.t_ns);
+  if (sample.fault != core::TickFault::none) {
+    return;
+  }
   const double t_s = 1e-9 * static_cast<double>(sample.t_ns);
   const auto note = [&](const char* kind, double value) {
     collected_.events.push_back({t_s, kind, value});
@@ -36,13 +42,12 @@ void TraceCollector::note_events(const core::TraceSample& sample) {
   if (sample.touching && !previous_.touching) {
     note("contact", 0.0);
   }
-  if (sample.struck) {
-    note("impact", -sample.velocity_m_s[1]);  // the plate's normal is the device's y axis
+  if (sample.impact) {
+    note("impact", -core::along_normal(sample.velocity_m_s));
   }
   if (!sample.touching && previous_.touching) {
     note("release", 0.0);
   }
-  collected_.duration_s = t_s;
   previous_ = sample;
   has_previous_ = true;
 }

@@ -1,5 +1,5 @@
 #pragma once
-#include "runner/exit_code.hpp"
+#include "runner/terminal/exit_code.hpp"
 namespace tapstudy::runner {
 // Parses and carries out one command line. Throws what the command throws.
 ExitCode carry_out(int argc, const char* const* argv);

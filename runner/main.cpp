@@ -6,8 +6,8 @@
 #include "device/device.hpp"
 #include "results/store_error.hpp"
 #include "runner/command_line.hpp"
-#include "runner/exit_code.hpp"
-#include "runner/logging.hpp"
+#include "runner/terminal/exit_code.hpp"
+#include "runner/terminal/logging.hpp"
 namespace {
 using tapstudy::runner::ExitCode;
 

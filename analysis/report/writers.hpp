@@ -1,15 +1,10 @@
 #pragma once
 #include <ostream>
 
-#include "analysis/summary.hpp"
+#include "analysis/report/summary.hpp"
 namespace tapstudy::analysis {
 // One record, many forms. Each writes the whole summary; none computes anything new.
 void write_text(std::ostream& out, const Summary& summary);  // for a terminal
 void write_html(std::ostream& out, const Summary& summary);  // self-contained, for a browser
 void write_json(std::ostream& out, const Summary& summary);  // for programs; schema_version 1
-
-// One table a file: rows are stimuli, columns responses, cells counts; the form that read_counts
-// takes.
-void write_csv(std::ostream& out, const ConfusionMatrix& matrix);
-void write_csv(std::ostream& out, const ChoiceSummary& choice);
 }  // namespace tapstudy::analysis

@@ -52,12 +52,12 @@ class TriangleTree {
     Point middle;
     Point half;
   };
-  static constexpr std::size_t deepest = 64;
+  static constexpr std::size_t max_depth = 64;
 
   static bool touches(const Node& node, const Segment& segment) noexcept;
   template <class Descend, class Visit>
   void walk(const Descend& descend, const Visit& visit) const noexcept {
-    std::array<int, deepest> waiting{};
+    std::array<int, max_depth> waiting{};
     std::size_t count = 1;
     while (count > 0) {
       const int at = waiting[--count];

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "core/error.hpp"
+#include "core/model/mesh/tetgen_mesher.hpp"
 #include "core/model/modes/modal_solver.hpp"
 #include "core/model/stopwatch.hpp"
 #include "core/model/touchable_part.hpp"
@@ -13,7 +14,7 @@ namespace tapstudy::core {
 namespace {
 constexpr double tets_of_first_round = 200.0;
 constexpr double finer = 0.25;  // the volume of a tetrahedron, from round to round
-constexpr std::size_t most_rounds = 8;
+constexpr std::size_t max_rounds = 8;
 
 Eigen::MatrixXd all_rows(const Eigen::MatrixXd& free_rows, const FreeDofs& dofs) {
   Eigen::MatrixXd rows =
@@ -40,11 +41,11 @@ SolvedBody solve_once(const BodySpec& body, const MeshSize& size, const Progress
   tell(progress, "meshing");
   solved.mesh = mesh_shape(body.shape, size, points_to_mesh(body.fixations, body.shape));
   if (body.mesh.order == 2) {
-    solved.mesh = with_middles(solved.mesh);
+    solved.mesh = to_quadratic(solved.mesh);
   }
   report.cost.mesh_s = watch.lap_s();
   tell(progress, fmt::format("assembling {} tetrahedra", solved.mesh.tets.rows()));
-  const FreeDofs dofs = free_dofs(held_dofs(solved.mesh, body.shape, body.fixations));
+  const FreeDofs dofs = free_dofs(constrained_dofs(solved.mesh, body.shape, body.fixations));
   const Material unit{1.0, 1.0, body.poissons_ratio, {}};
   const StiffnessAndMass matrices = assemble(solved.mesh, unit, dofs);
   report.cost.assemble_s = watch.lap_s();
@@ -53,6 +54,7 @@ SolvedBody solve_once(const BodySpec& body, const MeshSize& size, const Progress
   report.cost.factor_s = modes.factor_s;
   report.cost.iterate_s = modes.iterate_s;
   solved.modes.kappa_rad_per_m = modes.omega_rad_s;
+  solved.modes.band_limit_rad_per_m = body.band_limit_rad_per_m;
   solved.displacement = all_rows(modes.shapes, dofs);
   report.order = solved.mesh.order();
   report.nodes = static_cast<int>(solved.mesh.nodes_m.rows());
@@ -79,7 +81,7 @@ double largest_move(const Eigen::ArrayXd& before, const Eigen::ArrayXd& after) {
   throw ModelError{fmt::format(
       "mesh: the frequencies still move by more than {} % within {:.0g} tetrahedra and {} rounds{} "
       "(a body held at single points never settles: hold a disc)",
-      100.0 * accuracy, most_tets, most_rounds, history)};
+      100.0 * accuracy, max_tets, max_rounds, history)};
 }
 
 SolvedBody refine(const BodySpec& body, const ProgressHook& progress) {
@@ -90,8 +92,7 @@ SolvedBody refine(const BodySpec& body, const ProgressHook& progress) {
   std::vector<RefinementRound> rounds;
   ModelCost cost;
   Eigen::ArrayXd before;
-  while (rounds.size() < most_rounds &&
-         (rounds.empty() || rounds.back().tets <= finer * most_tets)) {
+  while (rounds.size() < max_rounds && (rounds.empty() || rounds.back().tets <= finer * max_tets)) {
     size.max_tet_volume_m3 = volume_m3;
     SolvedBody solved = solve_once(body, size, progress);
     const Eigen::ArrayXd& after = solved.modes.kappa_rad_per_m;

@@ -40,7 +40,7 @@ bool is_on_side(const Vec3& node_m, Side side, const Bounds& body) {
   return std::abs(node_m[axis] - at) <= body.snap_m();
 }
 
-bool holds_node(const Fixation& fixation, const Vec3& node_m, const Bounds& body) {
+bool constrains_node(const Fixation& fixation, const Vec3& node_m, const Bounds& body) {
   const double snap_m = body.snap_m();
   switch (fixation.shape) {
     case RegionShape::vertex:
@@ -66,8 +66,8 @@ int nearest_corner(const TetMesh& mesh, const Vec3& at_m) {
   });
 }
 
-std::vector<Eigen::Index> held_nodes(const Fixation& fixation, const TetMesh& mesh,
-                                     const Shape& shape) {
+std::vector<Eigen::Index> constrained_nodes(const Fixation& fixation, const TetMesh& mesh,
+                                            const Shape& shape) {
   const Bounds body = bounds(shape);
   std::vector<Eigen::Index> nodes;
   if (fixation.shape == RegionShape::vertex && std::holds_alternative<Solid>(shape)) {
@@ -79,7 +79,7 @@ std::vector<Eigen::Index> held_nodes(const Fixation& fixation, const TetMesh& me
     return nodes;
   }
   for (Eigen::Index node = 0; node < mesh.nodes_m.rows(); ++node) {
-    if (holds_node(fixation, mesh.nodes_m.row(node).transpose(), body)) {
+    if (constrains_node(fixation, mesh.nodes_m.row(node).transpose(), body)) {
       nodes.push_back(node);
     }
   }
@@ -194,15 +194,15 @@ std::vector<Vec3> points_to_mesh(const std::vector<Fixation>& fixations, const S
   return points;
 }
 
-std::vector<bool> held_dofs(const TetMesh& mesh, const Shape& shape,
-                            const std::vector<Fixation>& fixations) {
+std::vector<bool> constrained_dofs(const TetMesh& mesh, const Shape& shape,
+                                   const std::vector<Fixation>& fixations) {
   std::vector<bool> held(static_cast<std::size_t>(3 * mesh.nodes_m.rows()), false);
   for (const Fixation& fixation : fixations) {
-    const auto nodes = held_nodes(fixation, mesh, shape);
+    const auto nodes = constrained_nodes(fixation, mesh, shape);
     for (const Eigen::Index node : nodes) {
       for (std::size_t axis = 0; axis < 3; ++axis) {
         const std::size_t dof = 3 * static_cast<std::size_t>(node) + axis;
-        held[dof] = held[dof] || fixation.holds.at(axis);
+        held[dof] = held[dof] || fixation.constrained_axes.at(axis);
       }
     }
     if (nodes.empty()) {
@@ -227,6 +227,6 @@ std::string content_key(const Fixation& fixation) {
   return fmt::format("region{}({},{:a},{},{},{},{},{})", static_cast<int>(fixation.shape),
                      exact(fixation.at_m), fixation.radius_m, static_cast<int>(fixation.face),
                      exact(fixation.low_m), exact(fixation.high_m), static_cast<int>(fixation.side),
-                     fmt::join(fixation.holds, ""));
+                     fmt::join(fixation.constrained_axes, ""));
 }
 }  // namespace tapstudy::core

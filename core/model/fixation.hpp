@@ -22,13 +22,13 @@ enum class RegionShape { vertex, disc, ball, box, side };
 //   side    all that touches one side of the bounding box
 struct Fixation {
   RegionShape shape{RegionShape::vertex};
-  Vec3 at_m{Vec3::Zero()};                      // vertex, disc (z unused), ball
-  double radius_m{0.0};                         // disc, ball
-  Face face{Face::both};                        // vertex and disc of a plate
-  Vec3 low_m{Vec3::Zero()};                     // box
-  Vec3 high_m{Vec3::Zero()};                    // box
-  Side side{Side::left};                        // side
-  std::array<bool, 3> holds{true, true, true};  // x y z
+  Vec3 at_m{Vec3::Zero()};                                 // vertex, disc (z unused), ball
+  double radius_m{0.0};                                    // disc, ball
+  Face face{Face::both};                                   // vertex and disc of a plate
+  Vec3 low_m{Vec3::Zero()};                                // box
+  Vec3 high_m{Vec3::Zero()};                               // box
+  Side side{Side::left};                                   // side
+  std::array<bool, 3> constrained_axes{true, true, true};  // x y z
 };
 
 // The points that a box's mesh must have as nodes for the fixations to find something to hold:
@@ -38,8 +38,8 @@ std::vector<Vec3> points_to_mesh(const std::vector<Fixation>& fixations, const S
 
 // One flag a degree of freedom (x0 y0 z0 x1 …): true where it is held.
 // Throws ModelError if a fixation touches no node or if nothing is left free.
-std::vector<bool> held_dofs(const TetMesh& mesh, const Shape& shape,
-                            const std::vector<Fixation>& fixations);
+std::vector<bool> constrained_dofs(const TetMesh& mesh, const Shape& shape,
+                                   const std::vector<Fixation>& fixations);
 
 // Equal text for equal fixations.
 std::string content_key(const Fixation& fixation);

@@ -1,22 +1,40 @@
 #include "core/model/plate_model.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <numbers>
 
+#include "core/error.hpp"
 #include "core/model/modes/damping.hpp"
 namespace tapstudy::core {
+namespace {
+constexpr double rounding = 1e-12;
+
+// Modes between the body's band and the one asked for would be missing without a word.
+void check_band(const BodyModes& body, const Material& material, double band_limit_hz) {
+  const double solved_hz = body.band_limit_rad_per_m / kappa_rad_per_m(1.0, material);
+  if (band_limit_hz > solved_hz * (1.0 + rounding)) {
+    throw ModelError{
+        fmt::format("modes: a band of {} Hz is asked for, but the body was solved up to {} Hz only",
+                    band_limit_hz, solved_hz)};
+  }
+}
+}  // namespace
+
 double kappa_rad_per_m(double frequency_hz, const Material& material) {
   const double bar_speed_m_s = std::sqrt(material.youngs_modulus_pa / material.density_kg_per_m3);
   return 2.0 * std::numbers::pi * frequency_hz / bar_speed_m_s;
 }
 
 BodySpec body_of(const PlateSpec& plate) {
-  return {plate.shape, plate.mesh, plate.fixations, plate.material.poissons_ratio,
+  return {plate, plate.material.poissons_ratio,
           kappa_rad_per_m(plate.band_limit_hz, plate.material)};
 }
 
 ModalModel model_of(const BodyModes& body, const Material& material, double band_limit_hz) {
   check_material(material);
+  check_band(body, material, band_limit_hz);
   const Eigen::ArrayXd frequency_hz = body.kappa_rad_per_m / kappa_rad_per_m(1.0, material);
   const Eigen::Index modes = (frequency_hz < band_limit_hz).count();
   ModalModel model;

@@ -1,17 +1,6 @@
 #pragma once
-#include <string>
-#include <vector>
-
 #include "core/model/body_modes.hpp"
 namespace tapstudy::core {
-struct PlateSpec {
-  Shape shape;
-  Meshing mesh;
-  std::vector<Fixation> fixations;
-  Material material;
-  double band_limit_hz{};  // > 0; modes above are left out
-};
-
 // kappa of a frequency in a material: 2 pi f / sqrt(E / rho).
 double kappa_rad_per_m(double frequency_hz, const Material& material);
 

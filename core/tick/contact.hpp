@@ -7,7 +7,7 @@ namespace tapstudy::core {
 // What the contact is this tick, in the plate frame.
 struct Contact {
   bool touching{false};
-  bool struck{false};  // an impact that excites the plate: true in one tick only
+  bool impact{false};  // an impact that excites the plate: true in one tick only
   double penetration_m{0.0};
   double impact_speed_m_s{0.0};  // speed into the plate, in the tick of the impact
   Vec3 god_object_m{Vec3::Zero()};
@@ -19,9 +19,9 @@ struct Contact {
 
 // Where a finger is before it touches: handed from one contact to the next when the alternative is
 // switched.
-struct Approach {
+struct ContactHistory {
   Vec3 tip_m{Vec3::Zero()};
   bool has_tip{false};  // nothing is known before the first reading
-  bool may_strike{false};
+  bool impact_armed{false};
 };
 }  // namespace tapstudy::core

@@ -7,7 +7,7 @@ namespace {
 constexpr double silent_exponent = 30.0;  // e^-30 of the amplitude is below any device's resolution
 }
 
-void DecayingSinusoid::strike(double speed_m_s) noexcept {
+void DecayingSinusoid::impact(double speed_m_s) noexcept {
   amplitude_n_ = shape_.amplitude_n_s_per_m * speed_m_s;
   age_s_ = 0.0;
 }

@@ -1,23 +1,23 @@
 #pragma once
+#include "core/settings/render_settings.hpp"
+#include "core/tick/added_force.hpp"
 namespace tapstudy::core {
-// A e^(-decay t) sin(2 pi frequency t), A proportional to the tapping speed (paper section 5.2.3,
-// after Okamura et al. 1998).
-struct SinusoidShape {
-  double amplitude_n_s_per_m{};  // A per speed of impact
-  double decay_per_s{600.0};
-  double frequency_hz{250.0};
-};
-
-class DecayingSinusoid {
+// A decaying sinusoid at each impact, the same wherever one taps (paper section 5.2.3).
+class DecayingSinusoid final : public AddedForce {
  public:
-  explicit DecayingSinusoid(const SinusoidShape& shape) noexcept : shape_{shape} {}
-  void strike(double speed_m_s) noexcept;
-  double force_n() const noexcept;
-  void tick(double dt_s) noexcept { age_s_ += dt_s; }
-  void reset() noexcept { amplitude_n_ = 0.0; }
+  explicit DecayingSinusoid(const RenderSettings& settings) noexcept
+      : shape_{settings.sinusoid}, dt_s_{settings.dt_s} {}
+  void advance() noexcept override { age_s_ += dt_s_; }
+  void touch(const Contact& /*contact*/) noexcept override {}
+  void impact(double speed_m_s) noexcept override;
+  void add_to(ForceParts& parts) const noexcept override { parts.sinusoid_n += force_n(); }
+  void reset() noexcept override { amplitude_n_ = 0.0; }
 
  private:
+  double force_n() const noexcept;
+
   SinusoidShape shape_;
+  double dt_s_;
   double amplitude_n_{0.0};
   double age_s_{0.0};
 };

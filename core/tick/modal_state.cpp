@@ -7,7 +7,7 @@ namespace {
 // smallest motion that could matter is some eighty orders of magnitude larger.
 constexpr double silence = 1e-100;
 
-void hush(Eigen::ArrayXd& state) noexcept {
+void flush_to_zero(Eigen::ArrayXd& state) noexcept {
   state = (state.abs() < silence).select(0.0, state);
 }
 }  // namespace
@@ -21,7 +21,7 @@ ModalState::ModalState(const ModalModel& model, Integrator integrator, double dt
   }
   for (Eigen::Index i = 0; i < modes; ++i) {
     const double omega = 2.0 * std::numbers::pi * model.frequency_hz[i];
-    const OscillatorStep step = oscillator_step(integrator, omega, model.damping_ratio[i], dt_s);
+    const StateTransition step = state_transition(integrator, omega, model.damping_ratio[i], dt_s);
     qq_[i] = step.qq;
     qv_[i] = step.qv;
     vq_[i] = step.vq;
@@ -50,8 +50,8 @@ void ModalState::tick() noexcept {
   next_ = qq_ * displacement_ + qv_ * velocity_;
   velocity_ = vq_ * displacement_ + vv_ * velocity_;
   displacement_.swap(next_);
-  hush(displacement_);
-  hush(velocity_);
+  flush_to_zero(displacement_);
+  flush_to_zero(velocity_);
 }
 
 void ModalState::reset() noexcept {

@@ -3,7 +3,7 @@
 
 #include "core/haptic_state.hpp"
 #include "core/model/modal_model.hpp"
-#include "core/tick/oscillator_step.hpp"
+#include "core/tick/state_transition.hpp"
 #include "core/tick/surface_point.hpp"
 namespace tapstudy::core {
 // The moving half of a plate: one displacement and one velocity a mode (paper eq. 11). The model
@@ -28,7 +28,7 @@ class ModalState {
 
  private:
   const ModalModel* model_;
-  Eigen::ArrayXd qq_, qv_, vq_, vv_;  // OscillatorStep, one a mode
+  Eigen::ArrayXd qq_, qv_, vq_, vv_;  // StateTransition, one a mode
   Eigen::ArrayXd displacement_, velocity_, next_;
   Eigen::ArrayXd touched_;  // the touched point's displacement along the normal, per mode
 };

@@ -5,23 +5,23 @@
 namespace tapstudy::core {
 const Contact& PlateContact::tick(const HandState& tip) noexcept {
   const Vec3& at = tip.position_m;
-  const bool was_above = approach_.has_tip && approach_.tip_m.z() >= 0.0;
+  const bool was_above = history_.has_tip && history_.tip_m.z() >= 0.0;
   const bool is_over = std::abs(at.x()) <= face_.half_x_m && std::abs(at.y()) <= face_.half_y_m;
   const bool is_below = at.z() < 0.0;
   const bool enters = !contact_.touching && was_above && is_below && is_over;
   contact_.touching = (contact_.touching || enters) && is_below && is_over;
-  contact_.struck = enters && approach_.may_strike;
-  contact_.impact_speed_m_s = contact_.struck ? std::max(0.0, -tip.velocity_m_s.z()) : 0.0;
+  contact_.impact = enters && history_.impact_armed;
+  contact_.impact_speed_m_s = contact_.impact ? std::max(0.0, -tip.velocity_m_s.z()) : 0.0;
   contact_.penetration_m = contact_.touching ? -at.z() : 0.0;
   contact_.god_object_m = contact_.touching ? Vec3{at.x(), at.y(), 0.0} : at;
-  approach_.may_strike = !contact_.struck && (approach_.may_strike || at.z() > release_height_m_);
-  approach_.tip_m = at;
-  approach_.has_tip = true;
+  history_.impact_armed = !contact_.impact && (history_.impact_armed || at.z() > release_height_m_);
+  history_.tip_m = at;
+  history_.has_tip = true;
   return contact_;
 }
 
-void PlateContact::continue_from(const Approach& approach) noexcept {
+void PlateContact::continue_from(const ContactHistory& history) noexcept {
   contact_ = {};
-  approach_ = approach;
+  history_ = history;
 }
 }  // namespace tapstudy::core

@@ -22,14 +22,14 @@ class PlateContact {
       : face_{face}, release_height_m_{release_height_m} {}
   const Contact& tick(const HandState& tip) noexcept;
   const Contact& now() const noexcept { return contact_; }
-  Approach approach() const noexcept { return approach_; }
+  ContactHistory history() const noexcept { return history_; }
   // Knows where the finger came from, as whoever rendered it before did.
-  void continue_from(const Approach& approach) noexcept;
+  void continue_from(const ContactHistory& history) noexcept;
 
  private:
   PlateFace face_;
   double release_height_m_;
   Contact contact_;
-  Approach approach_;
+  ContactHistory history_;
 };
 }  // namespace tapstudy::core

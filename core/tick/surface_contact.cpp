@@ -8,7 +8,7 @@ namespace {
 constexpr double skin_per_diagonal = 1e-9;
 // In one tick: how often the planes are left to look for new ones. What is not reached now is
 // reached in the next.
-constexpr int most_rounds = 8;
+constexpr int max_rounds = 8;
 constexpr double parallel = 1e-12;  // determinant of planes that nearly coincide
 }  // namespace
 
@@ -21,22 +21,22 @@ SurfaceContact::SurfaceContact(const TriangleTree& tree, double release_height_m
 
 const Contact& SurfaceContact::tick(const HandState& tip) noexcept {
   const Vec3& at = tip.position_m;
-  if (!approach_.has_tip) {
+  if (!history_.has_tip) {
     god_object_m_ = at;
   }
   const Planes planes = move_towards(at);
   describe(planes, tip);
-  if (!contact_.touching && !approach_.may_strike) {
-    approach_.may_strike = !tree_->is_near(at, release_height_m_);
+  if (!contact_.touching && !history_.impact_armed) {
+    history_.impact_armed = !tree_->is_near(at, release_height_m_);
   }
-  approach_.tip_m = at;
-  approach_.has_tip = true;
+  history_.tip_m = at;
+  history_.has_tip = true;
   return contact_;
 }
 
 SurfaceContact::Planes SurfaceContact::move_towards(const Vec3& tip_m) noexcept {
   Planes planes;
-  for (int round = 0; round < most_rounds; ++round) {
+  for (int round = 0; round < max_rounds; ++round) {
     const Vec3 before = god_object_m_;
     planes = slide_towards(tip_m);
     if (planes.count == 0 || (god_object_m_ - before).norm() <= skin_m_) {
@@ -137,16 +137,16 @@ void SurfaceContact::describe(const Planes& planes, const HandState& tip) noexce
       });
   contact_.triangle = main->triangle;
   contact_.barycentric = tree_->barycentric(main->triangle, god_object_m_);
-  contact_.struck = !was_touching && approach_.may_strike;
-  if (contact_.struck) {
+  contact_.impact = !was_touching && history_.impact_armed;
+  if (contact_.impact) {
     contact_.impact_speed_m_s = std::max(0.0, -main->normal.dot(tip.velocity_m_s));
-    approach_.may_strike = false;
+    history_.impact_armed = false;
   }
 }
 
-void SurfaceContact::continue_from(const Approach& approach) noexcept {
+void SurfaceContact::continue_from(const ContactHistory& history) noexcept {
   contact_ = {};
-  approach_ = approach;
-  god_object_m_ = approach.tip_m;
+  history_ = history;
+  god_object_m_ = history.tip_m;
 }
 }  // namespace tapstudy::core

@@ -16,8 +16,8 @@ class SurfaceContact {
   SurfaceContact(const TriangleTree& tree, double release_height_m) noexcept;
   const Contact& tick(const HandState& tip) noexcept;
   const Contact& now() const noexcept { return contact_; }
-  Approach approach() const noexcept { return approach_; }
-  void continue_from(const Approach& approach) noexcept;
+  ContactHistory history() const noexcept { return history_; }
+  void continue_from(const ContactHistory& history) noexcept;
 
  private:
   struct Plane {
@@ -43,6 +43,6 @@ class SurfaceContact {
   double skin_m_;  // the god-object keeps this far off, so that rounding cannot push it through
   Vec3 god_object_m_{Vec3::Zero()};
   Contact contact_;
-  Approach approach_;
+  ContactHistory history_;
 };
 }  // namespace tapstudy::core

@@ -33,12 +33,12 @@ int connected_socket(std::uint16_t port) noexcept {
 }
 }  // namespace
 
-RemoteHand::RemoteHand(std::uint16_t port, std::chrono::microseconds longest_reply)
-    : port_{port}, longest_reply_{patience}, socket_{connected_socket(port)} {
+RemoteHand::RemoteHand(std::uint16_t port, std::chrono::microseconds max_reply)
+    : port_{port}, max_reply_{patience}, socket_{connected_socket(port)} {
   core::HandState ignored;
   for (int i = 0; socket_ >= 0 && i < attempts; ++i) {
     if (RemoteHand::read(ignored) == TickFault::none) {
-      longest_reply_ = longest_reply;
+      max_reply_ = max_reply;
       return;
     }
     usleep(static_cast<useconds_t>(std::chrono::microseconds{patience}.count()));
@@ -53,7 +53,7 @@ RemoteHand::RemoteHand(std::uint16_t port, std::chrono::microseconds longest_rep
 }
 
 RemoteHand::~RemoteHand() {
-  RemoteHand::drop();
+  RemoteHand::emergency_stop();
   close(socket_);
 }
 
@@ -83,7 +83,7 @@ bool RemoteHand::wait_until(Clock::time_point end) const noexcept {
 
 // Replies to earlier requests, that came too late, are passed over.
 TickFault RemoteHand::receive(core::HandState& hand) noexcept {
-  const Clock::time_point end = Clock::now() + longest_reply_;
+  const Clock::time_point end = Clock::now() + max_reply_;
   while (wait_until(end)) {
     std::array<std::uint8_t, reply_bytes + 1> bytes{};
     const ssize_t count = recv(socket_, bytes.data(), bytes.size(), 0);
@@ -115,9 +115,9 @@ TickFault RemoteHand::write(const core::Vec3& force_n) noexcept {
   return send(false);
 }
 
-void RemoteHand::drop() noexcept {
+void RemoteHand::emergency_stop() noexcept {
   force_n_ = core::Vec3::Zero();
-  for (int i = 0; i < times_no_force_is_said; ++i) {
+  for (int i = 0; i < zero_force_packets; ++i) {
     static_cast<void>(send(false));
   }
 }

@@ -9,7 +9,7 @@ namespace tapstudy::device {
 class RemoteHand final : public Device {
  public:
   // Throws DeviceError if nobody answers at the port within a second.
-  RemoteHand(std::uint16_t port, std::chrono::microseconds longest_reply);
+  RemoteHand(std::uint16_t port, std::chrono::microseconds max_reply);
   ~RemoteHand() override;
   RemoteHand(const RemoteHand& other) = delete;
   RemoteHand& operator=(const RemoteHand& other) = delete;
@@ -18,7 +18,7 @@ class RemoteHand final : public Device {
 
   [[nodiscard]] core::TickFault read(core::HandState& hand) noexcept override;
   [[nodiscard]] core::TickFault write(const core::Vec3& force_n) noexcept override;
-  void drop() noexcept override;
+  void emergency_stop() noexcept override;
   DeviceDetail detail() const noexcept override { return {force_n_}; }
   std::string description() const override;
 
@@ -28,7 +28,7 @@ class RemoteHand final : public Device {
   bool wait_until(std::chrono::steady_clock::time_point end) const noexcept;
 
   std::uint16_t port_;
-  std::chrono::microseconds longest_reply_;
+  std::chrono::microseconds max_reply_;
   int socket_;
   std::uint32_t number_{0};
   core::Vec3 force_n_{core::Vec3::Zero()};

@@ -9,13 +9,13 @@
 #include "device/usb/usb_pipe.hpp"
 namespace tapstudy::device {
 // What goes to the digital-to-analogue converters, one word a string.
-using Digits = std::array<std::uint16_t, strings>;
-inline constexpr std::uint16_t most_digits = 4095;  // the converter's assumed width, 12 bits
+using DacCounts = std::array<std::uint16_t, strings>;
+inline constexpr std::uint16_t max_dac_counts = 4095;  // the converter's assumed width, 12 bits
 
 struct BoardReading {
   RawCounters counter{};
-  std::optional<Digits> echo;  // of a digits word that the board got, if it says so
-  std::uint16_t lines{};       // parallel inputs; bits 4 to 7 are the rotary switch
+  std::optional<DacCounts> echo;  // of the counts word that the board got, if it says so
+  std::uint16_t lines{};          // parallel inputs; bits 4 to 7 are the rotary switch
   int rotary_switch() const noexcept { return static_cast<int>(lines >> 4U & 0xFU); }
 };
 
@@ -29,10 +29,10 @@ class SpidarBoard {
   // What the board needs once, and the first exchange, with no force.
   [[nodiscard]] virtual UsbOutcome begin(UsbPipe& pipe, BoardReading& reading) noexcept = 0;
   // Sets all outputs and reads all inputs.
-  [[nodiscard]] virtual UsbOutcome exchange(UsbPipe& pipe, const Digits& digits,
+  [[nodiscard]] virtual UsbOutcome exchange(UsbPipe& pipe, const DacCounts& dac_counts,
                                             BoardReading& reading) noexcept = 0;
   // The packet that takes all force off.
-  virtual std::vector<std::uint8_t> no_force() const = 0;
+  virtual std::vector<std::uint8_t> zero_force_packet() const = 0;
 };
 
 inline constexpr std::uint16_t cyverse_vendor = 0x0CEC;

@@ -28,19 +28,19 @@ template <int N>
 class BoxQpSolver {
  public:
   using Vector = typename BoxQp<N>::Vector;
-  static constexpr int most_rounds = 8 * N;
+  static constexpr int max_rounds = 8 * N;
 
   BoxQpSolution<N> solve(const BoxQp<N>& problem, const Vector& start) noexcept {
     Vector x = start.cwiseMax(problem.low).cwiseMin(problem.high);
     for (Eigen::Index i = 0; i < N; ++i) {
       held_[i] = x[i] <= problem.low[i] ? -1 : x[i] >= problem.high[i] ? 1 : 0;
     }
-    for (int round = 1; round <= most_rounds; ++round) {
+    for (int round = 1; round <= max_rounds; ++round) {
       if (!go_to_minimum_of_free(problem, x) && !let_go(problem, x)) {
         return {x, round, true};
       }
     }
-    return {x, most_rounds, false};
+    return {x, max_rounds, false};
   }
 
  private:

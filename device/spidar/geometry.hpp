@@ -5,8 +5,9 @@
 #include <vector>
 
 #include "core/haptic_state.hpp"
+#include "core/settings/spidar_calibration.hpp"
 namespace tapstudy::device {
-inline constexpr int strings = 8;
+inline constexpr int strings = core::spidar_strings;
 // From the grip's middle to its four points; also what makes a turn and a shift alike in size.
 inline constexpr double grip_radius_m = 0.0225;
 using PerString = Eigen::Matrix<double, strings, 1>;

@@ -33,9 +33,9 @@ Strings strings_at(const SpidarGeometry& geometry, const Pose& pose) noexcept {
 }
 
 FoundPose find_pose(const SpidarGeometry& geometry, const PerString& length_m, const Pose& guess,
-                    int most_rounds) noexcept {
+                    int max_rounds) noexcept {
   FoundPose found{guess, strings_at(geometry, guess)};
-  for (int round = 0; round < most_rounds && !found.has_converged; ++round) {
+  for (int round = 0; round < max_rounds && !found.has_converged; ++round) {
     Strings now = found.strings;
     now.pull.rightCols<3>() /= grip_radius_m;
     const Eigen::Matrix<double, 6, 6> normal = now.pull.transpose() * now.pull;

@@ -33,5 +33,5 @@ struct FoundPose {
 // unknowns leave a residual that tells a slack, slipped or miscounted string. There is no damping:
 // it would let the pose lag behind the hand.
 FoundPose find_pose(const SpidarGeometry& geometry, const PerString& length_m, const Pose& guess,
-                    int most_rounds) noexcept;
+                    int max_rounds) noexcept;
 }  // namespace tapstudy::device

@@ -11,19 +11,19 @@ constexpr std::size_t counters_at = 16;
 constexpr std::size_t lines_at = 48;
 }  // namespace
 
-Sh4Board::Packet Sh4Board::request(const Digits& digits) noexcept {
+Sh4Board::Packet Sh4Board::request(const DacCounts& dac_counts) noexcept {
   Packet packet{};
   packet[0] = update_all;
   packet[1] = base_analyser;
-  for (std::size_t i = 0; i < digits.size(); ++i) {
-    put_u16(packet, outputs_at + 2 * i, digits[i]);
+  for (std::size_t i = 0; i < dac_counts.size(); ++i) {
+    put_u16(packet, outputs_at + 2 * i, dac_counts[i]);
   }
   return packet;
 }
 
 BoardReading Sh4Board::reading_of(const Packet& reply) noexcept {
   BoardReading reading;
-  Digits echo{};
+  DacCounts echo{};
   for (std::size_t i = 0; i < echo.size(); ++i) {
     echo[i] = get_u16(reply, echo_at + 2 * i);
     reading.counter[i] = get_u16(reply, counters_at + 2 * i);
@@ -36,18 +36,19 @@ BoardReading Sh4Board::reading_of(const Packet& reply) noexcept {
 // Replies that an earlier program left behind would shift every answer by one.
 UsbOutcome Sh4Board::begin(UsbPipe& pipe, BoardReading& reading) noexcept {
   pipe.drain();
-  return exchange(pipe, Digits{}, reading);
+  return exchange(pipe, DacCounts{}, reading);
 }
 
-UsbOutcome Sh4Board::exchange(UsbPipe& pipe, const Digits& digits, BoardReading& reading) noexcept {
-  const UsbOutcome outcome = pipe.exchange(request(digits), reply_);
+UsbOutcome Sh4Board::exchange(UsbPipe& pipe, const DacCounts& dac_counts,
+                              BoardReading& reading) noexcept {
+  const UsbOutcome outcome = pipe.exchange(request(dac_counts), reply_);
   if (outcome == UsbOutcome::ok) {
     reading = reading_of(reply_);
   }
   return outcome;
 }
 
-std::vector<std::uint8_t> Sh4Board::no_force() const {
+std::vector<std::uint8_t> Sh4Board::zero_force_packet() const {
   const Packet packet = request({});
   return {packet.begin(), packet.end()};
 }

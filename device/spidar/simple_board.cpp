@@ -17,10 +17,10 @@ SimpleBoard::Packet command(std::uint8_t first, std::uint8_t second = 0,
 }
 }  // namespace
 
-SimpleBoard::Packet SimpleBoard::outputs(const Digits& digits) noexcept {
+SimpleBoard::Packet SimpleBoard::outputs(const DacCounts& dac_counts) noexcept {
   Packet packet = command(set_outputs);
-  for (std::size_t i = 0; i < digits.size(); ++i) {
-    put_u16(packet, 1 + 2 * i, digits[i]);
+  for (std::size_t i = 0; i < dac_counts.size(); ++i) {
+    put_u16(packet, 1 + 2 * i, dac_counts[i]);
   }
   return packet;
 }
@@ -44,12 +44,12 @@ UsbOutcome SimpleBoard::begin(UsbPipe& pipe, BoardReading& reading) noexcept {
       cleared != UsbOutcome::ok) {
     return cleared;
   }
-  return exchange(pipe, Digits{}, reading);
+  return exchange(pipe, DacCounts{}, reading);
 }
 
-UsbOutcome SimpleBoard::exchange(UsbPipe& pipe, const Digits& digits,
+UsbOutcome SimpleBoard::exchange(UsbPipe& pipe, const DacCounts& dac_counts,
                                  BoardReading& reading) noexcept {
-  if (const UsbOutcome outcome = pipe.send(outputs(digits)); outcome != UsbOutcome::ok) {
+  if (const UsbOutcome outcome = pipe.send(outputs(dac_counts)); outcome != UsbOutcome::ok) {
     return outcome;
   }
   const UsbOutcome outcome = pipe.exchange(command(latch), reply_);
@@ -59,7 +59,7 @@ UsbOutcome SimpleBoard::exchange(UsbPipe& pipe, const Digits& digits,
   return outcome;
 }
 
-std::vector<std::uint8_t> SimpleBoard::no_force() const {
+std::vector<std::uint8_t> SimpleBoard::zero_force_packet() const {
   const Packet packet = outputs({});
   return {packet.begin(), packet.end()};
 }

@@ -9,14 +9,15 @@ class SimpleBoard final : public SpidarBoard {
  public:
   static constexpr std::size_t packet_bytes = 32;
   using Packet = std::array<std::uint8_t, packet_bytes>;
-  static Packet outputs(const Digits& digits) noexcept;
+  static Packet outputs(const DacCounts& dac_counts) noexcept;
   static BoardReading reading_of(const Packet& reply) noexcept;
 
   const char* name() const noexcept override { return "Simple"; }
   int counter_bits() const noexcept override { return 24; }
   UsbOutcome begin(UsbPipe& pipe, BoardReading& reading) noexcept override;
-  std::vector<std::uint8_t> no_force() const override;
-  UsbOutcome exchange(UsbPipe& pipe, const Digits& digits, BoardReading& reading) noexcept override;
+  std::vector<std::uint8_t> zero_force_packet() const override;
+  UsbOutcome exchange(UsbPipe& pipe, const DacCounts& dac_counts,
+                      BoardReading& reading) noexcept override;
 
  private:
   Packet reply_{};

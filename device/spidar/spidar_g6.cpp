@@ -12,7 +12,7 @@ constexpr int rounds_a_tick = 4;
 constexpr int rounds_from_anywhere = 20;
 // A difference of positions a tick apart is mostly the encoder's steps; smoothed over some ticks.
 constexpr double velocity_time_s = 3e-3;
-constexpr double longest_guardian_silence_s = 1.0;
+constexpr double max_guardian_silence_s = 1.0;
 
 TickFault fault_of(UsbOutcome outcome) noexcept {
   switch (outcome) {
@@ -32,7 +32,7 @@ SpidarG6::SpidarG6(UsbPipe& pipe, SpidarBoard& board, SpidarSettings settings)
     : pipe_{pipe},
       board_{board},
       settings_{std::move(settings)},
-      tension_solver_{settings_.calibration.range},
+      tension_solver_{{settings_.calibration.min_tension_n, settings_.calibration.max_tension_n}},
       counters_{board.counter_bits()},
       length_at_rest_m_{strings_at(settings_.geometry, {}).length_m},
       strings_{strings_at(settings_.geometry, {})} {
@@ -48,7 +48,7 @@ SpidarG6::SpidarG6(UsbPipe& pipe, SpidarBoard& board, SpidarSettings settings)
 }
 
 SpidarG6::~SpidarG6() {
-  SpidarG6::drop();
+  SpidarG6::emergency_stop();
 }
 
 std::string SpidarG6::description() const {
@@ -57,31 +57,30 @@ std::string SpidarG6::description() const {
 }
 
 // The guardian watches us and is watched.
-TickFault SpidarG6::fault_of_watch() noexcept {
-  ForceWatch* const watch = settings_.watch;
-  if (watch == nullptr || !watch->is_on()) {
+TickFault SpidarG6::fault_of_watchdog() noexcept {
+  WatchdogChannel* const channel = settings_.watchdog;
+  if (channel == nullptr || !channel->is_on()) {
     return TickFault::none;
   }
-  watch->beat();
-  const bool is_silent = watch->rounds() == guardian_rounds_;
-  guardian_rounds_ = watch->rounds();
+  channel->beat();
+  const bool is_silent = channel->rounds() == guardian_rounds_;
+  guardian_rounds_ = channel->rounds();
   guardian_silent_s_ = is_silent ? guardian_silent_s_ + settings_.dt_s : 0.0;
-  if (watch->has_acted()) {
+  if (channel->has_acted()) {
     return TickFault::stood_still;
   }
-  return guardian_silent_s_ > longest_guardian_silence_s ? TickFault::guardian_lost
-                                                         : TickFault::none;
+  return guardian_silent_s_ > max_guardian_silence_s ? TickFault::guardian_lost : TickFault::none;
 }
 
 TickFault SpidarG6::exchange() noexcept {
-  if (const TickFault fault = fault_of_watch(); fault != TickFault::none) {
+  if (const TickFault fault = fault_of_watchdog(); fault != TickFault::none) {
     return fault;
   }
-  const UsbOutcome outcome = board_.exchange(pipe_, digits_, reading_);
+  const UsbOutcome outcome = board_.exchange(pipe_, dac_counts_, reading_);
   if (outcome != UsbOutcome::ok) {
     return fault_of(outcome);
   }
-  sent_before_ = std::exchange(sent_, digits_);
+  sent_before_ = std::exchange(sent_, dac_counts_);
   if (!is_echo_right()) {
     return TickFault::wrong_echo;
   }
@@ -105,8 +104,8 @@ bool SpidarG6::is_echo_right() noexcept {
 }
 
 TickFault SpidarG6::tighten(double share) noexcept {
-  const double tension_n = share * settings_.calibration.range.least_n;
-  digits_ = digits_of(PerString::Constant(tension_n), settings_.calibration);
+  const double tension_n = share * settings_.calibration.min_tension_n;
+  dac_counts_ = dac_counts_of(PerString::Constant(tension_n), settings_.calibration);
   return exchange();
 }
 
@@ -126,8 +125,8 @@ TickFault SpidarG6::home() noexcept {
 void SpidarG6::begin() noexcept {
   has_position_ = false;
   guardian_silent_s_ = 0.0;
-  if (settings_.watch != nullptr) {
-    settings_.watch->begin();
+  if (settings_.watchdog != nullptr) {
+    settings_.watchdog->begin();
   }
 }
 
@@ -145,19 +144,19 @@ TickFault SpidarG6::follow(core::HandState& hand) noexcept {
   PerString length_m = length_at_rest_m_;
   double largest_m_per_count = 0.0;
   for (std::size_t i = 0; i < counters_.counts().size(); ++i) {
-    const double metres_per_count = settings_.calibration.string[i].metres_per_count;
+    const double metres_per_count = settings_.calibration.strings[i].metres_per_count;
     length_m[static_cast<Eigen::Index>(i)] +=
         metres_per_count * static_cast<double>(counters_.counts()[i]);
     largest_m_per_count = std::max(largest_m_per_count, std::abs(metres_per_count));
   }
   const double step_m = largest_m_per_count * static_cast<double>(largest_step_);
-  if (has_position_ && step_m > settings_.limits.largest_string_speed_m_s * settings_.dt_s) {
+  if (has_position_ && step_m > settings_.limits.max_string_speed_m_s * settings_.dt_s) {
     return TickFault::counter_jumped;
   }
   const FoundPose found = find_pose(settings_.geometry, length_m, pose_,
                                     has_position_ ? rounds_a_tick : rounds_from_anywhere);
   detail_.pose_residual_m = found.residual_m;
-  if (!found.has_converged || !(found.residual_m <= settings_.limits.largest_residual_m)) {
+  if (!found.has_converged || !(found.residual_m <= settings_.limits.max_residual_m)) {
     return TickFault::strings_disagree;
   }
   const core::Vec3 difference_m_s = (found.pose.position_m - pose_.position_m) / settings_.dt_s;
@@ -170,7 +169,7 @@ TickFault SpidarG6::follow(core::HandState& hand) noexcept {
   detail_.closure_margin = closure_margin(strings_);
   hand = {with_z_turned(pose_.position_m), with_z_turned(velocity_m_s_)};
   const bool is_turned_too_far =
-      rotation_vector_rad(pose_.rotation).norm() > settings_.limits.largest_turn_rad;
+      rotation_vector_rad(pose_.rotation).norm() > settings_.limits.max_turn_rad;
   return is_turned_too_far || detail_.closure_margin <= 0.0 ? TickFault::outside_workspace
                                                             : TickFault::none;
 }
@@ -178,34 +177,34 @@ TickFault SpidarG6::follow(core::HandState& hand) noexcept {
 TickFault SpidarG6::write(const core::Vec3& force_n) noexcept {
   const Tensions tensions =
       tension_solver_.solve(strings_, {with_z_turned(force_n), core::Vec3::Zero()});
-  digits_ = digits_of(tensions.tension_n, settings_.calibration);
+  dac_counts_ = dac_counts_of(tensions.tension_n, settings_.calibration);
   detail_.achieved_n = with_z_turned(tensions.achieved.force_n);
   return TickFault::none;
 }
 
 // The strings stay taut, so that the grip stays known.
-void SpidarG6::rest() noexcept {
+void SpidarG6::zero_force() noexcept {
   static_cast<void>(write(core::Vec3::Zero()));
   if (exchange() != TickFault::none) {
-    drop();
+    emergency_stop();
   }
-  end_watch();
+  end_watchdog();
 }
 
-void SpidarG6::end_watch() const noexcept {
-  if (settings_.watch != nullptr) {
-    settings_.watch->end();
+void SpidarG6::end_watchdog() const noexcept {
+  if (settings_.watchdog != nullptr) {
+    settings_.watchdog->end();
   }
 }
 
-void SpidarG6::drop() noexcept {
+void SpidarG6::emergency_stop() noexcept {
   is_homed_ = false;
-  digits_ = {};
-  for (int i = 0; i < times_no_force_is_said; ++i) {
+  dac_counts_ = {};
+  for (int i = 0; i < zero_force_packets; ++i) {
     BoardReading ignored;
-    static_cast<void>(board_.exchange(pipe_, digits_, ignored));
+    static_cast<void>(board_.exchange(pipe_, dac_counts_, ignored));
   }
-  sent_ = sent_before_ = digits_;
-  end_watch();
+  sent_ = sent_before_ = dac_counts_;
+  end_watchdog();
 }
 }  // namespace tapstudy::device

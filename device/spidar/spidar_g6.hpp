@@ -4,20 +4,21 @@
 
 #include "device/device.hpp"
 #include "device/spidar/calibration.hpp"
-#include "device/usb/force_watch.hpp"
+#include "device/spidar/tensions.hpp"
+#include "device/usb/watchdog_channel.hpp"
 namespace tapstudy::device {
 struct SpidarLimits {
-  double largest_residual_m{2e-4};       // beyond it a string is slack, slipped or miscounted
-  double largest_string_speed_m_s{5.0};  // beyond it a counter has jumped
-  double largest_turn_rad{0.5};          // of the grip
+  double max_residual_m{2e-4};       // beyond it a string is slack, slipped or miscounted
+  double max_string_speed_m_s{5.0};  // beyond it a counter has jumped
+  double max_turn_rad{0.5};          // of the grip
 };
 
 struct SpidarSettings {
   SpidarGeometry geometry;
-  SpidarCalibration calibration;
+  core::SpidarCalibration calibration;
   SpidarLimits limits;
   double dt_s{1e-3};
-  ForceWatch* watch{nullptr};  // of the guardian, if there is one; must outlive the device
+  WatchdogChannel* watchdog{nullptr};  // of the guardian, if there is one; must outlive the device
 };
 
 // A SPIDAR-G6 on a board on the USB. Its states: open (outputs zero) → taut (least tension, raised
@@ -26,8 +27,8 @@ struct SpidarSettings {
 // counters, so a force is on the strings one tick after the position it answers to.
 //
 // The torque asked for is zero: a tap is a force at the finger. Whatever goes wrong on the wire, in
-// the counters or in the pose is a fault; drop() then makes all outputs zero, strings may go slack,
-// and the grip must be homed anew.
+// the counters or in the pose is a fault; emergency_stop() then makes all outputs zero, strings may
+// go slack, and the grip must be homed anew.
 class SpidarG6 final : public Device {
  public:
   // The pipe and the board must outlive it. Throws DeviceError if the board does not answer, or
@@ -49,15 +50,15 @@ class SpidarG6 final : public Device {
   [[nodiscard]] core::TickFault read(core::HandState& hand) noexcept override;
   [[nodiscard]] core::TickFault write(const core::Vec3& force_n) noexcept override;
   void begin() noexcept override;
-  void rest() noexcept override;
-  void drop() noexcept override;
+  void zero_force() noexcept override;
+  void emergency_stop() noexcept override;
   DeviceDetail detail() const noexcept override { return detail_; }
   std::string description() const override;
 
  private:
-  core::TickFault fault_of_watch() noexcept;
+  core::TickFault fault_of_watchdog() noexcept;
   core::TickFault exchange() noexcept;
-  void end_watch() const noexcept;
+  void end_watchdog() const noexcept;
   core::TickFault follow(core::HandState& hand) noexcept;
   bool is_echo_right() noexcept;
 
@@ -70,9 +71,9 @@ class SpidarG6 final : public Device {
   Pose pose_;
   Strings strings_;
   core::Vec3 velocity_m_s_{core::Vec3::Zero()};
-  Digits digits_{};
-  Digits sent_{};
-  Digits sent_before_{};
+  DacCounts dac_counts_{};
+  DacCounts sent_{};
+  DacCounts sent_before_{};
   std::optional<bool> echoes_this_request_;
   BoardReading reading_;
   std::int64_t largest_step_{0};

@@ -18,7 +18,7 @@ Vec6 in_newtons(const Wrench& wrench) noexcept {
 }  // namespace
 
 TensionSolver::TensionSolver(const TensionRange& range) noexcept : range_{range} {
-  latest_ << PerString::Constant(range.least_n), 1.0;
+  latest_ << PerString::Constant(range.min_n), 1.0;
 }
 
 Tensions TensionSolver::solve(const Strings& strings_now, const Wrench& wanted) noexcept {
@@ -31,8 +31,8 @@ Tensions TensionSolver::solve(const Strings& strings_now, const Wrench& wanted) 
   problem.Q.diagonal().array() += tension_weight;
   problem.c.setZero();
   problem.c[strings] = share_weight;
-  problem.low << PerString::Constant(range_.least_n), 0.0;
-  problem.high << PerString::Constant(range_.most_n), 1.0;
+  problem.low << PerString::Constant(range_.min_n), 0.0;
+  problem.high << PerString::Constant(range_.max_n), 1.0;
   latest_ = solver_.solve(problem, latest_).x;
   Tensions found;
   found.tension_n = latest_.head<strings>();

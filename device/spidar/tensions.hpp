@@ -9,8 +9,8 @@ struct Wrench {
 };
 
 struct TensionRange {
-  double least_n{};  // below it a string goes slack
-  double most_n{};
+  double min_n{};  // below it a string goes slack
+  double max_n{};
 };
 
 struct Tensions {

@@ -18,26 +18,30 @@ namespace tapstudy::device {
 namespace {
 constexpr unsigned time_out_ms = 100;
 constexpr int round_ms = 20;
-constexpr int longest_still_rounds = 5;
+constexpr int max_still_rounds = 5;
 
 // Between fork and _exit only what is safe in a signal handler.
-class Watchman {
+class Watchdog {
  public:
-  Watchman(int life, int node, std::uint8_t endpoint, std::vector<std::uint8_t>& no_force,
-           ForceWatch& watch) noexcept
-      : life_{life}, node_{node}, endpoint_{endpoint}, no_force_{no_force}, watch_{watch} {}
+  Watchdog(int life, int node, std::uint8_t endpoint, std::vector<std::uint8_t>& zero_force_packet,
+           WatchdogChannel& channel) noexcept
+      : life_{life},
+        node_{node},
+        endpoint_{endpoint},
+        zero_force_packet_{zero_force_packet},
+        channel_{channel} {}
 
-  [[noreturn]] void stand() noexcept {
+  [[noreturn]] void run() noexcept {
     for (const int signal : std::array{SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGPIPE}) {
       struct sigaction ignored {};
       ignored.sa_handler = SIG_IGN;
       sigaction(signal, &ignored, nullptr);
     }
     while (lives_on()) {
-      look();
-      watch_.complete_round();
+      poll();
+      channel_.complete_round();
     }
-    say_no_force();
+    send_zero_force();
     _exit(0);
   }
 
@@ -45,25 +49,25 @@ class Watchman {
   // Waits for a round's time.
   bool lives_on() const noexcept {
     pollfd waiting{life_, POLLIN, 0};
-    if (poll(&waiting, 1, round_ms) <= 0) {
+    if (::poll(&waiting, 1, round_ms) <= 0) {
       return true;
     }
     char byte = 0;
     return read(life_, &byte, 1) != 0;
   }
-  void look() noexcept {
-    const std::uint64_t beats = watch_.beats();
-    still_rounds_ = watch_.is_on() && beats == beats_ ? still_rounds_ + 1 : 0;
+  void poll() noexcept {
+    const std::uint64_t beats = channel_.beats();
+    still_rounds_ = channel_.is_on() && beats == beats_ ? still_rounds_ + 1 : 0;
     beats_ = beats;
-    if (still_rounds_ == longest_still_rounds) {
-      watch_.act();  // first: whoever wakes must find it before sending anything
-      say_no_force();
+    if (still_rounds_ == max_still_rounds) {
+      channel_.act();  // first: whoever wakes must find it before sending anything
+      send_zero_force();
     }
   }
-  void say_no_force() noexcept {
-    for (int i = 0; i < times_no_force_is_said; ++i) {
-      usbdevfs_bulktransfer packet{endpoint_, static_cast<unsigned>(no_force_.size()), time_out_ms,
-                                   no_force_.data()};
+  void send_zero_force() noexcept {
+    for (int i = 0; i < zero_force_packets; ++i) {
+      usbdevfs_bulktransfer packet{endpoint_, static_cast<unsigned>(zero_force_packet_.size()),
+                                   time_out_ms, zero_force_packet_.data()};
       ioctl(node_, USBDEVFS_BULK, &packet);  // NOLINT(cppcoreguidelines-pro-type-vararg)
     }
   }
@@ -71,28 +75,29 @@ class Watchman {
   int life_;
   int node_;
   std::uint8_t endpoint_;
-  std::vector<std::uint8_t>& no_force_;
-  ForceWatch& watch_;
+  std::vector<std::uint8_t>& zero_force_packet_;
+  WatchdogChannel& channel_;
   std::uint64_t beats_{0};
   int still_rounds_{0};
 };
 }  // namespace
 
-void Guardian::Unmap::operator()(ForceWatch* watch) const noexcept {
-  munmap(watch, sizeof(ForceWatch));
+void Guardian::Unmap::operator()(WatchdogChannel* channel) const noexcept {
+  munmap(channel, sizeof(WatchdogChannel));
 }
 
-std::unique_ptr<ForceWatch, Guardian::Unmap> Guardian::shared_watch() {
-  void* const memory =
-      mmap(nullptr, sizeof(ForceWatch), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+std::unique_ptr<WatchdogChannel, Guardian::Unmap> Guardian::shared_channel() {
+  void* const memory = mmap(nullptr, sizeof(WatchdogChannel), PROT_READ | PROT_WRITE,
+                            MAP_SHARED | MAP_ANONYMOUS, -1, 0);
   if (memory == MAP_FAILED) {  // NOLINT(cppcoreguidelines-pro-type-cstyle-cast): the C library's
     throw DeviceError{"the guardian of the device has no memory"};
   }
-  return std::unique_ptr<ForceWatch, Unmap>{std::construct_at(static_cast<ForceWatch*>(memory))};
+  return std::unique_ptr<WatchdogChannel, Unmap>{
+      std::construct_at(static_cast<WatchdogChannel*>(memory))};
 }
 Guardian::Guardian(const UsbNode& node, std::uint8_t out_endpoint,
-                   std::vector<std::uint8_t> no_force)
-    : watch_{shared_watch()} {
+                   std::vector<std::uint8_t> zero_force_packet)
+    : channel_{shared_channel()} {
   std::array<int, 2> ends{};
   if (pipe2(ends.data(), O_CLOEXEC) != 0) {
     throw DeviceError{"the guardian of the device has no pipe"};
@@ -101,7 +106,7 @@ Guardian::Guardian(const UsbNode& node, std::uint8_t out_endpoint,
   if (child_ == 0) {
     setsid();  // Ctrl-C at the terminal is not for it
     close(ends[1]);
-    Watchman{ends[0], node.descriptor(), out_endpoint, no_force, *watch_}.stand();
+    Watchdog{ends[0], node.descriptor(), out_endpoint, zero_force_packet, *channel_}.run();
   }
   close(ends[0]);
   life_ = ends[1];

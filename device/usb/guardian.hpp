@@ -5,8 +5,8 @@
 #include <memory>
 #include <vector>
 
-#include "device/usb/force_watch.hpp"
 #include "device/usb/usb_node.hpp"
+#include "device/usb/watchdog_channel.hpp"
 namespace tapstudy::device {
 // A process that outlives this one. The boards are not known to have a watchdog: should tapstudy
 // die with force on, whatever from, SIGKILL included, the strings would keep pulling. So a child
@@ -17,22 +17,23 @@ class Guardian {
  public:
   // Other threads may run: the child calls nothing that they could hold. Throws DeviceError if
   // there can be none.
-  Guardian(const UsbNode& node, std::uint8_t out_endpoint, std::vector<std::uint8_t> no_force);
+  Guardian(const UsbNode& node, std::uint8_t out_endpoint,
+           std::vector<std::uint8_t> zero_force_packet);
   // The packet is sent at an orderly end too.
   ~Guardian();
   Guardian(const Guardian& other) = delete;
   Guardian& operator=(const Guardian& other) = delete;
   Guardian(Guardian&& other) = delete;
   Guardian& operator=(Guardian&& other) = delete;
-  ForceWatch& watch() noexcept { return *watch_; }
+  WatchdogChannel& channel() noexcept { return *channel_; }
 
  private:
   struct Unmap {
-    void operator()(ForceWatch* watch) const noexcept;
+    void operator()(WatchdogChannel* channel) const noexcept;
   };
-  static std::unique_ptr<ForceWatch, Unmap> shared_watch();
+  static std::unique_ptr<WatchdogChannel, Unmap> shared_channel();
 
-  std::unique_ptr<ForceWatch, Unmap> watch_;  // in memory shared with the child
+  std::unique_ptr<WatchdogChannel, Unmap> channel_;  // in memory shared with the child
   pid_t child_{-1};
   int life_{-1};  // closed by the kernel when this process ends
 };

@@ -11,10 +11,10 @@
 namespace tapstudy::device {
 namespace {
 constexpr int interface_number = 0;
-constexpr std::size_t largest_packet = 512;
-constexpr int most_left_replies = 16;
+constexpr std::size_t max_packet_bytes = 512;
+constexpr int max_stale_replies = 16;
 constexpr timeval one_wait{0, 10'000};
-constexpr std::chrono::seconds longest_wait{1};
+constexpr std::chrono::seconds max_wait{1};
 
 UsbOutcome outcome_of(int error) noexcept {
   switch (error) {
@@ -89,7 +89,7 @@ class Transfer {
   // Every transfer has its own time-out, so this ends; should the kernel never give it back, this
   // ends too.
   UsbOutcome wait(libusb_context* context) noexcept {
-    const auto give_up = std::chrono::steady_clock::now() + longest_wait;
+    const auto give_up = std::chrono::steady_clock::now() + max_wait;
     while (is_under_way() && std::chrono::steady_clock::now() < give_up) {
       timeval patience = one_wait;
       libusb_handle_events_timeout_completed(context, &patience, &has_ended_);
@@ -113,8 +113,8 @@ struct LibusbPipe::Libusb {
   unsigned time_out_ms;
   std::unique_ptr<Transfer> request;
   std::unique_ptr<Transfer> reply;
-  std::array<std::uint8_t, largest_packet> request_bytes{};
-  std::array<std::uint8_t, largest_packet> reply_bytes{};
+  std::array<std::uint8_t, max_packet_bytes> request_bytes{};
+  std::array<std::uint8_t, max_packet_bytes> reply_bytes{};
 
   Libusb(const UsbNode& node, const BulkEndpoints& both, std::chrono::milliseconds time_out)
       : endpoints{both}, time_out_ms{static_cast<unsigned>(time_out.count())} {
@@ -168,7 +168,7 @@ LibusbPipe::LibusbPipe(const UsbNode& node, const BulkEndpoints& endpoints,
 LibusbPipe::~LibusbPipe() = default;
 
 UsbOutcome LibusbPipe::send(std::span<const std::uint8_t> out) noexcept {
-  if (libusb_->request->is_under_way() || out.size() > largest_packet) {
+  if (libusb_->request->is_under_way() || out.size() > max_packet_bytes) {
     return UsbOutcome::failed;
   }
   const UsbOutcome outcome = libusb_->submit_request(out);
@@ -177,7 +177,7 @@ UsbOutcome LibusbPipe::send(std::span<const std::uint8_t> out) noexcept {
 
 UsbOutcome LibusbPipe::exchange(std::span<const std::uint8_t> out,
                                 std::span<std::uint8_t> in) noexcept {
-  if (!libusb_->is_idle() || std::max(out.size(), in.size()) > largest_packet) {
+  if (!libusb_->is_idle() || std::max(out.size(), in.size()) > max_packet_bytes) {
     return UsbOutcome::failed;
   }
   if (const UsbOutcome outcome = libusb_->submit_reply(in.size(), libusb_->time_out_ms);
@@ -201,8 +201,8 @@ UsbOutcome LibusbPipe::exchange(std::span<const std::uint8_t> out,
 void LibusbPipe::drain() noexcept {
   libusb_clear_halt(libusb_->device, libusb_->endpoints.in);
   libusb_clear_halt(libusb_->device, libusb_->endpoints.out);
-  for (int i = 0; i < most_left_replies && libusb_->is_idle(); ++i) {
-    if (libusb_->submit_reply(largest_packet, 1) != UsbOutcome::ok ||
+  for (int i = 0; i < max_stale_replies && libusb_->is_idle(); ++i) {
+    if (libusb_->submit_reply(max_packet_bytes, 1) != UsbOutcome::ok ||
         libusb_->reply->wait(libusb_->context) == UsbOutcome::timed_out) {
       return;
     }

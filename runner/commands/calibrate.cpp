@@ -6,13 +6,15 @@
 #include <memory>
 
 #include "core/output_file.hpp"
-#include "runner/calibration/calibrate_spidar.hpp"
+#include "device/spidar/calibration_procedure.hpp"
+#include "device/spidar/find_spidars.hpp"
+#include "protocols/spidar_calibration.hpp"
 #include "runner/commands/commands.hpp"
-#include "runner/plugged_in.hpp"
-#include "runner/stop_signal.hpp"
+#include "runner/terminal/operator_at_terminal.hpp"
+#include "runner/terminal/stop_signal.hpp"
 namespace tapstudy::runner {
 namespace {
-constexpr std::chrono::milliseconds patience{100};
+constexpr std::chrono::milliseconds max_reply{100};
 
 struct CalibrateOptions {
   std::string type;
@@ -22,18 +24,20 @@ struct CalibrateOptions {
 void run_calibrate(const CalibrateOptions& options) {
   device::spidar_geometry(options.type);
   core::check_is_new(options.out);
-  const device::UsbListing listing = the_only_spidar();
+  const device::UsbListing listing = device::find_only_spidar();
   listen_for_stop();
-  OpenBoard open{listing, patience};
+  device::OpenBoard open{listing, max_reply};
   LineInput input{STDIN_FILENO};
   OperatorAtTerminal person{input};
   fmt::print(stderr,
              "You need a ruler and a force gauge. Strings are numbered as in the frame's drawing, "
              "from 1;\nnothing pulls but the string that is measured, and that with little "
              "force.\n");
-  const auto strings = calibrate_spidar(*open.board, open.pipe, person);
-  core::write_new_file(options.out,
-                       [&](std::ostream& out) { write_calibration(out, options.type, strings); });
+  const core::SpidarCalibration calibration =
+      device::calibrate_spidar(*open.board, open.pipe, person);
+  core::write_new_file(options.out, [&](std::ostream& out) {
+    protocols::write_calibration(out, options.type, calibration);
+  });
   fmt::print("{}\n", options.out);
 }
 }  // namespace

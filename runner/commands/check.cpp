@@ -4,18 +4,18 @@
 #include <algorithm>
 #include <memory>
 
-#include "analysis/proportion.hpp"
+#include "analysis/statistics/proportion.hpp"
 #include "core/error.hpp"
 #include "core/rng.hpp"
-#include "device/penalty_limit.hpp"
+#include "device/hand/penalty_limit.hpp"
+#include "protocols/ordering.hpp"
 #include "protocols/read_protocol.hpp"
-#include "protocols/read_rig.hpp"
 #include "protocols/schedule.hpp"
 #include "runner/commands/commands.hpp"
-#include "runner/model_library.hpp"
-#include "runner/rig.hpp"
-#include "runner/seed.hpp"
-#include "runner/session.hpp"
+#include "runner/commands/seed.hpp"
+#include "runner/devices/rigs.hpp"
+#include "runner/session/session_row.hpp"
+#include "runner/stimuli/model_library.hpp"
 namespace tapstudy::runner {
 namespace {
 struct CheckOptions {
@@ -30,7 +30,7 @@ void print_models(const protocols::Protocol& protocol) {
   fmt::print("\nmodels\n");
   ModelLibrary models;
   for (const protocols::Stimulus& stimulus : protocol.stimuli) {
-    if (!stimulus.technique->vibration) {
+    if (!stimulus.technique->needs_model()) {
       continue;
     }
     const int solved_before = models.bodies_solved();
@@ -54,7 +54,7 @@ void print_models(const protocols::Protocol& protocol) {
 
 void print_contact(const protocols::Protocol& protocol) {
   const double asked = protocol.rendering.penalty_stiffness_n_per_m;
-  device::HandBody hand = hand_body(protocol.simulation.hand);
+  core::HandBody hand = protocol.simulation.hand;
   const double limit = device::largest_stable_penalty_n_per_m(hand, protocol.rendering.dt_s);
   fmt::print("\ncontact\n  penalty {} N/m; at {} Hz the simulated hand rests on up to {:.0f} N/m\n",
              asked, protocol.rate_hz, limit);
@@ -67,31 +67,36 @@ void print_contact(const protocols::Protocol& protocol) {
 }
 
 void warn_of_balance(const protocols::Block& block, int participants) {
+  if (!block.task->uses_order()) {
+    return;
+  }
   const int conditions = static_cast<int>(block.stimuli.size());
   const int rows = protocols::williams_rows(conditions);
-  if (block.order == protocols::Order::williams && participants % rows != 0) {
-    fmt::print("    warning: {} participants do not balance the {} orders (use a multiple of {})\n",
-               participants, rows, rows);
-  } else if (block.task == protocols::Task::identification &&
-             block.order != protocols::Order::williams) {
+  if (block.order != protocols::Order::williams) {
     fmt::print(
         "    note: random orders balance only on average; order: williams balances {} "
         "stimuli over every {} participants\n",
         conditions, rows);
+  } else if (participants % rows != 0) {
+    fmt::print("    warning: {} participants do not balance the {} orders (use a multiple of {})\n",
+               participants, rows, rows);
   }
 }
 
-void print_power(const protocols::Block& block, int participants) {
-  const bool is_choice = block.task == protocols::Task::choice;
-  const std::size_t options = is_choice ? block.stimuli.size() : block.responses.size();
+int trials_of(const protocols::Block& block) {
+  return block.repetitions * static_cast<int>(block.task->trials_per_repetition(block));
+}
+
+void print_power(const protocols::Protocol& protocol, const protocols::Block& block,
+                 int participants) {
+  const std::size_t options = block.task->options(block, protocol).size();
   const double chance = 1.0 / static_cast<double>(options);
-  const int answers =
-      participants * block.repetitions * (is_choice ? 1 : static_cast<int>(block.stimuli.size()));
+  const int answers = participants * trials_of(block);
   const int critical = analysis::critical_successes(answers, chance, alpha);
   fmt::print(
       "    chance {:.0f} %; of {} answers {} must {} for p < .05 (one-sided, answers "
       "independent)\n",
-      100.0 * chance, answers, critical, is_choice ? "choose the expected one" : "be right");
+      100.0 * chance, answers, critical, block.task->success());
   fmt::print("    power if the truth is");
   for (const double above : {0.1, 0.2, 0.3}) {
     fmt::print("{} {:.0f} %: {:.2f}", above > 0.15 ? "," : "", 100.0 * (chance + above),
@@ -104,15 +109,14 @@ void print_design(const protocols::Protocol& protocol, int participants) {
   fmt::print("{}\n\n", protocol.title);
   double total_s = 0.0;
   for (const protocols::Block& block : protocol.blocks) {
-    const bool is_choice = block.task == protocols::Task::choice;
-    const int trials = block.repetitions * (is_choice ? 1 : static_cast<int>(block.stimuli.size()));
+    const int trials = trials_of(block);
     const double seconds = trials * simulated_trial_s(protocol, block);
     total_s += seconds;
     fmt::print("  {}{}: {}, {} stimuli, {} trials a participant, about {:.0f} s of tapping\n",
-               block.name, block.is_practice ? " (practice)" : "",
-               is_choice ? "choice" : "identification", block.stimuli.size(), trials, seconds);
+               block.name, block.is_practice ? " (practice)" : "", block.task->name(),
+               block.stimuli.size(), trials, seconds);
     warn_of_balance(block, participants);
-    print_power(block, participants);
+    print_power(protocol, block, participants);
   }
   fmt::print("\n  {} participants, {:.0f} min of tapping each\n", participants, total_s / 60.0);
 }
@@ -124,7 +128,7 @@ void run_check(const CheckOptions& options) {
         fmt::format("--participants: {} is not allowed (from 1 to 10000)", options.participants)};
   }
   if (!options.rig.empty()) {
-    const protocols::Rig rig = protocols::read_rig(options.rig);
+    const protocols::Rig rig = read_rig(options.rig);
     loop_settings(protocol, rig);
     check_fits(protocol, rig);
   }

@@ -3,22 +3,14 @@
 #include <CLI/CLI.hpp>
 
 #include "runner/commands/commands.hpp"
-#include "runner/plugged_in.hpp"
+#include "runner/devices/device_kind.hpp"
 namespace tapstudy::runner {
 namespace {
-std::string name_of(const device::UsbListing& listing) {
-  return is_spidar(listing)
-             ? fmt::format("SPIDAR-G6, {} board", device::board_of(listing.product)->name())
-             : std::string{};
-}
-
 void run_devices() {
   int found = 0;
-  for (const device::UsbListing& listing : device::usb_devices()) {
-    if (const std::string name = name_of(listing); !name.empty()) {
-      fmt::print(
-          "{:04x}:{:04x}  {}  {}{}\n", listing.vendor, listing.product, listing.node, name,
-          listing.may_open ? "" : "  (no permission: install device/udev/70-tapstudy.rules)");
+  for (const DeviceKind* const kind : device_kinds()) {
+    for (const std::string& line : kind->listing()) {
+      fmt::print("{}\n", line);
       ++found;
     }
   }

@@ -4,12 +4,12 @@
 #include <memory>
 #include <optional>
 
-#include "analysis/figure.hpp"
+#include "analysis/figures/figure.hpp"
 #include "device/device.hpp"
-#include "protocols/read_rig.hpp"
 #include "runner/commands/commands.hpp"
-#include "runner/doctor/diagnosis.hpp"
-#include "runner/plugged_in.hpp"
+#include "runner/devices/device_kind.hpp"
+#include "runner/devices/diagnosis.hpp"
+#include "runner/devices/rigs.hpp"
 namespace tapstudy::runner {
 namespace {
 struct DoctorOptions {
@@ -46,7 +46,7 @@ void print(const Diagnosis& diagnosis) {
   }
 }
 
-analysis::Series series_of(const char* label, const ProbedLoop& probed) {
+analysis::Series series_of(const char* label, const device::ProbedLoop& probed) {
   analysis::Series series{label, analysis::Axis::left, {}, {}};
   double rest = 1.0;
   while (rest > 0.5 / static_cast<double>(probed.lateness.count())) {
@@ -69,25 +69,26 @@ void draw(const Diagnosis& diagnosis, const std::string& file) {
       file);
 }
 
-// Of the SPIDAR that the rig means; without a rig of any that is plugged in and may be opened.
-std::optional<device::LatenessCount> round_trip(const protocols::Rig& rig) {
-  if (rig.spidar) {
-    return probed_round_trip(the_only_spidar());
+// Of the device that the rig means; without a rig of whatever is plugged in and may be opened.
+std::optional<device::LatenessCount> round_trip(const DoctorOptions& options,
+                                                const protocols::Rig& rig) {
+  if (!options.rig.empty()) {
+    return kind_of(rig).round_trip();
   }
-  for (const device::UsbListing& listing : device::usb_devices()) {
-    if (is_spidar(listing) && listing.may_open) {
-      return probed_round_trip(listing);
+  for (const DeviceKind* const kind : device_kinds()) {
+    if (!kind->listing().empty() && kind->is_there()) {
+      return kind->round_trip();
     }
   }
   return std::nullopt;
 }
 
 void run_doctor(const DoctorOptions& options) {
-  const protocols::Rig rig =
-      options.rig.empty() ? protocols::simulated_rig() : protocols::read_rig(options.rig);
-  const auto answered = round_trip(rig);
-  Diagnosis diagnosis = diagnose(rig.loop, static_cast<device::Nanoseconds>(1e9 / options.rate_hz),
-                                 options.seconds, Under::load_too);
+  const protocols::Rig rig = options.rig.empty() ? simulated_rig() : read_rig(options.rig);
+  const auto answered = round_trip(options, rig);
+  Diagnosis diagnosis =
+      diagnose(rig.realtime, static_cast<device::Nanoseconds>(1e9 / options.rate_hz),
+               options.seconds, Under::load_too);
   diagnosis.round_trip = answered;
   print(diagnosis);
   if (!options.figure.empty()) {

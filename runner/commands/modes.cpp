@@ -6,14 +6,14 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "analysis/figures/face_views.hpp"
 #include "core/error.hpp"
 #include "core/model/vtu_file.hpp"
 #include "core/output_file.hpp"
 #include "protocols/read_protocol.hpp"
 #include "runner/commands/commands.hpp"
-#include "runner/model_library.hpp"
-#include "runner/progress.hpp"
-#include "runner/views/face_views.hpp"
+#include "runner/stimuli/model_library.hpp"
+#include "runner/terminal/progress.hpp"
 namespace tapstudy::runner {
 namespace {
 struct ModesOptions {
@@ -123,7 +123,8 @@ void draw_modes(const ModesOptions& options, const core::Shape& shape, core::Mod
     throw core::InvalidInput{"--figure: there is no mode inside the band"};
   }
   const core::VibratingPlate plate{std::move(model)};
-  analysis::draw_svg(map_of_modes(plate, *box, "Modes of " + options.stimulus), options.figure);
+  analysis::draw_svg(analysis::map_of_modes(plate, *box, "Modes of " + options.stimulus),
+                     options.figure);
 }
 
 void run_modes(const ModesOptions& options) {

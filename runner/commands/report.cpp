@@ -9,14 +9,14 @@
 #include <memory>
 #include <set>
 
-#include "analysis/counts_csv.hpp"
 #include "analysis/report/writers.hpp"
+#include "analysis/statistics/counts_csv.hpp"
 #include "core/error.hpp"
 #include "core/output_file.hpp"
 #include "protocols/read_protocol.hpp"
 #include "results/store.hpp"
 #include "runner/commands/commands.hpp"
-#include "runner/design.hpp"
+#include "runner/experiments/study_design.hpp"
 namespace tapstudy::runner {
 namespace {
 namespace fs = std::filesystem;
@@ -67,6 +67,18 @@ std::vector<std::pair<std::string, std::string>> provenance(
           {"seeds", fmt::format("{}", fmt::join(seeds, ", "))}};
 }
 
+// Of the store alone: the files that the protocol names may be gone.
+protocols::Protocol stored_protocol(const results::StudyRow& study) {
+  return protocols::parse_protocol(
+      study.protocol_text, study.protocol_file, [&](const std::string& file) {
+        const auto found = std::ranges::find(study.surfaces, file, &results::SurfaceRow::file);
+        if (found == study.surfaces.end()) {
+          throw core::InvalidInput{file + ": is not stored with the study"};
+        }
+        return found->bytes;
+      });
+}
+
 Summary summary_of_study(const ReportOptions& options) {
   results::Store store = results::Store::open_existing(options.directory);
   const results::StudyRow study = store.study();
@@ -80,8 +92,7 @@ Summary summary_of_study(const ReportOptions& options) {
     throw core::InvalidInput{fmt::format("{}: no answers of {} participants to report",
                                          options.directory, results::to_text(mode))};
   }
-  const protocols::Protocol protocol =
-      protocols::parse_protocol(study.protocol_text, study.protocol_file);
+  const protocols::Protocol protocol = stored_protocol(study);
   std::vector<results::VisitRow> visits = store.visits();
   std::erase_if(visits, [&](const results::VisitRow& visit) {
     return std::ranges::find(answers, visit.participant_id, &results::AnswerRow::participant_id) ==
@@ -120,15 +131,9 @@ void write_files(const ReportOptions& options, const Summary& summary) {
   };
   write("report.html", [&](std::ostream& out) { analysis::write_html(out, summary); });
   write("report.json", [&](std::ostream& out) { analysis::write_json(out, summary); });
-  for (const analysis::BlockSummary& block : summary.blocks) {
-    if (const auto* identification = std::get_if<analysis::IdentificationSummary>(&block)) {
-      write(identification->block.empty() ? "confusion.csv"
-                                          : identification->block + "_confusion.csv",
-            [&](std::ostream& out) { analysis::write_csv(out, identification->matrix); });
-    } else {
-      const auto& choice = std::get<analysis::ChoiceSummary>(block);
-      write(choice.block + "_choices.csv",
-            [&](std::ostream& out) { analysis::write_csv(out, choice); });
+  for (const auto& block : summary.blocks) {
+    for (const analysis::CsvTable& table : block->tables()) {
+      write(block->block.empty() ? table.name : block->block + "_" + table.name, table.write);
     }
   }
 }

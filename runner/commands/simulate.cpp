@@ -6,10 +6,10 @@
 #include "core/error.hpp"
 #include "protocols/read_protocol.hpp"
 #include "runner/commands/commands.hpp"
-#include "runner/seed.hpp"
-#include "runner/session.hpp"
-#include "runner/simulated/study.hpp"
-#include "runner/stop_signal.hpp"
+#include "runner/commands/seed.hpp"
+#include "runner/experiments/simulated_study.hpp"
+#include "runner/session/session_row.hpp"
+#include "runner/terminal/stop_signal.hpp"
 namespace tapstudy::runner {
 namespace {
 void run_simulate(const SimulatedStudy& study) {

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 #include <fmt/ostream.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -7,14 +8,15 @@
 #include <iostream>
 #include <memory>
 
-#include "analysis/figure.hpp"
+#include "analysis/figures/face_views.hpp"
+#include "analysis/figures/figure.hpp"
 #include "core/error.hpp"
 #include "core/output_file.hpp"
+#include "core/placement.hpp"
 #include "protocols/read_protocol.hpp"
-#include "protocols/read_rig.hpp"
 #include "runner/commands/commands.hpp"
-#include "runner/scripted_tap.hpp"
-#include "runner/views/face_views.hpp"
+#include "runner/devices/rigs.hpp"
+#include "runner/experiments/scripted_tap.hpp"
 namespace tapstudy::runner {
 namespace {
 using core::TraceSample;
@@ -37,14 +39,14 @@ double seconds_of(const TraceSample& sample) {
 
 void write_csv(std::ostream& out, const std::vector<TraceSample>& trace) {
   out << "t_s,position_x_m,position_y_m,position_z_m,velocity_x_m_s,velocity_y_m_s,velocity_z_m_s,"
-         "penetration_m,penalty_n,vibration_n,sinusoid_n,force_n,touching,struck,saturated\n";
+         "penetration_m,penalty_n,vibration_n,sinusoid_n,force_n,touching,impact,saturated\n";
   for (const TraceSample& s : trace) {
     fmt::print(out,
                "{:.6f},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},"
                "{:.17g},{:.17g},{:d},{:d},{:d}\n",
                seconds_of(s), s.position_m[0], s.position_m[1], s.position_m[2], s.velocity_m_s[0],
                s.velocity_m_s[1], s.velocity_m_s[2], s.penetration_m, s.penalty_n, s.vibration_n,
-               s.sinusoid_n, s.force_n[1], s.touching, s.struck, s.saturated);
+               s.sinusoid_n, core::along_normal(s.force_n), s.touching, s.impact, s.saturated);
   }
 }
 
@@ -58,13 +60,13 @@ double largest(const std::vector<TraceSample>& trace, const Value& value) {
 }
 
 void print_summary(const TapOptions& options, const std::vector<TraceSample>& trace) {
-  const auto impact = std::ranges::find(trace, true, &TraceSample::struck);
+  const auto impact = std::ranges::find(trace, true, &TraceSample::impact);
   fmt::print("{} at {}\n", options.stimulus, options.at);
   if (impact != trace.end()) {
     fmt::print("  impact         {:.3f} s, {:.4f} m/s\n", seconds_of(*impact),
-               -impact->velocity_m_s[1]);
+               -core::along_normal(impact->velocity_m_s));
   }
-  fmt::print("  impacts        {}\n", std::ranges::count(trace, true, &TraceSample::struck));
+  fmt::print("  impacts        {}\n", std::ranges::count(trace, true, &TraceSample::impact));
   fmt::print("  penalty        {:.4g} N at most\n",
              largest(trace, [](const TraceSample& s) { return s.penalty_n; }));
   fmt::print("  vibration      {:.4g} N at most\n",
@@ -81,14 +83,12 @@ protocols::Protocol protocol_with_technique(const TapOptions& options) {
   }
   const core::Technique* technique = core::find_technique(options.technique);
   if (technique == nullptr) {
-    throw core::InvalidInput{
-        fmt::format("--technique: '{}' is not a technique (one of: none, sinusoid, fem, "
-                    "fem+sinusoid)",
-                    options.technique)};
+    throw core::InvalidInput{fmt::format("--technique: '{}' is not a technique (one of: {})",
+                                         options.technique,
+                                         fmt::join(core::technique_names(), ", "))};
   }
-  if (technique->sinusoid && !(protocol.rendering.sinusoid.amplitude_n_s_per_m > 0.0)) {
-    throw core::InvalidInput{fmt::format(
-        "--technique: '{}' needs rendering.sinusoid in the protocol", options.technique)};
+  if (const auto missing = technique->missing(protocol.rendering); !missing.empty()) {
+    throw core::InvalidInput{fmt::format("--technique: '{}' needs {}", options.technique, missing)};
   }
   for (protocols::Stimulus& stimulus : protocol.stimuli) {
     stimulus.technique = technique;
@@ -103,7 +103,7 @@ analysis::Panel panel_of(const std::string& title, const std::vector<TraceSample
   analysis::Panel panel{
       title,
       {{"penalty", analysis::Axis::left, {}, {}}, {"vibration", analysis::Axis::right, {}, {}}}};
-  const auto impact = std::ranges::find(trace, true, &TraceSample::struck);
+  const auto impact = std::ranges::find(trace, true, &TraceSample::impact);
   const double start_s = impact == trace.end() ? 0.0 : seconds_of(*impact);
   for (const TraceSample& sample : trace) {
     const double t_s = seconds_of(sample) - start_s;
@@ -121,14 +121,14 @@ analysis::Panel panel_of(const std::string& title, const std::vector<TraceSample
 // One figure a plate: a row a stimulus, a column a tapping point (the paper's Figures 4 and 5).
 void draw_panels(const TapOptions& options, const protocols::Protocol& protocol) {
   ModelLibrary models;
-  const protocols::Rig rig = protocols::simulated_rig();
+  const protocols::Rig rig = simulated_rig();
   std::error_code error;
   std::filesystem::create_directories(options.panels, error);
   if (!std::filesystem::is_directory(options.panels, error)) {
     throw core::InvalidInput{options.panels + ": cannot be made a directory"};
   }
-  for (const auto& [plate, spec] : protocol.plates) {
-    analysis::Figure figure{"Feedback force, plate " + plate,
+  for (const auto& [name, plate] : protocol.plates) {
+    analysis::Figure figure{"Feedback force, plate " + name,
                             "time after impact [s]",
                             "penalty [N]",
                             "vibration [mN]",
@@ -145,7 +145,7 @@ void draw_panels(const TapOptions& options, const protocols::Protocol& protocol)
       }
     }
     const std::string file =
-        (std::filesystem::path{options.panels} / ("forces_" + plate + ".svg")).string();
+        (std::filesystem::path{options.panels} / ("forces_" + name + ".svg")).string();
     if (!figure.panels.empty()) {
       analysis::draw_svg(figure, file);
       fmt::print("{}\n", file);
@@ -157,15 +157,15 @@ void draw_panels(const TapOptions& options, const protocols::Protocol& protocol)
 void draw_frames(const TapOptions& options, const protocols::Protocol& protocol,
                  const Eigen::Vector2d& at_m, ModelLibrary& models) {
   const protocols::Stimulus& stimulus = protocol.stimulus(options.stimulus);
-  const auto* const box = std::get_if<core::Box>(&protocol.plates.at(stimulus.plate).shape);
-  if (box == nullptr || !stimulus.technique->vibration) {
+  const auto* const box = std::get_if<core::Box>(&stimulus.plate->shape);
+  if (box == nullptr || !stimulus.technique->needs_model()) {
     throw core::InvalidInput{"--frames: draws plates that vibrate only"};
   }
   const auto plate = models.plate_of(protocol, stimulus);
   const std::string title =
       fmt::format("{} struck at {}, {} m/s", options.stimulus, options.at, options.speed_m_s);
   analysis::draw_svg(
-      map_of_strike(*plate, *box, protocol.rendering, {at_m, options.speed_m_s}, title),
+      analysis::map_of_strike(*plate, *box, protocol.rendering, {at_m, options.speed_m_s}, title),
       options.frames);
 }
 
@@ -186,7 +186,7 @@ void run_tap(const TapOptions& options) {
   ModelLibrary models;
   const ScriptedTap tap{options.stimulus, point_on_plate(options.at, protocol), options.speed_m_s,
                         options.seconds};
-  const auto trace = trace_of(tap, protocol, protocols::simulated_rig(), models);
+  const auto trace = trace_of(tap, protocol, simulated_rig(), models);
   if (!options.frames.empty()) {
     draw_frames(options, protocol, tap.at_m, models);
   }
@@ -210,8 +210,9 @@ void add_tap(CLI::App& app) {
   command->add_option("--stimulus", options->stimulus, "Which stimulus to tap");
   command->add_option("--at", options->at, "X,Y on the plate in metres, or a tapping point");
   command->add_option("--speed", options->speed_m_s, "Speed of impact [m/s]");
-  command->add_option("--technique", options->technique,
-                      "none, sinusoid, fem or fem+sinusoid instead of the stimulus's own");
+  command->add_option(
+      "--technique", options->technique,
+      fmt::format("{} instead of the stimulus's own", fmt::join(core::technique_names(), ", ")));
   command->add_option("--seconds", options->seconds, "How long the finger stays");
   command->add_option("--csv", options->csv, "Write every tick to this new file (- for stdout)");
   command->add_option("--panels", options->panels,

@@ -6,9 +6,9 @@
 
 #include "core/error.hpp"
 #include "protocols/read_protocol.hpp"
+#include "runner/accuracy/writers.hpp"
 #include "runner/commands/commands.hpp"
-#include "runner/progress.hpp"
-#include "runner/trade/writers.hpp"
+#include "runner/terminal/progress.hpp"
 namespace tapstudy::runner {
 namespace {
 struct TradeOptions {

@@ -6,9 +6,9 @@
 #include <thread>
 #include <vector>
 
-#include "core/technique.hpp"
-#include "device/haptic_loop.hpp"
-#include "device/realtime.hpp"
+#include "core/techniques/make_renderer.hpp"
+#include "device/loop/haptic_loop.hpp"
+#include "device/loop/realtime.hpp"
 using namespace tapstudy;
 namespace {
 class Nothing final : public device::Device {
@@ -44,8 +44,8 @@ int main(int count, char** words) {
   Nothing device;
   Noted clock{static_cast<std::size_t>(ticks)};
   std::vector<core::TapRenderer> renderers;
-  renderers.emplace_back(*core::find_technique("none"), core::RenderSettings{},
-                         core::PlateFace{0.3, 0.3}, nullptr);
+  renderers.push_back(core::make_renderer(*core::find_technique("none"), core::RenderSettings{},
+                                          core::PlateFace{0.3, 0.3}, nullptr));
   core::SpscRing<core::TraceSample> trace{1024};
   device::LoopSettings settings;
   settings.period = 1000 * std::atol(words[2]);

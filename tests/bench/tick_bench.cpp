@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/rng.hpp"
-#include "core/tick/tap_renderer.hpp"
+#include "core/techniques/make_renderer.hpp"
 #include "support/surfaces.hpp"
 
 using namespace tapstudy::core;
@@ -62,7 +62,8 @@ RenderSettings settings() {
 void tick_in_contact(benchmark::State& state) {
   const VibratingPlate plate{made_up_model(state.range(0), static_cast<int>(state.range(1)),
                                            static_cast<int>(state.range(2)))};
-  TapRenderer renderer{*find_technique("fem+sinusoid"), settings(), PlateFace{0.3, 0.3}, &plate};
+  TapRenderer renderer =
+      make_renderer(*find_technique("fem+sinusoid"), settings(), PlateFace{0.3, 0.3}, &plate);
   renderer.tick({{0.0, 0.0, 0.001}, {0.0, 0.0, -0.3}});
   double angle = 0.0;
   for (auto _ : state) {

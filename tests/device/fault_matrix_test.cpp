@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "core/technique.hpp"
-#include "device/haptic_loop.hpp"
+#include "core/techniques/make_renderer.hpp"
+#include "device/loop/haptic_loop.hpp"
 #include "support/usb/spidar_on_bus.hpp"
 using namespace tapstudy;
 using core::TickFault;
@@ -39,12 +39,12 @@ struct Stage : testing::SpidarOnBus {
   std::stop_source stop;
 
   Stage() {
-    renderers.emplace_back(*core::find_technique("none"), core::RenderSettings{},
-                           core::PlateFace{0.3, 0.3}, nullptr);
+    renderers.push_back(core::make_renderer(*core::find_technique("none"), core::RenderSettings{},
+                                            core::PlateFace{0.3, 0.3}, nullptr));
     device::LoopSettings settings;
     settings.gate = {{5.0, 5000.0}, 1.0, 0.02, 0.1, 0.1};
-    settings.most_late_in_a_row = 5;
-    settings.longest_without_beat = 100'000'000;
+    settings.max_late_in_a_row = 5;
+    settings.max_heartbeat_gap = 100'000'000;
     loop = std::make_unique<device::HapticLoop>(spidar, renderers, settings, trace, clock);
   }
   void tighten() {
@@ -101,7 +101,7 @@ struct Stage : testing::SpidarOnBus {
     for (int step = 0; step < 200 && fault == TickFault::none; ++step) {
       fault = spidar.tighten(1.0);
     }
-    spidar.drop();
+    spidar.emergency_stop();
     return fault;
   }
 };

@@ -112,8 +112,8 @@ TEST_CASE("the four techniques differ as they must", "[end_to_end]") {
   CHECK(largest(column(both, "vibration_n")) > 0.0);
   CHECK(largest(column(both, "sinusoid_n")) > 0.0);
   const auto speeds = column(both, "velocity_y_m_s");
-  const auto struck = column(both, "struck");
-  const auto impact = std::find(struck.begin(), struck.end(), 1.0) - struck.begin();
+  const auto impacts = column(both, "impact");
+  const auto impact = std::find(impacts.begin(), impacts.end(), 1.0) - impacts.begin();
   CHECK(speeds.at(static_cast<std::size_t>(impact)) == Approx(-0.3));
 }
 
@@ -401,7 +401,8 @@ TEST_CASE("a calibration that no eight motors of one kind can have is refused", 
   CHECK_THAT(said_of("-1.66555e-5", "-1.0e-7"),
              Contains("metres_per_count is 1e-07 for string 1 and 1.67e-05"));
   CHECK_THAT(said_of("volts_per_newton: 0.3653", "volts_per_newton: 99"), Contains("string 1"));
-  CHECK_THAT(said_of("digits_per_volt: 415", "digits_per_volt: 1300"), Contains("string 1"));
-  CHECK_THAT(said_of("digits_per_volt: 415", "digits_per_volt: 1200"),
-             Contains("max_tension_n, 10 N, would take 4384 digits (the board has 4095"));
+  CHECK_THAT(said_of("dac_counts_per_volt: 415", "dac_counts_per_volt: 1300"),
+             Contains("string 1"));
+  CHECK_THAT(said_of("dac_counts_per_volt: 415", "dac_counts_per_volt: 1200"),
+             Contains("max_tension_n, 10 N, would take 4384 DAC counts (the board has 4095"));
 }

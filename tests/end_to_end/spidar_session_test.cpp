@@ -36,12 +36,11 @@ class Laboratory {
                             {"repetitions: 2", "repetitions: 1"}}));
     testing::write(directory_ / "spidar_calibration.yaml",
                    testing::contents(testing::source("tests/data/spidar_calibration.yaml")));
-    testing::write(
-        directory_ / "rig.yaml",
-        changed("rigs/spidar_g6.yaml", {{"force_rise_s: 0.5", "force_rise_s: 0.1"},
-                                        {"fifo_priority: 80", "fifo_priority: 0"},
-                                        {", most_late_ticks_in_a_row: 20", ""},
-                                        {"longest_reply_s: 0.003}", "longest_reply_s: 0.1}"}}));
+    testing::write(directory_ / "rig.yaml",
+                   changed("rigs/spidar_g6.yaml", {{"force_rise_s: 0.5", "force_rise_s: 0.1"},
+                                                   {"fifo_priority: 80", "fifo_priority: 0"},
+                                                   {", max_late_ticks_in_a_row: 20", ""},
+                                                   {"max_reply_s: 0.003}", "max_reply_s: 0.1}"}}));
   }
   testing::ProgramResult operator()(const std::vector<std::string>& options,
                                     const std::vector<std::string>& arguments) {
@@ -84,7 +83,7 @@ TEST_CASE("doctor tells how long the device takes to reply, and sends it no forc
   const auto result = laboratory({}, {"doctor", "--seconds", "0.1"});
   CHECK_THAT(result.standard_output, Contains("round trip [us] of 200 requests to the device"));
   CHECK(laboratory.report["boards"][0]["requests"] == 200 + 3);  // and the guardian's
-  CHECK(laboratory.report["boards"][0]["most_digits"] == 0);
+  CHECK(laboratory.report["boards"][0]["max_dac_counts"] == 0);
 }
 
 TEST_CASE("a device that cannot be used is one clear error, and no force is ever sent",
@@ -105,7 +104,7 @@ TEST_CASE("a device that cannot be used is one clear error, and no force is ever
   CHECK(result.exit_code == 3);
   CHECK_THAT(result.standard_error, Contains(said));
   for (const auto& board : laboratory.report["boards"]) {
-    CHECK(board["most_digits"] == 0);
+    CHECK(board["max_dac_counts"] == 0);
   }
 }
 
@@ -123,7 +122,7 @@ TEST_CASE("a whole study runs through the USB stack", "[end_to_end][usb][slow]")
   CHECK(laboratory.sql("SELECT sum(dropped_samples) FROM tick_statistics") == "0\n");
   CHECK(laboratory.sql("PRAGMA integrity_check") == "ok\n");
   const auto& board = laboratory.report["boards"][0];
-  CHECK(board["most_digits"] > 150);  // a newton and more on a string
+  CHECK(board["max_dac_counts"] > 150);  // a newton and more on a string
   CHECK(board["requests_without_force_at_the_end"] >= 3);
 }
 
@@ -135,7 +134,7 @@ TEST_CASE("killed in the middle of a tap, the last the device gets is no force, 
       laboratory.session({"--kill-after", "990", "--signal", std::to_string(signal)});
   CHECK(result.exit_code == 128 + signal);
   const auto& board = laboratory.report["boards"][0];
-  CHECK(board["most_digits"] > 150);
+  CHECK(board["max_dac_counts"] > 150);
   CHECK(board["requests"] == 990 + 3);
   CHECK(board["requests_without_force_at_the_end"] == 3);
   CHECK(laboratory.sql("PRAGMA integrity_check") == "ok\n");

@@ -34,7 +34,7 @@ using lab::MockedBoard;
 namespace {
 constexpr int exchanges_a_trial = 500;
 constexpr int exchanges_a_tap = 200;
-constexpr unsigned longest_run_s = 240;
+constexpr unsigned max_run_s = 240;
 
 struct Options {
   std::string report;
@@ -91,7 +91,7 @@ class Lab {
       const MockedBoard::Log log = board->log();
       report["boards"].push_back(
           {{"requests", log.requests},
-           {"most_digits", log.most_digits},
+           {"max_dac_counts", log.max_dac_counts},
            {"requests_without_force_at_the_end", log.requests_without_force_at_the_end}});
     }
     std::ofstream{options_.report} << report.dump(2) << '\n';
@@ -250,7 +250,7 @@ class Lab {
 }  // namespace
 
 int main(int count, char** words) {
-  alarm(longest_run_s);
+  alarm(max_run_s);
   Options options;
   CLI::App app{"tapstudy in a laboratory in a box"};
   app.add_option("report", options.report)->required();

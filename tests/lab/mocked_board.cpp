@@ -189,9 +189,9 @@ void MockedBoard::take_request(const Bytes& request) {
   ++log_.requests;
   bool has_force = false;
   for (std::size_t i = 2; i + 1 < std::min<std::size_t>(request.size(), 18); i += 2) {
-    const int digits = request[i] | request[i + 1] << 8;
-    log_.most_digits = std::max(log_.most_digits, digits);
-    has_force = has_force || digits != 0;
+    const int dac_counts = request[i] | request[i + 1] << 8;
+    log_.max_dac_counts = std::max(log_.max_dac_counts, dac_counts);
+    has_force = has_force || dac_counts != 0;
   }
   log_.requests_without_force_at_the_end =
       has_force ? 0 : log_.requests_without_force_at_the_end + 1;

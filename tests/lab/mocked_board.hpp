@@ -17,7 +17,7 @@ class MockedBoard {
  public:
   struct Log {
     int requests{0};
-    int most_digits{0};
+    int max_dac_counts{0};
     int requests_without_force_at_the_end{0};
   };
   // After each exchange, counted from 1, when the program has its reply.

@@ -7,7 +7,8 @@
 
 #include "core/error.hpp"
 #include "protocols/read_protocol.hpp"
-#include "protocols/read_rig.hpp"
+#include "protocols/spidar_calibration.hpp"
+#include "runner/devices/rigs.hpp"
 #include "support/processes.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;
@@ -149,7 +150,7 @@ bool reader_accepts_rig(const std::string& rig, const std::string& measured = ca
   const testing::TempDirectory directory;
   testing::write(directory / "spidar_calibration.yaml", measured);
   try {
-    protocols::parse_rig(rig, directory / "rig.yaml");
+    runner::parse_rig(rig, directory / "rig.yaml");
   } catch (const core::InvalidInput&) {
     return false;
   }
@@ -169,7 +170,7 @@ TEST_CASE("the schemas of rigs and calibrations have exactly the keys that the r
   testing::write(directory / "spidar_calibration.yaml", calibration());
   std::set<std::string> asked;
   for (const std::string& rig : {shipped_rig("spidar_g6"), shipped_rig("remote"), replay_rig}) {
-    asked.merge(protocols::rig_keys_asked_for(rig, directory / "rig.yaml"));
+    asked.merge(runner::rig_keys_asked_for(rig, directory / "rig.yaml"));
   }
   // these are asked for only where they stand
   asked.insert({"loop.cpu", "spidar.rotary_switch"});
@@ -199,7 +200,7 @@ TEST_CASE("schema and reader accept the same rigs", "[protocols][rig][schema][sl
       {"spidar_g6", "type: X3R", "type: X3R, rotary_switch: 16"},
       {"spidar_g6", "max_turn_rad: 0.3,", ""},
       {"spidar_g6", "max_turn_rad: 0.3,", "max_turn_rad: 0.6,"},
-      {"spidar_g6", "longest_reply_s: 0.003}", "longest_reply_s: 3}"},
+      {"spidar_g6", "max_reply_s: 0.003}", "max_reply_s: 3}"},
       {"spidar_g6", "force_rise_s: 0.5", "force_rise_s: 0"},
       {"spidar_g6", "lateral_scale: 0.05", "lateral_scale: 0"},
       {"remote", "port: 50607", "port: 80"},
@@ -218,12 +219,13 @@ TEST_CASE("schema and reader accept the same calibrations", "[protocols][rig][sc
       {"metres_per_count: -1.66555e-5", "metres_per_count: 0"},
       {"metres_per_count: -1.66555e-5", "metres_per_count: 0.01"},
       {"volts_per_newton: 0.3653", "volts_per_newton: 0"},
-      {"digits_per_volt: 415", "digits_per_volt: many"},
-      {", digits_per_volt: 415", ""},
+      {"dac_counts_per_volt: 415", "dac_counts_per_volt: many"},
+      {", dac_counts_per_volt: 415", ""},
       {"min_tension_n: 0.3\n", ""},
       {"max_tension_n: 10", "max_tension_n: 21"},
       {"device: spidar-g6", "device: remote"},
-      {"  - {metres_per_count: -1.66555e-5, volts_per_newton: 0.3653, digits_per_volt: 415}\n", ""},
+      {"  - {metres_per_count: -1.66555e-5, volts_per_newton: 0.3653, dac_counts_per_volt: 415}\n",
+       ""},
   }));
   INFO(from << " → " << to);
   const std::string text = testing::replaced(calibration(), from, to);

@@ -16,7 +16,8 @@ using Catch::Matchers::Contains;
 using tapstudy::core::sha256;
 
 namespace {
-const StudyRow study{"a study", "study.yaml", "format: tapstudy/1", sha256("format: tapstudy/1")};
+const StudyRow study{
+    "a study", "study.yaml", "format: tapstudy/1", sha256("format: tapstudy/1"), {}};
 
 SessionRow session(const std::string& participant, Mode mode = Mode::real) {
   SessionRow row;
@@ -90,7 +91,7 @@ TEST_CASE("a trial cannot be stored over another", "[results][store]") {
 TEST_CASE("the study of another protocol is left alone", "[results][store]") {
   const testing::TempDirectory directory;
   { Store::open_or_create(directory.path(), study); }
-  const StudyRow other{"another", "other.yaml", "x", sha256("x")};
+  const StudyRow other{"another", "other.yaml", "x", sha256("x"), {}};
   CHECK_THROWS_AS(Store::open_or_create(directory.path(), other), core::InvalidInput);
   CHECK(Store::open_existing(directory.path()).study().title == "a study");
 }
@@ -113,20 +114,6 @@ TEST_CASE("participants are counted once and keep to one mode", "[results][store
   CHECK(store.index_of("P01", Mode::real) == 0);
   CHECK(store.index_of("P02", Mode::real) == 1);
   CHECK_THROWS_AS(store.index_of("P01", Mode::pilot), core::InvalidInput);
-}
-
-TEST_CASE("a correction supersedes an answer and both stay", "[results][store]") {
-  const testing::TempDirectory directory;
-  Store store = Store::open_or_create(directory.path(), study);
-  SessionRow row = session("P01");
-  store.add_session(row);
-  store.add_trial(trial(row.id, 1, "b"));
-  Database database{directory / "study.db", Database::Access::write};
-  database.run(
-      "INSERT INTO response (trial_id, response, is_correct, response_time_s, supersedes) "
-      "VALUES (1, 'a', 1, 3.0, 1)");
-  REQUIRE(store.answers().size() == 1);
-  CHECK(store.answers().front().response == "a");
 }
 
 TEST_CASE("the recorder saves from its own thread and hands failures back",

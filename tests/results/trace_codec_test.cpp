@@ -29,7 +29,7 @@ std::vector<TraceSample> wild_samples(std::size_t count) {
     s.closure_margin = -rng.uniform();
     s.alternative = static_cast<std::uint8_t>(rng.below(256));
     s.touching = rng.below(2) == 1;
-    s.struck = rng.below(2) == 1;
+    s.impact = rng.below(2) == 1;
     s.saturated = rng.below(2) == 1;
     s.fault = core::TickFault::device_gone;
     samples.push_back(s);
@@ -62,7 +62,7 @@ TEST_CASE("a trace comes back to the last bit, NaN and denormals included", "[re
     CHECK(same_bits(decoded[i].closure_margin, samples[i].closure_margin));
     CHECK(decoded[i].alternative == samples[i].alternative);
     CHECK(decoded[i].touching == samples[i].touching);
-    CHECK(decoded[i].struck == samples[i].struck);
+    CHECK(decoded[i].impact == samples[i].impact);
     CHECK(decoded[i].saturated == samples[i].saturated);
     CHECK(decoded[i].fault == samples[i].fault);
   }
@@ -84,7 +84,7 @@ TEST_CASE("the collector keeps every sample and notes what happened", "[results]
     TraceSample sample{};
     sample.t_ns = tick * 1'000'000LL;
     sample.touching = tick >= 100 && tick < 200;
-    sample.struck = tick == 100;
+    sample.impact = tick == 100;
     sample.velocity_m_s[1] = -0.25;
     sample.alternative = tick < 5000 ? 0 : 2;
     ring.try_push(sample);

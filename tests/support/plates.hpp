@@ -16,6 +16,6 @@ inline core::Fixation corner_vertex(double sign_x, double sign_y) {
 inline core::PlateSpec paper_plate(int corners, const core::Material& material) {
   const std::vector<core::Fixation> all{corner_vertex(-1, -1), corner_vertex(1, -1),
                                         corner_vertex(1, 1), corner_vertex(-1, 1)};
-  return {core::Box{{0.6, 0.6, 0.05}}, {}, {all.begin(), all.begin() + corners}, material, 300.0};
+  return {{core::Box{{0.6, 0.6, 0.05}}, {}, {all.begin(), all.begin() + corners}}, material, 300.0};
 }
 }  // namespace tapstudy::testing

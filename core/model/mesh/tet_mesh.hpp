@@ -25,7 +25,7 @@ double volume_m3(const TetMesh& mesh);
 
 // The same body of order 2: every edge of an order 1 mesh gets a node in its middle, after the
 // nodes that are there.
-TetMesh with_middles(const TetMesh& mesh);
+TetMesh to_quadratic(const TetMesh& mesh);
 
 // Writes PREFIX.node and PREFIX.ele in TetGen's own format, nodes numbered from 0, 17 digits.
 // Throws InvalidInput if a file exists already or cannot be written.

@@ -14,7 +14,7 @@
 namespace tapstudy::core {
 namespace {
 // Points that TetGen may add: a bound on a search that a bad surface could make endless.
-constexpr int most_added_points = 400000;
+constexpr int max_added_points = 400000;
 
 // A well-shaped tetrahedron is about as large as its cube's sixth; a thin sheet cannot have larger
 // ones than its thickness allows.
@@ -27,14 +27,14 @@ void check_count(const Shape& shape, const MeshSize& size) {
   };
   const double from_shape = std::holds_alternative<Box>(shape) ? count_for(size.flattening) : 0.0;
   const double from_size = size.max_tet_volume_m3 ? volume / *size.max_tet_volume_m3 : 0.0;
-  if (std::max(from_shape, from_size) <= most_tets) {
+  if (std::max(from_shape, from_size) <= max_tets) {
     return;
   }
   std::string advice = "choose a larger max_tet_volume_m3";
-  if (from_shape > most_tets) {
+  if (from_shape > max_tets) {
     const double enough =
         size.flattening * std::cbrt(from_shape / 1e4) * std::cbrt(from_shape / 1e4);
-    advice = enough <= most_flattening
+    advice = enough <= max_flattening
                  ? fmt::format(
                        "it is too thin for tetrahedra of good shape; mesh.flattening: {:.0f} "
                        "makes them wider than thick, order: 2 and an accuracy show whether "
@@ -45,7 +45,7 @@ void check_count(const Shape& shape, const MeshSize& size) {
   throw ModelError{fmt::format(
       "mesh: a body of {:.4g} × {:.4g} × {:.4g} m would take about {:.2g} tetrahedra (at most "
       "{:.0g}): {}",
-      extent.x(), extent.y(), extent.z(), std::max(from_shape, from_size), most_tets, advice)};
+      extent.x(), extent.y(), extent.z(), std::max(from_shape, from_size), max_tets, advice)};
 }
 
 // TetGen frees what it is handed with delete[]; its structures are filled the way it asks.
@@ -171,7 +171,7 @@ TetMesh mesh_from(const tetgenio& out, const Thickening& thickening) {
 }
 
 std::string tetgen_switches(const MeshSize& size) {
-  std::string switches = fmt::format("pq{}QS{}", size.radius_edge_ratio, most_added_points);
+  std::string switches = fmt::format("pq{}QS{}", size.radius_edge_ratio, max_added_points);
   if (size.max_tet_volume_m3) {
     switches += fmt::format("a{:.24f}", *size.max_tet_volume_m3 * size.flattening);
   }
@@ -212,12 +212,12 @@ TetMesh mesh_shape(const Shape& shape, const MeshSize& size, const std::vector<V
   } catch (const std::bad_alloc&) {
     throw ModelError{"mesh: not enough memory for so many tetrahedra"};
   }
-  if (out.numberofpoints - in.numberofpoints >= most_added_points ||
-      out.numberoftetrahedra > most_tets) {
+  if (out.numberofpoints - in.numberofpoints >= max_added_points ||
+      out.numberoftetrahedra > max_tets) {
     throw ModelError{fmt::format(
         "mesh: it takes more than {:.0g} tetrahedra or {} added points (choose a larger "
         "max_tet_volume_m3 or a surface without tiny triangles)",
-        most_tets, most_added_points)};
+        max_tets, max_added_points)};
   }
   return mesh_from(out, thickening);
 }

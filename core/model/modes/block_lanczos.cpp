@@ -9,14 +9,14 @@
 #include <memory>
 
 #include "core/error.hpp"
-#include "core/model/modes/tall_products.hpp"
+#include "core/model/modes/blas_products.hpp"
 #include "core/rng.hpp"
 namespace tapstudy::core {
 namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 constexpr std::uint64_t start_seed = 1;
-constexpr Index largest_block = 4;
+constexpr Index max_block = 4;
 constexpr double tolerance = 1e-10;  // of a Ritz pair's residual, relative to its nu
 constexpr double well_apart = 1e-5;  // of a column, what the ones before it may leave for Cholesky
 constexpr double dependent = 1e-12;  // what is left of a column that held nothing new
@@ -192,7 +192,7 @@ class BlockKrylov {
 RitzVectors eigenvectors_below_shift(const StiffnessAndMass& matrices, const ShiftedFactor& factor,
                                      int count, const ProgressHook& progress) {
   const Index size = matrices.K.rows();
-  const Index block = std::clamp<Index>(count, 2, largest_block);
+  const Index block = std::clamp<Index>(count, 2, max_block);
   const Index most = std::min<Index>(size - block, 4 * Index{count} + 40 * block);
   const auto krylov = std::make_shared<BlockKrylov>(matrices, factor, block);
   Index next_look = Index{count} + 2 * block;

@@ -17,13 +17,13 @@ namespace tapstudy::core {
 namespace {
 constexpr double residual_limit = 1e-8;
 // However stiff the stiffest element is: beyond, the mode is not one.
-constexpr double largest_residual = 1e-6;
+constexpr double max_residual = 1e-6;
 // Of rounding that a solve and the products after it may add up to.
 constexpr double rounding_steps = 8.0;
 // Up to this size the whole spectrum costs nothing, and Lanczos would have no room.
 constexpr Eigen::Index dense_size = 96;
-constexpr int most_modes = 1000;
-constexpr int most_polishing_rounds = 4;
+constexpr int max_modes = 1000;
+constexpr int max_polishing_rounds = 4;
 
 struct Pairs {
   Eigen::VectorXd values;
@@ -94,7 +94,7 @@ std::vector<Residual> residuals(const Pairs& pairs, int rigid_body_modes, double
     const double scale = pairs.elastic.col(i).norm() + inertial.norm();
     all.push_back(
         {(pairs.elastic.col(i) - inertial).norm() / scale,
-         std::min(largest_residual,
+         std::min(max_residual,
                   residual_limit + rounding_n_per_m * pairs.vectors.col(i).norm() / scale)});
   }
   return all;
@@ -130,7 +130,7 @@ Pairs modes_below_shift(const StiffnessAndMass& matrices, const ShiftedFactor& f
     const Pairs all = modes_in_span(matrices, vectors);
     vectors = all.vectors;
     pairs = lowest(all, count);
-  } while (++rounds < most_polishing_rounds && !is_good());
+  } while (++rounds < max_polishing_rounds && !is_good());
   return pairs;
 }
 
@@ -159,11 +159,11 @@ Modes solve_modes(const StiffnessAndMass& matrices, double band_limit_hz,
   modes.counted_in_band = factor.eigenvalues_below();
   modes.factor_s = watch.lap_s();
   const int count = modes.counted_in_band;
-  if (count > most_modes) {
+  if (count > max_modes) {
     throw ModelError{
         fmt::format("modes: {} lie below the band limit, more than the {} that a tick could carry "
                     "(lower band_limit_hz, or is the body too soft?)",
-                    count, most_modes)};
+                    count, max_modes)};
   }
   const double rounding_n_per_m =
       rounding_steps * std::numeric_limits<double>::epsilon() * largest_row_sum(matrices.K);

@@ -40,7 +40,7 @@ constexpr int status_workspace_small_too = -8;
 constexpr int status_singular = -10;
 constexpr std::array<int, 5> statuses_without_memory{-5, -7, -13, status_workspace_small,
                                                      status_workspace_small_too};
-constexpr int most_workspace_percent = 640;
+constexpr int max_workspace_percent = 640;
 
 double machine_megabytes() {
   return 1e-6 * static_cast<double>(sysconf(_SC_PHYS_PAGES)) *
@@ -129,7 +129,7 @@ struct ShiftedFactor::Mumps {
   void factorise() {
     int status = run(job_factorise);
     while ((status == status_workspace_small || status == status_workspace_small_too) &&
-           id.icntl[icntl_workspace_percent] < most_workspace_percent) {
+           id.icntl[icntl_workspace_percent] < max_workspace_percent) {
       id.icntl[icntl_workspace_percent] *= 2;
       status = run(job_factorise);
     }

@@ -18,7 +18,7 @@
 
 // NOLINTBEGIN(cppcoreguidelines-pro-type-reinterpret-cast): sockets take addresses in no other way
 namespace {
-constexpr timeval longest_silence{0, 100'000};
+constexpr timeval max_silence{0, 100'000};
 
 // A finger of 0.1 kg on a muscle that lets it tap twice a second, pushed by the force; y is up.
 struct Finger {
@@ -43,7 +43,7 @@ int listening_socket(int port) {
   address.sin_family = AF_INET;
   address.sin_port = htons(static_cast<std::uint16_t>(port));
   address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  setsockopt(descriptor, SOL_SOCKET, SO_RCVTIMEO, &longest_silence, sizeof longest_silence);
+  setsockopt(descriptor, SOL_SOCKET, SO_RCVTIMEO, &max_silence, sizeof max_silence);
   if (bind(descriptor, reinterpret_cast<sockaddr*>(&address), sizeof address) != 0) {
     std::perror("bind");
     std::exit(1);

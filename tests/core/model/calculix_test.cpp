@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "core/model/elements/assembly.hpp"
+#include "core/model/mesh/tetgen_mesher.hpp"
 #include "core/model/modes/modal_solver.hpp"
 #include "core/model/plate_model.hpp"
 #include "support/plates.hpp"
@@ -41,7 +42,7 @@ std::string input(const core::PlateSpec& spec, const core::TetMesh& mesh, const 
   text << "*MATERIAL, NAME=M\n*ELASTIC\n"
        << m.youngs_modulus_pa << ',' << m.poissons_ratio << "\n*DENSITY\n"
        << m.density_kg_per_m3 << "\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n";
-  const auto held = core::held_dofs(mesh, spec.shape, spec.fixations);
+  const auto held = core::constrained_dofs(mesh, spec.shape, spec.fixations);
   text << "*BOUNDARY\n";
   for (std::size_t dof = 0; dof < held.size(); ++dof) {
     if (held[dof]) {
@@ -112,7 +113,7 @@ core::StiffnessAndMass calculix_matrices(const core::PlateSpec& spec, const core
 }
 
 core::PlateSpec with_shape(core::Shape shape, double tet_volume_m3, double band_hz) {
-  core::PlateSpec spec{std::move(shape), {}, {}, testing::acrylic(), band_hz};
+  core::PlateSpec spec{{std::move(shape), {}, {}}, testing::acrylic(), band_hz};
   spec.mesh.order = 2;
   spec.mesh.size.max_tet_volume_m3 = tet_volume_m3;
   return spec;
@@ -121,7 +122,7 @@ core::Fixation side(core::Side which, std::array<bool, 3> axes) {
   core::Fixation fixation;
   fixation.shape = core::RegionShape::side;
   fixation.side = which;
-  fixation.holds = axes;
+  fixation.constrained_axes = axes;
   return fixation;
 }
 core::Fixation ball(const core::Vec3& at_m, double radius_m) {
@@ -186,7 +187,8 @@ TEST_CASE("CalculiX forms the same stiffness, and its matrices give us its frequ
   }
   for (const core::PlateSpec& spec : coarse_bodies()) {
     const core::SolvedBody body = core::solve_body(core::body_of(spec));
-    const auto dofs = core::free_dofs(core::held_dofs(body.mesh, spec.shape, spec.fixations));
+    const auto dofs =
+        core::free_dofs(core::constrained_dofs(body.mesh, spec.shape, spec.fixations));
     const core::StiffnessAndMass ours = core::assemble(body.mesh, spec.material, dofs);
     const core::StiffnessAndMass theirs = calculix_matrices(spec, body.mesh, dofs);
     CHECK((ours.K - theirs.K).norm() < 1e-9 * ours.K.norm());

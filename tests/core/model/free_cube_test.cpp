@@ -86,7 +86,7 @@ Eigen::ArrayXd free_cube(double lambda, double shear) {
 TEST_CASE("a free cube rings as Demarest's Ritz method says, mode by mode", "[core][model][slow]") {
   const double poisson = GENERATE(0.0, 0.3);
   const core::Material material{1.0, 1.0, poisson, {}};
-  core::PlateSpec cube{core::Box{{2.0, 2.0, 2.0}}, {}, {}, material, 0.32};
+  core::PlateSpec cube{{core::Box{{2.0, 2.0, 2.0}}, {}, {}}, material, 0.32};
   cube.mesh.order = 2;
   cube.mesh.size.max_tet_volume_m3 = 8.0 / 2000.0;
   const core::PlateModel ours = core::build_plate_model(cube);

@@ -15,7 +15,7 @@ constexpr double density = 2700.0;
 core::PlateSpec body(const Eigen::Vector3d& size_m, double poisson, double tet_volume_m3,
                      double band_hz) {
   core::PlateSpec spec{
-      core::Box{size_m}, {}, {}, {youngs_pa, density, poisson, core::RayleighDamping{}}, band_hz};
+      {core::Box{size_m}, {}, {}}, {youngs_pa, density, poisson, core::RayleighDamping{}}, band_hz};
   spec.mesh.order = 2;
   spec.mesh.size.max_tet_volume_m3 = tet_volume_m3;
   return spec;
@@ -24,7 +24,7 @@ core::Fixation held_side(core::Side side, std::array<bool, 3> axes = {true, true
   core::Fixation fixation;
   fixation.shape = core::RegionShape::side;
   fixation.side = side;
-  fixation.holds = axes;
+  fixation.constrained_axes = axes;
   return fixation;
 }
 double bending_hz(double root, double length_m, double height_m) {

@@ -61,16 +61,16 @@ TEST_CASE("fixations find their nodes on faces, edges and corners", "[core][mesh
     CHECK(has_node(mesh, point));
   }
   CHECK(core::volume_m3(mesh) == Approx(0.6 * 0.6 * 0.05));
-  const auto held = core::held_dofs(mesh, plate, fixations);
+  const auto held = core::constrained_dofs(mesh, plate, fixations);
   // nine on each face, six on half a disc, and those of the quarter disc
   CHECK(std::count(held.begin(), held.end(), true) >= 3 * (18 + 6 + 8));
 }
 
 TEST_CASE("a fixation holds just the axes it says", "[core][fixation]") {
   core::Fixation slider = disc(0.0, 0.0, 0.02, core::Face::top);
-  slider.holds = {false, false, true};
+  slider.constrained_axes = {false, false, true};
   const core::TetMesh mesh = core::mesh_shape(plate, {}, core::points_to_mesh({slider}, plate));
-  const auto held = core::held_dofs(mesh, plate, {slider});
+  const auto held = core::constrained_dofs(mesh, plate, {slider});
   for (std::size_t dof = 0; dof < held.size(); ++dof) {
     CHECK((!held[dof] || dof % 3 == 2));
   }
@@ -80,9 +80,9 @@ TEST_CASE("a fixation holds just the axes it says", "[core][fixation]") {
 TEST_CASE("a fixation off the plate, or one that holds everything, is refused",
           "[core][fixation]") {
   const core::TetMesh mesh = core::mesh_shape(plate, {});
-  CHECK_THROWS_WITH(core::held_dofs(mesh, plate, {disc(2.0, 0.0, 0.1, core::Face::top)}),
+  CHECK_THROWS_WITH(core::constrained_dofs(mesh, plate, {disc(2.0, 0.0, 0.1, core::Face::top)}),
                     Contains("touches no node"));
-  CHECK_THROWS_WITH(core::held_dofs(mesh, plate, {disc(0.0, 0.0, 9.0, core::Face::through)}),
+  CHECK_THROWS_WITH(core::constrained_dofs(mesh, plate, {disc(0.0, 0.0, 9.0, core::Face::through)}),
                     Contains("nothing is left free"));
 }
 

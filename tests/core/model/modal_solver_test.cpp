@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/error.hpp"
+#include "core/model/mesh/tetgen_mesher.hpp"
 #include "core/model/modes/shifted_factor.hpp"
 #include "core/model/plate_model.hpp"
 #include "support/plates.hpp"
@@ -15,8 +16,9 @@ namespace {
 StiffnessAndMass assembled(const core::PlateSpec& plate) {
   const core::TetMesh mesh = core::mesh_shape(plate.shape, plate.mesh.size,
                                               core::points_to_mesh(plate.fixations, plate.shape));
-  return core::assemble(mesh, plate.material,
-                        core::free_dofs(core::held_dofs(mesh, plate.shape, plate.fixations)));
+  return core::assemble(
+      mesh, plate.material,
+      core::free_dofs(core::constrained_dofs(mesh, plate.shape, plate.fixations)));
 }
 // All eigenvalues by a dense solver that shares nothing with the sparse one.
 Eigen::VectorXd all_eigenvalues(const StiffnessAndMass& matrices) {
@@ -138,7 +140,7 @@ TEST_CASE("only motions that nothing holds are of the rigid body, however soft t
   CHECK(rigid().rigid_body_modes == 1);
   plate.fixations[0].face = core::Face::top;  // at one point it turns about three axes
   CHECK(rigid().rigid_body_modes == 3);
-  plate.fixations[0].holds = {false, false, true};
+  plate.fixations[0].constrained_axes = {false, false, true};
   CHECK(rigid().rigid_body_modes == 5);
   plate.fixations.clear();
   CHECK(rigid().rigid_body_modes == 6);

@@ -38,7 +38,7 @@ core::TetMesh cube_with_slivers(double height_m) {
     mesh.surface.row(i) << face[0], face[1], face[2];
     mesh.tets.row(i) << face[0], face[2], face[1], 8;
   }
-  return core::with_middles(mesh);
+  return core::to_quadratic(mesh);
 }
 
 core::Modes modes_of_free(const core::TetMesh& mesh) {
@@ -55,7 +55,7 @@ TEST_CASE("slivers make a body stiffer or are refused, but never spoil its modes
   core::MeshSize fine;
   fine.max_tet_volume_m3 = 1e-3 / 1500.0;
   const core::Modes truth =
-      modes_of_free(core::with_middles(core::mesh_shape(core::Box{{0.1, 0.1, 0.1}}, fine)));
+      modes_of_free(core::to_quadratic(core::mesh_shape(core::Box{{0.1, 0.1, 0.1}}, fine)));
   REQUIRE(truth.omega_rad_s.size() >= 3);
   for (const double height_m : {5e-2, 1e-3, 1e-5, 1e-7, 1e-9, 1e-12, 1e-16, 0.0}) {
     CAPTURE(height_m);

@@ -4,7 +4,7 @@
 
 #include "core/model/plate_model.hpp"
 #include "core/rng.hpp"
-#include "core/tick/tap_renderer.hpp"
+#include "core/tick/vibrating_plate.hpp"
 #include "support/no_alloc.hpp"
 #include "support/plates.hpp"
 using namespace tapstudy;
@@ -18,7 +18,7 @@ const core::VibratingPlate& plate() {
       core::build_plate_model(testing::paper_plate(2, testing::mdf())).modal};
   return shared;
 }
-ModalState struck(double x, double y, double impulse) {
+ModalState impact(double x, double y, double impulse) {
   ModalState state{plate().model, core::Integrator::exact, dt_s};
   state.touch(plate().locator->locate(x, y), outward);
   state.strike(impulse);
@@ -46,8 +46,8 @@ TEST_CASE("a place is the weighted mean of the nodes around it", "[core][locator
 
 TEST_CASE("an impulse moves each mode by its share of it", "[core][modal]") {
   const double impulse = -0.0174;
-  const ModalState state = struck(0.24, 0.24, impulse);
-  // the velocity of the struck point over the impulse is the sum of squared mode shapes there, and
+  const ModalState state = impact(0.24, 0.24, impulse);
+  // the velocity of the impact point over the impulse is the sum of squared mode shapes there, and
   // so is twice the energy over the impulse squared
   const double admittance = state.velocity_m_s() / impulse;
   CHECK(admittance > 0.0);
@@ -55,8 +55,8 @@ TEST_CASE("an impulse moves each mode by its share of it", "[core][modal]") {
 }
 
 TEST_CASE("what B feels of a tap on A, A feels of a tap on B (Maxwell, Betti)", "[core][modal]") {
-  ModalState at_a = struck(0.1, 0.24, 1.0);
-  ModalState at_b = struck(-0.2, 0.05, 1.0);
+  ModalState at_a = impact(0.1, 0.24, 1.0);
+  ModalState at_b = impact(-0.2, 0.05, 1.0);
   at_a.touch(plate().locator->locate(-0.2, 0.05), outward);
   at_b.touch(plate().locator->locate(0.1, 0.24), outward);
   for (int tick = 0; tick < 100; ++tick) {
@@ -83,7 +83,7 @@ TEST_CASE("a damped plate never gains energy and falls silent, not denormal", "[
 
 TEST_CASE("a hundred million ticks after a strike there is silence, and no denormal",
           "[core][modal][slow]") {
-  ModalState state = struck(0.1, 0.1, 1.0);
+  ModalState state = impact(0.1, 0.1, 1.0);
   for (int tick = 0; tick < 100'000'000; ++tick) {
     state.tick();
   }
@@ -92,7 +92,7 @@ TEST_CASE("a hundred million ticks after a strike there is silence, and no denor
 }
 
 TEST_CASE("ten thousand ticks of a vibrating plate allocate nothing", "[core][realtime]") {
-  ModalState state = struck(0.1, 0.1, 1.0);
+  ModalState state = impact(0.1, 0.1, 1.0);
   const testing::AllocationCount allocations;
   for (int tick = 0; tick < 10'000; ++tick) {
     state.touch(plate().locator->locate(0.01 * (tick % 30), 0.1), outward);

@@ -13,7 +13,7 @@ int strikes(const std::vector<double>& heights_m) {
   PlateContact contact{{0.3, 0.3}, release_height_m};
   int count = 0;
   for (const double z : heights_m) {
-    count += contact.tick(at(z)).struck ? 1 : 0;
+    count += contact.tick(at(z)).impact ? 1 : 0;
   }
   return count;
 }
@@ -23,12 +23,12 @@ TEST_CASE("a finger that passes the face strikes once, with its speed", "[core][
   PlateContact contact{{0.3, 0.3}, release_height_m};
   contact.tick(at(0.01, -0.3));
   const Contact impact = contact.tick(at(-0.001, -0.3));
-  CHECK(impact.struck);
+  CHECK(impact.impact);
   CHECK(impact.touching);
   CHECK(impact.impact_speed_m_s == Approx(0.3));
   CHECK(impact.penetration_m == Approx(0.001));
   CHECK(impact.god_object_m == Vec3::Zero());
-  CHECK_FALSE(contact.tick(at(-0.002, -0.1)).struck);
+  CHECK_FALSE(contact.tick(at(-0.002, -0.1)).impact);
 }
 
 TEST_CASE("chatter inside the release height does not strike again", "[core][contact]") {

@@ -37,7 +37,7 @@ TEST_CASE("on a box a surface is what a plate is", "[core][contact][surface]") {
     const Contact a = surface.tick(tip);
     const Contact b = plate.tick(tip);
     REQUIRE(a.touching == b.touching);
-    REQUIRE(a.struck == b.struck);
+    REQUIRE(a.impact == b.impact);
     CHECK(a.impact_speed_m_s == b.impact_speed_m_s);
     CHECK(std::abs(a.penetration_m - b.penetration_m) < 1e-8);
     CHECK((a.god_object_m - b.god_object_m).norm() < 1e-8);
@@ -118,7 +118,7 @@ TEST_CASE("chatter on a surface does not strike again", "[core][contact][surface
   SurfaceContact contact{tree, release_height_m};
   int strikes = 0;
   for (const double z : {0.01, -1e-4, 1e-4, -1e-4, 6e-4, -1e-4}) {
-    strikes += contact.tick(at({0.0, 0.0, z}, {0.0, 0.0, -0.1})).struck ? 1 : 0;
+    strikes += contact.tick(at({0.0, 0.0, z}, {0.0, 0.0, -0.1})).impact ? 1 : 0;
   }
   CHECK(strikes == 2);
 }

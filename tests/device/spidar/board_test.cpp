@@ -4,7 +4,7 @@
 #include "device/spidar/sh4_board.hpp"
 #include "device/spidar/simple_board.hpp"
 using namespace tapstudy;
-using device::Digits;
+using device::DacCounts;
 using device::Sh4Board;
 using device::SimpleBoard;
 

@@ -3,8 +3,8 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "core/technique.hpp"
-#include "device/haptic_loop.hpp"
+#include "core/techniques/make_renderer.hpp"
+#include "device/loop/haptic_loop.hpp"
 #include "support/no_alloc.hpp"
 #include "support/usb/played_back.hpp"
 #include "support/usb/spidar_on_bus.hpp"
@@ -104,7 +104,7 @@ TEST_CASE("a loop on the grip ends in zero outputs, said three times, whatever g
   bench.bus.plan(one.trouble, 0, std::chrono::milliseconds{one.delay_ms});
   CHECK(bench.tick({3, 0, 0}) == one.fault);
   bench.bus.forget_requests();
-  bench.spidar.drop();
+  bench.spidar.emergency_stop();
   const auto sent = bench.bus.requests();
   REQUIRE(sent.size() == 3);
   CHECK(std::ranges::all_of(sent, testing::has_no_force));
@@ -160,9 +160,9 @@ TEST_CASE("with force on, a SPIDAR is watched and its guardian with it",
           "[device][spidar][safety]") {
   testing::PlayedBack pipe;
   const auto board = device::board_of(device::sh4_product);
-  device::ForceWatch watch;
+  device::WatchdogChannel watch;
   device::SpidarSettings settings = testing::simulated_settings();
-  settings.watch = &watch;
+  settings.watchdog = &watch;
   device::SpidarG6 spidar{pipe, *board, settings};
   REQUIRE(spidar.home() == TickFault::none);
   CHECK_FALSE(watch.is_on());
@@ -191,11 +191,11 @@ TEST_CASE("with force on, a SPIDAR is watched and its guardian with it",
     CHECK(tick() == TickFault::guardian_lost);
   }
   SECTION("at rest nobody need watch") {
-    spidar.rest();
+    spidar.zero_force();
     CHECK_FALSE(watch.is_on());
   }
   SECTION("nor after a fault") {
-    spidar.drop();
+    spidar.emergency_stop();
     CHECK_FALSE(watch.is_on());
   }
 }
@@ -207,8 +207,8 @@ TEST_CASE("a thousand ticks of the loop on a SPIDAR allocate nothing",
   device::SpidarG6 spidar{pipe, *board, testing::simulated_settings()};
   REQUIRE(spidar.home() == TickFault::none);
   std::vector<core::TapRenderer> renderers;
-  renderers.emplace_back(*core::find_technique("none"), core::RenderSettings{},
-                         core::PlateFace{0.3, 0.3}, nullptr);
+  renderers.push_back(core::make_renderer(*core::find_technique("none"), core::RenderSettings{},
+                                          core::PlateFace{0.3, 0.3}, nullptr));
   core::SpscRing<core::TraceSample> trace{2048};
   device::VirtualClock clock;
   device::HapticLoop loop{spidar, renderers, {}, trace, clock};
@@ -238,7 +238,7 @@ TEST_CASE("an unplugged device is told in every phase, without hanging", "[devic
   }
   CHECK(bench.tick({1, 0, 0}) == TickFault::device_gone);
   CHECK(bench.tick({1, 0, 0}) != TickFault::none);
-  bench.spidar.drop();
+  bench.spidar.emergency_stop();
 }
 
 TEST_CASE("a board that does not answer is refused at once", "[device][spidar][usb]") {

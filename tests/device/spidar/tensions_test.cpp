@@ -146,7 +146,7 @@ TEST_CASE("a force the strings can make is made exactly, without torque", "[devi
 
 TEST_CASE("the largest forces along the axes are the reference's", "[device][spidar]") {
   struct Case {
-    double most_n;
+    double max_n;
     core::Vec3 direction;
     double limit_n;
   };
@@ -154,7 +154,7 @@ TEST_CASE("the largest forces along the axes are the reference's", "[device][spi
                             Case{5.0, {0, 1, 0}, 6.88}, Case{5.0, {0, 0, 1}, 7.66},
                             Case{10.0, {1, 0, 0}, 16.4}, Case{10.0, {0, -1, 0}, 14.2},
                             Case{20.0, {1, 0, 0}, 33.3}, Case{20.0, {0, 1, 0}, 28.8});
-  TensionSolver solver{{0.3, one.most_n}};
+  TensionSolver solver{{0.3, one.max_n}};
   const Tensions found = solver.solve(at_rest, {1000.0 * one.direction, core::Vec3::Zero()});
   CHECK(found.achieved.force_n.dot(one.direction) == Approx(one.limit_n).epsilon(4e-3));
 }

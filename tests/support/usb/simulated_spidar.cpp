@@ -7,18 +7,19 @@ constexpr int steps_a_tick = 20;
 constexpr double mass_kg = 0.1;
 constexpr double muscle_n_per_m = 400.0;
 constexpr double muscle_n_s_per_m = 9.0;
-constexpr double newtons_per_digit = 1.0 / (0.365296803653 * 415.0);
+constexpr double newtons_per_dac_count = 1.0 / (0.365296803653 * 415.0);
 // Counts fall as strings 0, 1, 6 and 7 get longer, and rise as the others do.
 constexpr std::array<int, 8> sign{-1, -1, 1, 1, 1, 1, -1, -1};
 constexpr double metres_per_count = 1.66555e-5;
 }  // namespace
 
-device::SpidarCalibration SimulatedSpidar::calibration() {
-  device::SpidarCalibration calibration;
+core::SpidarCalibration SimulatedSpidar::calibration() {
+  core::SpidarCalibration calibration;
   for (std::size_t i = 0; i < sign.size(); ++i) {
-    calibration.string.at(i) = {sign.at(i) * metres_per_count, 0.365296803653, 415.0};
+    calibration.strings.at(i) = {sign.at(i) * metres_per_count, 0.365296803653, 415.0};
   }
-  calibration.range = {0.3, 10.0};
+  calibration.min_tension_n = 0.3;
+  calibration.max_tension_n = 10.0;
   return calibration;
 }
 
@@ -46,7 +47,7 @@ Bytes SimulatedSpidar::reply() const {
     const auto k = static_cast<Eigen::Index>(i);
     const auto counts =
         std::llround(sign.at(i) * (length_m[k] - length_at_rest_m_[k]) / metres_per_count);
-    const auto& echoed = echoes_the_request_before_ ? digits_before_ : digits_;
+    const auto& echoed = echoes_the_request_before_ ? dac_counts_before_ : dac_counts_;
     put(2 * i, echoed.at(i) + (echoes_wrongly_ ? 1 : 0));
     put(16 + 2 * i, first_count_ + counts + slip_.at(i));
   }
@@ -58,10 +59,10 @@ Bytes SimulatedSpidar::answer(std::span<const std::uint8_t> request) {
   if (request.size() != 512 || request[0] != 0x01 || request[1] != 0x0E) {
     return {};
   }
-  digits_before_ = digits_;
+  dac_counts_before_ = dac_counts_;
   for (std::size_t i = 0; i < 8; ++i) {
-    digits_.at(i) = static_cast<std::uint16_t>(request[2 + 2 * i] | request[3 + 2 * i] << 8);
-    tension_n_[static_cast<Eigen::Index>(i)] = newtons_per_digit * digits_.at(i);
+    dac_counts_.at(i) = static_cast<std::uint16_t>(request[2 + 2 * i] | request[3 + 2 * i] << 8);
+    tension_n_[static_cast<Eigen::Index>(i)] = newtons_per_dac_count * dac_counts_.at(i);
   }
   pass_a_tick();
   return reply();

@@ -4,6 +4,7 @@
 #include <span>
 
 #include "device/spidar/calibration.hpp"
+#include "device/spidar/pose.hpp"
 #include "support/usb/descriptors.hpp"
 namespace tapstudy::testing {
 // A SPIDAR-G6 X3R with an SH4 board as it would be: a grip with mass, held by a hand's spring and
@@ -11,7 +12,7 @@ namespace tapstudy::testing {
 // with every request, one tick each. It knows requests and replies only by their bytes.
 class SimulatedSpidar {
  public:
-  static device::SpidarCalibration calibration();
+  static core::SpidarCalibration calibration();
 
   Bytes answer(std::span<const std::uint8_t> request);
   void hold_at(const core::Vec3& position_m) { aim_m_ = position_m; }
@@ -32,8 +33,8 @@ class SimulatedSpidar {
   device::SpidarGeometry geometry_{device::spidar_geometry("X3R")};
   device::PerString length_at_rest_m_{strings_at(geometry_, {}).length_m};
   device::PerString tension_n_{device::PerString::Zero()};
-  std::array<std::uint16_t, 8> digits_{};
-  std::array<std::uint16_t, 8> digits_before_{};
+  std::array<std::uint16_t, 8> dac_counts_{};
+  std::array<std::uint16_t, 8> dac_counts_before_{};
   core::Vec3 position_m_{core::Vec3::Zero()};
   core::Vec3 velocity_m_s_{core::Vec3::Zero()};
   core::Vec3 aim_m_{core::Vec3::Zero()};

@@ -1,0 +1,53 @@
+#pragma once
+#include <functional>
+#include <nlohmann/json_fwd.hpp>
+#include <ostream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "analysis/blocks/design.hpp"
+#include "analysis/statistics/proportion.hpp"
+#include "results/rows.hpp"
+namespace tapstudy::analysis {
+struct HypothesisResult {
+  PlannedHypothesis planned;
+  std::string test;
+  Proportion observed;
+  double chance{};
+  double p{};
+};
+
+// The rows of one block.
+struct BlockRows {
+  std::vector<results::AnswerRow> answers;
+  std::vector<results::VisitRow> visits;
+};
+
+// A table of its own: the end of the file's name, and what writes it.
+struct CsvTable {
+  std::string name;
+  std::function<void(std::ostream&)> write;
+};
+
+// What a statistic has made of a block, and how that is said in each form. Writers compute nothing
+// new.
+class BlockSummary {
+ public:
+  BlockSummary(std::string block_name, std::string question_asked)
+      : block{std::move(block_name)}, question{std::move(question_asked)} {}
+  virtual ~BlockSummary() = default;
+  BlockSummary(const BlockSummary&) = default;
+  BlockSummary& operator=(const BlockSummary&) = default;
+  BlockSummary(BlockSummary&&) = default;
+  BlockSummary& operator=(BlockSummary&&) = default;
+
+  virtual void write_text(std::ostream& out) const = 0;  // for a terminal
+  virtual void write_html(std::ostream& out) const = 0;  // a part of a page
+  virtual nlohmann::ordered_json as_json() const = 0;
+  virtual std::vector<CsvTable> tables() const = 0;
+
+  std::string block;  // empty where only a table of counts is known
+  std::string question;
+};
+}  // namespace tapstudy::analysis

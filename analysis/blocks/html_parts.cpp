@@ -1,0 +1,63 @@
+#include "analysis/blocks/html_parts.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ostream.h>
+
+#include "analysis/blocks/wording.hpp"
+namespace tapstudy::analysis {
+std::string escaped(const std::string& text) {
+  std::string safe;
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        safe += "&amp;";
+        break;
+      case '<':
+        safe += "&lt;";
+        break;
+      case '>':
+        safe += "&gt;";
+        break;
+      case '"':
+        safe += "&quot;";
+        break;
+      default:
+        safe += c;
+    }
+  }
+  return safe;
+}
+
+std::string dot_plot(const Proportion& proportion, double chance) {
+  if (proportion.trials == 0) {
+    return "";
+  }
+  const Interval interval = wilson_interval(proportion);
+  return fmt::format(
+      R"(<svg class=dot viewBox="0 0 200 16" role=img aria-label="{}">)"
+      "<line class=axis x1=0 y1=8 x2=200 y2=8 /><line class=chance x1={:.1f} y1=0 x2={:.1f} y2=16 "
+      "/>"
+      "<line class=interval x1={:.1f} y1=8 x2={:.1f} y2=8 /><circle cx={:.1f} cy=8 r=4 /></svg>",
+      with_interval(proportion), 200 * chance, 200 * chance, 200 * interval.low,
+      200 * interval.high, 200 * proportion.value());
+}
+
+void write_accuracy_row(std::ostream& out, const std::string& title, const Proportion& proportion,
+                        double chance) {
+  fmt::print(out, "<tr><th scope=row>{}</th><td>{}</td><td>{}</td></tr>\n", escaped(title),
+             with_interval(proportion), dot_plot(proportion, chance));
+}
+
+void write_hypotheses_html(std::ostream& out, const std::vector<HypothesisResult>& hypotheses) {
+  if (hypotheses.empty()) {
+    return;
+  }
+  out << "<h3>Declared before the study</h3><ul>\n";
+  for (const HypothesisResult& result : hypotheses) {
+    fmt::print(out, "<li>{} <b>{}</b> ({} against {:.0f} % by chance; {})</li>\n",
+               escaped(result.planned.statement), escaped(p_value(result.p)),
+               fraction(result.observed), 100.0 * result.chance, result.test);
+  }
+  out << "</ul>\n";
+}
+}  // namespace tapstudy::analysis

@@ -1,0 +1,35 @@
+#pragma once
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "analysis/blocks/block_summary.hpp"
+namespace tapstudy::analysis {
+struct AlternativeResult {
+  Item item;
+  Proportion chosen;
+  int visits{};
+  double dwell_s{};
+};
+
+// Several stimuli a trial, one of which is chosen, none right: how often each was.
+class ChoiceSummary final : public BlockSummary {
+ public:
+  using BlockSummary::BlockSummary;
+  void write_text(std::ostream& out) const override;
+  void write_html(std::ostream& out) const override;
+  nlohmann::ordered_json as_json() const override;
+  std::vector<CsvTable> tables() const override;
+
+  std::vector<AlternativeResult> alternatives;
+  std::vector<std::pair<std::string, std::string>> choices;  // participant, stimulus
+  std::optional<double> multinomial_p;  // nothing if there are too many outcomes to enumerate
+  bool has_repeated_choices{};          // several by one participant: not independent
+  std::vector<HypothesisResult> hypotheses;
+};
+
+std::shared_ptr<const BlockSummary> summarise_choice(const BlockDesign& design,
+                                                     const BlockRows& rows);
+}  // namespace tapstudy::analysis

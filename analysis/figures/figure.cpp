@@ -1,0 +1,94 @@
+#include "analysis/figures/figure.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <sstream>
+
+#include "analysis/figures/gnuplot.hpp"
+namespace tapstudy::analysis {
+namespace {
+constexpr std::size_t panel_width = 400;
+constexpr std::size_t panel_height = 230;
+
+struct Span {
+  double low{0.0};
+  double high{0.0};
+};
+
+// What all panels' series on an axis need, zero included, with a margin.
+Span span_of(const Figure& figure, Axis axis) {
+  Span span;
+  for (const Panel& panel : figure.panels) {
+    for (const Series& series : panel.series) {
+      if (series.axis == axis && !series.y.empty()) {
+        const auto [low, high] = std::ranges::minmax(series.y);
+        span = {std::min(span.low, low), std::max(span.high, high)};
+      }
+    }
+  }
+  const double margin = 0.05 * std::max(span.high - span.low, 1e-12);
+  return {span.low - margin, span.high + margin};
+}
+
+void write_panel(std::ostream& script, const Panel& panel, std::size_t index) {
+  for (std::size_t i = 0; i < panel.series.size(); ++i) {
+    const Series& series = panel.series[i];
+    script << fmt::format("$data_{}_{} << END\n", index, i);
+    for (std::size_t k = 0; k < series.x.size(); ++k) {
+      script << fmt::format("{:.9g} {:.9g}\n", series.x[k], series.y[k]);
+    }
+    script << "END\n";
+  }
+  script << "set title " << quoted(panel.title) << " noenhanced\nplot ";
+  for (std::size_t i = 0; i < panel.series.size(); ++i) {
+    const Series& series = panel.series[i];
+    script << (i == 0 ? "" : ", ")
+           << fmt::format("$data_{}_{} axes {} with {} title ", index, i,
+                          series.axis == Axis::left ? "x1y1" : "x1y2",
+                          series.mark == Mark::line ? "lines lw 1.5" : "points pt 7 ps 0.5")
+           << quoted(series.label);
+  }
+  script << '\n';
+}
+
+std::string axes(const Figure& figure) {
+  if (figure.scale == Scale::logarithmic) {
+    return fmt::format(
+        "set xlabel {}\nset ylabel {}\nset logscale xy\nset format xy '%g'\nset key bottom left\n",
+        quoted(figure.x_label), quoted(figure.y_label));
+  }
+  const Span left = span_of(figure, Axis::left);
+  std::string script =
+      fmt::format("set xlabel {}\nset ylabel {}\nset yrange [{:.9g}:{:.9g}]\n",
+                  quoted(figure.x_label), quoted(figure.y_label), left.low, left.high);
+  if (!figure.right_label.empty()) {
+    const Span right = span_of(figure, Axis::right);
+    script += fmt::format(
+        "set y2label {}\nset y2range [{:.9g}:{:.9g}]\nset ytics nomirror\n"
+        "set y2tics\n",
+        quoted(figure.right_label), right.low, right.high);
+  }
+  return script;
+}
+
+std::string gnuplot_script(const Figure& figure, const std::string& file) {
+  const std::size_t rows = (figure.panels.size() + figure.columns - 1) / figure.columns;
+  std::ostringstream script;
+  script << fmt::format("set terminal svg size {},{} font 'sans,11' background 'white'\n",
+                        panel_width * figure.columns, panel_height * rows + 40)
+         << "set output " << quoted(file) << "\nset grid\nset key top right\n"
+         << axes(figure) << fmt::format("set multiplot layout {},{} title ", rows, figure.columns)
+         << quoted(figure.title) << " noenhanced\n";
+  for (std::size_t i = 0; i < figure.panels.size(); ++i) {
+    write_panel(script, figure.panels[i], i);
+  }
+  script << "unset multiplot\n";
+  return script.str();
+}
+}  // namespace
+
+void draw_svg(const Figure& figure, const std::string& file) {
+  draw_with_gnuplot(gnuplot_script(figure, file), file);
+}
+}  // namespace tapstudy::analysis

@@ -1,0 +1,57 @@
+#include "analysis/figures/gnuplot.hpp"
+
+#include <cctype>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "core/error.hpp"
+#include "core/output_file.hpp"
+namespace tapstudy::analysis {
+namespace {
+void run_gnuplot(const std::string& script) {
+  FILE* const gnuplot = popen("gnuplot >/dev/null 2>&1", "w");
+  const bool is_written =
+      gnuplot != nullptr && std::fwrite(script.data(), 1, script.size(), gnuplot) == script.size();
+  if (gnuplot == nullptr || pclose(gnuplot) != 0 || !is_written) {
+    throw core::InvalidInput{"figures need gnuplot, which is not installed or failed"};
+  }
+}
+
+// gnuplot does not say when the disk is full.
+bool is_whole(const std::string& file) {
+  std::ifstream stream{file};
+  const std::string text{std::istreambuf_iterator<char>{stream}, {}};
+  return text.find("</svg>") != std::string::npos;
+}
+}  // namespace
+
+// gnuplot reads '' inside a single-quoted text as one quote and knows no other escape; a line's end
+// would end the command, so no control character gets through.
+std::string quoted(const std::string& text) {
+  std::string safe{"'"};
+  for (const char c : text) {
+    if (c == '\'') {
+      safe += "''";
+    } else {
+      safe += std::iscntrl(static_cast<unsigned char>(c)) != 0 ? ' ' : c;
+    }
+  }
+  return safe + "'";
+}
+
+void draw_with_gnuplot(const std::string& script, const std::string& file) {
+  core::write_new_file(file, [](std::ostream&) {});  // gnuplot does not say why it cannot
+  try {
+    run_gnuplot(script);
+    if (!is_whole(file)) {
+      throw core::InvalidInput{file + ": writing failed (is the disk full?)"};
+    }
+  } catch (const core::InvalidInput&) {
+    std::error_code error;
+    std::filesystem::remove(file, error);
+    throw;
+  }
+}
+}  // namespace tapstudy::analysis

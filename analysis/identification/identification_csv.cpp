@@ -1,0 +1,31 @@
+#include "analysis/identification/identification_summary.hpp"
+namespace tapstudy::analysis {
+namespace {
+// Rows are stimuli, columns responses, cells counts: the form that read_counts takes.
+void write_matrix(std::ostream& out, const ConfusionMatrix& matrix) {
+  const std::vector<std::string> factors = factors_of(matrix);
+  out << "stimulus";
+  for (const std::string& factor : factors) {
+    out << ',' << factor;
+  }
+  for (const Item& response : matrix.responses) {
+    out << ',' << response.name;
+  }
+  out << '\n';
+  for (std::size_t i = 0; i < matrix.stimuli.size(); ++i) {
+    out << matrix.stimuli[i].name;
+    for (const std::string& factor : factors) {
+      out << ',' << matrix.stimuli[i].factors.at(factor);
+    }
+    for (const int count : matrix.counts[i]) {
+      out << ',' << count;
+    }
+    out << '\n';
+  }
+}
+}  // namespace
+
+std::vector<CsvTable> IdentificationSummary::tables() const {
+  return {{"confusion.csv", [this](std::ostream& out) { write_matrix(out, matrix); }}};
+}
+}  // namespace tapstudy::analysis

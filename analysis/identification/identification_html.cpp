@@ -1,0 +1,62 @@
+#include <fmt/format.h>
+#include <fmt/ostream.h>
+
+#include <cmath>
+
+#include "analysis/blocks/html_parts.hpp"
+#include "analysis/blocks/wording.hpp"
+#include "analysis/identification/identification_summary.hpp"
+#include "analysis/identification/title_of.hpp"
+namespace tapstudy::analysis {
+namespace {
+// White to deep blue; the text turns white where the cell is dark.
+std::string cell_style(double share) {
+  const double x = std::sqrt(share);
+  const auto mix = [&](int from, int to) {
+    return static_cast<int>(std::lround(from + x * (to - from)));
+  };
+  return fmt::format("background:rgb({},{},{});color:{}", mix(247, 8), mix(251, 69), mix(255, 148),
+                     share > 0.35 ? "#fff" : "#123");
+}
+
+void write_matrix(std::ostream& out, const ConfusionMatrix& matrix) {
+  out << "<table class=matrix><caption>Rows: presented. Columns: answered. Each cell: count and "
+         "share of its row.</caption><thead><tr><th></th>";
+  for (const Item& response : matrix.responses) {
+    fmt::print(out, "<th scope=col>{}</th>", escaped(response.label));
+  }
+  out << "<th class=total scope=col>n</th></tr></thead><tbody>\n";
+  for (std::size_t i = 0; i < matrix.stimuli.size(); ++i) {
+    fmt::print(out, "<tr><th scope=row>{}</th>", escaped(matrix.stimuli[i].label));
+    for (std::size_t j = 0; j < matrix.responses.size(); ++j) {
+      const Proportion cell{matrix.counts[i][j], matrix.row_total(i)};
+      const bool is_correct = matrix.stimuli[i].name == matrix.responses[j].name;
+      fmt::print(out, R"(<td class="{}" style="{}"><b>{}</b><span>{}</span></td>)",
+                 is_correct ? "correct" : "", cell_style(cell.trials == 0 ? 0.0 : cell.value()),
+                 cell.successes, percent(cell));
+    }
+    fmt::print(out, "<td class=total>{}</td></tr>\n", matrix.row_total(i));
+  }
+  out << "</tbody></table>\n";
+}
+}  // namespace
+
+void IdentificationSummary::write_html(std::ostream& out) const {
+  write_matrix(out, matrix);
+  out << "<h3>Accuracy</h3><table class=accuracy>\n";
+  write_accuracy_row(out, "all answers", accuracy, matrix.chance());
+  for (const FactorResult& result : factors) {
+    write_accuracy_row(out, title_of(result), result.accuracy, result.chance);
+  }
+  out << "</table>\n";
+  if (!participants.empty()) {
+    out << "<h3>Participants</h3><table class=accuracy>\n";
+    for (const ParticipantAccuracy& participant : participants) {
+      write_accuracy_row(out, participant.participant_id, participant.accuracy, matrix.chance());
+    }
+    out << "</table>\n";
+  }
+  out << "<p class=note>Dot: share correct; bar: 95 % interval; dashed line: chance.</p>\n";
+  write_hypotheses_html(out, hypotheses);
+}
+}  // namespace tapstudy::analysis

@@ -1,0 +1,42 @@
+#include <nlohmann/json.hpp>
+
+#include "analysis/blocks/json_parts.hpp"
+#include "analysis/identification/identification_summary.hpp"
+namespace tapstudy::analysis {
+namespace {
+using Json = nlohmann::ordered_json;
+
+Json names_of(const std::vector<Item>& items) {
+  Json names = Json::array();
+  for (const Item& item : items) {
+    names.push_back(item.name);
+  }
+  return names;
+}
+}  // namespace
+
+nlohmann::ordered_json IdentificationSummary::as_json() const {
+  Json json{{"block", block},
+            {"task", "identification"},
+            {"stimuli", names_of(matrix.stimuli)},
+            {"responses", names_of(matrix.responses)},
+            {"counts", matrix.counts},
+            {"chance", matrix.chance()},
+            {"accuracy", analysis::as_json(accuracy)}};
+  json["factors"] = Json::array();
+  for (const FactorResult& result : factors) {
+    Json factor{{"factor", result.factor}};
+    factor["given"] = result.given.empty() ? Json{nullptr} : Json(result.given);
+    factor["accuracy"] = analysis::as_json(result.accuracy);
+    factor["chance"] = result.chance;
+    json["factors"].push_back(factor);
+  }
+  json["participants"] = Json::array();
+  for (const ParticipantAccuracy& participant : participants) {
+    json["participants"].push_back({{"participant_id", participant.participant_id},
+                                    {"accuracy", analysis::as_json(participant.accuracy)}});
+  }
+  json["hypotheses"] = analysis::as_json(hypotheses);
+  return json;
+}
+}  // namespace tapstudy::analysis

@@ -1,0 +1,22 @@
+#include "analysis/report/statistic.hpp"
+
+#include <algorithm>
+
+#include "analysis/choice/choice_summary.hpp"
+#include "analysis/identification/identification_summary.hpp"
+#include "core/error.hpp"
+namespace tapstudy::analysis {
+const std::vector<Statistic>& statistics() {
+  static const std::vector<Statistic> table{{"confusion", summarise_identification},
+                                            {"choices", summarise_choice}};
+  return table;
+}
+
+const Statistic& find_statistic(const std::string& name) {
+  const auto found = std::ranges::find(statistics(), std::string_view{name}, &Statistic::name);
+  if (found == statistics().end()) {
+    throw core::InvalidInput{"report: there is no statistic '" + name + "'"};
+  }
+  return *found;
+}
+}  // namespace tapstudy::analysis

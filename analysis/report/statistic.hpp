@@ -1,0 +1,19 @@
+#pragma once
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "analysis/blocks/block_summary.hpp"
+namespace tapstudy::analysis {
+// A way to summarise a block. Adding one: a folder with its BlockSummary, and a row in
+// statistic.cpp; tasks name the one that fits them.
+struct Statistic {
+  std::string_view name;
+  std::shared_ptr<const BlockSummary> (*summarise)(const BlockDesign& design,
+                                                   const BlockRows& rows){};
+};
+const std::vector<Statistic>& statistics();
+// Throws InvalidInput if there is none of that name.
+const Statistic& find_statistic(const std::string& name);
+}  // namespace tapstudy::analysis

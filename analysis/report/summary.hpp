@@ -1,0 +1,36 @@
+#pragma once
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "analysis/blocks/block_summary.hpp"
+namespace tapstudy::analysis {
+struct LoopQuality {
+  std::int64_t ticks{};
+  std::int64_t late{};
+  std::int64_t skipped{};
+  std::int64_t dropped_samples{};
+};
+
+struct Summary {
+  std::string title;
+  std::string notes;
+  std::string modes;  // "simulated", "real", "real, pilot", or "counts" if only a table was given
+  int participants{};
+  std::vector<std::shared_ptr<const BlockSummary>> blocks;
+  std::optional<LoopQuality> loop;
+  std::vector<std::pair<std::string, std::string>> provenance;
+};
+
+// Everything a report says, from the rows it says it about.
+Summary summarise(const StudyDesign& design, const std::vector<results::AnswerRow>& answers,
+                  const std::vector<results::VisitRow>& visits);
+// From a matrix alone, participants unknown.
+Summary summarise(const ConfusionMatrix& matrix, const std::string& title);
+
+bool is_simulated(const Summary& summary);
+// A paragraph on how the numbers were made, for a methods section.
+std::string methods(const Summary& summary);
+}  // namespace tapstudy::analysis

@@ -1,0 +1,119 @@
+#include "analysis/statistics/confusion_matrix.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <functional>
+#include <numeric>
+
+#include "core/error.hpp"
+namespace tapstudy::analysis {
+namespace {
+std::size_t place_of(const std::vector<Item>& items, const std::string& name, const char* kind) {
+  const auto found = std::ranges::find(items, name, &Item::name);
+  if (found == items.end()) {
+    throw core::InvalidInput{fmt::format("{} '{}' is not part of this matrix", kind, name)};
+  }
+  return static_cast<std::size_t>(found - items.begin());
+}
+
+using Agrees = std::function<bool(const Item& stimulus, const Item& response)>;
+
+Proportion counted(const ConfusionMatrix& matrix, const Agrees& is_success, const Agrees& counts) {
+  Proportion proportion;
+  for (std::size_t i = 0; i < matrix.stimuli.size(); ++i) {
+    for (std::size_t j = 0; j < matrix.responses.size(); ++j) {
+      if (!counts(matrix.stimuli[i], matrix.responses[j])) {
+        continue;
+      }
+      const int n = matrix.counts[i][j];
+      proportion.trials += n;
+      proportion.successes += is_success(matrix.stimuli[i], matrix.responses[j]) ? n : 0;
+    }
+  }
+  return proportion;
+}
+
+bool always(const Item& /*stimulus*/, const Item& /*response*/) {
+  return true;
+}
+
+Agrees same_level(const std::string& factor) {
+  return [factor](const Item& stimulus, const Item& response) {
+    const auto level = response.factors.find(factor);
+    return level != response.factors.end() && stimulus.factors.at(factor) == level->second;
+  };
+}
+}  // namespace
+
+ConfusionMatrix::ConfusionMatrix(std::vector<Item> of_stimuli, std::vector<Item> of_responses)
+    : stimuli{std::move(of_stimuli)},
+      responses{std::move(of_responses)},
+      counts(stimuli.size(), std::vector<int>(responses.size(), 0)) {}
+
+void ConfusionMatrix::add(const std::string& stimulus, const std::string& response, int times) {
+  counts.at(place_of(stimuli, stimulus, "stimulus"))
+      .at(place_of(responses, response, "response")) += times;
+}
+
+int ConfusionMatrix::row_total(std::size_t stimulus) const {
+  return std::accumulate(counts.at(stimulus).begin(), counts.at(stimulus).end(), 0);
+}
+
+int ConfusionMatrix::total() const {
+  int sum = 0;
+  for (std::size_t i = 0; i < stimuli.size(); ++i) {
+    sum += row_total(i);
+  }
+  return sum;
+}
+
+Proportion overall_accuracy(const ConfusionMatrix& matrix) {
+  return counted(
+      matrix,
+      [](const Item& stimulus, const Item& response) { return stimulus.name == response.name; },
+      always);
+}
+
+Proportion factor_accuracy(const ConfusionMatrix& matrix, const std::string& factor) {
+  return counted(matrix, same_level(factor), always);
+}
+
+Proportion conditional_accuracy(const ConfusionMatrix& matrix, const std::string& factor,
+                                const std::string& given) {
+  return counted(matrix, same_level(factor), same_level(given));
+}
+
+double factor_chance(const ConfusionMatrix& matrix, const std::string& factor,
+                     const std::string& given) {
+  const Agrees agrees = same_level(factor);
+  const Agrees counts = given.empty() ? Agrees{always} : same_level(given);
+  double agreeing = 0.0;
+  double possible = 0.0;
+  for (std::size_t i = 0; i < matrix.stimuli.size(); ++i) {
+    for (const Item& response : matrix.responses) {
+      if (counts(matrix.stimuli[i], response)) {
+        possible += matrix.row_total(i);
+        agreeing += agrees(matrix.stimuli[i], response) ? matrix.row_total(i) : 0;
+      }
+    }
+  }
+  return possible > 0.0 ? agreeing / possible : 0.0;
+}
+
+std::vector<std::string> factors_of(const ConfusionMatrix& matrix) {
+  std::vector<std::string> names;
+  if (matrix.stimuli.empty()) {
+    return names;
+  }
+  for (const auto& entry : matrix.stimuli.front().factors) {
+    const std::string& factor = entry.first;
+    const bool is_everywhere = std::ranges::all_of(
+        matrix.stimuli, [&](const Item& item) { return item.factors.contains(factor); });
+    if (is_everywhere) {
+      names.push_back(factor);
+    }
+  }
+  return names;
+}
+}  // namespace tapstudy::analysis

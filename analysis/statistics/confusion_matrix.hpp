@@ -1,0 +1,43 @@
+#pragma once
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "analysis/statistics/proportion.hpp"
+namespace tapstudy::analysis {
+// What was presented or answered: its name in the data, its label for people, its factor levels.
+struct Item {
+  std::string name;
+  std::string label;
+  std::map<std::string, std::string> factors;
+};
+
+// counts[i][j]: how often stimulus i was answered with response j.
+struct ConfusionMatrix {
+  std::vector<Item> stimuli;
+  std::vector<Item> responses;
+  std::vector<std::vector<int>> counts;
+
+  ConfusionMatrix(std::vector<Item> of_stimuli, std::vector<Item> of_responses);
+  // Throws InvalidInput if either is not in the matrix.
+  void add(const std::string& stimulus, const std::string& response, int times = 1);
+  int row_total(std::size_t stimulus) const;
+  int total() const;
+  double chance() const { return 1.0 / static_cast<double>(responses.size()); }
+};
+
+// Answers that name the very stimulus.
+Proportion overall_accuracy(const ConfusionMatrix& matrix);
+// Answers whose level of the factor is that of the stimulus.
+Proportion factor_accuracy(const ConfusionMatrix& matrix, const std::string& factor);
+// The same among those answers only that are right about another factor.
+Proportion conditional_accuracy(const ConfusionMatrix& matrix, const std::string& factor,
+                                const std::string& given);
+// How often a guess among the responses would agree on the factor, given it agrees on another
+// (given may be empty), weighing the stimuli as they were presented.
+double factor_chance(const ConfusionMatrix& matrix, const std::string& factor,
+                     const std::string& given);
+// The factors that every stimulus has a level of. A response without a level agrees with none.
+std::vector<std::string> factors_of(const ConfusionMatrix& matrix);
+}  // namespace tapstudy::analysis

@@ -1,0 +1,14 @@
+#pragma once
+#include <istream>
+#include <string>
+
+#include "analysis/statistics/confusion_matrix.hpp"
+namespace tapstudy::analysis {
+// A confusion matrix from comma-separated text. Lines that start with # are skipped. Two forms,
+// told apart by the header:
+//   stimulus,response[,…]                     one answer a line; further columns are not used
+//   stimulus[,FACTOR…],RESPONSE,RESPONSE,…    one row a stimulus, counts below the responses; the
+//     columns before the first that is named like a stimulus are factors, their levels below
+// Throws InvalidInput with file:line if it is neither.
+ConfusionMatrix read_counts(std::istream& text, const std::string& file);
+}  // namespace tapstudy::analysis

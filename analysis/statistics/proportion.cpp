@@ -1,0 +1,99 @@
+#include "analysis/statistics/proportion.hpp"
+
+#include <algorithm>
+#include <boost/math/distributions/binomial.hpp>
+#include <boost/math/distributions/normal.hpp>
+#include <cmath>
+#include <functional>
+#include <numeric>
+namespace tapstudy::analysis {
+namespace {
+constexpr double max_outcomes = 1e6;
+
+double log_factorial(int n) {
+  return std::lgamma(static_cast<double>(n) + 1.0);
+}
+
+double log_probability(const std::vector<int>& counts, int total) {
+  double log_p = log_factorial(total) - total * std::log(static_cast<double>(counts.size()));
+  for (const int count : counts) {
+    log_p -= log_factorial(count);
+  }
+  return log_p;
+}
+
+// Calls visit with every way to put `left` observations into the classes from `place` on.
+void each_outcome(std::vector<int>& counts, std::size_t place, int left,
+                  const std::function<void(const std::vector<int>&)>& visit) {
+  if (place + 1 == counts.size()) {
+    counts[place] = left;
+    visit(counts);
+    return;
+  }
+  for (int here = 0; here <= left; ++here) {
+    counts[place] = here;
+    each_outcome(counts, place + 1, left - here, visit);
+  }
+}
+}  // namespace
+
+Interval wilson_interval(const Proportion& proportion) {
+  const double z = boost::math::quantile(boost::math::normal{}, 0.975);
+  const double n = proportion.trials;
+  const double p = proportion.value();
+  const double centre = p + z * z / (2.0 * n);
+  const double reach = z * std::sqrt(p * (1.0 - p) / n + z * z / (4.0 * n * n));
+  const double scale = 1.0 + z * z / n;
+  return {std::max(0.0, (centre - reach) / scale), std::min(1.0, (centre + reach) / scale)};
+}
+
+double binomial_p_at_least(const Proportion& observed, double chance) {
+  if (observed.successes <= 0) {
+    return 1.0;
+  }
+  if (observed.successes > observed.trials) {
+    return 0.0;
+  }
+  const boost::math::binomial_distribution<> guesses{static_cast<double>(observed.trials), chance};
+  return boost::math::cdf(
+      boost::math::complement(guesses, static_cast<double>(observed.successes - 1)));
+}
+
+std::optional<double> exact_multinomial_p(const std::vector<int>& counts) {
+  const int total = std::accumulate(counts.begin(), counts.end(), 0);
+  const int classes = static_cast<int>(counts.size());
+  const double log_outcomes =
+      log_factorial(total + classes - 1) - log_factorial(classes - 1) - log_factorial(total);
+  if (log_outcomes > std::log(max_outcomes)) {
+    return std::nullopt;
+  }
+  // equal probabilities differ by rounding
+  const double limit = log_probability(counts, total) + 1e-9;
+  double p = 0.0;
+  std::vector<int> outcome(counts.size(), 0);
+  each_outcome(outcome, 0, total, [&](const std::vector<int>& candidate) {
+    const double log_p = log_probability(candidate, total);
+    p += log_p <= limit ? std::exp(log_p) : 0.0;
+  });
+  return std::min(1.0, p);
+}
+
+int critical_successes(int trials, double chance, double alpha) {
+  int fewest = 0;
+  int most = trials + 1;
+  while (fewest < most) {
+    const int middle = fewest + (most - fewest) / 2;
+    if (binomial_p_at_least({middle, trials}, chance) <= alpha) {
+      most = middle;
+    } else {
+      fewest = middle + 1;
+    }
+  }
+  return fewest;
+}
+
+double binomial_power(int trials, double chance, double alpha, double truth) {
+  const int critical = critical_successes(trials, chance, alpha);
+  return critical > trials ? 0.0 : binomial_p_at_least({critical, trials}, truth);
+}
+}  // namespace tapstudy::analysis

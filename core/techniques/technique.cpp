@@ -1,0 +1,44 @@
+#include "core/techniques/technique.hpp"
+
+#include <algorithm>
+namespace tapstudy::core {
+const std::vector<Technique>& techniques() {
+  static const std::vector<Technique> table{
+      {"none", "the contact spring alone", {}},
+      {"sinusoid",
+       "a decaying sinusoid at each impact, the same wherever one taps",
+       {&decaying_sinusoid}},
+      {"fem", "the plate's own vibration at the contact point", {&plate_vibration}},
+      {"fem+sinusoid",
+       "the plate's vibration and the decaying sinusoid",
+       {&plate_vibration, &decaying_sinusoid}},
+  };
+  return table;
+}
+
+bool Technique::needs_model() const {
+  return std::ranges::any_of(parts, &ForcePart::needs_model);
+}
+
+std::string_view Technique::missing(const RenderSettings& settings) const {
+  for (const ForcePart* const part : parts) {
+    if (const std::string_view lacking = part->missing(settings); !lacking.empty()) {
+      return lacking;
+    }
+  }
+  return {};
+}
+
+const Technique* find_technique(std::string_view name) {
+  const auto found = std::ranges::find(techniques(), name, &Technique::name);
+  return found == techniques().end() ? nullptr : &*found;
+}
+
+std::vector<std::string> technique_names() {
+  std::vector<std::string> names;
+  for (const Technique& technique : techniques()) {
+    names.emplace_back(technique.name);
+  }
+  return names;
+}
+}  // namespace tapstudy::core

@@ -1,0 +1,23 @@
+#pragma once
+#include "core/haptic_state.hpp"
+#include "core/tick/contact.hpp"
+namespace tapstudy::core {
+// A part of the feedback force that a technique adds to the penalty force (paper eq. 18). The
+// renderer calls advance() once a tick; then, while the finger touches, touch(), impact() in the
+// tick of an impact, and add_to(). Constructors allocate; nothing else does.
+class AddedForce {
+ public:
+  virtual ~AddedForce() = default;
+  // One period passes.
+  virtual void advance() noexcept = 0;
+  // The god-object is here, and force is felt along the contact's normal.
+  virtual void touch(const Contact& contact) noexcept = 0;
+  // The finger met the surface at this speed.
+  virtual void impact(double speed_m_s) noexcept = 0;
+  virtual void add_to(ForceParts& parts) const noexcept = 0;
+  // Silence, as if nothing had ever been struck.
+  virtual void reset() noexcept = 0;
+  // Kinetic plus elastic, of what vibrates.
+  virtual double energy_j() const noexcept { return 0.0; }
+};
+}  // namespace tapstudy::core

@@ -1,0 +1,165 @@
+#include "device/loop/haptic_loop.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+namespace tapstudy::device {
+using core::TickFault;
+namespace {
+std::array<double, 3> as_array(const core::Vec3& v) noexcept {
+  return {v.x(), v.y(), v.z()};
+}
+core::Vec3 as_vector(const std::array<double, 3>& a) noexcept {
+  return {a[0], a[1], a[2]};
+}
+}  // namespace
+
+HapticLoop::HapticLoop(Device& device, std::span<core::TapRenderer> alternatives,
+                       LoopSettings settings, core::SpscRing<core::TraceSample>& trace,
+                       TickClock& clock) noexcept
+    : device_{device},
+      alternatives_{alternatives},
+      settings_{std::move(settings)},
+      trace_{trace},
+      clock_{clock},
+      gate_{settings_.gate, 1e-9 * static_cast<double>(settings_.period)} {}
+
+void HapticLoop::run(const std::stop_token& stop) noexcept {
+  while (!stop.stop_requested() && step()) {
+  }
+  gate_.stop();
+  while (gate_.state() != ForceGate::State::at_rest && step()) {
+  }
+  zero_force();
+}
+
+void HapticLoop::run_ticks(std::int64_t count) noexcept {
+  while (count-- > 0 && step()) {
+  }
+}
+
+void HapticLoop::zero_force() noexcept {
+  if (report_.stopped_by == TickFault::none) {
+    device_.zero_force();
+  }
+}
+
+bool HapticLoop::step() noexcept {
+  if (report_.stopped_by != TickFault::none) {
+    return false;
+  }
+  if (!has_begun_) {
+    begin();
+  }
+  const Nanoseconds woke_at = clock_.wait_until(deadline_);
+  note_lateness(woke_at);
+  const Nanoseconds elapsed = woke_at - std::exchange(last_tick_, woke_at);
+  core::TraceSample sample = unread_sample(woke_at - start_);
+  sample.fault = fault_of_time(woke_at, elapsed);
+  if (sample.fault == TickFault::none) {
+    sample = tick(woke_at - start_, elapsed);
+  }
+  if (sample.fault != TickFault::none) {
+    device_.emergency_stop();
+  }
+  trace_.try_push(sample);
+  ++report_.ticks;
+  report_.saturated += sample.saturated ? 1 : 0;
+  report_.stopped_by = sample.fault;
+  return sample.fault == TickFault::none;
+}
+
+// Time counts from here: what its thread had to get ready is not lateness.
+void HapticLoop::begin() noexcept {
+  device_.begin();
+  start_ = deadline_ = last_beat_ = last_tick_ = clock_.now();
+  has_begun_ = true;
+}
+
+// A period that has passed is skipped, never caught up in a burst; the rhythm stays.
+void HapticLoop::note_lateness(Nanoseconds woke_at) noexcept {
+  const Nanoseconds lateness = woke_at - deadline_;
+  const Nanoseconds missed = lateness / settings_.period;
+  const bool is_late = lateness > settings_.period / 2;
+  report_.lateness.add(lateness);
+  report_.late += is_late ? 1 : 0;
+  late_in_a_row_ = is_late ? late_in_a_row_ + 1 : 0;
+  report_.skipped += missed;
+  deadline_ += (missed + 1) * settings_.period;
+}
+
+TickFault HapticLoop::fault_of_time(Nanoseconds woke_at, Nanoseconds elapsed) noexcept {
+  if (has_beaten_.exchange(false, std::memory_order_acq_rel)) {
+    last_beat_ = woke_at;
+  }
+  // force that falls already needs nobody to look after it
+  const bool is_looked_after =
+      settings_.max_heartbeat_gap > 0 && gate_.state() != ForceGate::State::stopping;
+  if (is_looked_after && (woke_at - last_beat_ > settings_.max_heartbeat_gap ||
+                          elapsed > settings_.max_heartbeat_gap)) {
+    return TickFault::heartbeat_lost;  // or the loop itself, for as long, and all with it
+  }
+  const bool gives_up =
+      settings_.max_late_in_a_row > 0 && late_in_a_row_ > settings_.max_late_in_a_row;
+  return gives_up ? TickFault::too_late : TickFault::none;
+}
+
+void HapticLoop::take_requested_alternative() noexcept {
+  const std::size_t wanted = requested_.load(std::memory_order_acquire);
+  if (wanted != current_ && !alternatives_[current_].is_touching()) {
+    alternatives_[wanted].take_over_from(alternatives_[current_]);
+    current_ = wanted;
+  }
+}
+
+// A tick without a reading has no position: not zero, which would be one.
+core::TraceSample HapticLoop::unread_sample(Nanoseconds now) const noexcept {
+  core::TraceSample sample{};
+  sample.t_ns = now;
+  sample.alternative = static_cast<std::uint8_t>(current_);
+  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+  sample.position_m.fill(unknown);
+  sample.velocity_m_s.fill(unknown);
+  sample.pose_residual_m = unknown;
+  sample.closure_margin = unknown;
+  return sample;
+}
+
+core::TraceSample HapticLoop::tick(Nanoseconds now, Nanoseconds elapsed) noexcept {
+  take_requested_alternative();
+  core::TraceSample sample = unread_sample(now);
+  core::HandState hand{as_vector(sample.position_m), as_vector(sample.velocity_m_s)};
+  sample.fault = device_.read(hand);
+  sample.position_m = as_array(hand.position_m);
+  sample.velocity_m_s = as_array(hand.velocity_m_s);
+  const DeviceDetail detail = device_.detail();
+  sample.pose_residual_m = detail.pose_residual_m;
+  sample.closure_margin = detail.closure_margin;
+  if (sample.fault == TickFault::none) {
+    render(hand, 1e-9 * static_cast<double>(elapsed), sample);
+  }
+  return sample;
+}
+
+void HapticLoop::render(const core::HandState& hand, double elapsed_s,
+                        core::TraceSample& sample) noexcept {
+  const core::RenderedTick rendered =
+      alternatives_[current_].tick(settings_.placement.to_plate(hand));
+  const PassedForce passed =
+      gate_.pass(core::Placement::force_to_device(rendered.force_n), hand, elapsed_s);
+  sample.penetration_m = rendered.contact.penetration_m;
+  sample.penalty_n = rendered.parts.penalty_n;
+  sample.vibration_n = rendered.parts.vibration_n;
+  sample.sinusoid_n = rendered.parts.sinusoid_n;
+  sample.touching = rendered.contact.touching;
+  sample.impact = rendered.contact.impact;
+  sample.saturated = passed.was_changed;
+  sample.fault = passed.fault;
+  if (passed.fault != TickFault::none) {
+    return;
+  }
+  sample.fault = device_.write(passed.force_n);
+  sample.force_n = as_array(passed.force_n);
+  sample.achieved_n = as_array(device_.detail().achieved_n);
+}
+}  // namespace tapstudy::device

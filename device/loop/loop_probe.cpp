@@ -1,0 +1,81 @@
+#include "device/loop/loop_probe.hpp"
+
+#include <fcntl.h>
+#include <sys/prctl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <thread>
+#include <vector>
+
+#include "device/loop/tick_clock.hpp"
+namespace tapstudy::device {
+namespace {
+constexpr std::size_t bytes_at_once = 1 << 20;
+constexpr int writes_before_rewind = 16;
+
+void compute(const std::stop_token& stop) {
+  volatile double sink = 1.0;
+  while (!stop.stop_requested()) {
+    for (int i = 0; i < 10'000; ++i) {
+      sink = std::sqrt(sink + 1.0);
+    }
+  }
+}
+
+// As a recorder does, only more: whole blocks that must be on the disk before the next.
+void write_to_disk(const std::stop_token& stop) {
+  std::string name{"/tmp/tapstudy_doctor_XXXXXX"};
+  const int file = mkstemp(name.data());
+  if (file < 0) {
+    return;
+  }
+  unlink(name.c_str());
+  const std::vector<char> bytes(bytes_at_once, 'x');
+  for (int i = 1; !stop.stop_requested(); ++i) {
+    if (write(file, bytes.data(), bytes.size()) < 0 || fdatasync(file) != 0 ||
+        (i % writes_before_rewind == 0 && lseek(file, 0, SEEK_SET) != 0)) {
+      break;
+    }
+  }
+  close(file);
+}
+}  // namespace
+
+ProbedLoop probe_loop(const core::RealtimeRequest& request, Nanoseconds period, double seconds) {
+  ProbedLoop probed;
+  const auto ticks =
+      static_cast<std::int64_t>(std::llround(1e9 * seconds / static_cast<double>(period)));
+  std::jthread{[&] {
+    probed.realtime = ask_for_realtime(request);
+    // NOLINTNEXTLINE(cppcoreguidelines-pro-type-vararg): the C library's own
+    probed.timer_slack_ns = prctl(PR_GET_TIMERSLACK);
+    MonotonicClock clock;
+    Nanoseconds deadline = clock.now();
+    for (std::int64_t i = 0; i < ticks; ++i) {
+      deadline += period;
+      const Nanoseconds lateness = clock.wait_until(deadline) - deadline;
+      probed.lateness.add(lateness);
+      probed.late += lateness > period / 2 ? 1 : 0;
+      deadline += lateness / period * period;
+    }
+  }}.join();
+  return probed;
+}
+
+struct Load::Workers {
+  std::vector<std::jthread> threads;
+};
+
+Load::Load() : workers_{std::make_unique<Workers>()} {
+  const unsigned processors = std::max(1U, std::thread::hardware_concurrency());
+  for (unsigned i = 0; i < processors; ++i) {
+    workers_->threads.emplace_back(compute);
+  }
+  workers_->threads.emplace_back(write_to_disk);
+}
+
+Load::~Load() = default;
+}  // namespace tapstudy::device

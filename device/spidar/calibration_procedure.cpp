@@ -1,0 +1,110 @@
+#include "device/spidar/calibration_procedure.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdlib>
+
+#include "device/device.hpp"
+#include "device/spidar/calibration.hpp"
+#include "device/spidar/counters.hpp"
+namespace tapstudy::device {
+namespace {
+using core::StringCalibration;
+constexpr double max_pull_m = 0.5;  // a 16 bit counter turns over after twice that
+constexpr double max_gauge_force_n = 30.0;
+constexpr std::int64_t min_counts = 500;
+// The scale of the amplifier's converter as published; with volts a newton only their product is
+// measured, and only that matters.
+constexpr double dac_counts_per_volt = 415.0;
+constexpr double min_tension_n = 0.3;
+constexpr double max_tension_n = 10.0;
+// Of the force at the stronger output: what friction may add to both.
+constexpr double max_offset = 0.3;
+
+class Calibration {
+ public:
+  Calibration(SpidarBoard& board, UsbPipe& pipe, CalibrationOperator& person)
+      : board_{board}, pipe_{pipe}, person_{person} {
+    BoardReading reading;
+    check(board_.begin(pipe_, reading));
+  }
+  ~Calibration() {
+    BoardReading ignored;
+    static_cast<void>(board_.exchange(pipe_, DacCounts{}, ignored));
+  }
+  Calibration(const Calibration&) = delete;
+  Calibration& operator=(const Calibration&) = delete;
+  Calibration(Calibration&&) = delete;
+  Calibration& operator=(Calibration&&) = delete;
+
+  StringCalibration measure(std::size_t string) {
+    const double metres_per_count = measure_length(string);
+    const double weak_n = force_at(string, calibration_dac_counts / 2);
+    const double strong_n = force_at(string, calibration_dac_counts);
+    put_out({});
+    const double newtons_per_dac_count = (strong_n - weak_n) / (0.5 * calibration_dac_counts);
+    const double offset_n = strong_n - newtons_per_dac_count * calibration_dac_counts;
+    if (!(newtons_per_dac_count > 0.0) || std::abs(offset_n) > max_offset * strong_n) {
+      throw DeviceError{fmt::format(
+          "string {}: {} N and {} N at outputs of {} and {} do not grow in proportion (does the "
+          "gauge hold still? is the amplifier on?)",
+          string + 1, weak_n, strong_n, calibration_dac_counts / 2, calibration_dac_counts)};
+    }
+    return {metres_per_count, 1.0 / (newtons_per_dac_count * dac_counts_per_volt),
+            dac_counts_per_volt};
+  }
+
+ private:
+  static void check(UsbOutcome outcome) {
+    if (outcome != UsbOutcome::ok) {
+      throw DeviceError{fmt::format("SPIDAR-G6: {}", to_text(outcome))};
+    }
+  }
+  BoardReading put_out(const DacCounts& dac_counts) {
+    BoardReading reading;
+    check(board_.exchange(pipe_, dac_counts, reading));
+    return reading;
+  }
+  double measure_length(std::size_t string) {
+    UnwrappedCounters counters{board_.counter_bits()};
+    person_.please(fmt::format("\nString {} of 8. Let it run in as far as it goes", string + 1));
+    counters.take(put_out({}).counter);
+    const double length_m = person_.how_much(
+        "Pull it out by about 0.1 m, hold it, and type by how many metres", max_pull_m);
+    counters.take(put_out({}).counter);
+    const std::int64_t counts = counters.counts().at(string);
+    if (std::abs(counts) < min_counts) {
+      throw DeviceError{fmt::format(
+          "string {}: its encoder counted {} for {} m (is it this string? is the encoder plugged "
+          "in?)",
+          string + 1, counts, length_m)};
+    }
+    return length_m / static_cast<double>(counts);
+  }
+  double force_at(std::size_t string, int output) {
+    DacCounts dac_counts{};
+    dac_counts.at(string) = static_cast<std::uint16_t>(output);
+    put_out(dac_counts);
+    return person_.how_much(
+        fmt::format("Hold it by the gauge at output {}, and type how many newtons it shows",
+                    output),
+        max_gauge_force_n);
+  }
+
+  SpidarBoard& board_;
+  UsbPipe& pipe_;
+  CalibrationOperator& person_;
+};
+}  // namespace
+
+core::SpidarCalibration calibrate_spidar(SpidarBoard& board, UsbPipe& pipe,
+                                         CalibrationOperator& person) {
+  Calibration procedure{board, pipe, person};
+  core::SpidarCalibration calibration{min_tension_n, max_tension_n, {}};
+  for (std::size_t i = 0; i < calibration.strings.size(); ++i) {
+    calibration.strings.at(i) = procedure.measure(i);
+  }
+  return calibration;
+}
+}  // namespace tapstudy::device

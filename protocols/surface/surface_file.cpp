@@ -1,0 +1,165 @@
+#include "protocols/surface/surface_file.hpp"
+
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/IO/OBJ.h>
+#include <CGAL/IO/OFF.h>
+#include <CGAL/IO/PLY.h>
+#include <CGAL/IO/STL.h>
+#include <CGAL/Polygon_mesh_processing/triangulate_faces.h>
+#include <CGAL/Surface_mesh.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <filesystem>
+#include <map>
+#include <sstream>
+#include <utility>
+#include <vector>
+
+#include "core/error.hpp"
+#include "core/sha256.hpp"
+namespace tapstudy::protocols {
+namespace {
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using Point = Kernel::Point_3;
+using Polygon = std::vector<std::size_t>;
+using Triangle = std::array<int, 3>;
+
+struct Soup {
+  std::vector<Point> points;
+  std::vector<Polygon> polygons;
+};
+
+bool read_soup(std::istream& bytes, const std::string& ending, Soup& soup) {
+  if (ending == ".stl") {
+    return CGAL::IO::read_STL(bytes, soup.points, soup.polygons);
+  }
+  if (ending == ".ply") {
+    return CGAL::IO::read_PLY(bytes, soup.points, soup.polygons);
+  }
+  if (ending == ".off") {
+    return CGAL::IO::read_OFF(bytes, soup.points, soup.polygons);
+  }
+  return ending == ".obj" && CGAL::IO::read_OBJ(bytes, soup.points, soup.polygons);
+}
+
+std::string ending_of(const std::string& file) {
+  std::string ending = std::filesystem::path{file}.extension().string();
+  std::ranges::transform(ending, ending.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return ending;
+}
+
+Soup soup_of(const SurfaceSource& source) {
+  Soup soup;
+  std::istringstream bytes{source.bytes};
+  bool is_read = false;
+  try {
+    is_read = read_soup(bytes, ending_of(source.file), soup);
+  } catch (const std::exception&) {
+    is_read = false;
+  }
+  const auto is_inside = [&](const Polygon& polygon) {
+    return polygon.size() >= 3 && std::ranges::all_of(polygon, [&](std::size_t corner) {
+             return corner < soup.points.size();
+           });
+  };
+  if (!is_read || soup.polygons.empty() || !std::ranges::all_of(soup.polygons, is_inside)) {
+    throw core::InvalidInput{source.file +
+                             ": is not a surface (one of: .stl, .ply, .off, .obj, with at least "
+                             "one face; is it cut short?)"};
+  }
+  return soup;
+}
+
+// Points at one and the same place get one number.
+class JoinedPoints {
+ public:
+  int number_of(const Point& p, double metres_per_unit) {
+    // adding zero makes -0 and 0 one place
+    const Place place{metres_per_unit * p.x() + 0.0, metres_per_unit * p.y() + 0.0,
+                      metres_per_unit * p.z() + 0.0};
+    const auto [found, is_new] = numbers_.emplace(place, static_cast<int>(points_.size()));
+    if (is_new) {
+      points_.push_back(place);
+    }
+    return found->second;
+  }
+  core::TriangleSurface::Points take() const {
+    core::TriangleSurface::Points points{static_cast<Eigen::Index>(points_.size()), 3};
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      points.row(static_cast<Eigen::Index>(i)) =
+          Eigen::Map<const Eigen::RowVector3d>{points_[i].data()};
+    }
+    return points;
+  }
+
+ private:
+  using Place = std::array<double, 3>;
+  std::map<Place, int> numbers_;
+  std::vector<Place> points_;
+};
+
+// By the constrained Delaunay triangulation of the polygon in its plane, which stays inside a
+// concave one.
+std::vector<std::array<std::size_t, 3>> triangles_of(const Polygon& polygon, const Soup& soup,
+                                                     const std::string& file) {
+  if (polygon.size() == 3) {
+    return {{polygon[0], polygon[1], polygon[2]}};
+  }
+  CGAL::Surface_mesh<Point> mesh;
+  std::vector<CGAL::Surface_mesh<Point>::Vertex_index> corners;
+  corners.reserve(polygon.size());
+  for (const std::size_t corner : polygon) {
+    corners.push_back(mesh.add_vertex(soup.points[corner]));
+  }
+  mesh.add_face(corners);
+  if (!CGAL::Polygon_mesh_processing::triangulate_faces(mesh)) {
+    const Point& at = soup.points[polygon.front()];
+    throw core::InvalidInput{
+        fmt::format("{}: the face of {} corners at ({}, {}, {}) cannot be cut into triangles", file,
+                    polygon.size(), at.x(), at.y(), at.z())};
+  }
+  std::vector<std::array<std::size_t, 3>> triangles;
+  for (const auto face : mesh.faces()) {
+    std::array<std::size_t, 3> triangle{};
+    std::size_t k = 0;
+    for (const auto corner : mesh.vertices_around_face(mesh.halfedge(face))) {
+      triangle.at(k++) = polygon.at(corner.idx());
+    }
+    triangles.push_back(triangle);
+  }
+  return triangles;
+}
+}  // namespace
+
+SurfaceSource surface_source(std::string file, std::string bytes) {
+  std::string sha256 = core::sha256(bytes);
+  return {std::move(file), std::move(bytes), std::move(sha256)};
+}
+
+core::TriangleSurface read_surface(const SurfaceSource& source, double metres_per_unit) {
+  const Soup soup = soup_of(source);
+  JoinedPoints points;
+  std::vector<Triangle> triangles;
+  for (const Polygon& polygon : soup.polygons) {
+    for (const auto& corners : triangles_of(polygon, soup, source.file)) {
+      Triangle triangle{};
+      std::ranges::transform(corners, triangle.begin(), [&](std::size_t corner) {
+        return points.number_of(soup.points[corner], metres_per_unit);
+      });
+      triangles.push_back(triangle);
+    }
+  }
+  core::TriangleSurface surface;
+  surface.points_m = points.take();
+  surface.triangles.resize(static_cast<Eigen::Index>(triangles.size()), 3);
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    surface.triangles.row(static_cast<Eigen::Index>(i)) =
+        Eigen::Map<const Eigen::RowVector3i>{triangles[i].data()};
+  }
+  return surface;
+}
+}  // namespace tapstudy::protocols

@@ -1,0 +1,87 @@
+#include "protocols/protocol.hpp"
+#include "protocols/tasks/shipped_tasks.hpp"
+#include "protocols/yaml/yaml_reader.hpp"
+namespace tapstudy::protocols {
+namespace {
+class Choice final : public Task {
+ public:
+  std::string_view name() const override { return "choice"; }
+  std::string_view statistic() const override { return "choices"; }
+  Claim claim() const override { return Claim::chosen_above_chance; }
+  bool needs_reference() const override { return true; }
+  bool uses_order() const override { return false; }
+  std::string_view success() const override { return "choose the expected one"; }
+
+  void read(MapReader& reader, const Protocol& /*protocol*/, Block& block) const override {
+    if (block.stimuli.size() < 2) {
+      reader.reject("stimuli", "a choice needs at least two stimuli to choose from");
+    }
+  }
+
+  // The order of the blind labels is drawn once a participant.
+  std::vector<PlannedTrial> trials(const Block& block, const Draw& draw) const override {
+    core::Rng rng{
+        core::derived_seed(draw.participant_seed, core::Purpose::labels, draw.block_index)};
+    std::vector<std::string> alternatives = block.stimuli;
+    rng.shuffle(alternatives);
+    std::vector<PlannedTrial> all;
+    for (int repetition = 1; repetition <= block.repetitions; ++repetition) {
+      all.push_back({0, block.name, this, block.is_practice, repetition, alternatives});
+    }
+    return all;
+  }
+  std::size_t trials_per_repetition(const Block& /*block*/) const override { return 1; }
+
+  std::vector<Option> options(const Block& block, const Protocol& /*protocol*/) const override {
+    std::vector<Option> all;
+    for (std::size_t i = 0; i < block.stimuli.size(); ++i) {
+      all.push_back({blind_label(i), blind_label(i)});
+    }
+    return all;
+  }
+  std::string response(const PlannedTrial& trial, const Block& /*block*/,
+                       std::size_t option) const override {
+    return trial.stimuli.at(option);
+  }
+  std::vector<std::string> alternative_labels(const PlannedTrial& trial) const override {
+    std::vector<std::string> labels;
+    for (std::size_t i = 0; i < trial.stimuli.size(); ++i) {
+      labels.push_back(blind_label(i));
+    }
+    return labels;
+  }
+  std::optional<bool> is_correct(const PlannedTrial& /*trial*/,
+                                 const std::string& /*response*/) const override {
+    return std::nullopt;
+  }
+
+  std::vector<std::string> remembered_plates(const Block& /*block*/,
+                                             const Simulation& simulation) const override {
+    return {simulation.observer.reference};
+  }
+  int visits(const Block& block, const SimulatedTapSettings& taps) const override {
+    return taps.visits * static_cast<int>(block.stimuli.size());
+  }
+  // Every alternative a few times, in a new random order each time.
+  std::size_t simulated_answer(const std::vector<Option>& options, const Simulation& simulation,
+                               SimulatedTouch& touch) const override {
+    std::vector<std::size_t> order;
+    for (std::size_t i = 0; i < options.size(); ++i) {
+      order.push_back(i);
+    }
+    for (int visit = 0; visit < simulation.taps.visits; ++visit) {
+      touch.rng().shuffle(order);
+      for (const std::size_t alternative : order) {
+        touch.visit(alternative);
+      }
+    }
+    return touch.most_similar_alternative(simulation.observer.reference);
+  }
+};
+}  // namespace
+
+const Task& choice() {
+  static const Choice task;
+  return task;
+}
+}  // namespace tapstudy::protocols

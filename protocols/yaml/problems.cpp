@@ -1,0 +1,57 @@
+#include "protocols/yaml/problems.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <numeric>
+#include <tuple>
+#include <utility>
+
+#include "core/error.hpp"
+namespace tapstudy::protocols {
+namespace {
+// Levenshtein 1966.
+std::size_t edit_distance(const std::string& a, const std::string& b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = std::exchange(row[0], i);
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t substituted = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+      diagonal = row[j];
+      row[j] = std::min({row[j] + 1, row[j - 1] + 1, substituted});
+    }
+  }
+  return row.back();
+}
+}  // namespace
+
+void Problems::add(int line, int column, const std::string& key_path, const std::string& what) {
+  problems_.push_back({line, column,
+                       fmt::format("{}:{}:{}: {}{}{}", file_, line + 1, column + 1, key_path,
+                                   key_path.empty() ? "" : ": ", what)});
+}
+
+void Problems::throw_if_any() const {
+  if (problems_.empty()) {
+    return;
+  }
+  std::vector<Problem> sorted = problems_;
+  std::ranges::stable_sort(sorted, {}, [](const Problem& problem) {
+    return std::tuple{problem.line, problem.column};
+  });
+  std::vector<std::string> lines;
+  std::ranges::transform(sorted, std::back_inserter(lines), &Problem::text);
+  throw core::InvalidInput{fmt::format("{}", fmt::join(lines, "\n"))};
+}
+
+std::string did_you_mean(const std::string& word, const std::vector<std::string>& allowed) {
+  const auto closest = std::ranges::min_element(
+      allowed, {}, [&](const std::string& candidate) { return edit_distance(word, candidate); });
+  if (closest == allowed.end() || edit_distance(word, *closest) > 1 + word.size() / 4) {
+    return "";
+  }
+  return fmt::format(", did you mean '{}'?", *closest);
+}
+}  // namespace tapstudy::protocols

@@ -1,0 +1,116 @@
+// Mappings and lists inside mappings.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <yaml-cpp/yaml.h>
+
+#include <algorithm>
+
+#include "protocols/yaml/yaml_reader.hpp"
+#include "protocols/yaml/yaml_words.hpp"
+namespace tapstudy::protocols {
+void MapReader::read_inner(const YAML::Node& node, const std::string& path,
+                           const std::string& pattern, const ReadMap& read) {
+  MapReader inner{node, path, pattern, *problems_};
+  if (!node.IsMap()) {
+    inner.reject(fmt::format("{} is not a mapping", kind_of(node)));
+    return;
+  }
+  read(inner);
+  inner.finish();
+}
+
+void MapReader::map(const std::string& key, Presence presence, const ReadMap& read) {
+  if (const auto node = find(key, presence == Presence::required)) {
+    read_inner(*node, path_of(key), pattern_of(key), read);
+  }
+}
+
+std::optional<YAML::Node> MapReader::find_map(const std::string& key, Presence presence) {
+  auto node = find(key, presence == Presence::required);
+  if (node && (!node->IsMap() || node->size() == 0)) {
+    reject_at(*node, path_of(key), "is not a mapping with at least one name");
+    return std::nullopt;
+  }
+  return node;
+}
+
+void MapReader::each(const std::string& key, Presence presence, const ReadNamed& read) {
+  const auto node = find_map(key, presence);
+  if (!node) {
+    return;
+  }
+  std::vector<std::string> seen;
+  for (const auto& entry : *node) {
+    if (!check_name(entry.first, path_of(key))) {
+      continue;
+    }
+    const std::string name = entry.first.Scalar();
+    if (std::ranges::find(seen, name) != seen.end()) {
+      reject_at(entry.first, path_of(key) + "." + name, "is there twice");
+    }
+    seen.push_back(name);
+    read_inner(entry.second, path_of(key) + "." + name, pattern_of(key) + ".*",
+               [&](MapReader& inner) { read(name, inner); });
+  }
+}
+
+void MapReader::each_point(
+    const std::string& key, Presence presence,
+    const std::function<void(const std::string&, const Eigen::Vector2d&)>& take) {
+  const auto node = find_map(key, presence);
+  if (!node) {
+    return;
+  }
+  read_inner(*node, path_of(key), pattern_of(key), [&](MapReader& points) {
+    points.has_free_names_ = true;
+    for (const auto& entry : *points.node_) {
+      if (points.check_name(entry.first, path_of(key))) {
+        const std::string name = entry.first.Scalar();
+        take(name, points.numbers(name, 2, {-100.0, 100.0}));
+      }
+    }
+  });
+}
+
+void MapReader::each_text(const std::string& key, Presence presence,
+                          const std::function<void(const std::string&, const std::string&)>& take) {
+  map(key, presence, [&](MapReader& texts) {
+    texts.has_free_names_ = true;
+    for (const auto& entry : *texts.node_) {
+      if (texts.check_name(entry.first, path_of(key))) {
+        const std::string name = entry.first.Scalar();
+        take(name, texts.name(name));
+      }
+    }
+  });
+}
+
+void MapReader::list(const std::string& key, Presence presence, const ReadMap& read) {
+  const auto node = find(key, presence == Presence::required);
+  if (!node) {
+    return;
+  }
+  if (!node->IsSequence()) {
+    reject_at(*node, path_of(key), fmt::format("{} is not a list", kind_of(*node)));
+    return;
+  }
+  for (std::size_t i = 0; i < node->size(); ++i) {
+    read_inner((*node)[i], fmt::format("{}[{}]", path_of(key), i), pattern_of(key) + "[]", read);
+  }
+}
+
+void MapReader::finish() {
+  std::vector<std::string> seen;
+  for (const auto& entry : *node_) {
+    const std::string key = entry.first.IsScalar() ? entry.first.Scalar() : "?";
+    if (std::ranges::find(known_, key) == known_.end()) {
+      reject_at(entry.first, path_of(key),
+                fmt::format("is not a known key (one of: {}{})", fmt::join(known_, ", "),
+                            did_you_mean(key, known_)));
+    } else if (std::ranges::find(seen, key) != seen.end()) {
+      reject_at(entry.first, path_of(key), "is there twice");
+    }
+    seen.push_back(key);
+  }
+}
+}  // namespace tapstudy::protocols

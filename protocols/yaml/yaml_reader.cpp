@@ -1,0 +1,280 @@
+#include "protocols/yaml/yaml_reader.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <yaml-cpp/yaml.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+
+#include "core/error.hpp"
+#include "protocols/yaml/utf8.hpp"
+#include "protocols/yaml/yaml_words.hpp"
+namespace tapstudy::protocols {
+namespace {
+bool has_control_characters(const std::string& text) {
+  return std::ranges::any_of(text, [](unsigned char c) { return std::iscntrl(c) != 0; });
+}
+}  // namespace
+
+bool is_name(const std::string& text) {
+  const auto is_inner = [](unsigned char c) {
+    return c < 128 && (std::isalnum(c) != 0 || c == '_' || c == '-' || c == '+' || c == '.');
+  };
+  return !text.empty() && text.size() <= 64 && std::ranges::all_of(text, is_inner) &&
+         text.find_first_of("-+.") != 0;
+}
+
+bool Range::contains(double x) const {
+  return std::isfinite(x) && (low_included ? x >= low : x > low) &&
+         (high_included ? x <= high : x < high);
+}
+
+std::string Range::words() const {
+  return fmt::format("{} {} and {} {}", low_included ? "at least" : "greater than", low,
+                     high_included ? "at most" : "less than", high);
+}
+
+MapReader::MapReader(const YAML::Node& node, std::string path, std::string pattern,
+                     Problems& problems)
+    : node_{std::make_unique<YAML::Node>(node)},
+      path_{std::move(path)},
+      pattern_{std::move(pattern)},
+      problems_{&problems} {}
+MapReader::~MapReader() = default;
+MapReader::MapReader(MapReader&& other) noexcept = default;
+
+MapReader MapReader::whole_file(const std::string& text, const std::string& file,
+                                Problems& problems) {
+  if (!is_utf8(text)) {
+    throw core::InvalidInput{fmt::format("{}:1:1: not UTF-8 text", file)};
+  }
+  try {
+    const std::vector<YAML::Node> documents = YAML::LoadAll(text);
+    if (documents.size() > 1) {
+      throw core::InvalidInput{fmt::format("{}: holds more than one YAML document", file)};
+    }
+    MapReader reader{documents.empty() ? YAML::Node{} : documents.front(), "", "", problems};
+    if (!reader.node_->IsMap()) {
+      throw core::InvalidInput{fmt::format("{}:1:1: not a mapping of keys to values", file)};
+    }
+    return reader;
+  } catch (const YAML::Exception& error) {
+    throw core::InvalidInput{fmt::format("{}:{}:{}: not YAML: {}", file, error.mark.line + 1,
+                                         error.mark.column + 1, error.msg)};
+  }
+}
+
+std::string MapReader::path_of(const std::string& key) const {
+  return path_.empty() ? key : path_ + "." + key;
+}
+std::string MapReader::pattern_of(const std::string& key) const {
+  if (has_free_names_) {
+    return pattern_ + ".*";
+  }
+  return pattern_.empty() ? key : pattern_ + "." + key;
+}
+
+void MapReader::reject_at(const YAML::Node& node, const std::string& path,
+                          const std::string& what) {
+  problems_->add(std::max(0, node.Mark().line), std::max(0, node.Mark().column), path, what);
+}
+void MapReader::reject(const std::string& what) {
+  reject_at(*node_, path_, what);
+}
+void MapReader::reject(const std::string& key, const std::string& what) {
+  const YAML::Node& whole = *node_;
+  const YAML::Node value = whole[key];
+  reject_at(value.IsDefined() ? value : whole, path_of(key), what);
+}
+
+bool MapReader::has(const std::string& key) const {
+  const YAML::Node& whole = *node_;
+  return whole[key].IsDefined();
+}
+
+std::optional<YAML::Node> MapReader::find(const std::string& key, bool required) {
+  known_.push_back(key);
+  problems_->asked_for(pattern_of(key));
+  const YAML::Node& whole = *node_;  // through const, so that asking does not insert
+  const YAML::Node value = whole[key];
+  if (value.IsDefined()) {
+    return value;
+  }
+  if (required) {
+    reject(key, "is missing");
+  }
+  return std::nullopt;
+}
+
+std::optional<double> MapReader::as_number(const YAML::Node& node, const std::string& path,
+                                           const Range& range) {
+  double value{};
+  if (!node.IsScalar() || !YAML::convert<double>::decode(node, value)) {
+    reject_at(node, path, fmt::format("{} is not a number", kind_of(node)));
+    return std::nullopt;
+  }
+  if (!range.contains(value)) {
+    reject_at(node, path, fmt::format("{} is not allowed ({})", value, range.words()));
+    return std::nullopt;
+  }
+  return value;
+}
+
+double MapReader::number(const std::string& key, const Range& range,
+                         std::optional<double> otherwise) {
+  const double harmless = otherwise.value_or(range.low_included ? range.low : range.high);
+  const auto node = find(key, !otherwise);
+  return node ? as_number(*node, path_of(key), range).value_or(harmless) : harmless;
+}
+
+int MapReader::integer(const std::string& key, int low, int high, std::optional<int> otherwise) {
+  const auto node = find(key, !otherwise);
+  if (!node) {
+    return otherwise.value_or(low);
+  }
+  int value{};
+  if (!node->IsScalar() || !YAML::convert<int>::decode(*node, value)) {
+    reject_at(*node, path_of(key), fmt::format("{} is not a whole number", kind_of(*node)));
+    return low;
+  }
+  if (value < low || value > high) {
+    reject_at(*node, path_of(key),
+              fmt::format("{} is not allowed (from {} to {})", value, low, high));
+    return low;
+  }
+  return value;
+}
+
+bool MapReader::yes_or_no(const std::string& key, std::optional<bool> otherwise) {
+  const auto node = find(key, !otherwise);
+  bool value = otherwise.value_or(false);
+  if (node && !YAML::convert<bool>::decode(*node, value)) {
+    reject_at(*node, path_of(key), fmt::format("{} is neither true nor false", kind_of(*node)));
+  }
+  return value;
+}
+
+std::string MapReader::text(const std::string& key, const std::optional<std::string>& otherwise) {
+  const auto node = find(key, !otherwise);
+  if (!node) {
+    return otherwise.value_or("");
+  }
+  if (!node->IsScalar() || node->Scalar().empty() || has_control_characters(node->Scalar())) {
+    reject_at(*node, path_of(key), fmt::format("{} is not one line of text", kind_of(*node)));
+    return "";
+  }
+  return node->Scalar();
+}
+
+std::string MapReader::paragraphs(const std::string& key,
+                                  const std::optional<std::string>& otherwise) {
+  const auto node = find(key, !otherwise);
+  if (!node) {
+    return otherwise.value_or("");
+  }
+  if (!node->IsScalar()) {
+    reject_at(*node, path_of(key), fmt::format("{} is not text", kind_of(*node)));
+    return "";
+  }
+  return node->Scalar();
+}
+
+bool MapReader::check_name(const YAML::Node& node, const std::string& path) {
+  if (node.IsScalar() && is_name(node.Scalar())) {
+    return true;
+  }
+  reject_at(node, path,
+            fmt::format("{} is not a name (1 to 64 letters, digits, '_', '-', '+' or '.', starting "
+                        "with a letter, a digit or '_')",
+                        kind_of(node)));
+  return false;
+}
+
+std::string MapReader::name(const std::string& key) {
+  const auto node = find(key, true);
+  return node && check_name(*node, path_of(key)) ? node->Scalar() : "";
+}
+
+std::vector<double> MapReader::number_list(const std::string& key, const Range& range) {
+  std::vector<double> values;
+  const auto node = find(key, true);
+  if (!node) {
+    return values;
+  }
+  if (!node->IsSequence() || node->size() == 0) {
+    reject_at(*node, path_of(key), "is not a list of numbers");
+    return values;
+  }
+  for (std::size_t i = 0; i < node->size(); ++i) {
+    const std::string path = fmt::format("{}[{}]", path_of(key), i);
+    values.push_back(as_number((*node)[i], path, range).value_or(range.high));
+  }
+  return values;
+}
+
+Eigen::VectorXd MapReader::numbers(const std::string& key, Eigen::Index size, const Range& range) {
+  Eigen::VectorXd values = Eigen::VectorXd::Constant(size, range.high);
+  const auto node = find(key, true);
+  if (!node) {
+    return values;
+  }
+  if (!node->IsSequence() || node->size() != static_cast<std::size_t>(size)) {
+    reject_at(*node, path_of(key), fmt::format("is not a list of {} numbers", size));
+    return values;
+  }
+  for (Eigen::Index i = 0; i < size; ++i) {
+    const std::string path = fmt::format("{}[{}]", path_of(key), i);
+    values[i] = as_number((*node)[i], path, range).value_or(range.high);
+  }
+  return values;
+}
+
+bool MapReader::is_allowed(const YAML::Node& node, const std::string& path, const std::string& kind,
+                           const std::vector<std::string>& allowed) {
+  if (node.IsScalar() && std::ranges::find(allowed, node.Scalar()) != allowed.end()) {
+    return true;
+  }
+  const std::string hint = node.IsScalar() ? did_you_mean(node.Scalar(), allowed) : "";
+  reject_at(node, path,
+            fmt::format("{} is not a known {} (one of: {}{})", kind_of(node), kind,
+                        fmt::join(allowed, ", "), hint));
+  return false;
+}
+
+std::string MapReader::word(const std::string& key, const std::string& kind,
+                            const std::vector<std::string>& allowed,
+                            const std::optional<std::string>& otherwise) {
+  const auto node = find(key, !otherwise);
+  const std::string harmless = otherwise.value_or("");
+  return node && is_allowed(*node, path_of(key), kind, allowed) ? node->Scalar() : harmless;
+}
+
+std::vector<std::string> MapReader::words(
+    const std::string& key, const std::string& kind, const std::vector<std::string>& allowed,
+    const std::optional<std::vector<std::string>>& otherwise) {
+  const auto node = find(key, !otherwise);
+  if (!node) {
+    return otherwise.value_or(std::vector<std::string>{});
+  }
+  if (!node->IsSequence() || node->size() == 0) {
+    reject_at(*node, path_of(key), fmt::format("is not a list of at least one {}", kind));
+    return {};
+  }
+  std::vector<std::string> chosen;
+  for (std::size_t i = 0; i < node->size(); ++i) {
+    const std::string path = fmt::format("{}[{}]", path_of(key), i);
+    const YAML::Node item = (*node)[i];
+    if (!is_allowed(item, path, kind, allowed)) {
+      continue;
+    }
+    if (std::ranges::find(chosen, item.Scalar()) != chosen.end()) {
+      reject_at(item, path, fmt::format("'{}' is listed twice", item.Scalar()));
+      continue;
+    }
+    chosen.push_back(item.Scalar());
+  }
+  return chosen;
+}
+}  // namespace tapstudy::protocols

@@ -1,0 +1,118 @@
+#pragma once
+#include <Eigen/Core>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "protocols/yaml/problems.hpp"
+namespace YAML {  // NOLINT(readability-identifier-naming): the library's own name
+class Node;
+}
+namespace tapstudy::protocols {
+// Allowed numbers: from low to high, the ends included or not.
+struct Range {
+  double low{};
+  double high{};
+  bool low_included{true};
+  bool high_included{true};
+  bool contains(double x) const;
+  std::string words() const;
+
+  static Range positive(double high = 1e30) { return {0.0, high, false, true}; }
+};
+
+// 1 to 64 letters, digits, '_', '-', '+' or '.', not starting with '-', '+' or '.'.
+bool is_name(const std::string& text);
+
+// One mapping of a YAML file, read key by key. Whatever is wrong goes to Problems, and a harmless
+// value is returned so that reading goes on; finish() reports the keys nobody asked for.
+// A key asked for with a default may be missing; one without may not.
+class MapReader {
+ public:
+  // The whole file. Throws InvalidInput if it cannot be read or is not YAML.
+  static MapReader whole_file(const std::string& text, const std::string& file, Problems& problems);
+  ~MapReader();
+  MapReader(MapReader&& other) noexcept;
+  MapReader(const MapReader& other) = delete;
+  MapReader& operator=(const MapReader& other) = delete;
+  MapReader& operator=(MapReader&& other) = delete;
+
+  bool has(const std::string& key) const;
+  double number(const std::string& key, const Range& range, std::optional<double> otherwise = {});
+  int integer(const std::string& key, int low, int high, std::optional<int> otherwise = {});
+  bool yes_or_no(const std::string& key, std::optional<bool> otherwise = {});
+  // Any text on one line; paragraphs may have several.
+  std::string text(const std::string& key, const std::optional<std::string>& otherwise = {});
+  std::string paragraphs(const std::string& key, const std::optional<std::string>& otherwise = {});
+  // A name that data, tables and file names can carry: see is_name.
+  std::string name(const std::string& key);
+  // `size` numbers in brackets.
+  Eigen::VectorXd numbers(const std::string& key, Eigen::Index size, const Range& range);
+  // As many as there are, at least one.
+  std::vector<double> number_list(const std::string& key, const Range& range);
+  // One of the given words; kind names what they are.
+  std::string word(const std::string& key, const std::string& kind,
+                   const std::vector<std::string>& allowed,
+                   const std::optional<std::string>& otherwise = {});
+  std::vector<std::string> words(const std::string& key, const std::string& kind,
+                                 const std::vector<std::string>& allowed,
+                                 const std::optional<std::vector<std::string>>& otherwise = {});
+  template <class Value>
+  Value one_of(const std::string& key, const std::vector<std::pair<std::string, Value>>& table,
+               const std::optional<std::string>& otherwise = {}) {
+    std::vector<std::string> allowed;
+    for (const auto& [name, value] : table) {
+      allowed.push_back(name);
+    }
+    const std::string chosen = word(key, "value", allowed, otherwise);
+    for (const auto& [name, value] : table) {
+      if (name == chosen) {
+        return value;
+      }
+    }
+    return table.front().second;
+  }
+  using ReadMap = std::function<void(MapReader&)>;
+  using ReadNamed = std::function<void(const std::string& name, MapReader&)>;
+  enum class Presence { required, optional };
+  void map(const std::string& key, Presence presence, const ReadMap& read);
+  // A mapping from free names to mappings / to two numbers / to text; a list of mappings.
+  void each(const std::string& key, Presence presence, const ReadNamed& read);
+  void each_point(const std::string& key, Presence presence,
+                  const std::function<void(const std::string&, const Eigen::Vector2d&)>& take);
+  void each_text(const std::string& key, Presence presence,
+                 const std::function<void(const std::string&, const std::string&)>& take);
+  void list(const std::string& key, Presence presence, const ReadMap& read);
+
+  // A problem with this mapping as a whole, or with one of its keys.
+  void reject(const std::string& what);
+  void reject(const std::string& key, const std::string& what);
+  void finish();
+
+ private:
+  MapReader(const YAML::Node& node, std::string path, std::string pattern, Problems& problems);
+  // The value under the key, or nothing after noting that it is missing.
+  std::optional<YAML::Node> find(const std::string& key, bool required);
+  std::string path_of(const std::string& key) const;
+  std::string pattern_of(const std::string& key) const;
+  void reject_at(const YAML::Node& node, const std::string& path, const std::string& what);
+  std::optional<double> as_number(const YAML::Node& node, const std::string& path,
+                                  const Range& range);
+  void read_inner(const YAML::Node& node, const std::string& path, const std::string& pattern,
+                  const ReadMap& read);
+  std::optional<YAML::Node> find_map(const std::string& key, Presence presence);
+  bool check_name(const YAML::Node& node, const std::string& path);
+  bool is_allowed(const YAML::Node& node, const std::string& path, const std::string& kind,
+                  const std::vector<std::string>& allowed);
+
+  std::unique_ptr<YAML::Node> node_;
+  std::string path_;
+  std::string pattern_;
+  bool has_free_names_{false};
+  std::vector<std::string> known_;
+  Problems* problems_;
+};
+}  // namespace tapstudy::protocols

@@ -1,0 +1,183 @@
+#include "runner/accuracy/stability.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <optional>
+
+#include "core/error.hpp"
+#include "core/model/shape/top_height.hpp"
+#include "core/techniques/make_renderer.hpp"
+#include "device/hand/penalty_limit.hpp"
+#include "runner/accuracy/hand_on_plate.hpp"
+#include "runner/stimuli/model_library.hpp"
+namespace tapstudy::runner {
+namespace {
+constexpr double rounding = 1e-12;
+constexpr double little_left = 0.01;
+constexpr double tets_at_most = 1000.0;
+
+// A stimulus as it is tapped, to be pushed to one extreme at a time.
+struct Stage {
+  core::PlateSpec plate;
+  core::RenderSettings rendering;
+  core::HandBody hand;
+  TestTap tap;
+  std::optional<double> damping_ratio;  // of every mode, instead of the material's
+  bool has_vibration{true};
+};
+
+Stage stage_of(const protocols::Protocol& protocol, const protocols::Stimulus& stimulus) {
+  Stage stage{
+      plate_spec(protocol, stimulus), protocol.rendering, protocol.simulation.hand, {}, {}, true};
+  stage.plate.mesh.accuracy.reset();
+  stage.plate.mesh.size.max_tet_volume_m3 =
+      std::abs(core::volume_m3(stage.plate.shape)) / tets_at_most;
+  stage.tap.speed_m_s = protocol.simulation.taps.speed_m_s;
+  stage.tap.press_m = protocol.simulation.taps.press_m;
+  return stage;
+}
+
+Outcome outcome_of(const LoopBehaviour& seen) {
+  if (!seen.is_finite || seen.max_gain_j > rounding * seen.max_energy_j) {
+    return Outcome::failed;
+  }
+  return seen.residual_oscillation <= little_left ? Outcome::dies_out : Outcome::persists;
+}
+
+std::string described(const LoopBehaviour& seen) {
+  const std::string left = seen.residual_oscillation < 1e-6
+                               ? "nothing"
+                               : fmt::format("{:.2g} %", 100.0 * seen.residual_oscillation);
+  return fmt::format("{} impact{}, plate {:.2g} J and force {:.3g} N at most, {} of the swing left",
+                     seen.impacts, seen.impacts == 1 ? "" : "s", seen.max_energy_j,
+                     seen.max_force_n, left);
+}
+
+std::string described(const core::PlateModel& plate) {
+  const int rigid = plate.body.modes.report.rigid_body_modes;
+  return fmt::format("{} modes{}, ", plate.modal.frequency_hz.size(),
+                     rigid > 0 ? fmt::format(" and {} of the rigid body", rigid) : "");
+}
+
+StabilityCase play(const std::string& property, double value, const Stage& stage,
+                   const core::ProgressHook& progress) {
+  StabilityCase played{property, value, Outcome::refused, {}};
+  try {
+    std::optional<core::VibratingPlate> plate;
+    if (stage.has_vibration) {
+      core::PlateModel built = core::build_plate_model(stage.plate, progress);
+      if (stage.damping_ratio) {
+        built.modal.damping_ratio.setConstant(*stage.damping_ratio);
+      }
+      played.words = described(built);
+      plate.emplace(vibrating_plate(stage.plate.shape, std::move(built.modal)));
+    }
+    const core::Technique plate_alone{"plate alone", "", {&core::plate_vibration}};
+    const core::Technique penalty_alone{"penalty alone", "", {}};
+    core::TapRenderer renderer =
+        core::make_renderer(plate ? plate_alone : penalty_alone, stage.rendering,
+                            touched_shape(stage.plate.shape), plate ? &*plate : nullptr);
+    TestTap tap = stage.tap;
+    tap.z_m = core::TopHeight{stage.plate.shape}.at_m({0.0, 0.0}).value_or(0.0);
+    const LoopBehaviour seen = tap_and_stay(renderer, stage.hand, stage.rendering.dt_s, tap);
+    played.outcome = outcome_of(seen);
+    played.words += described(seen);
+  } catch (const core::ModelError& error) {
+    played.words = error.what();
+  } catch (const core::InvalidInput& error) {
+    played.words = error.what();
+  }
+  return played;
+}
+
+struct Extreme {
+  std::string property;
+  std::vector<double> values;
+  std::function<void(Stage&, double)> set;
+};
+
+std::vector<Extreme> of_the_material() {
+  return {{"youngs_modulus_pa",
+           {1e3, 1e6, 1e9, 1e12},
+           [](Stage& stage, double value) { stage.plate.material.youngs_modulus_pa = value; }},
+          {"density_kg_per_m3",
+           {1.0, 100.0, 20000.0},
+           [](Stage& stage, double value) { stage.plate.material.density_kg_per_m3 = value; }},
+          {"poissons_ratio",
+           {-0.9, 0.0, 0.499, 0.4999},
+           [](Stage& stage, double value) { stage.plate.material.poissons_ratio = value; }},
+          {"damping_ratio",
+           {0.0, 0.5, 1.0 - 1e-12, 1.0, 1.0 + 1e-12, 2.0, 100.0},
+           [](Stage& stage, double value) { stage.damping_ratio = value; }}};
+}
+
+void make_thickness(Stage& stage, double to_width) {
+  if (auto* box = std::get_if<core::Box>(&stage.plate.shape)) {
+    box->size_m.z() = to_width * box->size_m.x();
+    stage.plate.mesh.size.max_tet_volume_m3 = box->size_m.prod() / tets_at_most;
+    // thin sheets by flat elements, never flatter than ten to one
+    stage.plate.mesh.size.flattening = std::clamp(0.1 / to_width, 1.0, 10.0);
+  }
+}
+
+std::vector<Extreme> of_the_body() {
+  return {{"thickness_to_width", {1.0, 0.1, 0.01, 0.001}, make_thickness},
+          {"fixations_held", {0.0}, [](Stage& stage, double) { stage.plate.fixations.clear(); }}};
+}
+
+std::vector<Extreme> of_the_tap(double penalty_limit_n_per_m) {
+  std::vector<double> penalties;
+  for (const double part : {0.1, 0.5, 0.9, 1.1, 2.0, 10.0}) {
+    penalties.push_back(part * penalty_limit_n_per_m);
+  }
+  return {
+      {"speed_m_s",
+       {0.0, 0.001, 0.03, 1.0, 10.0},
+       [](Stage& stage, double value) { stage.tap.speed_m_s = value; }},
+      {"sliding_m", {0.01, 0.1}, [](Stage& stage, double value) { stage.tap.sliding_m = value; }},
+      {"press_m", {0.0, 1e-6}, [](Stage& stage, double value) { stage.tap.press_m = value; }},
+      {"penalty_stiffness_n_per_m", penalties, [](Stage& stage, double value) {
+         stage.rendering.penalty_stiffness_n_per_m = value;
+         stage.has_vibration = false;
+       }}};
+}
+}  // namespace
+
+std::string_view name(Outcome outcome) {
+  switch (outcome) {
+    case Outcome::dies_out:
+      return "dies out";
+    case Outcome::persists:
+      return "persists";
+    case Outcome::refused:
+      return "refused";
+    case Outcome::failed:
+      break;
+  }
+  return "FAILED";
+}
+
+Stability measure_stability(const protocols::Protocol& protocol,
+                            const protocols::Stimulus& stimulus,
+                            const core::ProgressHook& progress) {
+  const Stage normal = stage_of(protocol, stimulus);
+  Stability stability;
+  stability.penalty_limit_n_per_m =
+      device::largest_stable_penalty_n_per_m(normal.hand, normal.rendering.dt_s);
+  for (const auto& group :
+       {of_the_material(), of_the_body(), of_the_tap(stability.penalty_limit_n_per_m)}) {
+    for (const Extreme& extreme : group) {
+      for (const double value : extreme.values) {
+        Stage stage = normal;
+        extreme.set(stage, value);
+        core::tell(progress, fmt::format("{} {:g}", extreme.property, value));
+        stability.cases.push_back(play(extreme.property, value, stage, progress));
+      }
+    }
+  }
+  return stability;
+}
+}  // namespace tapstudy::runner

@@ -1,0 +1,91 @@
+#pragma once
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/model/progress_hook.hpp"
+#include "protocols/protocol.hpp"
+namespace tapstudy::runner {
+// What a difference must exceed to be noticed. By default the smallest just noticeable differences
+// for vibration felt through a stylus or tool: 18 % of frequency, 2.2 dB of amplitude (Israr & Tan
+// 2006, Frequency and amplitude discrimination along the kinesthetic-cutaneous continuum).
+struct Tolerance {
+  double frequency{0.18};  // fraction
+  double level_db{2.2};
+};
+
+// One way to render a stimulus.
+struct Setting {
+  core::Meshing mesh;
+  double band_limit_hz{};
+  core::Integrator integrator{};
+  double rate_hz{};
+  bool is_protocols{false};  // what the protocol itself asks for
+};
+
+constexpr std::string_view name(core::Integrator integrator) {
+  return integrator == core::Integrator::exact ? "exact" : "newmark";
+}
+
+// What a setting costs, and how far it is from the reference.
+struct Evaluation {
+  Setting setting;
+  int tets{};
+  int dofs{};
+  int modes{};
+  double build_s{};
+  double tick_ns{};
+  double cost_s{};           // build_s and the processor's time in ten minutes of tapping
+  double frequency_error{};  // largest of all modes in the setting's band, fraction
+  double level_error_db{};   // of the vibration's root mean square, largest of all tapping points,
+                             // with what the output loses by being held from tick to tick
+  double force_error{};      // |f - f_reference| / |f_reference| over 0.3 s (L2), likewise
+  bool is_on_front{false};   // nothing cheaper has a smaller force error
+  bool is_inside_tolerance{false};
+};
+
+// The finest mesh, of order 2, with the widest band tried and the exact integrator; and how far it
+// moves itself.
+struct Reference {
+  int tets{};
+  int dofs{};
+  double band_limit_hz{};
+  int modes{};
+  double build_s{};
+  int coarser_tets{};
+  double moved_frequency{};  // by the next coarser mesh
+  double moved_force{};      // likewise
+  double force_beyond{};     // of the force up to twice the band, what the reference lacks; 0 if
+                             // there are no damping ratios for it
+  bool has_settled(const Tolerance& tolerance) const {
+    return moved_frequency <= 0.25 * tolerance.frequency;
+  }
+};
+
+// A mesh and a band that give no model to measure.
+struct Refused {
+  core::Meshing mesh;
+  double band_limit_hz{};
+  bool is_protocols{false};
+  std::string words;  // why
+};
+
+struct Trade {
+  std::string stimulus;
+  Tolerance tolerance;
+  Reference reference;
+  std::vector<Evaluation> settings;  // cheapest first
+  std::vector<Refused> refused;
+  int cheapest{-1};  // inside the tolerance; -1: there is none
+};
+
+// Builds the stimulus's plate in some twenty ways, and measures each with both integrators and up
+// to three rates. A finger strikes every tapping point at the simulated participants' speed.
+// Throws InvalidInput if the stimulus does not vibrate, ModelError if the reference cannot be
+// built.
+Trade measure_trade(const protocols::Protocol& protocol, const protocols::Stimulus& stimulus,
+                    const Tolerance& tolerance, const core::ProgressHook& progress = {});
+
+// Marks what nothing cheaper surpasses, and finds the cheapest setting inside the tolerance.
+void mark_pareto_front(Trade& trade);
+}  // namespace tapstudy::runner

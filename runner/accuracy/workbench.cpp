@@ -1,0 +1,71 @@
+#include "runner/accuracy/workbench.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <utility>
+
+#include "core/error.hpp"
+#include "core/model/shape/top_height.hpp"
+#include "runner/stimuli/model_library.hpp"
+namespace tapstudy::runner {
+namespace {
+constexpr double compared_s = 0.3;
+}
+
+Workbench::Workbench(const protocols::Protocol& protocol, const protocols::Stimulus& stimulus,
+                     core::ProgressHook progress)
+    : protocol_{protocol}, spec_{plate_spec(protocol, stimulus)}, progress_{std::move(progress)} {
+  const core::TopHeight top{spec_.shape};
+  for (const auto& [name, at_m] : protocol.tapping_points_m) {
+    if (const auto z_m = top.at_m(at_m)) {
+      strikes_.push_back({{at_m.x(), at_m.y(), *z_m}, protocol.simulation.taps.speed_m_s});
+    }
+  }
+  if (strikes_.empty()) {
+    throw core::InvalidInput{
+        fmt::format("stimulus '{}': no tapping point lies on its plate", stimulus.name)};
+  }
+}
+
+core::BodyModes Workbench::solve(const core::Meshing& mesh, double band_limit_hz) const {
+  core::PlateSpec spec = spec_;
+  spec.mesh = mesh;
+  spec.band_limit_hz = band_limit_hz;
+  return core::solve_body(core::body_of(spec), progress_).modes;
+}
+
+void Workbench::fix_damping(const core::BodyModes& body) {
+  if (std::holds_alternative<core::TwoRatioDamping>(spec_.material.damping)) {
+    spec_.material.damping = model_of(body, spec_.band_limit_hz).damping.value();
+  }
+}
+
+core::ModalModel Workbench::model_of(const core::BodyModes& body, double band_limit_hz) const {
+  return core::model_of(body, spec_.material, band_limit_hz);
+}
+
+core::VibratingPlate Workbench::plate_of(core::ModalModel model) const {
+  return vibrating_plate(spec_.shape, std::move(model));
+}
+
+Forces Workbench::forces_n(const core::VibratingPlate& plate, core::Integrator integrator,
+                           double rate_hz) const {
+  core::RenderSettings settings = protocol_.rendering;
+  settings.integrator = integrator;
+  settings.dt_s = 1.0 / rate_hz;
+  const auto stride = static_cast<Eigen::Index>(std::lround(rate_hz / protocol_.rate_hz));
+  const Eigen::Index rows = std::lround(compared_s * protocol_.rate_hz);
+  Forces forces{rows, strikes_.size()};
+  for (std::size_t i = 0; i < strikes_.size(); ++i) {
+    const Eigen::ArrayXd force =
+        felt_force_n(plate, spec_.shape, settings, strikes_[i], rows * stride);
+    forces.col(static_cast<Eigen::Index>(i)) = force(Eigen::seqN(0, rows, stride));
+  }
+  return forces;
+}
+
+double Workbench::tick_ns(const core::VibratingPlate& plate) const {
+  return runner::tick_ns(plate, spec_.shape, protocol_.rendering, strikes_.front());
+}
+}  // namespace tapstudy::runner

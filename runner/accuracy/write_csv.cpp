@@ -1,0 +1,39 @@
+#include <fmt/format.h>
+#include <fmt/ostream.h>
+
+#include "runner/accuracy/writers.hpp"
+namespace tapstudy::runner {
+namespace {
+// RFC 4180: words may hold commas and quotes.
+std::string quoted(const std::string& text) {
+  std::string safe{"\""};
+  for (const char c : text) {
+    safe += c == '"' ? std::string{"\"\""} : std::string{c};
+  }
+  return safe + '"';
+}
+}  // namespace
+
+void write_csv(std::ostream& out, const Trade& trade) {
+  out << "order,elements,dof,band_limit_hz,modes,integrator,rate_hz,build_s,tick_ns,cost_s,"
+         "frequency_error,level_error_db,force_error,is_on_front,is_inside_tolerance,is_"
+         "protocols\n";
+  for (const Evaluation& one : trade.settings) {
+    fmt::print(out,
+               "{},{},{},{},{},{},{},{:.6g},{:.6g},{:.6g},{:.9g},{:.9g},{:.9g},{:d},{:d},{:d}\n",
+               one.setting.mesh.order, one.tets, one.dofs, one.setting.band_limit_hz, one.modes,
+               name(one.setting.integrator), one.setting.rate_hz, one.build_s, one.tick_ns,
+               one.cost_s, one.frequency_error, one.level_error_db, one.force_error,
+               one.is_on_front, one.is_inside_tolerance, one.setting.is_protocols);
+  }
+}
+
+void write_csv(std::ostream& out, const Stability& stability) {
+  out << "property,value,outcome,words\n";
+  for (const StabilityCase& one : stability.cases) {
+    fmt::print(out, "{},{:.17g},{},{}\n", one.property, one.value, name(one.outcome),
+               quoted(one.words));
+  }
+}
+
+}  // namespace tapstudy::runner

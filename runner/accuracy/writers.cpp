@@ -1,0 +1,37 @@
+#include "runner/accuracy/writers.hpp"
+
+#include <unistd.h>
+
+#include <filesystem>
+
+#include "core/error.hpp"
+#include "core/output_file.hpp"
+namespace tapstudy::runner {
+namespace {
+std::string in(const std::string& directory, const char* name) {
+  return (std::filesystem::path{directory} / name).string();
+}
+}  // namespace
+
+void make_room(const std::string& directory) {
+  std::error_code error;
+  std::filesystem::create_directories(directory, error);
+  if (!std::filesystem::is_directory(directory, error) ||
+      access(directory.c_str(), W_OK | X_OK) != 0) {
+    throw core::InvalidInput{"--out: " + directory + " cannot be made a directory to write into"};
+  }
+  for (const char* const name : {"trade.csv", "stability.csv", "trade.json", "trade.svg"}) {
+    core::check_is_new(in(directory, name));
+  }
+}
+
+void write_files(const std::string& directory, const Trade& trade, const Stability& stability) {
+  core::write_new_file(in(directory, "trade.csv"),
+                       [&](std::ostream& out) { write_csv(out, trade); });
+  core::write_new_file(in(directory, "stability.csv"),
+                       [&](std::ostream& out) { write_csv(out, stability); });
+  core::write_new_file(in(directory, "trade.json"),
+                       [&](std::ostream& out) { out << json_of(trade, stability) << '\n'; });
+  analysis::draw_svg(figure_of(trade), in(directory, "trade.svg"));
+}
+}  // namespace tapstudy::runner

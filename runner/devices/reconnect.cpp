@@ -1,0 +1,27 @@
+#include "runner/devices/reconnect.hpp"
+
+#include <fmt/format.h>
+
+#include "runner/terminal/operator_prompt.hpp"
+namespace tapstudy::runner {
+std::unique_ptr<SessionDevice> reconnect(const std::string& what_happened,
+                                         const DeviceRequest& request,
+                                         std::unique_ptr<SessionDevice> broken) {
+  const device::DeviceError gives_up{what_happened + " (go on with --resume)"};
+  if (!request.rig.has_hardware) {
+    throw gives_up;
+  }
+  broken.reset();  // only one can hold the device
+  const DeviceKind& kind = kind_of(request.rig);
+  std::string task = fmt::format(
+      "\n{}.\nType quit to stop here; or see to the device, its power and its plug, and to go on",
+      what_happened);
+  while (asked_and_done(request.operator_input, task)) {
+    if (kind.is_there()) {
+      return kind.open(request);
+    }
+    task = "It is not there yet. To try again";
+  }
+  throw gives_up;
+}
+}  // namespace tapstudy::runner

@@ -1,0 +1,108 @@
+#include "runner/experiments/scripted_tap.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <charconv>
+#include <cmath>
+#include <optional>
+#include <span>
+
+#include "core/error.hpp"
+#include "core/model/shape/top_height.hpp"
+#include "device/hand/simulated_hand.hpp"
+#include "device/loop/haptic_loop.hpp"
+#include "runner/devices/rigs.hpp"
+#include "runner/stimuli/trial_stimuli.hpp"
+namespace tapstudy::runner {
+namespace {
+constexpr double hover_m = 0.005;
+
+double height_m(const ScriptedTap& tap, const core::Shape& shape) {
+  const auto height_m = core::TopHeight{shape}.at_m(tap.at_m);
+  if (!height_m) {
+    const core::Bounds body = core::bounds(shape);
+    throw core::InvalidInput{fmt::format(
+        "--at: ({}, {}) is off the plate (x from {} to {} m, y from {} to {} m)", tap.at_m.x(),
+        tap.at_m.y(), body.low_m.x(), body.high_m.x(), body.low_m.y(), body.high_m.y())};
+  }
+  return *height_m;
+}
+
+void check(const ScriptedTap& tap) {
+  if (!(tap.speed_m_s >= 0.001 && tap.speed_m_s <= 10.0)) {
+    throw core::InvalidInput{
+        fmt::format("--speed: {} is not allowed (from 0.001 to 10 m/s)", tap.speed_m_s)};
+  }
+  if (!(tap.seconds >= 0.01 && tap.seconds <= 60.0)) {
+    throw core::InvalidInput{
+        fmt::format("--seconds: {} is not allowed (from 0.01 to 60)", tap.seconds)};
+  }
+}
+
+// In virtual time, every tick kept as it is.
+std::vector<core::TraceSample> samples_of(device::Device& hand,
+                                          std::span<core::TapRenderer> alternatives,
+                                          const device::LoopSettings& settings, double seconds) {
+  const auto ticks = static_cast<std::int64_t>(
+      std::llround(seconds / (1e-9 * static_cast<double>(settings.period))));
+  core::SpscRing<core::TraceSample> ring{static_cast<std::size_t>(ticks)};
+  device::VirtualClock clock;
+  device::HapticLoop loop{hand, alternatives, settings, ring, clock};
+  loop.run_ticks(ticks);
+  std::vector<core::TraceSample> samples;
+  core::TraceSample sample{};
+  while (ring.try_pop(sample)) {
+    samples.push_back(sample);
+  }
+  return samples;
+}
+
+std::optional<double> number(const std::string& text) {
+  double value{};
+  const char* const end = text.data() + text.size();
+  const auto [stopped, error] = std::from_chars(text.data(), end, value);
+  return error == std::errc{} && stopped == end ? std::optional{value} : std::nullopt;
+}
+}  // namespace
+
+std::vector<core::TraceSample> trace_of(const ScriptedTap& tap, const protocols::Protocol& protocol,
+                                        const protocols::Rig& rig, ModelLibrary& models) {
+  const protocols::Stimulus& stimulus = protocol.stimulus(tap.stimulus);
+  check(tap);
+  const double z_m = height_m(tap, stimulus.plate->shape);
+  const device::LoopSettings settings = loop_settings(protocol, rig);
+  device::SimulatedHand hand{protocol.simulation.hand, protocol.rendering.dt_s,
+                             device::SimulatedHand::Memory::none};
+  device::PlannedTap planned;
+  planned.point_m = settings.placement.point_to_device({tap.at_m.x(), tap.at_m.y(), z_m});
+  planned.speed_m_s = tap.speed_m_s;
+  planned.hover_m = hover_m;
+  planned.run_up_m = 0.0;
+  planned.press_m = protocol.simulation.taps.press_m;
+  planned.dwell_s = tap.seconds;
+  hand.follow({planned});
+  TrialStimuli stimuli = build_trial_stimuli(protocol, {tap.stimulus}, models);
+  return samples_of(hand, stimuli.alternatives, settings, hover_m / tap.speed_m_s + tap.seconds);
+}
+
+Eigen::Vector2d point_on_plate(const std::string& text, const protocols::Protocol& protocol) {
+  const auto named = protocol.tapping_points_m.find(text);
+  if (named != protocol.tapping_points_m.end()) {
+    return named->second;
+  }
+  const auto comma = text.find(',');
+  const auto x = number(text.substr(0, comma));
+  const auto y = comma == std::string::npos ? std::nullopt : number(text.substr(comma + 1));
+  if (!x || !y) {
+    std::vector<std::string> names;
+    for (const auto& [name, at] : protocol.tapping_points_m) {
+      names.push_back(name);
+    }
+    throw core::InvalidInput{
+        fmt::format("--at: '{}' is neither X,Y in metres nor a tapping point (one of: {})", text,
+                    fmt::join(names, ", "))};
+  }
+  return {*x, *y};
+}
+}  // namespace tapstudy::runner

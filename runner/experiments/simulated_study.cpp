@@ -1,0 +1,129 @@
+#include "runner/experiments/simulated_study.hpp"
+
+#include <fmt/format.h>
+
+#include <atomic>
+#include <chrono>
+#include <exception>
+#include <mutex>
+#include <set>
+#include <thread>
+#include <vector>
+
+#include "core/error.hpp"
+#include "core/rng.hpp"
+#include "device/device.hpp"
+#include "protocols/schedule.hpp"
+#include "results/recorder.hpp"
+#include "runner/devices/rigs.hpp"
+#include "runner/participants/simulated_participant.hpp"
+#include "runner/session/session_row.hpp"
+#include "runner/session/trial_engine.hpp"
+#include "runner/terminal/progress.hpp"
+#include "runner/terminal/stop_signal.hpp"
+#include "runner/trial_loop/virtual_trial_loop.hpp"
+namespace tapstudy::runner {
+namespace {
+struct PlannedSession {
+  std::int64_t id{};
+  std::uint64_t seed{};
+  protocols::Schedule schedule;
+};
+
+std::vector<PlannedSession> add_sessions(const SimulatedStudy& study,
+                                         const protocols::Protocol& protocol,
+                                         const protocols::Rig& rig, results::Store& store) {
+  std::vector<PlannedSession> sessions;
+  for (int i = 0; i < study.participants; ++i) {
+    SessionPlan plan{
+        fmt::format("sim-{:02}", i + 1),
+        0,
+        results::Mode::simulated,
+        core::derived_seed(study.seed, core::Purpose::participant, static_cast<std::uint64_t>(i)),
+        "simulated hand",
+        "virtual time",
+        ""};
+    plan.participant_index = store.index_of(plan.participant_id, plan.mode);
+    if (store.has_sessions(plan.participant_id)) {
+      throw core::InvalidInput{
+          fmt::format("{}: participant '{}' is in this study already (choose "
+                      "another --out)",
+                      study.directory, plan.participant_id)};
+    }
+    PlannedSession session{0, plan.seed,
+                           make_schedule(protocol, plan.seed, plan.participant_index)};
+    results::SessionRow row = session_row(plan, protocol, rig, session.schedule);
+    store.add_session(row);
+    session.id = row.id;
+    sessions.push_back(std::move(session));
+  }
+  return sessions;
+}
+
+// Workers take the next session until none is left or one of them has failed.
+class Workers {
+ public:
+  using Work = std::function<void(const PlannedSession&)>;
+  static void share(const std::vector<PlannedSession>& sessions, const Work& work) {
+    Workers workers{sessions, work};
+    {
+      std::vector<std::jthread> threads;
+      for (unsigned int i = 0; i < std::max(1U, std::thread::hardware_concurrency()); ++i) {
+        threads.emplace_back([&] { workers.run_worker(); });
+      }
+    }
+    if (workers.failure_) {
+      std::rethrow_exception(workers.failure_);
+    }
+  }
+
+ private:
+  Workers(const std::vector<PlannedSession>& sessions, const Work& work)
+      : sessions_{sessions}, work_{work} {}
+  void run_worker() {
+    for (std::size_t i = next_++; i < sessions_.size() && !has_failed_; i = next_++) {
+      try {
+        work_(sessions_[i]);
+      } catch (...) {  // the first failure is thrown again on the calling thread
+        const std::lock_guard lock{mutex_};
+        failure_ = has_failed_.exchange(true) ? failure_ : std::current_exception();
+      }
+    }
+  }
+  const std::vector<PlannedSession>& sessions_;
+  const Work& work_;
+  std::atomic<std::size_t> next_{0};
+  std::atomic<bool> has_failed_{false};
+  std::mutex mutex_;
+  std::exception_ptr failure_;
+};
+}  // namespace
+
+SimulatedTime simulate(const SimulatedStudy& study, const protocols::Protocol& protocol) {
+  const auto start = std::chrono::steady_clock::now();
+  const protocols::Rig rig = simulated_rig();
+  const device::LoopSettings settings = loop_settings(protocol, rig);
+  ModelLibrary models;
+  models.build_all(protocol);
+  results::Store store =
+      results::Store::open_or_create(study.directory, study_row(protocol, study.protocol_file));
+  const std::vector<PlannedSession> sessions = add_sessions(study, protocol, rig, store);
+  const Progress progress{fmt::format("simulating {} participants", study.participants)};
+  std::atomic<std::int64_t> ticks{0};
+  std::atomic<int> trials{0};
+  results::Recorder recorder{store};
+  Workers::share(sessions, [&](const PlannedSession& session) {
+    SimulatedParticipant participant{protocol, settings, models, session.seed};
+    VirtualTrialLoop trial_loop{participant.hand(), settings};
+    TrialEngine engine{protocol, models, trial_loop, participant, recorder};
+    std::set<int> done;
+    if (const auto interruption = engine.run(session.id, session.schedule, done)) {
+      throw device::DeviceError{to_text(*interruption)};
+    }
+    ticks += engine.ticks();
+    trials += static_cast<int>(session.schedule.size());
+  });
+  const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
+  return {trials, static_cast<double>(ticks) / protocol.rate_hz, wall.count()};
+}
+}  // namespace tapstudy::runner

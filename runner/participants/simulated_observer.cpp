@@ -1,0 +1,132 @@
+#include "runner/participants/simulated_observer.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/error.hpp"
+namespace tapstudy::runner {
+namespace {
+// No two levels are told apart below this, however quiet the observer: it keeps weights finite.
+constexpr double min_difference_db = 0.1;
+
+Features mean_of(std::span<const FeltTap> taps) {
+  Features mean{};
+  for (const FeltTap& tap : taps) {
+    for (std::size_t i = 0; i < mean.size(); ++i) {
+      mean.at(i) += tap.level_db.at(i) / static_cast<double>(taps.size());
+    }
+  }
+  return mean;
+}
+
+}  // namespace
+
+SimulatedObserver::SimulatedObserver(std::vector<core::Vec3> places_m, double noise_db,
+                                     core::Rng rng)
+    : places_m_{std::move(places_m)}, noise_db_{noise_db}, rng_{rng} {}
+
+std::size_t SimulatedObserver::index_of_least(const std::vector<double>& values) {
+  const double least = *std::ranges::min_element(values);
+  std::vector<std::size_t> equals;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (values[i] == least) {
+      equals.push_back(i);
+    }
+  }
+  return equals[rng_.below(static_cast<std::uint32_t>(equals.size()))];
+}
+
+std::size_t SimulatedObserver::place_of(const FeltTap& tap) const {
+  const auto nearest = std::ranges::min_element(
+      places_m_, {}, [&](const core::Vec3& place) { return (place - tap.place_m).squaredNorm(); });
+  return static_cast<std::size_t>(nearest - places_m_.begin());
+}
+
+void SimulatedObserver::remember(const std::string& plate, std::span<const FeltTap> taps) {
+  if (taps.empty()) {
+    throw core::InvalidInput{
+        fmt::format("simulation: no tap on '{}' stays in contact for the 0.16 s that feeling it "
+                    "takes (raise simulation.taps.dwell_s or press_m)",
+                    plate)};
+  }
+  std::vector<std::vector<FeltTap>> at_place(places_m_.size());
+  for (const FeltTap& tap : taps) {
+    at_place.at(place_of(tap)).push_back(tap);
+  }
+  Memory& memory = memories_[plate];
+  memory = {};
+  for (const std::vector<FeltTap>& here : at_place) {
+    memory.mean_db.push_back(mean_of(here.empty() ? taps : std::span<const FeltTap>{here}));
+  }
+  for (const FeltTap& tap : taps) {
+    const Features& mean = memory.mean_db.at(place_of(tap));
+    for (std::size_t i = 0; i < mean.size(); ++i) {
+      const double deviation = tap.level_db.at(i) - mean.at(i);
+      memory.variance_db2.at(i) += deviation * deviation / static_cast<double>(taps.size());
+    }
+  }
+}
+
+Features SimulatedObserver::difference(std::span<const FeltTap> felt, const Memory& memory) const {
+  Features mean{};
+  for (const FeltTap& tap : felt) {
+    const Features& expected = memory.mean_db.at(place_of(tap));
+    for (std::size_t i = 0; i < mean.size(); ++i) {
+      mean.at(i) += (tap.level_db.at(i) - expected.at(i)) / static_cast<double>(felt.size());
+    }
+  }
+  return mean;
+}
+
+Features SimulatedObserver::noise() {
+  Features noise{};
+  std::ranges::generate(noise, [&] { return noise_db_ * rng_.normal(); });
+  return noise;
+}
+
+double SimulatedObserver::distance(const Features& difference, const Features& noise,
+                                   const Memory& memory) const {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < difference.size(); ++i) {
+    const double felt = difference.at(i) + noise.at(i);
+    sum +=
+        felt * felt /
+        (noise_db_ * noise_db_ + memory.variance_db2.at(i) + min_difference_db * min_difference_db);
+  }
+  return sum;
+}
+
+std::size_t SimulatedObserver::most_similar(std::span<const FeltTap> felt,
+                                            const std::vector<std::string>& plates) {
+  if (felt.empty()) {
+    return rng_.below(static_cast<std::uint32_t>(plates.size()));
+  }
+  const Features blur = noise();
+  Memory common;  // one scale for all candidates
+  for (const std::string& plate : plates) {
+    for (std::size_t i = 0; i < blur.size(); ++i) {
+      common.variance_db2.at(i) +=
+          memories_.at(plate).variance_db2.at(i) / static_cast<double>(plates.size());
+    }
+  }
+  std::vector<double> distances;
+  for (const std::string& plate : plates) {
+    distances.push_back(distance(difference(felt, memories_.at(plate)), blur, common));
+  }
+  return index_of_least(distances);
+}
+
+std::size_t SimulatedObserver::most_similar(const std::vector<std::vector<FeltTap>>& felt,
+                                            const std::string& plate) {
+  const Memory& memory = memories_.at(plate);
+  std::vector<double> distances;
+  for (const std::vector<FeltTap>& taps : felt) {
+    distances.push_back(taps.empty() ? std::numeric_limits<double>::infinity()
+                                     : distance(difference(taps, memory), noise(), memory));
+  }
+  return index_of_least(distances);
+}
+}  // namespace tapstudy::runner

@@ -1,0 +1,35 @@
+#pragma once
+#include <cstdint>
+
+#include "core/rng.hpp"
+#include "device/hand/simulated_hand.hpp"
+#include "device/loop/haptic_loop.hpp"
+#include "protocols/protocol.hpp"
+#include "runner/participants/participant.hpp"
+#include "runner/participants/simulated_observer.hpp"
+#include "runner/stimuli/model_library.hpp"
+namespace tapstudy::runner {
+// A hand that taps and an observer that judges what the hand felt. Everything it does follows from
+// its seed; how it explores and answers is the task's. Before the study it taps the real plates
+// that the protocol's tasks ask for, to remember them, ringing at their own frequencies (exact
+// integration).
+class SimulatedParticipant final : public Participant {
+ public:
+  SimulatedParticipant(const protocols::Protocol& protocol, const device::LoopSettings& settings,
+                       ModelLibrary& models, std::uint64_t seed);
+  device::Device& hand() { return hand_; }
+
+  std::optional<std::size_t> perform(const TrialPrompt& prompt, Exploration& exploration) override;
+
+ private:
+  class Touch;
+  std::vector<FeltTap> tap(Exploration& exploration, int count);
+  void remember_real_plates(ModelLibrary& models);
+
+  const protocols::Protocol& protocol_;
+  device::LoopSettings settings_;
+  device::SimulatedHand hand_;
+  core::Rng hand_rng_;
+  SimulatedObserver observer_;
+};
+}  // namespace tapstudy::runner

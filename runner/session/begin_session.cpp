@@ -1,0 +1,65 @@
+#include "runner/session/begin_session.hpp"
+
+#include <fmt/format.h>
+
+#include <random>
+
+#include "core/error.hpp"
+#include "runner/session/session_row.hpp"
+namespace tapstudy::runner {
+namespace {
+std::uint64_t drawn_seed() {
+  std::random_device source;
+  return (static_cast<std::uint64_t>(source()) << 32U) | source();
+}
+
+std::optional<results::SessionRow> earlier_session(const SessionRequest& request,
+                                                   results::Store& store) {
+  auto earlier = store.latest_session(request.participant_id);
+  if (earlier && request.resume == Resume::no) {
+    throw core::InvalidInput{
+        fmt::format("participant '{}' is in this study already (go on with "
+                    "--resume, or choose another id)",
+                    request.participant_id)};
+  }
+  if (!earlier && request.resume == Resume::yes) {
+    throw core::InvalidInput{
+        fmt::format("participant '{}' has no session to resume", request.participant_id)};
+  }
+  return earlier;
+}
+
+void resume(const results::SessionRow& earlier, results::Store& store, BegunSession& session) {
+  if (earlier.planned_order != session.row.planned_order) {
+    throw core::InvalidInput{
+        "--resume: this program would plan another order than the stored "
+        "one; resume with the version that began the session"};
+  }
+  session.row.resumes = earlier.id;
+  const std::vector<int> done = store.answered_trials(earlier.participant_id);
+  session.done = {done.begin(), done.end()};
+}
+}  // namespace
+
+BegunSession begin_session(const SessionRequest& request, const protocols::Protocol& protocol,
+                           const protocols::Rig& rig, const PreflightReport& preflight,
+                           results::Store& store) {
+  SessionPlan plan;
+  plan.participant_id = request.participant_id;
+  plan.mode = request.mode;
+  plan.device = preflight.device;
+  plan.scheduler = preflight.diagnosis.idle.realtime;
+  plan.doctor = to_json(preflight.diagnosis);
+  plan.participant_index = store.index_of(plan.participant_id, plan.mode);
+  const auto earlier = earlier_session(request, store);
+  plan.seed = earlier ? earlier->seed : request.seed ? *request.seed : drawn_seed();
+  BegunSession session;
+  session.schedule = make_schedule(protocol, plan.seed, plan.participant_index);
+  session.row = session_row(plan, protocol, rig, session.schedule);
+  if (earlier) {
+    resume(*earlier, store, session);
+  }
+  store.add_session(session.row);
+  return session;
+}
+}  // namespace tapstudy::runner

@@ -1,0 +1,35 @@
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <set>
+#include <string>
+
+#include "protocols/protocol.hpp"
+#include "protocols/rig.hpp"
+#include "protocols/schedule.hpp"
+#include "results/store.hpp"
+#include "runner/session/preflight.hpp"
+namespace tapstudy::runner {
+enum class Resume { no, yes };
+
+// Who takes part, and how.
+struct SessionRequest {
+  std::string participant_id;
+  results::Mode mode{results::Mode::real};
+  Resume resume{Resume::no};
+  std::optional<std::uint64_t> seed;  // of a new session; else drawn
+};
+
+struct BegunSession {
+  results::SessionRow row;  // stored
+  protocols::Schedule schedule;
+  std::set<int> done;  // numbers of trials that are answered already
+};
+
+// A new session, or one that goes on with the order of the participant's last; its seed and order
+// are in the store when this returns. Throws InvalidInput if the participant has a session and does
+// not resume, has none to resume, or if this program would plan another order than the stored one.
+BegunSession begin_session(const SessionRequest& request, const protocols::Protocol& protocol,
+                           const protocols::Rig& rig, const PreflightReport& preflight,
+                           results::Store& store);
+}  // namespace tapstudy::runner

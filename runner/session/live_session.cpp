@@ -1,0 +1,75 @@
+#include "runner/session/live_session.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <utility>
+
+#include "core/error.hpp"
+#include "results/recorder.hpp"
+#include "runner/devices/device_kind.hpp"
+#include "runner/devices/reconnect.hpp"
+#include "runner/devices/rigs.hpp"
+#include "runner/participants/console_participant.hpp"
+#include "runner/session/session_row.hpp"
+#include "runner/session/trial_engine.hpp"
+#include "runner/terminal/session_lock.hpp"
+#include "runner/terminal/stop_signal.hpp"
+#include "runner/trial_loop/live_trial_loop.hpp"
+namespace tapstudy::runner {
+namespace {
+// Everything that can be refused before the device is touched and the store opened.
+void check(const LiveSession& live) {
+  check_has_blocks(live.protocol);
+  check_participant_id(live.request.participant_id);
+  if (!kind_of(live.rig).has_participant() && live.request.mode != results::Mode::pilot) {
+    throw core::InvalidInput{"a replayed hand is no participant: give --pilot too"};
+  }
+  check_fits(live.protocol, live.rig);
+  if (live.request.resume == Resume::yes) {
+    results::Store::open_existing(live.directory);  // or there is nothing to resume
+  }
+}
+
+SessionLock lock_of(const LiveSession& live) {
+  const std::string& id = live.request.participant_id;
+  return {std::filesystem::absolute(live.directory).lexically_normal().string() + " " + id,
+          fmt::format("participant '{}' is in a session of this study right now", id)};
+}
+
+// The trials that are left, on the device and, after a fault, on the device opened anew.
+void run_trials(const LiveSession& live, const device::LoopSettings& settings, ModelLibrary& models,
+                const DeviceRequest& device_request, std::unique_ptr<SessionDevice> device,
+                results::Store& store, BegunSession& session) {
+  ConsoleParticipant participant{device_request.operator_input, [&] { device->get_ready(); }};
+  results::Recorder recorder{store};
+  LiveTrialLoop trial_loop{device->device(), settings, live.rig.realtime, recorder};
+  TrialEngine engine{live.protocol, models, trial_loop, participant, recorder};
+  while (const auto interruption = engine.run(session.row.id, session.schedule, session.done)) {
+    device = reconnect(to_text(*interruption), device_request, std::move(device));
+    device->begin_session(session.row.seed);
+    trial_loop.use(device->device());
+  }
+}
+}  // namespace
+
+std::size_t run_live_session(const LiveSession& live) {
+  const device::LoopSettings settings = loop_settings(live.protocol, live.rig);
+  check(live);
+  ModelLibrary models;
+  models.build_all(live.protocol);
+  const SessionLock lock = lock_of(live);
+  listen_for_stop();
+  LineInput input{STDIN_FILENO};
+  const DeviceRequest device_request{live.protocol, live.rig, input};
+  std::unique_ptr<SessionDevice> device = kind_of(live.rig).open(device_request);
+  results::Store store =
+      results::Store::open_or_create(live.directory, study_row(live.protocol, live.protocol_file));
+  BegunSession session = begin_session(live.request, live.protocol, live.rig,
+                                       run_preflight(live.rig, *device, settings.period), store);
+  device->begin_session(session.row.seed);
+  run_trials(live, settings, models, device_request, std::move(device), store, session);
+  return session.schedule.size();
+}
+}  // namespace tapstudy::runner

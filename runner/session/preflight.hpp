@@ -1,0 +1,16 @@
+#pragma once
+#include <string>
+
+#include "protocols/rig.hpp"
+#include "runner/devices/diagnosis.hpp"
+#include "runner/devices/session_device.hpp"
+namespace tapstudy::runner {
+// What a session can count on, measured before its first trial and stored with it.
+struct PreflightReport {
+  std::string device;
+  Diagnosis diagnosis;
+};
+// Takes half a second. Warns if the machine or the device is too slow for the loop.
+PreflightReport run_preflight(const protocols::Rig& rig, SessionDevice& device,
+                              device::Nanoseconds period);
+}  // namespace tapstudy::runner

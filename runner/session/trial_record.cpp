@@ -1,0 +1,55 @@
+#include "runner/session/trial_record.hpp"
+
+#include <algorithm>
+namespace tapstudy::runner {
+namespace {
+std::optional<double> first_contact_s(const std::vector<results::EventRow>& events) {
+  const auto contact = std::ranges::find(events, "contact", &results::EventRow::kind);
+  return contact == events.end() ? std::nullopt : std::optional{contact->t_s};
+}
+
+results::ResponseRow response_row(const protocols::PlannedTrial& trial, const Answer& answer,
+                                  const std::vector<results::EventRow>& events) {
+  results::ResponseRow response{answer.response, trial.task->is_correct(trial, answer.response),
+                                answer.response_time_s, std::nullopt};
+  if (const auto contact_s = first_contact_s(events)) {
+    response.time_from_first_contact_s = answer.response_time_s - *contact_s;
+  }
+  return response;
+}
+}  // namespace
+
+results::TrialRecord trial_record(std::int64_t session_id, const protocols::PlannedTrial& trial,
+                                  int attempt, const std::optional<Answer>& answer,
+                                  TrialResult result) {
+  results::TrialRecord record;
+  record.trial = {session_id,
+                  trial.number,
+                  attempt,
+                  trial.block,
+                  std::string{trial.task->name()},
+                  trial.is_practice,
+                  trial.repetition,
+                  answer ? "answered" : "interrupted",
+                  result.trace.duration_s};
+  const std::vector<std::string> labels = trial.task->alternative_labels(trial);
+  for (std::size_t i = 0; i < trial.stimuli.size(); ++i) {
+    record.alternatives.push_back(
+        {static_cast<int>(i), labels.empty() ? std::string{} : labels[i], trial.stimuli[i]});
+  }
+  if (answer) {
+    record.response = response_row(trial, *answer, result.trace.events);
+  }
+  record.statistics = {result.trace.ticks,
+                       result.loop.late,
+                       result.loop.skipped,
+                       result.loop.saturated,
+                       result.dropped_samples,
+                       1e-9 * static_cast<double>(result.loop.lateness.quantile(0.999)),
+                       1e-9 * static_cast<double>(result.loop.lateness.worst()),
+                       to_text(result.loop.stopped_by)};
+  record.events = std::move(result.trace.events);
+  record.trace = std::move(result.trace.chunks);
+  return record;
+}
+}  // namespace tapstudy::runner

@@ -1,0 +1,127 @@
+#include "runner/stimuli/model_library.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+
+#include "core/error.hpp"
+#include "runner/build_info.hpp"
+#include "runner/terminal/logging.hpp"
+#include "runner/terminal/progress.hpp"
+namespace tapstudy::runner {
+namespace {
+std::string cache_directory() {
+  const auto variable = [](const char* name) {
+    const char* const value = std::getenv(name);  // NOLINT(concurrency-mt-unsafe): set-up only
+    return value == nullptr ? std::string{} : std::string{value};
+  };
+  if (!variable("TAPSTUDY_CACHE").empty()) {
+    return variable("TAPSTUDY_CACHE");
+  }
+  if (!variable("XDG_CACHE_HOME").empty()) {
+    return variable("XDG_CACHE_HOME") + "/tapstudy";
+  }
+  return variable("HOME").empty() ? std::string{} : variable("HOME") + "/.cache/tapstudy";
+}
+
+// What is wrong with a model is wrong with the stimulus that asked for it.
+template <class Build>
+auto with_stimulus_name(const protocols::Stimulus& stimulus, const Build& build) {
+  try {
+    return build();
+  } catch (const core::ModelError& error) {
+    throw core::ModelError{fmt::format("stimulus '{}': {}", stimulus.name, error.what())};
+  }
+}
+}  // namespace
+
+core::ModelCache models_of_this_user() {
+  return {cache_directory(), fmt::format("{} {}", program_version(), git_hash())};
+}
+
+core::PlateSpec plate_spec(const protocols::Protocol& protocol,
+                           const protocols::Stimulus& stimulus) {
+  return {*stimulus.plate, *stimulus.material, protocol.band_limit_hz};
+}
+
+core::BodySpec body_spec(const protocols::Protocol& protocol, const protocols::Stimulus& stimulus) {
+  core::BodySpec body = core::body_of(plate_spec(protocol, stimulus));
+  for (const protocols::Stimulus& other : protocol.stimuli) {
+    if (other.technique->needs_model() && other.plate == stimulus.plate &&
+        other.material->poissons_ratio == body.poissons_ratio) {
+      body.band_limit_rad_per_m =
+          std::max(body.band_limit_rad_per_m,
+                   core::kappa_rad_per_m(protocol.band_limit_hz, *other.material));
+    }
+  }
+  return body;
+}
+
+core::VibratingPlate vibrating_plate(const core::Shape& shape, core::ModalModel model) {
+  return std::holds_alternative<core::Box>(shape)
+             ? core::VibratingPlate{std::move(model)}
+             : core::VibratingPlate::touched_all_over(std::move(model));
+}
+
+ModelLibrary::Body ModelLibrary::body(const protocols::Protocol& protocol,
+                                      const protocols::Stimulus& stimulus) {
+  core::check_material(*stimulus.material);
+  const core::BodySpec spec = body_spec(protocol, stimulus);
+  const std::string key = core::content_key(spec);
+  Body& body = bodies_[key];
+  if (body) {
+    return body;
+  }
+  if (auto kept = cache_.find(key)) {
+    body = std::make_shared<const core::BodyModes>(std::move(*kept));
+    return body;
+  }
+  Progress progress{fmt::format("building the model of '{}'", stimulus.name)};
+  body = std::make_shared<const core::BodyModes>(core::solve_body(spec, progress.hook()).modes);
+  ++solved_;
+  if (!cache_.keep(key, *body)) {
+    warn(
+        fmt::format("{}: models cannot be kept here, they will be built anew", cache_.directory()));
+  }
+  return body;
+}
+
+ModelLibrary::Body ModelLibrary::body_of(const protocols::Protocol& protocol,
+                                         const protocols::Stimulus& stimulus) {
+  const std::lock_guard lock{mutex_};
+  return with_stimulus_name(stimulus, [&] { return body(protocol, stimulus); });
+}
+
+ModelLibrary::Plate ModelLibrary::plate_of(const protocols::Protocol& protocol,
+                                           const protocols::Stimulus& stimulus) {
+  const std::lock_guard lock{mutex_};
+  const core::PlateSpec spec = plate_spec(protocol, stimulus);
+  Plate& plate = plates_[fmt::format("{} {} {:a}", core::content_key(body_spec(protocol, stimulus)),
+                                     core::content_key(spec.material), spec.band_limit_hz)];
+  if (!plate) {
+    plate = with_stimulus_name(stimulus, [&] {
+      core::ModalModel model =
+          core::model_of(*body(protocol, stimulus), spec.material, spec.band_limit_hz);
+      return std::make_shared<const core::VibratingPlate>(
+          vibrating_plate(spec.shape, std::move(model)));
+    });
+  }
+  return plate;
+}
+
+core::TouchedShape touched_shape(const core::Shape& shape) {
+  if (const auto* box = std::get_if<core::Box>(&shape)) {
+    return core::PlateFace{box->high_m().x(), box->high_m().y()};
+  }
+  return std::get<core::Solid>(shape).triangles();
+}
+
+void ModelLibrary::build_all(const protocols::Protocol& protocol) {
+  for (const protocols::Stimulus& stimulus : protocol.stimuli) {
+    if (stimulus.technique->needs_model()) {
+      plate_of(protocol, stimulus);
+    }
+  }
+}
+}  // namespace tapstudy::runner

@@ -1,0 +1,17 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "core/tick/tap_renderer.hpp"
+#include "protocols/protocol.hpp"
+#include "runner/stimuli/model_library.hpp"
+namespace tapstudy::runner {
+// A trial's alternatives, ready to be rendered, with the models they need.
+struct TrialStimuli {
+  std::vector<ModelLibrary::Plate> plates;
+  std::vector<core::TapRenderer> alternatives;
+};
+
+TrialStimuli build_trial_stimuli(const protocols::Protocol& protocol,
+                                 const std::vector<std::string>& stimuli, ModelLibrary& models);
+}  // namespace tapstudy::runner

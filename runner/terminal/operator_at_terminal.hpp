@@ -1,0 +1,19 @@
+#pragma once
+#include <string>
+
+#include "device/spidar/calibration_operator.hpp"
+#include "runner/terminal/line_input.hpp"
+namespace tapstudy::runner {
+// At the terminal: tasks go to stderr, what was measured comes from the input.
+// Throws Stopped at the input's end or when the operator asks to stop.
+class OperatorAtTerminal final : public device::CalibrationOperator {
+ public:
+  explicit OperatorAtTerminal(LineInput& input) : input_{input} {}
+  void please(const std::string& task) override;
+  double how_much(const std::string& task, double max) override;
+
+ private:
+  std::string next_line();
+  LineInput& input_;
+};
+}  // namespace tapstudy::runner

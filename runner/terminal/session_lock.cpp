@@ -1,0 +1,38 @@
+#include "runner/terminal/session_lock.hpp"
+
+#include <fmt/format.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstddef>
+#include <cstring>
+
+#include "core/error.hpp"
+#include "core/sha256.hpp"
+namespace tapstudy::runner {
+// A socket's name in the kernel's own space is not a file: it cannot be left behind.
+SessionLock::SessionLock(const std::string& what, const std::string& refusal)
+    : socket_{socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0)} {
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  const std::string name = "tapstudy " + core::sha256(what);
+  std::ranges::copy(name, address.sun_path + 1);  // the first byte is zero
+  const auto size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + name.size());
+  // NOLINTNEXTLINE(cppcoreguidelines-pro-type-reinterpret-cast): the way of the C library
+  if (bind(socket_, reinterpret_cast<const sockaddr*>(&address), size) != 0) {
+    const int error = errno;
+    close(socket_);
+    throw core::InvalidInput{error == EADDRINUSE
+                                 ? refusal
+                                 : fmt::format("whether this is the only session is not known: {}",
+                                               std::strerror(error))};
+  }
+}
+
+SessionLock::~SessionLock() {
+  close(socket_);
+}
+}  // namespace tapstudy::runner

@@ -1,0 +1,37 @@
+#include "runner/terminal/stop_signal.hpp"
+
+#include <array>
+#include <atomic>
+#include <csignal>
+
+#include "runner/terminal/exit_code.hpp"
+namespace tapstudy::runner {
+namespace {
+// A signal handler can reach nothing but globals.
+std::atomic<bool> asked{false};  // NOLINT(cppcoreguidelines-avoid-non-const-global-variables)
+static_assert(std::atomic<bool>::is_always_lock_free);
+
+void note(int /*signal*/) {
+  asked.store(true);
+}
+}  // namespace
+
+void listen_for_stop() {
+  for (const int signal : std::array{SIGINT, SIGTERM, SIGHUP, SIGQUIT}) {
+    struct sigaction action {};
+    action.sa_handler = note;
+    action.sa_flags = static_cast<int>(SA_RESETHAND);
+    sigaction(signal, &action, nullptr);
+  }
+}
+
+bool stop_was_asked() {
+  return asked.load();
+}
+
+void stop_if_asked() {
+  if (stop_was_asked()) {
+    throw Stopped{"stopped by the operator; every answer given so far is kept"};
+  }
+}
+}  // namespace tapstudy::runner

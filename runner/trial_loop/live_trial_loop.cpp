@@ -1,0 +1,72 @@
+#include "runner/trial_loop/live_trial_loop.hpp"
+
+#include <atomic>
+#include <chrono>
+#include <thread>
+
+#include "device/loop/realtime.hpp"
+namespace tapstudy::runner {
+namespace {
+constexpr std::size_t ring_capacity = 1U << 16U;  // a minute at 1 kHz, should the disk stall
+constexpr std::chrono::milliseconds poll_interval{5};
+
+class LiveExploration final : public Exploration {
+ public:
+  LiveExploration(device::HapticLoop& loop, const std::atomic<bool>& has_ended)
+      : loop_{loop}, has_ended_{has_ended} {}
+  void switch_to(std::size_t alternative) override { loop_.request_alternative(alternative); }
+  void pass_time(double seconds) override {
+    const auto until = std::chrono::steady_clock::now() + std::chrono::duration<double>{seconds};
+    while (is_running() && std::chrono::steady_clock::now() < until) {
+      std::this_thread::sleep_for(poll_interval);
+    }
+  }
+  // Whoever supervises the trial asks this all the time: it is the heartbeat that the loop needs.
+  bool is_running() const override {
+    loop_.beat();
+    return !has_ended_.load(std::memory_order_acquire);
+  }
+  double time_s() const override {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  }
+
+ private:
+  device::HapticLoop& loop_;
+  const std::atomic<bool>& has_ended_;
+  std::chrono::steady_clock::time_point start_{std::chrono::steady_clock::now()};
+};
+
+// The recorder follows the collector for exactly as long as this lives.
+class Following {
+ public:
+  Following(results::Recorder& recorder, results::TraceCollector& collector) : recorder_{recorder} {
+    recorder_.follow(collector);
+  }
+  ~Following() { recorder_.leave(); }
+  Following(const Following& other) = delete;
+  Following& operator=(const Following& other) = delete;
+
+ private:
+  results::Recorder& recorder_;
+};
+}  // namespace
+
+TrialResult LiveTrialLoop::run(std::span<core::TapRenderer> alternatives, const Explore& explore) {
+  core::SpscRing<core::TraceSample> ring{ring_capacity};
+  results::TraceCollector collector{ring};
+  device::MonotonicClock clock;
+  device::HapticLoop loop{*device_, alternatives, settings_, ring, clock};
+  std::atomic<bool> has_ended{false};
+  {
+    const Following following{recorder_, collector};
+    const std::jthread haptic_thread{[&](const std::stop_token& stop) {
+      device::ask_for_realtime(realtime_);  // what was got is in the session's row
+      loop.run(stop);
+      has_ended.store(true, std::memory_order_release);
+    }};
+    LiveExploration exploration{loop, has_ended};
+    explore(exploration);
+  }  // the haptic thread has left the device at zero force and ended
+  return {collector.finish(), loop.report(), static_cast<std::int64_t>(ring.dropped())};
+}
+}  // namespace tapstudy::runner

@@ -1,0 +1,27 @@
+#pragma once
+#include <utility>
+
+#include "core/settings/realtime_request.hpp"
+#include "results/recorder.hpp"
+#include "runner/trial_loop/trial_loop.hpp"
+namespace tapstudy::runner {
+// In real time: the loop runs on its own thread, the recorder empties its ring.
+class LiveTrialLoop final : public TrialLoop {
+ public:
+  LiveTrialLoop(device::Device& device, device::LoopSettings settings,
+                const core::RealtimeRequest& realtime, results::Recorder& recorder)
+      : device_{&device},
+        settings_{std::move(settings)},
+        realtime_{realtime},
+        recorder_{recorder} {}
+  // From the next trial on.
+  void use(device::Device& device) { device_ = &device; }
+  TrialResult run(std::span<core::TapRenderer> alternatives, const Explore& explore) override;
+
+ private:
+  device::Device* device_;
+  device::LoopSettings settings_;
+  core::RealtimeRequest realtime_;
+  results::Recorder& recorder_;
+};
+}  // namespace tapstudy::runner

@@ -1,0 +1,47 @@
+#include "runner/trial_loop/virtual_trial_loop.hpp"
+
+#include <algorithm>
+#include <cmath>
+namespace tapstudy::runner {
+namespace {
+constexpr std::size_t ring_capacity = 1024;
+
+class VirtualExploration final : public Exploration {
+ public:
+  VirtualExploration(device::HapticLoop& loop, results::TraceCollector& collector, double period_s,
+                     Keep keep)
+      : loop_{loop}, collector_{collector}, period_s_{period_s}, keep_{keep} {}
+  void switch_to(std::size_t alternative) override { loop_.request_alternative(alternative); }
+  void pass_time(double seconds) override {
+    auto left = static_cast<std::int64_t>(std::llround(seconds / period_s_));
+    while (left > 0 && is_running()) {
+      const std::int64_t slice = std::min<std::int64_t>(left, ring_capacity);
+      loop_.run_ticks(slice);
+      keep_ == Keep::trace ? collector_.drain() : collector_.discard();
+      left -= slice;
+    }
+  }
+  bool is_running() const override { return loop_.report().stopped_by == core::TickFault::none; }
+  double time_s() const override { return static_cast<double>(loop_.report().ticks) * period_s_; }
+
+ private:
+  device::HapticLoop& loop_;
+  results::TraceCollector& collector_;
+  double period_s_;
+  Keep keep_;
+};
+}  // namespace
+
+TrialResult VirtualTrialLoop::run(std::span<core::TapRenderer> alternatives,
+                                  const Explore& explore) {
+  core::SpscRing<core::TraceSample> ring{ring_capacity};
+  results::TraceCollector collector{ring};
+  device::VirtualClock clock;
+  device::HapticLoop loop{device_, alternatives, settings_, ring, clock};
+  VirtualExploration exploration{loop, collector, 1e-9 * static_cast<double>(settings_.period),
+                                 keep_};
+  explore(exploration);
+  loop.zero_force();
+  return {collector.finish(), loop.report(), static_cast<std::int64_t>(ring.dropped())};
+}
+}  // namespace tapstudy::runner

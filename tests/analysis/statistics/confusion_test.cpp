@@ -1,0 +1,149 @@
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "analysis/choice/choice_summary.hpp"
+#include "analysis/identification/identification_summary.hpp"
+#include "analysis/report/summary.hpp"
+#include "analysis/report/writers.hpp"
+#include "analysis/statistics/confusion_matrix.hpp"
+#include "analysis/statistics/counts_csv.hpp"
+#include "core/error.hpp"
+#include "support/texts.hpp"
+using namespace tapstudy;
+using namespace tapstudy::analysis;
+using Catch::Matchers::Contains;
+
+namespace {
+ConfusionMatrix matrix_from(const std::string& text) {
+  std::istringstream stream{text};
+  return read_counts(stream, "counts.csv");
+}
+std::string refusal(const std::string& text) {
+  try {
+    matrix_from(text);
+  } catch (const core::InvalidInput& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+ConfusionMatrix table2() {
+  return matrix_from(testing::contents(testing::shipped("paper/table2.csv")));
+}
+bool is(const Proportion& proportion, int successes, int trials) {
+  return proportion.successes == successes && proportion.trials == trials;
+}
+}  // namespace
+
+TEST_CASE("the paper's Table 2 says what the paper says", "[analysis][confusion]") {
+  const ConfusionMatrix matrix = table2();
+  CHECK(is(overall_accuracy(matrix), 43, 80));
+  CHECK(is(factor_accuracy(matrix, "structure"), 65, 80));
+  CHECK(is(factor_accuracy(matrix, "material"), 48, 80));
+  CHECK(is(conditional_accuracy(matrix, "material", "structure"), 43, 65));
+  CHECK(matrix.chance() == 0.25);
+}
+
+TEST_CASE("a matrix that is written is read back the same", "[analysis][confusion]") {
+  std::ostringstream text;
+  IdentificationSummary{"", "", table2()}.tables().front().write(text);
+  CHECK(matrix_from(text.str()).counts == table2().counts);
+  CHECK(factors_of(matrix_from(text.str())) == std::vector<std::string>{"material", "structure"});
+}
+
+TEST_CASE("answers one a line make the same matrix as their counts", "[analysis][confusion]") {
+  const ConfusionMatrix matrix = matrix_from("stimulus,response,rt\na,a,1\na,b,2\nb,b,3\nb,b,3\n");
+  CHECK(matrix.counts == std::vector<std::vector<int>>{{1, 1}, {0, 2}});
+  CHECK(is(overall_accuracy(matrix), 3, 4));
+}
+
+TEST_CASE("an answer that names no stimulus counts as an answer", "[analysis][confusion]") {
+  const ConfusionMatrix matrix =
+      matrix_from("stimulus,material,a,b,unsure\na,wood,11,3,6\nb,metal,2,5,13\n");
+  CHECK(is(overall_accuracy(matrix), 16, 40));
+  CHECK(is(factor_accuracy(matrix, "material"), 16, 40));
+  CHECK(matrix.chance() == Approx(1.0 / 3.0));
+}
+
+TEST_CASE("the chance of a factor weighs stimuli as they were presented", "[analysis][confusion]") {
+  // three of four responses are wood; wood was presented 10 times, metal 40
+  const ConfusionMatrix matrix = matrix_from(
+      "stimulus,material,a,b,c,d\na,wood,10,0,0,0\nb,wood,0,0,0,0\nc,wood,0,0,0,0\n"
+      "d,metal,0,0,0,40\n");
+  CHECK(factor_chance(matrix, "material", "") == Approx((10 * 0.75 + 40 * 0.25) / 50));
+}
+
+TEST_CASE("a table that is no confusion matrix is refused at its line", "[analysis][confusion]") {
+  CHECK_THAT(refusal(""), Contains("counts.csv:1"));
+  CHECK_THAT(refusal("a,b\n1,2\n"), Contains("starts with 'stimulus'"));
+  CHECK_THAT(refusal("stimulus,a,b\na,1\n"), Contains("counts.csv:2: has 2 cells"));
+  CHECK_THAT(refusal("stimulus,a,b\na,1,x\nb,1,2\n"), Contains("counts.csv:2: 'x' is not a count"));
+  CHECK_THAT(refusal("stimulus,a,b\na,1,-1\nb,1,2\n"), Contains("'-1' is not a count"));
+  CHECK_THAT(refusal("stimulus,a,b\na,1,2\na,1,2\n"), Contains("is there twice"));
+  CHECK_THAT(refusal("stimulus,a,b\na,0,0\nb,0,0\n"), Contains("no answers"));
+  CHECK_THAT(refusal("stimulus,material\na,wood\nb,metal\n"), Contains("fewer than two"));
+  CHECK_THAT(refusal("stimulus,a,a,b\na,1,2,3\nb,1,2,3\n"), Contains("'a' is there twice"));
+  CHECK_THAT(refusal("stimulus,a,b\na,2147483647,1\nb,1,2\n"), Contains("is not a count"));
+}
+
+TEST_CASE("reports of an empty row or an unanswered block say so", "[analysis][report]") {
+  ConfusionMatrix matrix{{{"a", "A & <b>", {}}, {"b", "B", {}}}, {{"a", "A", {}}, {"b", "B", {}}}};
+  matrix.add("a", "a");
+  const Summary summary = summarise(matrix, "one answer");
+  std::ostringstream html;
+  write_html(html, summary);
+  CHECK_THAT(html.str(), Contains("A &amp; &lt;b&gt;"));
+  CHECK_THAT(html.str(), Contains("–"));
+  CHECK_THAT(html.str(), !Contains(">nan"));
+  CHECK_THAT(html.str(), !Contains("\"nan"));
+  CHECK_THAT(html.str(), !Contains("http"));  // self-contained
+  std::ostringstream json;
+  write_json(json, summary);
+  CHECK(nlohmann::json::parse(json.str())["schema_version"] == 1);
+}
+
+TEST_CASE("a summary counts by participant, block and task", "[analysis][summary]") {
+  const Item a{"a", "A", {{"material", "wood"}}};
+  const Item b{"b", "B", {{"material", "metal"}}};
+  const StudyDesign design{
+      "study",
+      "",
+      {{"tell", "Which?", "confusion", {a, b}, {a, b}, {{"h", "better than chance", ""}}},
+       {"pick", "Best?", "choices", {a, b}, {}, {{"h2", "a is best", "a"}}}}};
+  std::vector<results::AnswerRow> answers;
+  const auto add = [&](const char* who, const char* block, const char* stimulus,
+                       const char* response) {
+    results::AnswerRow row;
+    row.participant_id = who;
+    row.mode = results::Mode::simulated;
+    row.block = block;
+    row.stimulus = stimulus;
+    row.response = response;
+    if (!row.stimulus.empty()) {
+      row.is_correct = row.stimulus == row.response;
+    }
+    answers.push_back(row);
+  };
+  add("P1", "tell", "a", "a");
+  add("P1", "tell", "b", "a");
+  add("P2", "tell", "a", "a");
+  add("P1", "pick", "", "a");
+  add("P2", "pick", "", "b");
+  add("P2", "pick", "", "a");
+  const Summary summary = summarise(design, answers, {{"P1", "pick", "a", 3, 4.5}});
+  CHECK(summary.participants == 2);
+  CHECK(summary.modes == "simulated");
+  const auto& tell = dynamic_cast<const IdentificationSummary&>(*summary.blocks.at(0));
+  CHECK(is(tell.accuracy, 2, 3));
+  CHECK(is(tell.participants.at(0).accuracy, 1, 2));
+  CHECK(is(tell.participants.at(1).accuracy, 1, 1));
+  REQUIRE(tell.hypotheses.size() == 1);
+  const auto& pick = dynamic_cast<const ChoiceSummary&>(*summary.blocks.at(1));
+  CHECK(is(pick.alternatives.at(0).chosen, 2, 3));
+  CHECK(pick.alternatives.at(0).visits == 3);
+  CHECK(pick.has_repeated_choices);
+  CHECK(pick.hypotheses.at(0).p == Approx(0.5));
+  std::ostringstream text;
+  write_text(text, summary);
+  CHECK_THAT(text.str(), Contains("SIMULATED"));
+}

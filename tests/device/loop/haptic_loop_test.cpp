@@ -1,0 +1,262 @@
+#include "device/loop/haptic_loop.hpp"
+
+#include <catch2/catch.hpp>
+#include <limits>
+#include <vector>
+
+#include "support/no_alloc.hpp"
+using namespace tapstudy;
+using core::Vec3;
+
+namespace {
+// In a plate 2 mm deep from the second reading on; fails on cue.
+class FakeDevice final : public device::Device {
+ public:
+  core::TickFault read(core::HandState& hand) noexcept override {
+    hand.position_m = {0.0, ++reads_ == 1 ? 0.01 : height_m, 0.0};
+    hand.velocity_m_s = {0.0, speed_m_s, 0.0};
+    return reads_ == fail_read_at ? core::TickFault::no_reply : core::TickFault::none;
+  }
+  core::TickFault write(const Vec3& force_n) noexcept override {
+    last_force_n = force_n;
+    ++writes_;
+    return writes_ == fail_write_at ? core::TickFault::device_gone : core::TickFault::none;
+  }
+  device::DeviceDetail detail() const noexcept override { return {last_force_n}; }
+  void emergency_stop() noexcept override {
+    last_force_n = Vec3::Zero();
+    ++emergency_stops;
+  }
+  std::string description() const override { return "fake"; }
+
+  int emergency_stops{0};
+  double height_m{-0.002};
+  double speed_m_s{0.0};
+  int fail_read_at{-1};
+  int fail_write_at{-1};
+  Vec3 last_force_n{Vec3::Zero()};
+
+ private:
+  int reads_{0};
+  int writes_{0};
+};
+
+// Wakes as late as it is told.
+class CrankedClock final : public device::TickClock {
+ public:
+  device::Nanoseconds now() noexcept override { return now_; }
+  device::Nanoseconds wait_until(device::Nanoseconds deadline) noexcept override {
+    now_ = deadline + (waits_ < lateness.size() ? lateness[waits_] : 0);
+    ++waits_;
+    return now_;
+  }
+  std::vector<device::Nanoseconds> lateness;
+
+ private:
+  std::size_t waits_{0};
+  device::Nanoseconds now_{0};
+};
+
+struct Bench {
+  explicit Bench(std::size_t ring = 4096) : trace{ring} {
+    settings.gate.limits = {10.0, 1e5};
+    for (int i = 0; i < 2; ++i) {
+      renderers.emplace_back(core::RenderSettings{}, core::PlateFace{0.3, 0.3},
+                             std::vector<std::unique_ptr<core::AddedForce>>{});
+    }
+  }
+  std::vector<core::TraceSample> samples() {
+    std::vector<core::TraceSample> all;
+    core::TraceSample sample{};
+    while (trace.try_pop(sample)) {
+      all.push_back(sample);
+    }
+    return all;
+  }
+  device::HapticLoop loop() { return {hand, renderers, settings, trace, clock}; }
+  FakeDevice hand;
+  CrankedClock clock;
+  std::vector<core::TapRenderer> renderers;
+  device::LoopSettings settings;
+  core::SpscRing<core::TraceSample> trace;
+};
+}  // namespace
+
+TEST_CASE("the loop pushes back on a finger inside the plate", "[device][loop]") {
+  Bench bench;
+  device::HapticLoop loop = bench.loop();
+  loop.run_ticks(10);
+  const auto samples = bench.samples();
+  REQUIRE(samples.size() == 10);
+  CHECK(samples.front().force_n[1] == 0.0);
+  CHECK(samples.back().force_n[1] == Approx(3000.0 * 0.002));
+  CHECK(samples.back().t_ns == 9'000'000);
+  CHECK(loop.report().ticks == 10);
+}
+
+TEST_CASE("the loop ends at zero force, whatever ended it", "[device][loop][safety]") {
+  Bench bench;
+  core::TickFault fault = core::TickFault::none;
+  SECTION("asked to stop") {
+    device::HapticLoop loop = bench.loop();
+    loop.run_ticks(5);
+    std::stop_source stop;
+    stop.request_stop();
+    loop.run(stop.get_token());
+    fault = loop.report().stopped_by;
+    CHECK(fault == core::TickFault::none);
+  }
+  SECTION("the device stopped answering") {
+    bench.hand.fail_read_at = 5;
+    device::HapticLoop loop = bench.loop();
+    loop.run_ticks(100);
+    CHECK(loop.report().stopped_by == core::TickFault::no_reply);
+    CHECK(loop.report().ticks == 5);
+    loop.run_ticks(100);
+    CHECK(loop.report().ticks == 5);  // a fault is latched
+  }
+  SECTION("the device stopped taking forces") {
+    bench.hand.fail_write_at = 7;
+    device::HapticLoop loop = bench.loop();
+    loop.run_ticks(100);
+    CHECK(loop.report().stopped_by == core::TickFault::device_gone);
+  }
+  SECTION("the position was not a number") {
+    bench.hand.height_m = std::numeric_limits<double>::quiet_NaN();
+    device::HapticLoop loop = bench.loop();
+    loop.run_ticks(100);
+    CHECK(loop.report().stopped_by == core::TickFault::non_finite_force);
+  }
+  SECTION("the velocity was not a number") {
+    bench.hand.speed_m_s = std::numeric_limits<double>::quiet_NaN();
+    device::HapticLoop loop = bench.loop();
+    loop.run_ticks(100);
+    CHECK(loop.report().stopped_by == core::TickFault::non_finite_force);
+  }
+  CHECK(bench.hand.last_force_n == Vec3::Zero());
+}
+
+TEST_CASE("late ticks are counted, missed ones skipped, and the rhythm stays", "[device][loop]") {
+  Bench bench;
+  bench.clock.lateness = {0, 600'000, 0, 3'200'000, 0};
+  device::HapticLoop loop = bench.loop();
+  loop.run_ticks(5);
+  std::vector<std::int64_t> times;
+  for (const core::TraceSample& sample : bench.samples()) {
+    times.push_back(sample.t_ns);
+  }
+  CHECK(times == std::vector<std::int64_t>{0, 1'600'000, 2'000'000, 6'200'000, 7'000'000});
+  CHECK(loop.report().late == 2);
+  CHECK(loop.report().skipped == 3);
+  CHECK(loop.report().lateness.worst() == 3'200'000);
+}
+
+TEST_CASE("another alternative is taken only off the plate", "[device][loop][safety]") {
+  Bench bench;
+  device::HapticLoop loop = bench.loop();
+  loop.run_ticks(3);
+  loop.request_alternative(1);
+  loop.run_ticks(3);
+  CHECK(bench.samples().back().alternative == 0);  // the finger is still in
+  bench.hand.height_m = 0.001;
+  loop.run_ticks(2);
+  CHECK(bench.samples().back().alternative == 1);
+}
+
+TEST_CASE("a switch in the very tick of entry loses neither contact nor impact", "[device][loop]") {
+  Bench bench;
+  device::HapticLoop loop = bench.loop();
+  loop.run_ticks(1);
+  loop.request_alternative(1);
+  loop.run_ticks(1);
+  const core::TraceSample entry = bench.samples().back();
+  CHECK(entry.alternative == 1);
+  CHECK(entry.touching);
+  CHECK(entry.impact);
+}
+
+TEST_CASE("samples that find no room are counted", "[device][loop]") {
+  Bench bench{16};
+  device::HapticLoop loop = bench.loop();
+  loop.run_ticks(20);
+  CHECK(bench.trace.dropped() == 4);
+}
+
+TEST_CASE("a thousand ticks of the loop allocate nothing", "[device][loop][realtime]") {
+  Bench bench;
+  device::HapticLoop loop = bench.loop();
+  const testing::AllocationCount allocations;
+  loop.run_ticks(1000);
+  CHECK(allocations.count() == 0);
+}
+
+TEST_CASE("a loop that nobody looks after drops its force within the time allowed",
+          "[device][loop][safety]") {
+  Bench bench;
+  bench.settings.max_heartbeat_gap = 100'000'000;
+  device::HapticLoop loop = bench.loop();
+  for (int i = 0; i < 10; ++i) {
+    loop.beat();
+    loop.run_ticks(90);
+  }
+  CHECK(loop.report().stopped_by == core::TickFault::none);
+  loop.run_ticks(90);
+  CHECK(loop.report().stopped_by == core::TickFault::heartbeat_lost);
+  CHECK(loop.report().ticks <= 900 + 101);
+  CHECK(bench.hand.emergency_stops == 1);
+  CHECK(bench.hand.last_force_n == Vec3::Zero());
+}
+
+TEST_CASE("a loop that stood still itself is a fault, however fast somebody beats when it wakes",
+          "[device][loop][safety]") {
+  Bench bench;
+  bench.settings.max_heartbeat_gap = 100'000'000;
+  bench.clock.lateness = std::vector<device::Nanoseconds>(20, 0);
+  bench.clock.lateness[10] = 2'000'000'000;
+  device::HapticLoop loop = bench.loop();
+  for (int i = 0; i < 20; ++i) {
+    loop.beat();
+    loop.run_ticks(1);
+  }
+  CHECK(loop.report().stopped_by == core::TickFault::heartbeat_lost);
+  CHECK(loop.report().ticks == 11);
+  CHECK(bench.hand.last_force_n == Vec3::Zero());
+}
+
+TEST_CASE("a run of late ticks is a fault where the rig says so", "[device][loop][safety]") {
+  Bench bench;
+  bench.clock.lateness = std::vector<device::Nanoseconds>(20, 600'000);
+  SECTION("it does") {
+    bench.settings.max_late_in_a_row = 5;
+    device::HapticLoop loop = bench.loop();
+    loop.run_ticks(20);
+    CHECK(loop.report().stopped_by == core::TickFault::too_late);
+    CHECK(loop.report().ticks == 6);
+    CHECK(bench.hand.emergency_stops == 1);
+  }
+  SECTION("it does not") {
+    device::HapticLoop loop = bench.loop();
+    loop.run_ticks(20);
+    CHECK(loop.report().stopped_by == core::TickFault::none);
+    CHECK(loop.report().late == 20);
+  }
+}
+
+TEST_CASE("asked to stop, the loop lets force fall gently where the rig says so",
+          "[device][loop][safety]") {
+  Bench bench;
+  bench.settings.gate.force_fall_s = 0.1;
+  bench.settings.max_heartbeat_gap = 20'000'000;  // nobody beats while it falls
+  device::HapticLoop loop = bench.loop();
+  loop.run_ticks(10);
+  std::stop_source stop;
+  stop.request_stop();
+  loop.run(stop.get_token());
+  const auto samples = bench.samples();
+  REQUIRE(samples.size() == Approx(110).margin(2));
+  for (std::size_t i = 11; i < samples.size(); ++i) {
+    CHECK(samples[i].force_n[1] <= samples[i - 1].force_n[1]);
+    CHECK(samples[i - 1].force_n[1] - samples[i].force_n[1] < 0.07);
+  }
+  CHECK(bench.hand.last_force_n == Vec3::Zero());
+}

@@ -1,0 +1,119 @@
+#include "device/spidar/calibration_procedure.hpp"
+
+#include <catch2/catch.hpp>
+#include <sstream>
+
+#include "core/error.hpp"
+#include "device/device.hpp"
+#include "protocols/spidar_calibration.hpp"
+#include "support/texts.hpp"
+#include "support/usb/spidar_on_bus.hpp"
+using namespace tapstudy;
+using Catch::Matchers::Contains;
+
+namespace {
+// A board whose eight strings differ: metres a count, newtons a digit, friction.
+struct Workbench {
+  std::array<int, 8> count{};
+  std::array<int, 8> dac_counts{};
+  int max_dac_counts{0};
+  testing::FakeBus bus{device::cyverse_vendor, device::sh4_product,
+                       [this](auto request) { return reply(request); }};
+  device::UsbNode node{testing::node_of(bus)};
+  device::LibusbPipe pipe{node, {}, std::chrono::milliseconds{100}};
+  std::unique_ptr<device::SpidarBoard> board{device::board_of(device::sh4_product)};
+
+  static double metres_per_count(std::size_t i) {
+    return (i % 2 == 0 ? 1.0 : -1.0) * (1.6e-5 + 1e-7 * static_cast<double>(i));
+  }
+  static double newtons_per_dac_count(std::size_t i) {
+    return 0.006 + 0.0005 * static_cast<double>(i);
+  }
+  static constexpr double friction_n = 0.2;
+
+  testing::Bytes reply(std::span<const std::uint8_t> request) {
+    testing::Bytes bytes(512, 0);
+    for (std::size_t i = 0; i < 8; ++i) {
+      dac_counts.at(i) = request[2 + 2 * i] | request[3 + 2 * i] << 8;
+      max_dac_counts = std::max(max_dac_counts, dac_counts.at(i));
+      bytes[16 + 2 * i] = static_cast<std::uint8_t>(count.at(i) & 0xFF);
+      bytes[17 + 2 * i] = static_cast<std::uint8_t>(count.at(i) >> 8 & 0xFF);
+    }
+    return bytes;
+  }
+};
+
+// Does what is asked, on the string whose turn it is.
+class SkilledOperator final : public device::CalibrationOperator {
+ public:
+  explicit SkilledOperator(Workbench& bench) : bench_{bench} {}
+  void please(const std::string& /*task*/) override { ++string_; }
+  double how_much(const std::string& task, double /*max*/) override {
+    const auto i = static_cast<std::size_t>(string_);
+    if (task.find("metres") != std::string::npos) {
+      bench_.count.at(i) += static_cast<int>(0.1 / Workbench::metres_per_count(i));
+      return 0.1;
+    }
+    return Workbench::newtons_per_dac_count(i) * bench_.dac_counts.at(i) + Workbench::friction_n;
+  }
+
+ private:
+  Workbench& bench_;
+  int string_{-1};
+};
+
+class IdleOperator final : public device::CalibrationOperator {
+ public:
+  void please(const std::string& /*task*/) override {}
+  double how_much(const std::string& /*task*/, double /*max*/) override { return 0.1; }
+};
+}  // namespace
+
+TEST_CASE("what a skilled operator measures is what the strings are", "[device][calibration]") {
+  Workbench bench;
+  SkilledOperator person{bench};
+  const auto strings = device::calibrate_spidar(*bench.board, bench.pipe, person).strings;
+  for (std::size_t i = 0; i < 8; ++i) {
+    CHECK(strings.at(i).metres_per_count == Approx(Workbench::metres_per_count(i)).epsilon(1e-3));
+    const double newtons_per_dac_count =
+        1.0 / (strings.at(i).volts_per_newton * strings.at(i).dac_counts_per_volt);
+    CHECK(newtons_per_dac_count == Approx(Workbench::newtons_per_dac_count(i)).epsilon(1e-9));
+  }
+  CHECK(bench.max_dac_counts <= device::calibration_dac_counts);
+  CHECK(std::ranges::all_of(bench.dac_counts, [](int dac_counts) { return dac_counts == 0; }));
+}
+
+TEST_CASE("what calibration writes, a rig reads", "[device][calibration]") {
+  Workbench bench;
+  SkilledOperator person{bench};
+  const core::SpidarCalibration measured =
+      device::calibrate_spidar(*bench.board, bench.pipe, person);
+  std::ostringstream file;
+  protocols::write_calibration(file, "X3R", measured);
+  const core::SpidarCalibration read =
+      protocols::parse_calibration(file.str(), "spidar_calibration.yaml", "X3R");
+  CHECK(read.min_tension_n == measured.min_tension_n);
+  CHECK(read.max_tension_n == measured.max_tension_n);
+  for (std::size_t i = 0; i < read.strings.size(); ++i) {
+    CHECK(read.strings[i].metres_per_count ==
+          Approx(measured.strings[i].metres_per_count).epsilon(1e-5));
+    CHECK(read.strings[i].volts_per_newton ==
+          Approx(measured.strings[i].volts_per_newton).epsilon(1e-5));
+  }
+}
+
+TEST_CASE("an encoder that does not move ends calibration, with all outputs zero",
+          "[device][calibration]") {
+  Workbench bench;
+  IdleOperator person;
+  CHECK_THROWS_WITH(device::calibrate_spidar(*bench.board, bench.pipe, person),
+                    Contains("string 1: its encoder counted 0"));
+  CHECK(std::ranges::all_of(bench.dac_counts, [](int dac_counts) { return dac_counts == 0; }));
+}
+
+TEST_CASE("a board that is unplugged ends calibration", "[device][calibration]") {
+  Workbench bench;
+  SkilledOperator person{bench};
+  bench.bus.plan(testing::FakeBus::Trouble::unplugged, 10);
+  CHECK_THROWS_AS(device::calibrate_spidar(*bench.board, bench.pipe, person), device::DeviceError);
+}

@@ -1,6 +1,5 @@
 # One static library per top-level folder: the folder is the target is the namespace.
-#   tapstudy_library(name LINK <what its headers need> PRIVATE <what only its sources need>
-#                    PRECOMPILE <headers of libraries that many of its sources include>)
+#   tapstudy_library(name LINK <what its headers need> PRIVATE <what only its sources need>)
 add_library(tapstudy_flags INTERFACE)
 target_compile_options(tapstudy_flags INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion
   -Wnon-virtual-dtor -Wold-style-cast -Woverloaded-virtual -Wdouble-promotion)
@@ -9,7 +8,7 @@ if(TAPSTUDY_WERROR)
   target_compile_options(tapstudy_flags INTERFACE -Werror)
 endif()
 function(tapstudy_library name)
-  cmake_parse_arguments(ARG "" "" "LINK;PRIVATE;PRECOMPILE" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "LINK;PRIVATE" ${ARGN})
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${name}/*.cpp)
   list(FILTER sources EXCLUDE REGEX "/main\\.cpp$|/example/")
   add_library(tapstudy_${name} STATIC ${sources})
@@ -17,5 +16,10 @@ function(tapstudy_library name)
   target_include_directories(tapstudy_${name} PUBLIC ${PROJECT_SOURCE_DIR})
   target_link_libraries(tapstudy_${name} PUBLIC ${ARG_LINK}
     PRIVATE ${ARG_PRIVATE} $<BUILD_INTERFACE:tapstudy_flags>)
-  target_precompile_headers(tapstudy_${name} PRIVATE ${ARG_PRECOMPILE})
+  # What nearly every source includes, compiled once and for all of them.
+  if(name STREQUAL "core")
+    target_precompile_headers(tapstudy_core PRIVATE <Eigen/Core> <fmt/format.h> <fmt/ranges.h>)
+  else()
+    target_precompile_headers(tapstudy_${name} REUSE_FROM tapstudy_core)
+  endif()
 endfunction()

@@ -1,8 +1,8 @@
 #include "protocols/spidar_calibration.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ostream.h>
 
+#include "core/print.hpp"
 #include "protocols/yaml/yaml_reader.hpp"
 namespace tapstudy::protocols {
 namespace {
@@ -59,17 +59,17 @@ core::SpidarCalibration parse_calibration(const std::string& text, const std::st
 
 void write_calibration(std::ostream& out, const std::string& type,
                        const core::SpidarCalibration& calibration) {
-  fmt::print(out,
-             "# Measured on one device, string by string; good for no other.\n"
-             "format: {}\n"
-             "device: {}\n"
-             "type: {}\n"
-             "min_tension_n: {}\n"
-             "max_tension_n: {}\n"
-             "strings:\n",
-             format, device, type, calibration.min_tension_n, calibration.max_tension_n);
+  core::print(out,
+              "# Measured on one device, string by string; good for no other.\n"
+              "format: {}\n"
+              "device: {}\n"
+              "type: {}\n"
+              "min_tension_n: {}\n"
+              "max_tension_n: {}\n"
+              "strings:\n",
+              format, device, type, calibration.min_tension_n, calibration.max_tension_n);
   for (const core::StringCalibration& string : calibration.strings) {
-    fmt::print(
+    core::print(
         out,
         "  - {{metres_per_count: {:.6g}, volts_per_newton: {:.6g}, dac_counts_per_volt: {}}}\n",
         string.metres_per_count, string.volts_per_newton, string.dac_counts_per_volt);

@@ -1,6 +1,6 @@
 #pragma once
 #include "runner/terminal/exit_code.hpp"
 namespace tapstudy::runner {
-// Parses and carries out one command line. Throws what the command throws.
-ExitCode carry_out(int argc, const char* const* argv);
+// Parses and runs one command line. Throws what the command throws.
+ExitCode run_command_line(int argc, const char* const* argv);
 }  // namespace tapstudy::runner

@@ -38,7 +38,7 @@ void check_results_arrived() {
 int main(int argc, char** argv) {
   try {
     tapstudy::runner::set_up_logging();
-    const ExitCode code = tapstudy::runner::carry_out(argc, argv);
+    const ExitCode code = tapstudy::runner::run_command_line(argc, argv);
     check_results_arrived();
     return static_cast<int>(code);
   } catch (const std::exception& error) {

@@ -1,9 +1,9 @@
 #include "analysis/blocks/html_parts.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ostream.h>
 
 #include "analysis/blocks/wording.hpp"
+#include "core/print.hpp"
 namespace tapstudy::analysis {
 std::string escaped(const std::string& text) {
   std::string safe;
@@ -44,8 +44,8 @@ std::string dot_plot(const Proportion& proportion, double chance) {
 
 void write_accuracy_row(std::ostream& out, const std::string& title, const Proportion& proportion,
                         double chance) {
-  fmt::print(out, "<tr><th scope=row>{}</th><td>{}</td><td>{}</td></tr>\n", escaped(title),
-             with_interval(proportion), dot_plot(proportion, chance));
+  core::print(out, "<tr><th scope=row>{}</th><td>{}</td><td>{}</td></tr>\n", escaped(title),
+              with_interval(proportion), dot_plot(proportion, chance));
 }
 
 void write_hypotheses_html(std::ostream& out, const std::vector<HypothesisResult>& hypotheses) {
@@ -54,9 +54,9 @@ void write_hypotheses_html(std::ostream& out, const std::vector<HypothesisResult
   }
   out << "<h3>Declared before the study</h3><ul>\n";
   for (const HypothesisResult& result : hypotheses) {
-    fmt::print(out, "<li>{} <b>{}</b> ({} against {:.0f} % by chance; {})</li>\n",
-               escaped(result.planned.statement), escaped(p_value(result.p)),
-               fraction(result.observed), 100.0 * result.chance, result.test);
+    core::print(out, "<li>{} <b>{}</b> ({} against {:.0f} % by chance; {})</li>\n",
+                escaped(result.planned.statement), escaped(p_value(result.p)),
+                fraction(result.observed), 100.0 * result.chance, result.test);
   }
   out << "</ul>\n";
 }

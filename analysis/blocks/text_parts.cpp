@@ -1,14 +1,14 @@
 #include "analysis/blocks/text_parts.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ostream.h>
 
 #include "analysis/blocks/wording.hpp"
+#include "core/print.hpp"
 namespace tapstudy::analysis {
 void write_hypotheses_text(std::ostream& out, const std::vector<HypothesisResult>& hypotheses) {
   for (const HypothesisResult& result : hypotheses) {
-    fmt::print(out, "  {}\n    {} against {:.0f} % by chance: {} ({})\n", result.planned.statement,
-               fraction(result.observed), 100.0 * result.chance, p_value(result.p), result.test);
+    core::print(out, "  {}\n    {} against {:.0f} % by chance: {} ({})\n", result.planned.statement,
+                fraction(result.observed), 100.0 * result.chance, p_value(result.p), result.test);
   }
 }
 }  // namespace tapstudy::analysis

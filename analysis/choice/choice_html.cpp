@@ -1,20 +1,20 @@
 #include <fmt/format.h>
-#include <fmt/ostream.h>
 
 #include "analysis/blocks/html_parts.hpp"
 #include "analysis/choice/multinomial_words.hpp"
+#include "core/print.hpp"
 namespace tapstudy::analysis {
 void ChoiceSummary::write_html(std::ostream& out) const {
   const double chance = 1.0 / static_cast<double>(alternatives.size());
   out << "<table class=accuracy><thead><tr><th></th><th>chosen</th><th></th><th>visits</th>"
          "<th>time tried</th></tr></thead>\n";
   for (const AlternativeResult& result : alternatives) {
-    fmt::print(out,
-               "<tr><th scope=row>{}</th><td>{}</td><td>{}</td><td>{}</td><td>{:.1f} s</td></tr>\n",
-               escaped(result.item.label), with_interval(result.chosen),
-               dot_plot(result.chosen, chance), result.visits, result.dwell_s);
+    core::print(
+        out, "<tr><th scope=row>{}</th><td>{}</td><td>{}</td><td>{}</td><td>{:.1f} s</td></tr>\n",
+        escaped(result.item.label), with_interval(result.chosen), dot_plot(result.chosen, chance),
+        result.visits, result.dwell_s);
   }
-  fmt::print(
+  core::print(
       out,
       "</table>\n<p>All alternatives equally likely: {} (exact multinomial test, outcomes "
       "ordered by probability).{}</p>\n",

@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <fmt/ostream.h>
 
 #include <cmath>
 
@@ -7,6 +6,7 @@
 #include "analysis/blocks/wording.hpp"
 #include "analysis/identification/identification_summary.hpp"
 #include "analysis/identification/title_of.hpp"
+#include "core/print.hpp"
 namespace tapstudy::analysis {
 namespace {
 // White to deep blue; the text turns white where the cell is dark.
@@ -23,19 +23,19 @@ void write_matrix(std::ostream& out, const ConfusionMatrix& matrix) {
   out << "<table class=matrix><caption>Rows: presented. Columns: answered. Each cell: count and "
          "share of its row.</caption><thead><tr><th></th>";
   for (const Item& response : matrix.responses) {
-    fmt::print(out, "<th scope=col>{}</th>", escaped(response.label));
+    core::print(out, "<th scope=col>{}</th>", escaped(response.label));
   }
   out << "<th class=total scope=col>n</th></tr></thead><tbody>\n";
   for (std::size_t i = 0; i < matrix.stimuli.size(); ++i) {
-    fmt::print(out, "<tr><th scope=row>{}</th>", escaped(matrix.stimuli[i].label));
+    core::print(out, "<tr><th scope=row>{}</th>", escaped(matrix.stimuli[i].label));
     for (std::size_t j = 0; j < matrix.responses.size(); ++j) {
       const Proportion cell{matrix.counts[i][j], matrix.row_total(i)};
       const bool is_correct = matrix.stimuli[i].name == matrix.responses[j].name;
-      fmt::print(out, R"(<td class="{}" style="{}"><b>{}</b><span>{}</span></td>)",
-                 is_correct ? "correct" : "", cell_style(cell.trials == 0 ? 0.0 : cell.value()),
-                 cell.successes, percent(cell));
+      core::print(out, R"(<td class="{}" style="{}"><b>{}</b><span>{}</span></td>)",
+                  is_correct ? "correct" : "", cell_style(cell.trials == 0 ? 0.0 : cell.value()),
+                  cell.successes, percent(cell));
     }
-    fmt::print(out, "<td class=total>{}</td></tr>\n", matrix.row_total(i));
+    core::print(out, "<td class=total>{}</td></tr>\n", matrix.row_total(i));
   }
   out << "</tbody></table>\n";
 }

@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <fmt/ostream.h>
 
 #include <algorithm>
 
@@ -7,6 +6,7 @@
 #include "analysis/blocks/wording.hpp"
 #include "analysis/identification/identification_summary.hpp"
 #include "analysis/identification/title_of.hpp"
+#include "core/print.hpp"
 namespace tapstudy::analysis {
 namespace {
 void write_matrix(std::ostream& out, const ConfusionMatrix& matrix) {
@@ -14,30 +14,31 @@ void write_matrix(std::ostream& out, const ConfusionMatrix& matrix) {
   for (const Item& item : matrix.stimuli) {
     widest = std::max(widest, item.name.size());
   }
-  fmt::print(out, "  {:<{}}", "presented \\ answered", widest);
+  core::print(out, "  {:<{}}", "presented \\ answered", widest);
   for (const Item& response : matrix.responses) {
-    fmt::print(out, "  {:>{}}", response.name, std::max<std::size_t>(response.name.size(), 10));
+    core::print(out, "  {:>{}}", response.name, std::max<std::size_t>(response.name.size(), 10));
   }
-  fmt::print(out, "\n");
+  core::print(out, "\n");
   for (std::size_t i = 0; i < matrix.stimuli.size(); ++i) {
-    fmt::print(out, "  {:<{}}", matrix.stimuli[i].name, widest);
+    core::print(out, "  {:<{}}", matrix.stimuli[i].name, widest);
     for (std::size_t j = 0; j < matrix.responses.size(); ++j) {
       const Proportion cell{matrix.counts[i][j], matrix.row_total(i)};
       const std::string said = fmt::format("{} ({})", cell.successes, percent(cell));
-      fmt::print(out, "  {:>{}}", said, std::max<std::size_t>(matrix.responses[j].name.size(), 10));
+      core::print(out, "  {:>{}}", said,
+                  std::max<std::size_t>(matrix.responses[j].name.size(), 10));
     }
-    fmt::print(out, "\n");
+    core::print(out, "\n");
   }
 }
 }  // namespace
 
 void IdentificationSummary::write_text(std::ostream& out) const {
   write_matrix(out, matrix);
-  fmt::print(out, "\n  correct: {}, chance {:.0f} %\n", with_interval(accuracy),
-             100.0 * matrix.chance());
+  core::print(out, "\n  correct: {}, chance {:.0f} %\n", with_interval(accuracy),
+              100.0 * matrix.chance());
   for (const FactorResult& result : factors) {
-    fmt::print(out, "  {}: {}, chance {:.0f} %\n", title_of(result), with_interval(result.accuracy),
-               100.0 * result.chance);
+    core::print(out, "  {}: {}, chance {:.0f} %\n", title_of(result),
+                with_interval(result.accuracy), 100.0 * result.chance);
   }
   write_hypotheses_text(out, hypotheses);
 }

@@ -1,35 +1,35 @@
 #include <fmt/format.h>
-#include <fmt/ostream.h>
 
 #include "analysis/blocks/html_parts.hpp"
 #include "analysis/report/html_style.hpp"
 #include "analysis/report/writers.hpp"
+#include "core/print.hpp"
 namespace tapstudy::analysis {
 void write_html(std::ostream& out, const Summary& summary) {
-  fmt::print(out,
-             "<!DOCTYPE html>\n<html lang=en><head><meta charset=utf-8><meta name=viewport "
-             "content=\"width=device-width\"><title>{}</title><style>{}</style></head><body>\n"
-             "<h1>{}</h1>\n",
-             escaped(summary.title), html_style, escaped(summary.title));
+  core::print(out,
+              "<!DOCTYPE html>\n<html lang=en><head><meta charset=utf-8><meta name=viewport "
+              "content=\"width=device-width\"><title>{}</title><style>{}</style></head><body>\n"
+              "<h1>{}</h1>\n",
+              escaped(summary.title), html_style, escaped(summary.title));
   if (is_simulated(summary)) {
     out << "<p class=simulated>Simulated participants: nobody felt anything. These data show what "
            "the physics and the assumed observer give.</p>\n";
   }
   for (const auto& block : summary.blocks) {
     if (!block->block.empty()) {
-      fmt::print(out, "<h2>{}</h2>\n<p>{}</p>\n", escaped(block->block), escaped(block->question));
+      core::print(out, "<h2>{}</h2>\n<p>{}</p>\n", escaped(block->block), escaped(block->question));
     }
     block->write_html(out);
   }
-  fmt::print(out, "<h2>Methods</h2><p>{}</p>\n", escaped(methods(summary)));
+  core::print(out, "<h2>Methods</h2><p>{}</p>\n", escaped(methods(summary)));
   if (!summary.notes.empty()) {
-    fmt::print(out, "<h2>Notes of the protocol</h2><p class=notes>{}</p>\n",
-               escaped(summary.notes));
+    core::print(out, "<h2>Notes of the protocol</h2><p class=notes>{}</p>\n",
+                escaped(summary.notes));
   }
   if (!summary.provenance.empty()) {
     out << "<h2>Provenance</h2><table class=provenance>\n";
     for (const auto& [key, value] : summary.provenance) {
-      fmt::print(out, "<tr><th scope=row>{}</th><td>{}</td></tr>\n", escaped(key), escaped(value));
+      core::print(out, "<tr><th scope=row>{}</th><td>{}</td></tr>\n", escaped(key), escaped(value));
     }
     out << "</table>\n";
   }

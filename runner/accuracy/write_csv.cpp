@@ -1,6 +1,6 @@
 #include <fmt/format.h>
-#include <fmt/ostream.h>
 
+#include "core/print.hpp"
 #include "runner/accuracy/writers.hpp"
 namespace tapstudy::runner {
 namespace {
@@ -19,20 +19,20 @@ void write_csv(std::ostream& out, const Trade& trade) {
          "frequency_error,level_error_db,force_error,is_on_front,is_inside_tolerance,is_"
          "protocols\n";
   for (const Evaluation& one : trade.settings) {
-    fmt::print(out,
-               "{},{},{},{},{},{},{},{:.6g},{:.6g},{:.6g},{:.9g},{:.9g},{:.9g},{:d},{:d},{:d}\n",
-               one.setting.mesh.order, one.tets, one.dofs, one.setting.band_limit_hz, one.modes,
-               name(one.setting.integrator), one.setting.rate_hz, one.build_s, one.tick_ns,
-               one.cost_s, one.frequency_error, one.level_error_db, one.force_error,
-               one.is_on_front, one.is_inside_tolerance, one.setting.is_protocols);
+    core::print(out,
+                "{},{},{},{},{},{},{},{:.6g},{:.6g},{:.6g},{:.9g},{:.9g},{:.9g},{:d},{:d},{:d}\n",
+                one.setting.mesh.order, one.tets, one.dofs, one.setting.band_limit_hz, one.modes,
+                name(one.setting.integrator), one.setting.rate_hz, one.build_s, one.tick_ns,
+                one.cost_s, one.frequency_error, one.level_error_db, one.force_error,
+                one.is_on_front, one.is_inside_tolerance, one.setting.is_protocols);
   }
 }
 
 void write_csv(std::ostream& out, const Stability& stability) {
   out << "property,value,outcome,words\n";
   for (const StabilityCase& one : stability.cases) {
-    fmt::print(out, "{},{:.17g},{},{}\n", one.property, one.value, name(one.outcome),
-               quoted(one.words));
+    core::print(out, "{},{:.17g},{},{}\n", one.property, one.value, name(one.outcome),
+                quoted(one.words));
   }
 }
 

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <chrono>
 #include <memory>
 
@@ -42,12 +41,12 @@ void run_calibrate(const CalibrateOptions& options) {
 }
 }  // namespace
 
-void add_calibrate(CLI::App& app) {
-  auto* const command =
-      app.add_subcommand("calibrate", "Measure the strings of the SPIDAR-G6 that is plugged in");
+void add_calibrate(CommandParser& line) {
+  Command command =
+      line.add("calibrate", "Measure the strings of the SPIDAR-G6 that is plugged in");
   const auto options = std::make_shared<CalibrateOptions>();
-  command->add_option("--type", options->type, "Of the frame: X3R or X3L")->required();
-  command->add_option("--out", options->out, "The calibration file to write")->required();
-  command->callback([options] { run_calibrate(*options); });
+  command.option("--type", options->type, "Of the frame: X3R or X3L", Need::required);
+  command.option("--out", options->out, "The calibration file to write", Need::required);
+  command.on_run([options] { run_calibrate(*options); });
 }
 }  // namespace tapstudy::runner

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <memory>
 
@@ -145,15 +144,13 @@ void run_check(const CheckOptions& options) {
 }
 }  // namespace
 
-void add_check(CLI::App& app) {
-  auto* const command =
-      app.add_subcommand("check", "Validate a study and show its design, models and schedule");
+void add_check(CommandParser& line) {
+  Command command = line.add("check", "Validate a study and show its design, models and schedule");
   const auto options = std::make_shared<CheckOptions>();
-  command->add_option("protocol", options->protocol, "Study (YAML)")->required();
-  command->add_option("--participants", options->participants, "How many are planned")
-      ->capture_default_str();
-  command->add_option("--seed", options->seed, "Of the schedule shown")->capture_default_str();
-  command->add_option("--rig", options->rig, "Check that this device can reach the tapping points");
-  command->callback([options] { run_check(*options); });
+  command.argument("protocol", options->protocol, "Study (YAML)");
+  command.option_with_default("--participants", options->participants, "How many are planned");
+  command.option_with_default("--seed", options->seed, "Of the schedule shown");
+  command.option("--rig", options->rig, "Check that this device can reach the tapping points");
+  command.on_run([options] { run_check(*options); });
 }
 }  // namespace tapstudy::runner

@@ -1,7 +1,5 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
-
 #include "runner/commands/commands.hpp"
 #include "runner/devices/device_kind.hpp"
 namespace tapstudy::runner {
@@ -20,7 +18,7 @@ void run_devices() {
 }
 }  // namespace
 
-void add_devices(CLI::App& app) {
-  app.add_subcommand("devices", "What is plugged in")->callback(run_devices);
+void add_devices(CommandParser& line) {
+  line.add("devices", "What is plugged in").on_run(run_devices);
 }
 }  // namespace tapstudy::runner

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <memory>
 #include <optional>
 
@@ -102,19 +101,14 @@ void run_doctor(const DoctorOptions& options) {
 }
 }  // namespace
 
-void add_doctor(CLI::App& app) {
-  auto* const command =
-      app.add_subcommand("doctor", "Can this machine hold the loop? Measured, with a verdict");
+void add_doctor(CommandParser& line) {
+  Command command = line.add("doctor", "Can this machine hold the loop? Measured, with a verdict");
   const auto options = std::make_shared<DoctorOptions>();
-  command->add_option("--rig", options->rig, "What to ask of the machine (YAML)");
-  command->add_option("--rate-hz", options->rate_hz, "Of the loop")
-      ->check(within(500.0, 10000.0))
-      ->capture_default_str();
-  command->add_option("--seconds", options->seconds, "To measure, idle and under load each")
-      ->check(within(0.1, 600.0))
-      ->capture_default_str();
-  command->add_option("--figure", options->figure, "Draw the lateness (.svg)")
-      ->check(ends_in(".svg"));
-  command->callback([options] { run_doctor(*options); });
+  command.option("--rig", options->rig, "What to ask of the machine (YAML)");
+  command.number_within("--rate-hz", options->rate_hz, 500.0, 10000.0, "Of the loop");
+  command.number_within("--seconds", options->seconds, 0.1, 600.0,
+                        "To measure, idle and under load each");
+  command.file("--figure", options->figure, ".svg", "Draw the lateness (.svg)");
+  command.on_run([options] { run_doctor(*options); });
 }
 }  // namespace tapstudy::runner

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 #include <sys/resource.h>
 
-#include <CLI/CLI.hpp>
 #include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -154,18 +153,15 @@ void run_modes(const ModesOptions& options) {
 }
 }  // namespace
 
-void add_modes(CLI::App& app) {
-  auto* const command =
-      app.add_subcommand("modes", "Natural frequencies and damping of a stimulus's plate");
+void add_modes(CommandParser& line) {
+  Command command = line.add("modes", "Natural frequencies and damping of a stimulus's plate");
   const auto options = std::make_shared<ModesOptions>();
-  command->add_option("protocol", options->protocol, "Study (YAML)")->required();
-  command->add_option("--stimulus", options->stimulus, "Which stimulus")->required();
-  command->add_flag("--json", options->wants_json, "For programs");
-  command->add_option("--mesh-out", options->mesh_out, "Write the mesh as PREFIX.node, PREFIX.ele");
-  command->add_option("--vtu", options->vtu, "Write body and mode shapes for ParaView (.vtu)")
-      ->check(ends_in(".vtu"));
-  command->add_option("--figure", options->figure, "Draw the plate's modes from above (.svg)")
-      ->check(ends_in(".svg"));
-  command->callback([options] { run_modes(*options); });
+  command.argument("protocol", options->protocol, "Study (YAML)");
+  command.option("--stimulus", options->stimulus, "Which stimulus", Need::required);
+  command.flag("--json", options->wants_json, "For programs");
+  command.option("--mesh-out", options->mesh_out, "Write the mesh as PREFIX.node, PREFIX.ele");
+  command.file("--vtu", options->vtu, ".vtu", "Write body and mode shapes for ParaView (.vtu)");
+  command.file("--figure", options->figure, ".svg", "Draw the plate's modes from above (.svg)");
+  command.on_run([options] { run_modes(*options); });
 }
 }  // namespace tapstudy::runner

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -155,17 +154,17 @@ void run_report(ReportOptions options) {
 }
 }  // namespace
 
-void add_report(CLI::App& app) {
-  auto* const command =
-      app.add_subcommand("report", "Confusion matrix and statistics: terminal, HTML, JSON and CSV");
+void add_report(CommandParser& line) {
+  Command command =
+      line.add("report", "Confusion matrix and statistics: terminal, HTML, JSON and CSV");
   const auto options = std::make_shared<ReportOptions>();
-  command->add_option("directory", options->directory, "Directory of a study");
-  command->add_option("--counts", options->counts,
-                      "Instead of a study: a matrix or a stimulus,response table (CSV)");
-  command->add_option("--out", options->out, "Where the files go; else the study's directory");
-  command->add_option("--mode", options->mode, "Which sessions: real, pilot or simulated")
-      ->check(CLI::IsMember({"real", "pilot", "simulated"}));
-  command->add_flag("--replace", options->replace, "Replace an earlier report");
-  command->callback([options] { run_report(*options); });
+  command.argument("directory", options->directory, "Directory of a study", Need::optional);
+  command.option("--counts", options->counts,
+                 "Instead of a study: a matrix or a stimulus,response table (CSV)");
+  command.option("--out", options->out, "Where the files go; else the study's directory");
+  command.one_of("--mode", options->mode, {"real", "pilot", "simulated"},
+                 "Which sessions: real, pilot or simulated");
+  command.flag("--replace", options->replace, "Replace an earlier report");
+  command.on_run([options] { run_report(*options); });
 }
 }  // namespace tapstudy::runner

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <memory>
 
 #include "protocols/read_protocol.hpp"
@@ -41,16 +40,16 @@ void run(const RunOptions& options) {
 }
 }  // namespace
 
-void add_run(CLI::App& app) {
-  auto* const command = app.add_subcommand("run", "One participant's session at the terminal");
+void add_run(CommandParser& line) {
+  Command command = line.add("run", "One participant's session at the terminal");
   const auto options = std::make_shared<RunOptions>();
-  command->add_option("protocol", options->protocol, "Study (YAML)")->required();
-  command->add_option("--participant", options->participant, "Participant's id")->required();
-  command->add_option("--out", options->directory, "Directory of the study")->required();
-  command->add_option("--rig", options->rig, "Device and limits (YAML); else a simulated hand");
-  command->add_option("--seed", options->seed, "Of the order; else drawn and stored");
-  command->add_flag("--resume", options->resume, "Go on with the participant's last session");
-  command->add_flag("--pilot", options->pilot, "Mark as a pilot, kept out of reports");
-  command->callback([options] { run(*options); });
+  command.argument("protocol", options->protocol, "Study (YAML)");
+  command.option("--participant", options->participant, "Participant's id", Need::required);
+  command.option("--out", options->directory, "Directory of the study", Need::required);
+  command.option("--rig", options->rig, "Device and limits (YAML); else a simulated hand");
+  command.option("--seed", options->seed, "Of the order; else drawn and stored");
+  command.flag("--resume", options->resume, "Go on with the participant's last session");
+  command.flag("--pilot", options->pilot, "Mark as a pilot, kept out of reports");
+  command.on_run([options] { run(*options); });
 }
 }  // namespace tapstudy::runner

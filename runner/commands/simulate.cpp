@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <memory>
 
 #include "core/error.hpp"
@@ -30,17 +29,16 @@ void run_simulate(const SimulatedStudy& study) {
 }
 }  // namespace
 
-void add_simulate(CLI::App& app) {
-  auto* const command =
-      app.add_subcommand("simulate", "The whole study with simulated participants");
+void add_simulate(CommandParser& line) {
+  Command command = line.add("simulate", "The whole study with simulated participants");
   const auto study = std::make_shared<SimulatedStudy>();
   const auto seed = std::make_shared<std::string>("1");
   study->participants = 10;
-  command->add_option("protocol", study->protocol_file, "Study (YAML)")->required();
-  command->add_option("--participants", study->participants, "How many")->capture_default_str();
-  command->add_option("--seed", *seed, "Of all randomness")->capture_default_str();
-  command->add_option("--out", study->directory, "Directory of the study")->required();
-  command->callback([study, seed] {
+  command.argument("protocol", study->protocol_file, "Study (YAML)");
+  command.option_with_default("--participants", study->participants, "How many");
+  command.option_with_default("--seed", *seed, "Of all randomness");
+  command.option("--out", study->directory, "Directory of the study", Need::required);
+  command.on_run([study, seed] {
     study->seed = seed_from(*seed, "--seed");
     run_simulate(*study);
   });

@@ -1,8 +1,6 @@
 #include <fmt/format.h>
-#include <fmt/ostream.h>
 #include <fmt/ranges.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
@@ -13,6 +11,7 @@
 #include "core/error.hpp"
 #include "core/output_file.hpp"
 #include "core/placement.hpp"
+#include "core/print.hpp"
 #include "protocols/read_protocol.hpp"
 #include "runner/commands/commands.hpp"
 #include "runner/devices/rigs.hpp"
@@ -41,12 +40,12 @@ void write_csv(std::ostream& out, const std::vector<TraceSample>& trace) {
   out << "t_s,position_x_m,position_y_m,position_z_m,velocity_x_m_s,velocity_y_m_s,velocity_z_m_s,"
          "penetration_m,penalty_n,vibration_n,sinusoid_n,force_n,touching,impact,saturated\n";
   for (const TraceSample& s : trace) {
-    fmt::print(out,
-               "{:.6f},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},"
-               "{:.17g},{:.17g},{:d},{:d},{:d}\n",
-               seconds_of(s), s.position_m[0], s.position_m[1], s.position_m[2], s.velocity_m_s[0],
-               s.velocity_m_s[1], s.velocity_m_s[2], s.penetration_m, s.penalty_n, s.vibration_n,
-               s.sinusoid_n, core::along_normal(s.force_n), s.touching, s.impact, s.saturated);
+    core::print(out,
+                "{:.6f},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},"
+                "{:.17g},{:.17g},{:d},{:d},{:d}\n",
+                seconds_of(s), s.position_m[0], s.position_m[1], s.position_m[2], s.velocity_m_s[0],
+                s.velocity_m_s[1], s.velocity_m_s[2], s.penetration_m, s.penalty_n, s.vibration_n,
+                s.sinusoid_n, core::along_normal(s.force_n), s.touching, s.impact, s.saturated);
   }
 }
 
@@ -203,24 +202,22 @@ void run_tap(const TapOptions& options) {
 }
 }  // namespace
 
-void add_tap(CLI::App& app) {
-  auto* const command = app.add_subcommand("tap", "Force trace of one scripted tap");
+void add_tap(CommandParser& line) {
+  Command command = line.add("tap", "Force trace of one scripted tap");
   const auto options = std::make_shared<TapOptions>();
-  command->add_option("protocol", options->protocol, "Study (YAML)")->required();
-  command->add_option("--stimulus", options->stimulus, "Which stimulus to tap");
-  command->add_option("--at", options->at, "X,Y on the plate in metres, or a tapping point");
-  command->add_option("--speed", options->speed_m_s, "Speed of impact [m/s]");
-  command->add_option(
+  command.argument("protocol", options->protocol, "Study (YAML)");
+  command.option("--stimulus", options->stimulus, "Which stimulus to tap");
+  command.option("--at", options->at, "X,Y on the plate in metres, or a tapping point");
+  command.number("--speed", options->speed_m_s, "Speed of impact [m/s]");
+  command.option(
       "--technique", options->technique,
       fmt::format("{} instead of the stimulus's own", fmt::join(core::technique_names(), ", ")));
-  command->add_option("--seconds", options->seconds, "How long the finger stays");
-  command->add_option("--csv", options->csv, "Write every tick to this new file (- for stdout)");
-  command->add_option("--panels", options->panels,
-                      "Draw all stimuli at all tapping points into this directory (SVG)");
-  command
-      ->add_option("--frames", options->frames,
-                   "Draw the plate's displacement after the strike, from above (.svg)")
-      ->check(ends_in(".svg"));
-  command->callback([options] { run_tap(*options); });
+  command.number("--seconds", options->seconds, "How long the finger stays");
+  command.option("--csv", options->csv, "Write every tick to this new file (- for stdout)");
+  command.option("--panels", options->panels,
+                 "Draw all stimuli at all tapping points into this directory (SVG)");
+  command.file("--frames", options->frames, ".svg",
+               "Draw the plate's displacement after the strike, from above (.svg)");
+  command.on_run([options] { run_tap(*options); });
 }
 }  // namespace tapstudy::runner

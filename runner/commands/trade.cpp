@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <cmath>
 #include <memory>
 
@@ -47,26 +46,18 @@ void run_trade(const TradeOptions& options) {
 }
 }  // namespace
 
-void add_trade(CLI::App& app) {
-  auto* const command =
-      app.add_subcommand("trade", "What speed costs in accuracy, and what extremes it stands");
+void add_trade(CommandParser& line) {
+  Command command = line.add("trade", "What speed costs in accuracy, and what extremes it stands");
   const auto options = std::make_shared<TradeOptions>();
-  command->add_option("protocol", options->protocol, "Study (YAML)")->required();
-  command->add_option("--stimulus", options->stimulus, "Which stimulus")->required();
-  command
-      ->add_option("--frequency-tolerance", options->tolerance.frequency,
-                   "Largest relative error of a natural frequency")
-      ->check(within(1e-6, 10.0))
-      ->capture_default_str();
-  command
-      ->add_option("--level-tolerance-db", options->tolerance.level_db,
-                   "Largest error of the vibration's level")
-      ->check(within(1e-6, 100.0))
-      ->capture_default_str();
-  command->add_flag("--json", options->wants_json, "For programs");
-  command->add_option(
-      "--out", options->out,
-      "Write trade.csv, trade.json, trade.svg and stability.csv into this directory");
-  command->callback([options] { run_trade(*options); });
+  command.argument("protocol", options->protocol, "Study (YAML)");
+  command.option("--stimulus", options->stimulus, "Which stimulus", Need::required);
+  command.number_within("--frequency-tolerance", options->tolerance.frequency, 1e-6, 10.0,
+                        "Largest relative error of a natural frequency");
+  command.number_within("--level-tolerance-db", options->tolerance.level_db, 1e-6, 100.0,
+                        "Largest error of the vibration's level");
+  command.flag("--json", options->wants_json, "For programs");
+  command.option("--out", options->out,
+                 "Write trade.csv, trade.json, trade.svg and stability.csv into this directory");
+  command.on_run([options] { run_trade(*options); });
 }
 }  // namespace tapstudy::runner

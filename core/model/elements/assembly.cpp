@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <array>
 #include <utility>
 
+#include "core/algebra/lapack.hpp"
 #include "core/error.hpp"
 #include "core/model/elements/node_graph.hpp"
 #include "core/model/elements/tet_element.hpp"
@@ -170,9 +170,7 @@ int free_rigid_motions(const TetMesh& mesh, const FreeDofs& dofs) {
       }
     }
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> solver{held,
-                                                                          Eigen::EigenvaluesOnly};
-  return static_cast<int>((solver.eigenvalues().array() < nothing_holds).count());
+  return static_cast<int>((symmetric_eigenpairs(held).values.array() < nothing_holds).count());
 }
 
 std::vector<int> first_of_node(const FreeDofs& dofs) {

@@ -1,33 +1,33 @@
 #include "core/model/mesh/tet_mesh.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ostream.h>
 
 #include <Eigen/Geometry>
 #include <array>
 
 #include "core/output_file.hpp"
+#include "core/print.hpp"
 namespace tapstudy::core {
 namespace {
 // TetGen's own order of a T10's nodes: corners, then the middles of 23 03 01 12 13 02.
 constexpr std::array<Eigen::Index, 10> tetgen_order{0, 1, 2, 3, 9, 7, 4, 5, 8, 6};
 
 void write_nodes(std::ostream& out, const TetMesh& mesh) {
-  fmt::print(out, "{} 3 0 0\n", mesh.nodes_m.rows());
+  core::print(out, "{} 3 0 0\n", mesh.nodes_m.rows());
   for (Eigen::Index i = 0; i < mesh.nodes_m.rows(); ++i) {
-    fmt::print(out, "{} {:.17g} {:.17g} {:.17g}\n", i, mesh.nodes_m(i, 0), mesh.nodes_m(i, 1),
-               mesh.nodes_m(i, 2));
+    core::print(out, "{} {:.17g} {:.17g} {:.17g}\n", i, mesh.nodes_m(i, 0), mesh.nodes_m(i, 1),
+                mesh.nodes_m(i, 2));
   }
 }
 
 void write_elements(std::ostream& out, const TetMesh& mesh) {
-  fmt::print(out, "{} {} 0\n", mesh.tets.rows(), mesh.tets.cols());
+  core::print(out, "{} {} 0\n", mesh.tets.rows(), mesh.tets.cols());
   for (Eigen::Index tet = 0; tet < mesh.tets.rows(); ++tet) {
-    fmt::print(out, "{}", tet);
+    core::print(out, "{}", tet);
     for (Eigen::Index i = 0; i < mesh.tets.cols(); ++i) {
-      fmt::print(out, " {}", mesh.tets(tet, tetgen_order.at(static_cast<std::size_t>(i))));
+      core::print(out, " {}", mesh.tets(tet, tetgen_order.at(static_cast<std::size_t>(i))));
     }
-    fmt::print(out, "\n");
+    core::print(out, "\n");
   }
 }
 }  // namespace

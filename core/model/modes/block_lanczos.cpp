@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <memory>
 
+#include "core/algebra/blas_products.hpp"
+#include "core/algebra/lapack.hpp"
 #include "core/error.hpp"
-#include "core/model/modes/blas_products.hpp"
 #include "core/rng.hpp"
 namespace tapstudy::core {
 namespace {
@@ -87,19 +87,19 @@ class BlockKrylov {
     MatrixXd guard_weights;
   };
   Converged converged(Index count, double sigma) const {
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> ritz{0.5 * (projected_ + projected_.transpose())};
-    const auto nu = ritz.eigenvalues().head(count).array();
-    const MatrixXd beyond = coupling_ * ritz.eigenvectors().leftCols(count).bottomRows(block_);
+    const EigenPairs ritz = symmetric_eigenpairs(0.5 * (projected_ + projected_.transpose()));
+    const auto nu = ritz.values.head(count).array();
+    const MatrixXd beyond = coupling_ * ritz.vectors.leftCols(count).bottomRows(block_);
     const bool all = (nu < 0.0).all() &&
                      (beyond.colwise().norm().transpose().array() <= tolerance * nu.abs()).all();
     if (!all) {
       return {};
     }
-    const Index guards = (ritz.eigenvalues().array() > 1.0 / sigma).count();
+    const Index guards = (ritz.values.array() > 1.0 / sigma).count();
     // one step of inverse iteration, for free: what lies outside the basis is known
-    return {combined(ritz.eigenvectors().leftCols(count)) +
+    return {combined(ritz.vectors.leftCols(count)) +
                 next_.vectors * (beyond * nu.inverse().matrix().asDiagonal()),
-            ritz.eigenvectors().rightCols(guards)};
+            ritz.vectors.rightCols(guards)};
   }
 
  private:

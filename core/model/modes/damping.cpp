@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/QR>
 #include <numbers>
 
+#include "core/algebra/lapack.hpp"
 #include "core/error.hpp"
 namespace tapstudy::core {
 namespace {
@@ -74,12 +74,11 @@ RayleighDamping rayleigh_by_least_squares(const FittedDamping& measured) {
   }
   // columns of like size, so that the rank is seen whatever the frequencies' size
   const Eigen::RowVector2d size = share.colwise().norm();
-  const Eigen::ColPivHouseholderQR<Eigen::MatrixX2d> solver{share *
-                                                            size.cwiseInverse().asDiagonal()};
-  if (solver.rank() < 2) {
+  const LeastSquares fit = least_squares(share * size.cwiseInverse().asDiagonal(), ratio);
+  if (fit.rank < 2) {
     throw ModelError{"damping: a fit needs ratios at two different frequencies at least"};
   }
-  const Eigen::Vector2d solution = solver.solve(ratio).cwiseQuotient(size.transpose());
+  const Eigen::Vector2d solution = fit.solution.cwiseQuotient(size.transpose());
   return not_negative({solution[0], solution[1]},
                       fmt::format("the {} ratios fitted", measured.points.size()));
 }

@@ -2,13 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <vector>
 
+#include "core/algebra/lapack.hpp"
 #include "core/error.hpp"
 #include "core/model/modes/block_lanczos.hpp"
 #include "core/model/modes/shifted_factor.hpp"
@@ -33,13 +33,10 @@ struct Pairs {
 };
 
 Pairs lowest_dense(const StiffnessAndMass& matrices, int count) {
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver{
-      Eigen::MatrixXd{matrices.K}, Eigen::MatrixXd{matrices.M}};
-  if (solver.info() != Eigen::Success) {
-    throw ModelError{"modes: the dense eigenvalue solver did not converge"};
-  }
-  const Eigen::MatrixXd vectors = solver.eigenvectors().leftCols(count);
-  return {solver.eigenvalues().head(count), vectors, matrices.stiffness() * vectors,
+  const EigenPairs all =
+      symmetric_eigenpairs(Eigen::MatrixXd{matrices.K}, Eigen::MatrixXd{matrices.M});
+  const Eigen::MatrixXd vectors = all.vectors.leftCols(count);
+  return {all.values.head(count), vectors, matrices.stiffness() * vectors,
           matrices.mass() * vectors};
 }
 
@@ -48,10 +45,9 @@ Pairs lowest_dense(const StiffnessAndMass& matrices, int count) {
 Pairs modes_in_span(const StiffnessAndMass& matrices, const Eigen::MatrixXd& vectors) {
   const Eigen::MatrixXd elastic = matrices.stiffness() * vectors;
   const Eigen::MatrixXd inertial = matrices.mass() * vectors;
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver{
-      vectors.transpose() * elastic, vectors.transpose() * inertial};
-  const Eigen::MatrixXd& mix = solver.eigenvectors();
-  return {solver.eigenvalues(), vectors * mix, elastic * mix, inertial * mix};
+  const auto [values, mix] =
+      symmetric_eigenpairs(vectors.transpose() * elastic, vectors.transpose() * inertial);
+  return {values, vectors * mix, elastic * mix, inertial * mix};
 }
 
 // The first component of at least half the largest size is positive.

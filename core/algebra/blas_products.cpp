@@ -1,4 +1,4 @@
-#include "core/model/modes/blas_products.hpp"
+#include "core/algebra/blas_products.hpp"
 
 #include <cblas.h>
 namespace tapstudy::core {

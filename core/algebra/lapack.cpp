@@ -1,0 +1,60 @@
+#include "core/algebra/lapack.hpp"
+
+#include <fmt/format.h>
+#include <lapacke.h>
+
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "core/error.hpp"
+namespace tapstudy::core {
+namespace {
+lapack_int as_int(Eigen::Index size) {
+  return static_cast<lapack_int>(size);
+}
+
+// LAPACK: info > 0 says where it failed.
+void check(lapack_int info, const char* routine) {
+  if (info != 0) {
+    throw ModelError{fmt::format("modes: the dense eigenvalue solver failed ({} {})", routine,
+                                 static_cast<int>(info))};
+  }
+}
+}  // namespace
+
+EigenPairs symmetric_eigenpairs(Eigen::MatrixXd A) {
+  EigenPairs pairs{Eigen::VectorXd{A.rows()}, std::move(A)};
+  const lapack_int n = as_int(pairs.values.size());
+  if (n > 0) {
+    check(
+        LAPACKE_dsyevd(LAPACK_COL_MAJOR, 'V', 'L', n, pairs.vectors.data(), n, pairs.values.data()),
+        "dsyevd");
+  }
+  return pairs;
+}
+
+EigenPairs symmetric_eigenpairs(Eigen::MatrixXd A, Eigen::MatrixXd B) {
+  EigenPairs pairs{Eigen::VectorXd{A.rows()}, std::move(A)};
+  const lapack_int n = as_int(pairs.values.size());
+  constexpr lapack_int a_x_is_lambda_b_x = 1;
+  if (n > 0) {
+    check(LAPACKE_dsygvd(LAPACK_COL_MAJOR, a_x_is_lambda_b_x, 'V', 'L', n, pairs.vectors.data(), n,
+                         B.data(), n, pairs.values.data()),
+          "dsygvd");
+  }
+  return pairs;
+}
+
+LeastSquares least_squares(Eigen::MatrixXd A, Eigen::VectorXd b) {
+  const lapack_int rows = as_int(A.rows());
+  const lapack_int columns = as_int(A.cols());
+  std::vector<lapack_int> pivots(static_cast<std::size_t>(columns), 0);
+  const double least_share = static_cast<double>(rows) * std::numeric_limits<double>::epsilon();
+  lapack_int rank = 0;
+  check(LAPACKE_dgelsy(LAPACK_COL_MAJOR, rows, columns, 1, A.data(), rows, b.data(), rows,
+                       pivots.data(), least_share, &rank),
+        "dgelsy");
+  return {b.head(columns), static_cast<int>(rank)};
+}
+}  // namespace tapstudy::core

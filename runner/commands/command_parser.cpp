@@ -1,0 +1,117 @@
+#include "runner/commands/command_parser.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <utility>
+
+#include "core/error.hpp"
+namespace tapstudy::runner {
+namespace {
+// An empty value, from an unset variable in a script, is not the same as no value.
+void refuse_empty_values(CLI::App& app) {
+  const CLI::Validator not_empty{[](const std::string& value) {
+                                   return value.empty() ? std::string{"must not be empty"}
+                                                        : std::string{};
+                                 },
+                                 ""};
+  for (CLI::App* const command : app.get_subcommands({})) {
+    for (CLI::Option* const option : command->get_options()) {
+      if (option->get_items_expected_max() > 0) {
+        option->check(not_empty);
+      }
+    }
+  }
+}
+
+CLI::Validator ends_in(const std::string& ending) {
+  return {[ending](const std::string& name) {
+            return name.ends_with(ending) ? std::string{} : "must end in " + ending;
+          },
+          ""};
+}
+
+// Refuses NaN too, which a comparison with each end alone would let through.
+CLI::Validator within(double low, double high) {
+  return {[low, high](const std::string& text) {
+            double value = 0.0;
+            const bool is_number = CLI::detail::lexical_cast(text, value);
+            return is_number && value >= low && value <= high
+                       ? std::string{}
+                       : fmt::format("{} is not allowed (from {} to {})", text, low, high);
+          },
+          ""};
+}
+}  // namespace
+
+void Command::argument(const std::string& name, std::string& value, const std::string& help,
+                       Need need) {
+  app_->add_option(name, value, help)->required(need == Need::required);
+}
+
+void Command::option(const std::string& name, std::string& value, const std::string& help,
+                     Need need) {
+  app_->add_option(name, value, help)->required(need == Need::required);
+}
+
+void Command::option_with_default(const std::string& name, std::string& value,
+                                  const std::string& help) {
+  app_->add_option(name, value, help)->capture_default_str();
+}
+
+void Command::option_with_default(const std::string& name, int& value, const std::string& help) {
+  app_->add_option(name, value, help)->capture_default_str();
+}
+
+void Command::number(const std::string& name, double& value, const std::string& help) {
+  app_->add_option(name, value, help);
+}
+
+void Command::number_within(const std::string& name, double& value, double low, double high,
+                            const std::string& help) {
+  app_->add_option(name, value, help)->check(within(low, high))->capture_default_str();
+}
+
+void Command::file(const std::string& name, std::string& value, const std::string& ending,
+                   const std::string& help) {
+  app_->add_option(name, value, help)->check(ends_in(ending));
+}
+
+void Command::one_of(const std::string& name, std::string& value,
+                     const std::vector<std::string>& allowed, const std::string& help) {
+  app_->add_option(name, value, help)->check(CLI::IsMember(allowed));
+}
+
+void Command::flag(const std::string& name, bool& value, const std::string& help) {
+  app_->add_flag(name, value, help);
+}
+
+void Command::on_run(std::function<void()> run) {
+  app_->callback(std::move(run));
+}
+
+CommandParser::CommandParser(const std::string& description, const std::string& name,
+                             const std::string& version)
+    : app_{std::make_unique<CLI::App>(description, name)} {
+  app_->require_subcommand(1);
+  app_->set_version_flag("--version", version);
+}
+
+CommandParser::~CommandParser() = default;
+
+Command CommandParser::add(const std::string& name, const std::string& help) {
+  return Command{*app_->add_subcommand(name, help)};
+}
+
+ExitCode CommandParser::parse(int argc, const char* const* argv) {
+  refuse_empty_values(*app_);
+  try {
+    app_->parse(argc, argv);
+  } catch (const CLI::Success& asked_for_help) {
+    return static_cast<ExitCode>(app_->exit(asked_for_help));
+  } catch (const CLI::ParseError& error) {
+    throw core::InvalidInput{fmt::format("{} (tapstudy --help says more)", error.what())};
+  }
+  return ExitCode::done;
+}
+}  // namespace tapstudy::runner

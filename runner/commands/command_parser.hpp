@@ -1,0 +1,61 @@
+#pragma once
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "runner/terminal/exit_code.hpp"
+namespace CLI {
+class App;
+}  // namespace CLI
+namespace tapstudy::runner {
+enum class Need { required, optional };
+
+// One command: its arguments and options are described once and bound to variables, which must
+// outlive the parsing. CLI11 behind one door, for its header costs a source seconds to build.
+class Command {
+ public:
+  void argument(const std::string& name, std::string& value, const std::string& help,
+                Need need = Need::required);
+  void option(const std::string& name, std::string& value, const std::string& help,
+              Need need = Need::optional);
+  // Help shows the default.
+  void option_with_default(const std::string& name, std::string& value, const std::string& help);
+  void option_with_default(const std::string& name, int& value, const std::string& help);
+  void number(const std::string& name, double& value, const std::string& help);
+  void number_within(const std::string& name, double& value, double low, double high,
+                     const std::string& help);
+  // A file's name must say what the file will hold.
+  void file(const std::string& name, std::string& value, const std::string& ending,
+            const std::string& help);
+  void one_of(const std::string& name, std::string& value, const std::vector<std::string>& allowed,
+              const std::string& help);
+  void flag(const std::string& name, bool& value, const std::string& help);
+  // When the line is parsed.
+  void on_run(std::function<void()> run);
+
+ private:
+  friend class CommandParser;
+  explicit Command(CLI::App& app) : app_{&app} {}
+  CLI::App* app_;
+};
+
+class CommandParser {
+ public:
+  CommandParser(const std::string& description, const std::string& name,
+                const std::string& version);
+  ~CommandParser();
+  CommandParser(const CommandParser& other) = delete;
+  CommandParser& operator=(const CommandParser& other) = delete;
+  CommandParser(CommandParser&& other) = delete;
+  CommandParser& operator=(CommandParser&& other) = delete;
+
+  Command add(const std::string& name, const std::string& help);
+  // Runs the command of the line. Throws InvalidInput for what is not one, and what the command
+  // throws.
+  ExitCode parse(int argc, const char* const* argv);
+
+ private:
+  std::unique_ptr<CLI::App> app_;
+};
+}  // namespace tapstudy::runner

@@ -28,8 +28,8 @@ EigenPairs symmetric_eigenpairs(Eigen::MatrixXd A) {
   const lapack_int n = as_int(pairs.values.size());
   if (n > 0) {
     check(
-        LAPACKE_dsyevd(LAPACK_COL_MAJOR, 'V', 'L', n, pairs.vectors.data(), n, pairs.values.data()),
-        "dsyevd");
+        LAPACKE_dsyev(LAPACK_COL_MAJOR, 'V', 'L', n, pairs.vectors.data(), n, pairs.values.data()),
+        "dsyev");
   }
   return pairs;
 }
@@ -39,9 +39,9 @@ EigenPairs symmetric_eigenpairs(Eigen::MatrixXd A, Eigen::MatrixXd B) {
   const lapack_int n = as_int(pairs.values.size());
   constexpr lapack_int a_x_is_lambda_b_x = 1;
   if (n > 0) {
-    check(LAPACKE_dsygvd(LAPACK_COL_MAJOR, a_x_is_lambda_b_x, 'V', 'L', n, pairs.vectors.data(), n,
-                         B.data(), n, pairs.values.data()),
-          "dsygvd");
+    check(LAPACKE_dsygv(LAPACK_COL_MAJOR, a_x_is_lambda_b_x, 'V', 'L', n, pairs.vectors.data(), n,
+                        B.data(), n, pairs.values.data()),
+          "dsygv");
   }
   return pairs;
 }

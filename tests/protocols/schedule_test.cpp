@@ -16,7 +16,7 @@ protocols::Protocol paper(const char* name) {
 }
 }  // namespace
 
-TEST_CASE("every plate is result as often as the protocol says", "[protocols][schedule]") {
+TEST_CASE("every plate is presented as often as the protocol says", "[protocols][schedule]") {
   protocols::Protocol protocol = paper("discrimination.yaml");
   protocol.blocks[0].order =
       GENERATE(protocols::Order::listed, protocols::Order::shuffle,

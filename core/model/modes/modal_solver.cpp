@@ -171,14 +171,14 @@ Modes solve_modes(const StiffnessAndMass& matrices, double band_limit_hz,
     pairs = is_small ? lowest_dense(matrices, count)
                      : modes_below_shift(matrices, factor, count, rounding_n_per_m, progress);
   }
+  modes.rigid_body_modes = std::min(matrices.rigid_body_modes, count);
+  modes.worst_residual = checked_worst(residuals(pairs, modes.rigid_body_modes, rounding_n_per_m));
   if (count > 0 && pairs.values.maxCoeff() >= band * band) {
     throw ModelError{fmt::format(
         "modes: {} lie below the band limit by the inertia count, but the solver missed "
         "one of them",
         count)};
   }
-  modes.rigid_body_modes = std::min(matrices.rigid_body_modes, count);
-  modes.worst_residual = checked_worst(residuals(pairs, modes.rigid_body_modes, rounding_n_per_m));
   const Eigen::Index kept = count - modes.rigid_body_modes;
   modes.omega_rad_s = pairs.values.tail(kept).array().sqrt();
   modes.shapes = pairs.vectors.rightCols(kept);

@@ -19,6 +19,12 @@ add_library(libusb::libusb INTERFACE IMPORTED)
 target_include_directories(libusb::libusb SYSTEM INTERFACE ${LIBUSB_INCLUDE})
 target_link_libraries(libusb::libusb INTERFACE ${LIBUSB_LIBRARY})
 
+find_path(CSV_INCLUDE csv.h REQUIRED)
+find_library(CSV_LIBRARY csv REQUIRED)
+add_library(csv::csv INTERFACE IMPORTED)
+target_include_directories(csv::csv SYSTEM INTERFACE ${CSV_INCLUDE})
+target_link_libraries(csv::csv INTERFACE ${CSV_LIBRARY})
+
 find_path(TETGEN_INCLUDE tetgen.h REQUIRED)
 find_library(TETGEN_LIBRARY tet REQUIRED)
 add_library(tetgen::tetgen INTERFACE IMPORTED)

@@ -1,14 +1,16 @@
 #include <fmt/format.h>
 
 #include "analysis/choice/choice_summary.hpp"
+#include "analysis/statistics/csv_rows.hpp"
 #include "core/print.hpp"
 namespace tapstudy::analysis {
 std::vector<CsvTable> ChoiceSummary::tables() const {
   return {{"choices.csv", [this](std::ostream& out) {
              out << "stimulus,chosen,choices,visits,dwell_s\n";
              for (const AlternativeResult& result : alternatives) {
-               core::print(out, "{},{},{},{},{:.3f}\n", result.item.name, result.chosen.successes,
-                           result.chosen.trials, result.visits, result.dwell_s);
+               core::print(out, "{},{},{},{},{:.3f}\n", csv_cell(result.item.name),
+                           result.chosen.successes, result.chosen.trials, result.visits,
+                           result.dwell_s);
              }
            }}};
 }

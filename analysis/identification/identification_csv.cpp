@@ -1,4 +1,5 @@
 #include "analysis/identification/identification_summary.hpp"
+#include "analysis/statistics/csv_rows.hpp"
 namespace tapstudy::analysis {
 namespace {
 // Rows are stimuli, columns responses, cells counts: the form that read_counts takes.
@@ -6,16 +7,16 @@ void write_matrix(std::ostream& out, const ConfusionMatrix& matrix) {
   const std::vector<std::string> factors = factors_of(matrix);
   out << "stimulus";
   for (const std::string& factor : factors) {
-    out << ',' << factor;
+    out << ',' << csv_cell(factor);
   }
   for (const Item& response : matrix.responses) {
-    out << ',' << response.name;
+    out << ',' << csv_cell(response.name);
   }
   out << '\n';
   for (std::size_t i = 0; i < matrix.stimuli.size(); ++i) {
-    out << matrix.stimuli[i].name;
+    out << csv_cell(matrix.stimuli[i].name);
     for (const std::string& factor : factors) {
-      out << ',' << matrix.stimuli[i].factors.at(factor);
+      out << ',' << csv_cell(matrix.stimuli[i].factors.at(factor));
     }
     for (const int count : matrix.counts[i]) {
       out << ',' << count;

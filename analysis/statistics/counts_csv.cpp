@@ -7,14 +7,10 @@
 #include <set>
 #include <span>
 
+#include "analysis/statistics/csv_rows.hpp"
 #include "core/error.hpp"
 namespace tapstudy::analysis {
 namespace {
-struct Line {
-  int number;
-  std::vector<std::string> cells;
-};
-
 constexpr std::size_t max_classes = 200;
 constexpr int max_answers = 1'000'000;
 
@@ -26,42 +22,20 @@ bool has_name(const std::vector<Item>& items, const std::string& name) {
   return std::ranges::find(items, name, &Item::name) != items.end();
 }
 
-std::string trimmed(const std::string& text) {
-  const auto first = text.find_first_not_of(" \t\r\"");
-  const auto last = text.find_last_not_of(" \t\r\"");
-  return first == std::string::npos ? "" : text.substr(first, last - first + 1);
-}
-
-std::vector<std::string> split(const std::string& line) {
-  std::vector<std::string> cells;
-  std::size_t start = 0;
-  for (std::size_t comma = 0; comma != std::string::npos; start = comma + 1) {
-    comma = line.find(',', start);
-    cells.push_back(trimmed(line.substr(start, comma - start)));
-  }
-  return cells;
-}
-
-std::vector<Line> read_lines(std::istream& text, const std::string& file) {
-  std::vector<Line> lines;
-  int number = 0;
-  for (std::string line; std::getline(text, line);) {
-    ++number;
-    if (trimmed(line).empty() || line.front() == '#') {
-      continue;
-    }
-    lines.push_back({number, split(line)});
-    if (lines.back().cells.size() != lines.front().cells.size()) {
-      refuse(file, number,
-             fmt::format("has {} cells, the header has {}", lines.back().cells.size(),
-                         lines.front().cells.size()));
+std::vector<CsvRow> read_rows(std::istream& text, const std::string& file) {
+  std::vector<CsvRow> rows = read_csv(text, file);
+  for (const CsvRow& row : rows) {
+    if (row.cells.size() != rows.front().cells.size()) {
+      refuse(file, row.line,
+             fmt::format("has {} cells, the header has {}", row.cells.size(),
+                         rows.front().cells.size()));
     }
   }
-  if (lines.size() < 2 || lines.front().cells.front() != "stimulus") {
-    refuse(file, lines.empty() ? 1 : lines.front().number,
+  if (rows.size() < 2 || rows.front().cells.front() != "stimulus") {
+    refuse(file, rows.empty() ? 1 : rows.front().line,
            "is not a table with a header that starts with 'stimulus' and at least one row");
   }
-  return lines;
+  return rows;
 }
 
 int count_in(const std::string& cell, const std::string& file, int line) {
@@ -74,13 +48,13 @@ int count_in(const std::string& cell, const std::string& file, int line) {
   return value;
 }
 
-ConfusionMatrix from_answers(const std::vector<Line>& lines, const std::string& file) {
+ConfusionMatrix from_answers(const std::vector<CsvRow>& lines, const std::string& file) {
   std::set<std::string> names;
   for (std::size_t i = 1; i < lines.size(); ++i) {
     names.insert({lines[i].cells[0], lines[i].cells[1]});
   }
   if (names.size() > max_classes) {
-    refuse(file, lines.front().number,
+    refuse(file, lines.front().line,
            fmt::format("names {} different stimuli and responses (at "
                        "most {})",
                        names.size(), max_classes));
@@ -96,12 +70,12 @@ ConfusionMatrix from_answers(const std::vector<Line>& lines, const std::string& 
   return matrix;
 }
 
-std::vector<Item> stimuli_of(const std::vector<Line>& lines, const std::string& file) {
+std::vector<Item> stimuli_of(const std::vector<CsvRow>& lines, const std::string& file) {
   std::vector<Item> stimuli;
   for (std::size_t i = 1; i < lines.size(); ++i) {
     const std::string& name = lines[i].cells[0];
     if (has_name(stimuli, name)) {
-      refuse(file, lines[i].number, fmt::format("stimulus '{}' is there twice", name));
+      refuse(file, lines[i].line, fmt::format("stimulus '{}' is there twice", name));
     }
     stimuli.push_back({name, name, {}});
   }
@@ -116,27 +90,27 @@ std::size_t first_response(const std::vector<std::string>& header,
   return static_cast<std::size_t>(found - header.begin());
 }
 
-std::vector<Item> responses_of(const Line& header, std::size_t first,
+std::vector<Item> responses_of(const CsvRow& header, std::size_t first,
                                const std::vector<Item>& stimuli, const std::string& file) {
   std::vector<Item> responses;
   for (std::size_t column = first; column < header.cells.size(); ++column) {
     const std::string& name = header.cells[column];
     if (has_name(responses, name)) {
-      refuse(file, header.number, fmt::format("response '{}' is there twice", name));
+      refuse(file, header.line, fmt::format("response '{}' is there twice", name));
     }
     const auto stimulus = std::ranges::find(stimuli, name, &Item::name);
     responses.push_back(stimulus != stimuli.end() ? *stimulus : Item{name, name, {}});
   }
   if (responses.size() < 2) {
-    refuse(file, header.number, "has fewer than two responses");
+    refuse(file, header.line, "has fewer than two responses");
   }
   return responses;
 }
 
-ConfusionMatrix from_matrix(const std::vector<Line>& lines, const std::string& file) {
+ConfusionMatrix from_matrix(const std::vector<CsvRow>& lines, const std::string& file) {
   const std::vector<std::string>& header = lines.front().cells;
   if (std::max(lines.size(), header.size()) > max_classes) {
-    refuse(file, lines.front().number,
+    refuse(file, lines.front().line,
            fmt::format("has more than {} stimuli or responses", max_classes));
   }
   std::vector<Item> stimuli = stimuli_of(lines, file);
@@ -147,9 +121,9 @@ ConfusionMatrix from_matrix(const std::vector<Line>& lines, const std::string& f
     }
   }
   ConfusionMatrix matrix{stimuli, responses_of(lines.front(), first, stimuli, file)};
-  for (const Line& line : std::span{lines}.subspan(1)) {
+  for (const CsvRow& line : std::span{lines}.subspan(1)) {
     for (std::size_t column = first; column < header.size(); ++column) {
-      matrix.add(line.cells[0], header[column], count_in(line.cells[column], file, line.number));
+      matrix.add(line.cells[0], header[column], count_in(line.cells[column], file, line.line));
     }
   }
   return matrix;
@@ -157,12 +131,12 @@ ConfusionMatrix from_matrix(const std::vector<Line>& lines, const std::string& f
 }  // namespace
 
 ConfusionMatrix read_counts(std::istream& text, const std::string& file) {
-  const std::vector<Line> lines = read_lines(text, file);
+  const std::vector<CsvRow> lines = read_rows(text, file);
   const std::vector<std::string>& header = lines.front().cells;
   const bool is_answers = header.size() >= 2 && header[1] == "response";
   ConfusionMatrix matrix = is_answers ? from_answers(lines, file) : from_matrix(lines, file);
   if (matrix.total() == 0) {
-    refuse(file, lines.front().number, "holds no answers");
+    refuse(file, lines.front().line, "holds no answers");
   }
   return matrix;
 }

@@ -4,7 +4,7 @@
 
 #include "analysis/statistics/confusion_matrix.hpp"
 namespace tapstudy::analysis {
-// A confusion matrix from comma-separated text. Lines that start with # are skipped. Two forms,
+// A confusion matrix from comma-separated text (csv_rows.hpp). Two forms,
 // told apart by the header:
 //   stimulus,response[,…]                     one answer a line; further columns are not used
 //   stimulus[,FACTOR…],RESPONSE,RESPONSE,…    one row a stimulus, counts below the responses; the

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <utf8cpp/utf8.h>
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
@@ -9,7 +10,6 @@
 #include <cmath>
 
 #include "core/error.hpp"
-#include "protocols/yaml/utf8.hpp"
 #include "protocols/yaml/yaml_words.hpp"
 namespace tapstudy::protocols {
 namespace {
@@ -47,7 +47,7 @@ MapReader::MapReader(MapReader&& other) noexcept = default;
 
 MapReader MapReader::whole_file(const std::string& text, const std::string& file,
                                 Problems& problems) {
-  if (!is_utf8(text)) {
+  if (!utf8::is_valid(text.begin(), text.end())) {
     throw core::InvalidInput{fmt::format("{}:1:1: not UTF-8 text", file)};
   }
   try {

@@ -1,19 +1,9 @@
 #include <fmt/format.h>
 
+#include "analysis/statistics/csv_rows.hpp"
 #include "core/print.hpp"
 #include "runner/accuracy/writers.hpp"
 namespace tapstudy::runner {
-namespace {
-// RFC 4180: words may hold commas and quotes.
-std::string quoted(const std::string& text) {
-  std::string safe{"\""};
-  for (const char c : text) {
-    safe += c == '"' ? std::string{"\"\""} : std::string{c};
-  }
-  return safe + '"';
-}
-}  // namespace
-
 void write_csv(std::ostream& out, const Trade& trade) {
   out << "order,elements,dof,band_limit_hz,modes,integrator,rate_hz,build_s,tick_ns,cost_s,"
          "frequency_error,level_error_db,force_error,is_on_front,is_inside_tolerance,is_"
@@ -32,7 +22,7 @@ void write_csv(std::ostream& out, const Stability& stability) {
   out << "property,value,outcome,words\n";
   for (const StabilityCase& one : stability.cases) {
     core::print(out, "{},{:.17g},{},{}\n", one.property, one.value, name(one.outcome),
-                quoted(one.words));
+                analysis::csv_cell(one.words));
   }
 }
 

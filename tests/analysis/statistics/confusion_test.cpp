@@ -57,6 +57,21 @@ TEST_CASE("answers one a line make the same matrix as their counts", "[analysis]
   CHECK(is(overall_accuracy(matrix), 3, 4));
 }
 
+TEST_CASE("a cell in quotes may hold commas, quotes and line ends, and is written back so",
+          "[analysis][confusion]") {
+  const ConfusionMatrix matrix = matrix_from(
+      "# \"a comment, with a quote\nstimulus,\"wood, hard\",\"say \"\"b\"\"\"\n"
+      "\"wood, hard\",3, 1 \n\n\"say \"\"b\"\"\",0,2\n");
+  CHECK(matrix.responses.at(0).name == "wood, hard");
+  CHECK(matrix.responses.at(1).name == "say \"b\"");
+  CHECK(is(overall_accuracy(matrix), 5, 6));
+  std::ostringstream text;
+  IdentificationSummary{"", "", matrix}.tables().front().write(text);
+  CHECK(matrix_from(text.str()).counts == matrix.counts);
+  CHECK(matrix_from(text.str()).stimuli.at(1).name == "say \"b\"");
+  CHECK_THAT(refusal("stimulus,a,b\na,1,2\nb,\"1,2\n"), Contains("counts.csv:3: a quote"));
+}
+
 TEST_CASE("an answer that names no stimulus counts as an answer", "[analysis][confusion]") {
   const ConfusionMatrix matrix =
       matrix_from("stimulus,material,a,b,unsure\na,wood,11,3,6\nb,metal,2,5,13\n");

@@ -1,0 +1,18 @@
+#pragma once
+#include <istream>
+#include <string>
+#include <vector>
+namespace tapstudy::analysis {
+struct CsvRow {
+  int line{};  // of the file, from 1, where the row begins
+  std::vector<std::string> cells;
+};
+
+// Comma-separated values (RFC 4180): cells in double quotes may hold commas, quotes and line ends;
+// spaces around other cells do not count. Empty lines, and lines between rows that start with #,
+// are skipped. Throws InvalidInput with file:line for a quote that is out of place or left open.
+std::vector<CsvRow> read_csv(std::istream& text, const std::string& file);
+
+// A cell as a file has it: in quotes if it needs them.
+std::string csv_cell(const std::string& text);
+}  // namespace tapstudy::analysis

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <cmath>
 
 #include "device/remote/remote_hand.hpp"
 #include "protocols/yaml/yaml_reader.hpp"
@@ -8,19 +9,17 @@
 #include "runner/terminal/session_lock.hpp"
 namespace tapstudy::runner {
 namespace {
-// Of another program to a tick's question.
-constexpr std::chrono::milliseconds max_reply{3};
-
 struct RemoteSection final : protocols::DeviceSection {
   std::uint16_t port{};
+  double max_reply_s{0.003};  // of the other program to a tick's question
 };
 
 class RemoteDevice final : public SessionDevice {
  public:
-  explicit RemoteDevice(std::uint16_t port)
-      : lock_{fmt::format("remote device at port {}", port),
-              fmt::format("remote: UDP port {} is in use by another session", port)},
-        hand_{port, max_reply} {}
+  explicit RemoteDevice(const RemoteSection& section)
+      : lock_{fmt::format("remote device at port {}", section.port),
+              fmt::format("remote: UDP port {} is in use by another session", section.port)},
+        hand_{section.port, std::chrono::microseconds{std::llround(1e6 * section.max_reply_s)}} {}
   device::Device& device() override { return hand_; }
   void get_ready() override {}
 
@@ -38,12 +37,12 @@ class RemoteKind final : public DeviceKind {
     auto section = std::make_shared<RemoteSection>();
     top.map("remote", protocols::MapReader::Presence::required, [&](protocols::MapReader& reader) {
       section->port = static_cast<std::uint16_t>(reader.integer("port", 1024, 65535));
+      section->max_reply_s = reader.number("max_reply_s", {0.001, 0.1}, section->max_reply_s);
     });
     return section;
   }
   std::unique_ptr<SessionDevice> open(const DeviceRequest& request) const override {
-    return std::make_unique<RemoteDevice>(
-        dynamic_cast<const RemoteSection&>(*request.rig.section).port);
+    return std::make_unique<RemoteDevice>(dynamic_cast<const RemoteSection&>(*request.rig.section));
   }
 };
 }  // namespace

@@ -1,4 +1,6 @@
 // What a researcher types and what comes back: output and exit code of the program itself.
+#include <fmt/format.h>
+
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <filesystem>
@@ -405,4 +407,131 @@ TEST_CASE("a calibration that no eight motors of one kind can have is refused", 
              Contains("string 1"));
   CHECK_THAT(said_of("dac_counts_per_volt: 415", "dac_counts_per_volt: 1200"),
              Contains("max_tension_n, 10 N, would take 4384 DAC counts (the board has 4095"));
+}
+
+namespace {
+// A box of 0.3 x 0.2 x 0.02 m as an OFF file with faces of four corners, and a study on it.
+std::string study_on_a_surface(const TempDirectory& directory, const std::string& technique) {
+  testing::write(directory / "body.off",
+                 "OFF\n8 6 0\n0 0 0\n300 0 0\n300 200 0\n0 200 0\n0 0 20\n300 0 20\n"
+                 "300 200 20\n0 200 20\n4 3 2 1 0\n4 4 5 6 7\n4 0 1 5 4\n4 1 2 6 5\n"
+                 "4 2 3 7 6\n4 3 0 4 7\n");
+  std::string text = testing::contents(paper("reality_vibration.yaml"));
+  text = replaced(text, "lateral_scale: 0.1", "lateral_scale: 1");
+  text = replaced(text,
+                  "    size_m: [0.6, 0.6, 0.05]\n    fixations:\n"
+                  "      - {region: vertex, at_m: [-0.3, -0.3], face: both, axes: xyz}\n"
+                  "      - {region: vertex, at_m: [0.3, -0.3], face: both, axes: xyz}\n",
+                  "    surface: {file: body.off, metres_per_unit: 0.001}\n    fixations:\n"
+                  "      - {region: side, side: left}\n");
+  text = replaced(text, "  P1: [-0.24, -0.24]\n  P2: [0.0, 0.0]\n  P3: [0.24, 0.24]\n",
+                  "  P1: [0.05, 0.05]\n  P2: [0.15, 0.1]\n  P3: [0.25, 0.15]\n");
+  text = replaced(text, "technique: fem}", "technique: " + technique + "}");
+  testing::write(directory / "study.yaml", text);
+  return directory / "study.yaml";
+}
+}  // namespace
+
+TEST_CASE("a report needs the study's directory alone, and no session goes on with another body",
+          "[end_to_end]") {
+  const TempDirectory directory;
+  const std::string study = study_on_a_surface(directory, "fem");
+  const std::string out = directory / "out";
+  REQUIRE(testing::tapstudy({"simulate", study, "--participants", "1", "--out", out}).exit_code ==
+          0);
+  const std::string body = testing::contents(directory / "body.off");
+  CHECK(testing::run_program({"/usr/bin/sqlite3", out + "/study.db",
+                              "SELECT file, size, length(zstd) < size FROM surface"})
+            .standard_output == "body.off|" + std::to_string(body.size()) + "|1\n");
+  testing::write(directory / "body.off", replaced(body, "0 200 20\n4", "0 201 20\n4"));
+  const auto changed_body =
+      testing::tapstudy({"run", study, "--participant", "P01", "--out", out}, "= a\n");
+  CHECK(changed_body.exit_code == 2);
+  CHECK_THAT(changed_body.standard_error,
+             Contains("'body.off' is not the surface that the study began with"));
+  std::filesystem::remove(directory / "body.off");
+  std::filesystem::remove(study);
+  const auto report = testing::tapstudy({"report", out});
+  INFO(report.standard_error);
+  CHECK(report.exit_code == 0);
+}
+
+TEST_CASE("damping that is fitted, and damping mode by mode, reach the modes", "[end_to_end]") {
+  const TempDirectory directory;
+  const auto modes = [&](const std::string& damping) {
+    const auto result = testing::tapstudy(
+        {"modes",
+         changed(directory, "discrimination.yaml", "damping: {alpha_per_s: 120.0, beta_s: 8.50e-5}",
+                 "damping: " + damping),
+         "--stimulus", "acrylic_two", "--json"});
+    INFO(result.standard_error);
+    REQUIRE(result.exit_code == 0);
+    return nlohmann::json::parse(result.standard_output);
+  };
+  const auto by_mode = modes("{modal_ratios: [0.011, 0.022, 0.033, 0.044]}");
+  CHECK(by_mode["damping_ratios"] == std::vector<double>{0.011, 0.022, 0.033});
+  CHECK_FALSE(by_mode.contains("alpha_per_s"));
+  // points that lie on one Rayleigh curve, alpha 10 1/s and beta 2e-5 s, and one twice
+  const auto ratio = [](double hz) {
+    return 0.5 * (10.0 / (2.0 * M_PI * hz) + 2e-5 * 2.0 * M_PI * hz);
+  };
+  const auto fitted = modes(
+      fmt::format("{{measured: [{{frequency_hz: 50, ratio: {}}}, {{frequency_hz: 120, ratio: {}}}, "
+                  "{{frequency_hz: 280, ratio: {}}}, {{frequency_hz: 280, ratio: {}}}]}}",
+                  ratio(50), ratio(120), ratio(280), ratio(280)));
+  CHECK(fitted["alpha_per_s"].get<double>() == Approx(10.0).epsilon(1e-9));
+  CHECK(fitted["beta_s"].get<double>() == Approx(2e-5).epsilon(1e-9));
+  for (std::size_t i = 0; i < fitted["frequencies_hz"].size(); ++i) {
+    CHECK(fitted["damping_ratios"][i].get<double>() ==
+          Approx(ratio(fitted["frequencies_hz"][i].get<double>())));
+  }
+  // off the curve: the normal equations of least squares hold
+  const auto off = modes(
+      "{measured: [{frequency_hz: 50, ratio: 0.05}, {frequency_hz: 120, ratio: 0.03}, "
+      "{frequency_hz: 280, ratio: 0.06}]}");
+  double along_alpha = 0.0;
+  double along_beta = 0.0;
+  for (const auto& [hz, measured] : {std::pair{50.0, 0.05}, {120.0, 0.03}, {280.0, 0.06}}) {
+    const double omega = 2.0 * M_PI * hz;
+    const double left =
+        0.5 * (off["alpha_per_s"].get<double>() / omega + off["beta_s"].get<double>() * omega) -
+        measured;
+    along_alpha += left / omega;
+    along_beta += left * omega;
+  }
+  CHECK(along_alpha == Approx(0.0).margin(1e-12));
+  CHECK(along_beta == Approx(0.0).margin(1e-8));
+}
+
+TEST_CASE("modes and frames of a plate are drawn, one panel each", "[end_to_end]") {
+  const TempDirectory directory;
+  const auto modes = testing::tapstudy({"modes", paper("discrimination.yaml"), "--stimulus",
+                                        "acrylic_two", "--figure", directory / "modes.svg"});
+  REQUIRE(modes.exit_code == 0);
+  const std::string drawn = testing::contents(directory / "modes.svg");
+  const auto listed =
+      nlohmann::json::parse(testing::tapstudy({"modes", paper("discrimination.yaml"), "--stimulus",
+                                               "acrylic_two", "--json"})
+                                .standard_output);
+  int mode = 0;
+  for (const double frequency_hz : listed["frequencies_hz"]) {
+    CHECK_THAT(drawn, Contains(fmt::format("{}: {:.1f} Hz", ++mode, frequency_hz)));
+  }
+  CHECK(mode == 3);
+  CHECK_THAT(drawn, Contains("</svg>"));
+  const auto tap =
+      testing::tapstudy({"tap", paper("discrimination.yaml"), "--stimulus", "acrylic_two", "--at",
+                         "P3", "--frames", directory / "frames.svg"});
+  REQUIRE(tap.exit_code == 0);
+  const std::string frames = testing::contents(directory / "frames.svg");
+  CHECK_THAT(frames, Contains("1.0 ms") && Contains("12.0 ms") && Contains("</svg>"));
+  for (const auto& line : std::vector<std::vector<std::string>>{
+           {"modes", study_on_a_surface(directory, "fem"), "--stimulus", "finite_elements",
+            "--figure", directory / "none.svg"},
+           {"tap", paper("reality_vibration.yaml"), "--stimulus", "no_vibration", "--frames",
+            directory / "none.svg"}}) {
+    const auto refused = testing::tapstudy(line);
+    CHECK(refused.exit_code == 2);
+    CHECK_FALSE(std::filesystem::exists(directory / "none.svg"));
+  }
 }

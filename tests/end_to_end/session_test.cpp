@@ -1,6 +1,9 @@
 // A person's session at the terminal, in real time with a simulated hand.
+#include <fmt/format.h>
+
 #include <catch2/catch.hpp>
 
+#include "support/example_bridge.hpp"
 #include "support/processes.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;
@@ -88,4 +91,79 @@ TEST_CASE("a pilot stays out of the report of real participants", "[end_to_end][
   CHECK(report.exit_code == 0);
   CHECK_THAT(report.standard_output, Contains("1/1"));
   CHECK_THAT(report.standard_output, !Contains("/2"));
+}
+
+TEST_CASE("Ctrl-C in a session keeps what was answered and says how to go on",
+          "[end_to_end][threads]") {
+  const TempDirectory directory;
+  const std::string script =
+      "(echo 1; sleep 30) | /usr/bin/timeout --preserve-status -s INT 3 \"$0\" run \"$1\" "
+      "--participant P01 --seed 5 --out \"$2\" 2>\"$3\"; echo $?; kill $(jobs -p) 2>/dev/null";
+  const auto result = testing::run_program({"/bin/bash", "-c", "set -o pipefail; " + script,
+                                            TAPSTUDY_PROGRAM, paper("discrimination.yaml"),
+                                            directory / "the_study", directory / "said"});
+  CHECK(result.standard_output == "130\n");
+  CHECK_THAT(testing::contents(directory / "said"), Contains("--resume"));
+  CHECK(sql(directory, "SELECT group_concat(number || status) FROM trial") ==
+        "1answered,2interrupted\n");
+  CHECK(sql(directory, "PRAGMA integrity_check") == "ok\n");
+}
+
+TEST_CASE("a session runs on a device that another program drives, and can be replayed",
+          "[end_to_end][threads]") {
+  const TempDirectory directory;
+  const std::uint16_t port = testing::free_port();
+  const testing::ExampleBridge bridge{port};
+  testing::write(directory / "rig.yaml",
+                 testing::replaced(testing::contents(testing::shipped("rigs/remote.yaml")),
+                                   "port: 50607, max_reply_s: 0.003",
+                                   fmt::format("port: {}, max_reply_s: 0.1", port)));
+  const auto live = testing::run_program(
+      {"/bin/bash", "-c",
+       "for i in 1 2 3 4 1 2 3 4; do sleep 0.9; echo $i; done | \"$0\" run \"$1\" --rig \"$2\" "
+       "--participant P01 --seed 5 --out \"$3\"",
+       TAPSTUDY_PROGRAM, paper("discrimination.yaml"), directory / "rig.yaml",
+       directory / "the_study"});
+  INFO(live.standard_error);
+  REQUIRE(live.exit_code == 0);
+  CHECK(sql(directory, "SELECT device FROM session") ==
+        "remote device at UDP port " + std::to_string(port) + "\n");
+  CHECK(sql(directory, "SELECT count(*) FROM response") == "8\n");
+  CHECK(sql(directory, "SELECT count(*) > 4 FROM event WHERE kind = 'impact'") == "1\n");
+
+  testing::write(directory / "replay.yaml",
+                 "format: tapstudy-rig/1\ndevice: replay\nmax_force_n: 5\n"
+                 "max_force_rate_n_per_s: 5000\nreplay: {directory: the_study, trial_id: 3}\n");
+  const std::vector<std::string> replay{"run",           paper("discrimination.yaml"),
+                                        "--rig",         directory / "replay.yaml",
+                                        "--participant", "P02",
+                                        "--out",         directory / "replayed"};
+  const auto no_participant = testing::tapstudy(replay, "1\n");
+  CHECK(no_participant.exit_code == 2);
+  CHECK_THAT(no_participant.standard_error, Contains("a replayed hand is no participant"));
+  std::vector<std::string> pilot = replay;
+  pilot.emplace_back("--pilot");
+  CHECK(testing::tapstudy(pilot, "1\n2\n3\n4\n1\n2\n3\n4\n").exit_code == 0);
+  CHECK(testing::run_program({"/usr/bin/sqlite3", directory / "replayed/study.db",
+                              "SELECT device, mode FROM session JOIN participant "
+                              "USING (participant_id)"})
+            .standard_output == "replay of trial 3 of " + (directory / "the_study") + "|pilot\n");
+}
+
+TEST_CASE("report --mode takes the sessions that it names, and no others",
+          "[end_to_end][threads]") {
+  const TempDirectory directory;
+  REQUIRE(session(directory, "reality_finger.yaml", "= a\n", {"--pilot"}).exit_code == 0);
+  REQUIRE(testing::tapstudy({"simulate", paper("reality_finger.yaml"), "--participants", "3",
+                             "--out", directory / "the_study"})
+              .exit_code == 0);
+  const auto answers_of = [&](const std::string& mode) {
+    const auto report = testing::tapstudy(
+        {"report", directory / "the_study", "--mode", mode, "--out", directory / mode});
+    return std::to_string(report.exit_code) + " " + report.standard_output + report.standard_error;
+  };
+  CHECK_THAT(answers_of("pilot"), Contains("0 ") && Contains("/1 "));
+  CHECK_THAT(answers_of("simulated"), Contains("/3 ") && Contains("SIMULATED"));
+  CHECK_THAT(answers_of("real"), Contains("2 ") && Contains("no answers of real participants"));
+  CHECK_THAT(answers_of("dreamt"), Contains("2 "));
 }

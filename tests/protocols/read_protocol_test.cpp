@@ -96,3 +96,21 @@ TEST_CASE("a file that is not there, empty or no text is refused", "[protocols]"
   CHECK_THAT(refusal("{a: b"), Contains("not YAML"));
   CHECK_THAT(refusal(std::string{"\0\1\2\xff", 4}), Contains("study.yaml"));
 }
+
+TEST_CASE("the text that is stored is the file's, and surfaces are beside it whole",
+          "[protocols]") {
+  const std::string file = testing::source("tests/data/every_key.yaml");
+  const protocols::Protocol protocol = protocols::read_protocol(file);
+  CHECK(protocol.text == testing::contents(file));
+  REQUIRE(protocol.surfaces.size() == 1);
+  CHECK(protocol.surfaces.front().file == "tetrahedron.off");
+  CHECK(protocol.surfaces.front().bytes ==
+        testing::contents(testing::source("tests/data/tetrahedron.off")));
+}
+
+TEST_CASE("stimuli of one plate share it, and so do those of one material", "[protocols]") {
+  const protocols::Protocol protocol = protocols::parse_protocol(discrimination(), "study.yaml");
+  CHECK(protocol.stimulus("mdf_two").plate == protocol.stimulus("acrylic_two").plate);
+  CHECK(protocol.stimulus("mdf_two").material == protocol.stimulus("mdf_three").material);
+  CHECK(protocol.stimulus("mdf_two").plate != protocol.stimulus("mdf_three").plate);
+}

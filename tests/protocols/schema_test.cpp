@@ -204,6 +204,7 @@ TEST_CASE("schema and reader accept the same rigs", "[protocols][rig][schema][sl
       {"spidar_g6", "force_rise_s: 0.5", "force_rise_s: 0"},
       {"spidar_g6", "lateral_scale: 0.05", "lateral_scale: 0"},
       {"remote", "port: 50607", "port: 80"},
+      {"remote", "max_reply_s: 0.003", "max_reply_s: 0"},
       {"replay", "trial_id: 1", "trial_id: 0"},
       {"replay", ", trial_id: 1", ""},
   }));

@@ -108,3 +108,34 @@ TEST_CASE("the collector keeps every sample and notes what happened", "[results]
                                      {0.2, "release", 0.0},
                                      {5.0, "switch", 2.0}});
 }
+
+TEST_CASE("a tick with a fault tells no release of a finger that was in contact",
+          "[results][collector]") {
+  core::SpscRing<TraceSample> ring{16};
+  results::TraceCollector collector{ring};
+  for (int tick = 0; tick < 5; ++tick) {
+    TraceSample sample{};
+    sample.t_ns = tick * 1'000'000LL;
+    sample.touching = tick < 4;
+    sample.fault = tick < 4 ? core::TickFault::none : core::TickFault::no_reply;
+    ring.try_push(sample);
+  }
+  const auto collected = collector.finish();
+  std::vector<std::string> kinds;
+  for (const results::EventRow& event : collected.events) {
+    kinds.push_back(event.kind);
+  }
+  CHECK(kinds == std::vector<std::string>{"switch", "contact"});
+  CHECK(collected.duration_s == Approx(0.004));
+}
+
+TEST_CASE("a single bit that flips in a stored trace is seen", "[results][codec]") {
+  const auto bytes = results::encode_trace(wild_samples(600));
+  core::Rng rng{5};
+  for (int i = 0; i < 500; ++i) {
+    auto damaged = bytes;
+    damaged[rng.below(static_cast<std::uint32_t>(bytes.size()))] ^=
+        static_cast<std::byte>(1U << rng.below(8));
+    CHECK_THROWS_AS(results::decode_trace(damaged, 600), results::StoreError);
+  }
+}

@@ -40,3 +40,16 @@ TEST_CASE("the paper's coarse plates have the natural frequencies that SciPy fin
     CHECK(plate.body.modes.report.worst_residual < 1e-8);
   }
 }
+
+TEST_CASE("a body that was solved up to a lower band is refused, not used with modes missing",
+          "[core][model]") {
+  core::PlateSpec plate = testing::paper_plate(2, testing::mdf());
+  plate.band_limit_hz = 100.0;
+  const core::BodyModes body = core::solve_body(core::body_of(plate)).modes;
+  CHECK_NOTHROW(core::model_of(body, plate.material, 100.0));
+  CHECK_THROWS_AS(core::model_of(body, plate.material, 300.0), core::ModelError);
+  core::Material softer = plate.material;
+  softer.youngs_modulus_pa *= 0.25;  // every frequency at half
+  CHECK_THROWS_AS(core::model_of(body, softer, 100.0), core::ModelError);
+  CHECK_NOTHROW(core::model_of(body, softer, 50.0));
+}

@@ -1,6 +1,7 @@
 #include "device/loop/haptic_loop.hpp"
 
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <limits>
 #include <vector>
 
@@ -134,6 +135,32 @@ TEST_CASE("the loop ends at zero force, whatever ended it", "[device][loop][safe
     CHECK(loop.report().stopped_by == core::TickFault::non_finite_force);
   }
   CHECK(bench.hand.last_force_n == Vec3::Zero());
+}
+
+TEST_CASE("a tick with a fault is stored with what was read, not with zeros", "[device][loop]") {
+  Bench bench;
+  SECTION("the hand left the workspace") {
+    bench.settings.gate.workspace_radius_m = 0.005;
+    bench.hand.height_m = -0.006;
+    device::HapticLoop loop = bench.loop();
+    loop.run_ticks(1);
+    REQUIRE(loop.report().stopped_by == core::TickFault::outside_workspace);
+    CHECK(bench.samples().back().position_m[1] == 0.01);
+  }
+  SECTION("the reading itself failed, after the device had told a position") {
+    bench.hand.fail_read_at = 3;
+    device::HapticLoop loop = bench.loop();
+    loop.run_ticks(10);
+    CHECK(bench.samples().back().position_m[1] == bench.hand.height_m);
+  }
+  SECTION("nothing was read, for the tick came too late") {
+    bench.settings.max_late_in_a_row = 1;
+    bench.clock.lateness = {0, 600'000, 600'000, 600'000};
+    device::HapticLoop loop = bench.loop();
+    loop.run_ticks(10);
+    REQUIRE(loop.report().stopped_by == core::TickFault::too_late);
+    CHECK(std::isnan(bench.samples().back().position_m[1]));
+  }
 }
 
 TEST_CASE("late ticks are counted, missed ones skipped, and the rhythm stays", "[device][loop]") {

@@ -13,39 +13,13 @@
 
 #include "device/hand/replay_hand.hpp"
 #include "device/remote/packets.hpp"
+#include "support/example_bridge.hpp"
 using namespace tapstudy;
 using core::TickFault;
 using core::Vec3;
 
-extern char** environ;
-namespace {
-// The example that ships, as a program of its own.
-class Bridge {
- public:
-  explicit Bridge(std::uint16_t port) {
-    std::string program{TAPSTUDY_BRIDGE};
-    std::string number = std::to_string(port);
-    const std::array<char*, 3> words{program.data(), number.data(), nullptr};
-    REQUIRE(posix_spawn(&child_, program.c_str(), nullptr, nullptr, words.data(), environ) == 0);
-  }
-  ~Bridge() { end(); }
-  void end() {
-    if (child_ > 0) {
-      kill(child_, SIGKILL);
-      waitpid(child_, nullptr, 0);
-      child_ = -1;
-    }
-  }
-
- private:
-  pid_t child_{-1};
-};
-
-// Apart for every process, so that tests may run beside each other.
-std::uint16_t free_port() {
-  return static_cast<std::uint16_t>(40000 + getpid() % 20000);
-}
-}  // namespace
+using testing::ExampleBridge;
+using testing::free_port;
 
 TEST_CASE("a request lies on the wire as documented", "[device][remote]") {
   const auto bytes =
@@ -69,7 +43,7 @@ TEST_CASE("what is no reply is none", "[device][remote]") {
 
 TEST_CASE("the bridge's finger moves under the force it is sent", "[device][remote]") {
   const std::uint16_t port = free_port();
-  Bridge bridge{port};
+  ExampleBridge bridge{port};
   device::RemoteHand hand{port, std::chrono::milliseconds{100}};
   core::HandState state;
   double sideways_m = 0.0;

@@ -3,6 +3,7 @@
 
 #include "device/spidar/sh4_board.hpp"
 #include "device/spidar/simple_board.hpp"
+#include "support/usb/spidar_on_bus.hpp"
 using namespace tapstudy;
 using device::DacCounts;
 using device::Sh4Board;
@@ -54,6 +55,42 @@ TEST_CASE("a Simple board's packets are as its format says", "[device][spidar]")
   CHECK(reading.counter[7] == 0xFFFFFE);
   CHECK(reading.rotary_switch() == 3);
   CHECK(!reading.echo);
+}
+
+TEST_CASE("a Simple board is set up, then told outputs and asked to latch, in every exchange",
+          "[device][spidar][usb]") {
+  int latched = 0;
+  testing::FakeBus bus{device::cyverse_vendor, device::simple_product,
+                       [&](std::span<const std::uint8_t> request) {
+                         testing::Bytes reply;
+                         if (request[0] == 0x51) {  // the only command with a reply
+                           reply.assign(32, 0);
+                           reply[0] = static_cast<std::uint8_t>(++latched);
+                           reply[24] = 0x50;
+                         }
+                         return reply;
+                       }};
+  device::UsbNode node = testing::node_of(bus);
+  device::LibusbPipe pipe{node, {}, std::chrono::milliseconds{100}};
+  SimpleBoard board;
+  device::BoardReading reading;
+  REQUIRE(board.begin(pipe, reading) == device::UsbOutcome::ok);
+  CHECK(reading.rotary_switch() == 5);
+  REQUIRE(board.exchange(pipe, {1, 2, 3, 4, 5, 6, 7, 8}, reading) == device::UsbOutcome::ok);
+  CHECK(reading.counter[0] == 2);
+  std::vector<std::vector<int>> starts;
+  for (const testing::Bytes& request : bus.requests()) {
+    CHECK(request.size() == 32);
+    starts.push_back({request[0], request[1], request[2]});
+  }
+  CHECK(starts == std::vector<std::vector<int>>{{0xA2, 0x1A, 0xFF},  // directions
+                                                {0xA2, 0x19, 0xFF},  // counters cleared
+                                                {0x52, 0, 0},
+                                                {0x51, 0, 0},
+                                                {0x52, 1, 0},
+                                                {0x51, 0, 0}});
+  bus.plan(testing::FakeBus::Trouble::missing, 1);
+  CHECK(board.exchange(pipe, {}, reading) == device::UsbOutcome::timed_out);
 }
 
 TEST_CASE("counters that wrap are followed the shorter way", "[device][spidar]") {

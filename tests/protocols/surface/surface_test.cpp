@@ -1,4 +1,5 @@
 // Bodies from surfaces: what is refused and what becomes of the rest.
+#include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -208,4 +209,46 @@ TEST_CASE("a finger coming down meets a body at its top", "[core][surface]") {
   CHECK_FALSE(ball.at_m({0.099, 0.099}));
   CHECK(*core::TopHeight{core::Solid{testing::notched_block()}}.at_m({0.05, 0.05}) ==
         Approx(-0.05));
+}
+
+TEST_CASE("a concave face is cut inside itself", "[protocols][surface]") {
+  // a U, its ends of ten corners each fanned from any one of them would cover the gap
+  const std::vector<Eigen::RowVector2d> outline{{0, 0}, {3, 0}, {3, 3}, {2, 3},
+                                                {2, 1}, {1, 1}, {1, 3}, {0, 3}};
+  std::ostringstream off;
+  off << "OFF\n16 10 0\n";
+  for (const int z : {0, 1}) {
+    for (const auto& p : outline) {
+      off << p.x() << ' ' << p.y() << ' ' << z << '\n';
+    }
+  }
+  off << "8 7 6 5 4 3 2 1 0\n8 8 9 10 11 12 13 14 15\n";
+  for (int i = 0; i < 8; ++i) {
+    const int next = (i + 1) % 8;
+    off << "4 " << i << ' ' << next << ' ' << 8 + next << ' ' << 8 + i << '\n';
+  }
+  const core::TriangleSurface surface =
+      protocols::read_surface(protocols::surface_source("u.off", off.str()), 0.1);
+  CHECK_NOTHROW(check_surface(surface));
+  CHECK(core::volume_m3(surface) == Approx(7.0 * 1e-3));
+  double area_m2 = 0.0;
+  for (const auto& t : surface.triangles.rowwise()) {
+    const Eigen::Vector3d a = surface.points_m.row(t[0]);
+    const Eigen::Vector3d b = surface.points_m.row(t[1]);
+    const Eigen::Vector3d c = surface.points_m.row(t[2]);
+    area_m2 += 0.5 * (b - a).cross(c - a).norm();
+  }
+  CHECK(area_m2 == Approx((2 * 7 + 16) * 1e-2));  // two ends and the walls round
+}
+
+TEST_CASE("a surface folded onto itself is refused though no edge passes through a face",
+          "[protocols][surface]") {
+  core::TriangleSurface box = testing::box_surface(plate_size_m, 2);
+  // a corner of the top pushed along the top onto its neighbour's far side
+  for (auto point : box.points_m.rowwise()) {
+    if (point.norm() < 1e-12) {
+      point.x() += 0.2;
+    }
+  }
+  CHECK_THROWS_WITH(check_surface(box), Contains("through itself"));
 }

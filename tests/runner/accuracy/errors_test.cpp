@@ -13,6 +13,27 @@ TEST_CASE("a mode that rings where it should has no frequency error", "[runner][
         0.0);
 }
 
+TEST_CASE("Newmark rings at the frequency that its own zero crossings show", "[runner][trade]") {
+  constexpr double dt_s = 1e-3;
+  for (const double hz : {30.0, 100.0, 300.0}) {
+    CAPTURE(hz);
+    const core::StateTransition step = core::newmark_transition(2.0 * M_PI * hz, 0.0, dt_s);
+    double displacement = 0.0;
+    double velocity = 1.0;
+    int crossings = 0;
+    constexpr int ticks = 200'000;
+    for (int tick = 0; tick < ticks; ++tick) {
+      const double before = displacement;
+      displacement = step.qq * before + step.qv * velocity;
+      velocity = step.vq * before + step.vv * velocity;
+      crossings += before * displacement < 0.0 ? 1 : 0;
+    }
+    const Eigen::ArrayXd told = numerical_frequency_hz(Eigen::ArrayXd::Constant(1, hz),
+                                                       core::Integrator::newmark, 1.0 / dt_s);
+    CHECK(told[0] == Approx(0.5 * crossings / (ticks * dt_s)).epsilon(1e-3));
+  }
+}
+
 TEST_CASE("a mode lost beyond the band is at least as wrong as the band's edge",
           "[runner][trade]") {
   const Eigen::ArrayXd reference = Eigen::ArrayXd::LinSpaced(2, 100.0, 200.0);

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "core/error.hpp"
+#include "protocols/read_protocol.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;
 using Catch::Matchers::Contains;
@@ -90,4 +91,20 @@ TEST_CASE("the simulated hand needs neither", "[runner][rig]") {
   const protocols::Rig rig = runner::simulated_rig();
   CHECK_FALSE(rig.has_hardware);
   CHECK(rig.gate.force_rise_s == 0.0);
+}
+
+TEST_CASE("a tapping point that the device cannot reach is refused with its distance",
+          "[runner][rig]") {
+  const protocols::Protocol protocol =
+      protocols::read_protocol(testing::shipped("paper/discrimination.yaml").string());
+  const auto rig_with_radius = [](const std::string& metres) {
+    return runner::parse_rig(replaced(testing::contents(testing::shipped("rigs/remote.yaml")),
+                                      "workspace_radius_m: 0.05", "workspace_radius_m: " + metres),
+                             "rig.yaml");
+  };
+  // at a tenth of the plate's size P1, P3 and P4 are 0.024 sqrt 2 m from the middle, P5 0.024 m
+  CHECK_NOTHROW(runner::check_fits(protocol, rig_with_radius("0.034")));
+  CHECK_THROWS_WITH(runner::check_fits(protocol, rig_with_radius("0.03")),
+                    Contains("P1 on plate 'two_fixations' is 33.9 mm") && Contains("P4") &&
+                        !Contains("P5") && !Contains("P2"));
 }

@@ -1,0 +1,63 @@
+// What the operator is asked, and what counts as an answer.
+#include "runner/terminal/operator_prompt.hpp"
+
+#include <unistd.h>
+
+#include <array>
+#include <catch2/catch.hpp>
+#include <string>
+
+#include "runner/terminal/exit_code.hpp"
+#include "runner/terminal/operator_at_terminal.hpp"
+using namespace tapstudy;
+
+namespace {
+// Somebody who has typed all this, and then left.
+class Typed {
+ public:
+  explicit Typed(const std::string& text) {
+    std::array<int, 2> ends{};
+    REQUIRE(pipe(ends.data()) == 0);
+    REQUIRE(write(ends[1], text.data(), text.size()) == static_cast<ssize_t>(text.size()));
+    close(ends[1]);
+    end_ = ends[0];
+  }
+  ~Typed() { close(end_); }
+  Typed(const Typed&) = delete;
+  Typed& operator=(const Typed&) = delete;
+  Typed(Typed&&) = delete;
+  Typed& operator=(Typed&&) = delete;
+  int end() const { return end_; }
+
+ private:
+  int end_{-1};
+};
+bool is_done(const std::string& typed) {
+  const Typed operator_typed{typed};
+  runner::LineInput input{operator_typed.end()};
+  return runner::asked_and_done(input, "Do it and");
+}
+double measured(const std::string& typed) {
+  const Typed operator_typed{typed};
+  runner::LineInput input{operator_typed.end()};
+  runner::OperatorAtTerminal person{input};
+  return person.how_much("How long is it", 0.5);
+}
+}  // namespace
+
+TEST_CASE("Enter alone says that it is done; quit and the end of the input that it is not",
+          "[runner][terminal]") {
+  CHECK(is_done("\n"));
+  CHECK(is_done("what?\n\n"));  // asked again
+  CHECK_FALSE(is_done("quit\n"));
+  CHECK_FALSE(is_done("what?\nquit\n"));
+  CHECK_FALSE(is_done(""));
+}
+
+TEST_CASE("a measurement is a number in its range, asked for until it is one",
+          "[runner][terminal]") {
+  CHECK(measured("0.1\n") == 0.1);
+  CHECK(measured("ten\n-1\n0\n0.6\nnan\n0.1 m\n0.25\n") == 0.25);
+  CHECK_THROWS_AS(measured("quit\n"), runner::Stopped);
+  CHECK_THROWS_AS(measured("ten\n"), runner::Stopped);
+}

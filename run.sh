@@ -4,8 +4,8 @@
 calling_directory=$PWD
 source "$(dirname "$0")/cmake/set_up.sh"
 root=$PWD
-install_packages
-build release tapstudy
+install_packages packages.txt
+build_program
 tapstudy="$root/build/release/tapstudy"
 
 if [ $# -gt 0 ]; then

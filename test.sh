@@ -1,7 +1,11 @@
 #!/usr/bin/env bash
-# Installs what is missing, builds, and runs every test. Arguments go to the test program, for
-# example `./test.sh "[core]"`.
+# Installs what is missing, builds, and runs every test, as many at once as there are processors.
+# Arguments go to the test program instead, for example `./test.sh "[core]"`.
 source "$(dirname "$0")/cmake/set_up.sh"
-install_packages
-build release
-exec build/release/tests/tapstudy_tests --order rand --rng-seed time --use-colour no "$@"
+install_packages packages.txt tests/packages.txt
+build_program_and_tests
+tests=build/release/tests/tapstudy_tests
+if [ $# -gt 0 ]; then
+  exec "$tests" --order rand --rng-seed time --use-colour no "$@"
+fi
+exec tests/run_in_parallel "$tests"

@@ -1,11 +1,11 @@
-# Sourced by run.sh and test.sh: installs what packages.txt lists and builds the release.
-# All chatter goes to stderr.
+# Sourced by run.sh and test.sh: installs packages and builds the release. All chatter goes to stderr.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
+# install_packages LIST…: what the files name and this machine lacks.
 install_packages() {
   local wanted missing=() sudo=""
-  wanted=$(grep -v '^#' packages.txt)
+  wanted=$(cat "$@" | grep -v '^#')
   for package in $wanted; do
     dpkg-query -W -f='${Status}' "$package" 2>/dev/null | grep -q 'ok installed' || missing+=("$package")
   done
@@ -16,10 +16,13 @@ install_packages() {
   $sudo env DEBIAN_FRONTEND=noninteractive apt-get install -y -q --no-install-recommends "${missing[@]}" >&2
 }
 
-# build PRESET [TARGET]
-build() {
-  if [ ! -f "build/$1/build.ninja" ]; then
-    cmake --preset "$1" >&2
-  fi
-  cmake --build "build/$1" --target "${2:-all}" >&2
+build_program() {
+  [ -f build/release/build.ninja ] || cmake --preset release -DBUILD_TESTING=OFF >&2
+  cmake --build build/release --target tapstudy >&2
+}
+
+build_program_and_tests() {
+  grep -qs 'BUILD_TESTING:BOOL=ON' build/release/CMakeCache.txt ||
+    cmake --preset release -DBUILD_TESTING=ON >&2
+  cmake --build build/release >&2
 }

@@ -15,7 +15,8 @@ using Vec3 = Eigen::Vector3d;
 //   participant, +z out of the plate. The model, the contact and tapping points live in it.
 // core/placement.hpp goes from one to the other.
 
-// What the device reported this tick, or the same seen in the plate frame.
+// The haptic interaction point (HIP): what the device reported this tick, or the same seen in the
+// plate frame.
 struct HandState {
   Vec3 position_m{Vec3::Zero()};
   Vec3 velocity_m_s{Vec3::Zero()};
@@ -23,7 +24,7 @@ struct HandState {
 
 // The parts of the force on the finger along the outward normal of the plate, before the limiter.
 struct ForceParts {
-  double penalty_n{0.0};    // paper eq. 1
+  double penalty_n{0.0};    // the penalty force (paper eq. 1)
   double vibration_n{0.0};  // paper eq. 17
   double sinusoid_n{0.0};   // paper section 5.2.3
   double total_n() const noexcept { return penalty_n + vibration_n + sinusoid_n; }  // eq. 18

@@ -6,6 +6,9 @@
 namespace tapstudy::core {
 // Finds the triangles near a point or along a segment in logarithmic time: a binary tree of boxes.
 // Built once; its questions neither allocate nor throw, so a tick may ask them.
+// Why not CGAL's AABB tree: it names some triangle that a segment meets (1.0 µs among 3480, where
+// this takes 2.8 µs), not the first one entered from outside by a start that may lie within the
+// skin; and its distance query allocates twice and takes 4.7 µs, where this takes 1.6 µs.
 class TriangleTree {
  public:
   using Point = Eigen::Vector3d;

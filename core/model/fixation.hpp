@@ -13,7 +13,8 @@ enum class Face { top, bottom, both, through };
 enum class Side { left, right, front, back, bottom, top };
 enum class RegionShape { vertex, disc, ball, box, side };
 
-// A region of the body that does not move along the held axes.
+// A boundary condition of the finite element model: a region of the body whose displacement is zero
+// along the constrained axes (a homogeneous Dirichlet condition).
 //   vertex  a single node, as in the paper; under mesh refinement its frequencies never settle,
 //           because a point cannot hold a solid
 //   disc    of a plate: a screw's head, round at_m on its faces; does settle
@@ -36,7 +37,8 @@ struct Fixation {
 // lie on the plate. Surfaces from files keep their own points.
 std::vector<Vec3> points_to_mesh(const std::vector<Fixation>& fixations, const Shape& shape);
 
-// One flag a degree of freedom (x0 y0 z0 x1 …): true where it is held.
+// The constraints that the fixations put on a mesh. One flag a degree of freedom (x0 y0 z0 x1 …):
+// true where it is constrained.
 // Throws ModelError if a fixation touches no node or if nothing is left free.
 std::vector<bool> constrained_dofs(const TetMesh& mesh, const Shape& shape,
                                    const std::vector<Fixation>& fixations);

@@ -6,7 +6,9 @@
 #include "core/model/elements/material.hpp"
 namespace tapstudy::core {
 // All that a tick needs of a plate: modes inside the band and the part of their shapes that can be
-// touched. Never changes once built; shared by trials and threads.
+// touched. Put into modal coordinates, x = P q (paper eq. 9, 10), the plate's equation of motion is
+// one oscillator a mode, q'' + 2 zeta w q' + w² q = p' f with p the mode's shape (eq. 11).
+// Never changes once built; shared by trials and threads.
 struct ModalModel {
   using Triangles = Eigen::Matrix<int, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   using Points = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;

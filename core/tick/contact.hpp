@@ -8,9 +8,9 @@ namespace tapstudy::core {
 struct Contact {
   bool touching{false};
   bool impact{false};  // an impact that excites the plate: true in one tick only
-  double penetration_m{0.0};
+  double penetration_m{0.0};   // from the god-object to the haptic interaction point
   double impact_speed_m_s{0.0};  // speed into the plate, in the tick of the impact
-  Vec3 god_object_m{Vec3::Zero()};
+  Vec3 god_object_m{Vec3::Zero()};  // the haptic interaction point, constrained to the surface
   Vec3 normal{Vec3::UnitZ()};  // outward, unit length: where the penalty pushes
   // On a surface of triangles: which one the god-object is on, and where on it.
   int triangle{TriangleTree::none};

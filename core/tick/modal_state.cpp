@@ -47,6 +47,7 @@ void ModalState::strike(double impulse_n_s) noexcept {
 }
 
 void ModalState::tick() noexcept {
+  // eq. 11, all modes at once
   next_ = qq_ * displacement_ + qv_ * velocity_;
   velocity_ = vq_ * displacement_ + vv_ * velocity_;
   displacement_.swap(next_);
@@ -59,6 +60,7 @@ void ModalState::reset() noexcept {
   velocity_.setZero();
 }
 
+// eq. 9 at the touched point: the nodes' displacements, weighted by eq. 16, along the normal.
 double ModalState::displacement_m() const noexcept {
   return (touched_ * displacement_).sum();
 }

@@ -8,7 +8,7 @@ namespace tapstudy::device {
 // tick asks for the position and waits for it, then sends the force, which is exerted at once.
 class RemoteHand final : public Device {
  public:
-  // Throws DeviceError if nobody answers at the port within a second.
+  // Asks twenty times, for one to two seconds. Throws DeviceError if nobody answers.
   RemoteHand(std::uint16_t port, std::chrono::microseconds max_reply);
   ~RemoteHand() override;
   RemoteHand(const RemoteHand& other) = delete;

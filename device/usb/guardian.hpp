@@ -13,6 +13,9 @@ namespace tapstudy::device {
 // holds the device's open node and waits for a pipe of which only tapstudy has the other end; when
 // that closes it sends the packet of no force, three times, by itself, and ends. It does the same,
 // and lives on, if tapstudy stands still with force on: suspended, or starved.
+// Why not a library: none outlives the process that it is linked into. A supervisor such as systemd
+// does, but would start a program that opens the device anew, where this child holds it already and
+// ends the force some 100 ms after the last sign of life.
 class Guardian {
  public:
   // Other threads may run: the child calls nothing that they could hold. Throws DeviceError if

@@ -29,6 +29,6 @@ class Problems {
   std::set<std::string> asked_;
 };
 
-// " (did you mean 'x'?)" for the closest of the allowed words, or nothing if none is close.
+// ", did you mean 'x'?" for the closest of the allowed words, or nothing if none is close.
 std::string did_you_mean(const std::string& word, const std::vector<std::string>& allowed);
 }  // namespace tapstudy::protocols

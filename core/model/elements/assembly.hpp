@@ -14,7 +14,8 @@ struct FreeDofs {
 };
 FreeDofs free_dofs(const std::vector<bool>& held);
 
-// Symmetric, of the free degrees of freedom; only the lower triangles are stored.
+// The K and M of M x'' + C x' + K x = f (paper eq. 2). Constraints are applied by elimination: a
+// constrained degree of freedom has no row. Symmetric, of the free degrees of freedom; only the lower triangles are stored.
 struct StiffnessAndMass {
   SparseMatrix K;  // N/m
   SparseMatrix M;  // kg

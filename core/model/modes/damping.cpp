@@ -49,6 +49,7 @@ RayleighDamping rayleigh_from_two_ratios(const TwoRatioDamping& ratios, double f
   if (!(0.0 < first_rad_s && first_rad_s < last_rad_s)) {
     throw ModelError{"damping: two damping ratios need two different frequencies inside the band"};
   }
+  // eq. 13
   const double scale =
       2.0 * first_rad_s * last_rad_s / ((last_rad_s - first_rad_s) * (last_rad_s + first_rad_s));
   const RayleighDamping damping{
@@ -59,7 +60,7 @@ RayleighDamping rayleigh_from_two_ratios(const TwoRatioDamping& ratios, double f
 }
 
 Eigen::ArrayXd damping_ratios(const RayleighDamping& damping, const Eigen::ArrayXd& omega_rad_s) {
-  return 0.5 * (damping.alpha_per_s / omega_rad_s + damping.beta_s * omega_rad_s);
+  return 0.5 * (damping.alpha_per_s / omega_rad_s + damping.beta_s * omega_rad_s);  // eq. 12
 }
 
 RayleighDamping rayleigh_by_least_squares(const FittedDamping& measured) {

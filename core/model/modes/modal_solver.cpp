@@ -40,8 +40,8 @@ Pairs lowest_dense(const StiffnessAndMass& matrices, int count) {
           matrices.mass() * vectors};
 }
 
-// Rayleigh-Ritz: the modes within the span of some vectors, M-orthonormal to rounding, double ones
-// and those at zero frequency included.
+// Rayleigh-Ritz: the modes within the span of some vectors, double ones and those at zero frequency
+// included; to rounding P' M P = I and P' K P = diag(w²) (paper eq. 8).
 Pairs modes_in_span(const StiffnessAndMass& matrices, const Eigen::MatrixXd& vectors) {
   const Eigen::MatrixXd elastic = matrices.stiffness() * vectors;
   const Eigen::MatrixXd inertial = matrices.mass() * vectors;

@@ -4,10 +4,12 @@
 #include "core/model/elements/assembly.hpp"
 #include "core/model/progress_hook.hpp"
 namespace tapstudy::core {
-// The natural modes of (K, M) from above zero up to a band limit.
+// The natural modes of (K, M) from above zero up to a band limit: the solutions X of
+// (-w² M + K) X = 0 (paper eq. 7). A vibration x = X e^(wt) with Rayleigh damping has the same shapes
+// (eq. 4 to 6), so damping need not be known here.
 struct Modes {
   Eigen::ArrayXd omega_rad_s;  // ascending; undamped natural angular frequencies
-  Eigen::MatrixXd shapes;      // one column a mode, M-orthonormal [kg^-1/2], sign fixed
+  Eigen::MatrixXd shapes;      // one column a mode, M-orthonormal [kg^-1/2], sign fixed: the paper's P (eq. 8)
   int rigid_body_modes{0};     // at zero frequency, left out
   int counted_in_band{0};      // by the inertia of K - sigma M, rigid-body modes included
   double worst_residual{0.0};  // max over modes of |K x - w² M x| / (|K x| + w² |M x|)

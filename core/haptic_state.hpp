@@ -10,10 +10,10 @@ using Vec3 = Eigen::Vector3d;
 
 // Two frames, both right-handed, in metres.
 //   Device frame: origin at the middle of the workspace; +x right, +y up, +z towards the
-//   participant. Devices report and receive in it.
+//   participant. Device positions and forces are expressed in it.
 //   Plate frame: origin at the middle of the plate's upper face; +x right, +y away from the
-//   participant, +z out of the plate. The model, the contact and tapping points live in it.
-// core/placement.hpp goes from one to the other.
+//   participant, +z out of the plate. Model, contact and tapping points are expressed in it.
+// core/placement.hpp converts between them.
 
 // The haptic interaction point (HIP): what the device reported this tick, or the same seen in the
 // plate frame.
@@ -31,8 +31,8 @@ struct ForceParts {
 };
 
 // One row of the trace; plain bytes so it can cross the ring buffer without allocating.
-// Vectors are in the device frame; force_n is what was written to the device, after the limiter,
-// and achieved_n what the device says it made of it.
+// Vectors are in the device frame; force_n is the commanded force, after the limiter, and
+// achieved_n the force that the device reports as achievable.
 struct TraceSample {
   std::int64_t t_ns;
   std::array<double, 3> position_m;
@@ -43,8 +43,8 @@ struct TraceSample {
   double sinusoid_n;
   std::array<double, 3> force_n;
   std::array<double, 3> achieved_n;
-  double pose_residual_m;    // of devices that measure more than their pose
-  double closure_margin;     // of devices on strings: above zero they can hold their grip still
+  double pose_residual_m;    // for devices with redundant sensing
+  double closure_margin;     // for string-driven devices: wrench closure if above zero
   std::uint8_t alternative;  // which of the trial's alternatives was rendered
   bool touching;
   bool impact;     // an impact: the tick in which the plate was excited

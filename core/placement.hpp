@@ -1,7 +1,7 @@
 #pragma once
 #include "core/haptic_state.hpp"
 namespace tapstudy::core {
-// The plate's outward normal is the device frame's +y: said here, and used from here.
+// The plate's outward normal is the device frame's +y; defined only here.
 inline constexpr Eigen::Index normal_axis = 1;
 inline double along_normal(const Vec3& device_vector) noexcept {
   return device_vector[normal_axis];
@@ -10,12 +10,12 @@ inline double along_normal(const std::array<double, 3>& device_vector) noexcept 
   return device_vector[static_cast<std::size_t>(normal_axis)];
 }
 
-// Where the plate lies in the device's workspace. Along the normal, plate and device agree 1 : 1,
-// so that speed of impact and penetration are physical; sideways one metre of plate is
-// `lateral_scale` metres of device, because a plate is wide and a workspace is a few centimetres.
+// Where the plate lies in the device's workspace. Along the normal the scale is 1 : 1, so that
+// impact speed and penetration are physical; laterally one metre on the plate is `lateral_scale`
+// metres on the device, because a plate is wide and a workspace is a few centimetres.
 //   plate x = device x / scale,  plate y = -device z / scale,  plate z = device y,
-// all relative to `origin_m`, the place of the plate frame's origin in the device frame.
-// Forces turn with the frames and keep their size.
+// all relative to `origin_m`, the position of the plate frame's origin in the device frame.
+// Forces are rotated between the frames but not scaled.
 struct Placement {
   Vec3 origin_m{Vec3::Zero()};
   double lateral_scale{1.0};  // > 0

@@ -4,7 +4,7 @@
 #include <ostream>
 #include <utility>
 namespace tapstudy::core {
-// fmt::print on a stream says the same, but compiles its whole formatter into every source.
+// As fmt::print to a stream, without instantiating the whole formatter in every source file.
 template <class... Parts>
 void print(std::ostream& out, fmt::format_string<Parts...> format, Parts&&... parts) {
   out << fmt::format(format, std::forward<Parts>(parts)...);

@@ -4,9 +4,9 @@
 #include <utility>
 namespace tapstudy::core {
 
-// PCG32 (O'Neill 2014). Own engine and own draws, because std::shuffle and the std distributions
-// may give different results on different standard libraries, and a study must replay from its seed
-// anywhere.
+// PCG32 (O'Neill 2014). Engine and distributions are our own, because std::shuffle and the std
+// distributions may differ between standard libraries, and a study must be reproducible from its
+// seed anywhere.
 class Rng {
  public:
   explicit Rng(std::uint64_t seed) noexcept {
@@ -21,7 +21,7 @@ class Rng {
     const auto rot = static_cast<std::uint32_t>(old >> 59U);
     return (xorshifted >> rot) | (xorshifted << ((32U - rot) & 31U));
   }
-  // uniform in [0, n), n > 0; unbiased (rejects the short tail)
+  // uniform in [0, n), n > 0; unbiased (by rejection)
   std::uint32_t below(std::uint32_t n) noexcept {
     const std::uint32_t threshold = (0U - n) % n;
     for (;;) {
@@ -34,7 +34,7 @@ class Rng {
   // uniform in [0, 1), 53 random bits
   double uniform() noexcept;
   // standard normal (Box & Muller 1958, polar form of Marsaglia & Bray 1964; the second of each
-  // pair is thrown away so that a draw depends on nothing but the engine's state)
+  // pair is discarded so that a draw depends on the engine's state alone)
   double normal() noexcept;
   // log-normal with the given median; spread is the standard deviation of its logarithm
   double log_normal(double median, double spread) noexcept;
@@ -50,8 +50,8 @@ class Rng {
   std::uint64_t state_{0};
 };
 
-// What a random stream is for: streams of different purposes never share draws, so that a change
-// in one (a longer schedule) leaves the others (the hand's taps) as they were.
+// The purpose of a random stream: streams of different purposes are independent, so that a change
+// in one (a longer schedule) leaves the others (the hand's taps) unchanged.
 enum class Purpose : std::uint64_t { schedule = 1, labels, hand, observer, memory, participant };
 
 // The seed of one stream of a study. Mixes by the finaliser of SplitMix64 (Steele et al. 2014).

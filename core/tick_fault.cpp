@@ -15,7 +15,7 @@ const char* to_text(TickFault fault) noexcept {
     case TickFault::counter_jumped:
       return "an encoder jumped";
     case TickFault::strings_disagree:
-      return "the strings' lengths fit no pose (slack, slipped or miscounted)";
+      return "the string lengths are consistent with no pose (slack, slipped or miscounted)";
     case TickFault::not_homed:
       return "the device must be homed first";
     case TickFault::outside_workspace:
@@ -23,7 +23,7 @@ const char* to_text(TickFault fault) noexcept {
     case TickFault::too_fast:
       return "the hand was too fast";
     case TickFault::non_finite_force:
-      return "a force or position was not a number";
+      return "a force or position was not finite";
     case TickFault::too_late:
       return "the loop was late too many times in a row";
     case TickFault::stood_still:

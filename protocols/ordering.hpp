@@ -9,7 +9,7 @@ struct OrderedStimulus {
   std::string stimulus;
   int repetition{};  // counts the presentations of this stimulus, from 1
 };
-// A block's stimuli as its order asks, every one as often as there are repetitions.
+// A block's stimuli in the specified order, each presented `repetitions` times.
 std::vector<OrderedStimulus> ordered_stimuli(const Block& block, core::Rng& rng,
                                              int participant_index);
 

@@ -14,11 +14,10 @@
 #include "protocols/surface/surface_source.hpp"
 #include "protocols/tasks/task.hpp"
 namespace tapstudy::protocols {
-// A study as its YAML file says it. Maps are in the order of their names; lists keep the order of
-// the file.
+// A study as specified by its YAML file. Maps are sorted by name; lists keep the order of the file.
 
-// What can be presented: a plate of a material, rendered by a technique. Stimuli of one plate, or
-// of one material, share it.
+// A stimulus: a plate of a material, rendered by a technique. Plates and materials are shared
+// between stimuli.
 struct Stimulus {
   std::string name;
   std::string label;  // what participants read
@@ -46,7 +45,7 @@ struct Block {
   bool is_practice{false};
 };
 
-// What the study expected before it was run; reports test these and no others as planned.
+// A pre-registered hypothesis; reports treat only these as planned tests.
 struct Hypothesis {
   std::string name;
   std::string statement;
@@ -55,7 +54,7 @@ struct Hypothesis {
   std::string stimulus;  // chosen_above_chance: which
 };
 
-// Participants made of equations, for studies without people.
+// Simulated participants, for studies without people.
 struct SimulatedTapSettings {
   std::vector<std::string> points;  // names of tapping points, visited in random order
   int taps_per_visit{8};
@@ -69,12 +68,12 @@ struct SimulatedTapSettings {
   double press_m{0.004};
 };
 struct SimulatedObserverSettings {
-  // Internal noise on each felt feature, by default as large as gives the accuracies of the
-  // paper's Table 2.
+  // Internal noise on each felt feature; the default reproduces the accuracies of the paper's
+  // Table 2.
   double noise_db{9.0};
   double threshold_n{1e-4};      // force amplitudes well below are not felt
   int familiarisation_taps{24};  // on each real plate, before the study
-  std::string reference;         // the stimulus that reality feels like to it, where one is needed
+  std::string reference;         // the stimulus taken as reality, where a task needs one
 };
 struct Simulation {
   core::HandBody hand;
@@ -99,7 +98,7 @@ struct Protocol {
   std::vector<Hypothesis> hypotheses;
   Simulation simulation;
 
-  // Throws InvalidInput naming the stimuli there are.
+  // Throws InvalidInput listing the known stimuli.
   const Stimulus& stimulus(const std::string& name) const;
   const Block& block(const std::string& name) const;
 };

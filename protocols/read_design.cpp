@@ -10,7 +10,7 @@ namespace {
 using Presence = MapReader::Presence;
 constexpr double same_height_m = 1e-3;
 
-// Nothing for a name that was refused.
+// A null value for a name that was rejected.
 template <class Value>
 std::shared_ptr<const Value> named(const std::map<std::string, std::shared_ptr<const Value>>& all,
                                    const std::string& name) {
@@ -35,15 +35,15 @@ void read_points(MapReader& top, Protocol& protocol) {
       const auto known = height_of_point_m.emplace(point, *height_m).first;
       if (std::abs(known->second - *height_m) > same_height_m) {
         top.reject("tapping_points_m",
-                   fmt::format("{}: plate '{}' is {:.4g} m high there, another {:.4g} m (a hand "
-                               "that meets them must not tell them apart by height; within {} m)",
+                   fmt::format("{}: plate '{}' is {:.4g} m high there, another {:.4g} m (plates "
+                               "must not be distinguishable by height; within {} m)",
                                point, name, *height_m, known->second, same_height_m));
       }
     }
   }
 }
 
-// Reports split accuracy by factors, so every stimulus has a level of each.
+// Reports break down accuracy by factor, so every stimulus needs a level of each.
 void check_factors(MapReader& reader, const Stimulus& stimulus, const Protocol& protocol) {
   if (protocol.stimuli.empty()) {
     return;

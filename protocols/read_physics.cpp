@@ -68,8 +68,8 @@ void read_rendering(MapReader& top, Protocol& protocol) {
     protocol.band_limit_hz = rendering.number("band_limit_hz", Range::positive(1e5));
     if (protocol.band_limit_hz >= protocol.rate_hz / 2.0) {
       rendering.reject("band_limit_hz",
-                       "is not below half of rate_hz: faster modes cannot be "
-                       "rendered and must not be folded back");
+                       "is not below half of rate_hz: higher modes cannot be "
+                       "rendered and would alias");
     }
     settings.dt_s = 1.0 / protocol.rate_hz;
     settings.penalty_stiffness_n_per_m =

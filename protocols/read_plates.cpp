@@ -88,9 +88,9 @@ core::Meshing read_mesh(MapReader& mesh) {
   return meshing;
 }
 
-// A surface's own problems are told at its key; what else the study says of it is read on.
+// Problems of the surface itself are reported at its key; reading then continues.
 core::Shape read_surface_shape(MapReader& plate, const ReadFile& read_file, Protocol& protocol) {
-  core::Shape shape = core::Box{core::Vec3::Constant(10.0)};  // until there is a better one
+  core::Shape shape = core::Box{core::Vec3::Constant(10.0)};  // placeholder until read
   plate.map("surface", Presence::required, [&](MapReader& reader) {
     const std::string file = reader.text("file");
     const double metres_per_unit = reader.number("metres_per_unit", Range::positive(1000.0));

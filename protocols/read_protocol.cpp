@@ -6,7 +6,7 @@
 #include "protocols/yaml/text_file.hpp"
 namespace tapstudy::protocols {
 namespace {
-// Names of files start from where the study's own file lies.
+// File names are relative to the study's own file.
 ReadFile beside(const std::string& file) {
   return [directory = std::filesystem::path{file}.parent_path()](const std::string& name) {
     return contents_of((directory / name).string(), max_surface_bytes);

@@ -21,7 +21,7 @@ void read_loop(MapReader& top, Rig& rig) {
   });
 }
 
-// A hand that is simulated or was recorded cannot be hurt: others must have limits to their motion.
+// Motion limits are mandatory for hardware; simulated and recorded hands cannot be hurt.
 void read_limits_of_motion(MapReader& top, core::GateSettings& gate) {
   gate.max_hand_speed_m_s = top.number("max_hand_speed_m_s", Range::positive(10.0));
   gate.workspace_radius_m = top.number("workspace_radius_m", Range::positive(1.0));

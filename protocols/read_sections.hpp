@@ -6,7 +6,7 @@
 #include "protocols/yaml/yaml_reader.hpp"
 namespace tapstudy::protocols {
 // The sections of a protocol, each reading its part of the file into its part of the Protocol.
-// Sections that name things of other sections are read after them.
+// Sections that refer to other sections are read after them.
 void read_rendering(MapReader& top, Protocol& protocol);
 void read_placement(MapReader& top, MapReader::Presence presence,
                     const std::function<void(const core::Placement&)>& take);

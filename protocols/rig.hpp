@@ -7,17 +7,17 @@
 #include "core/settings/gate_settings.hpp"
 #include "core/settings/realtime_request.hpp"
 namespace tapstudy::protocols {
-// What one kind of device has of its own in a rig. Each kind derives its settings from this.
+// Base class of the device-specific settings in a rig.
 struct DeviceSection {
   virtual ~DeviceSection() = default;
 };
 
-// What surrounds the study: the device and what it may do.
+// The device and its limits, independent of the study.
 struct Rig {
-  std::string text;    // all that it was read from, a calibration as a second document
+  std::string text;    // complete source, with a calibration as second document
   std::string device;  // the name of its kind
-  std::shared_ptr<const DeviceSection> section;  // nothing for a kind without settings
-  bool has_hardware{};                           // it pushes on a person's hand
+  std::shared_ptr<const DeviceSection> section;  // null for a kind without settings
+  bool has_hardware{};                           // exerts force on a person's hand
   core::GateSettings gate;
   core::RealtimeRequest realtime;
   int max_late_ticks_in_a_row{0};            // 0: any

@@ -7,8 +7,8 @@
 namespace tapstudy::protocols {
 class MapReader;
 
-// Where a section's file names start from, and the text that the rig was read from, to which what
-// is read from other files is added.
+// The base directory of a section's file names, and the rig's source text, to which the contents of
+// other files are appended.
 struct RigText {
   std::string directory;
   std::string* text{};
@@ -19,7 +19,7 @@ class RigDevice {
  public:
   virtual ~RigDevice() = default;
   virtual std::string_view name() const = 0;  // in rigs and stores
-  // Whether it pushes on a person's hand: then the rig must limit that hand's motion.
+  // Whether it exerts force on a person's hand: then the rig must limit the hand's motion.
   virtual bool has_hardware() const = 0;
   // Reads its section of the rig, if it has one; problems go to the reader.
   virtual std::shared_ptr<const DeviceSection> read_section(MapReader& top,

@@ -7,8 +7,8 @@
 namespace tapstudy::protocols {
 using Schedule = std::vector<PlannedTrial>;
 
-// The whole order of one participant. The seed is the participant's own; counterbalancing counts
-// participants from 0. The same arguments give the same order on every compiler.
+// The complete trial order of one participant. The seed is the participant's own; counterbalancing
+// uses the participant index, from 0. The result does not depend on the compiler.
 Schedule make_schedule(const Protocol& protocol, std::uint64_t participant_seed,
                        int participant_index);
 

@@ -28,7 +28,7 @@ std::vector<std::byte> compressed(std::span<const std::byte> plain) {
 
 std::vector<std::byte> decompressed(std::span<const std::byte> bytes, std::size_t size) {
   if (ZSTD_getFrameContentSize(bytes.data(), bytes.size()) != size) {
-    throw StoreError{"a compressed row does not hold what it should"};
+    throw StoreError{"a compressed row has unexpected contents"};
   }
   std::vector<std::byte> plain(size);
   const std::size_t found = ZSTD_decompress(plain.data(), plain.size(), bytes.data(), bytes.size());

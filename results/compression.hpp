@@ -3,10 +3,10 @@
 #include <span>
 #include <vector>
 namespace tapstudy::results {
-// One Zstandard frame (RFC 8878) with its size and a checksum of its content, which the frame's
-// decoder verifies. Throws StoreError.
+// One Zstandard frame (RFC 8878) with its content size and checksum, which the decoder verifies.
+// Throws StoreError.
 std::vector<std::byte> compressed(std::span<const std::byte> plain);
-// Throws StoreError if the bytes are not one frame of this size, or damaged. The frame itself says
-// how large it is: a damaged row must not ask for all memory there is.
+// Throws StoreError if the bytes are damaged or not one frame of this size. The size in the frame
+// header is checked first, so that a damaged row cannot cause a huge allocation.
 std::vector<std::byte> decompressed(std::span<const std::byte> bytes, std::size_t size);
 }  // namespace tapstudy::results

@@ -44,7 +44,7 @@ void Recorder::write(PendingTrial& trial) {
     }
     store_.add_trial(trial.record);
     trial.saved.set_value();
-  } catch (...) {  // whatever it is, it belongs to the one who waits for the trial
+  } catch (...) {  // any exception goes to whoever waits for the trial
     trial.saved.set_exception(std::current_exception());
   }
 }
@@ -54,7 +54,7 @@ void Recorder::drain_followed() noexcept {
     if (followed_ != nullptr) {
       followed_->drain();
     }
-  } catch (...) {  // nobody waits for this thread; the trial's promise will carry it
+  } catch (...) {  // delivered through the trial's promise
     drain_failure_ = std::current_exception();
     followed_ = nullptr;
   }

@@ -9,20 +9,20 @@
 #include "results/store.hpp"
 #include "results/trace_collector.hpp"
 namespace tapstudy::results {
-// The thread that alone writes to the store. During a live trial it also empties the haptic
-// thread's ring, so that the loop never waits for the disk.
+// The only thread that writes to the store. During a live trial it also drains the haptic thread's
+// ring, so that the loop never waits for the disk.
 class Recorder {
  public:
   explicit Recorder(Store& store);
-  ~Recorder();  // saves what was handed in, then stops
+  ~Recorder();  // finishes pending saves, then stops
   Recorder(const Recorder& other) = delete;
   Recorder& operator=(const Recorder& other) = delete;
 
-  // Ready when the trial is in the database for good; carries the StoreError if it is not.
+  // Ready once the trial is committed to the database; carries the StoreError on failure.
   std::future<void> save(TrialRecord record);
 
-  // Drains the collector every few milliseconds, until leave() returns. If that fails, the loop
-  // goes on, the samples that find no room are counted, and saving the trial fails with the reason.
+  // Drains the collector every few milliseconds, until leave() returns. If draining fails, the loop
+  // continues, dropped samples are counted, and saving the trial fails with the cause.
   void follow(TraceCollector& collector);
   void leave();
 
@@ -40,7 +40,7 @@ class Recorder {
   std::condition_variable_any arrived_;
   std::deque<PendingTrial> pending_;
   TraceCollector* followed_{nullptr};
-  std::exception_ptr drain_failure_;  // given to the next trial that is to be saved
+  std::exception_ptr drain_failure_;  // rethrown when the next trial is saved
   std::jthread thread_;
 };
 }  // namespace tapstudy::results

@@ -5,14 +5,14 @@
 #include <string>
 #include <vector>
 namespace tapstudy::results {
-// What a study directory holds, as plain rows. Names and units are those of the SQL columns.
+// The contents of a study database as plain rows. Names and units are those of the SQL columns.
 
 // Simulated and pilot sessions never enter the report of a real study unless asked for.
 enum class Mode { real, pilot, simulated };
 std::string to_text(Mode mode);
 Mode mode_from(const std::string& text);
 
-// A file that the protocol names, whole; compressed in the database.
+// Complete contents of a file named by the protocol; compressed in the database.
 struct SurfaceRow {
   std::string file;  // as the protocol names it
   std::string sha256;
@@ -27,20 +27,20 @@ struct StudyRow {
   std::vector<SurfaceRow> surfaces;
 };
 
-// One visit of one participant. Stored before the first trial, with all that its repetition takes.
+// One session of one participant. Stored before the first trial, with all data to reproduce it.
 struct SessionRow {
   std::int64_t id{};
   std::string participant_id;
-  int participant_index{};  // from 0 among those of the mode; counterbalancing goes by it
+  int participant_index{};  // from 0 within its mode; used for counterbalancing
   Mode mode{Mode::real};
   std::uint64_t seed{};
   std::string planned_order;              // one line a trial
-  std::optional<std::int64_t> resumes{};  // the session that it goes on with
+  std::optional<std::int64_t> resumes{};  // the session it continues
   double rate_hz{};
   std::string rig_text;
   std::string device;
   std::string scheduler;
-  std::string doctor;  // what the machine could do before the session, JSON
+  std::string doctor;  // diagnosis of the machine before the session, JSON
   std::string program_version;
   std::string git_hash;
   std::string compiler;
@@ -49,14 +49,14 @@ struct SessionRow {
 
 struct AlternativeRow {
   int position{};     // from 0
-  std::string label;  // what the participant saw instead of a name; empty if there was one only
+  std::string label;  // blind label shown to the participant; empty if only one
   std::string stimulus;
 };
 struct ResponseRow {
   std::string response;                             // as the task stores it: a stimulus's name
-  std::optional<bool> is_correct;                   // nothing where no answer is right
+  std::optional<bool> is_correct;                   // unset if no answer is correct
   double response_time_s{};                         // from the start of the trial
-  std::optional<double> time_from_first_contact_s;  // nothing if the plate was never touched
+  std::optional<double> time_from_first_contact_s;  // unset if the plate was never touched
 };
 struct EventRow {
   double t_s{};      // from the first tick of the trial
@@ -81,7 +81,7 @@ struct TickStatisticsRow {
 struct TrialRow {
   std::int64_t session_id{};
   int number{};    // in the planned order, from 1
-  int attempt{1};  // an interrupted trial that is repeated has a second
+  int attempt{1};  // counts repetitions of an interrupted trial
   std::string block;
   std::string task;
   bool is_practice{};
@@ -90,7 +90,7 @@ struct TrialRow {
   double duration_s{};
 };
 
-// A trial with all that belongs to it: stored whole or not at all.
+// A trial with all its data: stored atomically.
 struct TrialRecord {
   TrialRow trial;
   std::vector<AlternativeRow> alternatives;
@@ -100,7 +100,7 @@ struct TrialRecord {
   TickStatisticsRow statistics;
 };
 
-// An answered trial, as analysis wants it.
+// An answered trial, as used by analysis.
 struct AnswerRow {
   std::string participant_id;
   Mode mode{};

@@ -10,8 +10,7 @@
 struct sqlite3;
 struct sqlite3_stmt;
 namespace tapstudy::results {
-// SQLite in three small classes; every failure throws StoreError with the file and SQLite's own
-// words.
+// A thin SQLite wrapper; every failure throws StoreError with the file name and SQLite's message.
 class Database {
  public:
   enum class Access { read, write };
@@ -32,7 +31,7 @@ class Database {
   std::unique_ptr<sqlite3, Close> handle_;
 };
 
-// Parameters are bound in order; columns are read by place, from 0.
+// Parameters are bound in order; columns are read by index, from 0.
 class Statement {
  public:
   Statement(Database& database, const std::string& sql);

@@ -35,7 +35,7 @@ std::int64_t pragma(Database& database, const std::string& name) {
   return statement.integer(0);
 }
 
-// Changing the journal needs the file for oneself for a moment, and does not wait by itself.
+// Changing the journal mode briefly needs exclusive access, and SQLite does not wait for it.
 void use_write_ahead_log(Database& database) {
   constexpr int attempts = 50;
   for (int attempt = 1;; ++attempt) {
@@ -103,7 +103,7 @@ void Store::check_schema() {
   }
 }
 
-// In one transaction, so that of two programs that start at once one creates and one finds.
+// In one transaction: of two programs started concurrently one creates, the other finds it.
 void Store::create_or_check(const StudyRow& study) {
   Transaction all{database_};
   if (!is_empty()) {

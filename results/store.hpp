@@ -7,25 +7,24 @@
 #include "results/rows.hpp"
 #include "results/sqlite.hpp"
 namespace tapstudy::results {
-// The database of one study directory, DIR/study.db: WAL journal, synchronous FULL, so that what
-// was reported as saved survives a killed process and a lost mains supply. Rows are added, never
-// changed. Not for use by several threads at once. Everything throws StoreError.
+// The database of one study directory, DIR/study.db: WAL journal, synchronous FULL, so that
+// committed data survive a killed process and a power failure. Rows are added, never changed. Not
+// thread-safe. All functions throw StoreError.
 class Store {
  public:
   // Opens the study of this protocol in the directory, or creates both.
-  // Throws InvalidInput if the directory holds the study of another protocol, or one whose surfaces
-  // were others.
+  // Throws InvalidInput if the directory holds the study of another protocol, or of other surfaces.
   static Store open_or_create(const std::string& directory, const StudyRow& study);
   // For reading. Throws InvalidInput if there is no study.
   static Store open_existing(const std::string& directory);
-  // Leaves a writer's database as one plain file, without the journal's companions.
+  // Leaves a writer's database as a single file, without the WAL files.
   ~Store();
   Store(Store&& other) noexcept = default;
   Store& operator=(Store&& other) noexcept = delete;
   Store(const Store& other) = delete;
   Store& operator=(const Store& other) = delete;
 
-  // Its surfaces are read too, and unpacked.
+  // Includes its surfaces, decompressed.
   StudyRow study();
   // The index of an existing participant, or the next free one of the mode.
   // Throws InvalidInput if the participant is there already in another mode.
@@ -40,12 +39,12 @@ class Store {
   std::optional<SessionRow> latest_session(const std::string& participant_id);
   // Numbers of the trials that the participant has answered, in any session.
   std::vector<int> answered_trials(const std::string& participant_id);
-  // Of all participants and modes, practice included: the caller chooses. By participant index and
-  // number of the trial; participants of different modes can have the same index.
+  // Of all participants and modes, including practice: the caller filters. Sorted by participant
+  // index and trial number; participants of different modes can have the same index.
   std::vector<AnswerRow> answers();
   std::vector<VisitRow> visits();
   std::vector<SessionRow> sessions();
-  // Every tick of a trial, in order; nothing if there is no such trial.
+  // Every tick of a trial, in order; empty if there is no such trial.
   std::vector<core::TraceSample> trace(std::int64_t trial_id);
 
  private:

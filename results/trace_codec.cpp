@@ -10,7 +10,7 @@
 namespace tapstudy::results {
 namespace {
 using core::TraceSample;
-static_assert(std::endian::native == std::endian::little, "records are copied as they lie");
+static_assert(std::endian::native == std::endian::little, "records are copied byte for byte");
 constexpr std::size_t words = 19;  // time and eighteen numbers
 constexpr std::size_t flags = 5;
 constexpr std::size_t record_bytes = 160;

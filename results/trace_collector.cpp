@@ -26,7 +26,7 @@ void TraceCollector::discard() {
   }
 }
 
-// A tick with a fault tells no contact and no release: what it would show did not happen.
+// A tick with a fault yields no contact and no release events.
 void TraceCollector::note_events(const core::TraceSample& sample) {
   collected_.duration_s = 1e-9 * static_cast<double>(sample.t_ns);
   if (sample.fault != core::TickFault::none) {

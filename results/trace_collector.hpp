@@ -5,15 +5,15 @@
 #include "core/tick/trace_ring.hpp"
 #include "results/rows.hpp"
 namespace tapstudy::results {
-// One trial's samples on their way from the haptic thread's ring to the store: packed into chunks
-// as they come, with the events that they show (contacts, impacts, switches).
+// Collects one trial's samples from the haptic thread's ring for the store: encodes them in chunks
+// as they arrive and extracts the events (contacts, impacts, switches).
 class TraceCollector {
  public:
   explicit TraceCollector(core::SpscRing<core::TraceSample>& ring) : ring_{&ring} {}
   void drain();
-  // Empties the ring and keeps nothing of it.
+  // Empties the ring and discards its contents.
   void discard();
-  // Drains what is left and hands over everything.
+  // Drains the remaining samples and returns everything.
   struct Collected {
     std::vector<TraceChunk> chunks;
     std::vector<EventRow> events;

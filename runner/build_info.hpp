@@ -1,7 +1,7 @@
 #pragma once
 #include <string>
 namespace tapstudy::runner {
-// Of the program that is running; stored with every session.
+// Build of the running program; stored with every session.
 std::string program_version();
 std::string git_hash();  // with "+changes" if the sources differed from that commit
 std::string compiler();

@@ -26,7 +26,7 @@ ExitCode code_of(const std::exception& error) {
   }
   return ExitCode::wrong_input;
 }
-// A result that did not reach its file or pipe is no result.
+// Detects output that did not reach its file or pipe.
 void check_results_arrived() {
   std::cout.flush();
   if (!std::cout || std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {

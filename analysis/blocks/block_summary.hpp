@@ -24,14 +24,14 @@ struct BlockRows {
   std::vector<results::VisitRow> visits;
 };
 
-// A table of its own: the end of the file's name, and what writes it.
+// A separate CSV table: its file name suffix and its writer.
 struct CsvTable {
   std::string name;
   std::function<void(std::ostream&)> write;
 };
 
-// What a statistic has made of a block, and how that is said in each form. Writers compute nothing
-// new.
+// The results of a statistic for a block, with its output in each format. Writers only format; they
+// compute nothing.
 class BlockSummary {
  public:
   BlockSummary(std::string block_name, std::string question_asked)

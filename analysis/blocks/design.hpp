@@ -4,11 +4,11 @@
 
 #include "analysis/statistics/confusion_matrix.hpp"
 namespace tapstudy::analysis {
-// The design of a study as far as its report needs it.
+// The part of a study's design that its report needs.
 struct PlannedHypothesis {
   std::string name;
   std::string statement;
-  std::string stimulus;  // expected to be chosen; empty where the claim is not about one
+  std::string stimulus;  // expected choice; empty if the claim is not about one stimulus
 };
 struct BlockDesign {
   std::string name;

@@ -5,7 +5,7 @@
 
 #include "analysis/blocks/block_summary.hpp"
 namespace tapstudy::analysis {
-// What summaries of blocks have in common on a page.
+// HTML elements shared by the block summaries.
 std::string escaped(const std::string& text);
 // A dot with its interval on a scale from 0 to 100 %, chance as a line.
 std::string dot_plot(const Proportion& proportion, double chance);

@@ -4,7 +4,7 @@
 
 #include "analysis/blocks/block_summary.hpp"
 namespace tapstudy::analysis {
-// What summaries of blocks have in common in JSON.
+// JSON elements shared by the block summaries.
 nlohmann::ordered_json as_json(const Proportion& proportion);
 nlohmann::ordered_json as_json(const std::vector<HypothesisResult>& hypotheses);
 }  // namespace tapstudy::analysis

@@ -4,6 +4,6 @@
 
 #include "analysis/blocks/block_summary.hpp"
 namespace tapstudy::analysis {
-// What summaries of blocks have in common on a terminal.
+// Text elements shared by the block summaries.
 void write_hypotheses_text(std::ostream& out, const std::vector<HypothesisResult>& hypotheses);
 }  // namespace tapstudy::analysis

@@ -14,7 +14,7 @@ struct AlternativeResult {
   double dwell_s{};
 };
 
-// Several stimuli a trial, one of which is chosen, none right: how often each was.
+// Several stimuli per trial, one of which is chosen, none correct: the frequency of each choice.
 class ChoiceSummary final : public BlockSummary {
  public:
   using BlockSummary::BlockSummary;
@@ -25,7 +25,7 @@ class ChoiceSummary final : public BlockSummary {
 
   std::vector<AlternativeResult> alternatives;
   std::vector<std::pair<std::string, std::string>> choices;  // participant, stimulus
-  std::optional<double> multinomial_p;  // nothing if there are too many outcomes to enumerate
+  std::optional<double> multinomial_p;  // unset if there are too many outcomes to enumerate
   bool has_repeated_choices{};          // several by one participant: not independent
   std::vector<HypothesisResult> hypotheses;
 };

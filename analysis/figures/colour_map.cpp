@@ -21,7 +21,7 @@ double largest(const ColourMap& map) {
   return most > 0.0 ? most : 1.0;
 }
 
-// Places from 0 to columns - 1 and rows - 1, as gnuplot counts a matrix, to those of the rectangle.
+// Maps gnuplot's matrix indices, 0 to columns - 1 and rows - 1, to coordinates of the rectangle.
 std::string placed(const ColourMap& map) {
   const double step_x = (map.high_x - map.low_x) / static_cast<double>(map.columns - 1);
   const double step_y = (map.high_y - map.low_y) / static_cast<double>(map.rows - 1);

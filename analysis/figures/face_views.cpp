@@ -50,7 +50,7 @@ ColourMap map_of_modes(const core::VibratingPlate& plate, const core::Box& box,
   const core::ModalModel& model = plate.model;
   const Eigen::Index modes = std::min(model.frequency_hz.size(), max_modes_drawn);
   for (Eigen::Index mode = 0; mode < modes; ++mode) {
-    // by the largest in any direction: a mode that moves sideways stays pale
+    // scaled by the maximum in any direction, so that in-plane modes stay pale
     const double largest = model.shape.col(mode).cwiseAbs().maxCoeff();
     const std::vector<double> values = over_face(box, [&](double x, double y) {
       const core::SurfacePoint point = plate.locator->locate(x, y);

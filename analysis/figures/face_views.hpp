@@ -4,13 +4,13 @@
 #include "core/settings/render_settings.hpp"
 #include "core/tick/vibrating_plate.hpp"
 namespace tapstudy::analysis {
-// How the upper face of a plate moves, seen from above, in colour.
+// Colour maps of the displacement of a plate's upper face, seen from above.
 
-// Its modes along the normal, each scaled to a largest displacement of 1 along any axis.
+// Normal component of its mode shapes, each scaled to a maximum displacement of 1 along any axis.
 ColourMap map_of_modes(const core::VibratingPlate& plate, const core::Box& box,
                        const std::string& title);
 
-// After a strike: a panel every dt (the paper's Figure 3), displacement along the normal [um].
+// After an impact: one panel every dt (the paper's Figure 3), normal displacement [um].
 struct PlateImpact {
   Eigen::Vector2d at_m{Eigen::Vector2d::Zero()};
   double speed_m_s{0.3};

@@ -16,7 +16,7 @@ struct Span {
   double high{0.0};
 };
 
-// What all panels' series on an axis need, zero included, with a margin.
+// The common range of all series on an axis, including zero, with a margin.
 Span span_of(const Figure& figure, Axis axis) {
   Span span;
   for (const Panel& panel : figure.panels) {

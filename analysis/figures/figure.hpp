@@ -16,8 +16,8 @@ struct Panel {
   std::string title;
   std::vector<Series> series;
 };
-// Panels in rows of `columns`, sharing axes' labels and ranges. The right axis is for series that
-// are far smaller or of another unit.
+// Panels in rows of `columns`, with shared axis labels and ranges. The right axis is for series of
+// much smaller magnitude or of another unit.
 struct Figure {
   std::string title;
   std::string x_label;

@@ -19,7 +19,7 @@ void run_gnuplot(const std::string& script) {
   }
 }
 
-// gnuplot does not say when the disk is full.
+// gnuplot does not report a full disk.
 bool is_whole(const std::string& file) {
   std::ifstream stream{file};
   const std::string text{std::istreambuf_iterator<char>{stream}, {}};
@@ -27,8 +27,8 @@ bool is_whole(const std::string& file) {
 }
 }  // namespace
 
-// gnuplot reads '' inside a single-quoted text as one quote and knows no other escape; a line's end
-// would end the command, so no control character gets through.
+// Inside single quotes gnuplot reads '' as one quote and has no other escape; a newline would end
+// the command, so control characters are replaced.
 std::string quoted(const std::string& text) {
   std::string safe{"'"};
   for (const char c : text) {
@@ -42,7 +42,7 @@ std::string quoted(const std::string& text) {
 }
 
 void draw_with_gnuplot(const std::string& script, const std::string& file) {
-  core::write_new_file(file, [](std::ostream&) {});  // gnuplot does not say why it cannot
+  core::write_new_file(file, [](std::ostream&) {});  // gnuplot does not report why it fails
   try {
     run_gnuplot(script);
     if (!is_whole(file)) {

@@ -1,10 +1,10 @@
 #pragma once
 #include <string>
 namespace tapstudy::analysis {
-// A text as gnuplot takes it, whatever is in it.
+// Arbitrary text, quoted and escaped for gnuplot.
 std::string quoted(const std::string& text);
 
-// Runs a script, whose output goes to the new file. Throws InvalidInput if the file exists already
-// or cannot be written, or if there is no gnuplot.
+// Runs a script that writes the new file. Throws InvalidInput if the file already exists or cannot
+// be written, or if gnuplot is not available.
 void draw_with_gnuplot(const std::string& script, const std::string& file);
 }  // namespace tapstudy::analysis

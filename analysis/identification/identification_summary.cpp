@@ -15,7 +15,7 @@ constexpr int max_shuffles = 9999;
 constexpr int min_shuffles = 99;
 constexpr std::uint64_t shuffle_seed = 1;
 
-// As many as take no more than a moment; the report says how many there were.
+// As many as can be computed quickly; the report states the number.
 int shuffles_for(std::size_t answers) {
   constexpr std::size_t max_work = 20'000'000;
   return static_cast<int>(std::clamp<std::size_t>(max_work / std::max<std::size_t>(answers, 1),

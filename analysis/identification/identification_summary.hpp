@@ -9,17 +9,17 @@ struct FactorResult {
   std::string factor;
   std::string given;  // empty: among all answers
   Proportion accuracy;
-  double chance{};  // of agreeing by guessing, for the stimuli that were presented
+  double chance{};  // chance level, for the stimuli that were presented
 };
 struct ParticipantAccuracy {
   std::string participant_id;
   Proportion accuracy;
 };
 
-// One stimulus a trial, an answer that is right or wrong: the confusion matrix with its accuracies.
+// One stimulus per trial, answers correct or not: the confusion matrix with its accuracies.
 class IdentificationSummary final : public BlockSummary {
  public:
-  // Of a matrix alone, participants unknown.
+  // From a matrix alone, participants unknown.
   IdentificationSummary(std::string block_name, std::string question_asked,
                         ConfusionMatrix counted);
 

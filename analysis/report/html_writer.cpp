@@ -12,7 +12,7 @@ void write_html(std::ostream& out, const Summary& summary) {
               "<h1>{}</h1>\n",
               escaped(summary.title), html_style, escaped(summary.title));
   if (is_simulated(summary)) {
-    out << "<p class=simulated>Simulated participants: nobody felt anything. These data show what "
+    out << "<p class=simulated>Simulated participants: no person took part. These data show what "
            "the physics and the assumed observer give.</p>\n";
   }
   for (const auto& block : summary.blocks) {

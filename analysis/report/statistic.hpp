@@ -6,8 +6,8 @@
 
 #include "analysis/blocks/block_summary.hpp"
 namespace tapstudy::analysis {
-// A way to summarise a block. Adding one: a folder with its BlockSummary, and a row in
-// statistic.cpp; tasks name the one that fits them.
+// A way to summarise a block. To add one: a folder with its BlockSummary, and a row in
+// statistic.cpp; each task names its own.
 struct Statistic {
   std::string_view name;
   std::shared_ptr<const BlockSummary> (*summarise)(const BlockDesign& design,

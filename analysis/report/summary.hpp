@@ -24,13 +24,13 @@ struct Summary {
   std::vector<std::pair<std::string, std::string>> provenance;
 };
 
-// Everything a report says, from the rows it says it about.
+// All contents of a report, computed from the stored rows.
 Summary summarise(const StudyDesign& design, const std::vector<results::AnswerRow>& answers,
                   const std::vector<results::VisitRow>& visits);
 // From a matrix alone, participants unknown.
 Summary summarise(const ConfusionMatrix& matrix, const std::string& title);
 
 bool is_simulated(const Summary& summary);
-// A paragraph on how the numbers were made, for a methods section.
+// A paragraph on how the numbers were computed, for a methods section.
 std::string methods(const Summary& summary);
 }  // namespace tapstudy::analysis

@@ -6,7 +6,7 @@ namespace tapstudy::analysis {
 void write_text(std::ostream& out, const Summary& summary) {
   core::print(out, "{}\n", summary.title);
   if (is_simulated(summary)) {
-    core::print(out, "SIMULATED participants: nobody felt anything.\n");
+    core::print(out, "SIMULATED participants: no person took part.\n");
   }
   for (const auto& block : summary.blocks) {
     core::print(out, "\n");

@@ -3,7 +3,7 @@
 
 #include "analysis/report/summary.hpp"
 namespace tapstudy::analysis {
-// One record, many forms. Each writes the whole summary; none computes anything new.
+// Output formats. Each writes the whole summary; none computes anything.
 void write_text(std::ostream& out, const Summary& summary);  // for a terminal
 void write_html(std::ostream& out, const Summary& summary);  // self-contained, for a browser
 void write_json(std::ostream& out, const Summary& summary);  // for programs; schema_version 1

@@ -6,7 +6,7 @@
 
 #include "analysis/statistics/proportion.hpp"
 namespace tapstudy::analysis {
-// What was presented or answered: its name in the data, its label for people, its factor levels.
+// A stimulus or response: its name in the data, its label for people, its factor levels.
 struct Item {
   std::string name;
   std::string label;
@@ -27,15 +27,15 @@ struct ConfusionMatrix {
   double chance() const { return 1.0 / static_cast<double>(responses.size()); }
 };
 
-// Answers that name the very stimulus.
+// Proportion of answers that name the presented stimulus.
 Proportion overall_accuracy(const ConfusionMatrix& matrix);
-// Answers whose level of the factor is that of the stimulus.
+// Proportion of answers whose level of the factor is that of the stimulus.
 Proportion factor_accuracy(const ConfusionMatrix& matrix, const std::string& factor);
-// The same among those answers only that are right about another factor.
+// The same, only among answers that are correct in another factor.
 Proportion conditional_accuracy(const ConfusionMatrix& matrix, const std::string& factor,
                                 const std::string& given);
-// How often a guess among the responses would agree on the factor, given it agrees on another
-// (given may be empty), weighing the stimuli as they were presented.
+// Probability that a random response agrees in the factor, given that it agrees in another (given
+// may be empty), with stimuli weighted by how often they were presented.
 double factor_chance(const ConfusionMatrix& matrix, const std::string& factor,
                      const std::string& given);
 // The factors that every stimulus has a level of. A response without a level agrees with none.

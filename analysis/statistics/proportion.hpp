@@ -20,14 +20,14 @@ Interval wilson_interval(const Proportion& proportion);
 // P(X >= k) for X binomial(n, chance): the exact one-sided test of "more often than chance".
 double binomial_p_at_least(const Proportion& observed, double chance);
 
-// The exact multinomial test of equal probabilities; outcomes no more probable than the one
-// observed count against it. Every outcome is enumerated; nothing if there are more than a million.
+// The exact multinomial test of equal probabilities: p sums the outcomes no more probable than the
+// one observed. Every outcome is enumerated; nullopt if there are more than a million.
 // counts not empty, none negative.
 std::optional<double> exact_multinomial_p(const std::vector<int>& counts);
 
-// The fewest successes in n trials that are significant at alpha against chance, one-sided; n + 1
-// if none is.
+// The smallest number of successes in n trials that is significant at alpha against chance,
+// one-sided; n + 1 if there is none.
 int critical_successes(int trials, double chance, double alpha);
-// The probability of reaching them when the true proportion is `truth`.
+// The probability of reaching critical_successes when the true proportion is `truth`.
 double binomial_power(int trials, double chance, double alpha, double truth);
 }  // namespace tapstudy::analysis

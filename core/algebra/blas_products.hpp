@@ -1,8 +1,8 @@
 #pragma once
 #include <Eigen/Core>
 namespace tapstudy::core {
-// Products of matrices that are far higher than wide, by BLAS: it uses what the processor has,
-// which a program for all of them cannot. Columns must be contiguous.
+// Products of tall, narrow matrices by BLAS, which dispatches to the processor's vector
+// instructions; a portable build cannot. Columns must be contiguous.
 using Tall = Eigen::Ref<const Eigen::MatrixXd>;
 
 // A' B

@@ -14,7 +14,7 @@ lapack_int as_int(Eigen::Index size) {
   return static_cast<lapack_int>(size);
 }
 
-// LAPACK: info > 0 says where it failed.
+// LAPACK: info > 0 indicates where the routine failed.
 void check(lapack_int info, const char* routine) {
   if (info != 0) {
     throw ModelError{fmt::format("modes: the dense eigenvalue solver failed ({} {})", routine,

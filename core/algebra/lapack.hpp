@@ -2,13 +2,13 @@
 #include <Eigen/Core>
 namespace tapstudy::core {
 // Dense eigenproblems and least squares by LAPACK (Anderson et al. 1999): Eigen's own solvers are
-// templates that take many times as long to build, and no less to run.
+// templates that take many times longer to compile and run no faster.
 
 struct EigenPairs {
   Eigen::VectorXd values;   // ascending
-  Eigen::MatrixXd vectors;  // one column a value
+  Eigen::MatrixXd vectors;  // one column per value
 };
-// A x = lambda x, A symmetric, of which the lower triangle is read; vectors orthonormal.
+// A x = lambda x, A symmetric, only its lower triangle is read; vectors orthonormal.
 // Throws ModelError if the iteration does not converge.
 EigenPairs symmetric_eigenpairs(Eigen::MatrixXd A);
 // A x = lambda B x, A symmetric, B positive definite; vectors B-orthonormal.
@@ -19,6 +19,6 @@ struct LeastSquares {
   Eigen::VectorXd solution;  // of least norm among those that minimise |A x - b|
   int rank{};
 };
-// A: m × n, m >= n, columns of like size, or its rank is not seen.
+// A: m × n, m >= n, columns of similar norm, otherwise rank detection fails.
 LeastSquares least_squares(Eigen::MatrixXd A, Eigen::VectorXd b);
 }  // namespace tapstudy::core

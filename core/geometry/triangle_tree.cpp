@@ -9,8 +9,8 @@ namespace {
 constexpr int leaf_size = 4;
 using Point = TriangleTree::Point;
 
-// Six times the volume of p, q, a, b, exactly opposite for b, a: so that two triangles never
-// disagree on which side of their common edge a line passes.
+// Six times the signed volume of p, q, a, b, exactly antisymmetric in a and b, so that two
+// triangles always agree on which side of their common edge a line passes.
 double edge_volume(const Point& p, const Point& q, const Point& a, int a_index, const Point& b,
                    int b_index) noexcept {
   const bool is_forward = a_index < b_index;
@@ -79,8 +79,8 @@ Point TriangleTree::corner(int triangle, int i) const noexcept {
   return surface_.points_m.row(surface_.triangles(triangle, i));
 }
 
-// Halves the triangles across the widest extent of their middles: as deep as the logarithm of their
-// number, whatever they look like.
+// Splits at the median centroid along the axis of largest extent: the depth is logarithmic in the
+// number of triangles for any geometry.
 int TriangleTree::build(int first, int count) {
   const int number = static_cast<int>(nodes_.size());
   nodes_.emplace_back();
@@ -108,8 +108,8 @@ int TriangleTree::build(int first, int count) {
   return number;
 }
 
-// Separating axes of a segment and a box, without a division: nothing is infinite or undefined. The
-// hair added keeps rounding on the safe side.
+// Separating-axis test of a segment and a box, division-free, so no infinities or NaN arise. The
+// small tolerance keeps rounding errors conservative.
 bool TriangleTree::touches(const Node& node, const Segment& segment) noexcept {
   const Point apart = (segment.middle - node.middle).cwiseAbs();
   const Point reach = segment.half.cwiseAbs();
@@ -126,7 +126,7 @@ bool TriangleTree::touches(const Node& node, const Segment& segment) noexcept {
          std::abs(c.x() * d.y() - c.y() * d.x()) <= h.x() * reach.y() + h.y() * reach.x() + slack;
 }
 
-// Whether the line through the segment passes inside all three edges, the same way round.
+// Whether the line through the segment passes all three edges on the same side.
 bool TriangleTree::is_crossed(int triangle, const Point& from, const Point& to) const noexcept {
   std::array<double, 3> volumes{};
   for (int i = 0; i < 3; ++i) {

@@ -4,8 +4,8 @@
 
 #include "core/geometry/triangle_surface.hpp"
 namespace tapstudy::core {
-// Finds the triangles near a point or along a segment in logarithmic time: a binary tree of boxes.
-// Built once; its questions neither allocate nor throw, so a tick may ask them.
+// Finds the triangles near a point or along a segment in logarithmic time: a binary bounding-box
+// tree. Built once; queries neither allocate nor throw, so they are safe in the haptic thread.
 // Why not CGAL's AABB tree: it names some triangle that a segment meets (1.0 µs among 3480, where
 // this takes 2.8 µs), not the first one entered from outside by a start that may lie within the
 // skin; and its distance query allocates twice and takes 4.7 µs, where this takes 1.6 µs.
@@ -21,14 +21,14 @@ class TriangleTree {
   // At least one triangle.
   explicit TriangleTree(TriangleSurface surface);
 
-  // The first triangle through which the segment passes from its outer to its inner side. Edges
-  // belong to both their triangles, so nothing slips between two. A start no more than `skin` below
-  // a triangle counts as on it.
+  // The first triangle that the segment crosses from its outer to its inner side. An edge belongs
+  // to both its triangles, so nothing slips between them. A start point no more than `skin` below a
+  // triangle counts as on it.
   Entry first_entered(const Point& from, const Point& to, double skin) const noexcept;
-  // Whether some triangle comes within the distance.
+  // Whether any triangle lies within the distance.
   bool is_near(const Point& point, double distance) const noexcept;
 
-  // Every triangle whose box the segment touches.
+  // Visits every triangle whose bounding box the segment intersects.
   template <class Visit>
   void visit_along(const Point& from, const Point& to, const Visit& visit) const noexcept {
     const Segment segment{from, to};
@@ -39,7 +39,7 @@ class TriangleTree {
 
   const TriangleSurface& surface() const noexcept { return surface_; }
   Point normal(int triangle) const noexcept { return normals_.row(triangle); }  // unit length
-  // Coordinates that sum to 1, of the nearest point of the triangle.
+  // Barycentric coordinates of the nearest point of the triangle.
   std::array<double, 3> barycentric(int triangle, const Point& point) const noexcept;
 
  private:

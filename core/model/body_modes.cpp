@@ -13,7 +13,7 @@
 namespace tapstudy::core {
 namespace {
 constexpr double tets_of_first_round = 200.0;
-constexpr double finer = 0.25;  // the volume of a tetrahedron, from round to round
+constexpr double finer = 0.25;  // ratio of element volume between refinement steps
 constexpr std::size_t max_rounds = 8;
 
 Eigen::MatrixXd all_rows(const Eigen::MatrixXd& free_rows, const FreeDofs& dofs) {
@@ -80,7 +80,7 @@ double largest_move(const Eigen::ArrayXd& before, const Eigen::ArrayXd& after) {
   }
   throw ModelError{fmt::format(
       "mesh: the frequencies still move by more than {} % within {:.0g} tetrahedra and {} rounds{} "
-      "(a body held at single points never settles: hold a disc)",
+      "(a body held at single points does not converge: hold a disc)",
       100.0 * accuracy, max_tets, max_rounds, history)};
 }
 

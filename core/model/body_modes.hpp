@@ -7,27 +7,27 @@
 #include "core/model/plate.hpp"
 #include "core/model/progress_hook.hpp"
 namespace tapstudy::core {
-// Equal text for bodies that have one and the same solution.
+// Identical text for bodies with identical solutions.
 std::string content_key(const BodySpec& body);
 
-// What can be felt of a body: see ModalModel, for the unit material.
+// The touchable part of a body's modes: as ModalModel, for the unit material.
 struct BodyModes {
   Eigen::ArrayXd kappa_rad_per_m;  // ascending
-  double band_limit_rad_per_m{};   // every mode below is there
+  double band_limit_rad_per_m{};   // complete below this
   ModalModel::Points touch_nodes_m;
   ModalModel::Triangles touch_surface;
   ModalModel::Rows shape;
   ModelReport report;
 };
 
-// The body whole, for views and other programs.
+// The complete solution, for figures and export.
 struct SolvedBody {
   TetMesh mesh;
-  Eigen::MatrixXd displacement;  // row 3 i + a: of node i along axis a; one column a mode
+  Eigen::MatrixXd displacement;  // row 3 i + a: node i, axis a; one column per mode
   BodyModes modes;
 };
 
 // Mesh, matrices, modes (paper sections 4.2.1 and 4.2.2).
-// Throws ModelError for what cannot be built, or if the accuracy is out of reach.
+// Throws ModelError if the model cannot be built or the accuracy cannot be reached.
 SolvedBody solve_body(const BodySpec& body, const ProgressHook& progress = {});
 }  // namespace tapstudy::core

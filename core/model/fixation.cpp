@@ -13,8 +13,8 @@
 namespace tapstudy::core {
 namespace {
 constexpr int rim_points = 8;
-// A surface from a file has only its own points: the one meant by a vertex may be this far off, as
-// a fraction of the body's diagonal, because people type few digits.
+// A surface from a file has only its own points: the node nearest to a vertex fixation may be this
+// far off, as a fraction of the body's diagonal, because coordinates are typed with few digits.
 constexpr double vertex_reach = 1e-3;
 
 bool is_on_face(double z_m, Face face, const Bounds& body) {
@@ -58,7 +58,7 @@ bool constrains_node(const Fixation& fixation, const Vec3& node_m, const Bounds&
   return false;
 }
 
-// Of the surface's own triangles: neither nodes inside nor those in the middle of edges.
+// Among the corners of surface triangles: excludes interior and mid-side nodes.
 int nearest_corner(const TetMesh& mesh, const Vec3& at_m) {
   const auto corners = mesh.surface.leftCols<3>().reshaped();
   return *std::ranges::min_element(corners, {}, [&](int node) {
@@ -132,7 +132,7 @@ std::vector<Vec3> wanted_points(const Fixation& fixation, const Bounds& body) {
   return points;
 }
 
-// A point within rounding of a face is on it.
+// Snaps points within rounding of a face onto it.
 Vec3 onto_faces(Vec3 point, const Bounds& body) {
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
     for (const double face : {body.low_m[axis], body.high_m[axis]}) {

@@ -6,8 +6,8 @@
 #include "core/model/mesh/tet_mesh.hpp"
 #include "core/model/shape/shape.hpp"
 namespace tapstudy::core {
-// Which of a plate's nodes a vertex or disc means: those on the tapped face, on the face below, on
-// both (a screw that pinches the plate), or everything in between as well (a bolt through it).
+// Which of a plate's nodes a vertex or disc selects: those on the tapped face, on the face below,
+// on both (a screw clamping the plate), or through the whole thickness (a through bolt).
 enum class Face { top, bottom, both, through };
 // The faces of a body's bounding box: left is low x, front low y, bottom low z.
 enum class Side { left, right, front, back, bottom, top };
@@ -32,7 +32,7 @@ struct Fixation {
   std::array<bool, 3> constrained_axes{true, true, true};  // x y z
 };
 
-// The points that a box's mesh must have as nodes for the fixations to find something to hold:
+// The points that a box's mesh must contain as nodes so that every fixation selects some:
 // vertices, a disc's centre and eight points on its rim, the corners of a box region, where they
 // lie on the plate. Surfaces from files keep their own points.
 std::vector<Vec3> points_to_mesh(const std::vector<Fixation>& fixations, const Shape& shape);

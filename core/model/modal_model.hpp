@@ -16,11 +16,11 @@ struct ModalModel {
 
   Eigen::ArrayXd frequency_hz;             // ascending
   Eigen::ArrayXd damping_ratio;            // paper eq. 12, or as measured
-  std::optional<RayleighDamping> damping;  // unless each mode has a ratio of its own
+  std::optional<RayleighDamping> damping;  // unset for individual modal ratios
 
   Points touch_nodes_m;     // plate frame
-  Triangles touch_surface;  // into touch_nodes_m: 3 corners, normals outward; of order 2 also the
-                            // middles of the edges 01 12 20
+  Triangles touch_surface;  // into touch_nodes_m: 3 corners, normals outward; for order 2 also the
+                            // mid-side nodes of the edges 01 12 20
   // Row 3 i + a: displacement of touch node i along axis a, per unit of each modal coordinate
   // [kg^-1/2]; the touchable rows of the paper's P (eq. 9).
   Rows shape;
@@ -34,19 +34,19 @@ struct ModelCost {
   double total_s() const { return mesh_s + assemble_s + factor_s + iterate_s; }
 };
 
-// One round of refining a mesh until the modes hold still.
+// One step of refining a mesh until the natural frequencies converge.
 struct RefinementRound {
   int tets{};
   int modes{};
-  double moved{};  // the largest relative change of a frequency since the round before
+  double moved{};  // largest relative change of a frequency since the previous round
 };
 
-// What the building of a model found out, for people and for proof.
+// Statistics of building a model, for display and verification.
 struct ModelReport {
   int order{};
   int nodes{};
   int tets{};
-  int dofs{};  // free ones
+  int dofs{};  // free degrees of freedom
   int rigid_body_modes{};
   int counted_in_band{};
   double worst_residual{};

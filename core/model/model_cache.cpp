@@ -39,7 +39,7 @@ class Writer {
   std::string bytes_;
 };
 
-// Reads what Writer wrote; asks for nothing beyond the end.
+// Reads what Writer wrote; never reads past the end.
 class Reader {
  public:
   explicit Reader(std::string_view bytes) : bytes_{bytes} {}
@@ -82,7 +82,7 @@ class Reader {
   bool is_good_{true};
 };
 
-// One list of what a report holds, for both directions.
+// Visits the fields of a report, for both reading and writing.
 template <class Report, class Visit>
 void each_number(Report& report, const Visit& visit) {
   visit(report.order);

@@ -11,12 +11,12 @@ namespace tapstudy::core {
 namespace {
 constexpr double rounding = 1e-12;
 
-// Modes between the body's band and the one asked for would be missing without a word.
+// Otherwise modes between the body's band limit and the requested one would be missing silently.
 void check_band(const BodyModes& body, const Material& material, double band_limit_hz) {
   const double solved_hz = body.band_limit_rad_per_m / kappa_rad_per_m(1.0, material);
   if (band_limit_hz > solved_hz * (1.0 + rounding)) {
     throw ModelError{
-        fmt::format("modes: a band of {} Hz is asked for, but the body was solved up to {} Hz only",
+        fmt::format("modes: a band of {} Hz is requested, but the body was only solved up to {} Hz",
                     band_limit_hz, solved_hz)};
   }
 }

@@ -4,12 +4,12 @@ namespace tapstudy::core {
 // kappa of a frequency in a material: 2 pi f / sqrt(E / rho).
 double kappa_rad_per_m(double frequency_hz, const Material& material);
 
-// The body that a plate's model is scaled from, solved up to the plate's own band limit.
+// The unit-material body from which a plate's model is scaled, solved up to its band limit.
 BodySpec body_of(const PlateSpec& plate);
 
-// The body made of a material: frequencies and shapes scaled, damping given, modes above the band
-// left out. Throws InvalidInput for properties out of range, ModelError if the damping does not fit
-// the modes or the body was solved for a lower band.
+// Scales the body to a material: frequencies and mode shapes scaled, damping applied, modes above
+// the band omitted. Throws InvalidInput for properties out of range, ModelError if the damping does
+// not fit the modes or the body was solved for a lower band limit.
 ModalModel model_of(const BodyModes& body, const Material& material, double band_limit_hz);
 
 struct PlateModel {
@@ -17,7 +17,7 @@ struct PlateModel {
   SolvedBody body;
 };
 
-// Body and model in one. Throws InvalidInput for properties out of range, ModelError for what
+// Both steps in one. Throws InvalidInput for properties out of range, ModelError if the model
 // cannot be built.
 PlateModel build_plate_model(const PlateSpec& plate, const ProgressHook& progress = {});
 }  // namespace tapstudy::core

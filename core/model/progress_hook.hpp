@@ -2,8 +2,8 @@
 #include <functional>
 #include <string_view>
 namespace tapstudy::core {
-// Told what a long computation has come to, between its steps; may throw to stop it. Empty: nobody
-// wants to know.
+// Called between the steps of a long computation with its current stage; may throw to cancel it.
+// May be empty.
 using ProgressHook = std::function<void(std::string_view stage)>;
 
 inline void tell(const ProgressHook& progress, std::string_view stage) {

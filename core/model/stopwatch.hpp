@@ -1,7 +1,7 @@
 #pragma once
 #include <chrono>
 namespace tapstudy::core {
-// Seconds since the last look.
+// Lap timer: seconds since the previous call.
 class Stopwatch {
  public:
   double lap_s() {

@@ -3,7 +3,7 @@
 
 #include "core/tick/force_limiter.hpp"
 namespace tapstudy::core {
-// What every force must pass on its way to a device.
+// Limits applied to every force before it reaches a device.
 struct GateSettings {
   ForceLimits limits;
   double max_hand_speed_m_s{std::numeric_limits<double>::infinity()};

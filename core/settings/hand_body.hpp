@@ -1,6 +1,6 @@
 #pragma once
 namespace tapstudy::core {
-// A simulated hand: finger, grip and device as one mass on a muscle's spring and damper.
+// A simulated hand: finger, grip and device as one mass driven through a muscle spring-damper.
 struct HandBody {
   double mass_kg{0.1};
   double muscle_stiffness_n_per_m{400.0};

@@ -1,10 +1,10 @@
 #pragma once
 #include <optional>
 namespace tapstudy::core {
-// What is asked of the machine so that the haptic loop wakes in time. All of it may be refused.
+// Real-time facilities requested for the haptic loop. Any of them may be refused.
 struct RealtimeRequest {
-  int fifo_priority{80};  // SCHED_FIFO, and that no processor sleeps deeply; 0: not asked for
+  int fifo_priority{80};  // SCHED_FIFO, and no deep CPU idle states; 0: not requested
   bool lock_memory{true};
-  std::optional<int> cpu{};  // to stay on
+  std::optional<int> cpu{};  // CPU affinity
 };
 }  // namespace tapstudy::core

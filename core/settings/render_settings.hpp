@@ -4,18 +4,18 @@ namespace tapstudy::core {
 // Newmark's method with beta = 1/4, gamma = 1/2 (paper section 4.2.1).
 enum class Integrator { exact, newmark };
 
-// The finger as the paper sees it: the mass that strikes (eq. 14, grip included) and the spring and
-// damper through which vibration is felt (eq. 17).
+// The paper's finger model: the striking mass (eq. 14, grip included) and the spring and damper
+// through which vibration is felt (eq. 17).
 struct Finger {
   double mass_kg{0.058};
   double stiffness_n_per_m{300.0};
   double damping_n_s_per_m{3.0};
 };
 
-// A e^(-decay t) sin(2 pi frequency t), A proportional to the speed of impact (paper section 5.2.3,
+// A e^(-decay t) sin(2 pi frequency t), A proportional to the impact speed (paper section 5.2.3,
 // after Okamura et al. 1998).
 struct SinusoidShape {
-  double amplitude_n_s_per_m{};  // A per speed of impact
+  double amplitude_n_s_per_m{};  // A per unit impact speed
   double decay_per_s{600.0};
   double frequency_hz{250.0};
 };
@@ -23,7 +23,7 @@ struct SinusoidShape {
 struct RenderSettings {
   double dt_s{1e-3};
   double penalty_stiffness_n_per_m{3000.0};  // k of eq. 1
-  double release_height_m{5e-4};             // the next impact needs the finger to rise above it
+  double release_height_m{5e-4};             // hysteresis: re-arms impacts above this
   Integrator integrator{Integrator::exact};
   Finger finger;
   SinusoidShape sinusoid;

@@ -3,10 +3,10 @@
 namespace tapstudy::core {
 inline constexpr int spidar_strings = 8;
 
-// What must be measured on every single SPIDAR, string by string: force per volt alone differs
-// threefold between published tables for one and the same frame.
+// Calibration to be measured on each individual SPIDAR, string by string: published values of force
+// per volt differ by a factor of three for the same frame.
 struct StringCalibration {
-  double metres_per_count{};  // of string let out per encoder count up; the sign is the encoder's
+  double metres_per_count{};  // of string paid out per positive encoder count; signed
   double volts_per_newton{};
   double dac_counts_per_volt{};
 };

@@ -6,12 +6,12 @@
 #include "core/tick/added_force.hpp"
 #include "core/tick/vibrating_plate.hpp"
 namespace tapstudy::core {
-// One thing that techniques add to the penalty force: what it needs, and how to make it. Set-up.
+// A force component that techniques add to the penalty force: requirements and factory (set-up).
 struct ForcePart {
-  bool needs_model{};  // a plate's modal model, which takes a finite element solution
-  // What of the settings it lacks, as the key of the protocol and what is allowed; empty: nothing.
+  bool needs_model{};  // a plate's modal model, from a finite element solution
+  // The missing setting, as protocol key and allowed values; empty if complete.
   std::string_view (*missing)(const RenderSettings& settings){};
-  // plate is not null where a model is needed; it must outlive what is made.
+  // plate is non-null if a model is needed; it must outlive the returned object.
   std::unique_ptr<AddedForce> (*make)(const RenderSettings& settings,
                                       const VibratingPlate* plate){};
 };

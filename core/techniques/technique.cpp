@@ -6,7 +6,7 @@ const std::vector<Technique>& techniques() {
   static const std::vector<Technique> table{
       {"none", "the contact spring alone", {}},
       {"sinusoid",
-       "a decaying sinusoid at each impact, the same wherever one taps",
+       "a decaying sinusoid at each impact, independent of position",
        {&decaying_sinusoid}},
       {"fem", "the plate's own vibration at the contact point", {&plate_vibration}},
       {"fem+sinusoid",

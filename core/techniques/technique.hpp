@@ -5,19 +5,19 @@
 
 #include "core/techniques/force_part.hpp"
 namespace tapstudy::core {
-// A rendering technique: which parts are added to the penalty force of the soft contact spring. The
-// parts of a technique differ, and are added in their order.
+// A rendering technique: the components added to the penalty force of the contact spring. The
+// components of a technique are distinct, and are added in order.
 struct Technique {
   std::string_view name;  // in protocols, stores and reports
   std::string_view summary;
   std::vector<const ForcePart*> parts;
 
   bool needs_model() const;
-  // What of the settings it lacks: see ForcePart.
+  // The missing setting: see ForcePart.
   std::string_view missing(const RenderSettings& settings) const;
 };
 
-// All there are; a new one is a row here, and a part of its own if it adds something new.
+// All techniques; a new one is a row in this table, plus a ForcePart if it adds a new force.
 const std::vector<Technique>& techniques();
 // nullptr if there is none of that name.
 const Technique* find_technique(std::string_view name);

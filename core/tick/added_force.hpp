@@ -8,16 +8,16 @@ namespace tapstudy::core {
 class AddedForce {
  public:
   virtual ~AddedForce() = default;
-  // One period passes.
+  // Advances by one tick.
   virtual void advance() noexcept = 0;
-  // The god-object is here, and force is felt along the contact's normal.
+  // Sets the god-object's position; force is rendered along the contact normal.
   virtual void touch(const Contact& contact) noexcept = 0;
-  // The finger met the surface at this speed.
+  // The finger hit the surface at this speed.
   virtual void impact(double speed_m_s) noexcept = 0;
   virtual void add_to(ForceParts& parts) const noexcept = 0;
-  // Silence, as if nothing had ever been struck.
+  // Back to the state of rest.
   virtual void reset() noexcept = 0;
-  // Kinetic plus elastic, of what vibrates.
+  // Kinetic plus elastic energy of the vibrating body.
   virtual double energy_j() const noexcept { return 0.0; }
 };
 }  // namespace tapstudy::core

@@ -4,24 +4,24 @@
 #include "core/geometry/triangle_tree.hpp"
 #include "core/haptic_state.hpp"
 namespace tapstudy::core {
-// What the contact is this tick, in the plate frame.
+// The contact state in this tick, in the plate frame.
 struct Contact {
   bool touching{false};
-  bool impact{false};  // an impact that excites the plate: true in one tick only
-  double penetration_m{0.0};   // from the god-object to the haptic interaction point
-  double impact_speed_m_s{0.0};  // speed into the plate, in the tick of the impact
+  bool impact{false};               // an impact that excites the plate: true for one tick only
+  double penetration_m{0.0};        // from the god-object to the haptic interaction point
+  double impact_speed_m_s{0.0};     // approach speed, in the tick of the impact
   Vec3 god_object_m{Vec3::Zero()};  // the haptic interaction point, constrained to the surface
-  Vec3 normal{Vec3::UnitZ()};  // outward, unit length: where the penalty pushes
+  Vec3 normal{Vec3::UnitZ()};       // outward unit normal: direction of the penalty force
   // On a surface of triangles: which one the god-object is on, and where on it.
   int triangle{TriangleTree::none};
   std::array<double, 3> barycentric{};
 };
 
-// Where a finger is before it touches: handed from one contact to the next when the alternative is
-// switched.
+// State of the haptic interaction point before contact: handed from one contact to the next when
+// the alternative is switched.
 struct ContactHistory {
   Vec3 tip_m{Vec3::Zero()};
-  bool has_tip{false};  // nothing is known before the first reading
+  bool has_tip{false};  // false until the first reading
   bool impact_armed{false};
 };
 }  // namespace tapstudy::core

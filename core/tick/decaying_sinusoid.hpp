@@ -2,7 +2,7 @@
 #include "core/settings/render_settings.hpp"
 #include "core/tick/added_force.hpp"
 namespace tapstudy::core {
-// A decaying sinusoid at each impact, the same wherever one taps (paper section 5.2.3).
+// A decaying sinusoid at each impact, independent of the tapped position (paper section 5.2.3).
 class DecayingSinusoid final : public AddedForce {
  public:
   explicit DecayingSinusoid(const RenderSettings& settings) noexcept

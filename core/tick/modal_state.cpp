@@ -3,8 +3,8 @@
 #include <numbers>
 namespace tapstudy::core {
 namespace {
-// A decaying state must become zero before it becomes denormal, where every operation is slow. The
-// smallest motion that could matter is some eighty orders of magnitude larger.
+// A decaying state is flushed to zero before it becomes denormal, where arithmetic is slow. The
+// smallest relevant motion is some eighty orders of magnitude larger.
 constexpr double silence = 1e-100;
 
 void flush_to_zero(Eigen::ArrayXd& state) noexcept {

@@ -6,21 +6,21 @@
 #include "core/tick/state_transition.hpp"
 #include "core/tick/surface_point.hpp"
 namespace tapstudy::core {
-// The moving half of a plate: one displacement and one velocity a mode (paper eq. 11). The model
-// must outlive it. The constructor allocates; nothing else does.
+// The dynamic state of a plate: one displacement and one velocity per mode (paper eq. 11). The
+// model must outlive it. Only the constructor allocates.
 class ModalState {
  public:
   ModalState(const ModalModel& model, Integrator integrator, double dt_s);
 
-  // From now on the plate is touched here, along this outward normal (plate frame, unit length).
+  // Sets the contact point and its outward normal (plate frame, unit length).
   void touch(const SurfacePoint& point, const Vec3& normal) noexcept;
-  // An impulse at the touched point along the normal, outwards positive [N s]: each mode's velocity
-  // jumps by its share P' p (paper eq. 11, 15).
+  // An impulse at the contact point along the normal, outwards positive [N s]: each modal velocity
+  // jumps by its component of P' p (paper eq. 11, 15).
   void strike(double impulse_n_s) noexcept;
   void tick() noexcept;
   void reset() noexcept;
 
-  // Of the touched point, along the normal, outwards positive (paper eq. 16, 17).
+  // At the contact point, along the normal, outwards positive (paper eq. 16, 17).
   double displacement_m() const noexcept;
   double velocity_m_s() const noexcept;
   // Of the whole plate: kinetic plus elastic.
@@ -28,7 +28,7 @@ class ModalState {
 
  private:
   const ModalModel* model_;
-  Eigen::ArrayXd qq_, qv_, vq_, vv_;  // StateTransition, one a mode
+  Eigen::ArrayXd qq_, qv_, vq_, vv_;  // StateTransition, one per mode
   Eigen::ArrayXd displacement_, velocity_, next_;
   Eigen::ArrayXd touched_;  // the touched point's displacement along the normal, per mode
 };

@@ -7,15 +7,15 @@ struct PlateFace {
   double half_y_m{};
 };
 
-// The god-object (Zilles & Salisbury 1995) of a flat plate's upper face: where the finger would
-// rest if it could not enter.
+// The god-object (Zilles & Salisbury 1995) on a flat plate's upper face: where the haptic
+// interaction point would be if it could not penetrate.
 //
-// A contact begins where the tip passes the face downwards and ends where it rises out of it or
-// slides over the edge. A tip that is found below the face without having passed it (the first
-// reading, or a finger coming from the side) is not in contact: no force may appear from nowhere.
+// Contact begins when the tip crosses the face downwards and ends when it rises above it or slides
+// over the edge. A tip found below the face without having crossed it (the first reading, or a
+// finger coming from the side) is not in contact, which avoids a sudden force.
 //
-// Chatter does not strike again: after an impact the plate is struck anew only once the tip has
-// been higher than release_height_m.
+// Contact chatter does not retrigger impacts: after an impact the next one is armed only once the
+// tip has been higher than release_height_m.
 class PlateContact {
  public:
   PlateContact(const PlateFace& face, double release_height_m) noexcept
@@ -23,7 +23,7 @@ class PlateContact {
   const Contact& tick(const HandState& tip) noexcept;
   const Contact& now() const noexcept { return contact_; }
   ContactHistory history() const noexcept { return history_; }
-  // Knows where the finger came from, as whoever rendered it before did.
+  // Takes over the contact history of the previous renderer.
   void continue_from(const ContactHistory& history) noexcept;
 
  private:

@@ -7,8 +7,8 @@ namespace tapstudy::core {
 // The plate's own vibration, felt through the finger's spring and damper (paper eq. 16, 17).
 //
 // Impact. The finger loses the momentum p = -m (n.v) n (eq. 14); by Newton's third law the plate
-// receives the opposite, along the finger's motion, spread by the shape functions at the god-object
-// (eq. 15).
+// receives the opposite, along the finger's motion, distributed to the nodes by the shape functions
+// at the god-object (eq. 15).
 class PlateVibration final : public AddedForce {
  public:
   // The plate must outlive it.

@@ -14,8 +14,8 @@ StateTransition underdamped_transition(double omega, double zeta, double dt) noe
           -omega * omega * sine_over_damped, cosine - decay_rate * sine_over_damped};
 }
 
-// Two real decays, slow and fast. Written with the differences that lose no digits: near critical
-// damping their rates agree to many places, far above it one of them is nearly zero.
+// Two real exponentials, slow and fast. Formulated to avoid cancellation: near critical damping the
+// rates nearly coincide, far above it one of them is nearly zero.
 StateTransition overdamped_transition(double omega, double zeta, double dt) noexcept {
   const double root = std::sqrt((zeta - 1.0) * (zeta + 1.0));
   const double half_gap = omega * root;

@@ -11,12 +11,12 @@ struct StateTransition {
   double vv;
 };
 
-// The closed-form solution over dt, right for under-, critical and over-damping. omega > 0 [rad/s],
+// The closed-form solution over dt for under-, critical and over-damping. omega > 0 [rad/s],
 // damping_ratio >= 0, dt > 0.
 StateTransition exact_transition(double omega_rad_s, double damping_ratio, double dt_s) noexcept;
 
 // Newmark 1959 with beta = 1/4, gamma = 1/2 (the paper, section 4.2.1): never gains energy, but
-// rings at 2 atan(omega dt / 2) / dt instead of omega when undamped.
+// oscillates at 2 atan(omega dt / 2) / dt instead of omega when undamped (period elongation).
 StateTransition newmark_transition(double omega_rad_s, double damping_ratio, double dt_s) noexcept;
 
 StateTransition state_transition(Integrator integrator, double omega_rad_s, double damping_ratio,

@@ -6,10 +6,10 @@
 namespace tapstudy::core {
 namespace {
 constexpr double skin_per_diagonal = 1e-9;
-// In one tick: how often the planes are left to look for new ones. What is not reached now is
-// reached in the next.
+// Maximum number of active-set restarts per tick. The motion not completed in this tick is
+// completed in the next.
 constexpr int max_rounds = 8;
-constexpr double parallel = 1e-12;  // determinant of planes that nearly coincide
+constexpr double parallel = 1e-12;  // Gram determinant below which planes count as parallel
 }  // namespace
 
 SurfaceContact::SurfaceContact(const TriangleTree& tree, double release_height_m) noexcept
@@ -46,7 +46,7 @@ SurfaceContact::Planes SurfaceContact::move_towards(const Vec3& tip_m) noexcept 
   return planes;
 }
 
-// Straight there, or along the planes that are met on the way.
+// Moves straight to the tip, or along the constraint planes hit on the way.
 SurfaceContact::Planes SurfaceContact::slide_towards(const Vec3& tip_m) noexcept {
   Planes planes;
   std::optional<Vec3> goal = tip_m;
@@ -57,7 +57,7 @@ SurfaceContact::Planes SurfaceContact::slide_towards(const Vec3& tip_m) noexcept
       break;
     }
     const Plane met = plane_of(entry.triangle);
-    // stops where the way meets the plane's skin
+    // stops where the path meets the plane's offset (skin)
     const double start = met.normal.dot(god_object_m_) - met.offset;
     const double end = met.normal.dot(*goal) - met.offset;
     const double along = start > 0.0 ? std::min(1.0, start / (start - end)) : 0.0;
@@ -84,7 +84,7 @@ bool SurfaceContact::allow(const Planes& planes, const Vec3& point_m) const noex
                      });
 }
 
-// The nearest point that all planes allow lies on some of them: tries every choice of them.
+// The nearest point satisfying all constraints, by enumerating every possible active set.
 std::optional<Vec3> SurfaceContact::nearest_allowed(const Planes& planes,
                                                     const Vec3& wanted_m) const noexcept {
   std::optional<Vec3> nearest;
@@ -98,11 +98,11 @@ std::optional<Vec3> SurfaceContact::nearest_allowed(const Planes& planes,
   return nearest;
 }
 
-// The nearest point that lies on each chosen plane (bit i: plane i); none if two are parallel.
+// The nearest point on all planes of the active set (bit i: plane i); nullopt if parallel.
 std::optional<Vec3> SurfaceContact::nearest_on(const Planes& planes, unsigned choice,
                                                const Vec3& wanted_m) noexcept {
   Eigen::Matrix3d normals = Eigen::Matrix3d::Zero();
-  Eigen::Matrix3d gram = Eigen::Matrix3d::Identity();  // of the planes left out
+  Eigen::Matrix3d gram = Eigen::Matrix3d::Identity();  // identity for inactive planes
   Vec3 missing = Vec3::Zero();
   for (std::size_t i = 0; i < planes.count; ++i) {
     const auto row = static_cast<Eigen::Index>(i);

@@ -4,13 +4,14 @@
 
 #include "core/tick/contact.hpp"
 namespace tapstudy::core {
-// The god-object (Zilles & Salisbury 1995) of any closed surface: where the finger would rest if it
-// could not enter. Every tick it moves towards the tip; each triangle that it meets becomes a plane
-// that it may not pass, up to three at once (a face, a concave edge, a concave corner), and it goes
-// on to the nearest point that they allow. At convex edges it leaves the planes that end there.
+// The god-object (Zilles & Salisbury 1995) on any closed surface: where the haptic interaction
+// point would be if it could not penetrate. In every tick it moves towards the tip; each triangle
+// it hits becomes a constraint plane, up to three at once (a face, a concave edge, a concave
+// corner), and it moves on to the nearest point that satisfies them. At convex edges constraints
+// that end there are released.
 //
-// A tip that is found inside without having entered (the first reading) is not in contact. Chatter
-// does not strike again: see PlateContact.
+// A tip found inside without having entered (the first reading) is not in contact. Contact chatter
+// does not retrigger impacts: see PlateContact.
 class SurfaceContact {
  public:
   SurfaceContact(const TriangleTree& tree, double release_height_m) noexcept;
@@ -40,7 +41,7 @@ class SurfaceContact {
 
   const TriangleTree* tree_;
   double release_height_m_;
-  double skin_m_;  // the god-object keeps this far off, so that rounding cannot push it through
+  double skin_m_;  // clearance of the god-object, against penetration by rounding
   Vec3 god_object_m_{Vec3::Zero()};
   Contact contact_;
   ContactHistory history_;

@@ -10,7 +10,7 @@ namespace tapstudy::core {
 class SurfaceLocator {
  public:
   explicit SurfaceLocator(const ModalModel& model);
-  // Points off the face, or between cells by rounding, go to the nearest triangle listed there.
+  // Points off the face, or missed by rounding, are assigned to the cell's nearest triangle.
   SurfacePoint locate(double x_m, double y_m) const noexcept;
 
  private:
@@ -29,7 +29,7 @@ class SurfaceLocator {
   std::size_t cells_y_{1};
   std::vector<Corners> corners_;
   ModalModel::Triangles surface_;
-  std::vector<int> first_in_cell_;  // into triangles_, one more than cells
+  std::vector<int> first_in_cell_;  // into triangles_; cells + 1 entries
   std::vector<int> triangles_;
 };
 }  // namespace tapstudy::core

@@ -3,9 +3,9 @@
 
 #include "core/model/modal_model.hpp"
 namespace tapstudy::core {
-// A point of the touchable surface as its surrounding nodes and their shape functions (paper
-// eq. 15, 16). On a face the shape functions of the tetrahedron's other nodes are zero, so those of
-// the triangle suffice: three of order 1, six of order 2.
+// A point on the touchable surface as its triangle's nodes and their shape functions (paper
+// eq. 15, 16). On a face the shape functions of the tetrahedron's other nodes vanish, so those of
+// the triangle suffice: three for order 1, six for order 2.
 struct SurfacePoint {
   std::array<int, 6> nodes{};
   std::array<double, 6> weights{};

@@ -9,7 +9,7 @@
 #include "core/tick/plate_contact.hpp"
 #include "core/tick/surface_contact.hpp"
 namespace tapstudy::core {
-// What the finger meets: the upper face of a plate, or every side of a surface of triangles.
+// The collision geometry: the upper face of a plate, or a whole triangulated surface.
 using TouchedShape = std::variant<PlateFace, std::shared_ptr<const TriangleTree>>;
 
 struct RenderedTick {
@@ -18,17 +18,17 @@ struct RenderedTick {
   Vec3 force_n{Vec3::Zero()};  // on the finger, plate frame
 };
 
-// One stimulus: from the finger's state to the force on it, the penalty force (paper eq. 1) plus
-// what a technique adds (eq. 18), along the contact's normal. Felt while touching only.
+// Renders one stimulus: maps the finger's state to the force on it, the penalty force (paper eq. 1)
+// plus the technique's components (eq. 18), along the contact normal. Zero out of contact.
 class TapRenderer {
  public:
   TapRenderer(const RenderSettings& settings, TouchedShape shape,
               std::vector<std::unique_ptr<AddedForce>> added);
   RenderedTick tick(const HandState& tip) noexcept;
   bool is_touching() const noexcept;  // NOLINT(bugprone-exception-escape)
-  // Of what vibrates, kinetic plus elastic.
+  // Kinetic plus elastic energy of the vibrating body.
   double energy_j() const noexcept;
-  // Goes on in silence where another renderer left the finger, off the plate.
+  // Starts at rest with the contact history of another renderer, finger off the plate.
   void take_over_from(const TapRenderer& other) noexcept;  // NOLINT(bugprone-exception-escape)
 
  private:

@@ -7,11 +7,11 @@
 #include "core/tick/contact.hpp"
 #include "core/tick/surface_locator.hpp"
 namespace tapstudy::core {
-// The model of a plate together with what finds a place on it. Built once, shared by renderers.
+// The model of a plate with its point-location structure. Built once, shared by renderers.
 struct VibratingPlate {
   // A plate, of which the upper face is touched.
   explicit VibratingPlate(ModalModel modal);
-  // A body that is touched on the very triangles of its model.
+  // A body touched anywhere on its model's own surface triangles.
   static VibratingPlate touched_all_over(ModalModel modal);
 
   // The nodes and shape functions at the god-object (paper eq. 15, 16).

@@ -4,11 +4,11 @@
 
 #include "device/device.hpp"
 namespace tapstudy::device {
-// A hand that moves as another did, tick by tick, whatever force it is given; at the end it stays
-// where it is.
+// Replays a recorded motion tick by tick, regardless of the applied force; at the end it holds the
+// last position.
 class ReplayHand final : public Device {
  public:
-  // At least one state. The source is for the record.
+  // At least one state. The source is recorded in the description.
   ReplayHand(std::vector<core::HandState> states, std::string source);
   void rewind() noexcept { next_ = 0; }
 

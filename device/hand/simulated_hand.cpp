@@ -35,7 +35,7 @@ core::TickFault SimulatedHand::write(const core::Vec3& force_n) noexcept {
   if (memory_ == Memory::kept && felt_.size() < felt_.capacity()) {
     felt_.push_back({hand_, force_n});
   }
-  // In coordinates that move with the aim the force is a displaced point of rest.
+  // In coordinates moving with the aim, a constant force shifts the equilibrium position.
   const Target now = path_.at(static_cast<double>(ticks_) * dt_s_);
   const Target next = path_.at(static_cast<double>(++ticks_) * dt_s_);
   const core::Vec3 drift_m_s = (next.position_m - now.position_m) / dt_s_;

@@ -6,26 +6,26 @@
 #include "device/device.hpp"
 #include "device/hand/tap_path.hpp"
 namespace tapstudy::device {
-// The motion of hand and muscle over dt round a fixed aim, as long as nothing pushes.
+// The unforced motion of hand and muscle over dt about a fixed aim.
 core::StateTransition muscle_transition(const core::HandBody& body, double dt_s) noexcept;
 
-// What a hand knows of one tick: where it was and the force it was given. Nothing about the plate.
+// What the hand perceives in one tick: position and applied force. Nothing about the plate.
 struct FeltTick {
   core::HandState hand;
   core::Vec3 force_n;
 };
 
-// A hand that taps by itself and is pushed back by the force it is given: m x'' = k (a - x) +
-// b (a' - x') + f, with the muscle's aim a from a TapPath; between ticks f, a and a' are held, and
-// the motion is exact. A device like any other, for studies without hardware.
+// A hand that taps on its own and responds to the applied force: m x'' = k (a - x) +
+// b (a' - x') + f, with the muscle's aim a from a TapPath; f, a and a' are held between ticks, and
+// the motion is integrated exactly. Implements Device, for studies without hardware.
 class SimulatedHand final : public Device {
  public:
   enum class Memory { kept, none };
   SimulatedHand(const core::HandBody& body, double dt_s, Memory memory);
 
-  // Starts a new series of taps at the next tick and returns how long it takes. The first call puts
-  // the hand above the first point, at speed if there is no run-up; later ones let it travel there.
-  // A hand that remembers takes room for what it will feel meanwhile.
+  // Starts a new series of taps at the next tick and returns its duration. The first call places
+  // the hand above the first point, at speed if there is no run-up; later calls move it there. If
+  // the hand records what it feels, memory for the series is reserved here.
   double follow(std::vector<PlannedTap> taps);
   const std::vector<FeltTick>& felt() const noexcept { return felt_; }
   void forget() noexcept { felt_.clear(); }

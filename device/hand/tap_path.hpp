@@ -4,13 +4,13 @@
 
 #include "core/haptic_state.hpp"
 namespace tapstudy::device {
-// One voluntary tap: where, how fast, how deep the muscle aims, how long it stays. Device frame;
-// taps go down (-y).
+// One voluntary tap: position, speed, depth of the muscle's aim, dwell time. Device frame; taps go
+// down (-y).
 struct PlannedTap {
   core::Vec3 point_m{core::Vec3::Zero()};  // on the surface
   double speed_m_s{0.3};                   // > 0
   double hover_m{0.02};                    // starts and ends this high above the surface
-  double run_up_m{0.01};                   // of these, to gather speed; 0: at speed from the start
+  double run_up_m{0.01};                   // of hover_m, to accelerate; 0: at speed from start
   double press_m{0.004};                   // the muscle's aim below the surface
   double dwell_s{0.2};
   double pause_s{0.3};  // after lifting, while moving to the next point
@@ -21,12 +21,12 @@ struct Target {
   core::Vec3 velocity_m_s{core::Vec3::Zero()};
 };
 
-// Where the muscle aims during a series of taps: down at constant speed after a constant
-// acceleration, dwell, lift and travel to the next point along a minimum-jerk path (Flash & Hogan
+// Trajectory of the muscle's aim during a series of taps: constant acceleration, then down at
+// constant speed, dwell, lift and travel to the next point along a minimum-jerk path (Flash & Hogan
 // 1985). After the last tap the aim rests above its point.
 class TapPath {
  public:
-  // From where the hand is, if it is somewhere already; else it starts above the first point.
+  // Starts at from_m, the hand's present position, or above the first point if unset.
   explicit TapPath(std::vector<PlannedTap> taps, std::optional<core::Vec3> from_m = {});
   Target at(double t_s) const noexcept;
   double duration_s() const noexcept { return starts_s_.back(); }

@@ -9,19 +9,20 @@ struct PassedForce {
   core::TickFault fault;
 };
 
-// The one place that every force passes on its way to a device. It is armed first: nothing comes
-// out until what is asked for has been small for some ticks, for a finger that rests inside a plate
-// must not be thrown out; then force rises gently. What is no number, a hand too fast and a hand
-// outside its workspace are faults, and no force. Size and rate are limited always.
+// The safety stage that every force passes before it reaches a device. It starts armed: the output
+// stays zero until the requested force has been small for some ticks, so that a finger resting
+// inside a plate is not thrown out; then the force is ramped up. A non-finite value, excessive hand
+// speed and a position outside the workspace are faults and give zero force. Magnitude and rate are
+// always limited.
 class ForceGate {
  public:
   enum class State { armed, rendering, stopping, at_rest };
   ForceGate(const core::GateSettings& settings, double dt_s) noexcept;
-  // elapsed_s: since the tick before. A position that jumps is a hand too fast, whatever velocity
-  // the device tells: twice the limit, for a position's own error.
+  // elapsed_s: since the previous tick. A jump in position counts as excessive speed, whatever
+  // velocity the device reports: at twice the limit, to allow for position error.
   PassedForce pass(const core::Vec3& wanted_n, const core::HandState& hand,
                    double elapsed_s) noexcept;
-  // From now on force falls to none.
+  // Starts the ramp down to zero force.
   void stop() noexcept;
   State state() const noexcept { return state_; }
 

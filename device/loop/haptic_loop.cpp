@@ -69,14 +69,14 @@ bool HapticLoop::step() noexcept {
   return sample.fault == TickFault::none;
 }
 
-// Time counts from here: what its thread had to get ready is not lateness.
+// Time starts here, so that the thread's set-up does not count as lateness.
 void HapticLoop::begin() noexcept {
   device_.begin();
   start_ = deadline_ = last_beat_ = last_tick_ = clock_.now();
   has_begun_ = true;
 }
 
-// A period that has passed is skipped, never caught up in a burst; the rhythm stays.
+// A missed period is skipped, never caught up in a burst; the phase is kept.
 void HapticLoop::note_lateness(Nanoseconds woke_at) noexcept {
   const Nanoseconds lateness = woke_at - deadline_;
   const Nanoseconds missed = lateness / settings_.period;
@@ -92,12 +92,12 @@ TickFault HapticLoop::fault_of_time(Nanoseconds woke_at, Nanoseconds elapsed) no
   if (has_beaten_.exchange(false, std::memory_order_acq_rel)) {
     last_beat_ = woke_at;
   }
-  // force that falls already needs nobody to look after it
+  // no heartbeat is required while the force ramps down
   const bool is_looked_after =
       settings_.max_heartbeat_gap > 0 && gate_.state() != ForceGate::State::stopping;
   if (is_looked_after && (woke_at - last_beat_ > settings_.max_heartbeat_gap ||
                           elapsed > settings_.max_heartbeat_gap)) {
-    return TickFault::heartbeat_lost;  // or the loop itself, for as long, and all with it
+    return TickFault::heartbeat_lost;  // or the loop itself stalled for as long
   }
   const bool gives_up =
       settings_.max_late_in_a_row > 0 && late_in_a_row_ > settings_.max_late_in_a_row;
@@ -112,7 +112,7 @@ void HapticLoop::take_requested_alternative() noexcept {
   }
 }
 
-// A tick without a reading has no position: not zero, which would be one.
+// A tick without a reading has no position: NaN, since zero would be a valid one.
 core::TraceSample HapticLoop::unread_sample(Nanoseconds now) const noexcept {
   core::TraceSample sample{};
   sample.t_ns = now;

@@ -24,13 +24,13 @@ struct LoopSettings {
   Nanoseconds period{1'000'000};
   core::GateSettings gate;
   core::Placement placement;
-  int max_late_in_a_row{0};          // beyond it the loop gives up; 0: never
-  Nanoseconds max_heartbeat_gap{0};  // likewise, for the heartbeat; 0: there is none
+  int max_late_in_a_row{0};          // a longer run is a fault; 0: unlimited
+  Nanoseconds max_heartbeat_gap{0};  // a longer gap is a fault; 0: no heartbeat
 };
 
-// wait → read → render → limit → write → record, once a period, for one trial. The renderers are
-// the trial's alternatives; a request to change is taken in the first tick without contact, so that
-// no force law ever changes under the finger. All referenced objects must outlive the loop.
+// wait → read → render → limit → write → record, once per period, for one trial. The renderers are
+// the trial's alternatives; a switch request takes effect in the first tick without contact, so
+// that the force law never changes during contact. All referenced objects must outlive the loop.
 class HapticLoop {
  public:
   HapticLoop(Device& device, std::span<core::TapRenderer> alternatives, LoopSettings settings,
@@ -40,14 +40,14 @@ class HapticLoop {
   void request_alternative(std::size_t index) noexcept {
     requested_.store(index, std::memory_order_release);
   }
-  // "I live", from the thread that looks after the trial.
+  // Heartbeat from the thread that supervises the trial.
   void beat() noexcept { has_beaten_.store(true, std::memory_order_release); }
-  // Until asked to stop, which lets force fall gently, or a fault, which drops it. Leaves the
-  // device at zero force.
+  // Runs until a stop request, on which force is ramped down, or a fault, on which it is removed at
+  // once. Leaves the device at zero force.
   void run(const std::stop_token& stop) noexcept;
-  // Some ticks and no more; the next call goes on from there.
+  // Runs the given number of ticks; the next call continues from there.
   void run_ticks(std::int64_t count) noexcept;
-  // Zero force, whatever came before.
+  // Commands zero force in any state.
   void zero_force() noexcept;
 
   const LoopReport& report() const noexcept { return report_; }

@@ -4,14 +4,14 @@
 
 #include "device/loop/tick_clock.hpp"
 namespace tapstudy::device {
-// How late ticks were, counted in classes four to the octave: any share of them can be told to
-// 19 %, without memory for each.
+// Histogram of tick lateness with four bins per octave: any quantile is known to within 19 %,
+// without storing each tick.
 class LatenessCount {
  public:
   void add(Nanoseconds lateness) noexcept;
   std::int64_t count() const noexcept { return count_; }
   Nanoseconds worst() const noexcept { return worst_; }
-  // The upper end of the class below which at least this share of the ticks lie, 0 to 1.
+  // Upper edge of the bin at or below which at least this fraction of the ticks lie, 0 to 1.
   Nanoseconds quantile(double share) const noexcept;
 
  private:

@@ -25,7 +25,7 @@ void compute(const std::stop_token& stop) {
   }
 }
 
-// As a recorder does, only more: whole blocks that must be on the disk before the next.
+// Like the recorder, but heavier: each block is synced to disk before the next.
 void write_to_disk(const std::stop_token& stop) {
   std::string name{"/tmp/tapstudy_doctor_XXXXXX"};
   const int file = mkstemp(name.data());

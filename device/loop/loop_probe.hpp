@@ -6,17 +6,17 @@
 #include "device/loop/realtime.hpp"
 namespace tapstudy::device {
 struct ProbedLoop {
-  std::string realtime;  // what was got of the machine
+  std::string realtime;  // what the machine granted
   int timer_slack_ns{};  // of the loop's own thread
   LatenessCount lateness;
   std::int64_t late{0};  // by more than half a period
 };
 
-// Wakes at a rate for so long, with nothing to do, and counts how late; in a thread of its own that
-// asks for what the haptic thread asks for.
+// Runs an empty periodic loop for the given time and records its lateness, in a separate thread
+// that requests the same real-time facilities as the haptic thread.
 ProbedLoop probe_loop(const core::RealtimeRequest& request, Nanoseconds period, double seconds);
 
-// Work for all processors and the disk, for as long as it lives.
+// Loads all processors and the disk during its lifetime.
 class Load {
  public:
   Load();

@@ -13,7 +13,7 @@
 #include <cstring>
 namespace tapstudy::device {
 namespace {
-// Without priority the kernel may wake a thread late by its slack, 50 us unless it is told less.
+// Without real-time priority the kernel may wake a thread late by its timer slack, default 50 us.
 std::string scheduler(int priority) {
   prctl(PR_SET_TIMERSLACK, 1UL);  // NOLINT(cppcoreguidelines-pro-type-vararg): the C library's own
   if (priority <= 0) {
@@ -46,8 +46,8 @@ std::string processor(std::optional<int> cpu) {
                     : fmt::format("any processor ({} refused: {})", *cpu, std::strerror(error));
 }
 
-// A processor that sleeps deeply takes long to wake. The kernel keeps them awake for as long as the
-// file is open: until this process ends.
+// Deep CPU idle states have a long wake-up latency. The kernel avoids them while the file is open:
+// until this process ends.
 std::string sleep_of_processors(int priority) {
   if (priority <= 0) {
     return "processors may sleep";

@@ -3,7 +3,7 @@
 
 #include "core/settings/realtime_request.hpp"
 namespace tapstudy::device {
-// Asks the machine for the calling thread, and for the memory of the whole process. Returns in
-// words what was granted and what was refused, for the record.
+// Requests real-time scheduling for the calling thread, and locked memory for the whole process.
+// Returns what was granted and what was refused as text for the record.
 std::string ask_for_realtime(const core::RealtimeRequest& request);
 }  // namespace tapstudy::device

@@ -3,16 +3,16 @@
 namespace tapstudy::device {
 using Nanoseconds = std::int64_t;
 
-// The loop's only view of time.
+// The loop's time source.
 class TickClock {
  public:
   virtual ~TickClock() = default;
   virtual Nanoseconds now() noexcept = 0;
-  // Returns the time it woke at, which is never before the deadline.
+  // Returns the wake-up time, which is never before the deadline.
   virtual Nanoseconds wait_until(Nanoseconds deadline) noexcept = 0;
 };
 
-// Real time: CLOCK_MONOTONIC with absolute deadlines, so that lateness does not add up.
+// Real time: CLOCK_MONOTONIC with absolute deadlines, so that lateness does not accumulate.
 class MonotonicClock final : public TickClock {
  public:
   Nanoseconds now() noexcept override;

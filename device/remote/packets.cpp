@@ -4,7 +4,7 @@
 #include <cstring>
 namespace tapstudy::device {
 namespace {
-static_assert(std::endian::native == std::endian::little, "packets are copied as they lie");
+static_assert(std::endian::native == std::endian::little, "packets are copied byte for byte");
 constexpr std::array<char, 4> request_mark{'T', 'A', 'P', 'S'};
 constexpr std::array<char, 4> reply_mark{'T', 'A', 'P', 'R'};
 constexpr std::uint32_t version = 1;

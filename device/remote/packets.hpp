@@ -7,18 +7,18 @@
 
 #include "core/haptic_state.hpp"
 namespace tapstudy::device {
-// What tapstudy and a program that drives some other device say to each other, in datagrams on the
+// The protocol between tapstudy and a program that drives another device: UDP datagrams on the
 // loopback. Integers and doubles (IEEE 754) are little-endian; vectors are x, y, z in the device
 // frame (core/haptic_state.hpp), SI units.
 //
 //   to the device, 36 bytes                    from the device, 60 bytes
 //    0  "TAPS"                                  0  "TAPR"
-//    4  u32  kind: 1 reply with the position,   4  u32  1, the version of all this
+//    4  u32  kind: 1 reply with the position,   4  u32  1, the protocol version
 //            2 no reply                         8  u32  number of the request
 //    8  u32  number of the request             12  3 × f64  position [m]
 //   12  3 × f64  force to exert from now [N]   36  3 × f64  velocity [m/s]
 //
-// The other program keeps exerting the last force, and must let go after 100 ms without a request.
+// The other program holds the last force, and must release it after 100 ms without a request.
 enum class RequestKind : std::uint32_t { reply = 1, no_reply = 2 };
 struct RemoteRequest {
   RequestKind kind{};
@@ -33,6 +33,6 @@ inline constexpr std::size_t request_bytes = 36;
 inline constexpr std::size_t reply_bytes = 60;
 
 std::array<std::uint8_t, request_bytes> encoded(const RemoteRequest& request) noexcept;
-// Nothing if it is no such packet.
+// nullopt if the bytes are not a valid reply.
 std::optional<RemoteReply> decoded_reply(std::span<const std::uint8_t> bytes) noexcept;
 }  // namespace tapstudy::device

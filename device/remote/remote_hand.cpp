@@ -16,7 +16,7 @@ using core::TickFault;
 namespace {
 using Clock = std::chrono::steady_clock;
 constexpr int attempts = 20;
-constexpr std::chrono::milliseconds patience{50};  // for an attempt
+constexpr std::chrono::milliseconds patience{50};  // timeout per attempt
 
 int connected_socket(std::uint16_t port) noexcept {
   const int descriptor = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
@@ -81,7 +81,7 @@ bool RemoteHand::wait_until(Clock::time_point end) const noexcept {
   return ppoll(&waiting, 1, &patience_left, nullptr) > 0;
 }
 
-// Replies to earlier requests, that came too late, are passed over.
+// Late replies to earlier requests are ignored.
 TickFault RemoteHand::receive(core::HandState& hand) noexcept {
   const Clock::time_point end = Clock::now() + max_reply_;
   while (wait_until(end)) {

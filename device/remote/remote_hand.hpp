@@ -4,8 +4,8 @@
 
 #include "device/device.hpp"
 namespace tapstudy::device {
-// A device driven by another program on this machine, over UDP on the loopback (packets.hpp): a
-// tick asks for the position and waits for it, then sends the force, which is exerted at once.
+// A device driven by another program on this machine, over UDP on the loopback (packets.hpp): each
+// tick requests the position and waits for it, then sends the force, which is applied immediately.
 class RemoteHand final : public Device {
  public:
   // Asks twenty times, for one to two seconds. Throws DeviceError if nobody answers.

@@ -3,11 +3,11 @@
 #include "device/spidar/board.hpp"
 #include "device/spidar/geometry.hpp"
 namespace tapstudy::device {
-// Throws InvalidInput if it cannot be true: motors of one kind that differ by more than threefold,
-// or a largest tension that takes more DAC counts than the board has.
+// Throws InvalidInput if the calibration is implausible: motors of one kind that differ by more
+// than a factor of three, or a maximum tension beyond the board's range of DAC counts.
 void check_calibration(const core::SpidarCalibration& calibration);
 
-// How many DAC counts make a tension; never more than the converter has, never less than none.
+// The DAC counts for a tension, clamped to the converter's range.
 std::uint16_t dac_counts_of(double tension_n, const core::StringCalibration& string) noexcept;
 DacCounts dac_counts_of(const PerString& tension_n,
                         const core::SpidarCalibration& calibration) noexcept;

@@ -1,13 +1,13 @@
 #pragma once
 #include <string>
 namespace tapstudy::device {
-// Who stands at the device and does what the program cannot.
+// The operator's manual steps at the device.
 class CalibrationOperator {
  public:
   virtual ~CalibrationOperator() = default;
-  // Returns when the task is done.
+  // Asks for a task; returns when it is done.
   virtual void please(const std::string& task) = 0;
-  // What was measured: above zero, at most max.
+  // Asks for a measured value: above zero, at most max.
   virtual double how_much(const std::string& task, double max) = 0;
 };
 }  // namespace tapstudy::device

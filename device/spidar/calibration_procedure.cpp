@@ -11,15 +11,15 @@
 namespace tapstudy::device {
 namespace {
 using core::StringCalibration;
-constexpr double max_pull_m = 0.5;  // a 16 bit counter turns over after twice that
+constexpr double max_pull_m = 0.5;  // a 16-bit counter wraps after twice that
 constexpr double max_gauge_force_n = 30.0;
 constexpr std::int64_t min_counts = 500;
-// The scale of the amplifier's converter as published; with volts a newton only their product is
-// measured, and only that matters.
+// The published scale of the amplifier's DAC; only its product with volts per newton is measured,
+// and only the product matters.
 constexpr double dac_counts_per_volt = 415.0;
 constexpr double min_tension_n = 0.3;
 constexpr double max_tension_n = 10.0;
-// Of the force at the stronger output: what friction may add to both.
+// Largest offset due to friction, as a fraction of the force at the stronger output.
 constexpr double max_offset = 0.3;
 
 class Calibration {
@@ -47,8 +47,8 @@ class Calibration {
     const double offset_n = strong_n - newtons_per_dac_count * calibration_dac_counts;
     if (!(newtons_per_dac_count > 0.0) || std::abs(offset_n) > max_offset * strong_n) {
       throw DeviceError{fmt::format(
-          "string {}: {} N and {} N at outputs of {} and {} do not grow in proportion (does the "
-          "gauge hold still? is the amplifier on?)",
+          "string {}: {} N and {} N at outputs of {} and {} are not proportional (is the gauge "
+          "held still? is the amplifier on?)",
           string + 1, weak_n, strong_n, calibration_dac_counts / 2, calibration_dac_counts)};
     }
     return {metres_per_count, 1.0 / (newtons_per_dac_count * dac_counts_per_volt),
@@ -68,10 +68,10 @@ class Calibration {
   }
   double measure_length(std::size_t string) {
     UnwrappedCounters counters{board_.counter_bits()};
-    person_.please(fmt::format("\nString {} of 8. Let it run in as far as it goes", string + 1));
+    person_.please(fmt::format("\nString {} of 8. Let it wind in completely", string + 1));
     counters.take(put_out({}).counter);
     const double length_m = person_.how_much(
-        "Pull it out by about 0.1 m, hold it, and type by how many metres", max_pull_m);
+        "Pull it out by about 0.1 m, hold it, and enter the length in metres", max_pull_m);
     counters.take(put_out({}).counter);
     const std::int64_t counts = counters.counts().at(string);
     if (std::abs(counts) < min_counts) {
@@ -87,7 +87,7 @@ class Calibration {
     dac_counts.at(string) = static_cast<std::uint16_t>(output);
     put_out(dac_counts);
     return person_.how_much(
-        fmt::format("Hold it by the gauge at output {}, and type how many newtons it shows",
+        fmt::format("Hold it with the gauge at output {}, and enter the reading in newtons",
                     output),
         max_gauge_force_n);
   }

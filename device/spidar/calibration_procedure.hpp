@@ -3,16 +3,16 @@
 #include "device/spidar/board.hpp"
 #include "device/spidar/calibration_operator.hpp"
 namespace tapstudy::device {
-// Nothing stronger is put out before a string's force is known: two newtons if a newton takes
-// 0.365 V, six if it takes 0.114 V, the two scales that were published for one frame.
+// Upper limit of the output until a string's force constant is known: 2 N at 0.365 V/N, 6 N at
+// 0.114 V/N, the two values published for the same frame.
 inline constexpr std::uint16_t calibration_dac_counts = 300;
 
-// One string after the other: pulled out by a measured length, which gives metres per encoder count
-// and the encoder's sign; then held by a force gauge at two outputs, whose difference gives newtons
-// per DAC count without what friction adds to both. All outputs are zero at the end, whatever ended
-// it. Tensions are limited to 0.3 to 10 N, for the researcher to change.
-// Throws DeviceError if the board fails, if an encoder does not move, or if force does not grow in
-// proportion to the output.
+// Calibrates one string after the other: it is pulled out by a measured length, which gives metres
+// per encoder count and the encoder's sign; then held by a force gauge at two outputs, whose
+// difference gives newtons per DAC count and cancels the friction common to both. All outputs are
+// zero at the end, also on error. Tensions are limited to 0.3 to 10 N (editable afterwards).
+// Throws DeviceError if the board fails, if an encoder does not move, or if the force is not
+// proportional to the output.
 core::SpidarCalibration calibrate_spidar(SpidarBoard& board, UsbPipe& pipe,
                                          CalibrationOperator& person);
 }  // namespace tapstudy::device

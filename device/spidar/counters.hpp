@@ -7,12 +7,12 @@ namespace tapstudy::device {
 using RawCounters = std::array<std::uint32_t, strings>;
 using Counts = std::array<std::int64_t, strings>;
 
-// Encoder counters of so many bits that run freely and wrap, followed in 64 bits: between two
-// readings the shorter way round is taken.
+// Unwraps free-running encoder counters of the given width to 64 bits: between two readings the
+// shorter way round is assumed.
 class UnwrappedCounters {
  public:
   explicit UnwrappedCounters(int bits) noexcept : bits_{bits} {}
-  // The first reading becomes zero. Returns the largest step since the last one.
+  // The first reading defines zero. Returns the largest step since the last one.
   std::int64_t take(const RawCounters& raw) noexcept;
   const Counts& counts() const noexcept { return counts_; }
   void forget() noexcept { has_begun_ = false; }

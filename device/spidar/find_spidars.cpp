@@ -27,7 +27,7 @@ UsbListing find_only_spidar() {
   const std::vector<UsbListing> all = find_spidars();
   if (all.size() > 1) {
     throw DeviceError{
-        fmt::format("{} SPIDAR-G6 are plugged in (leave only the one that is meant)", all.size())};
+        fmt::format("{} SPIDAR-G6 are plugged in (leave only the intended one)", all.size())};
   }
   return all.front();
 }

@@ -15,7 +15,7 @@ std::vector<UsbListing> find_spidars();
 // Throws DeviceError also if there are several.
 UsbListing find_only_spidar();
 
-// A board that is open and guarded, in the order of its making.
+// An open board with its guardian; members in order of construction.
 struct OpenBoard {
   OpenBoard(const UsbListing& listing, std::chrono::milliseconds max_reply);
   UsbNode node;
@@ -24,9 +24,9 @@ struct OpenBoard {
   LibusbPipe pipe;
 };
 
-// How long the board takes from request to reply, over some of them, without force. Throws
-// DeviceError if it does not answer.
+// Round-trip times of the board over a number of requests, at zero force. Throws DeviceError if it
+// does not reply.
 LatenessCount round_trips(OpenBoard& open);
-// The same of a board that is opened for it.
+// The same for a board opened for this purpose.
 LatenessCount probed_round_trip(const UsbListing& listing);
 }  // namespace tapstudy::device

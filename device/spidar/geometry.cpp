@@ -12,7 +12,7 @@ constexpr double out_m = 0.060 * std::numbers::sqrt2;
 constexpr double up_m = 0.076;
 constexpr double side_m = grip_radius_m / std::numbers::sqrt2;
 
-// The second four strings are the first four seen in a mirror on the floor.
+// Strings 5 to 8 are the first four mirrored in a horizontal plane.
 SpidarGeometry mirrored(std::string type, const std::array<core::Vec3, 4>& motors,
                         const std::array<core::Vec3, 4>& grips) {
   SpidarGeometry geometry{std::move(type), {}, {}};
@@ -51,6 +51,6 @@ SpidarGeometry spidar_geometry(const std::string& type) {
   }
   throw core::InvalidInput{
       "type: '" + type + "' is not a known SPIDAR-G6 (one of: X3R, X3L" +
-      (type == "X3F" ? "; the strings of an X3F cannot hold its grip still)" : ")")};
+      (type == "X3F" ? "; the strings of an X3F do not give wrench closure)" : ")")};
 }
 }  // namespace tapstudy::device

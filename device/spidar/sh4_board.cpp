@@ -33,7 +33,7 @@ BoardReading Sh4Board::reading_of(const Packet& reply) noexcept {
   return reading;
 }
 
-// Replies that an earlier program left behind would shift every answer by one.
+// Stale replies left by an earlier program would offset every reply by one.
 UsbOutcome Sh4Board::begin(UsbPipe& pipe, BoardReading& reading) noexcept {
   pipe.drain();
   return exchange(pipe, DacCounts{}, reading);

@@ -10,7 +10,7 @@ using core::TickFault;
 namespace {
 constexpr int rounds_a_tick = 4;
 constexpr int rounds_from_anywhere = 20;
-// A difference of positions a tick apart is mostly the encoder's steps; smoothed over some ticks.
+// Velocity by finite differences is dominated by encoder quantisation; filter time constant.
 constexpr double velocity_time_s = 3e-3;
 constexpr double max_guardian_silence_s = 1.0;
 
@@ -40,7 +40,7 @@ SpidarG6::SpidarG6(UsbPipe& pipe, SpidarBoard& board, SpidarSettings settings)
     throw DeviceError{fmt::format("SPIDAR-G6: the {} board does not answer: {}", board_.name(),
                                   to_text(outcome))};
   }
-  // the second, for the first may echo what an earlier program sent
+  // a second exchange, because the first may echo an earlier program's command
   if (const TickFault fault = exchange(); fault != TickFault::none) {
     throw DeviceError{fmt::format("SPIDAR-G6: the {} board answers nonsense: {}", board_.name(),
                                   core::to_text(fault))};
@@ -56,7 +56,7 @@ std::string SpidarG6::description() const {
                      board_.name(), reading_.rotary_switch());
 }
 
-// The guardian watches us and is watched.
+// The guardian and this process monitor each other.
 TickFault SpidarG6::fault_of_watchdog() noexcept {
   WatchdogChannel* const channel = settings_.watchdog;
   if (channel == nullptr || !channel->is_on()) {
@@ -88,9 +88,9 @@ TickFault SpidarG6::exchange() noexcept {
   return TickFault::none;
 }
 
-// Whether the echo is of this request or of the one before is not documented: the board shows it
-// as soon as the two differ, and is held to it. A reply that came a tick too late is none of
-// either.
+// It is not documented whether the echo is of this request or of the previous one: this is
+// determined as soon as the two differ, and enforced from then on. A reply that is a tick late
+// matches neither.
 bool SpidarG6::is_echo_right() noexcept {
   if (!reading_.echo) {
     return true;
@@ -138,8 +138,8 @@ TickFault SpidarG6::read(core::HandState& hand) noexcept {
   return fault == TickFault::none ? follow(hand) : fault;
 }
 
-// After a pause nothing is known of the way between: the first tick has no velocity and no bound on
-// its step.
+// After a pause the intermediate path is unknown: the first tick has no velocity and no limit on
+// the step.
 TickFault SpidarG6::follow(core::HandState& hand) noexcept {
   PerString length_m = length_at_rest_m_;
   double largest_m_per_count = 0.0;
@@ -182,7 +182,7 @@ TickFault SpidarG6::write(const core::Vec3& force_n) noexcept {
   return TickFault::none;
 }
 
-// The strings stay taut, so that the grip stays known.
+// The strings are kept taut, so that the pose remains known.
 void SpidarG6::zero_force() noexcept {
   static_cast<void>(write(core::Vec3::Zero()));
   if (exchange() != TickFault::none) {

@@ -18,21 +18,21 @@ struct SpidarSettings {
   core::SpidarCalibration calibration;
   SpidarLimits limits;
   double dt_s{1e-3};
-  WatchdogChannel* watchdog{nullptr};  // of the guardian, if there is one; must outlive the device
+  WatchdogChannel* watchdog{nullptr};  // of the guardian, if any; must outlive the device
 };
 
-// A SPIDAR-G6 on a board on the USB. Its states: open (outputs zero) → taut (least tension, raised
-// gently) → homed (the grip was held in the middle, all lengths known), and from there read and
-// write. One exchange a tick: read() sends the tensions that the last write() found and gets the
-// counters, so a force is on the strings one tick after the position it answers to.
+// A SPIDAR-G6 on a USB board. Its states: open (outputs zero) → taut (minimum tension, ramped up) →
+// homed (the grip was held in the centre, all lengths known), then read and write. One exchange per
+// tick: read() sends the tensions computed by the last write() and receives the counters, so the
+// force acts one tick after the position it was computed from.
 //
-// The torque asked for is zero: a tap is a force at the finger. Whatever goes wrong on the wire, in
-// the counters or in the pose is a fault; emergency_stop() then makes all outputs zero, strings may
-// go slack, and the grip must be homed anew.
+// The commanded torque is zero: a tap is a pure force at the finger. Any error on the wire, in the
+// counters or in the pose is a fault; emergency_stop() then zeroes all outputs, strings may go
+// slack, and the grip must be homed again.
 class SpidarG6 final : public Device {
  public:
-  // The pipe and the board must outlive it. Throws DeviceError if the board does not answer, or
-  // answers what cannot be.
+  // The pipe and the board must outlive it. Throws DeviceError if the board does not reply, or its
+  // reply is invalid.
   SpidarG6(UsbPipe& pipe, SpidarBoard& board, SpidarSettings settings);
   ~SpidarG6() override;
   SpidarG6(const SpidarG6& other) = delete;
@@ -40,9 +40,9 @@ class SpidarG6 final : public Device {
   SpidarG6(SpidarG6&& other) = delete;
   SpidarG6& operator=(SpidarG6&& other) = delete;
 
-  // One step of raising the tension, 0 to 1 of the least; to be called at the loop's rate.
+  // One step of the tension ramp, 0 to 1 of the minimum; to be called at the loop rate.
   [[nodiscard]] core::TickFault tighten(double share) noexcept;
-  // Takes the grip to be held in the middle and not turned, now.
+  // Takes the present pose as the origin: grip in the centre and not rotated.
   [[nodiscard]] core::TickFault home() noexcept;
   bool is_homed() const noexcept { return is_homed_; }
   int rotary_switch() const noexcept { return reading_.rotary_switch(); }

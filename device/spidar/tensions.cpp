@@ -8,7 +8,7 @@ namespace {
 using Vec6 = Eigen::Matrix<double, 6, 1>;
 constexpr double tension_weight = 1e-8;
 constexpr double share_weight =
-    1e-3;  // above tension_weight × 8 × most², or strength would be lost
+    1e-3;  // must exceed tension_weight × 8 × max_n², or force would be lost
 
 Vec6 in_newtons(const Wrench& wrench) noexcept {
   Vec6 all;
@@ -49,7 +49,7 @@ double closure_margin(const Strings& strings_now) noexcept {
       qr.householderQ() * Eigen::Matrix<double, strings, strings>::Identity();
   const Eigen::Matrix<double, strings, 2> idle = q.rightCols<2>();
   double best = -1.0;
-  // at the best two strings have the least in common, or one has its own largest
+  // at the optimum two strings share the smallest entry, or one is at its own maximum
   const auto consider = [&](const Eigen::Vector2d& direction) {
     const double length = direction.norm();
     if (length > 0.0) {

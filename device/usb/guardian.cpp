@@ -20,7 +20,7 @@ constexpr unsigned time_out_ms = 100;
 constexpr int round_ms = 20;
 constexpr int max_still_rounds = 5;
 
-// Between fork and _exit only what is safe in a signal handler.
+// Uses only async-signal-safe functions, as required between fork and _exit.
 class Watchdog {
  public:
   Watchdog(int life, int node, std::uint8_t endpoint, std::vector<std::uint8_t>& zero_force_packet,
@@ -46,7 +46,7 @@ class Watchdog {
   }
 
  private:
-  // Waits for a round's time.
+  // Waits for one polling cycle; false once the pipe is closed.
   bool lives_on() const noexcept {
     pollfd waiting{life_, POLLIN, 0};
     if (::poll(&waiting, 1, round_ms) <= 0) {
@@ -60,7 +60,7 @@ class Watchdog {
     still_rounds_ = channel_.is_on() && beats == beats_ ? still_rounds_ + 1 : 0;
     beats_ = beats;
     if (still_rounds_ == max_still_rounds) {
-      channel_.act();  // first: whoever wakes must find it before sending anything
+      channel_.act();  // first: a resumed program must see it before sending
       send_zero_force();
     }
   }
@@ -90,7 +90,7 @@ std::unique_ptr<WatchdogChannel, Guardian::Unmap> Guardian::shared_channel() {
   void* const memory = mmap(nullptr, sizeof(WatchdogChannel), PROT_READ | PROT_WRITE,
                             MAP_SHARED | MAP_ANONYMOUS, -1, 0);
   if (memory == MAP_FAILED) {  // NOLINT(cppcoreguidelines-pro-type-cstyle-cast): the C library's
-    throw DeviceError{"the guardian of the device has no memory"};
+    throw DeviceError{"no shared memory for the device's guardian"};
   }
   return std::unique_ptr<WatchdogChannel, Unmap>{
       std::construct_at(static_cast<WatchdogChannel*>(memory))};
@@ -100,11 +100,11 @@ Guardian::Guardian(const UsbNode& node, std::uint8_t out_endpoint,
     : channel_{shared_channel()} {
   std::array<int, 2> ends{};
   if (pipe2(ends.data(), O_CLOEXEC) != 0) {
-    throw DeviceError{"the guardian of the device has no pipe"};
+    throw DeviceError{"no pipe for the device's guardian"};
   }
   child_ = fork();
   if (child_ == 0) {
-    setsid();  // Ctrl-C at the terminal is not for it
+    setsid();  // detached from Ctrl-C at the terminal
     close(ends[1]);
     Watchdog{ends[0], node.descriptor(), out_endpoint, zero_force_packet, *channel_}.run();
   }
@@ -112,7 +112,7 @@ Guardian::Guardian(const UsbNode& node, std::uint8_t out_endpoint,
   life_ = ends[1];
   if (child_ < 0) {
     close(life_);
-    throw DeviceError{"the guardian of the device cannot be started"};
+    throw DeviceError{"the device's guardian cannot be started"};
   }
 }
 

@@ -8,21 +8,21 @@
 #include "device/usb/usb_node.hpp"
 #include "device/usb/watchdog_channel.hpp"
 namespace tapstudy::device {
-// A process that outlives this one. The boards are not known to have a watchdog: should tapstudy
-// die with force on, whatever from, SIGKILL included, the strings would keep pulling. So a child
-// holds the device's open node and waits for a pipe of which only tapstudy has the other end; when
-// that closes it sends the packet of no force, three times, by itself, and ends. It does the same,
-// and lives on, if tapstudy stands still with force on: suspended, or starved.
+// A watchdog process that outlives this one. The boards are not known to have a watchdog: should
+// tapstudy die with force on, for any reason including SIGKILL, the strings would keep pulling. So
+// a child process holds the device's open node and waits on a pipe whose other end only tapstudy
+// has; when that closes, it sends the zero-force packet three times and exits. It does the same,
+// but keeps running, if tapstudy stalls with force on, suspended or starved of CPU time.
 // Why not a library: none outlives the process that it is linked into. A supervisor such as systemd
 // does, but would start a program that opens the device anew, where this child holds it already and
 // ends the force some 100 ms after the last sign of life.
 class Guardian {
  public:
-  // Other threads may run: the child calls nothing that they could hold. Throws DeviceError if
-  // there can be none.
+  // May be called with other threads running: the child uses no locks they could hold. Throws
+  // DeviceError if it cannot be started.
   Guardian(const UsbNode& node, std::uint8_t out_endpoint,
            std::vector<std::uint8_t> zero_force_packet);
-  // The packet is sent at an orderly end too.
+  // The zero-force packet is sent on normal termination, too.
   ~Guardian();
   Guardian(const Guardian& other) = delete;
   Guardian& operator=(const Guardian& other) = delete;

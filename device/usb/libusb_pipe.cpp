@@ -55,12 +55,12 @@ DeviceError refusal(const char* what, int error) {
   return DeviceError{fmt::format("USB: {}: {}", what, libusb_strerror(error))};
 }
 
-// One transfer that is used again and again, with its own buffer.
+// A reusable transfer with its own buffer.
 class Transfer {
  public:
   Transfer() : transfer_{libusb_alloc_transfer(0)} {}
   ~Transfer() {
-    if (!is_under_way()) {  // else the kernel may still write into it: better leaked than freed
+    if (!is_under_way()) {  // else the kernel may still write to it: leak it
       libusb_free_transfer(transfer_);
     }
   }
@@ -86,8 +86,8 @@ class Transfer {
       libusb_cancel_transfer(transfer_);
     }
   }
-  // Every transfer has its own time-out, so this ends; should the kernel never give it back, this
-  // ends too.
+  // Every transfer has its own timeout, so this terminates, even if the kernel never returns the
+  // transfer.
   UsbOutcome wait(libusb_context* context) noexcept {
     const auto give_up = std::chrono::steady_clock::now() + max_wait;
     while (is_under_way() && std::chrono::steady_clock::now() < give_up) {

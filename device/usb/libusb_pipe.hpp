@@ -10,8 +10,8 @@ struct BulkEndpoints {
   std::uint8_t in{0x86};
 };
 
-// libusb-1.0 on an open node: the request and the wait for its reply are under way together.
-// libusb itself takes a little memory for each transfer; nothing else here does.
+// libusb-1.0 on an open node: the request and the read of its reply are submitted together. libusb
+// itself allocates a little memory for each transfer; nothing else here does.
 class LibusbPipe final : public UsbPipe {
  public:
   // Claims interface 0. The node must outlive the pipe. Throws DeviceError.

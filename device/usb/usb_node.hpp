@@ -14,11 +14,11 @@ struct UsbListing {
 // Throws DeviceError if the machine's USB cannot be listed.
 std::vector<UsbListing> usb_devices();
 
-// The open node of a device; closed at the end of its life. Kept apart from the library that drives
-// it, so that a second process can hold it too.
+// The open device node; closed on destruction. Separate from the library that drives it, so that a
+// second process can hold it as well.
 class UsbNode {
  public:
-  // Throws DeviceError, with the way to get permission if that is what is missing.
+  // Throws DeviceError, with instructions if permission is denied.
   explicit UsbNode(const std::string& node);
   // Takes over a descriptor that is open already.
   explicit UsbNode(int descriptor) noexcept : descriptor_{descriptor} {}

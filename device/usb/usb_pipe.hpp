@@ -5,14 +5,14 @@ namespace tapstudy::device {
 enum class UsbOutcome : std::uint8_t {
   ok,
   timed_out,     // no reply in time
-  short_packet,  // or one that is too long
+  short_packet,  // or too long
   stalled,
   gone,  // unplugged
   failed
 };
 const char* to_text(UsbOutcome outcome) noexcept;
 
-// One bulk endpoint each way, seen from the haptic thread. Bounded in time; does not throw.
+// One bulk endpoint per direction, for the haptic thread. Bounded in time; does not throw.
 class UsbPipe {
  public:
   virtual ~UsbPipe() = default;
@@ -21,7 +21,7 @@ class UsbPipe {
   // Sends all of out while waiting for a reply as long as in.
   [[nodiscard]] virtual UsbOutcome exchange(std::span<const std::uint8_t> out,
                                             std::span<std::uint8_t> in) noexcept = 0;
-  // Takes replies that nobody asked for out of the way.
+  // Discards stale replies.
   virtual void drain() noexcept = 0;
 };
 }  // namespace tapstudy::device

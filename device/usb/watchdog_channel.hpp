@@ -2,19 +2,18 @@
 #include <atomic>
 #include <cstdint>
 namespace tapstudy::device {
-// What a program that renders force and its guardian tell each other, in memory that both see.
-// Nothing here locks.
+// Shared memory between the program that renders force and its guardian. Lock-free.
 class WatchdogChannel {
  public:
-  // The program's: between begin and end force may be on, and it beats once a tick.
+  // Used by the program: between begin and end force may be on, with one heartbeat per tick.
   void begin() noexcept { is_on_.store(true); }
   void end() noexcept { is_on_.store(false); }
   void beat() noexcept { beats_.fetch_add(1); }
   std::uint64_t rounds() const noexcept { return rounds_.load(); }
-  // The guardian took the force off, for the program stood still.
+  // The guardian has zeroed the force because the program stalled.
   bool has_acted() const noexcept { return has_acted_.load(); }
 
-  // The guardian's, once a round.
+  // Used by the guardian, once per polling cycle.
   bool is_on() const noexcept { return is_on_.load(); }
   std::uint64_t beats() const noexcept { return beats_.load(); }
   void complete_round() noexcept { rounds_.fetch_add(1); }

@@ -135,7 +135,7 @@ void check_volume(const TriangleSurface& surface, const Mesh& mesh) {
     throw InvalidInput{fmt::format("surface: it encloses no volume ({:.3g} m³)", volume)};
   }
   if (!pmp::is_outward_oriented(mesh)) {
-    throw InvalidInput{"surface: its triangles face inward (turn every one of them round)"};
+    throw InvalidInput{"surface: its triangles face inward (reverse the orientation of all)"};
   }
 }
 
@@ -155,7 +155,7 @@ void check_crossings(const TriangleSurface& surface, const Mesh& mesh) {
 }
 }  // namespace
 
-// First what has no mesh at all, with its place; then what CGAL finds in the mesh.
+// First, with location, defects that preclude building a mesh; then those CGAL finds in the mesh.
 void check_surface(const TriangleSurface& surface) {
   check_size(surface);
   check_areas(surface);

@@ -74,11 +74,11 @@ Soup soup_of(const SurfaceSource& source) {
   return soup;
 }
 
-// Points at one and the same place get one number.
+// Merges coincident points.
 class JoinedPoints {
  public:
   int number_of(const Point& p, double metres_per_unit) {
-    // adding zero makes -0 and 0 one place
+    // adding zero maps -0 to 0
     const Place place{metres_per_unit * p.x() + 0.0, metres_per_unit * p.y() + 0.0,
                       metres_per_unit * p.z() + 0.0};
     const auto [found, is_new] = numbers_.emplace(place, static_cast<int>(points_.size()));
@@ -119,7 +119,7 @@ std::vector<std::array<std::size_t, 3>> triangles_of(const Polygon& polygon, con
   if (!CGAL::Polygon_mesh_processing::triangulate_faces(mesh)) {
     const Point& at = soup.points[polygon.front()];
     throw core::InvalidInput{
-        fmt::format("{}: the face of {} corners at ({}, {}, {}) cannot be cut into triangles", file,
+        fmt::format("{}: the face of {} corners at ({}, {}, {}) cannot be triangulated", file,
                     polygon.size(), at.x(), at.y(), at.z())};
   }
   std::vector<std::array<std::size_t, 3>> triangles;

@@ -6,9 +6,9 @@
 namespace tapstudy::protocols {
 SurfaceSource surface_source(std::string file, std::string bytes);
 
-// The triangles of an STL (ASCII or binary), PLY, OFF or OBJ file, by the ending of its name,
-// lengths multiplied by metres_per_unit, points at one and the same place joined, larger faces cut
-// into triangles, concave ones too. Throws InvalidInput if it is none of these, or if a face cannot
-// be cut.
+// Reads the triangles of an STL (ASCII or binary), PLY, OFF or OBJ file, chosen by file extension;
+// lengths are multiplied by metres_per_unit, coincident points merged, polygons triangulated,
+// concave ones included. Throws InvalidInput for other formats, or if a face cannot be
+// triangulated.
 core::TriangleSurface read_surface(const SurfaceSource& source, double metres_per_unit);
 }  // namespace tapstudy::protocols

@@ -2,7 +2,7 @@
 #include <functional>
 #include <string>
 namespace tapstudy::protocols {
-// A surface as its file has it, whole: stored with the study that uses it.
+// The complete contents of a surface file: stored with the study that uses it.
 struct SurfaceSource {
   std::string file;  // as the protocol names it
   std::string bytes;

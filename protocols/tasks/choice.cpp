@@ -18,7 +18,7 @@ class Choice final : public Task {
     }
   }
 
-  // The order of the blind labels is drawn once a participant.
+  // The order of the blind labels is drawn once per participant.
   std::vector<PlannedTrial> trials(const Block& block, const Draw& draw) const override {
     core::Rng rng{
         core::derived_seed(draw.participant_seed, core::Purpose::labels, draw.block_index)};

@@ -14,7 +14,7 @@ struct Protocol;
 struct SimulatedTapSettings;
 struct Simulation;
 
-// What a hypothesis may say of a block.
+// Claims that a hypothesis can make about a block.
 enum class Claim { accuracy_above_chance, chosen_above_chance };
 
 struct PlannedTrial {
@@ -27,20 +27,20 @@ struct PlannedTrial {
   std::vector<std::string> stimuli;
 };
 
-// Whose order a block's trials are drawn for.
+// Participant and block for which an order is drawn.
 struct Draw {
   std::uint64_t participant_seed{};
-  int participant_index{};  // from 0; counterbalancing goes by it
+  int participant_index{};  // from 0; used for counterbalancing
   std::size_t block_index{};
 };
 
-// An allowed answer: its name for those who compare, what a person reads.
+// An allowed answer: its name in the data and the label shown to participants.
 struct Option {
   std::string name;
   std::string label;
 };
 
-// What a simulated participant can do in a trial. It is never told which stimulus is rendered.
+// The actions of a simulated participant in a trial. The rendered stimulus is never disclosed.
 class SimulatedTouch {
  public:
   virtual ~SimulatedTouch() = default;
@@ -53,9 +53,9 @@ class SimulatedTouch {
   virtual core::Rng& rng() = 0;  // of the hand
 };
 
-// One way to ask: what is presented, which answers are allowed, what is right, what is stored. A
-// block's summary is a statistic of analysis, named here. Adding one: a file beside this with its
-// class, and a row in task_table.cpp; nothing else knows a task by its name.
+// A psychophysical task: what is presented, which answers are allowed, which is correct, what is
+// stored. Names the statistic (in analysis) that summarises its blocks. To add one: a file beside
+// this with its class, and a row in task_table.cpp; nothing else refers to a task by name.
 class Task {
  public:
   virtual ~Task() = default;
@@ -74,20 +74,20 @@ class Task {
   virtual std::vector<PlannedTrial> trials(const Block& block, const Draw& draw) const = 0;
   virtual std::size_t trials_per_repetition(const Block& block) const = 0;
 
-  // Allowed answers; what each is in the store; what a person calls each alternative of a trial, by
-  // which it is switched to (empty: nothing to switch).
+  // The allowed answers; how each is stored; the labels by which a participant switches between the
+  // alternatives of a trial (empty: nothing to switch).
   virtual std::vector<Option> options(const Block& block, const Protocol& protocol) const = 0;
   virtual std::string response(const PlannedTrial& trial, const Block& block,
                                std::size_t option) const = 0;
   virtual std::vector<std::string> alternative_labels(const PlannedTrial& trial) const = 0;
-  // Nothing where no answer is more right than another.
+  // nullopt if the task has no correct answer.
   virtual std::optional<bool> is_correct(const PlannedTrial& trial,
                                          const std::string& response) const = 0;
   // "of 80 answers 27 must …"
   virtual std::string_view success() const = 0;
 
-  // Which real plates a simulated participant has to remember, how many visits a trial takes it,
-  // and how it comes to its answer, the index of an option.
+  // For simulated participants: the real plates to remember, the number of visits per trial, and
+  // the decision rule, which returns the index of an option.
   virtual std::vector<std::string> remembered_plates(const Block& block,
                                                      const Simulation& simulation) const = 0;
   virtual int visits(const Block& block, const SimulatedTapSettings& taps) const = 0;

@@ -3,15 +3,15 @@
 #include <string>
 #include <vector>
 namespace tapstudy::protocols {
-// Everything that is wrong with one file, gathered so that a researcher sees it all at once; and
-// every key that was asked for, so that the schema can be held against the reader.
+// Collects all problems of one file, so that they are reported together; and every key that was
+// looked up, so that the schema can be checked against the reader.
 class Problems {
  public:
   explicit Problems(std::string file) : file_{std::move(file)} {}
   // line and column count from 0.
   void add(int line, int column, const std::string& key_path, const std::string& what);
-  // Throws InvalidInput with one line a problem, `file:line:column: key.path: what`, in the order
-  // of the file, if there are any.
+  // Throws InvalidInput if there are any, one line per problem, `file:line:column: key.path: what`,
+  // in the order of the file.
   void throw_if_any() const;
 
   void asked_for(std::string key_path) { asked_.insert(std::move(key_path)); }

@@ -8,7 +8,7 @@
 
 #include "core/error.hpp"
 namespace tapstudy::protocols {
-// Piece by piece: a file that never ends must not ask for all that is allowed at once.
+// Read in chunks, so that the maximum size is not allocated at once.
 std::string contents_of(const std::string& file, std::size_t max_bytes) {
   std::error_code error;
   std::ifstream stream{file, std::ios::binary};

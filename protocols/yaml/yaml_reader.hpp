@@ -27,9 +27,9 @@ struct Range {
 // 1 to 64 letters, digits, '_', '-', '+' or '.', not starting with '-', '+' or '.'.
 bool is_name(const std::string& text);
 
-// One mapping of a YAML file, read key by key. Whatever is wrong goes to Problems, and a harmless
-// value is returned so that reading goes on; finish() reports the keys nobody asked for.
-// A key asked for with a default may be missing; one without may not.
+// One mapping of a YAML file, read key by key. Errors are added to Problems, and a safe default is
+// returned so that reading can continue; finish() reports unknown keys.
+// A key read with a default is optional; one without is required.
 class MapReader {
  public:
   // The whole file. Throws InvalidInput if it cannot be read or is not YAML.
@@ -47,7 +47,7 @@ class MapReader {
   // Any text on one line; paragraphs may have several.
   std::string text(const std::string& key, const std::optional<std::string>& otherwise = {});
   std::string paragraphs(const std::string& key, const std::optional<std::string>& otherwise = {});
-  // A name that data, tables and file names can carry: see is_name.
+  // A name that is valid in data, tables and file names: see is_name.
   std::string name(const std::string& key);
   // `size` numbers in brackets.
   Eigen::VectorXd numbers(const std::string& key, Eigen::Index size, const Range& range);

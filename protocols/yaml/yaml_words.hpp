@@ -4,8 +4,8 @@ namespace YAML {  // NOLINT(readability-identifier-naming): the library's own na
 class Node;
 }
 namespace tapstudy::protocols {
-// What a message may repeat of a file: short, and nothing that would move a terminal's cursor.
+// Text from a file made safe to quote in a message: short, without terminal control characters.
 std::string printable(const std::string& text);
-// How a message calls a value: 'text', a list, a mapping, nothing.
+// A value as described in messages: 'text', a list, a mapping, nothing.
 std::string kind_of(const YAML::Node& node);
 }  // namespace tapstudy::protocols

@@ -16,7 +16,7 @@ constexpr double circle_m = 1e-3;
 constexpr std::size_t batches = 15;
 constexpr int ticks_a_batch = 1000;
 
-// What is measured is the plate's vibration, whatever technique the stimulus has.
+// Measures the plate's vibration, regardless of the stimulus's technique.
 const core::Technique& plate_alone() {
   static const core::Technique technique{"plate alone", "", {&core::plate_vibration}};
   return technique;
@@ -45,7 +45,7 @@ Eigen::ArrayXd felt_force_n(const core::VibratingPlate& plate, const core::Shape
   for (double& value : force_n) {
     const core::RenderedTick tick = renderer.tick(touching(strike));
     if (!tick.contact.touching) {
-      throw core::ModelError{"a finger that comes down on the tapping point meets nothing"};
+      throw core::ModelError{"a finger descending on the tapping point misses the body"};
     }
     value = tick.parts.vibration_n;
   }

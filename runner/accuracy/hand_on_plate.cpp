@@ -38,7 +38,7 @@ class Swing {
   double high_{-HUGE_VAL};
 };
 
-// How much a force swings at the end, compared with the whole time.
+// Amplitude of the force oscillation at the end, relative to the whole duration.
 class Parts {
  public:
   void add(double value, bool is_at_the_end) {

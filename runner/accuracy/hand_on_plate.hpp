@@ -4,12 +4,12 @@
 namespace tapstudy::runner {
 struct TestTap {
   double z_m{0.0};        // of the surface under the finger
-  double speed_m_s{0.3};  // 0: the finger is laid on
+  double speed_m_s{0.3};  // 0: the finger is placed gently
   double sliding_m{0.0};  // how far the aim moves along x while the finger stays
   double press_m{0.004};
 };
 
-// What a closed loop of hand and plate did in two seconds.
+// Behaviour of the closed loop of hand and plate over two seconds.
 struct LoopBehaviour {
   bool is_finite{true};
   int impacts{0};
@@ -19,7 +19,7 @@ struct LoopBehaviour {
   double residual_oscillation{0.0};  // of the force, last tenth of a second over the whole
 };
 
-// The hand taps once and stays. No force limit and no safety: this is what they guard against.
+// The hand taps once and stays. Without force limits or safety stage, to expose instability.
 LoopBehaviour tap_and_stay(core::TapRenderer& renderer, const core::HandBody& body, double dt_s,
                            const TestTap& tap);
 }  // namespace tapstudy::runner

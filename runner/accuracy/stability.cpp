@@ -19,7 +19,7 @@ constexpr double rounding = 1e-12;
 constexpr double little_left = 0.01;
 constexpr double tets_at_most = 1000.0;
 
-// A stimulus as it is tapped, to be pushed to one extreme at a time.
+// A tapped stimulus whose parameters are set to one extreme at a time.
 struct Stage {
   core::PlateSpec plate;
   core::RenderSettings rendering;
@@ -118,7 +118,7 @@ void make_thickness(Stage& stage, double to_width) {
   if (auto* box = std::get_if<core::Box>(&stage.plate.shape)) {
     box->size_m.z() = to_width * box->size_m.x();
     stage.plate.mesh.size.max_tet_volume_m3 = box->size_m.prod() / tets_at_most;
-    // thin sheets by flat elements, never flatter than ten to one
+    // thin sheets use flattened elements, at most ten to one
     stage.plate.mesh.size.flattening = std::clamp(0.1 / to_width, 1.0, 10.0);
   }
 }

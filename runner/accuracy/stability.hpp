@@ -6,11 +6,11 @@
 #include "core/model/progress_hook.hpp"
 #include "protocols/protocol.hpp"
 namespace tapstudy::runner {
-// What came of a tap at the edge of what can be asked for.
+// The outcome of a tap at an extreme parameter value.
 enum class Outcome {
-  dies_out,  // a second after the tap hardly anything is left of the force's swing
-  persists,  // it goes on, bounded: no damping, or a chattering contact
-  refused,   // the model was not built, and the error says why
+  dies_out,  // a second after the tap the force oscillation has practically decayed
+  persists,  // sustained but bounded oscillation: no damping, or contact chatter
+  refused,   // the model was rejected; the error states why
   failed     // not finite, or the plate gained energy between impacts
 };
 std::string_view name(Outcome outcome);
@@ -27,9 +27,9 @@ struct Stability {
   std::vector<StabilityCase> cases;
 };
 
-// The stimulus tapped by the simulated hand for two seconds a case, each time with one of its
-// properties at the edge: stiffness, density, Poisson's ratio, thickness, damping, speed of the
-// tap, sliding, penalty stiffness round the limit of the hand, no fixation.
+// The simulated hand taps the stimulus for two seconds per case, each with one parameter at an
+// extreme value: stiffness, density, Poisson's ratio, thickness, damping, tapping speed, sliding,
+// penalty stiffness around the hand's stability limit, no fixation.
 Stability measure_stability(const protocols::Protocol& protocol,
                             const protocols::Stimulus& stimulus,
                             const core::ProgressHook& progress = {});

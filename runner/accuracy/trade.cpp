@@ -18,14 +18,14 @@ constexpr double tets_of_reference = 8000.0;
 constexpr std::array<double, 3> rates_tried{1.0, 2.0, 4.0};  // of the protocol's
 constexpr double max_rate_hz = 10000.0;
 
-// The widest of those tried is the reference's. A strike excites all frequencies there are, so the
-// force never settles as the band grows: what lies beyond is not counted as error but shown apart.
+// The widest band tried is the reference's. An impulse excites all frequencies, so the force does
+// not converge with increasing band: what lies beyond is not counted as error but shown separately.
 struct Bands {
   std::vector<double> tried_hz;
   double beyond_hz;
 };
 
-// Beyond the protocol's band only where there are damping ratios for what lies there.
+// Beyond the protocol's band only if damping ratios are available there.
 Bands bands_of(const core::PlateSpec& plate) {
   const double own = plate.band_limit_hz;
   if (std::holds_alternative<core::ModalDamping>(plate.material.damping)) {
@@ -42,8 +42,8 @@ core::Meshing mesh_of(const core::PlateSpec& plate, int order, double tets) {
   return mesh;
 }
 
-// What an output that is held from tick to tick leaves of a model. A shape counts twice in a force,
-// at the strike and at the finger.
+// Applies the zero-order hold's gain to a model. A mode shape enters a force twice, at the impact
+// and at the finger, so it is scaled by the square root.
 core::ModalModel held_from_tick_to_tick(core::ModalModel model, double rate_hz) {
   model.shape *= held_gain(model.frequency_hz, rate_hz).sqrt().matrix().asDiagonal();
   return model;

@@ -35,7 +35,7 @@ analysis::Panel panel_of(const Trade& trade, const std::string& title,
 
 analysis::Figure figure_of(const Trade& trade) {
   analysis::Panel force = panel_of(trade, "force at the tapping points", &Evaluation::force_error);
-  analysis::Series front{"nothing cheaper is nearer", analysis::Axis::left, {}, {}};
+  analysis::Series front{"Pareto front", analysis::Axis::left, {}, {}};
   for (const Evaluation& one : trade.settings) {
     if (one.is_on_front) {
       front.x.push_back(one.cost_s);

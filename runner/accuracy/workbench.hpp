@@ -7,7 +7,7 @@
 #include "runner/accuracy/errors.hpp"
 #include "runner/accuracy/felt_force.hpp"
 namespace tapstudy::runner {
-// One stimulus, to be built and struck in many ways.
+// One stimulus, to be built and struck with various settings.
 class Workbench {
  public:
   // Throws InvalidInput if no tapping point is on the plate.
@@ -16,8 +16,8 @@ class Workbench {
 
   const core::PlateSpec& spec() const { return spec_; }
   core::BodyModes solve(const core::Meshing& mesh, double band_limit_hz) const;
-  // Two damping ratios are the damping of the modes that a body happens to have; from now on it is
-  // that of this body's, in the protocol's band.
+  // Damping given as two ratios depends on the modes of each model; fixes its Rayleigh coefficients
+  // to those of this body, in the protocol's band.
   void fix_damping(const core::BodyModes& body);
   core::ModalModel model_of(const core::BodyModes& body, double band_limit_hz) const;
   core::VibratingPlate plate_of(core::ModalModel model) const;

@@ -21,13 +21,13 @@ void print_reference(const Reference& reference, const Tolerance& tolerance) {
       reference.tets, reference.dofs, reference.modes, reference.band_limit_hz, reference.build_s,
       reference.coarser_tets, 100.0 * reference.moved_frequency, 100.0 * reference.moved_force);
   if (reference.force_beyond > 0.0) {
-    fmt::print("  its band leaves out {:.2g} % of the force below twice that\n",
+    fmt::print("  its band omits {:.2g} % of the force below twice that\n",
                100.0 * reference.force_beyond);
   }
   if (!reference.has_settled(tolerance)) {
     fmt::print(
-        "  warning: it has not settled itself, so errors below are lower than the truth (a body "
-        "held\n  at single points never settles: hold discs or sides)\n");
+        "  warning: it has not converged itself, so the errors below are underestimated (a body "
+        "held\n  at single points does not converge: hold discs or sides)\n");
   }
   fmt::print("\n");
 }
@@ -49,7 +49,7 @@ void print_settings(const Trade& trade) {
     if (one.is_on_front || one.setting.is_protocols || is_cheapest) {
       fmt::print("{} {}{}{}\n", mark_of(one, is_cheapest), row(one),
                  one.setting.is_protocols ? "  the protocol's own" : "",
-                 is_cheapest ? "  cheapest inside the tolerance" : "");
+                 is_cheapest ? "  cheapest within the tolerance" : "");
     }
   }
 }
@@ -59,8 +59,8 @@ void print_refused(const std::vector<Refused>& all) {
     fmt::print("  not built: {}order {}, {}, band {:.0f} Hz: {}\n",
                one.is_protocols ? "the protocol's own, " : "", one.mesh.order,
                one.mesh.size.max_tet_volume_m3
-                   ? fmt::format("{:.2g} m3 a tetrahedron", *one.mesh.size.max_tet_volume_m3)
-                   : std::string{"as coarse as can be"},
+                   ? fmt::format("{:.2g} m3 per tetrahedron", *one.mesh.size.max_tet_volume_m3)
+                   : std::string{"as coarse as possible"},
                one.band_limit_hz, one.words);
   }
 }
@@ -80,7 +80,7 @@ void print(const Trade& trade, const Stability& stability, const std::string& di
   print_reference(trade.reference, trade.tolerance);
   print_settings(trade);
   fmt::print(
-      "\n  * nothing cheaper has a smaller force error; {} settings were measured{}\n"
+      "\n  * no cheaper setting has a smaller force error; {} settings were measured{}\n"
       "  tolerance: {:.0f} % of frequency, {} dB of level (by default the just noticeable "
       "differences of Israr & Tan 2006)\n",
       trade.settings.size(),
@@ -88,7 +88,7 @@ void print(const Trade& trade, const Stability& stability, const std::string& di
       100.0 * trade.tolerance.frequency, trade.tolerance.level_db);
   print_refused(trade.refused);
   if (trade.cheapest < 0) {
-    fmt::print("  none of them is inside it\n");
+    fmt::print("  no setting is within the tolerance\n");
   }
   print_stability(stability);
 }

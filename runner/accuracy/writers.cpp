@@ -18,7 +18,7 @@ void make_room(const std::string& directory) {
   std::filesystem::create_directories(directory, error);
   if (!std::filesystem::is_directory(directory, error) ||
       access(directory.c_str(), W_OK | X_OK) != 0) {
-    throw core::InvalidInput{"--out: " + directory + " cannot be made a directory to write into"};
+    throw core::InvalidInput{"--out: " + directory + " cannot be created as a directory"};
   }
   for (const char* const name : {"trade.csv", "stability.csv", "trade.json", "trade.svg"}) {
     core::check_is_new(in(directory, name));

@@ -18,8 +18,8 @@ void write_csv(std::ostream& out, const Stability& stability);
 // tolerance.
 analysis::Figure figure_of(const Trade& trade);
 
-// Makes the directory, so that what cannot be written is known before the work. Throws InvalidInput
-// if it cannot be made or one of the files below is there.
+// Creates the directory, so that output errors are found before the computation. Throws
+// InvalidInput if it cannot be created or one of the files below already exists.
 void make_room(const std::string& directory);
 
 // trade.csv, trade.json, trade.svg and stability.csv. Throws InvalidInput if one exists already or

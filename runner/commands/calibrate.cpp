@@ -30,7 +30,7 @@ void run_calibrate(const CalibrateOptions& options) {
   OperatorAtTerminal person{input};
   fmt::print(stderr,
              "You need a ruler and a force gauge. Strings are numbered as in the frame's drawing, "
-             "from 1;\nnothing pulls but the string that is measured, and that with little "
+             "from 1;\nonly the string being measured pulls, and only with little "
              "force.\n");
   const core::SpidarCalibration calibration =
       device::calibrate_spidar(*open.board, open.pipe, person);
@@ -45,7 +45,7 @@ void add_calibrate(CommandParser& line) {
   Command command =
       line.add("calibrate", "Measure the strings of the SPIDAR-G6 that is plugged in");
   const auto options = std::make_shared<CalibrateOptions>();
-  command.option("--type", options->type, "Of the frame: X3R or X3L", Need::required);
+  command.option("--type", options->type, "Type of the frame: X3R or X3L", Need::required);
   command.option("--out", options->out, "The calibration file to write", Need::required);
   command.on_run([options] { run_calibrate(*options); });
 }

@@ -40,7 +40,7 @@ void print_models(const protocols::Protocol& protocol) {
     const std::string cost =
         models.bodies_solved() > solved_before ? fmt::format("{:.3f} s", report.cost.total_s())
         : models.bodies_used() > used_before
-            ? fmt::format("kept from before, where it took {:.3f} s", report.cost.total_s())
+            ? fmt::format("from the cache, where it took {:.3f} s", report.cost.total_s())
             : "scaled from the same body";
     fmt::print("  {}: {} {} tetrahedra, {} dof, {} modes below {} Hz, {}\n", stimulus.name,
                report.tets, report.order == 2 ? "quadratic" : "linear", report.dofs,
@@ -149,7 +149,7 @@ void add_check(CommandParser& line) {
   const auto options = std::make_shared<CheckOptions>();
   command.argument("protocol", options->protocol, "Study (YAML)");
   command.option_with_default("--participants", options->participants, "How many are planned");
-  command.option_with_default("--seed", options->seed, "Of the schedule shown");
+  command.option_with_default("--seed", options->seed, "Seed of the schedule shown");
   command.option("--rig", options->rig, "Check that this device can reach the tapping points");
   command.on_run([options] { run_check(*options); });
 }

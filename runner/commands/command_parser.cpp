@@ -8,7 +8,7 @@
 #include "core/error.hpp"
 namespace tapstudy::runner {
 namespace {
-// An empty value, from an unset variable in a script, is not the same as no value.
+// Rejects empty values, e.g. from an unset variable in a script.
 void refuse_empty_values(CLI::App& app) {
   const CLI::Validator not_empty{[](const std::string& value) {
                                    return value.empty() ? std::string{"must not be empty"}
@@ -31,7 +31,7 @@ CLI::Validator ends_in(const std::string& ending) {
           ""};
 }
 
-// Refuses NaN too, which a comparison with each end alone would let through.
+// Also rejects NaN, which separate comparisons with each bound would accept.
 CLI::Validator within(double low, double high) {
   return {[low, high](const std::string& text) {
             double value = 0.0;
@@ -110,7 +110,7 @@ ExitCode CommandParser::parse(int argc, const char* const* argv) {
   } catch (const CLI::Success& asked_for_help) {
     return static_cast<ExitCode>(app_->exit(asked_for_help));
   } catch (const CLI::ParseError& error) {
-    throw core::InvalidInput{fmt::format("{} (tapstudy --help says more)", error.what())};
+    throw core::InvalidInput{fmt::format("{} (see tapstudy --help)", error.what())};
   }
   return ExitCode::done;
 }

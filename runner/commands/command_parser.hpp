@@ -12,7 +12,7 @@ namespace tapstudy::runner {
 enum class Need { required, optional };
 
 // One command: its arguments and options are described once and bound to variables, which must
-// outlive the parsing. CLI11 behind one door, for its header costs a source seconds to build.
+// outlive the parsing. Hides CLI11, whose header adds seconds to each compilation.
 class Command {
  public:
   void argument(const std::string& name, std::string& value, const std::string& help,
@@ -25,13 +25,13 @@ class Command {
   void number(const std::string& name, double& value, const std::string& help);
   void number_within(const std::string& name, double& value, double low, double high,
                      const std::string& help);
-  // A file's name must say what the file will hold.
+  // A file name that must have the given extension.
   void file(const std::string& name, std::string& value, const std::string& ending,
             const std::string& help);
   void one_of(const std::string& name, std::string& value, const std::vector<std::string>& allowed,
               const std::string& help);
   void flag(const std::string& name, bool& value, const std::string& help);
-  // When the line is parsed.
+  // Sets the action to run after parsing.
   void on_run(std::function<void()> run);
 
  private:
@@ -51,8 +51,8 @@ class CommandParser {
   CommandParser& operator=(CommandParser&& other) = delete;
 
   Command add(const std::string& name, const std::string& help);
-  // Runs the command of the line. Throws InvalidInput for what is not one, and what the command
-  // throws.
+  // Runs the command given. Throws InvalidInput for an invalid command line, and whatever the
+  // command throws.
   ExitCode parse(int argc, const char* const* argv);
 
  private:

@@ -13,12 +13,12 @@ void run_devices() {
     }
   }
   if (found == 0) {
-    fmt::print("no device that tapstudy knows is plugged in (a simulated hand is always there)\n");
+    fmt::print("no known device is plugged in (the simulated hand is always available)\n");
   }
 }
 }  // namespace
 
 void add_devices(CommandParser& line) {
-  line.add("devices", "What is plugged in").on_run(run_devices);
+  line.add("devices", "List the devices that are plugged in").on_run(run_devices);
 }
 }  // namespace tapstudy::runner

@@ -68,7 +68,7 @@ void draw(const Diagnosis& diagnosis, const std::string& file) {
       file);
 }
 
-// Of the device that the rig means; without a rig of whatever is plugged in and may be opened.
+// Of the rig's device; without a rig, of any device that is plugged in and accessible.
 std::optional<device::LatenessCount> round_trip(const DoctorOptions& options,
                                                 const protocols::Rig& rig) {
   if (!options.rig.empty()) {
@@ -102,12 +102,12 @@ void run_doctor(const DoctorOptions& options) {
 }  // namespace
 
 void add_doctor(CommandParser& line) {
-  Command command = line.add("doctor", "Can this machine hold the loop? Measured, with a verdict");
+  Command command = line.add("doctor", "Measure whether this machine can sustain the haptic loop");
   const auto options = std::make_shared<DoctorOptions>();
-  command.option("--rig", options->rig, "What to ask of the machine (YAML)");
-  command.number_within("--rate-hz", options->rate_hz, 500.0, 10000.0, "Of the loop");
+  command.option("--rig", options->rig, "Rig whose real-time settings to use (YAML)");
+  command.number_within("--rate-hz", options->rate_hz, 500.0, 10000.0, "Rate of the loop");
   command.number_within("--seconds", options->seconds, 0.1, 600.0,
-                        "To measure, idle and under load each");
+                        "Duration of each measurement, idle and under load");
   command.file("--figure", options->figure, ".svg", "Draw the lateness (.svg)");
   command.on_run([options] { run_doctor(*options); });
 }

@@ -158,7 +158,7 @@ void add_modes(CommandParser& line) {
   const auto options = std::make_shared<ModesOptions>();
   command.argument("protocol", options->protocol, "Study (YAML)");
   command.option("--stimulus", options->stimulus, "Which stimulus", Need::required);
-  command.flag("--json", options->wants_json, "For programs");
+  command.flag("--json", options->wants_json, "Output as JSON");
   command.option("--mesh-out", options->mesh_out, "Write the mesh as PREFIX.node, PREFIX.ele");
   command.file("--vtu", options->vtu, ".vtu", "Write body and mode shapes for ParaView (.vtu)");
   command.file("--figure", options->figure, ".svg", "Draw the plate's modes from above (.svg)");

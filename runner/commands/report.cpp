@@ -30,8 +30,7 @@ struct ReportOptions {
   bool replace{false};
 };
 
-// Real sessions unless something else is asked for; where there are no real ones, what there is,
-// and the report says so.
+// Real sessions by default; if there are none, the available ones, which the report states.
 Mode mode_to_report(const ReportOptions& options,
                     const std::vector<results::SessionRow>& sessions) {
   if (!options.mode.empty()) {
@@ -66,7 +65,7 @@ std::vector<std::pair<std::string, std::string>> provenance(
           {"seeds", fmt::format("{}", fmt::join(seeds, ", "))}};
 }
 
-// Of the store alone: the files that the protocol names may be gone.
+// From the store alone: the files named by the protocol may no longer exist.
 protocols::Protocol stored_protocol(const results::StudyRow& study) {
   return protocols::parse_protocol(
       study.protocol_text, study.protocol_file, [&](const std::string& file) {
@@ -161,7 +160,7 @@ void add_report(CommandParser& line) {
   command.argument("directory", options->directory, "Directory of a study", Need::optional);
   command.option("--counts", options->counts,
                  "Instead of a study: a matrix or a stimulus,response table (CSV)");
-  command.option("--out", options->out, "Where the files go; else the study's directory");
+  command.option("--out", options->out, "Output directory; default: the study's directory");
   command.one_of("--mode", options->mode, {"real", "pilot", "simulated"},
                  "Which sessions: real, pilot or simulated");
   command.flag("--replace", options->replace, "Replace an earlier report");

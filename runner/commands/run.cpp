@@ -47,8 +47,8 @@ void add_run(CommandParser& line) {
   command.option("--participant", options->participant, "Participant's id", Need::required);
   command.option("--out", options->directory, "Directory of the study", Need::required);
   command.option("--rig", options->rig, "Device and limits (YAML); else a simulated hand");
-  command.option("--seed", options->seed, "Of the order; else drawn and stored");
-  command.flag("--resume", options->resume, "Go on with the participant's last session");
+  command.option("--seed", options->seed, "Seed of the order; drawn and stored if not given");
+  command.flag("--resume", options->resume, "Resume the participant's last session");
   command.flag("--pilot", options->pilot, "Mark as a pilot, kept out of reports");
   command.on_run([options] { run(*options); });
 }

@@ -36,7 +36,7 @@ void add_simulate(CommandParser& line) {
   study->participants = 10;
   command.argument("protocol", study->protocol_file, "Study (YAML)");
   command.option_with_default("--participants", study->participants, "How many");
-  command.option_with_default("--seed", *seed, "Of all randomness");
+  command.option_with_default("--seed", *seed, "Seed of all random streams");
   command.option("--out", study->directory, "Directory of the study", Need::required);
   command.on_run([study, seed] {
     study->seed = seed_from(*seed, "--seed");

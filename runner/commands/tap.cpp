@@ -97,7 +97,7 @@ protocols::Protocol protocol_with_technique(const TapOptions& options) {
 
 constexpr double shown_before_impact_s = 0.02;
 
-// Penalty on the left axis; what the technique adds on the right one, which is far smaller.
+// Penalty force on the left axis; the technique's far smaller components on the right one.
 analysis::Panel panel_of(const std::string& title, const std::vector<TraceSample>& trace) {
   analysis::Panel panel{
       title,
@@ -117,7 +117,7 @@ analysis::Panel panel_of(const std::string& title, const std::vector<TraceSample
   return panel;
 }
 
-// One figure a plate: a row a stimulus, a column a tapping point (the paper's Figures 4 and 5).
+// One figure per plate, one row per stimulus, one column per tapping point (paper, Figures 4, 5).
 void draw_panels(const TapOptions& options, const protocols::Protocol& protocol) {
   ModelLibrary models;
   const protocols::Rig rig = simulated_rig();

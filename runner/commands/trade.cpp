@@ -18,7 +18,7 @@ struct TradeOptions {
   std::string out;
 };
 
-// A range check lets what is not a number through.
+// A range check accepts NaN.
 void check(const Tolerance& tolerance) {
   if (std::isnan(tolerance.frequency) || std::isnan(tolerance.level_db)) {
     throw core::InvalidInput{"--frequency-tolerance, --level-tolerance-db: must be numbers"};
@@ -47,7 +47,7 @@ void run_trade(const TradeOptions& options) {
 }  // namespace
 
 void add_trade(CommandParser& line) {
-  Command command = line.add("trade", "What speed costs in accuracy, and what extremes it stands");
+  Command command = line.add("trade", "Speed against accuracy, and stability at extreme values");
   const auto options = std::make_shared<TradeOptions>();
   command.argument("protocol", options->protocol, "Study (YAML)");
   command.option("--stimulus", options->stimulus, "Which stimulus", Need::required);
@@ -55,7 +55,7 @@ void add_trade(CommandParser& line) {
                         "Largest relative error of a natural frequency");
   command.number_within("--level-tolerance-db", options->tolerance.level_db, 1e-6, 100.0,
                         "Largest error of the vibration's level");
-  command.flag("--json", options->wants_json, "For programs");
+  command.flag("--json", options->wants_json, "Output as JSON");
   command.option("--out", options->out,
                  "Write trade.csv, trade.json, trade.svg and stability.csv into this directory");
   command.on_run([options] { run_trade(*options); });

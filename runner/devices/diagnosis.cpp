@@ -10,16 +10,16 @@ using Json = nlohmann::ordered_json;
 std::string governor() {
   std::ifstream file{"/sys/devices/system/cpu/cpu0/cpufreq/scaling_governor"};
   std::string word;
-  return file >> word ? word : "not told (a virtual machine?)";
+  return file >> word ? word : "unknown (a virtual machine?)";
 }
 
-// A tick that comes half a period late is felt as a click; a p99.9 of a quarter leaves room for the
-// tick's own work.
+// A tick half a period late is felt as a click; a p99.9 of a quarter period leaves time for the
+// tick's own computation.
 bool is_fit(const device::ProbedLoop& probed, device::Nanoseconds period) {
   return probed.late == 0 && probed.lateness.quantile(0.999) < period / 4;
 }
 
-// The board's reply and the tick's own work must fit into a period.
+// The board's reply and the tick's own computation must fit into one period.
 bool is_quick(const Diagnosis& diagnosis) {
   return !diagnosis.round_trip || diagnosis.round_trip->quantile(0.999) < diagnosis.period / 2;
 }

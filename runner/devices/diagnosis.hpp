@@ -4,7 +4,7 @@
 
 #include "device/loop/loop_probe.hpp"
 namespace tapstudy::runner {
-// What a machine can do for the loop, measured.
+// Measured real-time performance of the machine.
 struct Diagnosis {
   device::Nanoseconds period{};
   std::string governor;
@@ -14,10 +14,10 @@ struct Diagnosis {
 };
 
 enum class Under { no_load, load_too };
-// Takes `seconds`, twice that under load too. The round trip is the device's to tell.
+// Takes `seconds`, or twice that if measured under load too. round_trip comes from the device.
 Diagnosis diagnose(const core::RealtimeRequest& request, device::Nanoseconds period, double seconds,
                    Under under);
-// A sentence; `holds` is false if even the idle machine does not hold the loop.
+// The verdict in words; `holds` is false if even the idle machine cannot sustain the loop.
 struct Verdict {
   bool holds{};
   std::string words;

@@ -14,7 +14,7 @@ std::unique_ptr<SessionDevice> reconnect(const std::string& what_happened,
   broken.reset();  // only one can hold the device
   const DeviceKind& kind = kind_of(request.rig);
   std::string task = fmt::format(
-      "\n{}.\nType quit to stop here; or see to the device, its power and its plug, and to go on",
+      "\n{}.\nType quit to stop here; or check the device, its power and cable, and to continue",
       what_happened);
   while (asked_and_done(request.operator_input, task)) {
     if (kind.is_there()) {

@@ -6,7 +6,7 @@
 #include "protocols/protocol.hpp"
 #include "protocols/rig.hpp"
 namespace tapstudy::runner {
-// Rigs of all the devices there are: see protocols/read_rig.hpp.
+// Rigs for all known devices: see protocols/read_rig.hpp.
 protocols::Rig parse_rig(const std::string& text, const std::string& file);
 // Throws InvalidInput also if the file cannot be read.
 protocols::Rig read_rig(const std::string& file);
@@ -14,9 +14,9 @@ std::set<std::string> rig_keys_asked_for(const std::string& text, const std::str
 // The rig of a study without hardware: the simulated hand, 10 N.
 protocols::Rig simulated_rig();
 
-// How the loop runs this protocol on this rig. Throws InvalidInput if they do not go together.
+// The loop settings for this protocol on this rig. Throws InvalidInput if they are incompatible.
 device::LoopSettings loop_settings(const protocols::Protocol& protocol, const protocols::Rig& rig);
-// Throws InvalidInput if a tapping point lies where the rig's device cannot go, or if the device's
-// own section cannot be true.
+// Throws InvalidInput if a tapping point is outside the device's workspace, or if the device's own
+// section is implausible.
 void check_fits(const protocols::Protocol& protocol, const protocols::Rig& rig);
 }  // namespace tapstudy::runner

@@ -6,17 +6,17 @@
 #include "device/device.hpp"
 #include "device/loop/lateness.hpp"
 namespace tapstudy::runner {
-// What the participant's hand meets in a session, with all that must live as long.
+// The device of a session, with everything that must share its lifetime.
 class SessionDevice {
  public:
   virtual ~SessionDevice() = default;
   virtual device::Device& device() = 0;
   virtual std::string description() { return device().description(); }
-  // Once, when the session's seed is in the store.
+  // Called once, when the session's seed has been stored.
   virtual void begin_session(std::uint64_t /*seed*/) {}
-  // Before every trial, with the device's loop at rest. May ask the operator for something.
+  // Called before every trial, with the loop stopped. May prompt the operator.
   virtual void get_ready() = 0;
-  // From request to reply, where the device is asked over a wire.
+  // Communication round trip, if the device has a communication link.
   virtual std::optional<device::LatenessCount> round_trip() const { return std::nullopt; }
 };
 }  // namespace tapstudy::runner

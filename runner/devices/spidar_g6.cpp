@@ -25,9 +25,9 @@ constexpr std::chrono::milliseconds tightening_step{1};
 
 struct SpidarSection final : protocols::DeviceSection {
   std::string type;
-  std::optional<int> rotary_switch;  // of the board that is meant, where there are several
+  std::optional<int> rotary_switch;  // selects the board if there are several
   double max_turn_rad{0.3};          // of the grip, from how it was homed
-  double max_reply_s{0.003};         // of the board to a tick's question
+  double max_reply_s{0.003};         // reply timeout of the board
   core::SpidarCalibration calibration;
 };
 
@@ -46,7 +46,7 @@ device::SpidarSettings settings_of(const SpidarSection& section, double dt_s,
   return settings;
 }
 
-// Everything between the plug and the loop, in the order of its making.
+// The chain from USB node to device; members in order of construction.
 class SpidarDevice final : public SessionDevice {
  public:
   SpidarDevice(const device::UsbListing& listing, const SpidarSection& section, double dt_s,

@@ -7,7 +7,7 @@
 #include "protocols/rig.hpp"
 #include "runner/stimuli/model_library.hpp"
 namespace tapstudy::runner {
-// One tap by the simulated hand that arrives at exactly this speed, and the trace of it.
+// One tap by the simulated hand with exactly this impact speed, and its trace.
 struct ScriptedTap {
   std::string stimulus;
   Eigen::Vector2d at_m{Eigen::Vector2d::Zero()};  // plate frame

@@ -13,12 +13,12 @@ struct SimulatedStudy {
 struct SimulatedTime {
   int trials{};
   double tapped_s{};  // of virtual time
-  double wall_s{};    // of ours
+  double wall_s{};    // real time
 };
 
-// The whole study with participants sim-01, sim-02 …, on all cores, faster than real time. The same
-// seed gives the same data: to the last bit with one build on one machine, the same answers and
-// forces to 1e-9 elsewhere. Throws as TrialEngine::run and Store do, and InvalidInput if one of the
-// participants is in the study already.
+// Runs the whole study with participants sim-01, sim-02 …, on all cores, faster than real time. The
+// same seed gives the same data: bitwise identical with one build on one machine, elsewhere the
+// same answers and forces to within 1e-9. Throws as TrialEngine::run and Store do, and InvalidInput
+// if one of the participants is already in the study.
 SimulatedTime simulate(const SimulatedStudy& study, const protocols::Protocol& protocol);
 }  // namespace tapstudy::runner

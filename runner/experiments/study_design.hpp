@@ -2,6 +2,6 @@
 #include "analysis/blocks/design.hpp"
 #include "protocols/protocol.hpp"
 namespace tapstudy::runner {
-// What a report needs to know of a protocol.
+// The part of a protocol that a report needs.
 analysis::StudyDesign design_of(const protocols::Protocol& protocol);
 }  // namespace tapstudy::runner

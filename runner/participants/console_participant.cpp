@@ -94,7 +94,7 @@ std::optional<std::size_t> ConsoleParticipant::chosen_alternative(const TrialPro
     }
     if (alternative) {
       exploration.switch_to(*alternative);
-      say("  now {} (from the next moment the finger is off the plate)\n", labels[*alternative]);
+      say("  now {} (takes effect once the finger is off the plate)\n", labels[*alternative]);
       continue;
     }
     say("  please type {} to feel one, = and a label to choose it, or quit\n",

@@ -5,11 +5,11 @@
 #include "runner/terminal/line_input.hpp"
 namespace tapstudy::runner {
 // A person at the terminal. Questions go to stderr, answers come from the input: the number of an
-// answer; where there are alternatives to switch among, a label to feel that one and "= label" to
-// choose it. "quit" or the end of the input stops the session.
+// answer; in trials with several alternatives, a label to feel that one and "= label" to choose it.
+// "quit" or end of input stops the session.
 class ConsoleParticipant final : public Participant {
  public:
-  // move_hand is called before each trial; it sets a simulated hand tapping where there is no
+  // move_hand is called before each trial; it starts the taps of a simulated hand if there is no
   // device for the person to hold.
   ConsoleParticipant(LineInput& input, std::function<void()> move_hand)
       : input_{input}, move_hand_{std::move(move_hand)} {}

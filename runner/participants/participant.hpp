@@ -6,7 +6,7 @@
 #include "protocols/tasks/task.hpp"
 #include "runner/trial_loop/exploration.hpp"
 namespace tapstudy::runner {
-// One trial as a participant meets it. Which stimulus is rendered is not in it.
+// A trial as presented to the participant. Does not disclose the rendered stimulus.
 struct TrialPrompt {
   int number{};
   int total{};
@@ -18,16 +18,16 @@ struct TrialPrompt {
       alternative_labels;  // to switch among; empty: there is nothing to switch
 };
 
-// Who sits at the study: a person at the terminal, or a simulation.
+// A participant: a person at the terminal, or a simulation.
 class Participant {
  public:
   virtual ~Participant() = default;
   // Before the trial's loop starts.
   virtual void get_ready(const TrialPrompt& /*prompt*/) {}
-  // Explores and answers: the index of an option, or nothing if the trial could not be finished.
+  // Explores and answers: the index of an option, or nullopt if the trial could not be finished.
   virtual std::optional<std::size_t> perform(const TrialPrompt& prompt,
                                              Exploration& exploration) = 0;
-  // The answer is in the store.
+  // Called once the answer is stored.
   virtual void saved(const TrialPrompt& /*prompt*/) {}
 };
 }  // namespace tapstudy::runner

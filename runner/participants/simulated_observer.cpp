@@ -9,7 +9,7 @@
 #include "core/error.hpp"
 namespace tapstudy::runner {
 namespace {
-// No two levels are told apart below this, however quiet the observer: it keeps weights finite.
+// Lower bound of the discriminable level difference at zero noise; keeps the weights finite.
 constexpr double min_difference_db = 0.1;
 
 Features mean_of(std::span<const FeltTap> taps) {

@@ -9,7 +9,7 @@ namespace tapstudy::runner {
 namespace {
 using core::Purpose;
 
-// The plates that have to be known to answer this protocol's questions.
+// The plates that must be memorised for this protocol's tasks.
 std::set<std::string> real_plates(const protocols::Protocol& protocol) {
   std::set<std::string> names;
   for (const protocols::Block& block : protocol.blocks) {
@@ -21,7 +21,7 @@ std::set<std::string> real_plates(const protocols::Protocol& protocol) {
   return names;
 }
 
-// As the stimuli, but real: ringing at their own frequencies.
+// The real counterparts of the stimuli: vibrating at their true natural frequencies.
 protocols::Protocol made_real(protocols::Protocol protocol) {
   protocol.rendering.integrator = core::Integrator::exact;
   return protocol;

@@ -9,10 +9,10 @@
 #include "runner/participants/simulated_observer.hpp"
 #include "runner/stimuli/model_library.hpp"
 namespace tapstudy::runner {
-// A hand that taps and an observer that judges what the hand felt. Everything it does follows from
-// its seed; how it explores and answers is the task's. Before the study it taps the real plates
-// that the protocol's tasks ask for, to remember them, ringing at their own frequencies (exact
-// integration).
+// A simulated hand that taps and an observer that judges what the hand felt. Fully determined by
+// its seed; the task defines how it explores and answers. Before the study it taps the real plates
+// required by the protocol's tasks, to memorise them, vibrating at their true natural frequencies
+// (exact integration).
 class SimulatedParticipant final : public Participant {
  public:
   SimulatedParticipant(const protocols::Protocol& protocol, const device::LoopSettings& settings,

@@ -18,8 +18,8 @@ class TapArea {
       heights_.emplace_back(plate->shape);
     }
   }
-  // No tap misses: the place, or one just inside the edge of the smallest plate, or where that is
-  // off some body, the point aimed at.
+  // Every tap lands on the plate: the drawn point, else clamped to just inside the edge of the
+  // smallest plate, or, if that is off some body, the target point.
   core::Vec3 landing_m(const Eigen::Vector2d& place_m, const Eigen::Vector2d& aim_m) const {
     if (is_flat_) {
       const Eigen::Vector2d inside_m = place_m.cwiseMax(-half_m_).cwiseMin(half_m_);

@@ -6,12 +6,12 @@
 #include "device/hand/tap_path.hpp"
 #include "protocols/protocol.hpp"
 namespace tapstudy::runner {
-// Where a hand may aim: the protocol's tapping points, in the device frame.
+// The target points: the protocol's tapping points, in the device frame.
 std::vector<core::Vec3> aims_m(const protocols::Protocol& protocol,
                                const core::Placement& placement);
 
-// Taps as a hand makes them: every point once in random order, then again; place, speed and dwell
-// scatter from tap to tap. All land on the plate.
+// Random taps: every point once in random order, then again; position, speed and dwell time vary
+// from tap to tap. All land on the plate.
 std::vector<device::PlannedTap> draw_taps(const protocols::Protocol& protocol,
                                           const core::Placement& placement, int count,
                                           core::Rng& rng);

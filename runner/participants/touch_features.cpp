@@ -12,7 +12,7 @@ using device::FeltTick;
 constexpr double lowest_band_hz = 20.0;
 constexpr double early_s = 0.04;
 constexpr double late_s = 0.12;
-constexpr double contact_threshold_n = 1e-6;  // below this a force is no contact
+constexpr double contact_threshold_n = 1e-6;  // threshold of contact detection
 
 double normal_force_n(const FeltTick& tick) {
   return core::along_normal(tick.force_n);
@@ -21,7 +21,7 @@ double height_m(const FeltTick& tick) {
   return core::along_normal(tick.hand.position_m);
 }
 
-// The residuals of force over height, after the straight line of least squares.
+// The residuals of a linear least-squares fit of force against height.
 std::vector<double> without_spring(std::span<const FeltTick> contact) {
   double mean_height = 0.0;
   double mean_force = 0.0;
@@ -48,7 +48,7 @@ std::vector<double> without_spring(std::span<const FeltTick> contact) {
   return rest;
 }
 
-// Mean square of the part at one frequency (Goertzel 1958, as a rotating phasor).
+// Mean square of the component at one frequency (Goertzel 1958, as a rotating phasor).
 double power_at(std::span<const double> signal, double frequency_hz, double dt_s) {
   const std::complex<double> turn = std::polar(1.0, -2.0 * std::numbers::pi * frequency_hz * dt_s);
   std::complex<double> phasor{1.0, 0.0};
@@ -71,7 +71,7 @@ Features features_of(std::span<const FeltTick> contact, double dt_s, double thre
   for (std::size_t band = 0; band < bands; ++band) {
     const double frequency = lowest_band_hz * std::exp2(static_cast<double>(band) / 3.0);
     if (frequency >= 0.5 / dt_s) {
-      break;  // the loop cannot carry it, so nobody feels it
+      break;  // above the loop's bandwidth, so not felt
     }
     for (std::size_t window = 0; window < windows.size(); ++window) {
       const double power = power_at(windows.at(window), frequency, dt_s);

@@ -5,9 +5,9 @@
 
 #include "device/hand/simulated_hand.hpp"
 namespace tapstudy::runner {
-// What one tap felt like: the levels of vibration in bands of a third of an octave from 20 to
-// 320 Hz, early (the first 40 ms of contact) and late (the next 120 ms), in decibels over the
-// threshold of feeling. Early and late together hold amplitude and decay.
+// Perceptual features of one tap: third-octave vibration levels from 20 to 320 Hz, early (the first
+// 40 ms of contact) and late (the next 120 ms), in decibels above the detection threshold. Early
+// and late levels together capture amplitude and decay.
 inline constexpr std::size_t bands = 13;
 using Features = std::array<double, 2 * bands>;
 
@@ -16,10 +16,9 @@ struct FeltTap {
   Features level_db;
 };
 
-// The taps in what a hand felt. The contact's own spring is taken out first: a hand that moves
-// knows the soft resistance its motion meets (a straight line of force over depth, fitted to each
-// contact) and attends to the rest. Levels do not fall below 0 dB: what is under the threshold
-// amplitude is not felt.
+// Extracts the taps from the recorded ticks. The contact spring is removed first: a moving hand can
+// predict the compliant resistance (a linear fit of force against depth for each contact) and
+// attends to the remainder. Levels are clamped at 0 dB: amplitudes below threshold are not felt.
 std::vector<FeltTap> felt_taps(std::span<const device::FeltTick> felt, double dt_s,
                                double threshold_n);
 }  // namespace tapstudy::runner

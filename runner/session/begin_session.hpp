@@ -12,12 +12,12 @@
 namespace tapstudy::runner {
 enum class Resume { no, yes };
 
-// Who takes part, and how.
+// Participant and options of a session.
 struct SessionRequest {
   std::string participant_id;
   results::Mode mode{results::Mode::real};
   Resume resume{Resume::no};
-  std::optional<std::uint64_t> seed;  // of a new session; else drawn
+  std::optional<std::uint64_t> seed;  // of a new session; drawn if unset
 };
 
 struct BegunSession {
@@ -26,9 +26,9 @@ struct BegunSession {
   std::set<int> done;  // numbers of trials that are answered already
 };
 
-// A new session, or one that goes on with the order of the participant's last; its seed and order
-// are in the store when this returns. Throws InvalidInput if the participant has a session and does
-// not resume, has none to resume, or if this program would plan another order than the stored one.
+// Starts a new session, or resumes the participant's last one with its trial order; seed and order
+// are stored on return. Throws InvalidInput if the participant has a session and does not resume,
+// has none to resume, or if this program would generate an order other than the stored one.
 BegunSession begin_session(const SessionRequest& request, const protocols::Protocol& protocol,
                            const protocols::Rig& rig, const PreflightReport& preflight,
                            results::Store& store);

@@ -19,12 +19,12 @@
 #include "runner/trial_loop/live_trial_loop.hpp"
 namespace tapstudy::runner {
 namespace {
-// Everything that can be refused before the device is touched and the store opened.
+// All checks possible before the device and the store are opened.
 void check(const LiveSession& live) {
   check_has_blocks(live.protocol);
   check_participant_id(live.request.participant_id);
   if (!kind_of(live.rig).has_participant() && live.request.mode != results::Mode::pilot) {
-    throw core::InvalidInput{"a replayed hand is no participant: give --pilot too"};
+    throw core::InvalidInput{"a replayed hand is not a participant: use --pilot"};
   }
   check_fits(live.protocol, live.rig);
   if (live.request.resume == Resume::yes) {
@@ -38,7 +38,7 @@ SessionLock lock_of(const LiveSession& live) {
           fmt::format("participant '{}' is in a session of this study right now", id)};
 }
 
-// The trials that are left, on the device and, after a fault, on the device opened anew.
+// Runs the remaining trials, reopening the device after a fault.
 void run_trials(const LiveSession& live, const device::LoopSettings& settings, ModelLibrary& models,
                 const DeviceRequest& device_request, std::unique_ptr<SessionDevice> device,
                 results::Store& store, BegunSession& session) {

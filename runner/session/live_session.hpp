@@ -14,9 +14,9 @@ struct LiveSession {
   SessionRequest request;
 };
 
-// Takes the participant through all trials that are not answered yet, and returns how many the
-// session has. After a fault of the device the operator is offered to see to it and go on.
-// Throws InvalidInput for what cannot be run, DeviceError if the device fails for good, StoreError
-// if an answer cannot be stored, Stopped if the participant or the operator stops.
+// Takes the participant through all unanswered trials, and returns the session's number of trials.
+// After a device fault the operator may check the device and continue.
+// Throws InvalidInput if the session cannot be run, DeviceError if the device fails permanently,
+// StoreError if an answer cannot be stored, Stopped if the participant or the operator stops.
 std::size_t run_live_session(const LiveSession& live);
 }  // namespace tapstudy::runner

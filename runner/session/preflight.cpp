@@ -13,7 +13,7 @@ PreflightReport run_preflight(const protocols::Rig& rig, SessionDevice& device,
   report.diagnosis.round_trip = device.round_trip();
   const Verdict verdict = verdict_of(report.diagnosis);
   if (!verdict.holds) {
-    warn(verdict.words + " (recorded with the session; `tapstudy doctor` says more)");
+    warn(verdict.words + " (recorded with the session; for details run `tapstudy doctor`)");
   }
   return report;
 }

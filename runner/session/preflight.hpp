@@ -5,7 +5,7 @@
 #include "runner/devices/diagnosis.hpp"
 #include "runner/devices/session_device.hpp"
 namespace tapstudy::runner {
-// What a session can count on, measured before its first trial and stored with it.
+// Real-time performance, measured before a session's first trial and stored with it.
 struct PreflightReport {
   std::string device;
   Diagnosis diagnosis;

@@ -12,8 +12,8 @@
 #include "runner/stimuli/model_library.hpp"
 #include "runner/trial_loop/trial_loop.hpp"
 namespace tapstudy::runner {
-// A trial that a fault ended; it is stored, and no force is on. The fault may have come when the
-// answer was given already.
+// A trial ended by a fault; it is stored, and the force is off. The fault may have occurred after
+// the answer.
 struct Interruption {
   int trial{};
   core::TickFault fault{};
@@ -21,8 +21,8 @@ struct Interruption {
 };
 std::string to_text(const Interruption& interruption);
 
-// Takes one participant through a schedule, trial by trial: build its stimuli, render them while
-// the participant explores, store the trial whole.
+// Takes one participant through a schedule, trial by trial: builds its stimuli, renders them while
+// the participant explores, and stores the complete trial.
 class TrialEngine {
  public:
   TrialEngine(const protocols::Protocol& protocol, ModelLibrary& models, TrialLoop& trial_loop,
@@ -33,10 +33,9 @@ class TrialEngine {
         participant_{participant},
         recorder_{recorder} {}
 
-  // Takes the trials that are not done, and adds them to those that are, until all are or a fault
-  // ends one; called again, it takes that one again. Throws Stopped if the participant or the
-  // operator stops, StoreError if a trial cannot be stored; the trial that was under way is stored
-  // as interrupted, if it can be.
+  // Runs the trials not in `done`, adding each, until all are done or a fault ends one; called
+  // again, it repeats that one. Throws Stopped if the participant or the operator stops, StoreError
+  // if a trial cannot be stored; the trial in progress is stored as interrupted, if possible.
   std::optional<Interruption> run(std::int64_t session_id, const protocols::Schedule& schedule,
                                   std::set<int>& done_trials);
   std::int64_t ticks() const noexcept { return ticks_; }  // rendered so far

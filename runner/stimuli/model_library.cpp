@@ -25,7 +25,7 @@ std::string cache_directory() {
   return variable("HOME").empty() ? std::string{} : variable("HOME") + "/.cache/tapstudy";
 }
 
-// What is wrong with a model is wrong with the stimulus that asked for it.
+// Prefixes model errors with the stimulus that required the model.
 template <class Build>
 auto with_stimulus_name(const protocols::Stimulus& stimulus, const Build& build) {
   try {
@@ -81,8 +81,7 @@ ModelLibrary::Body ModelLibrary::body(const protocols::Protocol& protocol,
   body = std::make_shared<const core::BodyModes>(core::solve_body(spec, progress.hook()).modes);
   ++solved_;
   if (!cache_.keep(key, *body)) {
-    warn(
-        fmt::format("{}: models cannot be kept here, they will be built anew", cache_.directory()));
+    warn(fmt::format("{}: models cannot be cached here and will be rebuilt", cache_.directory()));
   }
   return body;
 }

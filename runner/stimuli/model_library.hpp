@@ -10,15 +10,15 @@
 #include "core/tick/vibrating_plate.hpp"
 #include "protocols/protocol.hpp"
 namespace tapstudy::runner {
-// What a stimulus's plate is to the model.
+// The model specification of a stimulus's plate.
 core::PlateSpec plate_spec(const protocols::Protocol& protocol,
                            const protocols::Stimulus& stimulus);
 
-// The body that all vibrating stimuli of one plate and Poisson's ratio are scaled from: solved up
-// to the highest band that any of them needs.
+// The unit-material body from which all vibrating stimuli with the same plate and Poisson's ratio
+// are scaled: solved up to the highest band limit that any of them needs.
 core::BodySpec body_spec(const protocols::Protocol& protocol, const protocols::Stimulus& stimulus);
 
-// What a finger meets where nothing vibrates.
+// The collision geometry of a non-vibrating body.
 core::TouchedShape touched_shape(const core::Shape& shape);
 
 // Ready to be touched: a box on its upper face, any other shape all over.
@@ -28,8 +28,8 @@ core::VibratingPlate vibrating_plate(const core::Shape& shape, core::ModalModel 
 // ~/.cache/tapstudy; without any, nowhere.
 core::ModelCache models_of_this_user();
 
-// Models of plates: each body solved once however many materials share it, and only when a
-// technique that vibrates asks for it. May be used by several threads.
+// Models of plates: each body is solved once for all materials that share it, and only if a
+// vibrating technique needs it. Thread-safe.
 class ModelLibrary {
  public:
   using Plate = std::shared_ptr<const core::VibratingPlate>;
@@ -40,7 +40,7 @@ class ModelLibrary {
   // Throws InvalidInput or ModelError, naming the stimulus.
   Plate plate_of(const protocols::Protocol& protocol, const protocols::Stimulus& stimulus);
   Body body_of(const protocols::Protocol& protocol, const protocols::Stimulus& stimulus);
-  // All that the protocol needs, so that what cannot be built is refused before anything else.
+  // Builds all models that the protocol needs, so that errors are reported first.
   void build_all(const protocols::Protocol& protocol);
 
   int bodies_solved() const { return solved_; }  // not found in memory or on disk

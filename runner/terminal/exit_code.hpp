@@ -1,7 +1,7 @@
 #pragma once
 #include <stdexcept>
 namespace tapstudy::runner {
-// What the process tells the shell.
+// Exit status of the process.
 enum class ExitCode {
   done = 0,
   wrong_input = 2,
@@ -11,7 +11,7 @@ enum class ExitCode {
   stopped = 130
 };
 
-// The operator asked to stop (Ctrl-C, end of input); all that was answered is kept.
+// The operator asked to stop (Ctrl-C, end of input); all answers are kept.
 class Stopped : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

@@ -3,14 +3,14 @@
 #include <optional>
 #include <string>
 namespace tapstudy::runner {
-// Lines from a file descriptor (a terminal, a pipe), waiting for them without missing anything else
-// that happens: keep_waiting is asked many times a second.
+// Reads lines from a file descriptor (a terminal, a pipe) while polling for other events:
+// keep_waiting is called many times a second.
 class LineInput {
  public:
   explicit LineInput(int descriptor) : descriptor_{descriptor} {}
-  // Nothing at the end of the input or when keep_waiting says no.
+  // nullopt at end of input or when keep_waiting returns false.
   std::optional<std::string> next(const std::function<bool()>& keep_waiting);
-  // What a person typed before being asked. A file or another program does not type ahead.
+  // Discards a terminal's type-ahead. Has no effect on a file or pipe.
   void forget_typed_ahead();
 
  private:

@@ -4,8 +4,8 @@
 #include "device/spidar/calibration_operator.hpp"
 #include "runner/terminal/line_input.hpp"
 namespace tapstudy::runner {
-// At the terminal: tasks go to stderr, what was measured comes from the input.
-// Throws Stopped at the input's end or when the operator asks to stop.
+// The operator at the terminal: tasks go to stderr, measured values come from the input.
+// Throws Stopped at end of input or when the operator asks to stop.
 class OperatorAtTerminal final : public device::CalibrationOperator {
  public:
   explicit OperatorAtTerminal(LineInput& input) : input_{input} {}

@@ -3,7 +3,7 @@
 
 #include "runner/terminal/line_input.hpp"
 namespace tapstudy::runner {
-// Asks the operator to do something and to press Enter then. What was typed before the question is
-// no answer to it. False: the operator typed quit, asked to stop, or is gone.
+// Asks the operator to do something and then press Enter. Type-ahead is discarded. False if the
+// operator typed quit, asked to stop, or the input ended.
 bool asked_and_done(LineInput& input, const std::string& task);
 }  // namespace tapstudy::runner

@@ -6,7 +6,7 @@
 
 #include "core/model/progress_hook.hpp"
 namespace tapstudy::runner {
-// Says on stderr what takes long: nothing in the first second, then what and for how long.
+// Progress messages on stderr: none in the first second, then the activity and elapsed time.
 class Progress {
  public:
   explicit Progress(std::string what);
@@ -14,7 +14,7 @@ class Progress {
   Progress(const Progress& other) = delete;
   Progress& operator=(const Progress& other) = delete;
 
-  // Takes over what a computation says of its stages, and stops it where the operator asked to.
+  // Receives the stages of a computation, and cancels it if the operator asked to stop.
   core::ProgressHook hook();
 
  private:

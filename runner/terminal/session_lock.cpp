@@ -13,7 +13,7 @@
 #include "core/error.hpp"
 #include "core/sha256.hpp"
 namespace tapstudy::runner {
-// A socket's name in the kernel's own space is not a file: it cannot be left behind.
+// An abstract socket name is not a file, so it cannot be left behind.
 SessionLock::SessionLock(const std::string& what, const std::string& refusal)
     : socket_{socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0)} {
   sockaddr_un address{};

@@ -1,10 +1,10 @@
 #pragma once
 #include <string>
 namespace tapstudy::runner {
-// Held by one process of this machine at a time, and by none once it has ended, however it ended.
+// A machine-wide inter-process lock, released whenever its process ends, for any reason.
 class SessionLock {
  public:
-  // Throws InvalidInput with `refusal` if another process holds the same.
+  // Throws InvalidInput with `refusal` if another process holds the same lock.
   SessionLock(const std::string& what, const std::string& refusal);
   ~SessionLock();
   SessionLock(const SessionLock& other) = delete;

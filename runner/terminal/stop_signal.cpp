@@ -7,7 +7,7 @@
 #include "runner/terminal/exit_code.hpp"
 namespace tapstudy::runner {
 namespace {
-// A signal handler can reach nothing but globals.
+// A signal handler can only access globals.
 std::atomic<bool> asked{false};  // NOLINT(cppcoreguidelines-avoid-non-const-global-variables)
 static_assert(std::atomic<bool>::is_always_lock_free);
 

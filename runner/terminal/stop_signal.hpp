@@ -1,9 +1,9 @@
 #pragma once
 namespace tapstudy::runner {
-// From here on Ctrl-C, a terminal that is closed, SIGTERM and SIGQUIT ask to stop instead of ending
-// the process; a second one ends it.
+// Installs handlers: Ctrl-C, a closed terminal, SIGTERM and SIGQUIT request a stop instead of
+// ending the process; a second one ends it.
 void listen_for_stop();
 bool stop_was_asked();
-// Throws Stopped if so.
+// Throws Stopped if a stop was requested.
 void stop_if_asked();
 }  // namespace tapstudy::runner

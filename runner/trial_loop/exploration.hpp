@@ -7,7 +7,7 @@ class Exploration {
  public:
   virtual ~Exploration() = default;
   virtual void switch_to(std::size_t alternative) = 0;
-  // Lets the trial run on; returns early if it has ended by a fault.
+  // Lets the trial continue; returns early if a fault has ended it.
   virtual void pass_time(double seconds) = 0;
   virtual bool is_running() const = 0;
   virtual double time_s() const = 0;  // since the trial began

@@ -21,7 +21,7 @@ class LiveExploration final : public Exploration {
       std::this_thread::sleep_for(poll_interval);
     }
   }
-  // Whoever supervises the trial asks this all the time: it is the heartbeat that the loop needs.
+  // Called continually by the trial's supervisor, so it also sends the loop's heartbeat.
   bool is_running() const override {
     loop_.beat();
     return !has_ended_.load(std::memory_order_acquire);
@@ -36,7 +36,7 @@ class LiveExploration final : public Exploration {
   std::chrono::steady_clock::time_point start_{std::chrono::steady_clock::now()};
 };
 
-// The recorder follows the collector for exactly as long as this lives.
+// RAII: the recorder follows the collector during this object's lifetime.
 class Following {
  public:
   Following(results::Recorder& recorder, results::TraceCollector& collector) : recorder_{recorder} {
@@ -60,7 +60,7 @@ TrialResult LiveTrialLoop::run(std::span<core::TapRenderer> alternatives, const 
   {
     const Following following{recorder_, collector};
     const std::jthread haptic_thread{[&](const std::stop_token& stop) {
-      device::ask_for_realtime(realtime_);  // what was got is in the session's row
+      device::ask_for_realtime(realtime_);  // the outcome is in the session's row
       loop.run(stop);
       has_ended.store(true, std::memory_order_release);
     }};

@@ -6,7 +6,7 @@
 #include "results/trace_collector.hpp"
 #include "runner/trial_loop/exploration.hpp"
 namespace tapstudy::runner {
-// All that one trial's haptic loop left behind.
+// The results of one trial's haptic loop.
 struct TrialResult {
   results::TraceCollector::Collected trace;
   device::LoopReport loop;

@@ -13,12 +13,12 @@
 namespace tapstudy::core {
 namespace {
 using Axes = std::array<int, 3>;
-// Of a held node's share in a motion of the body, squared: rounding is far below, a screw's head on
-// a plate far above.
+// Threshold for the squared participation of constrained nodes in a rigid-body motion: far above
+// rounding, far below a screw head on a plate.
 constexpr double nothing_holds = 1e-14;
 
-// The places of K's and M's entries, known before the first element is added: nothing is searched
-// or sorted an entry, only once a pair of nodes.
+// The sparsity pattern of K and M, computed before assembly: positions are looked up once per pair
+// of nodes, not once per entry.
 class Pattern {
  public:
   Pattern(const TetMesh& mesh, const FreeDofs& dofs) : dofs_{dofs}, graph_{node_graph(mesh)} {
@@ -44,7 +44,7 @@ class Pattern {
 
   // NOLINTEND(clang-analyzer-unix.Malloc)
 
-  // Adds what nodes row and column, row >= column, have in common.
+  // Adds the 3 × 3 block coupling nodes row and column, row >= column.
   void add(int row, int column, const Eigen::Matrix3d& stiffness, double mass,
            StiffnessAndMass& to) const {
     const auto place = static_cast<std::size_t>(graph_.place_of(column, row));
@@ -100,7 +100,7 @@ class Pattern {
       }
     }
   }
-  // Zeros where the matrices have entries, from the diagonal down.
+  // Inserts explicit zeros at the structural non-zeros, from the diagonal down.
   void add_column(int node, int axis, StiffnessAndMass& matrices) const {
     const int column = position(node, axis);
     const auto own = static_cast<std::size_t>(node);
@@ -121,7 +121,7 @@ class Pattern {
 
   const FreeDofs& dofs_;
   NodeGraph graph_;
-  // For each entry of the graph: the free degrees of freedom of the nodes before it in its list.
+  // For each graph entry: the number of free degrees of freedom before it in its list.
   std::vector<int> stiffness_before_;
   std::vector<Axes> mass_before_;
 };
@@ -154,8 +154,9 @@ void add_elements(const TetMesh& mesh, const Material& material, const Pattern& 
   }
 }
 
-// How many of the six ways to move and turn the body as a whole leave every held degree of freedom
-// where it is: the null space of those motions' values there, lengths relative to the body's.
+// The number of rigid-body motions compatible with the constraints: the dimension of the null space
+// of the six motions restricted to the constrained degrees of freedom, lengths relative to the
+// body's.
 int free_rigid_motions(const TetMesh& mesh, const FreeDofs& dofs) {
   const Eigen::RowVector3d middle = mesh.nodes_m.colwise().mean();
   const double size_m = (mesh.nodes_m.rowwise() - middle).rowwise().norm().maxCoeff();

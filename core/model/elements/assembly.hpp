@@ -7,7 +7,7 @@
 namespace tapstudy::core {
 using SparseMatrix = Eigen::SparseMatrix<double>;
 
-// Where each degree of freedom of the mesh (x0 y0 z0 x1 …) stands among the free ones; -1 if held.
+// Index of each mesh degree of freedom (x0 y0 z0 x1 …) among the free ones; -1 if constrained.
 struct FreeDofs {
   std::vector<int> position;
   int count{0};
@@ -15,18 +15,19 @@ struct FreeDofs {
 FreeDofs free_dofs(const std::vector<bool>& held);
 
 // The K and M of M x'' + C x' + K x = f (paper eq. 2). Constraints are applied by elimination: a
-// constrained degree of freedom has no row. Symmetric, of the free degrees of freedom; only the lower triangles are stored.
+// constrained degree of freedom has no row. Symmetric, of the free degrees of freedom; only the
+// lower triangles are stored.
 struct StiffnessAndMass {
   SparseMatrix K;  // N/m
   SparseMatrix M;  // kg
-  // Where each node's unknowns begin, and the end: what belongs together is ordered together.
+  // Start of each node's block of unknowns, and the end: blocks are kept together in ordering.
   std::vector<int> first_of_node{};
-  int rigid_body_modes{0};  // motions of the body as a whole that nothing holds: 0 to 6
+  int rigid_body_modes{0};  // unconstrained rigid-body motions: 0 to 6
   auto stiffness() const { return K.selfadjointView<Eigen::Lower>(); }
   auto mass() const { return M.selfadjointView<Eigen::Lower>(); }
 };
 
-// Linear elasticity with the consistent mass, for meshes of order 1 and 2.
+// Linear elasticity with consistent mass, for meshes of order 1 and 2.
 // Throws ModelError if a tetrahedron has no volume.
 StiffnessAndMass assemble(const TetMesh& mesh, const Material& material, const FreeDofs& dofs);
 }  // namespace tapstudy::core

@@ -14,7 +14,7 @@ struct TwoRatioDamping {
   double first_ratio{0.0};
   double last_ratio{0.0};
 };
-// Rayleigh damping that comes nearest to ratios measured at some frequencies (least squares).
+// Rayleigh damping fitted by least squares to damping ratios measured at some frequencies.
 struct FittedDamping {
   struct Point {
     double frequency_hz{};
@@ -22,7 +22,7 @@ struct FittedDamping {
   };
   std::vector<Point> points;  // at least two different frequencies
 };
-// A ratio for each mode inside the band, lowest first.
+// One damping ratio per mode inside the band, lowest first.
 struct ModalDamping {
   std::vector<double> ratios;
 };

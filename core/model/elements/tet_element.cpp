@@ -7,7 +7,7 @@
 namespace tapstudy::core {
 namespace {
 template <int Nodes>
-using Gradients = Eigen::Matrix<double, Nodes, 3>;  // one node's shape function a row [1/m]
+using Gradients = Eigen::Matrix<double, Nodes, 3>;  // one node's shape function per row [1/m]
 
 // Lamé's constants [Pa].
 struct Lame {
@@ -22,7 +22,7 @@ Lame lame_of(const Material& material) {
           youngs / (2.0 * (1.0 + poisson))};
 }
 
-// Hooke's law between every two nodes a, b with gradients g_a, g_b:
+// The stiffness block of nodes a, b with shape function gradients g_a, g_b:
 //   lambda g_a g_b' + shear (g_b g_a' + (g_a . g_b) I)
 // which is B_a' D B_b written out for an isotropic body.
 template <int Nodes>
@@ -103,7 +103,7 @@ TetElement<4> tet_element<4>(const TetCorners& corners_m, const Material& materi
   return element;
 }
 
-// The stiffness is quadratic over the element: four points integrate it exactly.
+// The integrand is quadratic over the element: four-point quadrature is exact.
 template <>
 TetElement<10> tet_element<10>(const TetCorners& corners_m, const Material& material) {
   const auto [volume, gradients] = geometry_of(corners_m);

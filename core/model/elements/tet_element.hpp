@@ -11,7 +11,7 @@ struct TetElement {
   Eigen::Matrix<double, 3 * Nodes, 3 * Nodes> stiffness;  // N/m; x0 y0 z0 x1 …
   Eigen::Matrix<double, Nodes, Nodes> mass;               // kg, the same along x, y and z
 };
-using TetCorners = Eigen::Matrix<double, 4, 3>;  // one corner a row [m], positive volume
+using TetCorners = Eigen::Matrix<double, 4, 3>;  // one corner per row [m], positive volume
 
 template <int Nodes>
 TetElement<Nodes> tet_element(const TetCorners& corners_m, const Material& material);

@@ -20,7 +20,7 @@ Vec3 corner(const Box& box, int k) {
           k >= 4 ? box.high_m().z() : box.low_m().z()};
 }
 
-// 0 where p is at the start of the edge, 1 at its end, nothing off the edge.
+// Parameter of p along the edge: 0 at its start, 1 at its end, -1 off the edge.
 double along_edge(const Vec3& p, const Vec3& from, const Vec3& to, double tolerance_m) {
   const Vec3 edge = to - from;
   const double t = (p - from).dot(edge) / edge.squaredNorm();

@@ -9,7 +9,7 @@
 #include "core/print.hpp"
 namespace tapstudy::core {
 namespace {
-// TetGen's own order of a T10's nodes: corners, then the middles of 23 03 01 12 13 02.
+// TetGen's node order of a T10: corners, then the mid-side nodes of 23 03 01 12 13 02.
 constexpr std::array<Eigen::Index, 10> tetgen_order{0, 1, 2, 3, 9, 7, 4, 5, 8, 6};
 
 void write_nodes(std::ostream& out, const TetMesh& mesh) {

@@ -3,28 +3,28 @@
 #include <array>
 #include <string>
 namespace tapstudy::core {
-// Corners at the ends of a tetrahedron's edges, in the order of the nodes in their middles; the
-// first three are the edges of a triangle.
+// End corners of a tetrahedron's edges, in the order of the mid-side nodes; the first three are the
+// edges of a triangle.
 inline constexpr std::array<std::array<int, 2>, 6> tet_edges{
     {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
 
-// A body cut into straight-sided tetrahedra of order 1 (T4: its corners) or 2 (T10: its corners,
-// then the middles of tet_edges).
+// A body meshed with straight-sided tetrahedra of order 1 (T4: corner nodes) or 2 (T10: corner
+// nodes, then mid-side nodes in the order of tet_edges).
 struct TetMesh {
   using Indices = Eigen::Matrix<int, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-  Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor> nodes_m;  // one row a node
-  Indices tets;     // 4 or 10 nodes a row, positive volume
-  Indices surface;  // 3 or 6 nodes a row: corners, outward counter-clockwise, then the middles of
-                    // the edges 01 12 20
+  Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor> nodes_m;  // one row per node
+  Indices tets;     // 4 or 10 nodes per row, positive volume
+  Indices surface;  // 3 or 6 nodes per row: corners, outward counter-clockwise, then mid-side nodes
+                    // of the edges 01 12 20
   int order() const { return tets.cols() == 10 ? 2 : 1; }
 };
 
 double tet_volume_m3(const TetMesh& mesh, Eigen::Index tet);
 double volume_m3(const TetMesh& mesh);
 
-// The same body of order 2: every edge of an order 1 mesh gets a node in its middle, after the
-// nodes that are there.
+// The order 2 mesh of an order 1 mesh: every edge gets a mid-side node, numbered after the existing
+// nodes.
 TetMesh to_quadratic(const TetMesh& mesh);
 
 // Writes PREFIX.node and PREFIX.ele in TetGen's own format, nodes numbered from 0, 17 digits.

@@ -13,11 +13,11 @@
 #include <tetgen.h>
 namespace tapstudy::core {
 namespace {
-// Points that TetGen may add: a bound on a search that a bad surface could make endless.
+// Maximum number of Steiner points: bounds refinement that may not terminate on a bad surface.
 constexpr int max_added_points = 400000;
 
-// A well-shaped tetrahedron is about as large as its cube's sixth; a thin sheet cannot have larger
-// ones than its thickness allows.
+// A well-shaped tetrahedron has about a sixth of the volume of its cube; the thickness of a thin
+// sheet bounds the element size.
 void check_count(const Shape& shape, const MeshSize& size) {
   const double volume = std::abs(volume_m3(shape));
   const Vec3 extent = bounds(shape).size_m();
@@ -36,9 +36,9 @@ void check_count(const Shape& shape, const MeshSize& size) {
         size.flattening * std::cbrt(from_shape / 1e4) * std::cbrt(from_shape / 1e4);
     advice = enough <= max_flattening
                  ? fmt::format(
-                       "it is too thin for tetrahedra of good shape; mesh.flattening: {:.0f} "
-                       "makes them wider than thick, order: 2 and an accuracy show whether "
-                       "they are fine enough",
+                       "it is too thin for well-shaped tetrahedra; mesh.flattening: {:.0f} "
+                       "flattens them, order: 2 and an accuracy show whether they are fine "
+                       "enough",
                        std::ceil(enough))
                  : std::string{"it is too thin for solid elements"};
   }
@@ -48,7 +48,7 @@ void check_count(const Shape& shape, const MeshSize& size) {
       extent.x(), extent.y(), extent.z(), std::max(from_shape, from_size), max_tets, advice)};
 }
 
-// TetGen frees what it is handed with delete[]; its structures are filled the way it asks.
+// TetGen frees its input with delete[], so its structures must be allocated with new[].
 // NOLINTBEGIN(cppcoreguidelines-owning-memory)
 tetgenio::polygon polygon_of(const std::vector<int>& vertices) {
   tetgenio::polygon polygon{};
@@ -125,7 +125,7 @@ void make_volumes_positive(TetMesh& mesh) {
   }
 }
 
-// A triangle is on the surface if one tetrahedron has it; inner ones belong to two.
+// A face belongs to the surface if only one tetrahedron has it; interior faces belong to two.
 void find_surface(TetMesh& mesh) {
   constexpr std::array<std::array<int, 3>, 4> outward{{{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
   using Triangle = std::array<int, 3>;
@@ -187,7 +187,7 @@ std::string reason_for(int tetgen_code) {
     case 4:
       return "the surface has features too small for its size";
     case 5:
-      return "two faces nearly lie in one another";
+      return "two faces nearly coincide";
     default:
       return fmt::format("code {}", tetgen_code);
   }
@@ -208,14 +208,14 @@ TetMesh mesh_shape(const Shape& shape, const MeshSize& size, const std::vector<V
   try {
     tetrahedralize(switches.data(), &in, &out);
   } catch (int code) {
-    throw ModelError{fmt::format("mesh: TetGen gave up on the body: {}", reason_for(code))};
+    throw ModelError{fmt::format("mesh: TetGen failed to mesh the body: {}", reason_for(code))};
   } catch (const std::bad_alloc&) {
     throw ModelError{"mesh: not enough memory for so many tetrahedra"};
   }
   if (out.numberofpoints - in.numberofpoints >= max_added_points ||
       out.numberoftetrahedra > max_tets) {
     throw ModelError{fmt::format(
-        "mesh: it takes more than {:.0g} tetrahedra or {} added points (choose a larger "
+        "mesh: it needs more than {:.0g} tetrahedra or {} added points (choose a larger "
         "max_tet_volume_m3 or a surface without tiny triangles)",
         max_tets, max_added_points)};
   }

@@ -26,7 +26,7 @@ std::vector<Edge> edges_of(const TetMesh& mesh) {
   return edges;
 }
 
-// The rows with the middles of their first `count` edges behind the corners.
+// The rows with the mid-side nodes of their first `count` edges appended to the corners.
 TetMesh::Indices with_edge_midpoints(const TetMesh::Indices& corners, std::size_t count,
                                      const std::vector<Edge>& edges, int first_middle) {
   TetMesh::Indices rows{corners.rows(), corners.cols() + static_cast<Eigen::Index>(count)};

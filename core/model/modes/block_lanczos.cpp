@@ -18,10 +18,10 @@ using Eigen::MatrixXd;
 constexpr std::uint64_t start_seed = 1;
 constexpr Index max_block = 4;
 constexpr double tolerance = 1e-10;  // of a Ritz pair's residual, relative to its nu
-constexpr double well_apart = 1e-5;  // of a column, what the ones before it may leave for Cholesky
-constexpr double dependent = 1e-12;  // what is left of a column that held nothing new
+constexpr double well_apart = 1e-5;  // least Cholesky pivot, relative to the column's norm
+constexpr double dependent = 1e-12;  // relative remainder of a linearly dependent column
 
-// Columns that come in one block after another.
+// A matrix that grows block by block.
 class GrowingColumns {
  public:
   auto all() const { return storage_.leftCols(used_); }
@@ -39,8 +39,8 @@ class GrowingColumns {
   Index used_{0};
 };
 
-// Vectors together with their product with the mass matrix, so that inner products in its metric
-// cost no more than others.
+// Vectors together with their product with the mass matrix, so that M inner products cost no more
+// than ordinary ones.
 struct Weighted {
   MatrixXd vectors;
   MatrixXd times_mass;
@@ -66,7 +66,7 @@ class BlockKrylov {
     return combination(basis_.vectors.all(), weights);
   }
 
-  // Takes the next block into the basis and prepares the one after.
+  // Appends the next block to the basis and prepares the one after it.
   void grow() {
     const Index before = size();
     basis_.vectors.append(next_.vectors);
@@ -81,7 +81,7 @@ class BlockKrylov {
     coupling_ = orthonormalise(next_);
   }
 
-  // None wanted if they have not all converged.
+  // Empty unless all have converged.
   struct Converged {
     MatrixXd wanted;
     MatrixXd guard_weights;
@@ -96,15 +96,15 @@ class BlockKrylov {
       return {};
     }
     const Index guards = (ritz.values.array() > 1.0 / sigma).count();
-    // one step of inverse iteration, for free: what lies outside the basis is known
+    // one step of inverse iteration at no cost: the component outside the basis is known
     return {combined(ritz.vectors.leftCols(count)) +
                 next_.vectors * (beyond * nu.inverse().matrix().asDiagonal()),
             ritz.vectors.rightCols(guards)};
   }
 
  private:
-  // The image of the last block meets, but for rounding, the last two blocks only (Lanczos); all
-  // are taken out once more, or what rounding leaves would grow.
+  // In exact arithmetic the image of the last block overlaps only the last two blocks (Lanczos);
+  // full reorthogonalisation keeps rounding errors from growing.
   void project_out_of_next(Index latest) {
     const MatrixXd overlap =
         inner_products(basis_.times_mass.all().rightCols(latest), next_.vectors);
@@ -113,8 +113,8 @@ class BlockKrylov {
   }
   void weigh(Weighted& block) const { block.times_mass = matrices_.mass() * block.vectors; }
 
-  // Makes the block M-orthonormal and returns the triangle R of W = Q R: by Cholesky, twice
-  // (Yamamoto et al. 2015), or column by column where the columns nearly depend on one another.
+  // Makes the block M-orthonormal and returns the factor R of W = Q R: by CholeskyQR2 (Yamamoto et
+  // al. 2015), or column by column if the columns are nearly linearly dependent.
   MatrixXd orthonormalise(Weighted& block) {
     MatrixXd triangle = MatrixXd::Identity(block_, block_);
     weigh(block);
@@ -136,8 +136,8 @@ class BlockKrylov {
     }
     return triangle;
   }
-  // Gram-Schmidt. A column with nothing new in it is replaced by a random one that has, and has no
-  // part in R.
+  // Gram-Schmidt. A linearly dependent column is replaced by a random one, with a zero diagonal
+  // entry in R.
   MatrixXd column_by_column(Weighted& block) {
     MatrixXd& columns = block.vectors;
     MatrixXd triangle = MatrixXd::Zero(block_, block_);
@@ -185,7 +185,7 @@ class BlockKrylov {
   Basis basis_;         // M-orthonormal
   MatrixXd projected_;  // basis' M (K - sigma M)^-1 M basis
   Weighted next_;       // M-orthonormal, orthogonal to the basis
-  MatrixXd coupling_;   // what the last block's image has of next_
+  MatrixXd coupling_;   // component of the last block's image along next_
 };
 }  // namespace
 

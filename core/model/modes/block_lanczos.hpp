@@ -6,15 +6,15 @@
 #include "core/model/modes/shifted_factor.hpp"
 #include "core/model/progress_hook.hpp"
 namespace tapstudy::core {
-// Columns, not normalised, in no order.
+// One vector per column, neither normalised nor ordered.
 struct RitzVectors {
   Eigen::MatrixXd wanted;
-  // Near eigenvectors from the shift up to twice the shift; made when asked for, which few do.
+  // Approximate eigenvectors from the shift up to twice the shift; computed only on request.
   std::function<Eigen::MatrixXd()> guards;
 };
 
 // The `count` eigenvectors of K x = lambda M x whose eigenvalues lie below the factor's shift, and
-// what was found of others on the way.
+// approximations to others found on the way.
 //
 // Lanczos in blocks (Golub & Underwood 1977) on (K - sigma M)^-1 M, orthogonal in the metric of M.
 // Its eigenvalues are nu = 1 / (lambda - sigma): those wanted are the negative ones, and the count

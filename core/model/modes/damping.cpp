@@ -73,7 +73,7 @@ RayleighDamping rayleigh_by_least_squares(const FittedDamping& measured) {
     share.row(i) << 0.5 / omega, 0.5 * omega;
     ratio[i] = point.ratio;
   }
-  // columns of like size, so that the rank is seen whatever the frequencies' size
+  // columns normalised, so that rank detection does not depend on the frequencies' magnitude
   const Eigen::RowVector2d size = share.colwise().norm();
   const LeastSquares fit = least_squares(share * size.cwiseInverse().asDiagonal(), ratio);
   if (fit.rank < 2) {

@@ -21,6 +21,6 @@ struct DampedModes {
   std::optional<RayleighDamping> rayleigh;
   Eigen::ArrayXd ratios;
 };
-// What a material's damping means for these modes. Throws ModelError if it does not fit them.
+// Applies a material's damping to these modes. Throws ModelError if it does not fit them.
 DampedModes damp(const Damping& damping, const Eigen::ArrayXd& omega_rad_s);
 }  // namespace tapstudy::core

@@ -16,11 +16,11 @@
 namespace tapstudy::core {
 namespace {
 constexpr double residual_limit = 1e-8;
-// However stiff the stiffest element is: beyond, the mode is not one.
+// However stiff the stiffest element is: above this, a mode is rejected.
 constexpr double max_residual = 1e-6;
-// Of rounding that a solve and the products after it may add up to.
+// Multiple of the rounding unit allowed for a solve and the subsequent products.
 constexpr double rounding_steps = 8.0;
-// Up to this size the whole spectrum costs nothing, and Lanczos would have no room.
+// Up to this size a dense solve is cheap, and the problem is too small for Lanczos.
 constexpr Eigen::Index dense_size = 96;
 constexpr int max_modes = 1000;
 constexpr int max_polishing_rounds = 4;
@@ -50,7 +50,7 @@ Pairs modes_in_span(const StiffnessAndMass& matrices, const Eigen::MatrixXd& vec
   return {values, vectors * mix, elastic * mix, inertial * mix};
 }
 
-// The first component of at least half the largest size is positive.
+// Makes the first component of at least half the largest magnitude positive.
 void fix_signs(Eigen::MatrixXd& vectors) {
   for (auto column : vectors.colwise()) {
     const double half = 0.5 * column.cwiseAbs().maxCoeff();
@@ -62,7 +62,7 @@ void fix_signs(Eigen::MatrixXd& vectors) {
   }
 }
 
-// The norm of K in the sense that no |K x| exceeds it times |x|.
+// An upper bound of the 2-norm of K.
 double largest_row_sum(const SparseMatrix& lower) {
   Eigen::VectorXd sums = Eigen::VectorXd::Zero(lower.rows());
   for (Eigen::Index column = 0; column < lower.outerSize(); ++column) {
@@ -80,9 +80,9 @@ struct Residual {
   bool is_small() const { return found <= allowed; }
 };
 
-// |K x - w² M x| relative to the forces that it is the difference of; what is allowed grows with
-// what rounding leaves there: the stiffest element over the softest mode.
-// A motion of the rigid body is left out: it has no forces to compare with.
+// |K x - w² M x| relative to |K x| + w² |M x|; the tolerance includes the rounding error, which
+// grows with the ratio of the stiffest element to the softest mode.
+// Rigid-body modes are excluded: they have no forces to compare with.
 std::vector<Residual> residuals(const Pairs& pairs, int rigid_body_modes, double rounding_n_per_m) {
   std::vector<Residual> all;
   for (Eigen::Index i = rigid_body_modes; i < pairs.values.size(); ++i) {
@@ -101,9 +101,8 @@ Pairs lowest(const Pairs& pairs, int count) {
           pairs.inertial.leftCols(count)};
 }
 
-// The modes below the shift. Where a basis of moderate size has left too much of far higher modes
-// in the lowest, subspace iteration takes it out; the guards keep modes beyond the shift, which it
-// would enlarge, from coming in.
+// The modes below the shift. If components of much higher modes remain in the lowest, subspace
+// iteration removes them; the guard vectors suppress modes above the shift, which it would amplify.
 Pairs modes_below_shift(const StiffnessAndMass& matrices, const ShiftedFactor& factor, int count,
                         double rounding_n_per_m, const ProgressHook& progress) {
   const RitzVectors ritz = eigenvectors_below_shift(matrices, factor, count, progress);
@@ -135,8 +134,8 @@ double checked_worst(const std::vector<Residual>& all) {
   for (const Residual& one : all) {
     if (!one.is_small()) {
       throw ModelError{
-          fmt::format("modes: a mode has a residual of {:.1e} (at most {:.1e}): are there "
-                      "elements far flatter, or a body far softer, than the band is for?",
+          fmt::format("modes: a mode has a residual of {:.1e} (at most {:.1e}): are some "
+                      "elements too flat, or is the body too soft for the band?",
                       one.found, one.allowed)};
     }
     worst = std::max(worst, one.found);
@@ -157,7 +156,7 @@ Modes solve_modes(const StiffnessAndMass& matrices, double band_limit_hz,
   const int count = modes.counted_in_band;
   if (count > max_modes) {
     throw ModelError{
-        fmt::format("modes: {} lie below the band limit, more than the {} that a tick could carry "
+        fmt::format("modes: {} lie below the band limit, more than the {} that can be rendered "
                     "(lower band_limit_hz, or is the body too soft?)",
                     count, max_modes)};
   }

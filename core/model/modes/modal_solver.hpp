@@ -5,11 +5,12 @@
 #include "core/model/progress_hook.hpp"
 namespace tapstudy::core {
 // The natural modes of (K, M) from above zero up to a band limit: the solutions X of
-// (-w² M + K) X = 0 (paper eq. 7). A vibration x = X e^(wt) with Rayleigh damping has the same shapes
-// (eq. 4 to 6), so damping need not be known here.
+// (-w² M + K) X = 0 (paper eq. 7). A vibration x = X e^(wt) with Rayleigh damping has the same
+// shapes (eq. 4 to 6), so damping need not be known here.
 struct Modes {
   Eigen::ArrayXd omega_rad_s;  // ascending; undamped natural angular frequencies
-  Eigen::MatrixXd shapes;      // one column a mode, M-orthonormal [kg^-1/2], sign fixed: the paper's P (eq. 8)
+  Eigen::MatrixXd
+      shapes;  // one column per mode, M-orthonormal [kg^-1/2], sign fixed: the paper's P (eq. 8)
   int rigid_body_modes{0};     // at zero frequency, left out
   int counted_in_band{0};      // by the inertia of K - sigma M, rigid-body modes included
   double worst_residual{0.0};  // max over modes of |K x - w² M x| / (|K x| + w² |M x|)
@@ -17,11 +18,11 @@ struct Modes {
   double iterate_s{0.0};
 };
 
-// Every mode below band_limit_hz, no more and no less: the factors of K - sigma M at the band limit
-// prove how many there are, and serve to find them. K, M: n × n, M positive definite, K positive
-// semidefinite.
-// Throws ModelError if the solver does not converge, if a residual exceeds 1e-8 and what rounding
-// leaves, or 1e-6, if what is found disagrees with the count, or if there are more than a thousand.
+// Exactly the modes below band_limit_hz: the factorisation of K - sigma M at the band limit gives
+// their number (inertia count) and also serves to compute them. K, M: n × n, M positive definite, K
+// positive semidefinite.
+// Throws ModelError if the solver does not converge, if a residual exceeds 1e-8 plus a rounding
+// allowance, or 1e-6, if the result disagrees with the count, or for more than a thousand modes.
 Modes solve_modes(const StiffnessAndMass& matrices, double band_limit_hz,
                   const ProgressHook& progress = {});
 }  // namespace tapstudy::core

@@ -71,15 +71,15 @@ struct ShiftedFactor::Mumps {
     id.sym = symmetric_indefinite;
     id.comm_fortran = use_comm_world;
     run(job_begin);
-    id.icntl[icntl_error_stream] = 0;  // what goes wrong is said below
+    id.icntl[icntl_error_stream] = 0;  // errors are reported below
     id.icntl[icntl_diagnostics] = 0;
     id.icntl[icntl_statistics] = 0;
     id.icntl[icntl_print_level] = 0;
-    // Scotch, the default, orders by chance: factors and modes would differ in their last digits.
-    // Nested dissection takes longer than minimum fill, and pays for it by far in a large body.
+    // Scotch, the default, is randomised: factors and modes would differ in their last digits.
+    // Nested dissection takes longer than minimum fill, but pays off for large models.
     id.icntl[icntl_ordering] =
         lower.rows() < small_size ? ordering_by_minimum_fill : ordering_by_pord;
-    id.icntl[icntl_scaling] = 0;  // stiffness is of one unit throughout
+    id.icntl[icntl_scaling] = 0;  // all stiffness entries have the same unit
     if (!first_of_block.empty()) {
       std::ranges::transform(first_of_block, std::back_inserter(blocks),
                              [](int first) { return first + 1; });
@@ -107,7 +107,7 @@ struct ShiftedFactor::Mumps {
   void check(int status, const char* what) const {
     if (std::ranges::count(statuses_without_memory, status) > 0) {
       throw ModelError{
-          fmt::format("modes: {} degrees of freedom: {} found too little memory (choose larger "
+          fmt::format("modes: {} degrees of freedom: {} ran out of memory (choose larger "
                       "elements)",
                       id.n, what)};
     }
@@ -135,7 +135,7 @@ struct ShiftedFactor::Mumps {
     }
     if (status == status_singular) {
       throw ModelError{
-          "modes: a natural frequency lies on the band limit to the last digit (move "
+          "modes: a natural frequency coincides with the band limit (move "
           "band_limit_hz)"};
     }
     check(status, "factorising");

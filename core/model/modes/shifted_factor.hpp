@@ -4,14 +4,14 @@
 
 #include "core/model/elements/assembly.hpp"
 namespace tapstudy::core {
-// The symmetric factors L D L' of K - sigma M, which give two things at once.
-// The proof: by Sylvester's law of inertia as many eigenvalues of K x = lambda M x lie below sigma
-// as D has negative pivots. And the solve that an eigenvalue iteration needs.
-// By MUMPS (Amestoy et al. 2001): multifrontal, ordered against fill, pivoted where D is
-// indefinite. Its library keeps global state: not for two threads at once.
+// The symmetric factorisation L D L' of K - sigma M. It serves two purposes: by Sylvester's law of
+// inertia the number of eigenvalues of K x = lambda M x below sigma equals the number of negative
+// pivots of D; and it provides the solve required by a shift-invert eigenvalue iteration.
+// By MUMPS (Amestoy et al. 2001): multifrontal, fill-reducing ordering, pivoting for indefinite D.
+// The library keeps global state and is not thread-safe.
 class ShiftedFactor {
  public:
-  // sigma in rad²/s². Throws ModelError if the matrix has no such factors or they need more memory
+  // sigma in rad²/s². Throws ModelError if the matrix is singular or the factors need more memory
   // than the machine has.
   ShiftedFactor(const StiffnessAndMass& matrices, double sigma);
   ~ShiftedFactor();

@@ -6,8 +6,8 @@
 #include "core/geometry/triangle_tree.hpp"
 #include "core/model/shape/box.hpp"
 namespace tapstudy::core {
-// What lies within a closed surface (see check_surface), ready to be asked where it is met. Copies
-// share it.
+// A solid bounded by a closed surface (see check_surface), with its collision tree. Copies share
+// the data.
 class Solid {
  public:
   explicit Solid(TriangleSurface surface);
@@ -20,15 +20,15 @@ class Solid {
   std::string sha256_;
 };
 
-// What a body looks like: a box, of which the upper face is tapped, or any other solid, tapped
-// anywhere, in the plate frame as its file has it.
+// The geometry of a body: a box, tapped on its upper face, or any other solid, tapped anywhere,
+// with its file's coordinates taken as the plate frame.
 using Shape = std::variant<Box, Solid>;
 
 struct Bounds {
   Vec3 low_m;
   Vec3 high_m;
   Vec3 size_m() const { return high_m - low_m; }
-  // Points nearer than this are one: meshers stumble over finer detail.
+  // Points closer than this are merged: meshers fail on finer detail.
   double snap_m() const { return 1e-6 * size_m().norm(); }
 };
 Bounds bounds(const TriangleSurface& surface);
@@ -37,6 +37,6 @@ Bounds bounds(const Shape& shape);
 double volume_m3(const TriangleSurface& surface);  // negative if its normals point inward
 double volume_m3(const Shape& shape);
 
-// Equal text for shapes that are equal to the last bit.
+// Identical text for bitwise identical shapes.
 std::string content_key(const Shape& shape);
 }  // namespace tapstudy::core

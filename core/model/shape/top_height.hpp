@@ -5,11 +5,11 @@
 #include "core/geometry/triangle_tree.hpp"
 #include "core/model/shape/shape.hpp"
 namespace tapstudy::core {
-// Where a finger that comes down along -z first meets a body.
+// Where a finger descending along -z first touches a body.
 class TopHeight {
  public:
   explicit TopHeight(const Shape& shape);
-  // z in the plate frame; nothing beside the body.
+  // z in the plate frame; nullopt where the vertical line misses the body.
   std::optional<double> at_m(const Eigen::Vector2d& sideways_m) const;
 
  private:

@@ -1,6 +1,6 @@
-// How to bring any device to tapstudy: a program of its own that answers its datagrams. Copy this,
-// and put your device's calls in place of the finger below. It uses nothing of tapstudy; what is on
-// the wire stands in device/remote/packets.hpp.
+// How to connect any device to tapstudy: a separate program that replies to its datagrams. Copy
+// this, and replace the finger below by calls to your device. It uses no tapstudy code; the wire
+// format is documented in device/remote/packets.hpp.
 //
 //   bridge PORT    and in the rig   device: remote   remote: {port: PORT}
 #include <arpa/inet.h>
@@ -67,7 +67,7 @@ int main(int argc, char** argv) {
     const ssize_t count = recvfrom(descriptor, request.data(), request.size(), 0,
                                    reinterpret_cast<sockaddr*>(&from), &from_size);
     if (count != 36 || std::memcmp(request.data(), "TAPS", 4) != 0) {
-      force_n = {};  // silence, or somebody else: let go
+      force_n = {};  // timeout or foreign packet: release the force
       continue;
     }
     std::uint32_t kind = 0;

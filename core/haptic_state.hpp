@@ -47,7 +47,7 @@ struct TraceSample {
   double closure_margin;     // for string-driven devices: wrench closure if above zero
   std::uint8_t alternative;  // which of the trial's alternatives was rendered
   bool touching;
-  bool impact;     // an impact: the tick in which the plate was excited
+  bool impact;     // the tick in which the plate was excited
   bool saturated;  // the limiter changed the force
   TickFault fault;
 };

@@ -92,6 +92,11 @@ Block read_block(MapReader& reader, const Protocol& protocol) {
   block.is_practice = reader.yes_or_no("practice", false);
   if (block.task != nullptr) {
     block.task->read(reader, protocol, block);
+    if (!block.task->uses_order() && reader.has("order")) {
+      reader.reject("order", fmt::format("a {} block draws the order of its alternatives anew for "
+                                         "each participant and takes no order",
+                                         block.task->name()));
+    }
   }
   return block;
 }

@@ -88,6 +88,16 @@ core::Meshing read_mesh(MapReader& mesh) {
   return meshing;
 }
 
+// Read once, however many plates have it: what is modelled is what is stored.
+const SurfaceSource& surface_of(const std::string& file, const ReadFile& read_file,
+                                Protocol& protocol) {
+  const auto known = std::ranges::find(protocol.surfaces, file, &SurfaceSource::file);
+  if (known != protocol.surfaces.end()) {
+    return *known;
+  }
+  return protocol.surfaces.emplace_back(surface_source(file, read_file(file)));
+}
+
 // Problems of the surface itself are reported at its key; reading then continues.
 core::Shape read_surface_shape(MapReader& plate, const ReadFile& read_file, Protocol& protocol) {
   core::Shape shape = core::Box{core::Vec3::Constant(10.0)};  // placeholder until read
@@ -95,14 +105,10 @@ core::Shape read_surface_shape(MapReader& plate, const ReadFile& read_file, Prot
     const std::string file = reader.text("file");
     const double metres_per_unit = reader.number("metres_per_unit", Range::positive(1000.0));
     try {
-      SurfaceSource source = surface_source(file, read_file(file));
+      const SurfaceSource& source = surface_of(file, read_file, protocol);
       core::TriangleSurface surface = read_surface(source, metres_per_unit);
       check_surface(surface);
       shape = core::Solid{std::move(surface)};
-      if (std::ranges::find(protocol.surfaces, file, &SurfaceSource::file) ==
-          protocol.surfaces.end()) {
-        protocol.surfaces.push_back(std::move(source));
-      }
     } catch (const core::InvalidInput& error) {
       reader.reject("file", error.what());
     }

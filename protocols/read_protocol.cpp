@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "core/error.hpp"
 #include "protocols/read_sections.hpp"
 #include "protocols/yaml/text_file.hpp"
 namespace tapstudy::protocols {
@@ -9,7 +10,12 @@ namespace {
 // File names are relative to the study's own file.
 ReadFile beside(const std::string& file) {
   return [directory = std::filesystem::path{file}.parent_path()](const std::string& name) {
-    return contents_of((directory / name).string(), max_surface_bytes);
+    const std::filesystem::path path = directory / name;
+    std::error_code error;
+    if (std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error)) {
+      throw core::InvalidInput{path.string() + ": cannot be read (not a file)"};
+    }
+    return contents_of(path.string(), max_surface_bytes);
   };
 }
 

@@ -18,7 +18,7 @@ struct RigText {
 class RigDevice {
  public:
   virtual ~RigDevice() = default;
-  virtual std::string_view name() const = 0;  // in rigs and stores
+  virtual std::string_view name() const = 0;  // in rigs
   // Whether it exerts force on a person's hand: then the rig must limit the hand's motion.
   virtual bool has_hardware() const = 0;
   // Reads its section of the rig, if it has one; problems go to the reader.

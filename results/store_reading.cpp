@@ -121,7 +121,8 @@ std::vector<SurfaceRow> Store::surfaces() {
   Statement row{database_, "SELECT file, sha256, size, zstd FROM surface ORDER BY file"};
   std::vector<SurfaceRow> surfaces;
   while (row.step()) {
-    const auto bytes = decompressed(row.bytes(3), static_cast<std::size_t>(row.integer(2)));
+    const auto bytes = decompressed(row.bytes(3), static_cast<std::size_t>(row.integer(2)),
+                                    fmt::format("{}: surface '{}'", database_.file(), row.text(0)));
     std::string text(bytes.size(), '\0');
     std::ranges::transform(bytes, text.begin(),
                            [](std::byte byte) { return std::to_integer<char>(byte); });
@@ -136,7 +137,9 @@ std::vector<core::TraceSample> Store::trace(std::int64_t trial_id) {
   row.bind(trial_id);
   std::vector<core::TraceSample> samples;
   while (row.step()) {
-    const auto chunk = decode_trace(row.bytes(1), static_cast<std::size_t>(row.integer(0)));
+    const auto chunk =
+        decode_trace(row.bytes(1), static_cast<std::size_t>(row.integer(0)),
+                     fmt::format("{}: trace of trial {}", database_.file(), trial_id));
     samples.insert(samples.end(), chunk.begin(), chunk.end());
   }
   return samples;

@@ -82,8 +82,9 @@ std::vector<std::byte> encode_trace(std::span<const TraceSample> samples) {
   return compressed(rows);
 }
 
-std::vector<TraceSample> decode_trace(std::span<const std::byte> bytes, std::size_t ticks) {
-  const std::vector<std::byte> rows = decompressed(bytes, ticks * record_bytes);
+std::vector<TraceSample> decode_trace(std::span<const std::byte> bytes, std::size_t ticks,
+                                      const std::string& what) {
+  const std::vector<std::byte> rows = decompressed(bytes, ticks * record_bytes, what);
   std::vector<Record> records(ticks);
   transpose(rows, record_bytes, static_cast<Eigen::Index>(ticks), records);
   std::vector<TraceSample> samples;

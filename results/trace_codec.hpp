@@ -1,6 +1,7 @@
 #pragma once
 #include <cstddef>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "core/haptic_state.hpp"
@@ -19,6 +20,7 @@ inline constexpr const char* trace_codec = "tapstudy-trace/2";
 // Measured on simulated and on noisy traces: 1 to 4 % larger than with prior delta coding between
 // ticks, read twice as fast; Blosc's shuffle is the same layout without the checksum.
 std::vector<std::byte> encode_trace(std::span<const core::TraceSample> samples);
-// Throws StoreError if the bytes are not `ticks` encoded samples.
-std::vector<core::TraceSample> decode_trace(std::span<const std::byte> bytes, std::size_t ticks);
+// Throws StoreError, naming `what` they are, if the bytes are not `ticks` encoded samples.
+std::vector<core::TraceSample> decode_trace(std::span<const std::byte> bytes, std::size_t ticks,
+                                            const std::string& what);
 }  // namespace tapstudy::results

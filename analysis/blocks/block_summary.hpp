@@ -48,6 +48,7 @@ class BlockSummary {
   virtual std::vector<CsvTable> tables() const = 0;
 
   std::string block;  // empty where only a table of counts is known
+  std::string task;   // likewise
   std::string question;
 };
 }  // namespace tapstudy::analysis

@@ -12,6 +12,7 @@ struct PlannedHypothesis {
 };
 struct BlockDesign {
   std::string name;
+  std::string task;
   std::string question;
   std::string statistic;  // that summarises it: a row of report/statistic.cpp
   std::vector<Item> stimuli;

@@ -6,7 +6,7 @@ namespace tapstudy::analysis {
 using Json = nlohmann::ordered_json;
 
 nlohmann::ordered_json ChoiceSummary::as_json() const {
-  Json json{{"block", block}, {"task", "choice"}};
+  Json json{{"block", block}, {"task", task}};
   json["alternatives"] = Json::array();
   for (const AlternativeResult& result : alternatives) {
     json["alternatives"].push_back({{"stimulus", result.item.name},

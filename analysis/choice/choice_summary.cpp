@@ -1,7 +1,11 @@
 #include "analysis/choice/choice_summary.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <set>
+
+#include "core/error.hpp"
 namespace tapstudy::analysis {
 std::shared_ptr<const BlockSummary> summarise_choice(const BlockDesign& design,
                                                      const BlockRows& rows) {
@@ -34,6 +38,10 @@ std::shared_ptr<const BlockSummary> summarise_choice(const BlockDesign& design,
     const auto expected = std::ranges::find_if(
         summary.alternatives,
         [&](const AlternativeResult& result) { return result.item.name == planned.stimulus; });
+    if (expected == summary.alternatives.end()) {
+      throw core::InvalidInput{fmt::format(
+          "block '{}': hypothesis '{}' names no stimulus of the block", design.name, planned.name)};
+    }
     summary.hypotheses.push_back({planned, "exact binomial, one-sided", expected->chosen, chance,
                                   binomial_p_at_least(expected->chosen, chance)});
   }

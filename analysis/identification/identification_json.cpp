@@ -17,7 +17,7 @@ Json names_of(const std::vector<Item>& items) {
 
 nlohmann::ordered_json IdentificationSummary::as_json() const {
   Json json{{"block", block},
-            {"task", "identification"},
+            {"task", task.empty() ? Json{nullptr} : Json(task)},
             {"stimuli", names_of(matrix.stimuli)},
             {"responses", names_of(matrix.responses)},
             {"counts", matrix.counts},

@@ -66,6 +66,13 @@ std::shared_ptr<const BlockSummary> summarise_identification(const BlockDesign& 
                       "nor wrong",
                       design.name, answer.participant_id, answer.number)};
     }
+    if (*answer.is_correct != (answer.response == answer.stimulus)) {
+      throw core::InvalidInput{fmt::format(
+          "block '{}': the answer of {} to trial {} is stored as {}, which a confusion "
+          "matrix of '{}' answered '{}' contradicts",
+          design.name, answer.participant_id, answer.number,
+          *answer.is_correct ? "correct" : "incorrect", answer.stimulus, answer.response)};
+    }
     matrix.add(answer.stimulus, answer.response);
     if (!accuracies.contains(answer.participant_id)) {
       order.push_back(answer.participant_id);
@@ -78,6 +85,7 @@ std::shared_ptr<const BlockSummary> summarise_identification(const BlockDesign& 
   }
   auto summary =
       std::make_shared<IdentificationSummary>(design.name, design.question, std::move(matrix));
+  summary->task = design.task;
   std::vector<Answers> all;
   for (const std::string& participant : order) {
     summary->participants.push_back({participant, accuracies[participant]});
@@ -91,7 +99,7 @@ std::shared_ptr<const BlockSummary> summarise_identification(const BlockDesign& 
   for (const PlannedHypothesis& planned : design.hypotheses) {
     summary->hypotheses.push_back(
         {planned, fmt::format("permutation within participants, {} shuffles, one-sided", shuffles),
-         summary->accuracy, matrix.chance(), p});
+         summary->accuracy, summary->matrix.chance(), p});
   }
   return summary;
 }

@@ -14,11 +14,13 @@ lapack_int as_int(Eigen::Index size) {
   return static_cast<lapack_int>(size);
 }
 
-// LAPACK: info > 0 indicates where the routine failed.
-void check(lapack_int info, const char* routine) {
+constexpr const char* eigenproblem = "modes: the dense eigenvalue solver";
+
+// LAPACK: info > 0 indicates where the routine failed, info < 0 an argument that is not a number.
+void check(lapack_int info, const char* problem, const char* routine) {
   if (info != 0) {
-    throw ModelError{fmt::format("modes: the dense eigenvalue solver failed ({} {})", routine,
-                                 static_cast<int>(info))};
+    throw ModelError{
+        fmt::format("{} failed (LAPACK {}, info {})", problem, routine, static_cast<int>(info))};
   }
 }
 }  // namespace
@@ -29,7 +31,7 @@ EigenPairs symmetric_eigenpairs(Eigen::MatrixXd A) {
   if (n > 0) {
     check(
         LAPACKE_dsyev(LAPACK_COL_MAJOR, 'V', 'L', n, pairs.vectors.data(), n, pairs.values.data()),
-        "dsyev");
+        eigenproblem, "dsyev");
   }
   return pairs;
 }
@@ -41,7 +43,7 @@ EigenPairs symmetric_eigenpairs(Eigen::MatrixXd A, Eigen::MatrixXd B) {
   if (n > 0) {
     check(LAPACKE_dsygv(LAPACK_COL_MAJOR, a_x_is_lambda_b_x, 'V', 'L', n, pairs.vectors.data(), n,
                         B.data(), n, pairs.values.data()),
-          "dsygv");
+          eigenproblem, "dsygv");
   }
   return pairs;
 }
@@ -54,7 +56,7 @@ LeastSquares least_squares(Eigen::MatrixXd A, Eigen::VectorXd b) {
   lapack_int rank = 0;
   check(LAPACKE_dgelsy(LAPACK_COL_MAJOR, rows, columns, 1, A.data(), rows, b.data(), rows,
                        pivots.data(), least_share, &rank),
-        "dgelsy");
+        "damping: the least-squares fit", "dgelsy");
   return {b.head(columns), static_cast<int>(rank)};
 }
 }  // namespace tapstudy::core

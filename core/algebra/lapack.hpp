@@ -20,5 +20,6 @@ struct LeastSquares {
   int rank{};
 };
 // A: m × n, m >= n, columns of similar norm, otherwise rank detection fails.
+// Throws ModelError if an entry is not a number.
 LeastSquares least_squares(Eigen::MatrixXd A, Eigen::VectorXd b);
 }  // namespace tapstudy::core

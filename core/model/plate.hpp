@@ -26,10 +26,10 @@ struct PlateSpec : Plate {
   double band_limit_hz{};  // > 0; modes above are left out
 };
 
-// A plate independent of Young's modulus E and density rho. Stiffness, mass and spectrum scale
-// exactly with them, so one solution for E = 1 Pa, rho = 1 kg/m³ serves every material with the
-// same Poisson's ratio: omega = kappa sqrt(E / rho), with kappa in rad/m, and mode shapes are
-// divided by sqrt(rho).
+// A body of any shape, independent of Young's modulus E and density rho. Stiffness, mass and
+// spectrum scale exactly with them, so one solution for E = 1 Pa, rho = 1 kg/m³ serves every
+// material with the same Poisson's ratio: omega = kappa sqrt(E / rho), with kappa in rad/m, and
+// mode shapes are divided by sqrt(rho).
 struct BodySpec : Plate {
   double poissons_ratio{};
   double band_limit_rad_per_m{};  // of kappa; > 0

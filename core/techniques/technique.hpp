@@ -17,7 +17,9 @@ struct Technique {
   std::string_view missing(const RenderSettings& settings) const;
 };
 
-// All techniques; a new one is a row in this table, plus a ForcePart if it adds a new force.
+// All techniques; a new one is a row in this table, plus a ForcePart if it adds a new force. A
+// force that is neither of the two in ForceParts is stored as a column of its own: ForceParts,
+// TraceSample and its codec.
 const std::vector<Technique>& techniques();
 // nullptr if there is none of that name.
 const Technique* find_technique(std::string_view name);

@@ -153,11 +153,11 @@ void HapticLoop::render(const core::HandState& hand, double elapsed_s,
   sample.sinusoid_n = rendered.parts.sinusoid_n;
   sample.touching = rendered.contact.touching;
   sample.impact = rendered.contact.impact;
-  sample.saturated = passed.was_changed;
   sample.fault = passed.fault;
   if (passed.fault != TickFault::none) {
     return;
   }
+  sample.saturated = passed.was_changed;
   sample.fault = device_.write(passed.force_n);
   sample.force_n = as_array(passed.force_n);
   sample.achieved_n = as_array(device_.detail().achieved_n);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 namespace tapstudy::device {
 using core::TickFault;
@@ -134,6 +135,9 @@ TickFault SpidarG6::read(core::HandState& hand) noexcept {
   if (!is_homed_) {
     return TickFault::not_homed;
   }
+  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+  detail_.pose_residual_m = unknown;
+  detail_.closure_margin = unknown;
   const TickFault fault = exchange();
   return fault == TickFault::none ? follow(hand) : fault;
 }

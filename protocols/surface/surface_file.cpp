@@ -5,13 +5,12 @@
 #include <CGAL/IO/OFF.h>
 #include <CGAL/IO/PLY.h>
 #include <CGAL/IO/STL.h>
-#include <CGAL/Polygon_mesh_processing/triangulate_faces.h>
-#include <CGAL/Surface_mesh.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cmath>
 #include <filesystem>
 #include <map>
 #include <sstream>
@@ -20,12 +19,13 @@
 
 #include "core/error.hpp"
 #include "core/sha256.hpp"
+#include "protocols/surface/cut_polygon.hpp"
 namespace tapstudy::protocols {
 namespace {
-using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-using Point = Kernel::Point_3;
+using Point = CGAL::Exact_predicates_inexact_constructions_kernel::Point_3;
 using Polygon = std::vector<std::size_t>;
 using Triangle = std::array<int, 3>;
+constexpr double max_coordinate_m = 1e6;
 
 struct Soup {
   std::vector<Point> points;
@@ -74,6 +74,45 @@ Soup soup_of(const SurfaceSource& source) {
   return soup;
 }
 
+// Before anything is computed from them: no product of coordinates may overflow.
+void check_points(const Soup& soup, const std::string& file, double metres_per_unit) {
+  for (const Point& p : soup.points) {
+    const double farthest_m =
+        metres_per_unit * std::max({std::abs(p.x()), std::abs(p.y()), std::abs(p.z())});
+    if (!(farthest_m <= max_coordinate_m)) {
+      throw core::InvalidInput{fmt::format(
+          "{}: a point is {:.4g} m from the origin (at most {} m; is metres_per_unit right?)", file,
+          farthest_m, max_coordinate_m)};
+    }
+  }
+}
+
+std::vector<std::array<std::size_t, 3>> triangles_of(const Polygon& polygon, const Soup& soup,
+                                                     const std::string& file,
+                                                     double metres_per_unit) {
+  if (polygon.size() == 3) {
+    return {{polygon[0], polygon[1], polygon[2]}};
+  }
+  std::vector<core::Vec3> corners_m;
+  for (const std::size_t corner : polygon) {
+    const Point& p = soup.points[corner];
+    corners_m.push_back(metres_per_unit * core::Vec3{p.x(), p.y(), p.z()});
+  }
+  auto triangles = cut_polygon(corners_m);
+  if (triangles.empty()) {
+    const core::Vec3& at = corners_m.front();
+    throw core::InvalidInput{fmt::format(
+        "{}: the face of {} corners at ({:.6g}, {:.6g}, {:.6g}) m cannot be cut into triangles "
+        "(its outline crosses or touches itself, or has no area)",
+        file, polygon.size(), at.x(), at.y(), at.z())};
+  }
+  for (auto& triangle : triangles) {
+    std::ranges::transform(triangle, triangle.begin(),
+                           [&](std::size_t corner) { return polygon[corner]; });
+  }
+  return triangles;
+}
+
 // Merges coincident points.
 class JoinedPoints {
  public:
@@ -102,37 +141,6 @@ class JoinedPoints {
   std::vector<Place> points_;
 };
 
-// By the constrained Delaunay triangulation of the polygon in its plane, which stays inside a
-// concave one.
-std::vector<std::array<std::size_t, 3>> triangles_of(const Polygon& polygon, const Soup& soup,
-                                                     const std::string& file) {
-  if (polygon.size() == 3) {
-    return {{polygon[0], polygon[1], polygon[2]}};
-  }
-  CGAL::Surface_mesh<Point> mesh;
-  std::vector<CGAL::Surface_mesh<Point>::Vertex_index> corners;
-  corners.reserve(polygon.size());
-  for (const std::size_t corner : polygon) {
-    corners.push_back(mesh.add_vertex(soup.points[corner]));
-  }
-  mesh.add_face(corners);
-  if (!CGAL::Polygon_mesh_processing::triangulate_faces(mesh)) {
-    const Point& at = soup.points[polygon.front()];
-    throw core::InvalidInput{
-        fmt::format("{}: the face of {} corners at ({}, {}, {}) cannot be triangulated", file,
-                    polygon.size(), at.x(), at.y(), at.z())};
-  }
-  std::vector<std::array<std::size_t, 3>> triangles;
-  for (const auto face : mesh.faces()) {
-    std::array<std::size_t, 3> triangle{};
-    std::size_t k = 0;
-    for (const auto corner : mesh.vertices_around_face(mesh.halfedge(face))) {
-      triangle.at(k++) = polygon.at(corner.idx());
-    }
-    triangles.push_back(triangle);
-  }
-  return triangles;
-}
 }  // namespace
 
 SurfaceSource surface_source(std::string file, std::string bytes) {
@@ -142,10 +150,11 @@ SurfaceSource surface_source(std::string file, std::string bytes) {
 
 core::TriangleSurface read_surface(const SurfaceSource& source, double metres_per_unit) {
   const Soup soup = soup_of(source);
+  check_points(soup, source.file, metres_per_unit);
   JoinedPoints points;
   std::vector<Triangle> triangles;
   for (const Polygon& polygon : soup.polygons) {
-    for (const auto& corners : triangles_of(polygon, soup, source.file)) {
+    for (const auto& corners : triangles_of(polygon, soup, source.file, metres_per_unit)) {
       Triangle triangle{};
       std::ranges::transform(corners, triangle.begin(), [&](std::size_t corner) {
         return points.number_of(soup.points[corner], metres_per_unit);

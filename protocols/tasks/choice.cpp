@@ -55,8 +55,8 @@ class Choice final : public Task {
     return std::nullopt;
   }
 
-  std::vector<std::string> remembered_plates(const Block& /*block*/,
-                                             const Simulation& simulation) const override {
+  std::vector<std::string> remembered_stimuli(const Block& /*block*/,
+                                              const Simulation& simulation) const override {
     return {simulation.observer.reference};
   }
   int visits(const Block& block, const SimulatedTapSettings& taps) const override {

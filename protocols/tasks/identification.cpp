@@ -63,8 +63,8 @@ class Identification final : public Task {
     return response == trial.stimuli.front();
   }
 
-  std::vector<std::string> remembered_plates(const Block& block,
-                                             const Simulation& /*simulation*/) const override {
+  std::vector<std::string> remembered_stimuli(const Block& block,
+                                              const Simulation& /*simulation*/) const override {
     return block.responses;
   }
   int visits(const Block& /*block*/, const SimulatedTapSettings& /*taps*/) const override {
@@ -73,9 +73,9 @@ class Identification final : public Task {
   std::size_t simulated_answer(const std::vector<Option>& options, const Simulation& /*simulation*/,
                                SimulatedTouch& touch) const override {
     touch.visit(0);
-    std::vector<std::string> plates;
-    std::ranges::transform(options, std::back_inserter(plates), &Option::name);
-    return touch.most_similar_plate(plates);
+    std::vector<std::string> stimuli;
+    std::ranges::transform(options, std::back_inserter(stimuli), &Option::name);
+    return touch.most_similar_stimulus(stimuli);
   }
 };
 }  // namespace

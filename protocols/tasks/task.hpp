@@ -46,10 +46,10 @@ class SimulatedTouch {
   virtual ~SimulatedTouch() = default;
   // Switches to an alternative, if there are several, and taps there for one visit.
   virtual void visit(std::size_t alternative) = 0;
-  // Which of these remembered plates is the first alternative most like?
-  virtual std::size_t most_similar_plate(const std::vector<std::string>& plates) = 0;
-  // Which of the alternatives is most like this remembered plate?
-  virtual std::size_t most_similar_alternative(const std::string& plate) = 0;
+  // Which of these remembered stimuli is the first alternative most like?
+  virtual std::size_t most_similar_stimulus(const std::vector<std::string>& stimuli) = 0;
+  // Which of the alternatives is most like this remembered stimulus?
+  virtual std::size_t most_similar_alternative(const std::string& stimulus) = 0;
   virtual core::Rng& rng() = 0;  // of the hand
 };
 
@@ -86,10 +86,10 @@ class Task {
   // "of 80 answers 27 must …"
   virtual std::string_view success() const = 0;
 
-  // For simulated participants: the real plates to remember, the number of visits per trial, and
-  // the decision rule, which returns the index of an option.
-  virtual std::vector<std::string> remembered_plates(const Block& block,
-                                                     const Simulation& simulation) const = 0;
+  // For simulated participants: the stimuli whose real counterparts to remember, the number of
+  // visits per trial, and the decision rule, which returns the index of an option.
+  virtual std::vector<std::string> remembered_stimuli(const Block& block,
+                                                      const Simulation& simulation) const = 0;
   virtual int visits(const Block& block, const SimulatedTapSettings& taps) const = 0;
   virtual std::size_t simulated_answer(const std::vector<Option>& options,
                                        const Simulation& simulation,

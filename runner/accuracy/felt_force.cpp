@@ -17,11 +17,6 @@ constexpr std::size_t batches = 15;
 constexpr int ticks_a_batch = 1000;
 
 // Measures the plate's vibration, regardless of the stimulus's technique.
-const core::Technique& plate_alone() {
-  static const core::Technique technique{"plate alone", "", {&core::plate_vibration}};
-  return technique;
-}
-
 // In contact from its second tick on.
 core::TapRenderer renderer_of(const core::VibratingPlate& plate, const core::Shape& shape,
                               const core::RenderSettings& settings, const Strike& strike) {
@@ -36,6 +31,11 @@ core::HandState touching(const Strike& strike) {
   return {strike.at_m - core::Vec3{0.0, 0.0, below_m}, {0.0, 0.0, -strike.speed_m_s}};
 }
 }  // namespace
+
+const core::Technique& plate_alone() {
+  static const core::Technique technique{"plate alone", "", {&core::plate_vibration}};
+  return technique;
+}
 
 Eigen::ArrayXd felt_force_n(const core::VibratingPlate& plate, const core::Shape& shape,
                             const core::RenderSettings& settings, const Strike& strike,

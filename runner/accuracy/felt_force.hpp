@@ -3,8 +3,12 @@
 
 #include "core/model/shape/shape.hpp"
 #include "core/settings/render_settings.hpp"
+#include "core/techniques/technique.hpp"
 #include "core/tick/vibrating_plate.hpp"
 namespace tapstudy::runner {
+// The plate's vibration without the decaying sinusoid, whatever the stimulus's technique.
+const core::Technique& plate_alone();
+
 // A finger that descends vertically on a point and stays there.
 struct Strike {
   core::Vec3 at_m{core::Vec3::Zero()};  // on the body's surface, plate frame

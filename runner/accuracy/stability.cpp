@@ -11,6 +11,7 @@
 #include "core/model/shape/top_height.hpp"
 #include "core/techniques/make_renderer.hpp"
 #include "device/hand/penalty_limit.hpp"
+#include "runner/accuracy/felt_force.hpp"
 #include "runner/accuracy/hand_on_plate.hpp"
 #include "runner/stimuli/model_library.hpp"
 namespace tapstudy::runner {
@@ -75,10 +76,9 @@ StabilityCase play(const std::string& property, double value, const Stage& stage
       played.words = described(built);
       plate.emplace(vibrating_plate(stage.plate.shape, std::move(built.modal)));
     }
-    const core::Technique plate_alone{"plate alone", "", {&core::plate_vibration}};
     const core::Technique penalty_alone{"penalty alone", "", {}};
     core::TapRenderer renderer =
-        core::make_renderer(plate ? plate_alone : penalty_alone, stage.rendering,
+        core::make_renderer(plate ? plate_alone() : penalty_alone, stage.rendering,
                             touched_shape(stage.plate.shape), plate ? &*plate : nullptr);
     TestTap tap = stage.tap;
     tap.z_m = core::TopHeight{stage.plate.shape}.at_m({0.0, 0.0}).value_or(0.0);

@@ -18,7 +18,8 @@ struct DeviceRequest {
 
 // A kind of device: its section of the rig (protocols::RigDevice), its detection, and how it is
 // opened. To add one: a file in this folder with its class, a row in device_table.cpp, and its
-// section of the rig's JSON schema; nothing else refers to a device by name.
+// section of the rig's JSON schema. Only what is the device's own (its calibration and the command
+// for it) refers to it by name.
 class DeviceKind : public protocols::RigDevice {
  public:
   // Throws InvalidInput if its section of the rig is implausible.
@@ -33,7 +34,8 @@ class DeviceKind : public protocols::RigDevice {
   // What is plugged in of this kind, a line each.
   virtual std::vector<std::string> listing() const { return {}; }
   // Measures the communication round trip at zero force; nullopt for a kind without a
-  // communication link. Throws DeviceError unless exactly one device is present.
+  // communication link. Throws DeviceError if none answers; of several devices
+  // the first that may be opened is measured.
   virtual std::optional<device::LatenessCount> round_trip() const { return std::nullopt; }
 };
 

@@ -140,7 +140,9 @@ class SpidarKind final : public DeviceKind {
     return lines;
   }
   std::optional<device::LatenessCount> round_trip() const override {
-    return device::probed_round_trip(device::find_only_spidar());
+    const std::vector<device::UsbListing> all = device::find_spidars();
+    const auto openable = std::ranges::find_if(all, &device::UsbListing::may_open);
+    return device::probed_round_trip(openable == all.end() ? all.front() : *openable);
   }
 
  private:

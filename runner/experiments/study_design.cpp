@@ -19,6 +19,7 @@ analysis::StudyDesign design_of(const protocols::Protocol& protocol) {
       continue;
     }
     analysis::BlockDesign part{block.name,
+                               std::string{block.task->name()},
                                block.question,
                                std::string{block.task->statistic()},
                                items(protocol, block.stimuli),

@@ -45,18 +45,18 @@ std::size_t SimulatedObserver::place_of(const FeltTap& tap) const {
   return static_cast<std::size_t>(nearest - places_m_.begin());
 }
 
-void SimulatedObserver::remember(const std::string& plate, std::span<const FeltTap> taps) {
+void SimulatedObserver::remember(const std::string& stimulus, std::span<const FeltTap> taps) {
   if (taps.empty()) {
     throw core::InvalidInput{
         fmt::format("simulation: no tap on '{}' stays in contact for the 0.16 s that feeling it "
                     "takes (raise simulation.taps.dwell_s or press_m)",
-                    plate)};
+                    stimulus)};
   }
   std::vector<std::vector<FeltTap>> at_place(places_m_.size());
   for (const FeltTap& tap : taps) {
     at_place.at(place_of(tap)).push_back(tap);
   }
-  Memory& memory = memories_[plate];
+  Memory& memory = memories_[stimulus];
   memory = {};
   for (const std::vector<FeltTap>& here : at_place) {
     memory.mean_db.push_back(mean_of(here.empty() ? taps : std::span<const FeltTap>{here}));
@@ -100,28 +100,28 @@ double SimulatedObserver::distance(const Features& difference, const Features& n
 }
 
 std::size_t SimulatedObserver::most_similar(std::span<const FeltTap> felt,
-                                            const std::vector<std::string>& plates) {
+                                            const std::vector<std::string>& stimuli) {
   if (felt.empty()) {
-    return rng_.below(static_cast<std::uint32_t>(plates.size()));
+    return rng_.below(static_cast<std::uint32_t>(stimuli.size()));
   }
   const Features blur = noise();
   Memory common;  // one scale for all candidates
-  for (const std::string& plate : plates) {
+  for (const std::string& stimulus : stimuli) {
     for (std::size_t i = 0; i < blur.size(); ++i) {
       common.variance_db2.at(i) +=
-          memories_.at(plate).variance_db2.at(i) / static_cast<double>(plates.size());
+          memories_.at(stimulus).variance_db2.at(i) / static_cast<double>(stimuli.size());
     }
   }
   std::vector<double> distances;
-  for (const std::string& plate : plates) {
-    distances.push_back(distance(difference(felt, memories_.at(plate)), blur, common));
+  for (const std::string& stimulus : stimuli) {
+    distances.push_back(distance(difference(felt, memories_.at(stimulus)), blur, common));
   }
   return index_of_least(distances);
 }
 
 std::size_t SimulatedObserver::most_similar(const std::vector<std::vector<FeltTap>>& felt,
-                                            const std::string& plate) {
-  const Memory& memory = memories_.at(plate);
+                                            const std::string& stimulus) {
+  const Memory& memory = memories_.at(stimulus);
   std::vector<double> distances;
   for (const std::vector<FeltTap>& taps : felt) {
     distances.push_back(taps.empty() ? std::numeric_limits<double>::infinity()

@@ -20,12 +20,13 @@ class SimulatedObserver {
   SimulatedObserver(std::vector<core::Vec3> places_m, double noise_db, core::Rng rng);
 
   // Places never tapped are remembered as the plate's mean. Throws InvalidInput if taps is empty.
-  void remember(const std::string& plate, std::span<const FeltTap> taps);
+  void remember(const std::string& stimulus, std::span<const FeltTap> taps);
   // Which of the remembered plates is this most like? A guess if nothing was felt.
-  std::size_t most_similar(std::span<const FeltTap> felt, const std::vector<std::string>& plates);
+  std::size_t most_similar(std::span<const FeltTap> felt, const std::vector<std::string>& stimuli);
   // Which of several felt alternatives is most like the remembered plate? One that was not felt is
   // excluded; if none was felt, a guess.
-  std::size_t most_similar(const std::vector<std::vector<FeltTap>>& felt, const std::string& plate);
+  std::size_t most_similar(const std::vector<std::vector<FeltTap>>& felt,
+                           const std::string& stimulus);
 
  private:
   struct Memory {

@@ -9,14 +9,12 @@ namespace tapstudy::runner {
 namespace {
 using core::Purpose;
 
-// The plates that must be memorised for this protocol's tasks.
-std::set<std::string> real_plates(const protocols::Protocol& protocol) {
+// The stimuli that must be memorised for this protocol's tasks.
+std::set<std::string> remembered_stimuli(const protocols::Protocol& protocol) {
   std::set<std::string> names;
   for (const protocols::Block& block : protocol.blocks) {
-    names.merge([&] {
-      const auto of_block = block.task->remembered_plates(block, protocol.simulation);
-      return std::set<std::string>{of_block.begin(), of_block.end()};
-    }());
+    const auto of_block = block.task->remembered_stimuli(block, protocol.simulation);
+    names.insert(of_block.begin(), of_block.end());
   }
   return names;
 }
@@ -40,11 +38,11 @@ class SimulatedParticipant::Touch final : public protocols::SimulatedTouch {
     const auto taps = self_.tap(exploration_, self_.protocol_.simulation.taps.taps_per_visit);
     felt_.at(alternative).insert(felt_.at(alternative).end(), taps.begin(), taps.end());
   }
-  std::size_t most_similar_plate(const std::vector<std::string>& plates) override {
-    return self_.observer_.most_similar(felt_.front(), plates);
+  std::size_t most_similar_stimulus(const std::vector<std::string>& stimuli) override {
+    return self_.observer_.most_similar(felt_.front(), stimuli);
   }
-  std::size_t most_similar_alternative(const std::string& plate) override {
-    return self_.observer_.most_similar(felt_, plate);
+  std::size_t most_similar_alternative(const std::string& stimulus) override {
+    return self_.observer_.most_similar(felt_, stimulus);
   }
   core::Rng& rng() override { return self_.hand_rng_; }
 
@@ -63,17 +61,17 @@ SimulatedParticipant::SimulatedParticipant(const protocols::Protocol& protocol,
       hand_rng_{core::derived_seed(seed, Purpose::memory)},
       observer_{aims_m(protocol, settings.placement), protocol.simulation.observer.noise_db,
                 core::Rng{core::derived_seed(seed, Purpose::observer)}} {
-  remember_real_plates(models);
+  remember_real_stimuli(models);
   hand_rng_ = core::Rng{core::derived_seed(seed, Purpose::hand)};
 }
 
-void SimulatedParticipant::remember_real_plates(ModelLibrary& models) {
+void SimulatedParticipant::remember_real_stimuli(ModelLibrary& models) {
   const protocols::Protocol reality = made_real(protocol_);
   VirtualTrialLoop world{hand_, settings_, Keep::nothing};
-  for (const std::string& plate : real_plates(protocol_)) {
-    TrialStimuli stimuli = build_trial_stimuli(reality, {plate}, models);
+  for (const std::string& stimulus : remembered_stimuli(protocol_)) {
+    TrialStimuli stimuli = build_trial_stimuli(reality, {stimulus}, models);
     world.run(stimuli.alternatives, [&](Exploration& exploration) {
-      observer_.remember(plate,
+      observer_.remember(stimulus,
                          tap(exploration, protocol_.simulation.observer.familiarisation_taps));
     });
   }

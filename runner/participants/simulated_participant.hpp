@@ -24,7 +24,7 @@ class SimulatedParticipant final : public Participant {
  private:
   class Touch;
   std::vector<FeltTap> tap(Exploration& exploration, int count);
-  void remember_real_plates(ModelLibrary& models);
+  void remember_real_stimuli(ModelLibrary& models);
 
   const protocols::Protocol& protocol_;
   device::LoopSettings settings_;

@@ -44,7 +44,7 @@ bool same_bits(double a, double b) {
 TEST_CASE("a trace comes back to the last bit, NaN and denormals included", "[results][codec]") {
   const std::size_t count = GENERATE(0U, 1U, 2U, 4096U, 5000U);
   const auto samples = wild_samples(count);
-  const auto decoded = results::decode_trace(results::encode_trace(samples), count);
+  const auto decoded = results::decode_trace(results::encode_trace(samples), count, "a trace");
   REQUIRE(decoded.size() == count);
   for (std::size_t i = 0; i < count; ++i) {
     CHECK(decoded[i].t_ns == samples[i].t_ns);
@@ -70,11 +70,11 @@ TEST_CASE("a trace comes back to the last bit, NaN and denormals included", "[re
 
 TEST_CASE("bytes that are no trace are refused", "[results][codec]") {
   auto bytes = results::encode_trace(wild_samples(100));
-  CHECK_THROWS_AS(results::decode_trace(bytes, 99), results::StoreError);
-  CHECK_THROWS_AS(results::decode_trace(bytes, 101), results::StoreError);
-  CHECK_THROWS_AS(results::decode_trace(bytes, 1'000'000'000'000), results::StoreError);
+  CHECK_THROWS_AS(results::decode_trace(bytes, 99, "a trace"), results::StoreError);
+  CHECK_THROWS_AS(results::decode_trace(bytes, 101, "a trace"), results::StoreError);
+  CHECK_THROWS_AS(results::decode_trace(bytes, 1'000'000'000'000, "a trace"), results::StoreError);
   bytes.resize(bytes.size() / 2);
-  CHECK_THROWS_AS(results::decode_trace(bytes, 100), results::StoreError);
+  CHECK_THROWS_AS(results::decode_trace(bytes, 100, "a trace"), results::StoreError);
 }
 
 TEST_CASE("the collector keeps every sample and notes what happened", "[results][collector]") {
@@ -136,6 +136,6 @@ TEST_CASE("a single bit that flips in a stored trace is seen", "[results][codec]
     auto damaged = bytes;
     damaged[rng.below(static_cast<std::uint32_t>(bytes.size()))] ^=
         static_cast<std::byte>(1U << rng.below(8));
-    CHECK_THROWS_AS(results::decode_trace(damaged, 600), results::StoreError);
+    CHECK_THROWS_AS(results::decode_trace(damaged, 600, "a trace"), results::StoreError);
   }
 }

@@ -123,8 +123,14 @@ TEST_CASE("a summary counts by participant, block and task", "[analysis][summary
   const StudyDesign design{
       "study",
       "",
-      {{"tell", "Which?", "confusion", {a, b}, {a, b}, {{"h", "better than chance", ""}}},
-       {"pick", "Best?", "choices", {a, b}, {}, {{"h2", "a is best", "a"}}}}};
+      {{"tell",
+        "tell_apart",
+        "Which?",
+        "confusion",
+        {a, b},
+        {a, b},
+        {{"h", "better than chance", ""}}},
+       {"pick", "pick_one", "Best?", "choices", {a, b}, {}, {{"h2", "a is best", "a"}}}}};
   std::vector<results::AnswerRow> answers;
   const auto add = [&](const char* who, const char* block, const char* stimulus,
                        const char* response) {
@@ -153,6 +159,8 @@ TEST_CASE("a summary counts by participant, block and task", "[analysis][summary
   CHECK(is(tell.participants.at(0).accuracy, 1, 2));
   CHECK(is(tell.participants.at(1).accuracy, 1, 1));
   REQUIRE(tell.hypotheses.size() == 1);
+  CHECK(tell.hypotheses.at(0).chance == Approx(tell.matrix.chance()));
+  CHECK(tell.as_json()["task"] == "tell_apart");
   const auto& pick = dynamic_cast<const ChoiceSummary&>(*summary.blocks.at(1));
   CHECK(is(pick.alternatives.at(0).chosen, 2, 3));
   CHECK(pick.alternatives.at(0).visits == 3);

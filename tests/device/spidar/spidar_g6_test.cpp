@@ -78,7 +78,7 @@ TEST_CASE("a force on the grip displaces the hand as its muscle's spring says",
   for (int i = 0; i < 2000; ++i) {
     REQUIRE(bench.tick(force_n) == TickFault::none);
   }
-  // tensions are whole digits, 6.6 mN each, always rounded down
+  // tensions are whole DAC counts, 6.6 mN each, always rounded down
   CHECK((bench.seen.position_m - force_n / 400.0).norm() < 1e-4);
 }
 
@@ -130,6 +130,9 @@ TEST_CASE("what the board gets wrong is seen", "[device][spidar][usb]") {
   SECTION("a counter that jumps") {
     bench.hardware.jump(3, 400);
     CHECK(bench.tick({1, 0, 0}) == TickFault::counter_jumped);
+    // neither was measured in this tick
+    CHECK(std::isnan(bench.spidar.detail().pose_residual_m));
+    CHECK(std::isnan(bench.spidar.detail().closure_margin));
   }
   SECTION("a string that slips") {
     TickFault fault = TickFault::none;

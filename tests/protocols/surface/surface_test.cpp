@@ -211,6 +211,20 @@ TEST_CASE("a finger coming down meets a body at its top", "[core][surface]") {
         Approx(-0.05));
 }
 
+TEST_CASE("a face that no triangles can fill is refused, whatever its corners are",
+          "[protocols][surface]") {
+  const auto* corners = GENERATE(
+      // a face that crosses itself, one without area, one beyond all sizes, one corner twice
+      "5 1 0\n-20 -10 0\n-20 0 -10\n-20 -20 -10\n0 0 0\n10 -10 -10\n5 0 1 2 3 4\n",
+      "8 1 0\n-21.02577 2.5e-301 0\n-26.38852 7.1e-302 0\n26.204615 7.5e-301 0\n-20.5744 7.3e-301 "
+      "0\n-14.5726 9e-16 0\n-0.96541 5.2e-16 0\n-19.42 0 0\n-25.37 7.9e-16 0\n8 0 1 2 3 4 5 6 7\n",
+      "4 1 0\n0 0 0\n1e308 0 0\n1e308 1e308 0\n0 1e308 0\n4 0 1 2 3\n",
+      "4 1 0\n0 0 0\n1 0 0\n1 1 0\n0 0 0\n4 0 1 2 3\n");
+  CHECK_THROWS_AS(protocols::read_surface(
+                      protocols::surface_source("face.off", std::string{"OFF\n"} + corners), 1.0),
+                  core::InvalidInput);
+}
+
 TEST_CASE("a concave face is cut inside itself", "[protocols][surface]") {
   // a U, its ends of ten corners each fanned from any one of them would cover the gap
   const std::vector<Eigen::RowVector2d> outline{{0, 0}, {3, 0}, {3, 3}, {2, 3},

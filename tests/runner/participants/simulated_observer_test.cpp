@@ -67,7 +67,7 @@ TEST_CASE("plates without vibration cannot be told apart", "[runner][observer][s
 }
 
 TEST_CASE("shuffled labels give chance", "[runner][observer][slow]") {
-  // the answers stay, the names of what was result are dealt out anew
+  // the answers stay, but the names of the presented stimuli are permuted
   const testing::TempDirectory directory;
   const protocols::Protocol protocol = protocols::parse_protocol(with_noise("1"), "study.yaml");
   runner::simulate({"study.yaml", directory / "study", 40, 7}, protocol);

@@ -16,7 +16,7 @@
 namespace tapstudy::lab {
 using testing::Bytes;
 namespace {
-usbdevfs_urb* urb_of(UMockdevIoctlData* data) {
+usbdevfs_urb* urb_of(const ClientData& data) {
   return reinterpret_cast<usbdevfs_urb*>(data->data);
 }
 
@@ -28,28 +28,17 @@ std::string hex(const Bytes& bytes) {
   return text;
 }
 
-constexpr glong high_speed = 3;
-
-// The answer of an ioctl that asks for a value.
-template <class Value>
-void tell(UMockdevIoctlClient* client, const Value& value) {
-  UMockdevIoctlData* const data =
-      umockdev_ioctl_data_resolve(umockdev_ioctl_client_get_arg(client), 0, sizeof(Value), nullptr);
-  std::memcpy(data->data, &value, sizeof(Value));
-  umockdev_ioctl_client_complete(client, 0, 0);
-  g_object_unref(data);
+// What the argument points to, as much of it as the request's number says.
+ClientData pointed_to(UMockdevIoctlClient* client) {
+  const auto size = _IOC_SIZE(umockdev_ioctl_client_get_request(client));
+  return ClientData{size == 0 ? nullptr
+                              : umockdev_ioctl_data_resolve(umockdev_ioctl_client_get_arg(client),
+                                                            0, size, nullptr)};
 }
 
-// GET_CONFIGURATION is the one control request there is.
-void tell_configuration(UMockdevIoctlClient* client) {
-  UMockdevIoctlData* const data = umockdev_ioctl_data_resolve(
-      umockdev_ioctl_client_get_arg(client), 0, sizeof(usbdevfs_ctrltransfer), nullptr);
-  UMockdevIoctlData* const byte =
-      umockdev_ioctl_data_resolve(data, offsetof(usbdevfs_ctrltransfer, data), 1, nullptr);
-  byte->data[0] = 1;
-  umockdev_ioctl_client_complete(client, 1, 0);
-  g_object_unref(byte);
-  g_object_unref(data);
+// Makes the pointer at `offset` one to a copy in this process, which `data` keeps.
+void fetch(const ClientData& data, std::size_t offset, std::size_t size) {
+  const ClientData copy{umockdev_ioctl_data_resolve(data.get(), offset, size, nullptr)};
 }
 
 std::uintptr_t argument_of(UMockdevIoctlClient* client) {
@@ -74,13 +63,17 @@ Value value_at(pid_t process, std::uintptr_t address) {
   return value;
 }
 
-void complete_with(UMockdevIoctlClient* client, int error) {
-  umockdev_ioctl_client_complete(client, error == 0 ? 0 : -1, error);
+void complete_with(UMockdevIoctlClient* client, int result) {
+  umockdev_ioctl_client_complete(client, result < 0 ? -1 : result, result < 0 ? -result : 0);
 }
 }  // namespace
 
 MockedBoard::MockedBoard(UMockdevTestbed* bed, int address, AfterExchange after)
-    : bed_{bed}, base_{umockdev_ioctl_base_new()}, address_{address}, after_{std::move(after)} {
+    : bed_{bed},
+      base_{umockdev_ioctl_base_new()},
+      address_{address},
+      after_{std::move(after)},
+      usbfs_{*this, static_cast<unsigned>(address)} {
   g_signal_connect(base_, "handle-ioctl", G_CALLBACK(handle), this);
 }
 
@@ -109,8 +102,7 @@ void MockedBoard::plug_in() {
 void MockedBoard::unplug() {
   {
     const std::lock_guard lock{mutex_};
-    is_gone_ = true;
-    end_waiting(-ESHUTDOWN);
+    usbfs_.unplug();
   }
   umockdev_testbed_uevent(bed_, name().c_str(), "remove");
   umockdev_testbed_remove_device(bed_, name().c_str());
@@ -145,29 +137,6 @@ gboolean MockedBoard::handle(UMockdevIoctlBase* /*base*/, UMockdevIoctlClient* c
 
 bool MockedBoard::answer(UMockdevIoctlClient* client) {
   switch (static_cast<unsigned>(umockdev_ioctl_client_get_request(client))) {
-    case static_cast<unsigned>(USBDEVFS_CONNECTINFO):
-      tell(client, usbdevfs_connectinfo{static_cast<unsigned>(address_), 0});
-      return true;
-    case static_cast<unsigned>(USBDEVFS_GET_SPEED):
-      umockdev_ioctl_client_complete(client, high_speed, 0);
-      return true;
-    case static_cast<unsigned>(USBDEVFS_GET_CAPABILITIES):
-      tell(client, USBDEVFS_CAP_ZERO_PACKET | USBDEVFS_CAP_NO_PACKET_SIZE_LIM |
-                       USBDEVFS_CAP_BULK_SCATTER_GATHER | USBDEVFS_CAP_REAP_AFTER_DISCONNECT);
-      return true;
-    case static_cast<unsigned>(USBDEVFS_CONTROL):
-      tell_configuration(client);
-      return true;
-    case static_cast<unsigned>(USBDEVFS_GETDRIVER):
-      complete_with(client, ENODATA);
-      return true;
-    case static_cast<unsigned>(USBDEVFS_CLAIMINTERFACE):
-    case static_cast<unsigned>(USBDEVFS_RELEASEINTERFACE):
-    case static_cast<unsigned>(USBDEVFS_CLEAR_HALT):
-    case static_cast<unsigned>(USBDEVFS_SETINTERFACE):
-    case static_cast<unsigned>(USBDEVFS_RESET):
-      complete_with(client, is_gone_ ? ENODEV : 0);
-      return true;
     case static_cast<unsigned>(USBDEVFS_SUBMITURB):
       submit(client);
       return true;
@@ -181,11 +150,25 @@ bool MockedBoard::answer(UMockdevIoctlClient* client) {
       bulk(client);
       return true;
     default:
-      return false;
+      return pass_on(client);
   }
 }
 
-void MockedBoard::take_request(const Bytes& request) {
+bool MockedBoard::pass_on(UMockdevIoctlClient* client) {
+  const gulong request = umockdev_ioctl_client_get_request(client);
+  const ClientData data = pointed_to(client);
+  if (request == USBDEVFS_CONTROL) {
+    fetch(data, offsetof(usbdevfs_ctrltransfer, data), 1);
+  }
+  const int result = usbfs_.ioctl(request, data ? data->data : nullptr);
+  if (result == -ENOTTY) {
+    return false;  // the test bed may know it
+  }
+  complete_with(client, result);
+  return true;
+}
+
+Bytes MockedBoard::answer(std::span<const std::uint8_t> request) {
   ++log_.requests;
   bool has_force = false;
   for (std::size_t i = 2; i + 1 < std::min<std::size_t>(request.size(), 18); i += 2) {
@@ -195,103 +178,58 @@ void MockedBoard::take_request(const Bytes& request) {
   }
   log_.requests_without_force_at_the_end =
       has_force ? 0 : log_.requests_without_force_at_the_end + 1;
-  Bytes reply = hardware_.answer(request);
-  if (!reply.empty() && !is_silent_) {
-    replies_.push_back(std::move(reply));
-  }
+  return hardware_.answer(request);
+}
+
+int MockedBoard::take_plain_bulk(std::span<const std::uint8_t> request) {
+  answer(request);
+  return 0;
 }
 
 void MockedBoard::submit(UMockdevIoctlClient* client) {
-  if (is_gone_) {
-    complete_with(client, ENODEV);
-    return;
-  }
-  UMockdevIoctlData* const data = umockdev_ioctl_data_resolve(umockdev_ioctl_client_get_arg(client),
-                                                              0, sizeof(usbdevfs_urb), nullptr);
+  ClientData data = pointed_to(client);
   usbdevfs_urb* const urb = urb_of(data);
-  UMockdevIoctlData* const buffer = umockdev_ioctl_data_resolve(
-      data, offsetof(usbdevfs_urb, buffer), static_cast<gsize>(urb->buffer_length), nullptr);
-  if (urb->endpoint == testing::out_endpoint) {
-    take_request({buffer->data, buffer->data + urb->buffer_length});
-    urb->actual_length = urb->buffer_length;
-    urb->status = 0;
-    done_.push_back(data);
-  } else {
-    waiting_.push_back(data);
+  fetch(data, offsetof(usbdevfs_urb, buffer), static_cast<std::size_t>(urb->buffer_length));
+  const int result = usbfs_.ioctl(USBDEVFS_SUBMITURB, urb);
+  if (result == 0) {
+    under_way_.push_back(std::move(data));
   }
-  g_object_unref(buffer);
-  deliver();
-  complete_with(client, 0);
-}
-
-void MockedBoard::deliver() {
-  while (!waiting_.empty() && !replies_.empty()) {
-    UMockdevIoctlData* const data = waiting_.front();
-    usbdevfs_urb* const urb = urb_of(data);
-    UMockdevIoctlData* const buffer = umockdev_ioctl_data_resolve(
-        data, offsetof(usbdevfs_urb, buffer), static_cast<gsize>(urb->buffer_length), nullptr);
-    const auto length =
-        std::min(static_cast<std::size_t>(urb->buffer_length), replies_.front().size());
-    std::memcpy(buffer->data, replies_.front().data(), length);
-    g_object_unref(buffer);
-    urb->actual_length = static_cast<int>(length);
-    urb->status = 0;
-    done_.push_back(data);
-    waiting_.pop_front();
-    replies_.pop_front();
-  }
-}
-
-void MockedBoard::end_waiting(int status) {
-  while (!waiting_.empty()) {
-    urb_of(waiting_.front())->status = status;
-    urb_of(waiting_.front())->actual_length = 0;
-    done_.push_back(waiting_.front());
-    waiting_.pop_front();
-  }
+  complete_with(client, result);
 }
 
 void MockedBoard::reap(UMockdevIoctlClient* client) {
-  if (done_.empty()) {
-    complete_with(client, is_gone_ ? ENODEV : EAGAIN);
+  void* urb = nullptr;
+  if (const int result = usbfs_.ioctl(USBDEVFS_REAPURBNDELAY, &urb); result < 0) {
+    complete_with(client, result);
     // nothing is under way: the program has its reply and turns to its tick
-    exchange_that_ended_ = waiting_.empty() ? log_.requests : 0;
+    exchange_that_ended_ = usbfs_.is_waited_for() ? 0 : log_.requests;
     return;
   }
-  UMockdevIoctlData* const pointer =
-      umockdev_ioctl_data_resolve(umockdev_ioctl_client_get_arg(client), 0, sizeof(void*), nullptr);
-  umockdev_ioctl_data_set_ptr(pointer, 0, done_.front());
-  done_.pop_front();
+  const auto reaped = std::ranges::find(under_way_, urb, urb_of);
+  const ClientData pointer = pointed_to(client);
+  umockdev_ioctl_data_set_ptr(pointer.get(), 0, reaped->get());
   complete_with(client, 0);
-  g_object_unref(pointer);
+  under_way_.erase(reaped);
 }
 
+// The program knows a transfer by its address there.
 void MockedBoard::discard(UMockdevIoctlClient* client) {
-  const std::uintptr_t address = argument_of(client);
-  const auto found = std::ranges::find_if(
-      waiting_, [&](const UMockdevIoctlData* data) { return data->client_addr == address; });
-  if (found == waiting_.end()) {
-    complete_with(client, EINVAL);
-    return;
-  }
-  urb_of(*found)->status = -ENOENT;
-  urb_of(*found)->actual_length = 0;
-  done_.push_back(*found);
-  waiting_.erase(found);
-  complete_with(client, 0);
+  const auto found = std::ranges::find(under_way_, argument_of(client),
+                                       [](const ClientData& data) { return data->client_addr; });
+  complete_with(client, usbfs_.ioctl(USBDEVFS_DISCARDURB,
+                                     found == under_way_.end() ? nullptr : urb_of(*found)));
 }
 
 void MockedBoard::bulk(UMockdevIoctlClient* client) {
-  if (is_gone_) {
-    complete_with(client, ENODEV);
+  if (usbfs_.is_gone()) {
+    complete_with(client, -ENODEV);
     return;
   }
   // The test bed would look into the memory of the process that opened the node, not of its heir.
-  const auto transfer = value_at<usbdevfs_bulktransfer>(heir_, argument_of(client));
+  auto transfer = value_at<usbdevfs_bulktransfer>(heir_, argument_of(client));
   Bytes bytes(transfer.len);
   copy_from(heir_, reinterpret_cast<std::uintptr_t>(transfer.data), bytes.data(), bytes.size());
-  take_request(bytes);
-  replies_.clear();
-  umockdev_ioctl_client_complete(client, static_cast<glong>(bytes.size()), 0);
+  transfer.data = bytes.data();
+  complete_with(client, usbfs_.ioctl(USBDEVFS_BULK, &transfer));
 }
 }  // namespace tapstudy::lab

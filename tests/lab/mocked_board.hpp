@@ -4,16 +4,25 @@
 
 #include <atomic>
 #include <cstdint>
-#include <deque>
 #include <functional>
+#include <memory>
 #include <mutex>
+#include <span>
 #include <string>
+#include <vector>
 
+#include "support/usb/fake_usbfs.hpp"
 #include "support/usb/simulated_spidar.hpp"
 namespace tapstudy::lab {
-// A simulated SPIDAR-G6 at a node of a mocked kernel: what usbfs would do with its descriptor is
-// done here, in the test bed's own thread, for a program in another process.
-class MockedBoard {
+// A copy of what lies in the memory of the program.
+struct Unref {
+  void operator()(UMockdevIoctlData* data) const { g_object_unref(data); }
+};
+using ClientData = std::unique_ptr<UMockdevIoctlData, Unref>;
+
+// A simulated SPIDAR-G6 at a node of a mocked kernel: usbfs is asked here, in the test bed's own
+// thread, for a program in another process.
+class MockedBoard : private testing::UsbBoard {
  public:
   struct Log {
     int requests{0};
@@ -24,7 +33,7 @@ class MockedBoard {
   using AfterExchange = std::function<void(int exchange)>;
 
   MockedBoard(UMockdevTestbed* bed, int address, AfterExchange after);
-  ~MockedBoard();
+  ~MockedBoard() override;
   MockedBoard(const MockedBoard&) = delete;
   MockedBoard& operator=(const MockedBoard&) = delete;
   MockedBoard(MockedBoard&&) = delete;
@@ -32,7 +41,7 @@ class MockedBoard {
 
   void plug_in();
   void unplug();
-  void fall_silent() { is_silent_ = true; }
+  void fall_silent() { usbfs_.persist_in(testing::FakeUsbfs::Trouble::missing); }
   std::string node() const;
   Log log();
   // The process that inherits the node and sends what it sends by itself.
@@ -43,13 +52,13 @@ class MockedBoard {
  private:
   static gboolean handle(UMockdevIoctlBase* base, UMockdevIoctlClient* client, gpointer self);
   bool answer(UMockdevIoctlClient* client);
+  bool pass_on(UMockdevIoctlClient* client);
   void submit(UMockdevIoctlClient* client);
   void reap(UMockdevIoctlClient* client);
   void discard(UMockdevIoctlClient* client);
   void bulk(UMockdevIoctlClient* client);
-  void take_request(const testing::Bytes& request);
-  void deliver();
-  void end_waiting(int status);
+  testing::Bytes answer(std::span<const std::uint8_t> request) override;
+  int take_plain_bulk(std::span<const std::uint8_t> request) override;
   std::string name() const;
 
   UMockdevTestbed* bed_;
@@ -58,13 +67,10 @@ class MockedBoard {
   AfterExchange after_;
   std::mutex mutex_;
   testing::SimulatedSpidar hardware_;
-  std::deque<UMockdevIoctlData*> waiting_;  // transfers that wait for a reply
-  std::deque<UMockdevIoctlData*> done_;
-  std::deque<testing::Bytes> replies_;
+  testing::FakeUsbfs usbfs_;
+  std::vector<ClientData> under_way_;  // transfers that were submitted and not reaped
   Log log_;
   int exchange_that_ended_{0};
   std::atomic<pid_t> heir_{-1};
-  bool is_gone_{false};
-  bool is_silent_{false};
 };
 }  // namespace tapstudy::lab

@@ -1,40 +1,25 @@
 #pragma once
 #include <chrono>
 #include <cstdint>
-#include <deque>
 #include <functional>
 #include <mutex>
-#include <optional>
 #include <span>
 #include <vector>
 
-#include "support/usb/descriptors.hpp"
+#include "support/usb/fake_usbfs.hpp"
 
-struct usbdevfs_urb;
 struct pollfd;
 namespace tapstudy::testing {
 // A USB device of one request and one reply, behind the kernel's interface to user space. The test
 // program's own ioctl, read and poll answer for its descriptor; libusb above them is the real one.
-class FakeBus {
+class FakeBus : private UsbBoard {
  public:
-  // What becomes of one exchange.
-  enum class Trouble {
-    none,
-    late,          // the reply comes after `delay`
-    missing,       // there is no reply
-    short_reply,   // half of one
-    stalled,       // -EPIPE
-    protocol,      // -EPROTO
-    overflow,      // -EOVERFLOW
-    stale,         // the reply before once more
-    unplugged,     // while the reply is waited for
-    not_accepted,  // the kernel has no memory for the request
-  };
+  using Trouble = FakeUsbfs::Trouble;
   // From a request to its reply; empty: none is due.
   using Answer = std::function<Bytes(std::span<const std::uint8_t>)>;
 
   FakeBus(std::uint16_t vendor, std::uint16_t product, Answer answer);
-  ~FakeBus();
+  ~FakeBus() override;
   FakeBus(const FakeBus&) = delete;
   FakeBus& operator=(const FakeBus&) = delete;
   FakeBus(FakeBus&&) = delete;
@@ -59,40 +44,20 @@ class FakeBus {
 
  private:
   using Clock = std::chrono::steady_clock;
-  int submit(usbdevfs_urb* urb);
-  int take_request(usbdevfs_urb* urb);
-  void answer(Bytes reply, Trouble trouble);
-  void complete(usbdevfs_urb* urb, int status, int length);
-  void deliver();
-  int reap(void** urb);
-  int discard(const void* urb);
-  void deliver_what_is_due();
-  void show_whether_done();
-  void drop_pending();
-  Trouble trouble_now();
+  Bytes answer(std::span<const std::uint8_t> request) override;
+  int take_plain_bulk(std::span<const std::uint8_t> request) override;
+  void show_news();
 
   mutable std::mutex mutex_;
   int descriptor_;
   Bytes descriptors_;
   std::size_t read_at_{0};
   Answer answer_;
+  FakeUsbfs usbfs_;
   bool is_open_{false};
-  int plain_bulk_copy_{-1};
-  bool is_gone_{false};
   bool is_blocked_{false};
-  std::deque<usbdevfs_urb*> waiting_;  // for a reply
-  std::deque<usbdevfs_urb*> done_;
-  struct Reply {
-    Bytes bytes;
-    int status{0};
-    Clock::time_point due{};
-  };
-  std::deque<Reply> replies_;
-  Bytes last_reply_;
+  int plain_bulk_copy_{-1};
   std::vector<Bytes> requests_;
   bool keeps_requests_{true};
-  Trouble planned_{Trouble::none};
-  int exchanges_until_trouble_{0};
-  std::chrono::milliseconds delay_{0};
 };
 }  // namespace tapstudy::testing

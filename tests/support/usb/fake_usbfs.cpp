@@ -1,0 +1,192 @@
+#include "support/usb/fake_usbfs.hpp"
+
+#include <linux/usbdevice_fs.h>
+#include <sys/ioctl.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <utility>
+namespace tapstudy::testing {
+namespace {
+constexpr int high_speed = 3;
+constexpr std::uint32_t capabilities = USBDEVFS_CAP_ZERO_PACKET | USBDEVFS_CAP_NO_PACKET_SIZE_LIM |
+                                       USBDEVFS_CAP_BULK_SCATTER_GATHER |
+                                       USBDEVFS_CAP_REAP_AFTER_DISCONNECT;
+
+// GET_CONFIGURATION is the one control request there is.
+int control(const usbdevfs_ctrltransfer& transfer) {
+  constexpr int get_configuration = 8;
+  if (transfer.bRequest != get_configuration) {
+    return -EPIPE;
+  }
+  *static_cast<std::uint8_t*>(transfer.data) = 1;
+  return 1;
+}
+}  // namespace
+
+void FakeUsbfs::plan(Trouble trouble, int after, std::chrono::milliseconds delay) {
+  planned_ = trouble;
+  exchanges_until_trouble_ = after;
+  delay_ = delay;
+}
+
+FakeUsbfs::Trouble FakeUsbfs::trouble_now() {
+  if (planned_ == Trouble::none || exchanges_until_trouble_-- > 0) {
+    return lasting_;
+  }
+  return std::exchange(planned_, Trouble::none);
+}
+
+void FakeUsbfs::complete(usbdevfs_urb* urb, int status, int length) {
+  urb->status = status;
+  urb->actual_length = length;
+  done_.push_back(urb);
+}
+
+void FakeUsbfs::unplug() {
+  is_gone_ = true;
+  while (!waiting_.empty()) {
+    complete(waiting_.front(), -ESHUTDOWN, 0);
+    waiting_.pop_front();
+  }
+}
+
+void FakeUsbfs::send_back(Bytes reply, Trouble trouble) {
+  Reply planned{std::move(reply)};
+  switch (trouble) {
+    case Trouble::missing:
+      return;
+    case Trouble::late:
+      planned.due = Clock::now() + delay_;
+      break;
+    case Trouble::short_reply:
+      planned.bytes.resize(planned.bytes.size() / 2);
+      break;
+    case Trouble::stalled:
+      planned.status = -EPIPE;
+      break;
+    case Trouble::protocol:
+      planned.status = -EPROTO;
+      break;
+    case Trouble::overflow:
+      planned.status = -EOVERFLOW;
+      break;
+    case Trouble::stale:
+      planned.bytes = last_reply_;
+      break;
+    case Trouble::unplugged:
+      unplug();
+      return;
+    default:
+      break;
+  }
+  if (trouble != Trouble::stale) {
+    last_reply_ = planned.bytes;
+  }
+  replies_.push_back(std::move(planned));
+}
+
+void FakeUsbfs::deliver_what_is_due() {
+  while (has_reply_under_way() && replies_.front().due <= Clock::now()) {
+    usbdevfs_urb* const urb = waiting_.front();
+    const Reply& reply = replies_.front();
+    const auto length = std::min(static_cast<std::size_t>(urb->buffer_length), reply.bytes.size());
+    std::memcpy(urb->buffer, reply.bytes.data(), length);
+    complete(urb, reply.status, reply.status == 0 ? static_cast<int>(length) : 0);
+    waiting_.pop_front();
+    replies_.pop_front();
+  }
+}
+
+int FakeUsbfs::take_request(usbdevfs_urb* urb) {
+  const Trouble trouble = trouble_now();
+  if (trouble == Trouble::not_accepted) {
+    return -ENOMEM;
+  }
+  complete(urb, 0, urb->buffer_length);
+  const std::span request{static_cast<const std::uint8_t*>(urb->buffer),
+                          static_cast<std::size_t>(urb->buffer_length)};
+  if (Bytes reply = board_.answer(request); !reply.empty()) {
+    send_back(std::move(reply), trouble);
+  }
+  return 0;
+}
+
+int FakeUsbfs::submit(usbdevfs_urb* urb) {
+  if (is_gone_) {
+    return -ENODEV;
+  }
+  int result = 0;
+  if (urb->endpoint == out_endpoint) {
+    result = take_request(urb);
+  } else {
+    waiting_.push_back(urb);
+  }
+  deliver_what_is_due();
+  return result;
+}
+
+int FakeUsbfs::reap(void** urb) {
+  deliver_what_is_due();  // not every program is woken for a late reply: some only ask again
+  if (done_.empty()) {
+    return is_gone_ ? -ENODEV : -EAGAIN;
+  }
+  *urb = done_.front();
+  done_.pop_front();
+  return 0;
+}
+
+int FakeUsbfs::discard(const void* urb) {
+  const auto found = std::ranges::find(waiting_, urb);
+  if (found == waiting_.end()) {
+    return -EINVAL;
+  }
+  complete(*found, -ENOENT, 0);
+  waiting_.erase(found);
+  return 0;
+}
+
+int FakeUsbfs::bulk(const usbdevfs_bulktransfer& transfer) {
+  if (is_gone_) {
+    return -ENODEV;
+  }
+  const int error =
+      board_.take_plain_bulk({static_cast<const std::uint8_t*>(transfer.data), transfer.len});
+  replies_.clear();  // none is left over for whoever reads next
+  return error < 0 ? error : static_cast<int>(transfer.len);
+}
+
+int FakeUsbfs::ioctl(unsigned long request, void* argument) {
+  switch (static_cast<unsigned>(request)) {
+    case static_cast<unsigned>(USBDEVFS_CONNECTINFO):
+      *static_cast<usbdevfs_connectinfo*>(argument) = {address_, 0};
+      return 0;
+    case static_cast<unsigned>(USBDEVFS_GET_SPEED):
+      return high_speed;
+    case static_cast<unsigned>(USBDEVFS_GET_CAPABILITIES):
+      *static_cast<std::uint32_t*>(argument) = capabilities;
+      return 0;
+    case static_cast<unsigned>(USBDEVFS_CONTROL):
+      return control(*static_cast<const usbdevfs_ctrltransfer*>(argument));
+    case static_cast<unsigned>(USBDEVFS_GETDRIVER):
+      return -ENODATA;
+    case static_cast<unsigned>(USBDEVFS_CLAIMINTERFACE):
+    case static_cast<unsigned>(USBDEVFS_RELEASEINTERFACE):
+    case static_cast<unsigned>(USBDEVFS_CLEAR_HALT):
+    case static_cast<unsigned>(USBDEVFS_SETINTERFACE):
+    case static_cast<unsigned>(USBDEVFS_RESET):
+      return is_gone_ ? -ENODEV : 0;
+    case static_cast<unsigned>(USBDEVFS_SUBMITURB):
+      return submit(static_cast<usbdevfs_urb*>(argument));
+    case static_cast<unsigned>(USBDEVFS_REAPURBNDELAY):
+      return reap(static_cast<void**>(argument));
+    case static_cast<unsigned>(USBDEVFS_DISCARDURB):
+      return discard(argument);
+    case static_cast<unsigned>(USBDEVFS_BULK):
+      return bulk(*static_cast<const usbdevfs_bulktransfer*>(argument));
+    default:
+      return -ENOTTY;
+  }
+}
+}  // namespace tapstudy::testing

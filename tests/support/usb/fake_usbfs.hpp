@@ -1,0 +1,85 @@
+#pragma once
+#include <chrono>
+#include <cstdint>
+#include <deque>
+#include <span>
+
+#include "support/usb/descriptors.hpp"
+
+struct usbdevfs_bulktransfer;
+struct usbdevfs_urb;
+namespace tapstudy::testing {
+// A board of one request and one reply, seen from its two bulk endpoints.
+class UsbBoard {
+ public:
+  virtual ~UsbBoard() = default;
+  // Empty: no reply is due.
+  virtual Bytes answer(std::span<const std::uint8_t> request) = 0;
+  // A request that is sent without libusb, and whose reply nobody waits for; 0 or a negative errno.
+  virtual int take_plain_bulk(std::span<const std::uint8_t> request) = 0;
+};
+
+// What usbfs does with the descriptor of a board's node, however its ioctls get here. Every
+// transfer lies in this process's memory, with its buffer. One thread at a time.
+class FakeUsbfs {
+ public:
+  // What becomes of one exchange.
+  enum class Trouble {
+    none,
+    late,          // the reply comes after `delay`
+    missing,       // there is no reply
+    short_reply,   // half of one
+    stalled,       // -EPIPE
+    protocol,      // -EPROTO
+    overflow,      // -EOVERFLOW
+    stale,         // the reply before once more
+    unplugged,     // while the reply is waited for
+    not_accepted,  // the kernel has no memory for the request
+  };
+
+  FakeUsbfs(UsbBoard& board, unsigned address) : board_{board}, address_{address} {}
+
+  // As inside the kernel: a result, or a negative errno; -ENOTTY for what it does not know.
+  int ioctl(unsigned long request, void* argument);
+  // Trouble with the next request, or with the one after so many more.
+  void plan(Trouble trouble, int after, std::chrono::milliseconds delay);
+  // Trouble with every request that none is planned for.
+  void persist_in(Trouble trouble) { lasting_ = trouble; }
+  void unplug();
+  void deliver_what_is_due();
+
+  bool is_gone() const { return is_gone_; }
+  // What a program is woken for.
+  bool has_news() const { return !done_.empty() || is_gone_; }
+  bool is_waited_for() const { return !waiting_.empty(); }
+  bool has_reply_under_way() const { return !replies_.empty() && !waiting_.empty(); }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  int submit(usbdevfs_urb* urb);
+  int take_request(usbdevfs_urb* urb);
+  void send_back(Bytes reply, Trouble trouble);
+  void complete(usbdevfs_urb* urb, int status, int length);
+  int reap(void** urb);
+  int discard(const void* urb);
+  int bulk(const usbdevfs_bulktransfer& transfer);
+  Trouble trouble_now();
+
+  UsbBoard& board_;
+  unsigned address_;
+  bool is_gone_{false};
+  std::deque<usbdevfs_urb*> waiting_;  // for a reply
+  std::deque<usbdevfs_urb*> done_;
+  struct Reply {
+    Bytes bytes;
+    int status{0};
+    Clock::time_point due{};
+  };
+  std::deque<Reply> replies_;
+  Bytes last_reply_;
+  Trouble planned_{Trouble::none};
+  Trouble lasting_{Trouble::none};
+  int exchanges_until_trouble_{0};
+  std::chrono::milliseconds delay_{0};
+};
+}  // namespace tapstudy::testing

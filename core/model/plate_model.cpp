@@ -28,7 +28,8 @@ double kappa_rad_per_m(double frequency_hz, const Material& material) {
 }
 
 BodySpec body_of(const PlateSpec& plate) {
-  return {plate, plate.material.poissons_ratio,
+  const Plate& geometry = plate;  // what a body shares with every material
+  return {geometry, plate.material.poissons_ratio,
           kappa_rad_per_m(plate.band_limit_hz, plate.material)};
 }
 

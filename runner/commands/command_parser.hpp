@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "runner/terminal/exit_code.hpp"
-namespace CLI {
+namespace CLI {  // NOLINT(readability-identifier-naming): as the library calls itself
 class App;
 }  // namespace CLI
 namespace tapstudy::runner {

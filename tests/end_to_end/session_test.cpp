@@ -140,7 +140,7 @@ TEST_CASE("a session runs on a device that another program drives, and can be re
                                         "--out",         directory / "replayed"};
   const auto no_participant = testing::tapstudy(replay, "1\n");
   CHECK(no_participant.exit_code == 2);
-  CHECK_THAT(no_participant.standard_error, Contains("a replayed hand is no participant"));
+  CHECK_THAT(no_participant.standard_error, Contains("a replayed hand is not a participant"));
   std::vector<std::string> pilot = replay;
   pilot.emplace_back("--pilot");
   CHECK(testing::tapstudy(pilot, "1\n2\n3\n4\n1\n2\n3\n4\n").exit_code == 0);

@@ -25,7 +25,8 @@ struct SpidarOnBus {
   FakeBus bus{device::cyverse_vendor, device::sh4_product,
               [this](auto request) { return hardware.answer(request); }};
   device::UsbNode node{node_of(bus)};
-  device::LibusbPipe pipe{node, {}, std::chrono::milliseconds{3}};
+  // half of what a late reply takes, and ample for a machine that runs other tests meanwhile
+  device::LibusbPipe pipe{node, {}, std::chrono::milliseconds{25}};
   std::unique_ptr<device::SpidarBoard> board{device::board_of(device::sh4_product)};
   device::SpidarG6 spidar{pipe, *board, simulated_settings()};
 };

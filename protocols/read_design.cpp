@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/model/shape/top_height.hpp"
 #include "protocols/read_sections.hpp"

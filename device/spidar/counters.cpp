@@ -1,6 +1,7 @@
 #include "device/spidar/counters.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 namespace tapstudy::device {
 std::int64_t UnwrappedCounters::shorter_way(std::uint32_t from, std::uint32_t to) const noexcept {

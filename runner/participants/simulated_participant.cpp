@@ -1,5 +1,6 @@
 #include "runner/participants/simulated_participant.hpp"
 
+#include <algorithm>
 #include <set>
 
 #include "runner/participants/tap_drawing.hpp"

@@ -96,8 +96,10 @@ TEST_CASE("a pilot stays out of the report of real participants", "[end_to_end][
 TEST_CASE("Ctrl-C in a session keeps what was answered and says how to go on",
           "[end_to_end][threads]") {
   const TempDirectory directory;
+  // in the foreground: else the whole process group is told too, and a second signal ends at once
   const std::string script =
-      "(echo 1; sleep 30) | /usr/bin/timeout --preserve-status -s INT 3 \"$0\" run \"$1\" "
+      "(echo 1; sleep 30) | /usr/bin/timeout --foreground --preserve-status -s INT 5 \"$0\" run "
+      "\"$1\" "
       "--participant P01 --seed 5 --out \"$2\" 2>\"$3\"; echo $?; kill $(jobs -p) 2>/dev/null";
   const auto result = testing::run_program({"/bin/bash", "-c", "set -o pipefail; " + script,
                                             TAPSTUDY_PROGRAM, paper("discrimination.yaml"),

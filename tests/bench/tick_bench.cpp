@@ -7,6 +7,7 @@
 
 #include "core/rng.hpp"
 #include "core/techniques/make_renderer.hpp"
+#include "core/tick/modal_state.hpp"
 #include "support/surfaces.hpp"
 
 using namespace tapstudy::core;

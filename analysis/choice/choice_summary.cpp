@@ -12,6 +12,7 @@ std::shared_ptr<const BlockSummary> summarise_choice(const BlockDesign& design,
   const std::vector<results::AnswerRow>& answers = rows.answers;
   auto result_of_block = std::make_shared<ChoiceSummary>(design.name, design.question);
   ChoiceSummary& summary = *result_of_block;
+  summary.task = design.task;
   std::vector<int> counts;
   const int total = static_cast<int>(answers.size());
   for (const Item& item : design.stimuli) {

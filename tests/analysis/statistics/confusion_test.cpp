@@ -165,6 +165,7 @@ TEST_CASE("a summary counts by participant, block and task", "[analysis][summary
   CHECK(is(pick.alternatives.at(0).chosen, 2, 3));
   CHECK(pick.alternatives.at(0).visits == 3);
   CHECK(pick.has_repeated_choices);
+  CHECK(pick.as_json()["task"] == "pick_one");
   CHECK(pick.hypotheses.at(0).p == Approx(0.5));
   std::ostringstream text;
   write_text(text, summary);

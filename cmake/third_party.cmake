@@ -13,6 +13,12 @@ set(CGAL_DO_NOT_WARN_ABOUT_CMAKE_BUILD_TYPE TRUE)
 find_package(CGAL REQUIRED)
 
 # These come without CMake packages.
+find_path(SYSTEMD_INCLUDE systemd/sd-bus.h REQUIRED)
+find_library(SYSTEMD_LIBRARY systemd REQUIRED)
+add_library(systemd::systemd INTERFACE IMPORTED)
+target_include_directories(systemd::systemd SYSTEM INTERFACE ${SYSTEMD_INCLUDE})
+target_link_libraries(systemd::systemd INTERFACE ${SYSTEMD_LIBRARY})
+
 find_path(LIBUSB_INCLUDE libusb.h PATH_SUFFIXES libusb-1.0 REQUIRED)
 find_library(LIBUSB_LIBRARY usb-1.0 REQUIRED)
 add_library(libusb::libusb INTERFACE IMPORTED)

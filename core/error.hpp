@@ -17,4 +17,9 @@ class ModelError : public Error {
  public:
   using Error::Error;
 };
+// Damping that does not fit the modes of a body.
+class DampingError : public ModelError {
+ public:
+  using ModelError::ModelError;
+};
 }  // namespace tapstudy::core

@@ -32,7 +32,8 @@ struct ForceParts {
 
 // One row of the trace; plain bytes so it can cross the ring buffer without allocating.
 // Vectors are in the device frame; force_n is the commanded force, after the limiter, and
-// achieved_n the force that the device reports as achievable.
+// achieved_n the force that the device reports: what its strings can exert of force_n (SPIDAR), or
+// what was exerted when the position was read, so that of the tick before (remote).
 struct TraceSample {
   std::int64_t t_ns;
   std::array<double, 3> position_m;
@@ -45,11 +46,14 @@ struct TraceSample {
   std::array<double, 3> achieved_n;
   double pose_residual_m;    // for devices with redundant sensing
   double closure_margin;     // for string-driven devices: wrench closure if above zero
+  double motor_voltage_v;    // mean over the motors, where the device measures it
   std::uint8_t alternative;  // which of the trial's alternatives was rendered
   bool touching;
   bool impact;     // the tick in which the plate was excited
   bool saturated;  // the limiter changed the force
   TickFault fault;
+  std::uint8_t missed_replies;  // in a row: the position is the last one known, force fades
+  bool late;  // the tick began more than half a period late, or force rises again after a gap
 };
 static_assert(std::is_trivially_copyable_v<TraceSample>);
 }  // namespace tapstudy::core

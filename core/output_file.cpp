@@ -1,5 +1,6 @@
 #include "core/output_file.hpp"
 
+#include <algorithm>
 #include <filesystem>
 
 #include "core/error.hpp"
@@ -16,6 +17,18 @@ void write_file(const std::string& file, const Write& write) {
     std::error_code ignored;
     std::filesystem::remove(file, ignored);
     throw InvalidInput{file + ": writing failed (is the disk full?)"};
+  }
+}
+
+std::string unfinished(const std::string& file) {
+  return file + ".unfinished";
+}
+
+void finish(const std::string& file) {
+  std::error_code error;
+  std::filesystem::rename(unfinished(file), file, error);
+  if (error) {
+    throw InvalidInput{file + ": cannot be replaced: " + error.message()};
   }
 }
 }  // namespace
@@ -38,12 +51,25 @@ void write_new_file(const std::string& file, const Write& write) {
 }
 
 void replace_file(const std::string& file, const Write& write) {
-  const std::string unfinished = file + ".unfinished";
-  write_file(unfinished, write);
-  std::error_code error;
-  std::filesystem::rename(unfinished, file, error);
-  if (error) {
-    throw InvalidInput{file + ": cannot be replaced: " + error.message()};
+  write_file(unfinished(file), write);
+  finish(file);
+}
+
+void write_all_or_none(const std::vector<NewFile>& files, Existing existing) {
+  if (existing == Existing::kept) {
+    std::ranges::for_each(files, check_is_new, &NewFile::name);
   }
+  try {
+    for (const NewFile& file : files) {
+      write_file(unfinished(file.name), [&](std::ostream& out) { out << file.text; });
+    }
+  } catch (const InvalidInput&) {
+    for (const NewFile& file : files) {
+      std::error_code ignored;
+      std::filesystem::remove(unfinished(file.name), ignored);
+    }
+    throw;
+  }
+  std::ranges::for_each(files, finish, &NewFile::name);
 }
 }  // namespace tapstudy::core

@@ -3,6 +3,7 @@
 #include <functional>
 #include <ostream>
 #include <string>
+#include <vector>
 namespace tapstudy::core {
 using Write = std::function<void(std::ostream&)>;
 // Throws InvalidInput if the file already exists or its directory does not: to be called before a
@@ -13,4 +14,14 @@ void check_is_new(const std::string& file);
 void write_new_file(const std::string& file, const Write& write);
 // The same, but replaces an existing file once the new one is completely on disk.
 void replace_file(const std::string& file, const Write& write);
+
+struct NewFile {
+  std::string name;
+  std::string text;
+};
+enum class Existing { kept, replaced };
+// Writes files that belong together: all are on the disk before any appears under its name.
+// Throws InvalidInput, and leaves what was there, if one exists and is to be kept, or cannot be
+// written.
+void write_all_or_none(const std::vector<NewFile>& files, Existing existing);
 }  // namespace tapstudy::core

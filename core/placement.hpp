@@ -20,6 +20,8 @@ struct Placement {
   Vec3 origin_m{Vec3::Zero()};
   double lateral_scale{1.0};  // > 0
 
+  // Of a plate with a lateral scale of its own, `ratio` times this.
+  Placement scaled(double ratio) const noexcept { return {origin_m, ratio * lateral_scale}; }
   HandState to_plate(const HandState& hand) const noexcept {
     return {lengths_to_plate(hand.position_m - origin_m), lengths_to_plate(hand.velocity_m_s)};
   }

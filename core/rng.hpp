@@ -52,7 +52,16 @@ class Rng {
 
 // The purpose of a random stream: streams of different purposes are independent, so that a change
 // in one (a longer schedule) leaves the others (the hand's taps) unchanged.
-enum class Purpose : std::uint64_t { schedule = 1, labels, hand, observer, memory, participant };
+enum class Purpose : std::uint64_t {
+  schedule = 1,
+  labels,
+  hand,
+  observer,
+  memory,
+  participant,
+  counterbalancing,
+  person
+};
 
 // The seed of one stream of a study. Mixes by the finaliser of SplitMix64 (Steele et al. 2014).
 std::uint64_t derived_seed(std::uint64_t seed, Purpose purpose, std::uint64_t index = 0) noexcept;

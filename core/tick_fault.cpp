@@ -24,6 +24,16 @@ const char* to_text(TickFault fault) noexcept {
       return "the hand was too fast";
     case TickFault::non_finite_force:
       return "a force or position was not finite";
+    case TickFault::loop_stalled:
+      return "the loop stalled for longer than the rig allows";
+    case TickFault::suspended:
+      return "the machine was suspended";
+    case TickFault::stop_unconfirmed:
+      return "the device did not acknowledge zero force";
+    case TickFault::amplifier_off:
+      return "the motors get no voltage (is the amplifier on?)";
+    case TickFault::tensions_unsolved:
+      return "no string tensions were found for the force";
     case TickFault::too_late:
       return "the loop was late too many times in a row";
     case TickFault::stood_still:

@@ -17,7 +17,12 @@ enum class TickFault : std::uint8_t {
   too_late,           // too many late ticks in a row
   heartbeat_lost,     // the supervising thread has stalled
   stood_still,        // the whole program stalled; the guardian zeroed the force
-  guardian_lost       // the guardian process has ended
+  guardian_lost,      // the guardian process has ended, or is silent
+  loop_stalled,       // a single tick came far too late
+  suspended,          // the machine slept
+  tensions_unsolved,  // no string tensions were found for the force
+  stop_unconfirmed,   // the device did not acknowledge zero force at the end of the trial
+  amplifier_off       // the motors get no voltage although tension is commanded
 };
 // Message for the operator and the record; empty for none.
 const char* to_text(TickFault fault) noexcept;

@@ -1,22 +1,37 @@
 #pragma once
+#include <limits>
 #include <string>
 
 #include "core/error.hpp"
 #include "core/haptic_state.hpp"
+#include "device/held_hand.hpp"
 namespace tapstudy::device {
 class DeviceError : public core::Error {
  public:
   using core::Error::Error;
 };
 
+// Another program uses the device.
+class ClaimedByAnother : public DeviceError {
+ public:
+  using DeviceError::DeviceError;
+};
+
+// Whether the device acknowledged zero force. Unconfirmed: force may still be on.
+enum class StopOutcome : std::uint8_t { confirmed, unconfirmed };
+// What the operator is told of an unconfirmed stop, and never that force is off.
+inline constexpr const char* force_may_be_on = "FORCE MAY STILL BE ON: SWITCH THE AMPLIFIER OFF";
+
 // How many times zero force is sent after a fault, because a packet may be lost.
 inline constexpr int zero_force_packets = 3;
 
-// What a device reports about its last tick.
+// What a device reports about its last tick; NaN: it does not tell.
 struct DeviceDetail {
-  core::Vec3 achieved_n{core::Vec3::Zero()};
+  core::Vec3 achieved_n{core::Vec3::Constant(std::numeric_limits<double>::quiet_NaN())};
   double pose_residual_m{0.0};
   double closure_margin{1.0};
+  double motor_voltage_v{std::numeric_limits<double>::quiet_NaN()};  // mean over the motors
+  int missed_replies{0};  // in a row: the position is the last one known
 };
 
 // A force-feedback device, real or simulated, as used by the haptic thread: read() and write() are
@@ -27,14 +42,21 @@ class Device {
  public:
   virtual ~Device() = default;
   // On a fault, hand holds whatever could be read; the rest is unchanged.
-  [[nodiscard]] virtual core::TickFault read(core::HandState& hand) noexcept = 0;
+  // elapsed_s: since the read before, which speeds are computed from.
+  [[nodiscard]] virtual core::TickFault read(core::HandState& hand, double elapsed_s) noexcept = 0;
   [[nodiscard]] virtual core::TickFault write(const core::Vec3& force_n) noexcept = 0;
-  // Called before the first tick and after a pause.
-  virtual void begin() noexcept {}
+  // Called before the first tick and after a pause; may wait for some milliseconds.
+  [[nodiscard]] virtual core::TickFault begin() noexcept { return core::TickFault::none; }
   // Commands zero force; the device stays ready.
-  virtual void zero_force() noexcept { static_cast<void>(write(core::Vec3::Zero())); }
+  [[nodiscard]] virtual StopOutcome zero_force() noexcept {
+    return write(core::Vec3::Zero()) == core::TickFault::none ? StopOutcome::confirmed
+                                                              : StopOutcome::unconfirmed;
+  }
   // After a fault: sets all outputs to zero immediately, by all available means.
-  virtual void emergency_stop() noexcept { zero_force(); }
+  virtual StopOutcome emergency_stop() noexcept { return zero_force(); }
+  // Asked after a stop that was not confirmed: whether zero force has been taken since, for example
+  // by a guardian that repeats it.
+  virtual bool is_force_off() const noexcept { return false; }
   virtual DeviceDetail detail() const noexcept = 0;
   // Identification, for the session's record.
   virtual std::string description() const = 0;

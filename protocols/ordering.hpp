@@ -9,13 +9,26 @@ struct OrderedStimulus {
   std::string stimulus;
   int repetition{};  // counts the presentations of this stimulus, from 1
 };
-// A block's stimuli in the specified order, each presented `repetitions` times.
+// Which participants get which of the balanced sequences.
+struct Counterbalancing {
+  int participant_index{};  // from 0
+  std::uint64_t seed{};     // of the study
+};
+// A block's stimuli in the specified order, each presented `repetitions` times. Where constraints
+// are set, all random orders that satisfy them are equally likely. Throws InvalidInput if there are
+// none, or more than can be counted.
 std::vector<OrderedStimulus> ordered_stimuli(const Block& block, core::Rng& rng,
-                                             int participant_index);
+                                             const Counterbalancing& counterbalancing);
 
 // Row `row` of a balanced Latin square of n conditions (Williams 1949, by the construction of
 // Bradley 1958): every condition follows every other equally often. n rows if n is even, otherwise
 // 2 n.
 std::vector<int> williams_row(int n, int row);
 int williams_rows(int n);
+
+// The whole of a participant's presentations: in each repetition a row of such a square, joined so
+// that over williams_sequences(n, repetitions) participants every condition follows every other
+// equally often, across repetitions too, and none follows itself. n > 1.
+std::vector<int> williams_sequence(int n, int repetitions, int sequence);
+int williams_sequences(int n, int repetitions);
 }  // namespace tapstudy::protocols

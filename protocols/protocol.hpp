@@ -16,13 +16,25 @@
 namespace tapstudy::protocols {
 // A study as specified by its YAML file. Maps are sorted by name; lists keep the order of the file.
 
+// What is found wrong only once models are built names "file:line:column: key.path" as well.
+struct Material : core::Material {
+  std::string damping_stated_at;
+};
+// Where on a plate it is tapped, by name [m, plate frame].
+using Points = std::map<std::string, Eigen::Vector2d>;
+struct Plate : core::Plate {
+  double lateral_ratio{1.0};  // of this plate's lateral scale to the placement's
+  Points tapping_points_m;
+  std::string stated_at;
+};
+
 // A stimulus: a plate of a material, rendered by a technique. Plates and materials are shared
 // between stimuli.
 struct Stimulus {
   std::string name;
   std::string label;  // what participants read
-  std::shared_ptr<const core::Plate> plate;
-  std::shared_ptr<const core::Material> material;
+  std::shared_ptr<const Plate> plate;
+  std::shared_ptr<const Material> material;
   const core::Technique* technique{};
   std::map<std::string, std::string> factors;  // factor → level, for reports
 };
@@ -34,6 +46,43 @@ struct Stimulus {
 //   williams                   a balanced Latin square over participants (Williams 1949)
 enum class Order { listed, shuffle, shuffle_within_repetition, williams };
 
+// A trial that took too long is presented again at the end of its block, or stored without answer.
+enum class AtLimit { requeue, give_up };
+
+// How sure a participant is, asked after each answer: 1 to steps.
+struct Confidence {
+  int steps{5};
+  std::string low{"guessed"};
+  std::string high{"certain"};
+};
+
+// A rest after every so many trials of a block, ended by the participant, after min_seconds at the
+// earliest.
+struct Breaks {
+  int every_trials{};
+  double min_seconds{0.0};
+};
+
+// What a random order must satisfy; drawn uniformly from all that do.
+struct OrderConstraints {
+  int max_run{0};       // of one stimulus in a row; 0: any
+  int min_distance{1};  // in trials, between two presentations of one stimulus
+  bool are_any() const { return max_run > 0 || min_distance > 1; }
+};
+
+// Which of a participant's repeated choices is that participant's vote: what was chosen most often
+// (of equals the earliest), or the first.
+enum class Vote { majority, first };
+
+// What a participant must have done before an answer is taken, and how long it may take.
+struct ExploreLimits {
+  int min_contacts{1};        // with the plate, or each alternative
+  bool must_visit_all{true};  // every alternative, not just the one that is chosen
+  double min_seconds{0.0};
+  std::optional<double> max_seconds;
+  AtLimit at_limit{AtLimit::requeue};
+};
+
 struct Block {
   std::string name;
   const Task* task{};
@@ -42,7 +91,15 @@ struct Block {
   std::vector<std::string> responses;  // names of stimuli that can be answered, if not the above
   int repetitions{1};
   Order order{Order::shuffle};
+  OrderConstraints constraints;
   bool is_practice{false};
+  bool gives_feedback{false};  // which answer was right
+  std::string instructions;    // before its first trial; may be empty
+  std::optional<Confidence> confidence;
+  std::optional<Breaks> breaks;
+  ExploreLimits explore;
+  Vote vote{Vote::majority};
+  int max_late_impact_repeats{0};  // of a trial with an impact just after a late tick
 };
 
 // A pre-registered hypothesis; reports treat only these as planned tests.
@@ -74,11 +131,22 @@ struct SimulatedObserverSettings {
   double threshold_n{1e-4};      // force amplitudes well below are not felt
   int familiarisation_taps{24};  // on each real plate, before the study
   std::string reference;         // the stimulus taken as reality, where a task needs one
+  // Real plates have no technique: they are remembered as they vibrate by this one, the same for
+  // every stimulus of a body.
+  const core::Technique* reality{&core::natural_vibration()};
+};
+// How simulated participants differ: standard deviations between participants.
+struct SimulatedPeopleSettings {
+  double noise_spread{0.5};       // of the logarithm of the internal noise
+  double threshold_spread{0.25};  // of the logarithm of the threshold
+  double speed_spread{0.15};      // of the logarithm of the tapping speed
+  double bias{0.5};               // towards each answer, in squared units of the internal noise
 };
 struct Simulation {
   core::HandBody hand;
   SimulatedTapSettings taps;
   SimulatedObserverSettings observer;
+  SimulatedPeopleSettings people;
 };
 
 struct Protocol {
@@ -86,15 +154,17 @@ struct Protocol {
   std::vector<SurfaceSource> surfaces;  // the files that its plates name, whole
   std::string title;
   std::string notes;
+  std::string instructions;  // for participants, before the first trial; may be empty
   double band_limit_hz{};
   double rate_hz{};
   core::RenderSettings rendering;
   core::Placement placement;
-  std::map<std::string, std::shared_ptr<const core::Material>> materials;
-  std::map<std::string, std::shared_ptr<const core::Plate>> plates;
-  std::map<std::string, Eigen::Vector2d> tapping_points_m;  // plate frame
+  std::map<std::string, std::shared_ptr<const Material>> materials;
+  std::map<std::string, std::shared_ptr<const Plate>> plates;
+  Points tapping_points_m;  // plate frame, at the placement's scale
   std::vector<Stimulus> stimuli;
   std::vector<Block> blocks;
+  std::uint64_t counterbalancing_seed{1};  // which participant gets which balanced order
   std::vector<Hypothesis> hypotheses;
   Simulation simulation;
 

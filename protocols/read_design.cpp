@@ -1,4 +1,4 @@
-// Tapping points, stimuli, blocks and hypotheses: the experimental design.
+// Tapping points, stimuli and hypotheses.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -19,18 +19,16 @@ std::shared_ptr<const Value> named(const std::map<std::string, std::shared_ptr<c
   return found == all.end() ? nullptr : found->second;
 }
 
-void read_points(MapReader& top, Protocol& protocol) {
-  top.each_point("tapping_points_m", Presence::required,
-                 [&](const std::string& name, const Eigen::Vector2d& at_m) {
-                   protocol.tapping_points_m[name] = at_m;
-                 });
+// Plates of one study must not be told apart by where or how high they are touched.
+void check_points(MapReader& top, const Protocol& protocol) {
   std::map<std::string, double> height_of_point_m;
   for (const auto& [name, plate] : protocol.plates) {
     const core::TopHeight top_height{plate->shape};
-    for (const auto& [point, at_m] : protocol.tapping_points_m) {
+    for (const auto& [point, at_m] : plate->tapping_points_m) {
       const auto height_m = top_height.at_m(at_m);
       if (!height_m) {
-        top.reject("tapping_points_m", fmt::format("{} is off plate '{}'", point, name));
+        top.reject("tapping_points_m", fmt::format("{} is off plate '{}' ({})", point, name,
+                                                   top_height.outline_words(at_m)));
         continue;
       }
       const auto known = height_of_point_m.emplace(point, *height_m).first;
@@ -67,50 +65,14 @@ void check_technique(MapReader& reader, const Stimulus& stimulus, const Protocol
   }
 }
 
-std::vector<std::string> task_names() {
-  std::vector<std::string> names;
-  for (const Task* const task : tasks()) {
-    names.emplace_back(task->name());
-  }
-  return names;
-}
-
-// The keys that blocks of every task have; the task reads its own.
-Block read_block(MapReader& reader, const Protocol& protocol) {
-  Block block;
-  block.name = reader.name("name");
-  block.task = find_task(reader.word("task", "task", task_names()));
-  block.question = reader.text("question");
-  block.stimuli = reader.words("stimuli", "stimulus", stimulus_names(protocol));
-  block.repetitions = reader.integer("repetitions", 1, 1000, 1);
-  block.order =
-      reader.one_of<Order>("order",
-                           {{"shuffle", Order::shuffle},
-                            {"listed", Order::listed},
-                            {"shuffle_within_repetition", Order::shuffle_within_repetition},
-                            {"williams", Order::williams}},
-                           "shuffle");
-  block.is_practice = reader.yes_or_no("practice", false);
-  if (block.task != nullptr) {
-    block.task->read(reader, protocol, block);
-    if (!block.task->uses_order() && reader.has("order")) {
-      reader.reject("order", fmt::format("a {} block draws the order of its alternatives anew for "
-                                         "each participant and takes no order",
-                                         block.task->name()));
-    }
-  }
-  return block;
-}
-
-void check_block(MapReader& reader, const Block& block, const Protocol& protocol) {
-  if (std::ranges::find(protocol.blocks, block.name, &Block::name) != protocol.blocks.end()) {
-    reader.reject("name", fmt::format("'{}' is the name of an earlier block", block.name));
-  }
-  if (block.stimuli.size() > 26) {
-    reader.reject("stimuli", "a block has at most 26 stimuli");
-  }
-}
 }  // namespace
+
+void read_points(MapReader& top, Protocol& protocol) {
+  top.each_point("tapping_points_m", Presence::required,
+                 [&](const std::string& name, const Eigen::Vector2d& at_m) {
+                   protocol.tapping_points_m[name] = at_m;
+                 });
+}
 
 std::vector<std::string> stimulus_names(const Protocol& protocol) {
   std::vector<std::string> names;
@@ -119,7 +81,7 @@ std::vector<std::string> stimulus_names(const Protocol& protocol) {
 }
 
 void read_stimuli(MapReader& top, Protocol& protocol) {
-  read_points(top, protocol);
+  check_points(top, protocol);
   top.each("stimuli", Presence::required, [&](const std::string& name, MapReader& reader) {
     Stimulus stimulus;
     stimulus.name = name;
@@ -137,14 +99,6 @@ void read_stimuli(MapReader& top, Protocol& protocol) {
     check_factors(reader, stimulus, protocol);
     check_technique(reader, stimulus, protocol);
     protocol.stimuli.push_back(stimulus);
-  });
-}
-
-void read_blocks(MapReader& top, Protocol& protocol) {
-  top.list("blocks", Presence::optional, [&](MapReader& reader) {
-    const Block block = read_block(reader, protocol);
-    check_block(reader, block, protocol);
-    protocol.blocks.push_back(block);
   });
 }
 

@@ -1,4 +1,6 @@
 // Rendering, placement and materials.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -24,7 +26,14 @@ core::Damping read_fit(MapReader& damping) {
 
 core::Damping read_damping(MapReader& damping) {
   if (damping.has("modal_ratios")) {
-    return core::ModalDamping{damping.number_list("modal_ratios", {0.0, 100.0})};
+    core::ModalDamping modal{damping.number_list("modal_ratios", {0.0, 100.0})};
+    if (damping.has("further_ratio")) {
+      modal.further_ratio = damping.number("further_ratio", {0.0, 100.0});
+    }
+    return modal;
+  }
+  if (damping.has("ratio")) {
+    return core::ConstantDamping{damping.number("ratio", {0.0, 100.0})};
   }
   if (damping.has("measured")) {
     return read_fit(damping);
@@ -40,6 +49,12 @@ core::Damping read_damping(MapReader& damping) {
 core::Material read_material(MapReader& reader) {
   core::Material material;
   material.youngs_modulus_pa = reader.number("youngs_modulus_pa", Range::positive(1e13));
+  constexpr double softest_pa = 1e3;  // of any foam
+  if (material.youngs_modulus_pa > 0.0 && material.youngs_modulus_pa < softest_pa) {
+    reader.reject("youngs_modulus_pa",
+                  fmt::format("{} Pa is softer than any solid (did you mean {}e9?)",
+                              material.youngs_modulus_pa, material.youngs_modulus_pa));
+  }
   material.density_kg_per_m3 = reader.number("density_kg_per_m3", Range::positive(1e5));
   material.poissons_ratio = reader.number("poissons_ratio", {-1.0, 0.5, false, false});
   reader.map("damping", Presence::required,
@@ -79,6 +94,9 @@ void read_rendering(MapReader& top, Protocol& protocol) {
         "integrator", {{"exact", core::Integrator::exact}, {"newmark", core::Integrator::newmark}},
         "exact");
     read_sinusoid(rendering, settings.sinusoid);
+    if (rendering.has("sinusoid") && settings.sinusoid.frequency_hz >= protocol.rate_hz / 2.0) {
+      rendering.reject("sinusoid", "frequency_hz is not below half of rate_hz: it would alias");
+    }
   });
 }
 
@@ -94,7 +112,8 @@ void read_placement(MapReader& top, Presence presence,
 
 void read_materials(MapReader& top, Protocol& protocol) {
   top.each("materials", Presence::required, [&](const std::string& name, MapReader& reader) {
-    protocol.materials[name] = std::make_shared<const core::Material>(read_material(reader));
+    protocol.materials[name] = std::make_shared<const Material>(
+        Material{read_material(reader), reader.stated_at("damping")});
   });
 }
 }  // namespace tapstudy::protocols

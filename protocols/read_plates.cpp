@@ -1,4 +1,7 @@
 // Plates: shape, mesh and fixations.
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
 #include <algorithm>
 
 #include "core/error.hpp"
@@ -98,15 +101,35 @@ const SurfaceSource& surface_of(const std::string& file, const ReadFile& read_fi
   return protocol.surfaces.emplace_back(surface_source(file, read_file(file)));
 }
 
+// Of the file's coordinates in the plate frame: turned first, by the length of a vector about its
+// direction, then moved.
+Eigen::Isometry3d read_pose(MapReader& reader) {
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  if (reader.has("offset_m")) {
+    pose.translation() = reader.numbers("offset_m", 3, coordinate_m);
+  }
+  if (reader.has("rotation_rad")) {
+    const Eigen::Vector3d turn = reader.numbers("rotation_rad", 3, {-6.3, 6.3});
+    if (turn.norm() > 0.0) {
+      pose.linear() = Eigen::AngleAxisd{turn.norm(), turn.normalized()}.toRotationMatrix();
+    }
+  }
+  return pose;
+}
+
 // Problems of the surface itself are reported at its key; reading then continues.
 core::Shape read_surface_shape(MapReader& plate, const ReadFile& read_file, Protocol& protocol) {
   core::Shape shape = core::Box{core::Vec3::Constant(10.0)};  // placeholder until read
   plate.map("surface", Presence::required, [&](MapReader& reader) {
     const std::string file = reader.text("file");
     const double metres_per_unit = reader.number("metres_per_unit", Range::positive(1000.0));
+    const Eigen::Isometry3d pose = read_pose(reader);
     try {
       const SurfaceSource& source = surface_of(file, read_file, protocol);
       core::TriangleSurface surface = read_surface(source, metres_per_unit);
+      for (auto point : surface.points_m.rowwise()) {
+        point = (pose * point.transpose()).transpose().eval();
+      }
       check_surface(surface);
       shape = core::Solid{std::move(surface)};
     } catch (const core::InvalidInput& error) {
@@ -115,11 +138,45 @@ core::Shape read_surface_shape(MapReader& plate, const ReadFile& read_file, Prot
   });
   return shape;
 }
+void read_lateral_scale(MapReader& reader, bool is_box, const core::Placement& placement,
+                        Plate& plate) {
+  const double scale =
+      reader.number("lateral_scale", Range::positive(1000.0), placement.lateral_scale);
+  if (placement.lateral_scale > 0.0) {  // or it was rejected
+    plate.lateral_ratio = scale / placement.lateral_scale;
+  }
+  if (!is_box && scale != 1.0) {
+    reader.reject(
+        reader.has("lateral_scale") ? "lateral_scale" : "surface",
+        "needs a lateral_scale of 1, here or in placement (only a flat plate can be scaled "
+        "sideways)");
+  }
+}
+
+// The protocol's points lie at the same places of the device on every plate, unless a plate has its
+// own.
+void read_own_points(MapReader& reader, const Protocol& protocol, Plate& plate) {
+  for (const auto& [name, at_m] : protocol.tapping_points_m) {
+    plate.tapping_points_m[name] = at_m / plate.lateral_ratio;
+  }
+  reader.each_point("tapping_points_m", Presence::optional,
+                    [&](const std::string& name, const Eigen::Vector2d& at_m) {
+                      if (!plate.tapping_points_m.contains(name)) {
+                        reader.reject(
+                            "tapping_points_m",
+                            fmt::format("'{}' is not among the study's tapping points{}", name,
+                                        did_you_mean(name, keys_of(protocol.tapping_points_m))));
+                        return;
+                      }
+                      plate.tapping_points_m[name] = at_m;
+                    });
+}
 }  // namespace
 
 void read_plates(MapReader& top, Protocol& protocol, const ReadFile& read_file) {
   top.each("plates", Presence::required, [&](const std::string& name, MapReader& reader) {
-    core::Plate plate;
+    Plate plate;
+    plate.stated_at = reader.stated_at();
     const bool is_box = !reader.has("surface");
     plate.shape = is_box ? core::Shape{core::Box{reader.numbers("size_m", 3, {1e-4, 10.0})}}
                          : read_surface_shape(reader, read_file, protocol);
@@ -127,11 +184,9 @@ void read_plates(MapReader& top, Protocol& protocol, const ReadFile& read_file) 
     reader.list("fixations", Presence::required, [&](MapReader& fixation) {
       plate.fixations.push_back(read_fixation(fixation, is_box));
     });
-    if (!is_box && protocol.placement.lateral_scale != 1.0) {
-      reader.reject("surface",
-                    "needs placement.lateral_scale: 1 (only a flat plate can be scaled sideways)");
-    }
-    protocol.plates[name] = std::make_shared<const core::Plate>(std::move(plate));
+    read_lateral_scale(reader, is_box, protocol.placement, plate);
+    read_own_points(reader, protocol, plate);
+    protocol.plates[name] = std::make_shared<const Plate>(std::move(plate));
   });
 }
 }  // namespace tapstudy::protocols

@@ -27,10 +27,12 @@ Protocol parse(const std::string& text, const std::string& file, const ReadFile&
   top.word("format", "format", {"tapstudy/1"});
   protocol.title = top.text("title");
   protocol.notes = top.paragraphs("notes", "");
+  protocol.instructions = top.paragraphs("instructions", "");
   read_rendering(top, protocol);
   read_placement(top, MapReader::Presence::required,
                  [&](const core::Placement& placement) { protocol.placement = placement; });
   read_materials(top, protocol);
+  read_points(top, protocol);
   read_plates(top, protocol, read_file);
   read_stimuli(top, protocol);
   read_blocks(top, protocol);

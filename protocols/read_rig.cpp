@@ -8,7 +8,13 @@ namespace tapstudy::protocols {
 namespace {
 using Presence = MapReader::Presence;
 
+// A person's hand is on hardware; a simulated one may wait for any time.
+constexpr int max_late_ticks_of_hardware = 20;
+constexpr double max_stall_of_hardware_s = 0.01;
+
 void read_loop(MapReader& top, Rig& rig) {
+  rig.max_late_ticks_in_a_row = rig.has_hardware ? max_late_ticks_of_hardware : 0;
+  rig.max_stall_s = rig.has_hardware ? max_stall_of_hardware_s : 0.0;
   top.map("loop", Presence::optional, [&](MapReader& reader) {
     core::RealtimeRequest& realtime = rig.realtime;
     realtime.fifo_priority = reader.integer("fifo_priority", 0, 99, realtime.fifo_priority);
@@ -18,6 +24,7 @@ void read_loop(MapReader& top, Rig& rig) {
     }
     rig.max_late_ticks_in_a_row =
         reader.integer("max_late_ticks_in_a_row", 0, 1'000'000, rig.max_late_ticks_in_a_row);
+    rig.max_stall_s = reader.number("max_stall_s", {0.0, 0.1}, rig.max_stall_s);
   });
 }
 

@@ -34,9 +34,20 @@ void read_observer(MapReader& reader, const Protocol& protocol, bool needs_refer
   observer.threshold_n = reader.number("threshold_n", Range::positive(10.0), observer.threshold_n);
   observer.familiarisation_taps =
       reader.integer("familiarisation_taps", 4, 1000, observer.familiarisation_taps);
+  observer.reality =
+      core::find_technique(reader.word("reality", "technique", core::technique_names(),
+                                       std::string{core::natural_vibration().name}));
   if (needs_reference) {
     observer.reference = reader.word("reference", "stimulus", stimulus_names(protocol));
   }
+}
+
+void read_people(MapReader& reader, SimulatedPeopleSettings& people) {
+  const Range spread{0.0, 2.0};
+  people.noise_spread = reader.number("noise_spread", spread, people.noise_spread);
+  people.threshold_spread = reader.number("threshold_spread", spread, people.threshold_spread);
+  people.speed_spread = reader.number("speed_spread", spread, people.speed_spread);
+  people.bias = reader.number("bias", {0.0, 10.0}, people.bias);
 }
 }  // namespace
 
@@ -52,6 +63,8 @@ void read_simulation(MapReader& top, Protocol& protocol) {
                 [&](MapReader& reader) { read_hand(reader, simulation.hand); });
     section.map("taps", Presence::optional,
                 [&](MapReader& reader) { read_taps(reader, protocol, simulation.taps); });
+    section.map("people", Presence::optional,
+                [&](MapReader& reader) { read_people(reader, simulation.people); });
     section.map("observer", needed, [&](MapReader& reader) {
       read_observer(reader, protocol, needs_reference, simulation.observer);
     });

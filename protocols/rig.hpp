@@ -21,6 +21,7 @@ struct Rig {
   core::GateSettings gate;
   core::RealtimeRequest realtime;
   int max_late_ticks_in_a_row{0};            // 0: any
+  double max_stall_s{0.0};                   // between two ticks; 0: any
   std::optional<core::Placement> placement;  // instead of the protocol's
 };
 }  // namespace tapstudy::protocols

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <exception>
+#include <type_traits>
 #include <utility>
 namespace tapstudy::results {
 namespace {
@@ -16,15 +17,48 @@ Recorder::~Recorder() {
   arrived_.notify_all();
 }
 
-std::future<void> Recorder::save(TrialRecord record) {
-  PendingTrial trial{std::move(record), {}};
-  std::future<void> saved = trial.saved.get_future();
+namespace {
+// Any exception goes to whoever waits for what was written.
+template <class Result, class Act>
+auto promised(std::shared_ptr<std::promise<Result>> promise, Act act) {
+  return [promise = std::move(promise), act = std::move(act)](std::exception_ptr drain_failure) {
+    try {
+      if (drain_failure) {
+        std::rethrow_exception(drain_failure);
+      }
+      if constexpr (std::is_void_v<Result>) {
+        act();
+        promise->set_value();
+      } else {
+        promise->set_value(act());
+      }
+    } catch (...) {
+      promise->set_exception(std::current_exception());
+    }
+  };
+}
+}  // namespace
+
+void Recorder::queue(Write write) {
   {
     const std::lock_guard lock{mutex_};
-    pending_.push_back(std::move(trial));
+    pending_.push_back(std::move(write));
   }
   arrived_.notify_all();
-  return saved;
+}
+
+std::future<SaveOutcome> Recorder::save(std::shared_ptr<const TrialRecord> record) {
+  auto promise = std::make_shared<std::promise<SaveOutcome>>();
+  queue(
+      promised(promise, [this, record = std::move(record)] { return store_.add_trial(*record); }));
+  return promise->get_future();
+}
+
+std::future<void> Recorder::note(std::vector<SessionEventRow> events) {
+  auto promise = std::make_shared<std::promise<void>>();
+  queue(
+      promised(promise, [this, events = std::move(events)] { store_.add_session_events(events); }));
+  return promise->get_future();
 }
 
 void Recorder::follow(TraceCollector& collector) {
@@ -37,24 +71,12 @@ void Recorder::leave() {
   followed_ = nullptr;
 }
 
-void Recorder::write(PendingTrial& trial) {
-  try {
-    if (drain_failure_) {
-      std::rethrow_exception(std::exchange(drain_failure_, nullptr));
-    }
-    store_.add_trial(trial.record);
-    trial.saved.set_value();
-  } catch (...) {  // any exception goes to whoever waits for the trial
-    trial.saved.set_exception(std::current_exception());
-  }
-}
-
 void Recorder::drain_followed() noexcept {
   try {
     if (followed_ != nullptr) {
       followed_->drain();
     }
-  } catch (...) {  // delivered through the trial's promise
+  } catch (...) {  // delivered with what is written next
     drain_failure_ = std::current_exception();
     followed_ = nullptr;
   }
@@ -66,10 +88,10 @@ void Recorder::run(const std::stop_token& stop) {
     arrived_.wait_for(lock, stop, drain_every, [this] { return !pending_.empty(); });
     drain_followed();
     while (!pending_.empty()) {
-      PendingTrial trial = std::move(pending_.front());
+      const Write write = std::move(pending_.front());
       pending_.pop_front();
       lock.unlock();
-      write(trial);
+      write(std::exchange(drain_failure_, nullptr));
       lock.lock();
     }
   }

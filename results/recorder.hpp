@@ -1,7 +1,10 @@
 #pragma once
 #include <condition_variable>
 #include <deque>
+#include <exception>
+#include <functional>
 #include <future>
+#include <memory>
 #include <mutex>
 #include <stop_token>
 #include <thread>
@@ -18,29 +21,30 @@ class Recorder {
   Recorder(const Recorder& other) = delete;
   Recorder& operator=(const Recorder& other) = delete;
 
-  // Ready once the trial is committed to the database; carries the StoreError on failure.
-  std::future<void> save(TrialRecord record);
+  // Ready once the trial is stored (store.hpp); carries the StoreError on failure, after which the
+  // same record may be saved again.
+  std::future<SaveOutcome> save(std::shared_ptr<const TrialRecord> record);
+
+  // Ready once the events are stored, or carries the StoreError.
+  std::future<void> note(std::vector<SessionEventRow> events);
 
   // Drains the collector every few milliseconds, until leave() returns. If draining fails, the loop
-  // continues, dropped samples are counted, and saving the trial fails with the cause.
+  // continues, dropped samples are counted, and what is written next fails with the cause.
   void follow(TraceCollector& collector);
   void leave();
 
  private:
   void run(const std::stop_token& stop);
-  struct PendingTrial {
-    TrialRecord record;
-    std::promise<void> saved;
-  };
-  void write(PendingTrial& trial);
+  using Write = std::function<void(std::exception_ptr drain_failure)>;
+  void queue(Write write);
   void drain_followed() noexcept;
 
   Store& store_;
   std::mutex mutex_;
   std::condition_variable_any arrived_;
-  std::deque<PendingTrial> pending_;
+  std::deque<Write> pending_;
   TraceCollector* followed_{nullptr};
-  std::exception_ptr drain_failure_;  // rethrown when the next trial is saved
+  std::exception_ptr drain_failure_;  // passed to the next write
   std::jthread thread_;
 };
 }  // namespace tapstudy::results

@@ -57,11 +57,20 @@ struct ResponseRow {
   std::optional<bool> is_correct;                   // unset if no answer is correct
   double response_time_s{};                         // from the start of the trial
   std::optional<double> time_from_first_contact_s;  // unset if the plate was never touched
+  std::optional<int> confidence{};                  // from 1; unset if not asked or not given
+};
+// A session's change of state.
+struct SessionEventRow {
+  std::int64_t session_id{};
+  double t_s{};  // of a monotonic clock, from the session's begin
+  std::string state;
+  std::optional<int> number;  // of the trial; unset between trials
+  std::string detail;
 };
 struct EventRow {
   double t_s{};      // from the first tick of the trial
-  std::string kind;  // contact, impact, release, switch
-  double value{};    // impact: speed m/s; switch: position of the alternative; else 0
+  std::string kind;  // contact, impact, late_impact, release, switch
+  double value{};    // impacts: speed m/s; switch: position of the alternative; else 0
 };
 struct TraceChunk {
   std::int64_t first_tick{};
@@ -86,8 +95,14 @@ struct TrialRow {
   std::string task;
   bool is_practice{};
   int repetition{};
-  std::string status;  // answered, interrupted
+  // answered; interrupted; repeated: its answer does not count; timed_out: it had none in time
+  std::string status;
   double duration_s{};
+};
+
+struct TimedOutTrial {
+  int number{};
+  std::string block;
 };
 
 // A trial with all its data: stored atomically.
@@ -98,11 +113,13 @@ struct TrialRecord {
   std::vector<EventRow> events;
   std::vector<TraceChunk> trace;
   TickStatisticsRow statistics;
+  std::vector<SessionEventRow> session_events;  // since the last trial
 };
 
 // An answered trial, as used by analysis.
 struct AnswerRow {
   std::string participant_id;
+  int participant_index{};  // within the mode
   Mode mode{};
   std::string block;
   std::string task;
@@ -116,6 +133,9 @@ struct AnswerRow {
   std::int64_t late{};
   std::int64_t skipped{};
   std::int64_t dropped_samples{};
+  std::int64_t impacts{};
+  std::int64_t late_impacts{};  // of these; up to 5 ms after a late tick
+  std::int64_t trial_id{};      // ascends with time: a trial that was put off is answered later
 };
 
 // How long and how often each alternative was felt, where there were several.

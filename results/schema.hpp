@@ -2,7 +2,7 @@
 namespace tapstudy::results {
 // PRAGMA application_id of a study's database ("taps") and PRAGMA user_version of its schema.
 inline constexpr int application_id = 0x74617073;
-inline constexpr int schema_version = 4;
+inline constexpr int schema_version = 7;
 
 inline constexpr const char* schema_sql = R"sql(
 CREATE TABLE study (
@@ -50,7 +50,8 @@ CREATE TABLE trial (
   task TEXT NOT NULL,
   is_practice INTEGER NOT NULL,
   repetition INTEGER NOT NULL,
-  status TEXT NOT NULL CHECK (status IN ('answered', 'interrupted')),
+  status TEXT NOT NULL CHECK (status IN ('answered', 'interrupted', 'repeated',
+    'timed_out')),
   duration_s REAL NOT NULL,
   UNIQUE (session_id, number, attempt)
 ) STRICT;
@@ -67,9 +68,10 @@ CREATE TABLE response (
   response TEXT NOT NULL,
   is_correct INTEGER,               -- NULL where no answer is right
   response_time_s REAL NOT NULL,
-  time_from_first_contact_s REAL
+  time_from_first_contact_s REAL,
+  confidence INTEGER                -- from 1; NULL where it was not asked or not given
 ) STRICT;
-CREATE INDEX response_of_trial ON response (trial_id);
+CREATE UNIQUE INDEX response_of_trial ON response (trial_id);
 CREATE TABLE event (
   trial_id INTEGER NOT NULL REFERENCES trial,
   t_s REAL NOT NULL,
@@ -77,6 +79,14 @@ CREATE TABLE event (
   value REAL NOT NULL
 ) STRICT;
 CREATE INDEX event_of_trial ON event (trial_id);
+CREATE TABLE session_event (
+  session_id INTEGER NOT NULL REFERENCES session,
+  t_s REAL NOT NULL,                -- of a monotonic clock, from the session's begin
+  state TEXT NOT NULL,              -- that was entered
+  number INTEGER,                   -- of the trial; NULL between trials
+  detail TEXT NOT NULL
+) STRICT;
+CREATE INDEX event_of_session ON session_event (session_id);
 CREATE TABLE trace_chunk (
   trial_id INTEGER NOT NULL REFERENCES trial,
   first_tick INTEGER NOT NULL,

@@ -1,4 +1,5 @@
 #pragma once
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -14,21 +15,39 @@ namespace tapstudy::results {
 class Database {
  public:
   enum class Access { read, write };
+  // The file name is a path, never a URI. What is no regular file is refused.
   Database(const std::string& file, Access access);
+  // Without a file; the name is for messages.
+  static Database in_memory(const std::string& name);
   void run(const std::string& sql);
   const std::string& file() const { return file_; }
   bool is_open() const { return handle_ != nullptr; }
   bool can_write() const { return access_ == Access::write; }
   std::int64_t last_row_id() const;
+  bool is_in_transaction() const;
+  // Whether the open file is no longer the one under its name: deleted, moved or replaced.
+  bool has_moved() const;
+  // Moves the write-ahead log into the file; false if another connection prevents it.
+  bool checkpoint();
+  // Statements running longer than this from now on are interrupted.
+  void limit_time(std::chrono::seconds limit);
+  void lift_limit();
 
  private:
   friend class Statement;
   struct Close {
     void operator()(sqlite3* handle) const;
   };
+  struct Opening {
+    std::string name;  // for messages
+    std::string path;
+    int flags;
+  };
+  Database(const Opening& opening, Access access);
   std::string file_;
   Access access_;
   std::unique_ptr<sqlite3, Close> handle_;
+  std::unique_ptr<std::chrono::steady_clock::time_point> time_limit_;  // SQLite keeps its address
 };
 
 // Parameters are bound in order; columns are read by index, from 0.
@@ -68,7 +87,8 @@ class Statement {
   int bound_{0};
 };
 
-// Begins here; rolled back at the end of the scope unless committed.
+// Begins here; rolled back at the end of the scope unless committed. Within another transaction it
+// is a part of that one.
 class Transaction {
  public:
   explicit Transaction(Database& database);
@@ -79,6 +99,6 @@ class Transaction {
 
  private:
   Database* database_;
-  bool is_open_{true};
+  bool is_open_;
 };
 }  // namespace tapstudy::results

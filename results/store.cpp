@@ -7,6 +7,8 @@
 #include <chrono>
 #include <ctime>
 #include <filesystem>
+#include <map>
+#include <set>
 #include <span>
 #include <thread>
 
@@ -19,6 +21,10 @@ namespace fs = std::filesystem;
 
 std::string database_file(const std::string& directory) {
   return (fs::path{directory} / "study.db").string();
+}
+bool exists(const std::string& file) {
+  std::error_code error;
+  return fs::exists(file, error);
 }
 
 void make_directory(const std::string& directory) {
@@ -57,22 +63,56 @@ void use_write_ahead_log(Database& database) {
 
 Store Store::open_or_create(const std::string& directory, const StudyRow& study) {
   make_directory(directory);
-  Store store{Database{database_file(directory), Database::Access::write}};
+  if (!has_database(directory) && has_journal(directory)) {
+    throw StoreError{fmt::format(
+        "{}: is missing, though {} holds answers (`tapstudy report` reads them; put study.db back, "
+        "or choose another --out)",
+        database_file(directory), journal_file(directory))};
+  }
+  Store store{Database{database_file(directory), Database::Access::write}, Journal{directory}};
   if (!store.is_empty()) {
-    store.check_schema();  // before anything in it is changed
+    store.check_is_sound();  // before anything in it is changed
   }
   use_write_ahead_log(store.database_);
   store.create_or_check(study);
+  // a program killed between the two leaves the journal an answer behind
+  store.journal_->complete([&] { return store.study(); }, store.sessions(),
+                           store.answers_for_journal());
   return store;
 }
 
 Store Store::open_existing(const std::string& directory) {
-  std::error_code error;
-  if (!fs::exists(database_file(directory), error)) {
+  if (!has_database(directory)) {
     throw core::InvalidInput{fmt::format("{}: there is no study here (no study.db)", directory)};
   }
-  Store store{Database{database_file(directory), Database::Access::read}};
-  store.check_schema();
+  Store store{Database{database_file(directory), Database::Access::read}, std::nullopt};
+  store.check_is_sound();
+  return store;
+}
+
+bool Store::has_database(const std::string& directory) {
+  return exists(database_file(directory));
+}
+bool Store::has_journal(const std::string& directory) {
+  return exists(journal_file(directory));
+}
+
+Store Store::from_journal(const std::string& directory) {
+  const JournalContent content = read_journal(directory);
+  Store store{Database::in_memory(journal_file(directory)), std::nullopt};
+  store.create(content.study);
+  std::map<std::int64_t, std::int64_t> new_ids;  // sessions without an answer are not in it
+  for (SessionRow session : content.sessions) {
+    const std::int64_t id = session.id;
+    session.resumes.reset();
+    store.add_session(session);
+    new_ids[id] = session.id;
+  }
+  for (const JournalledAnswer& answer : content.answers) {
+    TrialRecord record{answer.trial, answer.alternatives, answer.response, {}, {}, {}, {}};
+    record.trial.session_id = new_ids[answer.trial.session_id];
+    store.add_trial(record);
+  }
   return store;
 }
 
@@ -92,7 +132,49 @@ bool Store::is_empty() {
   return tables.integer(0) == 0;
 }
 
+void Store::check_is_sound() {
+  constexpr std::chrono::seconds limit{10};
+  check_version();
+  database_.limit_time(limit);
+  check_schema();
+  database_.lift_limit();  // the rest takes as long as the file is large
+  Statement check{database_, "PRAGMA quick_check(1)"};
+  if (!check.step() || check.text(0) != "ok") {
+    throw StoreError{
+        fmt::format("{}: is damaged: {} (keep a copy; the answers are in "
+                    "answers.journal beside it, too)",
+                    database_.file(), check.text(0))};
+  }
+}
+
+// Triggers and views act in the name of whoever opens the database.
 void Store::check_schema() {
+  const auto objects_of = [](Database& database) {
+    Statement row{database,
+                  "SELECT type || ' ' || name || ' ' || tbl_name || ' ' || coalesce(sql, '') "
+                  "FROM sqlite_schema ORDER BY 1"};
+    std::set<std::string> objects;
+    while (row.step()) {
+      objects.insert(row.text(0));
+    }
+    return objects;
+  };
+  Database reference = Database::in_memory("the schema");
+  reference.run(schema_sql);
+  const std::set<std::string> known = objects_of(reference);
+  const std::set<std::string> found = objects_of(database_);
+  for (const std::string& object : found) {
+    if (!known.contains(object)) {
+      throw StoreError{fmt::format("{}: holds what tapstudy did not put there: {}",
+                                   database_.file(), object.substr(0, 80))};
+    }
+  }
+  if (found.size() != known.size()) {
+    throw StoreError{database_.file() + ": lacks some of tapstudy's tables"};
+  }
+}
+
+void Store::check_version() {
   if (pragma(database_, "application_id") != application_id) {
     throw StoreError{database_.file() + ": is not a tapstudy database"};
   }
@@ -107,18 +189,22 @@ void Store::check_schema() {
 void Store::create_or_check(const StudyRow& study) {
   Transaction all{database_};
   if (!is_empty()) {
-    check_schema();
-    const StudyRow present = this->study();
-    if (present.protocol_sha256 != study.protocol_sha256) {
+    check_version();
+    const StudyRow stored = study_without_surfaces();
+    if (stored.protocol_sha256 != study.protocol_sha256) {
       throw core::InvalidInput{
           fmt::format("{}: holds the study of another protocol, '{}' (choose another --out; to "
-                      "change a running "
-                      "study, start a new one)",
-                      database_.file(), present.title)};
+                      "change a running study, start a new one)",
+                      database_.file(), stored.title)};
     }
-    check_surfaces(present, study);
+    check_surfaces(study);
     return;
   }
+  create(study);
+  all.commit();
+}
+
+void Store::create(const StudyRow& study) {
   database_.run(schema_sql);
   database_.run(fmt::format("PRAGMA application_id = {}; PRAGMA user_version = {}", application_id,
                             schema_version));
@@ -132,7 +218,6 @@ void Store::create_or_check(const StudyRow& study) {
       .bind(fmt::format("{:%FT%TZ}", fmt::gmtime(std::time(nullptr))))
       .finish();
   add_surfaces(study);
-  all.commit();
 }
 
 void Store::add_surfaces(const StudyRow& study) {
@@ -148,10 +233,11 @@ void Store::add_surfaces(const StudyRow& study) {
 }
 
 // A session must not go on with another body.
-void Store::check_surfaces(const StudyRow& stored, const StudyRow& present) const {
-  for (const SurfaceRow& surface : present.surfaces) {
-    const auto before = std::ranges::find(stored.surfaces, surface.file, &SurfaceRow::file);
-    if (before == stored.surfaces.end() || before->sha256 != surface.sha256) {
+void Store::check_surfaces(const StudyRow& study) {
+  for (const SurfaceRow& surface : study.surfaces) {
+    Statement stored{database_, "SELECT sha256 FROM surface WHERE file = ?"};
+    stored.bind(surface.file);
+    if (!stored.step() || stored.text(0) != surface.sha256) {
       throw core::InvalidInput{fmt::format(
           "{}: '{}' is not the surface that the study began with (put that one back, or "
           "start a new study)",
@@ -160,12 +246,18 @@ void Store::check_surfaces(const StudyRow& stored, const StudyRow& present) cons
   }
 }
 
-StudyRow Store::study() {
+StudyRow Store::study_without_surfaces() {
   Statement row{database_,
                 "SELECT title, protocol_file, protocol_text, protocol_sha256 FROM study"};
   if (!row.step()) {
     throw StoreError{database_.file() + ": the study's own row is missing"};
   }
-  return {row.text(0), row.text(1), row.text(2), row.text(3), surfaces()};
+  return {row.text(0), row.text(1), row.text(2), row.text(3), {}};
+}
+
+StudyRow Store::study() {
+  StudyRow study = study_without_surfaces();
+  study.surfaces = surfaces();
+  return study;
 }
 }  // namespace tapstudy::results

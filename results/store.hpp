@@ -1,22 +1,36 @@
 #pragma once
+#include <array>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "core/haptic_state.hpp"
+#include "results/journal.hpp"
 #include "results/rows.hpp"
 #include "results/sqlite.hpp"
 namespace tapstudy::results {
-// The database of one study directory, DIR/study.db: WAL journal, synchronous FULL, so that
-// committed data survive a killed process and a power failure. Rows are added, never changed. Not
-// thread-safe. All functions throw StoreError.
+// Whether study.db alone holds all that was stored. Where another connection keeps it open, the
+// latest is in study.db-wal beside it.
+enum class SaveOutcome { in_one_file, partly_in_log };
+
+// The database of one study directory, DIR/study.db: write-ahead log, synchronous FULL, so that
+// committed data survive a killed process and a power failure. Rows are added, never changed.
+// Answers are recorded a second time in DIR/answers.journal (journal.hpp). Not thread-safe. All
+// functions throw StoreError.
 class Store {
  public:
-  // Opens the study of this protocol in the directory, or creates both.
+  // Opens the study of this protocol in the directory, or creates both; checks the database's
+  // integrity and that it holds tapstudy's tables and nothing else.
   // Throws InvalidInput if the directory holds the study of another protocol, or of other surfaces.
   static Store open_or_create(const std::string& directory, const StudyRow& study);
-  // For reading. Throws InvalidInput if there is no study.
+  // For reading, checked likewise. Throws InvalidInput if there is no study.
   static Store open_existing(const std::string& directory);
+  // In memory, from the journal alone: what was answered, without traces, events, statistics of
+  // ticks and trials that timed out. Throws StoreError if the journal does not hold together.
+  static Store from_journal(const std::string& directory);
+  static bool has_database(const std::string& directory);
+  static bool has_journal(const std::string& directory);
   // Leaves a writer's database as a single file, without the WAL files.
   ~Store();
   Store(Store&& other) noexcept = default;
@@ -30,33 +44,58 @@ class Store {
   // Throws InvalidInput if the participant is there already in another mode.
   int index_of(const std::string& participant_id, Mode mode);
   bool has_sessions(const std::string& participant_id);
+  // No other program adds anything while `act` runs; all that it adds is kept, or nothing.
+  void in_one_transaction(const std::function<void()>& act);
   // Adds the participant if new; fills in the row's id.
   void add_session(SessionRow& session);
-  // Throws StoreError also if the participant has answered this trial already, in any session.
-  void add_trial(const TrialRecord& record);
+  // Returns once the trial is on the disk, in the file of that name, and its answer in the journal.
+  // After a StoreError the same record may be added again: what was done of it is not repeated.
+  // Throws StoreError also if the participant has answered this trial already, in any session, and
+  // if study.db was deleted or moved; deleted, all that it held has been written to a new one.
+  SaveOutcome add_trial(const TrialRecord& record);
+
+  void add_session_events(const std::vector<SessionEventRow>& events);
 
   // The participant's latest session, to resume it.
   std::optional<SessionRow> latest_session(const std::string& participant_id);
   // Numbers of the trials that the participant has answered, in any session.
   std::vector<int> answered_trials(const std::string& participant_id);
-  // Of all participants and modes, including practice: the caller filters. Sorted by participant
-  // index and trial number; participants of different modes can have the same index.
+  // Those whose time ended without an answer, and that were not answered later.
+  std::vector<TimedOutTrial> timed_out_trials(const std::string& participant_id);
+  // Of all participants and modes, including practice: the caller filters. Sorted by mode,
+  // participant index and trial number. Who a participant is, the id says; an index is unique only
+  // within a mode.
   std::vector<AnswerRow> answers();
   std::vector<VisitRow> visits();
   std::vector<SessionRow> sessions();
+  std::vector<JournalledAnswer> answers_for_journal();
+  std::vector<std::int64_t> trials();  // the ids of all, whatever became of them
   // Every tick of a trial, in order; empty if there is no such trial.
   std::vector<core::TraceSample> trace(std::int64_t trial_id);
 
  private:
-  explicit Store(Database database) : database_{std::move(database)} {}
+  Store(Database database, std::optional<Journal> journal)
+      : database_{std::move(database)}, journal_{std::move(journal)} {}
+  void check_is_sound();
+  void check_version();
   void check_schema();
+  void create(const StudyRow& study);
+  void insert_trial(const TrialRecord& record);
+  void write_anew();
+  void check_is_in_place(const TrialRow& trial);
+  void add_to_journal(const TrialRecord& record);
+  SessionRow session_of(std::int64_t session_id);
+  std::vector<AlternativeRow> alternatives_of(std::int64_t trial_id);
+  StudyRow study_without_surfaces();
   std::vector<SurfaceRow> surfaces();
   void add_surfaces(const StudyRow& study);
-  void check_surfaces(const StudyRow& stored, const StudyRow& present) const;
+  void check_surfaces(const StudyRow& study);  // by their hashes
   bool is_empty();
   void create_or_check(const StudyRow& study);
   void check_not_answered(const TrialRow& trial);
   void add_details(std::int64_t trial_id, const TrialRecord& record);
   Database database_;
+  std::optional<Journal> journal_;
+  std::optional<std::array<std::int64_t, 3>> unconfirmed_;  // a trial that is committed, no more
 };
 }  // namespace tapstudy::results

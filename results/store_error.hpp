@@ -6,4 +6,10 @@ class StoreError : public core::Error {
  public:
   using core::Error::Error;
 };
+// The database was deleted while in use, and all that it held was written anew: nothing is lost,
+// but this session cannot go on with it.
+class StoreRewritten : public StoreError {
+ public:
+  using StoreError::StoreError;
+};
 }  // namespace tapstudy::results

@@ -6,6 +6,7 @@
 
 #include "results/compression.hpp"
 #include "results/store.hpp"
+#include "results/store_error.hpp"
 #include "results/trace_codec.hpp"
 namespace tapstudy::results {
 namespace {
@@ -52,6 +53,57 @@ std::vector<SessionRow> Store::sessions() {
   return sessions;
 }
 
+SessionRow Store::session_of(std::int64_t session_id) {
+  Statement row{database_, fmt::format("SELECT {} FROM session JOIN participant "
+                                       "USING (participant_id) WHERE session_id = ?",
+                                       session_columns)};
+  row.bind(session_id);
+  if (!row.step()) {
+    throw StoreError{fmt::format("{}: has no session {}", database_.file(), session_id)};
+  }
+  return session_from(row);
+}
+
+std::vector<JournalledAnswer> Store::answers_for_journal() {
+  Statement row{database_,
+                "SELECT trial_id, session_id, number, attempt, block, task, is_practice, "
+                "repetition, status, duration_s, response, is_correct, response_time_s, "
+                "time_from_first_contact_s, confidence FROM trial JOIN response USING (trial_id) "
+                "WHERE status = 'answered' ORDER BY trial_id"};
+  std::vector<JournalledAnswer> answers;
+  while (row.step()) {
+    JournalledAnswer answer;
+    answer.trial = {row.integer(1),
+                    static_cast<int>(row.integer(2)),
+                    static_cast<int>(row.integer(3)),
+                    row.text(4),
+                    row.text(5),
+                    row.integer(6) != 0,
+                    static_cast<int>(row.integer(7)),
+                    row.text(8),
+                    row.real(9)};
+    answer.response = {
+        row.text(10), row.is_null(11) ? std::nullopt : std::optional{row.integer(11) != 0},
+        row.real(12), row.is_null(13) ? std::nullopt : std::optional{row.real(13)},
+        row.is_null(14) ? std::nullopt : std::optional{static_cast<int>(row.integer(14))}};
+    answer.alternatives = alternatives_of(row.integer(0));
+    answers.push_back(std::move(answer));
+  }
+  return answers;
+}
+
+std::vector<AlternativeRow> Store::alternatives_of(std::int64_t trial_id) {
+  Statement row{database_,
+                "SELECT position, label, stimulus FROM alternative WHERE trial_id = ? "
+                "ORDER BY position"};
+  row.bind(trial_id);
+  std::vector<AlternativeRow> alternatives;
+  while (row.step()) {
+    alternatives.push_back({static_cast<int>(row.integer(0)), row.text(1), row.text(2)});
+  }
+  return alternatives;
+}
+
 std::optional<SessionRow> Store::latest_session(const std::string& participant_id) {
   Statement row{database_, fmt::format("SELECT {} FROM session JOIN participant "
                                        "USING (participant_id) WHERE participant_id = ? "
@@ -73,24 +125,46 @@ std::vector<int> Store::answered_trials(const std::string& participant_id) {
   return numbers;
 }
 
+std::vector<TimedOutTrial> Store::timed_out_trials(const std::string& participant_id) {
+  const std::vector<int> answered = answered_trials(participant_id);
+  Statement row{database_,
+                "SELECT DISTINCT number, block FROM trial JOIN session USING (session_id) "
+                "WHERE participant_id = ? AND status = 'timed_out' ORDER BY number"};
+  row.bind(participant_id);
+  std::vector<TimedOutTrial> trials;
+  while (row.step()) {
+    const int number = static_cast<int>(row.integer(0));
+    if (!std::ranges::binary_search(answered, number)) {
+      trials.push_back({number, row.text(1)});
+    }
+  }
+  return trials;
+}
+
 std::vector<AnswerRow> Store::answers() {
   Statement row{database_,
-                "SELECT participant_id, mode, block, task, is_practice, number, "
+                "SELECT participant_id, participant_index, mode, block, task, is_practice, number, "
                 "  CASE WHEN EXISTS (SELECT 1 FROM alternative AS second "
                 "    WHERE second.trial_id = trial.trial_id AND second.position = 1) THEN '' "
                 "  ELSE (SELECT stimulus FROM alternative "
                 "    WHERE alternative.trial_id = trial.trial_id AND position = 0) END, "
-                "  response, is_correct, response_time_s, ticks, late, skipped, dropped_samples "
+                "  response, is_correct, response_time_s, ticks, late, skipped, dropped_samples, "
+                "  (SELECT count(*) FROM event WHERE event.trial_id = trial.trial_id "
+                "    AND kind = 'impact'), "
+                "  (SELECT count(*) FROM event WHERE event.trial_id = trial.trial_id "
+                "    AND kind = 'late_impact'), "
+                "  trial_id "
                 "FROM trial JOIN session USING (session_id) JOIN response USING (trial_id) "
                 "JOIN tick_statistics USING (trial_id) JOIN participant USING (participant_id) "
-                "ORDER BY participant_index, number"};
+                "WHERE status = 'answered' ORDER BY mode, participant_index, number"};
   std::vector<AnswerRow> answers;
   while (row.step()) {
-    answers.push_back(
-        {row.text(0), mode_from(row.text(1)), row.text(2), row.text(3), row.integer(4) != 0,
-         static_cast<int>(row.integer(5)), row.text(6), row.text(7),
-         row.is_null(8) ? std::nullopt : std::optional{row.integer(8) != 0}, row.real(9),
-         row.integer(10), row.integer(11), row.integer(12), row.integer(13)});
+    answers.push_back({row.text(0), static_cast<int>(row.integer(1)), mode_from(row.text(2)),
+                       row.text(3), row.text(4), row.integer(5) != 0,
+                       static_cast<int>(row.integer(6)), row.text(7), row.text(8),
+                       row.is_null(9) ? std::nullopt : std::optional{row.integer(9) != 0},
+                       row.real(10), row.integer(11), row.integer(12), row.integer(13),
+                       row.integer(14), row.integer(15), row.integer(16), row.integer(17)});
   }
   return answers;
 }
@@ -108,7 +182,7 @@ std::vector<VisitRow> Store::visits() {
       "JOIN participant USING (participant_id) JOIN alternative USING (trial_id, position) "
       "WHERE status = 'answered' AND EXISTS (SELECT 1 FROM alternative AS second "
       "  WHERE second.trial_id = visit.trial_id AND second.position = 1) "
-      "GROUP BY participant_index, block, stimulus ORDER BY participant_index, block, stimulus"};
+      "GROUP BY participant_id, block, stimulus ORDER BY mode, participant_index, block, stimulus"};
   std::vector<VisitRow> visits;
   while (row.step()) {
     visits.push_back(
@@ -129,6 +203,15 @@ std::vector<SurfaceRow> Store::surfaces() {
     surfaces.push_back({row.text(0), row.text(1), std::move(text)});
   }
   return surfaces;
+}
+
+std::vector<std::int64_t> Store::trials() {
+  Statement row{database_, "SELECT trial_id FROM trial ORDER BY trial_id"};
+  std::vector<std::int64_t> ids;
+  while (row.step()) {
+    ids.push_back(row.integer(0));
+  }
+  return ids;
 }
 
 std::vector<core::TraceSample> Store::trace(std::int64_t trial_id) {

@@ -1,10 +1,14 @@
 // What adds rows to a study.
 #include <fmt/format.h>
 
+#include <filesystem>
+
 #include "results/store.hpp"
 #include "results/store_error.hpp"
 #include "results/trace_codec.hpp"
 namespace tapstudy::results {
+namespace fs = std::filesystem;
+
 int Store::index_of(const std::string& participant_id, Mode mode) {
   Statement row{database_,
                 "SELECT participant_index, mode FROM participant WHERE participant_id = ?"};
@@ -28,11 +32,17 @@ bool Store::has_sessions(const std::string& participant_id) {
   return latest_session(participant_id).has_value();
 }
 
+void Store::in_one_transaction(const std::function<void()>& act) {
+  Transaction all{database_};
+  act();
+  all.commit();
+}
+
 void Store::add_session(SessionRow& session) {
   Transaction all{database_};
   Statement{database_,
-            "INSERT OR IGNORE INTO participant (participant_id, mode, participant_index) "
-            "VALUES (?, ?, ?)"}
+            "INSERT INTO participant (participant_id, mode, participant_index) VALUES (?, ?, ?) "
+            "ON CONFLICT (participant_id) DO NOTHING"}
       .bind(session.participant_id)
       .bind(to_text(session.mode))
       .bind(session.participant_index)
@@ -60,7 +70,71 @@ void Store::add_session(SessionRow& session) {
   all.commit();
 }
 
-void Store::add_trial(const TrialRecord& record) {
+SaveOutcome Store::add_trial(const TrialRecord& record) {
+  const TrialRow& trial = record.trial;
+  const std::array<std::int64_t, 3> key{trial.session_id, trial.number, trial.attempt};
+  if (unconfirmed_ != key) {
+    insert_trial(record);
+    unconfirmed_ = key;
+  }
+  bool is_in_one_file = true;
+  if (journal_) {
+    is_in_one_file = database_.checkpoint();
+    check_is_in_place(trial);
+    add_to_journal(record);
+  }
+  unconfirmed_.reset();
+  return is_in_one_file ? SaveOutcome::in_one_file : SaveOutcome::partly_in_log;
+}
+
+// The log of the deleted file must not be taken for the new one's.
+void Store::write_anew() {
+  const std::string file = fs::absolute(database_.file()).string();
+  const std::string unfinished = file + ".unfinished";
+  std::error_code error;
+  fs::remove(unfinished, error);  // of an earlier try, on a full disk
+  Statement{database_, "VACUUM INTO ?"}.bind(unfinished).finish();
+  for (const char* const beside : {"-wal", "-shm"}) {
+    fs::remove(file + beside, error);
+  }
+  fs::rename(unfinished, file, error);
+  if (error) {
+    throw StoreError{fmt::format("{}: cannot be written: {}", file, error.message())};
+  }
+}
+
+// Read back by whoever opens the file of that name.
+void Store::check_is_in_place(const TrialRow& trial) {
+  const fs::path file{database_.file()};
+  std::error_code error;
+  if (database_.has_moved()) {
+    if (!fs::exists(file, error) && fs::is_directory(fs::absolute(file).parent_path(), error)) {
+      write_anew();
+      throw StoreRewritten{fmt::format(
+          "{}: was deleted meanwhile; all that it held is in a new file of that name (go on with "
+          "--resume)",
+          database_.file())};
+    }
+    throw StoreError{fmt::format(
+        "{}: is no longer where it was (put it back: all answers are in the file that was moved)",
+        database_.file())};
+  }
+  Database by_name{database_.file(), Database::Access::read};
+  Statement row{by_name, "SELECT 1 FROM trial WHERE session_id = ? AND number = ? AND attempt = ?"};
+  row.bind(trial.session_id).bind(trial.number).bind(trial.attempt);
+  if (!row.step()) {
+    throw StoreError{database_.file() + ": what was stored cannot be read back"};
+  }
+}
+
+void Store::add_to_journal(const TrialRecord& record) {
+  if (record.response && record.trial.status == "answered") {
+    journal_->complete([this] { return study(); }, {session_of(record.trial.session_id)},
+                       {{record.trial, record.alternatives, *record.response}});
+  }
+}
+
+void Store::insert_trial(const TrialRecord& record) {
   Transaction whole_trial{database_};
   const TrialRow& trial = record.trial;
   if (record.response) {
@@ -80,7 +154,22 @@ void Store::add_trial(const TrialRecord& record) {
       .bind(trial.duration_s)
       .finish();
   add_details(database_.last_row_id(), record);
+  add_session_events(record.session_events);
   whole_trial.commit();
+}
+
+void Store::add_session_events(const std::vector<SessionEventRow>& events) {
+  Transaction all{database_};
+  for (const SessionEventRow& event : events) {
+    Statement{database_, "INSERT INTO session_event VALUES (?, ?, ?, ?, ?)"}
+        .bind(event.session_id)
+        .bind(event.t_s)
+        .bind(event.state)
+        .bind(event.number)
+        .bind(event.detail)
+        .finish();
+  }
+  all.commit();
 }
 
 void Store::check_not_answered(const TrialRow& trial) {
@@ -109,12 +198,13 @@ void Store::add_details(std::int64_t trial_id, const TrialRecord& record) {
   if (record.response) {
     Statement{database_,
               "INSERT INTO response (trial_id, response, is_correct, response_time_s, "
-              "time_from_first_contact_s) VALUES (?, ?, ?, ?, ?)"}
+              "time_from_first_contact_s, confidence) VALUES (?, ?, ?, ?, ?, ?)"}
         .bind(trial_id)
         .bind(record.response->response)
         .bind(record.response->is_correct)
         .bind(record.response->response_time_s)
         .bind(record.response->time_from_first_contact_s)
+        .bind(record.response->confidence)
         .finish();
   }
   for (const EventRow& event : record.events) {

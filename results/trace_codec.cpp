@@ -11,9 +11,9 @@ namespace tapstudy::results {
 namespace {
 using core::TraceSample;
 static_assert(std::endian::native == std::endian::little, "records are copied byte for byte");
-constexpr std::size_t words = 19;  // time and eighteen numbers
-constexpr std::size_t flags = 5;
-constexpr std::size_t record_bytes = 160;
+constexpr std::size_t words = 20;  // time and nineteen numbers
+constexpr std::size_t flags = 7;
+constexpr std::size_t record_bytes = 168;
 static_assert(words * sizeof(double) + flags <= record_bytes);
 
 using Record = std::array<std::byte, record_bytes>;
@@ -21,13 +21,17 @@ using Bytes = Eigen::Matrix<std::uint8_t, Eigen::Dynamic, Eigen::Dynamic, Eigen:
 
 Record packed(const TraceSample& s) {
   const std::array<double, words - 1> numbers{
-      s.position_m[0],   s.position_m[1],   s.position_m[2], s.velocity_m_s[0], s.velocity_m_s[1],
-      s.velocity_m_s[2], s.penetration_m,   s.penalty_n,     s.vibration_n,     s.sinusoid_n,
-      s.force_n[0],      s.force_n[1],      s.force_n[2],    s.achieved_n[0],   s.achieved_n[1],
-      s.achieved_n[2],   s.pose_residual_m, s.closure_margin};
-  const std::array<std::uint8_t, flags> flag{
-      s.alternative, static_cast<std::uint8_t>(s.touching), static_cast<std::uint8_t>(s.impact),
-      static_cast<std::uint8_t>(s.saturated), static_cast<std::uint8_t>(s.fault)};
+      s.position_m[0],   s.position_m[1],   s.position_m[2],  s.velocity_m_s[0], s.velocity_m_s[1],
+      s.velocity_m_s[2], s.penetration_m,   s.penalty_n,      s.vibration_n,     s.sinusoid_n,
+      s.force_n[0],      s.force_n[1],      s.force_n[2],     s.achieved_n[0],   s.achieved_n[1],
+      s.achieved_n[2],   s.pose_residual_m, s.closure_margin, s.motor_voltage_v};
+  const std::array<std::uint8_t, flags> flag{s.alternative,
+                                             static_cast<std::uint8_t>(s.touching),
+                                             static_cast<std::uint8_t>(s.impact),
+                                             static_cast<std::uint8_t>(s.saturated),
+                                             static_cast<std::uint8_t>(s.fault),
+                                             s.missed_replies,
+                                             static_cast<std::uint8_t>(s.late)};
   Record record{};
   std::memcpy(record.data(), &s.t_ns, sizeof s.t_ns);
   std::memcpy(record.data() + sizeof s.t_ns, numbers.data(), sizeof numbers);
@@ -53,11 +57,14 @@ TraceSample unpacked(const Record& record) {
           {n[13], n[14], n[15]},
           n[16],
           n[17],
+          n[18],
           flag[0],
           flag[1] != 0,
           flag[2] != 0,
           flag[3] != 0,
-          static_cast<core::TickFault>(flag[4])};
+          static_cast<core::TickFault>(flag[4]),
+          flag[5],
+          flag[6] != 0};
 }
 
 // The matrix of bytes with rows and columns exchanged.

@@ -7,7 +7,8 @@
 namespace tapstudy::results {
 namespace {
 constexpr std::size_t ticks_per_chunk = 4096;
-}
+constexpr std::int64_t late_impact_ns = 5'000'000;
+}  // namespace
 
 void TraceCollector::drain() {
   core::TraceSample sample{};
@@ -42,8 +43,15 @@ void TraceCollector::note_events(const core::TraceSample& sample) {
   if (sample.touching && !previous_.touching) {
     note("contact", 0.0);
   }
+  if (sample.late) {
+    last_late_ns_ = sample.t_ns;
+  }
   if (sample.impact) {
-    note("impact", -core::along_normal(sample.velocity_m_s));
+    const double speed_m_s = -core::along_normal(sample.velocity_m_s);
+    note("impact", speed_m_s);
+    if (last_late_ns_ && sample.t_ns - *last_late_ns_ <= late_impact_ns) {
+      note("late_impact", speed_m_s);
+    }
   }
   if (!sample.touching && previous_.touching) {
     note("release", 0.0);
@@ -67,6 +75,7 @@ TraceCollector::Collected TraceCollector::finish() {
   pack();
   has_previous_ = false;
   previous_ = {};
+  last_late_ns_.reset();
   return std::exchange(collected_, {});
 }
 }  // namespace tapstudy::results

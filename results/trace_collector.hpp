@@ -1,4 +1,5 @@
 #pragma once
+#include <optional>
 #include <vector>
 
 #include "core/haptic_state.hpp"
@@ -6,7 +7,9 @@
 #include "results/rows.hpp"
 namespace tapstudy::results {
 // Collects one trial's samples from the haptic thread's ring for the store: encodes them in chunks
-// as they arrive and extracts the events (contacts, impacts, switches).
+// as they arrive and extracts the events (contacts, impacts, switches). Where a late tick came up
+// to 5 ms before an impact, the hand's speed was averaged over a longer time: the impact is noted
+// once more as late_impact.
 class TraceCollector {
  public:
   explicit TraceCollector(core::SpscRing<core::TraceSample>& ring) : ring_{&ring} {}
@@ -30,6 +33,7 @@ class TraceCollector {
   std::vector<core::TraceSample> pending_;
   Collected collected_;
   core::TraceSample previous_{};
+  std::optional<std::int64_t> last_late_ns_;
   bool has_previous_{false};
 };
 }  // namespace tapstudy::results

@@ -1,3 +1,6 @@
+#include <fcntl.h>
+
+#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <iostream>
@@ -33,9 +36,30 @@ void check_results_arrived() {
     throw tapstudy::results::StoreError{"standard output: writing failed (is the disk full?)"};
   }
 }
+// Else a file or a socket opened later would take the place of a closed one, and be written to.
+void open_standard_descriptors() {
+  for (int descriptor = 0; descriptor <= 2; ++descriptor) {
+    // NOLINTNEXTLINE(cppcoreguidelines-pro-type-vararg): the way of the C library
+    if (fcntl(descriptor, F_GETFD) < 0) {
+      // NOLINTNEXTLINE(cppcoreguidelines-pro-type-vararg)
+      static_cast<void>(open("/dev/null", descriptor == 0 ? O_RDONLY : O_WRONLY));
+    }
+  }
+}
+
+// A file that may grow no further, and a reader that has gone, are errors of writing, not the end.
+void survive_failed_writing() {
+  for (const int signal : {SIGXFSZ, SIGPIPE}) {
+    struct sigaction ignored {};
+    ignored.sa_handler = SIG_IGN;
+    sigaction(signal, &ignored, nullptr);
+  }
+}
 }  // namespace
 
 int main(int argc, char** argv) {
+  open_standard_descriptors();
+  survive_failed_writing();
   try {
     tapstudy::runner::set_up_logging();
     const ExitCode code = tapstudy::runner::run_command_line(argc, argv);

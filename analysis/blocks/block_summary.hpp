@@ -1,9 +1,9 @@
 #pragma once
 #include <functional>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <ostream>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "analysis/blocks/design.hpp"
@@ -15,7 +15,8 @@ struct HypothesisResult {
   std::string test;
   Proportion observed;
   double chance{};
-  double p{};
+  std::optional<double> p;  // unset where there is no test: `test` says why
+  double p_floor{};         // where no draw was as good: p is only known to be no larger
 };
 
 // The rows of one block.
@@ -34,8 +35,8 @@ struct CsvTable {
 // compute nothing.
 class BlockSummary {
  public:
-  BlockSummary(std::string block_name, std::string question_asked)
-      : block{std::move(block_name)}, question{std::move(question_asked)} {}
+  explicit BlockSummary(const BlockDesign& design)
+      : block{design.name}, task{design.task}, question{design.question} {}
   virtual ~BlockSummary() = default;
   BlockSummary(const BlockSummary&) = default;
   BlockSummary& operator=(const BlockSummary&) = default;
@@ -48,7 +49,7 @@ class BlockSummary {
   virtual std::vector<CsvTable> tables() const = 0;
 
   std::string block;  // empty where only a table of counts is known
-  std::string task;   // likewise
+  std::string task;
   std::string question;
 };
 }  // namespace tapstudy::analysis

@@ -1,4 +1,6 @@
 #pragma once
+#include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -10,6 +12,9 @@ struct PlannedHypothesis {
   std::string statement;
   std::string stimulus;  // expected choice; empty if the claim is not about one stimulus
 };
+// The choice that counts of a participant who chose several times: the most frequent (of equals the
+// earliest), or the first.
+enum class Vote { majority, first };
 struct BlockDesign {
   std::string name;
   std::string task;
@@ -18,6 +23,14 @@ struct BlockDesign {
   std::vector<Item> stimuli;
   std::vector<Item> responses;  // where they are not the stimuli
   std::vector<PlannedHypothesis> hypotheses;
+  // The stimuli (places in the list above) that a participant's trials of this block would have had
+  // in another draw of its order; empty where the order is not random.
+  std::function<std::vector<int>(int participant_index, std::uint64_t draw)> redraw;
+  int first_trial{1};  // the number of its first trial
+  // Where the participants' answers follow from an assumption of the simulation: which. Nothing is
+  // tested then.
+  std::string premise;
+  Vote vote{Vote::majority};
 };
 struct StudyDesign {
   std::string title;

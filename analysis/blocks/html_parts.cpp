@@ -54,9 +54,12 @@ void write_hypotheses_html(std::ostream& out, const std::vector<HypothesisResult
   }
   out << "<h3>Declared before the study</h3><ul>\n";
   for (const HypothesisResult& result : hypotheses) {
-    core::print(out, "<li>{} <b>{}</b> ({} against {:.0f} % by chance; {})</li>\n",
-                escaped(result.planned.statement), escaped(p_value(result.p)),
-                fraction(result.observed), 100.0 * result.chance, result.test);
+    const std::string observed = result.p
+                                     ? fmt::format("{} against {:.0f} % by chance; ",
+                                                   fraction(result.observed), 100.0 * result.chance)
+                                     : "";
+    core::print(out, "<li>{} <b>{}</b> ({}{})</li>\n", escaped(result.planned.statement),
+                escaped(p_value(result)), observed, escaped(result.test));
   }
   out << "</ul>\n";
 }

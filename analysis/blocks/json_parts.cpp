@@ -25,7 +25,8 @@ nlohmann::ordered_json as_json(const std::vector<HypothesisResult>& hypotheses) 
                     {"test", result.test},
                     {"observed", as_json(result.observed)},
                     {"chance", result.chance},
-                    {"p", result.p}});
+                    {"p", result.p ? Json(*result.p) : Json(nullptr)},
+                    {"p_is_upper_bound", result.p_floor > 0.0}});
   }
   return list;
 }

@@ -15,8 +15,26 @@ std::string with_interval(const Proportion& proportion) {
     return "no answers";
   }
   const Interval interval = wilson_interval(proportion);
-  return fmt::format("{} = {} (95 % CI {:.0f}–{:.0f} %)", fraction(proportion), percent(proportion),
-                     100.0 * interval.low, 100.0 * interval.high);
+  // as many digits as the interval's ends take to differ
+  constexpr int max_digits = 3;
+  int digits = 0;
+  const auto in_percent = [&](double share) {
+    return fmt::format("{:.{}f}", 100.0 * share, digits);
+  };
+  while (digits < max_digits && in_percent(interval.low) == in_percent(interval.high)) {
+    ++digits;
+  }
+  return fmt::format("{} = {} % (95 % CI {}–{} %)", fraction(proportion),
+                     in_percent(proportion.value()), in_percent(interval.low),
+                     in_percent(interval.high));
+}
+
+std::string p_value(const HypothesisResult& result) {
+  if (!result.p) {
+    return "not tested";
+  }
+  return result.p_floor > 0.0 ? fmt::format("p < 1/{:.0f}", 1.0 / result.p_floor)
+                              : p_value(*result.p);
 }
 
 std::string p_value(double p) {

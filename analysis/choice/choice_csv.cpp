@@ -6,7 +6,7 @@
 namespace tapstudy::analysis {
 std::vector<CsvTable> ChoiceSummary::tables() const {
   return {{"choices.csv", [this](std::ostream& out) {
-             out << "stimulus,chosen,choices,visits,dwell_s\n";
+             out << "stimulus,votes,voters,visits,dwell_s\n";
              for (const AlternativeResult& result : alternatives) {
                core::print(out, "{},{},{},{},{:.3f}\n", csv_cell(result.item.name),
                            result.chosen.successes, result.chosen.trials, result.visits,

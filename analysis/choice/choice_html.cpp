@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
 #include "analysis/blocks/html_parts.hpp"
-#include "analysis/choice/multinomial_words.hpp"
+#include "analysis/choice/choice_words.hpp"
 #include "core/print.hpp"
 namespace tapstudy::analysis {
 void ChoiceSummary::write_html(std::ostream& out) const {
@@ -14,12 +14,12 @@ void ChoiceSummary::write_html(std::ostream& out) const {
         escaped(result.item.label), with_interval(result.chosen), dot_plot(result.chosen, chance),
         result.visits, result.dwell_s);
   }
-  core::print(
-      out,
-      "</table>\n<p>All alternatives equally likely: {} (exact multinomial test, outcomes "
-      "ordered by probability).{}</p>\n",
-      escaped(multinomial_words(*this)),
-      has_repeated_choices ? " Several choices of one participant are not independent." : "");
+  core::print(out, "</table>\n<p>All alternatives equally likely: {}.{}</p>\n",
+              escaped(multinomial_words(*this)),
+              has_repeated_choices
+                  ? fmt::format(" Of {} choices each participant has one vote: {}.", choices.size(),
+                                words_of(vote))
+                  : "");
   write_hypotheses_html(out, hypotheses);
 }
 }  // namespace tapstudy::analysis

@@ -3,49 +3,97 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <set>
+#include <map>
 
 #include "core/error.hpp"
 namespace tapstudy::analysis {
+namespace {
+// Choices of one participant are not independent of one another: each participant has one vote.
+std::vector<std::string> votes_of(std::vector<results::AnswerRow> answers, Vote vote) {
+  std::ranges::stable_sort(answers, {}, &results::AnswerRow::trial_id);
+  std::vector<std::string> participants;
+  std::map<std::string, std::vector<std::string>> chosen;
+  for (const results::AnswerRow& answer : answers) {
+    auto& of_participant = chosen[answer.participant_id];
+    if (of_participant.empty()) {
+      participants.push_back(answer.participant_id);
+    }
+    of_participant.push_back(answer.response);
+  }
+  std::vector<std::string> votes;
+  for (const std::string& participant : participants) {
+    const auto& all = chosen[participant];
+    if (vote == Vote::first) {
+      votes.push_back(all.front());
+      continue;
+    }
+    votes.push_back(*std::ranges::max_element(
+        all, {}, [&](const std::string& response) { return std::ranges::count(all, response); }));
+  }
+  return votes;
+}
+
+AlternativeResult result_of(const Item& item, const std::vector<std::string>& votes,
+                            const BlockRows& rows) {
+  AlternativeResult result{
+      item,
+      {std::ranges::count(votes, item.name), static_cast<std::int64_t>(votes.size())},
+      0,
+      0.0};
+  for (const results::VisitRow& visit : rows.visits) {
+    if (visit.stimulus == item.name) {
+      result.visits += visit.visits;
+      result.dwell_s += visit.dwell_s;
+    }
+  }
+  return result;
+}
+
+HypothesisResult tested(const ChoiceSummary& summary, const PlannedHypothesis& planned) {
+  const auto expected = std::ranges::find_if(
+      summary.alternatives,
+      [&](const AlternativeResult& result) { return result.item.name == planned.stimulus; });
+  if (expected == summary.alternatives.end()) {
+    throw core::InvalidInput{fmt::format(
+        "block '{}': hypothesis '{}' names no stimulus of the block", summary.block, planned.name)};
+  }
+  const double chance = 1.0 / static_cast<double>(summary.alternatives.size());
+  HypothesisResult result{planned, "", expected->chosen, chance, {}, 0.0};
+  if (!summary.untested.empty()) {
+    result.test = summary.untested;
+  } else {
+    result.test = summary.has_repeated_choices ? "exact binomial, one vote a participant, one-sided"
+                                               : "exact binomial, one-sided";
+    result.p = binomial_p_at_least(expected->chosen, chance);
+  }
+  return result;
+}
+}  // namespace
+
 std::shared_ptr<const BlockSummary> summarise_choice(const BlockDesign& design,
                                                      const BlockRows& rows) {
   const std::vector<results::AnswerRow>& answers = rows.answers;
-  auto result_of_block = std::make_shared<ChoiceSummary>(design.name, design.question);
-  ChoiceSummary& summary = *result_of_block;
-  summary.task = design.task;
-  std::vector<int> counts;
-  const int total = static_cast<int>(answers.size());
-  for (const Item& item : design.stimuli) {
-    AlternativeResult result{item, {0, total}, 0, 0.0};
-    result.chosen.successes =
-        static_cast<int>(std::ranges::count(answers, item.name, &results::AnswerRow::response));
-    for (const results::VisitRow& visit : rows.visits) {
-      if (visit.stimulus == item.name) {
-        result.visits += visit.visits;
-        result.dwell_s += visit.dwell_s;
-      }
-    }
-    counts.push_back(result.chosen.successes);
-    summary.alternatives.push_back(result);
-  }
-  std::set<std::string> seen;
+  auto summary = std::make_shared<ChoiceSummary>(design);
   for (const results::AnswerRow& answer : answers) {
-    summary.choices.emplace_back(answer.participant_id, answer.response);
-    summary.has_repeated_choices |= !seen.insert(answer.participant_id).second;
+    summary->choices.emplace_back(answer.participant_id, answer.response);
   }
-  summary.multinomial_p = exact_multinomial_p(counts);
-  const double chance = 1.0 / static_cast<double>(design.stimuli.size());
+  const std::vector<std::string> votes = votes_of(answers, design.vote);
+  summary->vote = design.vote;
+  summary->has_repeated_choices = votes.size() < answers.size();
+  summary->untested = !design.premise.empty() ? design.premise
+                      : answers.empty()       ? "there are no answers"
+                                              : "";
+  std::vector<int> counts;
+  for (const Item& item : design.stimuli) {
+    summary->alternatives.push_back(result_of(item, votes, rows));
+    counts.push_back(static_cast<int>(summary->alternatives.back().chosen.successes));
+  }
+  if (summary->untested.empty()) {
+    summary->multinomial_p = exact_multinomial_p(counts);
+  }
   for (const PlannedHypothesis& planned : design.hypotheses) {
-    const auto expected = std::ranges::find_if(
-        summary.alternatives,
-        [&](const AlternativeResult& result) { return result.item.name == planned.stimulus; });
-    if (expected == summary.alternatives.end()) {
-      throw core::InvalidInput{fmt::format(
-          "block '{}': hypothesis '{}' names no stimulus of the block", design.name, planned.name)};
-    }
-    summary.hypotheses.push_back({planned, "exact binomial, one-sided", expected->chosen, chance,
-                                  binomial_p_at_least(expected->chosen, chance)});
+    summary->hypotheses.push_back(tested(*summary, planned));
   }
-  return result_of_block;
+  return summary;
 }
 }  // namespace tapstudy::analysis

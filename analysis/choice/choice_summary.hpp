@@ -9,12 +9,13 @@
 namespace tapstudy::analysis {
 struct AlternativeResult {
   Item item;
-  Proportion chosen;
+  Proportion chosen;  // votes
   int visits{};
   double dwell_s{};
 };
 
 // Several stimuli per trial, one of which is chosen, none correct: the frequency of each choice.
+// Who chose several times has one vote.
 class ChoiceSummary final : public BlockSummary {
  public:
   using BlockSummary::BlockSummary;
@@ -25,8 +26,10 @@ class ChoiceSummary final : public BlockSummary {
 
   std::vector<AlternativeResult> alternatives;
   std::vector<std::pair<std::string, std::string>> choices;  // participant, stimulus
-  std::optional<double> multinomial_p;  // unset if there are too many outcomes to enumerate
-  bool has_repeated_choices{};          // several by one participant: not independent
+  std::optional<double> multinomial_p;  // of the votes; unset if there are too many outcomes
+  Vote vote{Vote::majority};
+  bool has_repeated_choices{};  // some participants chose several times
+  std::string untested;         // why nothing is tested; empty: it is
   std::vector<HypothesisResult> hypotheses;
 };
 

@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
 #include "analysis/blocks/text_parts.hpp"
-#include "analysis/choice/multinomial_words.hpp"
+#include "analysis/choice/choice_words.hpp"
 #include "core/print.hpp"
 namespace tapstudy::analysis {
 void ChoiceSummary::write_text(std::ostream& out) const {
@@ -9,10 +9,10 @@ void ChoiceSummary::write_text(std::ostream& out) const {
     core::print(out, "  {:<24} {:<40} {:>4} visits {:>8.1f} s\n", result.item.name,
                 with_interval(result.chosen), result.visits, result.dwell_s);
   }
-  core::print(
-      out, "  all equally likely: {} (exact multinomial, by probability){}\n",
-      multinomial_words(*this),
-      has_repeated_choices ? "; several choices of one participant are not independent" : "");
+  core::print(out, "  all equally likely: {}\n", multinomial_words(*this));
+  if (has_repeated_choices) {
+    core::print(out, "  {} choices, one vote a participant: {}\n", choices.size(), words_of(vote));
+  }
   write_hypotheses_text(out, hypotheses);
 }
 }  // namespace tapstudy::analysis

@@ -55,7 +55,8 @@ void write_panel(std::ostream& script, const Panel& panel, std::size_t index) {
 std::string axes(const Figure& figure) {
   if (figure.scale == Scale::logarithmic) {
     return fmt::format(
-        "set xlabel {}\nset ylabel {}\nset logscale xy\nset format xy '%g'\nset key bottom left\n",
+        "set xlabel {}\nset ylabel {}\nset logscale xy\nset format xy '%g'\nset key outside bottom "
+        "center maxrows 2\n",
         quoted(figure.x_label), quoted(figure.y_label));
   }
   const Span left = span_of(figure, Axis::left);

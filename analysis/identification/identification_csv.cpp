@@ -1,4 +1,5 @@
 #include "analysis/identification/identification_summary.hpp"
+#include "analysis/statistics/counts_csv.hpp"
 #include "analysis/statistics/csv_rows.hpp"
 namespace tapstudy::analysis {
 namespace {
@@ -7,7 +8,7 @@ void write_matrix(std::ostream& out, const ConfusionMatrix& matrix) {
   const std::vector<std::string> factors = factors_of(matrix);
   out << "stimulus";
   for (const std::string& factor : factors) {
-    out << ',' << csv_cell(factor);
+    out << ',' << csv_cell(factor_mark + factor);
   }
   for (const Item& response : matrix.responses) {
     out << ',' << csv_cell(response.name);
@@ -18,7 +19,7 @@ void write_matrix(std::ostream& out, const ConfusionMatrix& matrix) {
     for (const std::string& factor : factors) {
       out << ',' << csv_cell(matrix.stimuli[i].factors.at(factor));
     }
-    for (const int count : matrix.counts[i]) {
+    for (const std::int64_t count : matrix.counts[i]) {
       out << ',' << count;
     }
     out << '\n';

@@ -17,7 +17,7 @@ Json names_of(const std::vector<Item>& items) {
 
 nlohmann::ordered_json IdentificationSummary::as_json() const {
   Json json{{"block", block},
-            {"task", task.empty() ? Json{nullptr} : Json(task)},
+            {"task", task},
             {"stimuli", names_of(matrix.stimuli)},
             {"responses", names_of(matrix.responses)},
             {"counts", matrix.counts},
@@ -26,7 +26,7 @@ nlohmann::ordered_json IdentificationSummary::as_json() const {
   json["factors"] = Json::array();
   for (const FactorResult& result : factors) {
     Json factor{{"factor", result.factor}};
-    factor["given"] = result.given.empty() ? Json{nullptr} : Json(result.given);
+    factor["given"] = result.given.empty() ? Json(nullptr) : Json(result.given);
     factor["accuracy"] = analysis::as_json(result.accuracy);
     factor["chance"] = result.chance;
     json["factors"].push_back(factor);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <utility>
 
@@ -11,15 +12,15 @@
 namespace tapstudy::analysis {
 namespace {
 using results::AnswerRow;
-constexpr int max_shuffles = 9999;
-constexpr int min_shuffles = 99;
-constexpr std::uint64_t shuffle_seed = 1;
+constexpr int max_draws = 9999;
+constexpr int min_draws = 999;  // p can then fall to .001
+constexpr std::uint64_t draws_seed = 1;
 
 // As many as can be computed quickly; the report states the number.
-int shuffles_for(std::size_t answers) {
+int draws_for(std::size_t answers) {
   constexpr std::size_t max_work = 20'000'000;
-  return static_cast<int>(std::clamp<std::size_t>(max_work / std::max<std::size_t>(answers, 1),
-                                                  min_shuffles, max_shuffles));
+  return static_cast<int>(
+      std::clamp<std::size_t>(max_work / std::max<std::size_t>(answers, 1), min_draws, max_draws));
 }
 
 std::vector<FactorResult> factor_results(const ConfusionMatrix& matrix) {
@@ -39,67 +40,108 @@ std::vector<FactorResult> factor_results(const ConfusionMatrix& matrix) {
   }
   return found;
 }
+void check_correctness(const BlockDesign& design, const AnswerRow& answer) {
+  if (!answer.is_correct) {
+    throw core::InvalidInput{
+        fmt::format("block '{}': the answer of {} to trial {} is neither right nor wrong",
+                    design.name, answer.participant_id, answer.number)};
+  }
+  if (*answer.is_correct != (answer.response == answer.stimulus)) {
+    throw core::InvalidInput{fmt::format(
+        "block '{}': the answer of {} to trial {} is stored as {}, which a confusion matrix of "
+        "'{}' answered '{}' contradicts",
+        design.name, answer.participant_id, answer.number,
+        *answer.is_correct ? "correct" : "incorrect", answer.stimulus, answer.response)};
+  }
+}
+
+// A participant's answers of a block, with the places of their trials in its order.
+struct Person {
+  int index{};
+  Answers answers;
+  std::vector<std::size_t> places;
+};
+
+// Responses that are no stimulus are equal to none.
+std::vector<Person> people_of(const BlockDesign& design, const std::vector<AnswerRow>& answers) {
+  std::vector<Person> people;
+  std::map<std::string, std::size_t> place_of_person;
+  const auto code = [&](const std::string& name) {
+    const auto found = std::ranges::find(design.stimuli, name, &Item::name);
+    return static_cast<int>(found - design.stimuli.begin());
+  };
+  for (const AnswerRow& answer : answers) {
+    const auto [person, is_new] = place_of_person.emplace(answer.participant_id, people.size());
+    if (is_new) {
+      people.push_back({answer.participant_index, {}, {}});
+    }
+    Person& of = people[person->second];
+    of.answers.stimuli.push_back(code(answer.stimulus));
+    of.answers.responses.push_back(code(answer.response));
+    of.places.push_back(static_cast<std::size_t>(answer.number - design.first_trial));
+  }
+  return people;
+}
+
+PermutationResult accuracy_test(const BlockDesign& design, const std::vector<AnswerRow>& rows) {
+  const std::vector<Person> people = people_of(design, rows);
+  std::vector<Answers> answers;
+  std::ranges::transform(people, std::back_inserter(answers), &Person::answers);
+  const Redraw redraw = [&](std::size_t person, std::uint64_t draw) {
+    const std::vector<int> order = design.redraw(people[person].index, draw);
+    std::vector<int> stimuli;
+    for (const std::size_t place : people[person].places) {
+      stimuli.push_back(order.at(place));
+    }
+    return stimuli;
+  };
+  return permutation_test(answers, redraw, draws_for(rows.size()), draws_seed);
+}
+
+HypothesisResult tested(const BlockDesign& design, const BlockRows& rows,
+                        const PlannedHypothesis& planned, const IdentificationSummary& summary) {
+  HypothesisResult result{planned, "", summary.accuracy, summary.matrix.chance(), {}, 0.0};
+  if (rows.answers.empty()) {
+    result.test = "there are no answers";
+  } else if (!design.redraw) {
+    result.test =
+        "the order was listed, not drawn, so that no randomisation says what chance would give";
+  } else {
+    const PermutationResult test = accuracy_test(design, rows.answers);
+    result.p = test.p;
+    result.p_floor = test.as_good == 0 ? test.p : 0.0;
+    result.test = fmt::format("randomisation test by {} draws of the study's own orders, one-sided",
+                              test.draws);
+  }
+  return result;
+}
 }  // namespace
 
-IdentificationSummary::IdentificationSummary(std::string block_name, std::string question_asked,
-                                             ConfusionMatrix counted)
-    : BlockSummary{std::move(block_name), std::move(question_asked)},
+IdentificationSummary::IdentificationSummary(const BlockDesign& design, ConfusionMatrix counted)
+    : BlockSummary{design},
       matrix{std::move(counted)},
       accuracy{overall_accuracy(matrix)},
       factors{factor_results(matrix)} {}
 
 std::shared_ptr<const BlockSummary> summarise_identification(const BlockDesign& design,
                                                              const BlockRows& rows) {
-  const std::vector<AnswerRow>& answers = rows.answers;
   ConfusionMatrix matrix{design.stimuli, design.responses};
-  std::map<std::string, Proportion> accuracies;
-  std::map<std::string, Answers> by_participant;
-  std::vector<std::string> order;
-  std::map<std::string, int> codes;
-  const auto code = [&](const std::string& name) {
-    return codes.emplace(name, static_cast<int>(codes.size())).first->second;
-  };
-  for (const AnswerRow& answer : answers) {
-    if (!answer.is_correct) {
-      throw core::InvalidInput{
-          fmt::format("block '{}': the answer of {} to trial {} is neither right "
-                      "nor wrong",
-                      design.name, answer.participant_id, answer.number)};
-    }
-    if (*answer.is_correct != (answer.response == answer.stimulus)) {
-      throw core::InvalidInput{fmt::format(
-          "block '{}': the answer of {} to trial {} is stored as {}, which a confusion "
-          "matrix of '{}' answered '{}' contradicts",
-          design.name, answer.participant_id, answer.number,
-          *answer.is_correct ? "correct" : "incorrect", answer.stimulus, answer.response)};
-    }
+  std::vector<ParticipantAccuracy> participants;
+  for (const AnswerRow& answer : rows.answers) {
+    check_correctness(design, answer);
     matrix.add(answer.stimulus, answer.response);
-    if (!accuracies.contains(answer.participant_id)) {
-      order.push_back(answer.participant_id);
+    auto person = std::ranges::find(participants, answer.participant_id,
+                                    &ParticipantAccuracy::participant_id);
+    if (person == participants.end()) {
+      person = participants.insert(person, {answer.participant_id, {}});
     }
-    Proportion& accuracy = accuracies[answer.participant_id];
-    ++accuracy.trials;
-    accuracy.successes += *answer.is_correct ? 1 : 0;
-    by_participant[answer.participant_id].stimuli.push_back(code(answer.stimulus));
-    by_participant[answer.participant_id].responses.push_back(code(answer.response));
+    ++person->accuracy.trials;
+    person->accuracy.successes += *answer.is_correct ? 1 : 0;
   }
-  auto summary =
-      std::make_shared<IdentificationSummary>(design.name, design.question, std::move(matrix));
-  summary->task = design.task;
-  std::vector<Answers> all;
-  for (const std::string& participant : order) {
-    summary->participants.push_back({participant, accuracies[participant]});
-    all.push_back(by_participant[participant]);
-  }
-  if (design.hypotheses.empty()) {
-    return summary;
-  }
-  const int shuffles = shuffles_for(answers.size());
-  const double p = permutation_p(all, shuffles, shuffle_seed);
+  auto summary = std::make_shared<IdentificationSummary>(design, std::move(matrix));
+  summary->participants = std::move(participants);
   for (const PlannedHypothesis& planned : design.hypotheses) {
-    summary->hypotheses.push_back(
-        {planned, fmt::format("permutation within participants, {} shuffles, one-sided", shuffles),
-         summary->accuracy, summary->matrix.chance(), p});
+    summary->hypotheses.push_back(tested(design, rows, planned, *summary));
   }
   return summary;
 }

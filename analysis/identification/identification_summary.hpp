@@ -20,8 +20,7 @@ struct ParticipantAccuracy {
 class IdentificationSummary final : public BlockSummary {
  public:
   // From a matrix alone, participants unknown.
-  IdentificationSummary(std::string block_name, std::string question_asked,
-                        ConfusionMatrix counted);
+  IdentificationSummary(const BlockDesign& design, ConfusionMatrix counted);
 
   void write_text(std::ostream& out) const override;
   void write_html(std::ostream& out) const override;

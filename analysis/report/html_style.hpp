@@ -11,10 +11,12 @@ table{border-collapse:collapse}caption{text-align:left;color:#567;font-size:.85r
 .matrix td.correct{outline:2px solid #1b2733;outline-offset:-3px}
 .matrix .total{width:3rem;color:#567;text-align:center}
 .accuracy th{font-weight:500;text-align:left;padding:.2rem 1rem .2rem 0}.accuracy td{padding:.2rem 1rem .2rem 0}
-.dot{width:200px;height:16px}.dot .axis{stroke:#cdd6df}.dot .chance{stroke:#b0413e;stroke-dasharray:3 2}
+.accuracy td{white-space:nowrap}.dot{width:200px;height:16px;overflow:visible}.dot .axis{stroke:#cdd6df}.dot .chance{stroke:#b0413e;stroke-dasharray:3 2}
 .dot .interval{stroke:#08519c;stroke-width:2}.dot circle{fill:#08519c}
 .note,.provenance{font-size:.85rem;color:#567}.provenance th{text-align:left;font-weight:500;padding-right:1rem;vertical-align:top}
 .provenance td{word-break:break-all}.notes{white-space:pre-line}
+@media (max-width:600px){table{display:block;overflow-x:auto}.dot{width:90px}
+  .matrix td{width:4rem;min-width:3.5rem;height:3rem}.matrix th{padding:.3rem}h1{font-size:1.3rem}}
 @media print{body{margin:0}.matrix td,.simulated{print-color-adjust:exact;-webkit-print-color-adjust:exact}}
 )css";
 }  // namespace tapstudy::analysis

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "analysis/blocks/html_parts.hpp"
 #include "analysis/report/html_style.hpp"
@@ -11,9 +12,12 @@ void write_html(std::ostream& out, const Summary& summary) {
               "content=\"width=device-width\"><title>{}</title><style>{}</style></head><body>\n"
               "<h1>{}</h1>\n",
               escaped(summary.title), html_style, escaped(summary.title));
-  if (is_simulated(summary)) {
-    out << "<p class=simulated>Simulated participants: no person took part. These data show what "
-           "the physics and the assumed observer give.</p>\n";
+  if (const std::string warning = banner(summary); !warning.empty()) {
+    core::print(out, "<p class=simulated>{}</p>\n", escaped(warning));
+  }
+  if (!summary.unfinished.empty()) {
+    core::print(out, "<p>Unfinished sessions: {}.</p>\n",
+                escaped(fmt::format("{}", fmt::join(summary.unfinished, "; "))));
   }
   for (const auto& block : summary.blocks) {
     if (!block->block.empty()) {

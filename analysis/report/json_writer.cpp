@@ -9,15 +9,16 @@ void write_json(std::ostream& out, const Summary& summary) {
             {"title", summary.title},
             {"modes", summary.modes},
             {"participants", summary.participants}};
+  json["unfinished"] = summary.unfinished;
   json["blocks"] = Json::array();
   for (const auto& block : summary.blocks) {
     json["blocks"].push_back(block->as_json());
   }
   if (summary.loop) {
-    json["loop"] = {{"ticks", summary.loop->ticks},
-                    {"late", summary.loop->late},
-                    {"skipped", summary.loop->skipped},
-                    {"dropped_samples", summary.loop->dropped_samples}};
+    json["loop"] = {
+        {"ticks", summary.loop->ticks},     {"late", summary.loop->late},
+        {"skipped", summary.loop->skipped}, {"dropped_samples", summary.loop->dropped_samples},
+        {"impacts", summary.loop->impacts}, {"late_impacts", summary.loop->late_impacts}};
   }
   json["provenance"] = Json::object();
   for (const auto& [key, value] : summary.provenance) {

@@ -21,6 +21,8 @@ LoopQuality loop_quality(const std::vector<AnswerRow>& answers) {
     quality.late += answer.late;
     quality.skipped += answer.skipped;
     quality.dropped_samples += answer.dropped_samples;
+    quality.impacts += answer.impacts;
+    quality.late_impacts += answer.late_impacts;
   }
   return quality;
 }
@@ -51,36 +53,46 @@ Summary summarise(const StudyDesign& design, const std::vector<AnswerRow>& answe
   return summary;
 }
 
-Summary summarise(const ConfusionMatrix& matrix, const std::string& title) {
+Summary summarise(const ConfusionMatrix& matrix, const std::string& title, std::string_view task,
+                  const std::string& mode) {
   Summary summary;
   summary.title = title;
-  summary.modes = "counts";
-  summary.blocks.push_back(std::make_shared<const IdentificationSummary>("", "", matrix));
+  summary.modes = mode.empty() ? "counts" : "counts, " + mode;
+  BlockDesign nameless;
+  nameless.task = task;
+  summary.blocks.push_back(std::make_shared<const IdentificationSummary>(nameless, matrix));
   return summary;
 }
 
-bool is_simulated(const Summary& summary) {
-  return summary.modes.find("simulated") != std::string::npos;
+std::string banner(const Summary& summary) {
+  if (summary.modes.find("simulated") != std::string::npos) {
+    return "SIMULATED participants: no person took part. These data show what the physics and the "
+           "assumed observer give.";
+  }
+  if (summary.modes.find("pilot") != std::string::npos) {
+    return "PILOT sessions: rehearsals, not the study.";
+  }
+  return "";
 }
 
 std::string methods(const Summary& summary) {
-  if (summary.modes == "counts") {
+  if (!summary.loop) {
     return "Computed from a table of counts; participants are not known, so intervals (Wilson "
-           "1927) "
-           "treat all answers as independent.";
+           "1927) treat all answers as independent.";
   }
-  std::string text = fmt::format("{} participants ({}). ", summary.participants, summary.modes);
+  std::string text = fmt::format("{} participant{} ({}). ", summary.participants,
+                                 summary.participants == 1 ? "" : "s", summary.modes);
   text +=
       "Intervals are 95 % score intervals (Wilson 1927); pooled over participants they treat "
-      "answers "
-      "as independent. Accuracy is tested by shuffling each participant's responses over that "
-      "participant's own trials, choices by the exact binomial and multinomial distributions. ";
+      "answers as independent. Accuracy is tested by drawing the orders of presentation again as "
+      "the study drew them, choices by the exact binomial and multinomial distributions, one vote "
+      "a participant. ";
   if (summary.loop) {
     text += fmt::format(
         "The haptic loop made {} ticks; {} were late, {} were skipped, and {} force samples were "
-        "lost.",
+        "lost. {} of {} impacts came up to 5 ms after a late tick.",
         summary.loop->ticks, summary.loop->late, summary.loop->skipped,
-        summary.loop->dropped_samples);
+        summary.loop->dropped_samples, summary.loop->late_impacts, summary.loop->impacts);
   }
   return text;
 }

@@ -2,6 +2,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -12,12 +13,15 @@ struct LoopQuality {
   std::int64_t late{};
   std::int64_t skipped{};
   std::int64_t dropped_samples{};
+  std::int64_t impacts{};
+  std::int64_t late_impacts{};
 };
 
 struct Summary {
   std::string title;
   std::string notes;
-  std::string modes;  // "simulated", "real", "real, pilot", or "counts" if only a table was given
+  std::string modes;  // "simulated", "real", "pilot", or "counts" if only a table was given
+  std::vector<std::string> unfinished;  // sessions, with what was answered of what was planned
   int participants{};
   std::vector<std::shared_ptr<const BlockSummary>> blocks;
   std::optional<LoopQuality> loop;
@@ -27,10 +31,12 @@ struct Summary {
 // All contents of a report, computed from the stored rows.
 Summary summarise(const StudyDesign& design, const std::vector<results::AnswerRow>& answers,
                   const std::vector<results::VisitRow>& visits);
-// From a matrix alone, participants unknown.
-Summary summarise(const ConfusionMatrix& matrix, const std::string& title);
+// From a matrix alone, participants unknown; `task` is the one that such a matrix comes from.
+Summary summarise(const ConfusionMatrix& matrix, const std::string& title, std::string_view task,
+                  const std::string& mode);
 
-bool is_simulated(const Summary& summary);
+// What must stand above everything else where the participants are not those of a study; or empty.
+std::string banner(const Summary& summary);
 // A paragraph on how the numbers were computed, for a methods section.
 std::string methods(const Summary& summary);
 }  // namespace tapstudy::analysis

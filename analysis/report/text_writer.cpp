@@ -5,8 +5,11 @@
 namespace tapstudy::analysis {
 void write_text(std::ostream& out, const Summary& summary) {
   core::print(out, "{}\n", summary.title);
-  if (is_simulated(summary)) {
-    core::print(out, "SIMULATED participants: no person took part.\n");
+  if (const std::string warning = banner(summary); !warning.empty()) {
+    core::print(out, "{}\n", warning);
+  }
+  for (const std::string& session : summary.unfinished) {
+    core::print(out, "unfinished: {}\n", session);
   }
   for (const auto& block : summary.blocks) {
     core::print(out, "\n");

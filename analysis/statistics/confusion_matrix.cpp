@@ -26,7 +26,7 @@ Proportion counted(const ConfusionMatrix& matrix, const Agrees& is_success, cons
       if (!counts(matrix.stimuli[i], matrix.responses[j])) {
         continue;
       }
-      const int n = matrix.counts[i][j];
+      const std::int64_t n = matrix.counts[i][j];
       proportion.trials += n;
       proportion.successes += is_success(matrix.stimuli[i], matrix.responses[j]) ? n : 0;
     }
@@ -49,19 +49,20 @@ Agrees same_level(const std::string& factor) {
 ConfusionMatrix::ConfusionMatrix(std::vector<Item> of_stimuli, std::vector<Item> of_responses)
     : stimuli{std::move(of_stimuli)},
       responses{std::move(of_responses)},
-      counts(stimuli.size(), std::vector<int>(responses.size(), 0)) {}
+      counts(stimuli.size(), std::vector<std::int64_t>(responses.size(), 0)) {}
 
-void ConfusionMatrix::add(const std::string& stimulus, const std::string& response, int times) {
+void ConfusionMatrix::add(const std::string& stimulus, const std::string& response,
+                          std::int64_t times) {
   counts.at(place_of(stimuli, stimulus, "stimulus"))
       .at(place_of(responses, response, "response")) += times;
 }
 
-int ConfusionMatrix::row_total(std::size_t stimulus) const {
-  return std::accumulate(counts.at(stimulus).begin(), counts.at(stimulus).end(), 0);
+std::int64_t ConfusionMatrix::row_total(std::size_t stimulus) const {
+  return std::accumulate(counts.at(stimulus).begin(), counts.at(stimulus).end(), std::int64_t{0});
 }
 
-int ConfusionMatrix::total() const {
-  int sum = 0;
+std::int64_t ConfusionMatrix::total() const {
+  std::int64_t sum = 0;
   for (std::size_t i = 0; i < stimuli.size(); ++i) {
     sum += row_total(i);
   }
@@ -93,8 +94,9 @@ double factor_chance(const ConfusionMatrix& matrix, const std::string& factor,
   for (std::size_t i = 0; i < matrix.stimuli.size(); ++i) {
     for (const Item& response : matrix.responses) {
       if (counts(matrix.stimuli[i], response)) {
-        possible += matrix.row_total(i);
-        agreeing += agrees(matrix.stimuli[i], response) ? matrix.row_total(i) : 0;
+        const auto weight = static_cast<double>(matrix.row_total(i));
+        possible += weight;
+        agreeing += agrees(matrix.stimuli[i], response) ? weight : 0.0;
       }
     }
   }
@@ -106,11 +108,15 @@ std::vector<std::string> factors_of(const ConfusionMatrix& matrix) {
   if (matrix.stimuli.empty()) {
     return names;
   }
-  for (const auto& entry : matrix.stimuli.front().factors) {
-    const std::string& factor = entry.first;
-    const bool is_everywhere = std::ranges::all_of(
-        matrix.stimuli, [&](const Item& item) { return item.factors.contains(factor); });
-    if (is_everywhere) {
+  for (const auto& [factor, level] : matrix.stimuli.front().factors) {
+    bool is_everywhere = true;
+    bool has_levels = false;
+    for (const Item& item : matrix.stimuli) {
+      const auto found = item.factors.find(factor);
+      is_everywhere = is_everywhere && found != item.factors.end();
+      has_levels = has_levels || (is_everywhere && found->second != level);
+    }
+    if (is_everywhere && has_levels) {
       names.push_back(factor);
     }
   }

@@ -17,13 +17,13 @@ struct Item {
 struct ConfusionMatrix {
   std::vector<Item> stimuli;
   std::vector<Item> responses;
-  std::vector<std::vector<int>> counts;
+  std::vector<std::vector<std::int64_t>> counts;
 
   ConfusionMatrix(std::vector<Item> of_stimuli, std::vector<Item> of_responses);
   // Throws InvalidInput if either is not in the matrix.
-  void add(const std::string& stimulus, const std::string& response, int times = 1);
-  int row_total(std::size_t stimulus) const;
-  int total() const;
+  void add(const std::string& stimulus, const std::string& response, std::int64_t times = 1);
+  std::int64_t row_total(std::size_t stimulus) const;
+  std::int64_t total() const;
   double chance() const { return 1.0 / static_cast<double>(responses.size()); }
 };
 
@@ -38,6 +38,7 @@ Proportion conditional_accuracy(const ConfusionMatrix& matrix, const std::string
 // may be empty), with stimuli weighted by how often they were presented.
 double factor_chance(const ConfusionMatrix& matrix, const std::string& factor,
                      const std::string& given);
-// The factors that every stimulus has a level of. A response without a level agrees with none.
+// The factors that every stimulus has a level of, and not all the same one. A response without a
+// level agrees with none.
 std::vector<std::string> factors_of(const ConfusionMatrix& matrix);
 }  // namespace tapstudy::analysis

@@ -12,7 +12,7 @@
 namespace tapstudy::analysis {
 namespace {
 constexpr std::size_t max_classes = 200;
-constexpr int max_answers = 1'000'000;
+constexpr std::int64_t max_answers = 1'000'000;
 
 [[noreturn]] void refuse(const std::string& file, int line, const std::string& what) {
   throw core::InvalidInput{fmt::format("{}:{}: {}", file, line, what)};
@@ -22,8 +22,7 @@ bool has_name(const std::vector<Item>& items, const std::string& name) {
   return std::ranges::find(items, name, &Item::name) != items.end();
 }
 
-std::vector<CsvRow> read_rows(std::istream& text, const std::string& file) {
-  std::vector<CsvRow> rows = read_csv(text, file);
+const std::vector<CsvRow>& checked_rows(const std::vector<CsvRow>& rows, const std::string& file) {
   for (const CsvRow& row : rows) {
     if (row.cells.size() != rows.front().cells.size()) {
       refuse(file, row.line,
@@ -38,32 +37,48 @@ std::vector<CsvRow> read_rows(std::istream& text, const std::string& file) {
   return rows;
 }
 
-int count_in(const std::string& cell, const std::string& file, int line) {
-  int value{};
+std::int64_t count_in(const std::string& cell, const std::string& file, int line) {
+  std::int64_t value{};
   const char* const end = cell.data() + cell.size();
   const auto [stopped, error] = std::from_chars(cell.data(), end, value);
   if (error != std::errc{} || stopped != end || value < 0 || value > max_answers) {
-    refuse(file, line, fmt::format("'{}' is not a count (from 0 to {})", cell, max_answers));
+    refuse(file, line,
+           fmt::format("'{}' is not a count (from 0 to {}; a factor's column is headed {}NAME)",
+                       cell, max_answers, factor_mark));
   }
   return value;
 }
 
-ConfusionMatrix from_answers(const std::vector<CsvRow>& lines, const std::string& file) {
-  std::set<std::string> names;
+// A typing mistake must not become a class of its own.
+ConfusionMatrix from_answers(const std::vector<CsvRow>& lines, const std::string& file,
+                             const std::vector<std::string>& extra_responses) {
+  std::set<std::string> stimuli;
   for (std::size_t i = 1; i < lines.size(); ++i) {
-    names.insert({lines[i].cells[0], lines[i].cells[1]});
+    stimuli.insert(lines[i].cells[0]);
   }
-  if (names.size() > max_classes) {
+  std::set<std::string> responses = stimuli;
+  responses.insert(extra_responses.begin(), extra_responses.end());
+  for (const CsvRow& line : std::span{lines}.subspan(1)) {
+    if (!responses.contains(line.cells[1])) {
+      refuse(file, line.line,
+             fmt::format("response '{}' is no stimulus (if it can be answered, name it with "
+                         "--responses; leave a row without an answer out)",
+                         line.cells[1]));
+    }
+  }
+  if (responses.size() > max_classes) {
     refuse(file, lines.front().line,
-           fmt::format("names {} different stimuli and responses (at "
-                       "most {})",
-                       names.size(), max_classes));
+           fmt::format("names {} different stimuli and responses (at most {})", responses.size(),
+                       max_classes));
   }
-  std::vector<Item> items;
-  for (const std::string& name : names) {
-    items.push_back({name, name, {}});
-  }
-  ConfusionMatrix matrix{items, items};
+  const auto items_of = [](const std::set<std::string>& names) {
+    std::vector<Item> items;
+    for (const std::string& name : names) {
+      items.push_back({name, name, {}});
+    }
+    return items;
+  };
+  ConfusionMatrix matrix{items_of(stimuli), items_of(responses)};
   for (std::size_t i = 1; i < lines.size(); ++i) {
     matrix.add(lines[i].cells[0], lines[i].cells[1]);
   }
@@ -82,12 +97,14 @@ std::vector<Item> stimuli_of(const std::vector<CsvRow>& lines, const std::string
   return stimuli;
 }
 
-// The first column that is named like a stimulus, or their number.
-std::size_t first_response(const std::vector<std::string>& header,
-                           const std::vector<Item>& stimuli) {
-  const auto found = std::find_if(header.begin() + 1, header.end(),
-                                  [&](const std::string& name) { return has_name(stimuli, name); });
-  return static_cast<std::size_t>(found - header.begin());
+// Columns of factors come first.
+std::size_t first_response(const CsvRow& header, const std::string& file) {
+  const auto is_factor = [](const std::string& name) { return name.starts_with(factor_mark); };
+  const auto found = std::find_if_not(header.cells.begin() + 1, header.cells.end(), is_factor);
+  if (std::any_of(found, header.cells.end(), is_factor)) {
+    refuse(file, header.line, "has a factor after the first response");
+  }
+  return static_cast<std::size_t>(found - header.cells.begin());
 }
 
 std::vector<Item> responses_of(const CsvRow& header, std::size_t first,
@@ -114,10 +131,11 @@ ConfusionMatrix from_matrix(const std::vector<CsvRow>& lines, const std::string&
            fmt::format("has more than {} stimuli or responses", max_classes));
   }
   std::vector<Item> stimuli = stimuli_of(lines, file);
-  const std::size_t first = first_response(header, stimuli);
+  const std::size_t first = first_response(lines.front(), file);
   for (std::size_t i = 0; i < stimuli.size(); ++i) {
     for (std::size_t column = 1; column < first; ++column) {
-      stimuli[i].factors[header[column]] = lines[i + 1].cells[column];
+      stimuli[i].factors[header[column].substr(std::string_view{factor_mark}.size())] =
+          lines[i + 1].cells[column];
     }
   }
   ConfusionMatrix matrix{stimuli, responses_of(lines.front(), first, stimuli, file)};
@@ -130,14 +148,22 @@ ConfusionMatrix from_matrix(const std::vector<CsvRow>& lines, const std::string&
 }
 }  // namespace
 
-ConfusionMatrix read_counts(std::istream& text, const std::string& file) {
-  const std::vector<CsvRow> lines = read_rows(text, file);
+CountsTable read_counts(std::istream& text, const std::string& file,
+                        const std::vector<std::string>& extra_responses) {
+  const CsvText csv = read_csv(text, file);
+  const std::vector<CsvRow>& lines = checked_rows(csv.rows, file);
   const std::vector<std::string>& header = lines.front().cells;
   const bool is_answers = header.size() >= 2 && header[1] == "response";
-  ConfusionMatrix matrix = is_answers ? from_answers(lines, file) : from_matrix(lines, file);
-  if (matrix.total() == 0) {
+  CountsTable table{
+      is_answers ? from_answers(lines, file, extra_responses) : from_matrix(lines, file), {}};
+  if (table.matrix.total() == 0) {
     refuse(file, lines.front().line, "holds no answers");
   }
-  return matrix;
+  for (const std::string& comment : csv.comments) {
+    if (comment.starts_with(mode_mark)) {
+      table.mode = comment.substr(std::string_view{mode_mark}.size());
+    }
+  }
+  return table;
 }
 }  // namespace tapstudy::analysis

@@ -2,12 +2,16 @@
 
 #include <csv.h>
 #include <fmt/format.h>
+#include <utf8cpp/utf8.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "core/error.hpp"
 namespace tapstudy::analysis {
 namespace {
+constexpr std::size_t max_bytes = 64'000'000;
+
 class CsvReader {
  public:
   explicit CsvReader(std::string file) : file_{std::move(file)} {
@@ -19,21 +23,50 @@ class CsvReader {
   CsvReader(CsvReader&&) = delete;
   CsvReader& operator=(CsvReader&&) = delete;
 
-  std::vector<CsvRow> read(std::istream& text) {
-    for (std::string line; std::getline(text, line);) {
+  CsvText read(std::istream& text) {
+    for (std::string line; next_line(text, line);) {
       ++line_;
-      const bool is_comment = !is_inside_row_ && line.starts_with('#');
-      if (!is_comment) {
+      check_characters(line);
+      const bool is_before_rows = !is_inside_row_ && text_.rows.empty();
+      if (is_before_rows && line.starts_with('#')) {
+        text_.comments.push_back(line);
+      } else {
         take(line + '\n');
       }
     }
     if (csv_fini(&parser_, end_cell, end_row, this) != 0) {
       refuse();
     }
-    return std::move(rows_);
+    return std::move(text_);
   }
 
  private:
+  // A device such as /dev/zero has no line ends.
+  bool next_line(std::istream& text, std::string& line) {
+    line.clear();
+    for (char c = 0; text.get(c);) {
+      if (++size_ > max_bytes) {
+        throw core::InvalidInput{
+            fmt::format("{}: is larger than {} MB", file_, max_bytes / 1'000'000)};
+      }
+      if (c == '\n') {
+        return true;
+      }
+      line += c;
+    }
+    return !line.empty();
+  }
+  void check_characters(const std::string& line) const {
+    if (!utf8::is_valid(line.begin(), line.end())) {
+      throw core::InvalidInput{fmt::format("{}:{}: is not UTF-8 text", file_, line_)};
+    }
+    const auto is_control = [](unsigned char c) {
+      return (c < ' ' && c != '\t' && c != '\r') || c == 0x7F;
+    };
+    if (std::ranges::any_of(line, is_control)) {
+      throw core::InvalidInput{fmt::format("{}:{}: has a control character", file_, line_)};
+    }
+  }
   void take(const std::string& line) {
     if (!is_inside_row_) {
       row_.line = line_;
@@ -54,7 +87,7 @@ class CsvReader {
   }
   static void end_row(int /*terminator*/, void* self) {
     auto& reader = *static_cast<CsvReader*>(self);
-    reader.rows_.push_back(std::exchange(reader.row_, {}));
+    reader.text_.rows.push_back(std::exchange(reader.row_, {}));
     reader.is_inside_row_ = false;
   }
 
@@ -63,11 +96,12 @@ class CsvReader {
   int line_{0};
   bool is_inside_row_{false};
   CsvRow row_;
-  std::vector<CsvRow> rows_;
+  CsvText text_;
+  std::size_t size_{0};
 };
 }  // namespace
 
-std::vector<CsvRow> read_csv(std::istream& text, const std::string& file) {
+CsvText read_csv(std::istream& text, const std::string& file) {
   return CsvReader{file}.read(text);
 }
 

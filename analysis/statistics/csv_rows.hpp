@@ -8,10 +8,16 @@ struct CsvRow {
   std::vector<std::string> cells;
 };
 
+struct CsvText {
+  std::vector<std::string> comments;  // lines before the first row that start with #
+  std::vector<CsvRow> rows;
+};
+
 // Comma-separated values (RFC 4180): cells in double quotes may hold commas, quotes and line ends;
-// spaces around other cells do not count. Empty lines, and lines between rows that start with #,
-// are skipped. Throws InvalidInput with file:line for a quote that is out of place or left open.
-std::vector<CsvRow> read_csv(std::istream& text, const std::string& file);
+// spaces around other cells do not count; empty lines are skipped. Throws InvalidInput with
+// file:line for a quote that is out of place or left open, for what is no UTF-8 text, and for a
+// file beyond 64 MB.
+CsvText read_csv(std::istream& text, const std::string& file);
 
 // A cell as a file has it: in quotes if it needs them.
 std::string csv_cell(const std::string& text);

@@ -3,34 +3,32 @@
 #include "core/rng.hpp"
 namespace tapstudy::analysis {
 namespace {
-int correct(const Answers& answers) {
+int correct(const std::vector<int>& stimuli, const std::vector<int>& responses) {
   int count = 0;
-  for (std::size_t i = 0; i < answers.stimuli.size(); ++i) {
-    count += answers.stimuli[i] == answers.responses[i] ? 1 : 0;
-  }
-  return count;
-}
-
-int correct(const std::vector<Answers>& participants) {
-  int count = 0;
-  for (const Answers& answers : participants) {
-    count += correct(answers);
+  for (std::size_t i = 0; i < responses.size(); ++i) {
+    count += stimuli.at(i) == responses[i] ? 1 : 0;
   }
   return count;
 }
 }  // namespace
 
-double permutation_p(const std::vector<Answers>& participants, int shuffles, std::uint64_t seed) {
-  core::Rng rng{seed};
-  const int observed = correct(participants);
-  std::vector<Answers> shuffled = participants;
-  int as_good = 0;
-  for (int round = 0; round < shuffles; ++round) {
-    for (Answers& answers : shuffled) {
-      rng.shuffle(answers.responses);
-    }
-    as_good += correct(shuffled) >= observed ? 1 : 0;
+PermutationResult permutation_test(const std::vector<Answers>& participants, const Redraw& redraw,
+                                   int draws, std::uint64_t seed) {
+  int observed = 0;
+  for (const Answers& answers : participants) {
+    observed += correct(answers.stimuli, answers.responses);
   }
-  return (1.0 + as_good) / (shuffles + 1.0);
+  PermutationResult result{0.0, 0, draws};
+  for (int draw = 0; draw < draws; ++draw) {
+    const std::uint64_t drawn =
+        core::derived_seed(seed, core::Purpose::schedule, static_cast<std::uint64_t>(draw));
+    int count = 0;
+    for (std::size_t i = 0; i < participants.size(); ++i) {
+      count += correct(redraw(i, drawn), participants[i].responses);
+    }
+    result.as_good += count >= observed ? 1 : 0;
+  }
+  result.p = (1.0 + result.as_good) / (draws + 1.0);
+  return result;
 }
 }  // namespace tapstudy::analysis

@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <vector>
 namespace tapstudy::analysis {
 // One participant's answers, trial by trial, as integer codes.
@@ -8,9 +9,21 @@ struct Answers {
   std::vector<int> responses;
 };
 
-// Permutation test of accuracy against chance. Each participant's responses are shuffled over that
-// participant's own trials, which preserves individual response biases and makes no assumption of
-// independence between participants: p = (1 + number of shuffles at least as accurate) /
-// (shuffles + 1) (Hope 1968). The same seed gives the same p.
-double permutation_p(const std::vector<Answers>& participants, int shuffles, std::uint64_t seed);
+// The stimuli that a participant (by place in the list) would have been presented, trial by trial,
+// in another draw of the study's own randomisation. All participants of one draw belong together:
+// counterbalancing deals its orders out among them.
+using Redraw = std::function<std::vector<int>(std::size_t participant, std::uint64_t draw)>;
+
+struct PermutationResult {
+  double p{};     // (1 + draws at least as accurate) / (draws + 1) (Hope 1968)
+  int as_good{};  // draws at least as accurate; if none, p is only known to be no larger
+  int draws{};
+};
+
+// Randomisation test of accuracy against chance (Fisher 1935; Edgington 1980): responses stay as
+// they were, stimuli are drawn again by the very randomisation that the study used, which is what
+// makes it valid. It preserves individual response biases and makes no assumption of independence
+// between participants. The same seed gives the same p.
+PermutationResult permutation_test(const std::vector<Answers>& participants, const Redraw& redraw,
+                                   int draws, std::uint64_t seed);
 }  // namespace tapstudy::analysis

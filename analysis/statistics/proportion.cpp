@@ -39,7 +39,7 @@ void each_outcome(std::vector<int>& counts, std::size_t place, int left,
 
 Interval wilson_interval(const Proportion& proportion) {
   const double z = boost::math::quantile(boost::math::normal{}, 0.975);
-  const double n = proportion.trials;
+  const auto n = static_cast<double>(proportion.trials);
   const double p = proportion.value();
   const double centre = p + z * z / (2.0 * n);
   const double reach = z * std::sqrt(p * (1.0 - p) / n + z * z / (4.0 * n * n));

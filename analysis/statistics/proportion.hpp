@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <optional>
 #include <vector>
 namespace tapstudy::analysis {
@@ -9,9 +10,11 @@ struct Interval {
 
 // k successes in n trials.
 struct Proportion {
-  int successes{};
-  int trials{};
-  double value() const { return static_cast<double>(successes) / trials; }  // trials > 0
+  std::int64_t successes{};
+  std::int64_t trials{};
+  double value() const {  // trials > 0
+    return static_cast<double>(successes) / static_cast<double>(trials);
+  }
 };
 
 // The 95 % score interval of a proportion (Wilson 1927). trials > 0.

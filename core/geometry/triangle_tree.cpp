@@ -142,7 +142,9 @@ bool TriangleTree::is_crossed(int triangle, const Point& from, const Point& to) 
 TriangleTree::Entry TriangleTree::first_entered(const Point& from, const Point& to,
                                                 double skin) const noexcept {
   Entry first;
-  visit_along(from, to, [&](int triangle) {
+  const Segment segment{from, to};
+  const auto is_on_the_way = [&](const Node& node) { return touches(node, segment); };
+  walk(is_on_the_way, [&](int triangle) {
     const Point n = normal(triangle);
     const Point a = corner(triangle, 0);
     const double start = n.dot(from - a);
@@ -156,13 +158,6 @@ TriangleTree::Entry TriangleTree::first_entered(const Point& from, const Point& 
     }
   });
   return first;
-}
-
-bool TriangleTree::is_pierced(int triangle, const Point& from, const Point& to) const noexcept {
-  const Point n = normal(triangle);
-  const double start = n.dot(from - corner(triangle, 0));
-  const double end = n.dot(to - corner(triangle, 0));
-  return start * end < 0.0 && is_crossed(triangle, from, to);
 }
 
 bool TriangleTree::is_near(const Point& point, double distance) const noexcept {

@@ -28,15 +28,6 @@ class TriangleTree {
   // Whether any triangle lies within the distance.
   bool is_near(const Point& point, double distance) const noexcept;
 
-  // Visits every triangle whose bounding box the segment intersects.
-  template <class Visit>
-  void visit_along(const Point& from, const Point& to, const Visit& visit) const noexcept {
-    const Segment segment{from, to};
-    walk([&](const Node& node) { return touches(node, segment); }, visit);
-  }
-  // Whether the segment passes through the triangle, in either direction.
-  bool is_pierced(int triangle, const Point& from, const Point& to) const noexcept;
-
   const TriangleSurface& surface() const noexcept { return surface_; }
   Point normal(int triangle) const noexcept { return normals_.row(triangle); }  // unit length
   // Barycentric coordinates of the nearest point of the triangle.

@@ -72,7 +72,55 @@ double largest_move(const Eigen::ArrayXd& before, const Eigen::ArrayXd& after) {
   return both == 0 ? 0.0 : (before.head(both) / after.head(both) - 1.0).abs().maxCoeff();
 }
 
-[[noreturn]] void give_up(const std::vector<RefinementRound>& rounds, double accuracy) {
+// What further refinement would still move: the moves shrink by a constant ratio as elements do
+// (Richardson 1911). Infinite where they do not shrink.
+double still_to_move(double moved_before, double moved) {
+  const double ratio = moved / moved_before;
+  return ratio < 1.0 ? moved * ratio / (1.0 - ratio) : HUGE_VAL;
+}
+
+// One small move may be chance: two in a row, and little left.
+bool has_settled(const std::vector<RefinementRound>& rounds, double accuracy) {
+  if (rounds.size() < 3) {
+    return false;
+  }
+  const double before = rounds[rounds.size() - 2].moved;
+  const double last = rounds.back().moved;
+  return std::max(before, last) <= accuracy && still_to_move(before, last) <= accuracy;
+}
+
+void check_can_settle(const std::vector<Fixation>& fixations) {
+  for (std::size_t i = 0; i < fixations.size(); ++i) {
+    if (!can_hold_a_solid(fixations[i])) {
+      throw ModelError{
+          fmt::format("mesh.accuracy: fixation {} is a point or a line, under which a solid's "
+                      "frequencies never "
+                      "settle (hold a disc, a side or a box, or leave accuracy out)",
+                      i + 1)};
+    }
+  }
+}
+
+// What each fixation holds must settle as well: a region that goes on catching nodes stiffens the
+// body while its elements soften.
+std::string unsettled_region(const std::vector<double>& before_m2,
+                             const std::vector<double>& after_m2) {
+  constexpr double still = 0.1;
+  for (std::size_t i = 0; i < after_m2.size(); ++i) {
+    if (after_m2[i] == 0.0) {
+      return fmt::format("fixation {} is smaller than the elements: it holds single nodes", i + 1);
+    }
+    if (i >= before_m2.size() || std::abs(before_m2[i] / after_m2[i] - 1.0) > still) {
+      return fmt::format(
+          "fixation {} catches more nodes as the mesh is refined: {:.3g} m2, then {:.3g} m2", i + 1,
+          i < before_m2.size() ? before_m2[i] : 0.0, after_m2[i]);
+    }
+  }
+  return "";
+}
+
+[[noreturn]] void give_up(const std::vector<RefinementRound>& rounds, double accuracy,
+                          const std::string& unsettled) {
   std::string history;
   for (const RefinementRound& round : rounds) {
     history += fmt::format("; {} tetrahedra: {} modes", round.tets, round.modes);
@@ -80,19 +128,21 @@ double largest_move(const Eigen::ArrayXd& before, const Eigen::ArrayXd& after) {
                                           : std::string{};
   }
   throw ModelError{fmt::format(
-      "mesh: the frequencies still move by more than {} % within {:.0g} tetrahedra and {} rounds{} "
-      "(a body held at single points does not converge: hold a disc)",
-      100.0 * accuracy, max_tets, max_rounds, history)};
+      "mesh: the frequencies have not settled to {} % within {:.0g} tetrahedra and {} rounds{}{}",
+      100.0 * accuracy, max_tets, max_rounds, history, unsettled.empty() ? "" : "; " + unsettled)};
 }
 
 SolvedBody refine(const BodySpec& body, const ProgressHook& progress) {
   const double accuracy = body.mesh.accuracy.value();
+  check_can_settle(body.fixations);
   MeshSize size = body.mesh.size;
   double volume_m3 =
       size.max_tet_volume_m3.value_or(std::abs(core::volume_m3(body.shape)) / tets_of_first_round);
   std::vector<RefinementRound> rounds;
   ModelCost cost;
   Eigen::ArrayXd before;
+  std::vector<double> held_before_m2;
+  std::string unsettled;
   while (rounds.size() < max_rounds && (rounds.empty() || rounds.back().tets <= finer * max_tets)) {
     size.max_tet_volume_m3 = volume_m3;
     SolvedBody solved = solve_once(body, size, progress);
@@ -100,7 +150,10 @@ SolvedBody refine(const BodySpec& body, const ProgressHook& progress) {
     add(solved.modes.report.cost, cost);
     const double moved = rounds.empty() ? HUGE_VAL : largest_move(before, after);
     rounds.push_back({solved.modes.report.tets, static_cast<int>(after.size()), moved});
-    if (before.size() == after.size() && moved <= accuracy) {
+    const auto held_m2 = held_areas_m2(solved.mesh, body.shape, body.fixations);
+    unsettled = unsettled_region(held_before_m2, held_m2);
+    held_before_m2 = held_m2;
+    if (before.size() == after.size() && has_settled(rounds, accuracy) && unsettled.empty()) {
       solved.modes.report.refinement = rounds;
       solved.modes.report.cost = cost;
       return solved;
@@ -108,7 +161,7 @@ SolvedBody refine(const BodySpec& body, const ProgressHook& progress) {
     before = after;
     volume_m3 *= finer;
   }
-  give_up(rounds, accuracy);
+  give_up(rounds, accuracy, unsettled);
 }
 }  // namespace
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -84,6 +85,38 @@ std::vector<Eigen::Index> constrained_nodes(const Fixation& fixation, const TetM
     }
   }
   return nodes;
+}
+
+template <class Element>
+bool holds_all(const std::vector<bool>& is_held, const Element& corners) {
+  return std::ranges::all_of(corners,
+                             [&](int node) { return is_held[static_cast<std::size_t>(node)]; });
+}
+
+double held_area_m2(const TetMesh& mesh, const std::vector<bool>& is_held) {
+  double area_m2 = 0.0;
+  for (Eigen::Index i = 0; i < mesh.surface.rows(); ++i) {
+    const std::array<int, 3> corners{mesh.surface(i, 0), mesh.surface(i, 1), mesh.surface(i, 2)};
+    if (holds_all(is_held, corners)) {
+      const auto edge = [&](std::size_t to) -> Vec3 {
+        return mesh.nodes_m.row(corners.at(to)) - mesh.nodes_m.row(corners.at(0));
+      };
+      area_m2 += 0.5 * edge(1).cross(edge(2)).norm();
+    }
+  }
+  return area_m2;
+}
+
+double held_volume_m3(const TetMesh& mesh, const std::vector<bool>& is_held) {
+  double volume_m3 = 0.0;
+  for (Eigen::Index i = 0; i < mesh.tets.rows(); ++i) {
+    const std::array<int, 4> corners{mesh.tets(i, 0), mesh.tets(i, 1), mesh.tets(i, 2),
+                                     mesh.tets(i, 3)};
+    if (holds_all(is_held, corners)) {
+      volume_m3 += tet_volume_m3(mesh, i);
+    }
+  }
+  return volume_m3;
 }
 
 void add_on_faces(const Vec3& at_m, Face face, const Bounds& body, std::vector<Vec3>& points) {
@@ -218,6 +251,35 @@ std::vector<bool> constrained_dofs(const TetMesh& mesh, const Shape& shape,
     throw ModelError{"fixation: every node of the body is held, nothing is left free to vibrate"};
   }
   return held;
+}
+
+bool can_hold_a_solid(const Fixation& fixation) {
+  switch (fixation.shape) {
+    case RegionShape::vertex:
+      return false;
+    case RegionShape::box:
+      return ((fixation.high_m - fixation.low_m).array() > 0.0).count() >= 2;
+    case RegionShape::disc:
+    case RegionShape::ball:
+    case RegionShape::side:
+      break;
+  }
+  return true;
+}
+
+std::vector<double> held_areas_m2(const TetMesh& mesh, const Shape& shape,
+                                  const std::vector<Fixation>& fixations) {
+  std::vector<double> areas_m2;
+  for (const Fixation& fixation : fixations) {
+    std::vector<bool> is_held(static_cast<std::size_t>(mesh.nodes_m.rows()), false);
+    for (const Eigen::Index node : constrained_nodes(fixation, mesh, shape)) {
+      is_held[static_cast<std::size_t>(node)] = true;
+    }
+    const double area_m2 = held_area_m2(mesh, is_held);
+    areas_m2.push_back(area_m2 > 0.0 ? area_m2
+                                     : std::pow(held_volume_m3(mesh, is_held), 2.0 / 3.0));
+  }
+  return areas_m2;
 }
 
 std::string content_key(const Fixation& fixation) {

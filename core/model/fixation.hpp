@@ -43,6 +43,15 @@ std::vector<Vec3> points_to_mesh(const std::vector<Fixation>& fixations, const S
 std::vector<bool> constrained_dofs(const TetMesh& mesh, const Shape& shape,
                                    const std::vector<Fixation>& fixations);
 
+// False for points and lines: the frequencies of a solid held by them fall without end as its mesh
+// is refined.
+bool can_hold_a_solid(const Fixation& fixation);
+
+// The area of the surface triangles that each fixation holds whole, or, where it holds none, of a
+// cube as large as the tetrahedra that it holds [m²].
+std::vector<double> held_areas_m2(const TetMesh& mesh, const Shape& shape,
+                                  const std::vector<Fixation>& fixations);
+
 // Equal text for equal fixations.
 std::string content_key(const Fixation& fixation);
 }  // namespace tapstudy::core

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "core/output_file.hpp"
 #include "core/print.hpp"
 namespace tapstudy::core {
@@ -52,47 +54,59 @@ void write_cells(std::ostream& out, const TetMesh& mesh) {
   out << "</Cells>\n";
 }
 
-void write_modes(std::ostream& out, const Eigen::MatrixXd& displacement) {
+// A column per mode, mass-normalised: its nodes one after the other, x y z.
+void write_modes(std::ostream& out, const Eigen::MatrixXd& shapes) {
   out << "<PointData>\n";
-  for (Eigen::Index mode = 0; mode < displacement.cols(); ++mode) {
-    const auto nodes = displacement.col(mode).reshaped(3, displacement.rows() / 3);
-    const double longest = nodes.colwise().norm().maxCoeff();
+  for (Eigen::Index mode = 0; mode < shapes.cols(); ++mode) {
     open_array(out, "Float64", fmt::format("mode_{}", mode + 1), 3);
+    const auto nodes = shapes.col(mode).reshaped(3, shapes.rows() / 3);
     for (const auto node : nodes.colwise()) {
-      core::print(out, "{:.9g} {:.9g} {:.9g}\n", node[0] / longest, node[1] / longest,
-                  node[2] / longest);
+      core::print(out, "{:.17g} {:.17g} {:.17g}\n", node[0], node[1], node[2]);
     }
     close_array(out);
   }
   out << "</PointData>\n";
 }
 
-void write_frequencies(std::ostream& out, const Eigen::ArrayXd& frequency_hz) {
-  core::print(out,
-              R"(<FieldData>
-<DataArray type="Float64" Name="frequency_hz" NumberOfTuples="{}" format="ascii">
-)",
-              frequency_hz.size());
-  for (const double hz : frequency_hz) {
-    core::print(out, "{:.17g}\n", hz);
+// Of each mode scaled so that it moves no node further than 1.
+Eigen::ArrayXd modal_mass_kg(const Eigen::MatrixXd& shapes) {
+  Eigen::ArrayXd mass_kg{shapes.cols()};
+  for (Eigen::Index mode = 0; mode < shapes.cols(); ++mode) {
+    mass_kg[mode] =
+        1.0 / shapes.col(mode).reshaped(3, shapes.rows() / 3).colwise().squaredNorm().maxCoeff();
+  }
+  return mass_kg;
+}
+
+void write_field(std::ostream& out, const char* name, const Eigen::ArrayXd& values) {
+  core::print(out, R"(<DataArray type="Float64" Name="{}" NumberOfTuples="{}" format="ascii">)",
+              name, values.size());
+  out << '\n';
+  for (const double value : values) {
+    core::print(out, "{:.17g}\n", value);
   }
   close_array(out);
-  out << "</FieldData>\n";
 }
 }  // namespace
 
-void write_vtu(const SolvedBody& body, const Eigen::ArrayXd& frequency_hz,
+void write_vtu(const SolvedBody& body, const ModalModel& modal, double density_kg_per_m3,
                const std::string& file) {
+  // the body was solved at unit density
+  const Eigen::MatrixXd shapes =
+      body.displacement.leftCols(modal.frequency_hz.size()) / std::sqrt(density_kg_per_m3);
   write_new_file(file, [&](std::ostream& out) {
     out << "<?xml version=\"1.0\"?>\n"
            "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\">\n"
            "<UnstructuredGrid>\n";
-    write_frequencies(out, frequency_hz);
+    out << "<FieldData>\n";
+    write_field(out, "frequency_hz", modal.frequency_hz);
+    write_field(out, "modal_mass_kg", modal_mass_kg(shapes));
+    out << "</FieldData>\n";
     core::print(out, "<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n",
                 body.mesh.nodes_m.rows(), body.mesh.tets.rows());
     write_nodes(out, body.mesh);
     write_cells(out, body.mesh);
-    write_modes(out, body.displacement.leftCols(frequency_hz.size()));
+    write_modes(out, shapes);
     out << "</Piece>\n</UnstructuredGrid>\n</VTKFile>\n";
   });
 }

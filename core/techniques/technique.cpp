@@ -41,4 +41,9 @@ std::vector<std::string> technique_names() {
   }
   return names;
 }
+
+const Technique& natural_vibration() {
+  const std::vector<const ForcePart*> alone{&plate_vibration};
+  return *std::ranges::find(techniques(), alone, &Technique::parts);
+}
 }  // namespace tapstudy::core

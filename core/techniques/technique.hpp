@@ -24,4 +24,6 @@ const std::vector<Technique>& techniques();
 // nullptr if there is none of that name.
 const Technique* find_technique(std::string_view name);
 std::vector<std::string> technique_names();
+// The one that vibrates as the body does, with nothing added.
+const Technique& natural_vibration();
 }  // namespace tapstudy::core

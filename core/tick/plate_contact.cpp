@@ -3,10 +3,16 @@
 #include <algorithm>
 #include <cmath>
 namespace tapstudy::core {
+namespace {
+// A point on the edge stays there through the placement's arithmetic.
+constexpr double rounding_m = 1e-9;
+}  // namespace
+
 const Contact& PlateContact::tick(const HandState& tip) noexcept {
   const Vec3& at = tip.position_m;
   const bool was_above = history_.has_tip && history_.tip_m.z() >= 0.0;
-  const bool is_over = std::abs(at.x()) <= face_.half_x_m && std::abs(at.y()) <= face_.half_y_m;
+  const bool is_over = std::abs(at.x()) <= face_.half_x_m + rounding_m &&
+                       std::abs(at.y()) <= face_.half_y_m + rounding_m;
   const bool is_below = at.z() < 0.0;
   const bool enters = !contact_.touching && was_above && is_below && is_over;
   contact_.touching = (contact_.touching || enters) && is_below && is_over;

@@ -16,11 +16,14 @@ AnyContact contact_with(const TouchedShape& shape, double release_height_m) {
 TapRenderer::TapRenderer(const RenderSettings& settings, TouchedShape shape,
                          std::vector<std::unique_ptr<AddedForce>> added)
     : penalty_stiffness_n_per_m_{settings.penalty_stiffness_n_per_m},
+      own_scale_{1.0 / settings.lateral_ratio, 1.0 / settings.lateral_ratio, 1.0},
       shape_{std::move(shape)},
       contact_{contact_with(shape_, settings.release_height_m)},
       added_{std::move(added)} {}
 
-RenderedTick TapRenderer::tick(const HandState& tip) noexcept {
+RenderedTick TapRenderer::tick(HandState tip) noexcept {
+  tip.position_m = tip.position_m.cwiseProduct(own_scale_);
+  tip.velocity_m_s = tip.velocity_m_s.cwiseProduct(own_scale_);
   for (const auto& added : added_) {
     added->advance();
   }
@@ -62,8 +65,10 @@ bool TapRenderer::is_touching() const noexcept {
 }
 
 void TapRenderer::take_over_from(const TapRenderer& other) noexcept {
-  const ContactHistory history =
+  ContactHistory history =
       std::visit([](const auto& contact) { return contact.history(); }, other.contact_);
+  // the other plate may have another lateral scale
+  history.tip_m = history.tip_m.cwiseQuotient(other.own_scale_).cwiseProduct(own_scale_);
   std::visit([&](auto& contact) { contact.continue_from(history); }, contact_);
   for (const auto& added : added_) {
     added->reset();

@@ -24,7 +24,9 @@ class TapRenderer {
  public:
   TapRenderer(const RenderSettings& settings, TouchedShape shape,
               std::vector<std::unique_ptr<AddedForce>> added);
-  RenderedTick tick(const HandState& tip) noexcept;
+  // The tip is in the placement's plate frame; the contact is in the plate's own, which has its own
+  // lateral scale.
+  RenderedTick tick(HandState tip) noexcept;
   bool is_touching() const noexcept;  // NOLINT(bugprone-exception-escape)
   // Kinetic plus elastic energy of the vibrating body.
   double energy_j() const noexcept;
@@ -35,6 +37,7 @@ class TapRenderer {
   ForceParts parts_of(const Contact& contact) noexcept;
 
   double penalty_stiffness_n_per_m_;
+  Vec3 own_scale_;
   TouchedShape shape_;
   std::variant<PlateContact, SurfaceContact> contact_;
   std::vector<std::unique_ptr<AddedForce>> added_;

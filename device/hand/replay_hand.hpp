@@ -12,15 +12,14 @@ class ReplayHand final : public Device {
   ReplayHand(std::vector<core::HandState> states, std::string source);
   void rewind() noexcept { next_ = 0; }
 
-  [[nodiscard]] core::TickFault read(core::HandState& hand) noexcept override;
+  [[nodiscard]] core::TickFault read(core::HandState& hand, double elapsed_s) noexcept override;
   [[nodiscard]] core::TickFault write(const core::Vec3& force_n) noexcept override;
-  DeviceDetail detail() const noexcept override { return {force_n_}; }
+  DeviceDetail detail() const noexcept override { return {}; }
   std::string description() const override { return "replay of " + source_; }
 
  private:
   std::vector<core::HandState> states_;
   std::string source_;
   std::size_t next_{0};
-  core::Vec3 force_n_{core::Vec3::Zero()};
 };
 }  // namespace tapstudy::device

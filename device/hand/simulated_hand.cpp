@@ -25,7 +25,7 @@ double SimulatedHand::follow(std::vector<PlannedTap> taps) {
   return path_.duration_s();
 }
 
-core::TickFault SimulatedHand::read(core::HandState& hand) noexcept {
+core::TickFault SimulatedHand::read(core::HandState& hand, double /*elapsed_s*/) noexcept {
   hand = hand_;
   return core::TickFault::none;
 }

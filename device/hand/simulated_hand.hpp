@@ -30,7 +30,7 @@ class SimulatedHand final : public Device {
   const std::vector<FeltTick>& felt() const noexcept { return felt_; }
   void forget() noexcept { felt_.clear(); }
 
-  core::TickFault read(core::HandState& hand) noexcept override;
+  core::TickFault read(core::HandState& hand, double elapsed_s) noexcept override;
   core::TickFault write(const core::Vec3& force_n) noexcept override;
   DeviceDetail detail() const noexcept override { return {force_n_}; }
   std::string description() const override { return "simulated hand"; }

@@ -33,6 +33,13 @@ TickFault ForceGate::fault_of(const core::Vec3& wanted_n, const core::HandState&
   return has_jumped(hand.position_m, elapsed_s) ? TickFault::too_fast : TickFault::none;
 }
 
+void ForceGate::rise_again() noexcept {
+  if (state_ == State::rendering && settings_.force_rise_s > 0.0) {
+    share_ = 0.0;
+    is_rising_again_ = true;
+  }
+}
+
 void ForceGate::stop() noexcept {
   if (state_ != State::at_rest) {
     state_ = State::stopping;
@@ -45,17 +52,19 @@ void ForceGate::advance(double wanted_size_n) noexcept {
     state_ = quiet_ticks_ >= quiet_ticks_needed ? State::rendering : State::armed;
   } else if (state_ == State::rendering && share_ < 1.0) {
     share_ = std::min(1.0, share_ + dt_s_ / settings_.force_rise_s);
+    is_rising_again_ = is_rising_again_ && share_ < 1.0;
   } else if (state_ == State::stopping) {
     share_ = settings_.force_fall_s > 0.0 ? share_ - dt_s_ / settings_.force_fall_s : 0.0;
-    if (share_ <= 0.0) {
-      share_ = 0.0;
+    share_ = std::max(share_, 0.0);
+    // the rate limit may be slower than the ramp
+    if (share_ == 0.0 && previous_n_.isZero(0.0)) {
       state_ = State::at_rest;
     }
   }
 }
 
 PassedForce ForceGate::pass(const core::Vec3& wanted_n, const core::HandState& hand,
-                            double elapsed_s) noexcept {
+                            double elapsed_s, double max_share) noexcept {
   const TickFault fault = fault_of(wanted_n, hand, elapsed_s);
   previous_m_ = hand.position_m;
   if (fault != TickFault::none) {
@@ -63,6 +72,7 @@ PassedForce ForceGate::pass(const core::Vec3& wanted_n, const core::HandState& h
     return {core::Vec3::Zero(), true, fault};
   }
   advance(wanted_n.norm());
+  share_ = std::min(share_, max_share);
   const core::LimitedForce limited =
       core::limit_force(share_ * wanted_n, previous_n_, settings_.limits, dt_s_);
   previous_n_ = limited.force_n;

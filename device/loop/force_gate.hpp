@@ -20,11 +20,16 @@ class ForceGate {
   ForceGate(const core::GateSettings& settings, double dt_s) noexcept;
   // elapsed_s: since the previous tick. A jump in position counts as excessive speed, whatever
   // velocity the device reports: at twice the limit, to allow for position error.
-  PassedForce pass(const core::Vec3& wanted_n, const core::HandState& hand,
-                   double elapsed_s) noexcept;
+  // max_share: of the wanted force in this tick; force rises again from there.
+  PassedForce pass(const core::Vec3& wanted_n, const core::HandState& hand, double elapsed_s,
+                   double max_share = 1.0) noexcept;
+  // Force rises again from nothing, as at the beginning: after a gap in which nobody knows what the
+  // hand did.
+  void rise_again() noexcept;
   // Starts the ramp down to zero force.
   void stop() noexcept;
   State state() const noexcept { return state_; }
+  bool is_rising_again() const noexcept { return is_rising_again_; }
 
  private:
   core::TickFault fault_of(const core::Vec3& wanted_n, const core::HandState& hand,
@@ -37,6 +42,7 @@ class ForceGate {
   State state_;
   int quiet_ticks_{0};
   double share_{0.0};
+  bool is_rising_again_{false};
   core::Vec3 previous_n_{core::Vec3::Zero()};
   std::optional<core::Vec3> previous_m_;
 };

@@ -9,6 +9,11 @@ namespace {
 std::array<double, 3> as_array(const core::Vec3& v) noexcept {
   return {v.x(), v.y(), v.z()};
 }
+// Longer than the two clocks can be read apart, shorter than any sleep.
+constexpr Nanoseconds min_suspension = 10'000'000;
+// After a longer time without a tick, force rises again from nothing.
+constexpr Nanoseconds max_gap = 3'000'000;
+
 core::Vec3 as_vector(const std::array<double, 3>& a) noexcept {
   return {a[0], a[1], a[2]};
 }
@@ -40,7 +45,10 @@ void HapticLoop::run_ticks(std::int64_t count) noexcept {
 
 void HapticLoop::zero_force() noexcept {
   if (report_.stopped_by == TickFault::none) {
-    device_.zero_force();
+    report_.stop = device_.zero_force();
+    if (report_.stop == StopOutcome::unconfirmed) {
+      report_.stopped_by = TickFault::stop_unconfirmed;
+    }
   }
 }
 
@@ -56,11 +64,13 @@ bool HapticLoop::step() noexcept {
   const Nanoseconds elapsed = woke_at - std::exchange(last_tick_, woke_at);
   core::TraceSample sample = unread_sample(woke_at - start_);
   sample.fault = fault_of_time(woke_at, elapsed);
+  sample.late = late_in_a_row_ > 0;
   if (sample.fault == TickFault::none) {
+    ticked_at_.store(woke_at, std::memory_order_release);
     sample = tick(woke_at - start_, elapsed);
   }
   if (sample.fault != TickFault::none) {
-    device_.emergency_stop();
+    report_.stop = device_.emergency_stop();
   }
   trace_.try_push(sample);
   ++report_.ticks;
@@ -71,7 +81,8 @@ bool HapticLoop::step() noexcept {
 
 // Time starts here, so that the thread's set-up does not count as lateness.
 void HapticLoop::begin() noexcept {
-  device_.begin();
+  fault_at_begin_ = device_.begin();
+  suspended_before_ = clock_.suspended();
   start_ = deadline_ = last_beat_ = last_tick_ = clock_.now();
   has_begun_ = true;
 }
@@ -88,7 +99,21 @@ void HapticLoop::note_lateness(Nanoseconds woke_at) noexcept {
   deadline_ += (missed + 1) * settings_.period;
 }
 
+TickFault HapticLoop::fault_of_absence(Nanoseconds elapsed) noexcept {
+  if (clock_.suspended() - suspended_before_ > min_suspension) {
+    return TickFault::suspended;
+  }
+  return settings_.max_stall > 0 && elapsed > settings_.max_stall ? TickFault::loop_stalled
+                                                                  : TickFault::none;
+}
+
 TickFault HapticLoop::fault_of_time(Nanoseconds woke_at, Nanoseconds elapsed) noexcept {
+  if (fault_at_begin_ != TickFault::none) {
+    return fault_at_begin_;
+  }
+  if (const TickFault fault = fault_of_absence(elapsed); fault != TickFault::none) {
+    return fault;
+  }
   if (has_beaten_.exchange(false, std::memory_order_acq_rel)) {
     last_beat_ = woke_at;
   }
@@ -122,6 +147,7 @@ core::TraceSample HapticLoop::unread_sample(Nanoseconds now) const noexcept {
   sample.velocity_m_s.fill(unknown);
   sample.pose_residual_m = unknown;
   sample.closure_margin = unknown;
+  sample.motor_voltage_v = unknown;
   return sample;
 }
 
@@ -129,35 +155,58 @@ core::TraceSample HapticLoop::tick(Nanoseconds now, Nanoseconds elapsed) noexcep
   take_requested_alternative();
   core::TraceSample sample = unread_sample(now);
   core::HandState hand{as_vector(sample.position_m), as_vector(sample.velocity_m_s)};
-  sample.fault = device_.read(hand);
+  const double elapsed_s = 1e-9 * static_cast<double>(elapsed);
+  sample.late = late_in_a_row_ > 0;
+  sample.fault = device_.read(hand, elapsed_s);
   sample.position_m = as_array(hand.position_m);
   sample.velocity_m_s = as_array(hand.velocity_m_s);
   const DeviceDetail detail = device_.detail();
   sample.pose_residual_m = detail.pose_residual_m;
   sample.closure_margin = detail.closure_margin;
+  sample.motor_voltage_v = detail.motor_voltage_v;
+  sample.missed_replies = static_cast<std::uint8_t>(detail.missed_replies);
   if (sample.fault == TickFault::none) {
-    render(hand, 1e-9 * static_cast<double>(elapsed), sample);
+    unread_s_ += elapsed_s;
+    const double share = bridging_share(detail, elapsed);
+    render(hand, share, unread_s_, sample);
+    unread_s_ = detail.missed_replies > 0 ? unread_s_ : 0.0;
   }
   return sample;
 }
 
-void HapticLoop::render(const core::HandState& hand, double elapsed_s,
+// Force fades while replies are missing, and rises again from there. After any other gap it rises
+// again from nothing.
+double HapticLoop::bridging_share(const DeviceDetail& detail, Nanoseconds elapsed) noexcept {
+  const bool is_bridged = detail.missed_replies > 0;
+  if (elapsed > std::max(max_gap, 2 * settings_.period) && !is_bridged && !was_bridged_) {
+    gate_.rise_again();
+  }
+  report_.bridged += is_bridged ? 1 : 0;
+  was_bridged_ = is_bridged;
+  return 1.0 - static_cast<double>(detail.missed_replies) / max_missed_replies;
+}
+
+void HapticLoop::render(const core::HandState& hand, double share, double elapsed_s,
                         core::TraceSample& sample) noexcept {
   const core::RenderedTick rendered =
       alternatives_[current_].tick(settings_.placement.to_plate(hand));
   const PassedForce passed =
-      gate_.pass(core::Placement::force_to_device(rendered.force_n), hand, elapsed_s);
+      gate_.pass(core::Placement::force_to_device(rendered.force_n), hand, elapsed_s, share);
   sample.penetration_m = rendered.contact.penetration_m;
   sample.penalty_n = rendered.parts.penalty_n;
   sample.vibration_n = rendered.parts.vibration_n;
   sample.sinusoid_n = rendered.parts.sinusoid_n;
   sample.touching = rendered.contact.touching;
   sample.impact = rendered.contact.impact;
+  if (sample.impact) {  // a bounce on the plate is none
+    contacts_.at(current_).fetch_add(1, std::memory_order_release);
+  }
   sample.fault = passed.fault;
   if (passed.fault != TickFault::none) {
     return;
   }
   sample.saturated = passed.was_changed;
+  sample.late = sample.late || gate_.is_rising_again();
   sample.fault = device_.write(passed.force_n);
   sample.force_n = as_array(passed.force_n);
   sample.achieved_n = as_array(device_.detail().achieved_n);

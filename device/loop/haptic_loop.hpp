@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <atomic>
 #include <span>
 #include <stop_token>
@@ -16,7 +17,9 @@ struct LoopReport {
   std::int64_t late{};     // woke more than half a period after the deadline
   std::int64_t skipped{};  // periods in which no tick was made
   std::int64_t saturated{};
+  std::int64_t bridged{};  // ticks on the last known position, for want of a reply
   LatenessCount lateness;
+  StopOutcome stop{StopOutcome::confirmed};  // whether zero force was acknowledged at the end
   core::TickFault stopped_by{core::TickFault::none};
 };
 
@@ -25,12 +28,16 @@ struct LoopSettings {
   core::GateSettings gate;
   core::Placement placement;
   int max_late_in_a_row{0};          // a longer run is a fault; 0: unlimited
+  Nanoseconds max_stall{0};          // a longer time between two ticks is a fault; 0: unlimited
   Nanoseconds max_heartbeat_gap{0};  // a longer gap is a fault; 0: no heartbeat
 };
 
+inline constexpr std::size_t max_alternatives = 26;
+
 // wait → read → render → limit → write → record, once per period, for one trial. The renderers are
 // the trial's alternatives; a switch request takes effect in the first tick without contact, so
-// that the force law never changes during contact. All referenced objects must outlive the loop.
+// that the force law never changes during contact. At most max_alternatives. All referenced objects
+// must outlive the loop.
 class HapticLoop {
  public:
   HapticLoop(Device& device, std::span<core::TapRenderer> alternatives, LoopSettings settings,
@@ -39,6 +46,10 @@ class HapticLoop {
   // May be called from any thread. index < number of alternatives.
   void request_alternative(std::size_t index) noexcept {
     requested_.store(index, std::memory_order_release);
+  }
+  // May be called from any thread: how often the finger has come down on an alternative.
+  int contacts(std::size_t alternative) const noexcept {
+    return contacts_.at(alternative).load(std::memory_order_acquire);
   }
   // Heartbeat from the thread that supervises the trial.
   void beat() noexcept { has_beaten_.store(true, std::memory_order_release); }
@@ -51,14 +62,23 @@ class HapticLoop {
   void zero_force() noexcept;
 
   const LoopReport& report() const noexcept { return report_; }
+  // May be called from any thread: whether a tick was made lately, so that what happens now happens
+  // to somebody who feels the plate. False in a stall, even before the loop has found it.
+  bool is_ticking(Nanoseconds now) const noexcept {
+    return settings_.max_stall == 0 ||
+           now - ticked_at_.load(std::memory_order_acquire) <= settings_.max_stall;
+  }
 
  private:
   void begin() noexcept;
   bool step() noexcept;  // false after a fault
   core::TickFault fault_of_time(Nanoseconds woke_at, Nanoseconds elapsed) noexcept;
+  core::TickFault fault_of_absence(Nanoseconds elapsed) noexcept;
+  double bridging_share(const DeviceDetail& detail, Nanoseconds elapsed) noexcept;
   core::TraceSample unread_sample(Nanoseconds now) const noexcept;
   core::TraceSample tick(Nanoseconds now, Nanoseconds elapsed) noexcept;
-  void render(const core::HandState& hand, double elapsed_s, core::TraceSample& sample) noexcept;
+  void render(const core::HandState& hand, double share, double elapsed_s,
+              core::TraceSample& sample) noexcept;
   void take_requested_alternative() noexcept;
   void note_lateness(Nanoseconds woke_at) noexcept;
 
@@ -70,13 +90,19 @@ class HapticLoop {
   ForceGate gate_;
   std::atomic<std::size_t> requested_{0};
   std::atomic<bool> has_beaten_{false};
+  std::atomic<Nanoseconds> ticked_at_{0};
   std::size_t current_{0};
+  std::array<std::atomic<int>, max_alternatives> contacts_{};
   Nanoseconds start_{0};
   Nanoseconds deadline_{0};
   Nanoseconds last_beat_{0};
   Nanoseconds last_tick_{0};
+  Nanoseconds suspended_before_{0};
   int late_in_a_row_{0};
   bool has_begun_{false};
+  bool was_bridged_{false};
+  double unread_s_{0.0};  // since the position was last read
+  core::TickFault fault_at_begin_{core::TickFault::none};
   LoopReport report_;
 };
 }  // namespace tapstudy::device

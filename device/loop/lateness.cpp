@@ -14,6 +14,14 @@ void LatenessCount::add(Nanoseconds lateness) noexcept {
   worst_ = std::max(worst_, lateness);
 }
 
+void LatenessCount::add(const LatenessCount& other) noexcept {
+  for (std::size_t i = 0; i < classes; ++i) {
+    in_class_[i] += other.in_class_[i];
+  }
+  count_ += other.count_;
+  worst_ = std::max(worst_, other.worst_);
+}
+
 Nanoseconds LatenessCount::quantile(double share) const noexcept {
   const auto needed = static_cast<std::int64_t>(std::ceil(share * static_cast<double>(count_)));
   std::int64_t seen = 0;

@@ -9,6 +9,7 @@ namespace tapstudy::device {
 class LatenessCount {
  public:
   void add(Nanoseconds lateness) noexcept;
+  void add(const LatenessCount& other) noexcept;
   std::int64_t count() const noexcept { return count_; }
   Nanoseconds worst() const noexcept { return worst_; }
   // Upper edge of the bin at or below which at least this fraction of the ticks lie, 0 to 1.

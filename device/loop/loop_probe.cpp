@@ -7,9 +7,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <exception>
 #include <thread>
 #include <vector>
 
+#include "core/error.hpp"
 #include "device/loop/tick_clock.hpp"
 namespace tapstudy::device {
 namespace {
@@ -44,24 +46,45 @@ void write_to_disk(const std::stop_token& stop) {
 }
 }  // namespace
 
-ProbedLoop probe_loop(const core::RealtimeRequest& request, Nanoseconds period, double seconds) {
+namespace {
+void run_probe(const core::RealtimeRequest& request, Nanoseconds period, std::int64_t ticks,
+               const std::function<void()>& work, ProbedLoop& probed) {
+  probed.realtime = ask_for_realtime(request);
+  // NOLINTNEXTLINE(cppcoreguidelines-pro-type-vararg): the C library's own
+  probed.timer_slack_ns = prctl(PR_GET_TIMERSLACK);
+  MonotonicClock clock;
+  Nanoseconds deadline = clock.now();
+  for (std::int64_t i = 0; i < ticks; ++i) {
+    deadline += period;
+    const Nanoseconds woke_at = clock.wait_until(deadline);
+    const Nanoseconds lateness = woke_at - deadline;
+    probed.lateness.add(lateness);
+    probed.late += lateness > period / 2 ? 1 : 0;
+    deadline += lateness / period * period;
+    if (work) {
+      work();
+      probed.work.add(clock.now() - woke_at);
+    }
+  }
+}
+}  // namespace
+
+ProbedLoop probe_loop(const core::RealtimeRequest& request, Nanoseconds period, double seconds,
+                      const std::function<void()>& work) {
   ProbedLoop probed;
+  std::exception_ptr failure;
   const auto ticks =
       static_cast<std::int64_t>(std::llround(1e9 * seconds / static_cast<double>(period)));
   std::jthread{[&] {
-    probed.realtime = ask_for_realtime(request);
-    // NOLINTNEXTLINE(cppcoreguidelines-pro-type-vararg): the C library's own
-    probed.timer_slack_ns = prctl(PR_GET_TIMERSLACK);
-    MonotonicClock clock;
-    Nanoseconds deadline = clock.now();
-    for (std::int64_t i = 0; i < ticks; ++i) {
-      deadline += period;
-      const Nanoseconds lateness = clock.wait_until(deadline) - deadline;
-      probed.lateness.add(lateness);
-      probed.late += lateness > period / 2 ? 1 : 0;
-      deadline += lateness / period * period;
+    try {
+      run_probe(request, period, ticks, work, probed);
+    } catch (const core::Error&) {
+      failure = std::current_exception();
     }
   }}.join();
+  if (failure) {
+    std::rethrow_exception(failure);
+  }
   return probed;
 }
 

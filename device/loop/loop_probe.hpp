@@ -1,4 +1,5 @@
 #pragma once
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -10,11 +11,14 @@ struct ProbedLoop {
   int timer_slack_ns{};  // of the loop's own thread
   LatenessCount lateness;
   std::int64_t late{0};  // by more than half a period
+  LatenessCount work;    // how long each tick's work took
 };
 
-// Runs an empty periodic loop for the given time and records its lateness, in a separate thread
-// that requests the same real-time facilities as the haptic thread.
-ProbedLoop probe_loop(const core::RealtimeRequest& request, Nanoseconds period, double seconds);
+// Runs a periodic loop for the given time and records its lateness, in a separate thread that
+// requests the same real-time facilities as the haptic thread. The loop is empty, or does this work
+// in each tick, for example an exchange with a device. Rethrows what the work throws.
+ProbedLoop probe_loop(const core::RealtimeRequest& request, Nanoseconds period, double seconds,
+                      const std::function<void()>& work = {});
 
 // Loads all processors and the disk during its lifetime.
 class Load {

@@ -6,6 +6,7 @@
 #include <sched.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -29,7 +30,11 @@ std::string memory(bool is_asked) {
   if (!is_asked) {
     return "memory not locked";
   }
-  return mlockall(MCL_CURRENT | MCL_FUTURE) == 0
+  // where locked memory is limited, MCL_FUTURE would make later allocations fail
+  rlimit limit{};
+  const bool is_unlimited =
+      getrlimit(RLIMIT_MEMLOCK, &limit) == 0 && limit.rlim_cur == RLIM_INFINITY;
+  return mlockall(is_unlimited ? MCL_CURRENT | MCL_FUTURE : MCL_CURRENT | MCL_ONFAULT) == 0
              ? "memory locked"
              : fmt::format("memory not locked ({})", std::strerror(errno));
 }

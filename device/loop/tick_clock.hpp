@@ -10,6 +10,8 @@ class TickClock {
   virtual Nanoseconds now() noexcept = 0;
   // Returns the wake-up time, which is never before the deadline.
   virtual Nanoseconds wait_until(Nanoseconds deadline) noexcept = 0;
+  // For how long the machine has been suspended since it was started; now() stands still meanwhile.
+  virtual Nanoseconds suspended() noexcept { return 0; }
 };
 
 // Real time: CLOCK_MONOTONIC with absolute deadlines, so that lateness does not accumulate.
@@ -17,6 +19,7 @@ class MonotonicClock final : public TickClock {
  public:
   Nanoseconds now() noexcept override;
   Nanoseconds wait_until(Nanoseconds deadline) noexcept override;
+  Nanoseconds suspended() noexcept override;
 };
 
 // Time that passes as fast as the loop computes.

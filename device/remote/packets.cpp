@@ -7,7 +7,6 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "packets are copied byte for byte");
 constexpr std::array<char, 4> request_mark{'T', 'A', 'P', 'S'};
 constexpr std::array<char, 4> reply_mark{'T', 'A', 'P', 'R'};
-constexpr std::uint32_t version = 1;
 
 template <class Value>
 void put(std::span<std::uint8_t> bytes, std::size_t at, const Value& value) noexcept {
@@ -38,11 +37,22 @@ std::array<std::uint8_t, request_bytes> encoded(const RemoteRequest& request) no
 }
 
 std::optional<RemoteReply> decoded_reply(std::span<const std::uint8_t> bytes) noexcept {
-  if (bytes.size() != reply_bytes || taken<std::array<char, 4>>(bytes, 0) != reply_mark ||
-      taken<std::uint32_t>(bytes, 4) != version) {
+  if (bytes.size() < reply_bytes || taken<std::array<char, 4>>(bytes, 0) != reply_mark) {
     return std::nullopt;
   }
-  return RemoteReply{taken<std::uint32_t>(bytes, 8),
-                     {taken_vector(bytes, 12), taken_vector(bytes, 36)}};
+  const auto version = taken<std::uint32_t>(bytes, 4);
+  RemoteReply reply{taken<std::uint32_t>(bytes, 8),
+                    {taken_vector(bytes, 12), taken_vector(bytes, 36)},
+                    std::nullopt,
+                    std::nullopt};
+  if (version == 1 && bytes.size() == reply_bytes) {
+    return reply;
+  }
+  if (version != 2 || bytes.size() != reply_bytes_of_version_2) {
+    return std::nullopt;
+  }
+  reply.status = taken<std::uint32_t>(bytes, 60);
+  reply.exerted_n = taken_vector(bytes, 64);
+  return reply;
 }
 }  // namespace tapstudy::device

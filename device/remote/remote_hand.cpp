@@ -9,13 +9,16 @@
 
 #include <bit>
 #include <cerrno>
+#include <limits>
+#include <thread>
 
 #include "device/remote/packets.hpp"
 namespace tapstudy::device {
 using core::TickFault;
 namespace {
 using Clock = std::chrono::steady_clock;
-constexpr int attempts = 20;
+constexpr double max_zero_force_n = 0.01;
+constexpr int attempts = 40;
 constexpr std::chrono::milliseconds patience{50};  // timeout per attempt
 
 int connected_socket(std::uint16_t port) noexcept {
@@ -37,7 +40,7 @@ RemoteHand::RemoteHand(std::uint16_t port, std::chrono::microseconds max_reply)
     : port_{port}, max_reply_{patience}, socket_{connected_socket(port)} {
   core::HandState ignored;
   for (int i = 0; socket_ >= 0 && i < attempts; ++i) {
-    if (RemoteHand::read(ignored) == TickFault::none) {
+    if (ask(ignored) == TickFault::none) {
       max_reply_ = max_reply;
       return;
     }
@@ -53,7 +56,7 @@ RemoteHand::RemoteHand(std::uint16_t port, std::chrono::microseconds max_reply)
 }
 
 RemoteHand::~RemoteHand() {
-  RemoteHand::emergency_stop();
+  static_cast<void>(RemoteHand::zero_force());
   close(socket_);
 }
 
@@ -85,7 +88,7 @@ bool RemoteHand::wait_until(Clock::time_point end) const noexcept {
 TickFault RemoteHand::receive(core::HandState& hand) noexcept {
   const Clock::time_point end = Clock::now() + max_reply_;
   while (wait_until(end)) {
-    std::array<std::uint8_t, reply_bytes + 1> bytes{};
+    std::array<std::uint8_t, reply_bytes_of_version_2 + 1> bytes{};
     const ssize_t count = recv(socket_, bytes.data(), bytes.size(), 0);
     if (count < 0) {
       if (errno == ECONNREFUSED) {
@@ -99,15 +102,39 @@ TickFault RemoteHand::receive(core::HandState& hand) noexcept {
     }
     if (reply->number == number_) {
       hand = reply->hand;
+      status_ = reply->status;
+      constexpr double untold = std::numeric_limits<double>::quiet_NaN();
+      detail_.achieved_n = reply->exerted_n.value_or(core::Vec3::Constant(untold));
       return TickFault::none;
     }
   }
   return TickFault::no_reply;
 }
 
-TickFault RemoteHand::read(core::HandState& hand) noexcept {
+TickFault RemoteHand::ask(core::HandState& hand) noexcept {
   const TickFault fault = send(true);
   return fault == TickFault::none ? receive(hand) : fault;
+}
+
+TickFault RemoteHand::begin() noexcept {
+  held_.forget();
+  detail_.missed_replies = 0;
+  return TickFault::none;
+}
+
+TickFault RemoteHand::read(core::HandState& hand, double /*elapsed_s*/) noexcept {
+  const TickFault fault = ask(hand);
+  if (fault == TickFault::no_reply && held_.stands_in(hand)) {
+    detail_.missed_replies = held_.missed_replies();
+    return TickFault::none;
+  }
+  if (fault == TickFault::none) {
+    detail_.missed_replies = 0;
+    held_.keep(hand);
+  }
+  const bool is_without_power =
+      fault == TickFault::none && (status_.value_or(motors_on) & motors_on) == 0;
+  return is_without_power ? TickFault::amplifier_off : fault;
 }
 
 TickFault RemoteHand::write(const core::Vec3& force_n) noexcept {
@@ -115,10 +142,29 @@ TickFault RemoteHand::write(const core::Vec3& force_n) noexcept {
   return send(false);
 }
 
-void RemoteHand::emergency_stop() noexcept {
-  force_n_ = core::Vec3::Zero();
-  for (int i = 0; i < zero_force_packets; ++i) {
-    static_cast<void>(send(false));
+std::optional<bool> RemoteHand::lets_go_after(std::chrono::milliseconds silence) noexcept {
+  status_.reset();
+  core::HandState ignored;
+  if (ask(ignored) != TickFault::none) {
+    return std::nullopt;
   }
+  std::this_thread::sleep_for(silence);
+  if (ask(ignored) != TickFault::none || !status_) {
+    return std::nullopt;
+  }
+  return (*status_ & has_let_go) != 0;
+}
+
+// Confirmed by a reply to a request that carried zero force, and that does not tell of another.
+StopOutcome RemoteHand::zero_force() noexcept {
+  force_n_ = core::Vec3::Zero();
+  StopOutcome outcome = StopOutcome::unconfirmed;
+  for (int i = 0; i < zero_force_packets; ++i) {
+    core::HandState ignored;
+    const bool is_told = ask(ignored) == TickFault::none;
+    const bool is_exerted = detail_.achieved_n.norm() > max_zero_force_n;  // not so if untold, NaN
+    outcome = is_told && !is_exerted ? StopOutcome::confirmed : outcome;
+  }
+  return outcome;
 }
 }  // namespace tapstudy::device

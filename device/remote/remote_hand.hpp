@@ -1,6 +1,7 @@
 #pragma once
 #include <chrono>
 #include <cstdint>
+#include <optional>
 
 #include "device/device.hpp"
 namespace tapstudy::device {
@@ -8,7 +9,8 @@ namespace tapstudy::device {
 // tick requests the position and waits for it, then sends the force, which is applied immediately.
 class RemoteHand final : public Device {
  public:
-  // Asks twenty times, for one to two seconds. Throws DeviceError if nobody answers.
+  // Asks forty times, for two to four seconds: the other program may still wait for an earlier one.
+  // Throws DeviceError if nobody answers.
   RemoteHand(std::uint16_t port, std::chrono::microseconds max_reply);
   ~RemoteHand() override;
   RemoteHand(const RemoteHand& other) = delete;
@@ -16,14 +18,20 @@ class RemoteHand final : public Device {
   RemoteHand(RemoteHand&& other) = delete;
   RemoteHand& operator=(RemoteHand&& other) = delete;
 
-  [[nodiscard]] core::TickFault read(core::HandState& hand) noexcept override;
+  [[nodiscard]] core::TickFault read(core::HandState& hand, double elapsed_s) noexcept override;
   [[nodiscard]] core::TickFault write(const core::Vec3& force_n) noexcept override;
-  void emergency_stop() noexcept override;
-  DeviceDetail detail() const noexcept override { return {force_n_}; }
+  [[nodiscard]] core::TickFault begin() noexcept override;
+  [[nodiscard]] StopOutcome zero_force() noexcept override;
+  StopOutcome emergency_stop() noexcept override { return zero_force(); }
+  DeviceDetail detail() const noexcept override { return detail_; }
   std::string description() const override;
+  // Falls silent for so long, and asks whether the other program has let go of the force meanwhile.
+  // nullopt: its replies do not tell (version 1), or there was none.
+  std::optional<bool> lets_go_after(std::chrono::milliseconds silence) noexcept;
 
  private:
   core::TickFault send(bool wants_reply) noexcept;
+  core::TickFault ask(core::HandState& hand) noexcept;
   core::TickFault receive(core::HandState& hand) noexcept;
   bool wait_until(std::chrono::steady_clock::time_point end) const noexcept;
 
@@ -32,5 +40,8 @@ class RemoteHand final : public Device {
   int socket_;
   std::uint32_t number_{0};
   core::Vec3 force_n_{core::Vec3::Zero()};
+  HeldHand held_;
+  std::optional<std::uint32_t> status_;
+  DeviceDetail detail_;
 };
 }  // namespace tapstudy::device

@@ -14,8 +14,9 @@ inline constexpr std::uint16_t max_dac_counts = 4095;  // the converter's assume
 
 struct BoardReading {
   RawCounters counter{};
-  std::optional<DacCounts> echo;  // of the DAC counts received, if the board echoes them
-  std::uint16_t lines{};          // parallel inputs; bits 4 to 7 are the rotary switch
+  std::optional<DacCounts> echo;          // of the DAC counts received, if the board echoes them
+  std::optional<double> motor_voltage_v;  // mean over the strings, if the board measures it
+  std::uint16_t lines{};                  // parallel inputs; bits 4 to 7 are the rotary switch
   int rotary_switch() const noexcept { return static_cast<int>(lines >> 4U & 0xFU); }
 };
 
@@ -31,9 +32,19 @@ class SpidarBoard {
   // Sets all outputs and reads all inputs.
   [[nodiscard]] virtual UsbOutcome exchange(UsbPipe& pipe, const DacCounts& dac_counts,
                                             BoardReading& reading) noexcept = 0;
+  // Reads one more reply, after one that was left over from an earlier exchange.
+  [[nodiscard]] virtual UsbOutcome receive(UsbPipe& pipe, BoardReading& reading) noexcept = 0;
   // The packet that sets all outputs to zero.
   virtual std::vector<std::uint8_t> zero_force_packet() const = 0;
 };
+
+// One exchange with zero force. Confirmed by a reply that does not echo anything else; a halt is
+// cleared for the next exchange.
+struct ZeroExchange {
+  UsbOutcome outcome;
+  bool is_confirmed;
+};
+ZeroExchange exchange_zeros(SpidarBoard& board, UsbPipe& pipe) noexcept;
 
 inline constexpr std::uint16_t cyverse_vendor = 0x0CEC;
 inline constexpr std::uint16_t sh4_product = 0x0205;

@@ -22,10 +22,62 @@ constexpr double max_tension_n = 10.0;
 // Largest offset due to friction, as a fraction of the force at the stronger output.
 constexpr double max_offset = 0.3;
 
+// While a string pulls: the guardian monitors the program, for a limited time.
+class Pull {
+ public:
+  Pull(SpidarBoard& board, UsbPipe& pipe, WatchdogChannel& watchdog, TickClock& clock,
+       CalibrationOperator& person)
+      : board_{board},
+        pipe_{pipe},
+        watchdog_{watchdog},
+        clock_{clock},
+        person_{person},
+        started_{clock.now()} {
+    if (!is_guardian_alive(watchdog_)) {
+      throw DeviceError{"SPIDAR-G6: the process that guards the force has ended"};
+    }
+    watchdog_.begin();
+  }
+  ~Pull() {
+    for (int i = 0; i < zero_force_packets; ++i) {
+      if (exchange_zeros(board_, pipe_).is_confirmed) {
+        watchdog_.end();
+        return;
+      }
+    }
+    watchdog_.repeat_zero_force();
+    person_.warn(force_may_be_on);
+  }
+  Pull(const Pull&) = delete;
+  Pull& operator=(const Pull&) = delete;
+  Pull(Pull&&) = delete;
+  Pull& operator=(Pull&&) = delete;
+
+  void check_goes_on() const {
+    watchdog_.beat();
+    if (watchdog_.has_acted()) {
+      throw DeviceError{"SPIDAR-G6: the program stood still and its guardian took the force off"};
+    }
+    if (1e-9 * static_cast<double>(clock_.now() - started_) > max_pull_s) {
+      throw DeviceError{
+          fmt::format("SPIDAR-G6: a string has pulled for {} s without an answer", max_pull_s)};
+    }
+  }
+
+ private:
+  SpidarBoard& board_;
+  UsbPipe& pipe_;
+  WatchdogChannel& watchdog_;
+  TickClock& clock_;
+  CalibrationOperator& person_;
+  Nanoseconds started_;
+};
+
 class Calibration {
  public:
-  Calibration(SpidarBoard& board, UsbPipe& pipe, CalibrationOperator& person)
-      : board_{board}, pipe_{pipe}, person_{person} {
+  Calibration(SpidarBoard& board, UsbPipe& pipe, WatchdogChannel& watchdog, TickClock& clock,
+              CalibrationOperator& person)
+      : board_{board}, pipe_{pipe}, watchdog_{watchdog}, clock_{clock}, person_{person} {
     BoardReading reading;
     check(board_.begin(pipe_, reading));
   }
@@ -42,7 +94,6 @@ class Calibration {
     const double metres_per_count = measure_length(string);
     const double weak_n = force_at(string, calibration_dac_counts / 2);
     const double strong_n = force_at(string, calibration_dac_counts);
-    put_out({});
     const double newtons_per_dac_count = (strong_n - weak_n) / (0.5 * calibration_dac_counts);
     const double offset_n = strong_n - newtons_per_dac_count * calibration_dac_counts;
     if (!(newtons_per_dac_count > 0.0) || std::abs(offset_n) > max_offset * strong_n) {
@@ -71,7 +122,7 @@ class Calibration {
     person_.please(fmt::format("\nString {} of 8. Let it wind in completely", string + 1));
     counters.take(put_out({}).counter);
     const double length_m = person_.how_much(
-        "Pull it out by about 0.1 m, hold it, and enter the length in metres", max_pull_m);
+        "Pull it out by about 0.1 m, hold it, and enter the length in metres", max_pull_m, [] {});
     counters.take(put_out({}).counter);
     const std::int64_t counts = counters.counts().at(string);
     if (std::abs(counts) < min_counts) {
@@ -85,22 +136,27 @@ class Calibration {
   double force_at(std::size_t string, int output) {
     DacCounts dac_counts{};
     dac_counts.at(string) = static_cast<std::uint16_t>(output);
+    const Pull pull{board_, pipe_, watchdog_, clock_, person_};
+    pull.check_goes_on();
     put_out(dac_counts);
     return person_.how_much(
         fmt::format("Hold it with the gauge at output {}, and enter the reading in newtons",
                     output),
-        max_gauge_force_n);
+        max_gauge_force_n, [&] { pull.check_goes_on(); });
   }
 
   SpidarBoard& board_;
   UsbPipe& pipe_;
+  WatchdogChannel& watchdog_;
+  TickClock& clock_;
   CalibrationOperator& person_;
 };
 }  // namespace
 
 core::SpidarCalibration calibrate_spidar(SpidarBoard& board, UsbPipe& pipe,
+                                         WatchdogChannel& watchdog, TickClock& clock,
                                          CalibrationOperator& person) {
-  Calibration procedure{board, pipe, person};
+  Calibration procedure{board, pipe, watchdog, clock, person};
   core::SpidarCalibration calibration{min_tension_n, max_tension_n, {}};
   for (std::size_t i = 0; i < calibration.strings.size(); ++i) {
     calibration.strings.at(i) = procedure.measure(i);

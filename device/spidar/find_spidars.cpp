@@ -32,31 +32,39 @@ UsbListing find_only_spidar() {
   return all.front();
 }
 
-OpenBoard::OpenBoard(const UsbListing& listing, std::chrono::milliseconds max_reply)
+namespace {
+std::optional<DeadManRelay> relay_at(const std::string& port) {
+  return port.empty() ? std::nullopt : std::optional<DeadManRelay>{std::in_place, port};
+}
+}  // namespace
+
+OpenBoard::OpenBoard(const UsbListing& listing, const BoardSettings& settings)
     : node{listing.node},
       board{board_of(listing.product)},
-      guardian{node, BulkEndpoints{}.out, board->zero_force_packet()},
-      pipe{node, {}, max_reply} {}
+      relay{relay_at(settings.relay)},
+      guardian{
+          node,
+          {BulkEndpoints{}.out, BulkEndpoints{}.in, board->zero_force_packet(),
+           settings.max_stall_s, settings.guardian_priority, relay ? relay->descriptor() : -1}},
+      pipe{node, {}, settings.max_reply} {}
+
+void exchange_zero_force(OpenBoard& open) {
+  BoardReading ignored;
+  const UsbOutcome outcome = open.board->exchange(open.pipe, {}, ignored);
+  if (outcome != UsbOutcome::ok) {
+    throw DeviceError{fmt::format("SPIDAR-G6: the {} board does not answer: {}", open.board->name(),
+                                  to_text(outcome))};
+  }
+}
 
 LatenessCount round_trips(OpenBoard& open) {
   LatenessCount times;
   MonotonicClock clock;
   for (int i = 0; i < asked_times; ++i) {
     const Nanoseconds start = clock.now();
-    BoardReading ignored;
-    const UsbOutcome outcome = open.board->exchange(open.pipe, {}, ignored);
-    if (outcome != UsbOutcome::ok) {
-      throw DeviceError{fmt::format("SPIDAR-G6: the {} board does not answer: {}",
-                                    open.board->name(), to_text(outcome))};
-    }
+    exchange_zero_force(open);
     times.add(clock.now() - start);
   }
   return times;
-}
-
-LatenessCount probed_round_trip(const UsbListing& listing) {
-  OpenBoard open{listing, std::chrono::milliseconds{100}};
-  open.pipe.drain();
-  return round_trips(open);
 }
 }  // namespace tapstudy::device

@@ -1,9 +1,12 @@
 #pragma once
 #include <chrono>
 #include <memory>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "device/loop/lateness.hpp"
+#include "device/relay/dead_man_relay.hpp"
 #include "device/spidar/board.hpp"
 #include "device/usb/guardian.hpp"
 #include "device/usb/libusb_pipe.hpp"
@@ -15,11 +18,19 @@ std::vector<UsbListing> find_spidars();
 // Throws DeviceError also if there are several.
 UsbListing find_only_spidar();
 
+struct BoardSettings {
+  std::chrono::milliseconds max_reply{100};
+  double max_stall_s{0.02};  // the guardian acts after it
+  int guardian_priority{0};  // SCHED_FIFO; 0: none
+  std::string relay{};       // serial port of a dead-man relay; empty: there is none
+};
+
 // An open board with its guardian; members in order of construction.
 struct OpenBoard {
-  OpenBoard(const UsbListing& listing, std::chrono::milliseconds max_reply);
+  explicit OpenBoard(const UsbListing& listing, const BoardSettings& settings = {});
   UsbNode node;
   std::unique_ptr<SpidarBoard> board;
+  std::optional<DeadManRelay> relay;
   Guardian guardian;
   LibusbPipe pipe;
 };
@@ -27,6 +38,6 @@ struct OpenBoard {
 // Round-trip times of the board over a number of requests, at zero force. Throws DeviceError if it
 // does not reply.
 LatenessCount round_trips(OpenBoard& open);
-// The same for a board opened for this purpose.
-LatenessCount probed_round_trip(const UsbListing& listing);
+// One exchange at zero force. Throws DeviceError if the board does not reply.
+void exchange_zero_force(OpenBoard& open);
 }  // namespace tapstudy::device

@@ -8,6 +8,8 @@ constexpr std::uint8_t base_analyser = 0x0E;
 constexpr std::size_t outputs_at = 2;
 constexpr std::size_t echo_at = 0;
 constexpr std::size_t counters_at = 16;
+constexpr std::size_t voltages_at = 32;
+constexpr double volts_per_count = 24.0 / 4096.0;  // published; to be confirmed on hardware
 constexpr std::size_t lines_at = 48;
 }  // namespace
 
@@ -24,10 +26,13 @@ Sh4Board::Packet Sh4Board::request(const DacCounts& dac_counts) noexcept {
 BoardReading Sh4Board::reading_of(const Packet& reply) noexcept {
   BoardReading reading;
   DacCounts echo{};
+  double sum_v = 0.0;
   for (std::size_t i = 0; i < echo.size(); ++i) {
     echo[i] = get_u16(reply, echo_at + 2 * i);
     reading.counter[i] = get_u16(reply, counters_at + 2 * i);
+    sum_v += volts_per_count * get_u16(reply, voltages_at + 2 * i);
   }
+  reading.motor_voltage_v = sum_v / strings;
   reading.echo = echo;
   reading.lines = get_u16(reply, lines_at);
   return reading;
@@ -35,6 +40,7 @@ BoardReading Sh4Board::reading_of(const Packet& reply) noexcept {
 
 // Stale replies left by an earlier program would offset every reply by one.
 UsbOutcome Sh4Board::begin(UsbPipe& pipe, BoardReading& reading) noexcept {
+  pipe.clear_halt();
   pipe.drain();
   return exchange(pipe, DacCounts{}, reading);
 }
@@ -42,6 +48,14 @@ UsbOutcome Sh4Board::begin(UsbPipe& pipe, BoardReading& reading) noexcept {
 UsbOutcome Sh4Board::exchange(UsbPipe& pipe, const DacCounts& dac_counts,
                               BoardReading& reading) noexcept {
   const UsbOutcome outcome = pipe.exchange(request(dac_counts), reply_);
+  if (outcome == UsbOutcome::ok) {
+    reading = reading_of(reply_);
+  }
+  return outcome;
+}
+
+UsbOutcome Sh4Board::receive(UsbPipe& pipe, BoardReading& reading) noexcept {
+  const UsbOutcome outcome = pipe.receive(reply_);
   if (outcome == UsbOutcome::ok) {
     reading = reading_of(reply_);
   }

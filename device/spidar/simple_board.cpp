@@ -35,6 +35,7 @@ BoardReading SimpleBoard::reading_of(const Packet& reply) noexcept {
 }
 
 UsbOutcome SimpleBoard::begin(UsbPipe& pipe, BoardReading& reading) noexcept {
+  pipe.clear_halt();
   pipe.drain();
   const UsbOutcome outcome = pipe.send(command(encoders, direction, all_strings));
   if (outcome != UsbOutcome::ok) {
@@ -53,6 +54,14 @@ UsbOutcome SimpleBoard::exchange(UsbPipe& pipe, const DacCounts& dac_counts,
     return outcome;
   }
   const UsbOutcome outcome = pipe.exchange(command(latch), reply_);
+  if (outcome == UsbOutcome::ok) {
+    reading = reading_of(reply_);
+  }
+  return outcome;
+}
+
+UsbOutcome SimpleBoard::receive(UsbPipe& pipe, BoardReading& reading) noexcept {
+  const UsbOutcome outcome = pipe.receive(reply_);
   if (outcome == UsbOutcome::ok) {
     reading = reading_of(reply_);
   }

@@ -18,6 +18,7 @@ class SimpleBoard final : public SpidarBoard {
   std::vector<std::uint8_t> zero_force_packet() const override;
   UsbOutcome exchange(UsbPipe& pipe, const DacCounts& dac_counts,
                       BoardReading& reading) noexcept override;
+  UsbOutcome receive(UsbPipe& pipe, BoardReading& reading) noexcept override;
 
  private:
   Packet reply_{};

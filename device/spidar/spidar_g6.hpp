@@ -1,8 +1,8 @@
 #pragma once
 #include <memory>
-#include <optional>
 
 #include "device/device.hpp"
+#include "device/spidar/board_link.hpp"
 #include "device/spidar/calibration.hpp"
 #include "device/spidar/tensions.hpp"
 #include "device/usb/watchdog_channel.hpp"
@@ -11,6 +11,8 @@ struct SpidarLimits {
   double max_residual_m{2e-4};       // beyond it a string is slack, slipped or miscounted
   double max_string_speed_m_s{5.0};  // beyond it a counter has jumped
   double max_turn_rad{0.5};          // of the grip
+  double min_motor_voltage_v{0.05};  // mean over the strings; less is an amplifier that is off
+  double max_without_voltage_s{0.02};
 };
 
 struct SpidarSettings {
@@ -18,6 +20,8 @@ struct SpidarSettings {
   core::SpidarCalibration calibration;
   SpidarLimits limits;
   double dt_s{1e-3};
+  bool is_amplifier_sensed{
+      true};  // false: the board's measurement of voltages is not to be relied on
   WatchdogChannel* watchdog{nullptr};  // of the guardian, if any; must outlive the device
 };
 
@@ -26,9 +30,10 @@ struct SpidarSettings {
 // tick: read() sends the tensions computed by the last write() and receives the counters, so the
 // force acts one tick after the position it was computed from.
 //
-// The commanded torque is zero: a tap is a pure force at the finger. Any error on the wire, in the
-// counters or in the pose is a fault; emergency_stop() then zeroes all outputs, strings may go
-// slack, and the grip must be homed again.
+// The commanded torque is zero: a tap is a pure force at the finger. A few replies in a row may be
+// missing; any other error on the wire, in the counters or in the pose is a fault. emergency_stop()
+// then zeroes all outputs, strings may go slack, and the grip must be homed again. A stop that is
+// not confirmed by a reply leaves the guardian to repeat zero force until the kernel takes it.
 class SpidarG6 final : public Device {
  public:
   // The pipe and the board must outlive it. Throws DeviceError if the board does not reply, or its
@@ -45,26 +50,30 @@ class SpidarG6 final : public Device {
   // Takes the present pose as the origin: grip in the centre and not rotated.
   [[nodiscard]] core::TickFault home() noexcept;
   bool is_homed() const noexcept { return is_homed_; }
-  int rotary_switch() const noexcept { return reading_.rotary_switch(); }
+  // Whether the motors get voltage; true where the board does not measure it.
+  bool has_motor_voltage() const noexcept;
+  int rotary_switch() const noexcept { return link_.reading().rotary_switch(); }
 
-  [[nodiscard]] core::TickFault read(core::HandState& hand) noexcept override;
+  [[nodiscard]] core::TickFault read(core::HandState& hand, double elapsed_s) noexcept override;
   [[nodiscard]] core::TickFault write(const core::Vec3& force_n) noexcept override;
-  void begin() noexcept override;
-  void zero_force() noexcept override;
-  void emergency_stop() noexcept override;
+  [[nodiscard]] core::TickFault begin() noexcept override;
+  [[nodiscard]] StopOutcome zero_force() noexcept override;
+  StopOutcome emergency_stop() noexcept override;
+  bool is_force_off() const noexcept override { return link_.is_force_off(); }
   DeviceDetail detail() const noexcept override { return detail_; }
   std::string description() const override;
 
  private:
-  core::TickFault fault_of_watchdog() noexcept;
-  core::TickFault exchange() noexcept;
-  void end_watchdog() const noexcept;
-  core::TickFault follow(core::HandState& hand) noexcept;
-  bool is_echo_right() noexcept;
+  core::TickFault exchange(double elapsed_s) noexcept;
+  core::TickFault exchange_patiently() noexcept;
+  core::TickFault fault_of_amplifier(double elapsed_s) noexcept;
+  core::TickFault follow(core::HandState& hand, double elapsed_s) noexcept;
+  double longest_step_m() const noexcept;
+  PerString lengths_m() const noexcept;
 
-  UsbPipe& pipe_;
-  SpidarBoard& board_;
   SpidarSettings settings_;
+  BoardLink link_;
+  const char* board_name_;
   TensionSolver tension_solver_;
   UnwrappedCounters counters_;
   PerString length_at_rest_m_;
@@ -72,15 +81,11 @@ class SpidarG6 final : public Device {
   Strings strings_;
   core::Vec3 velocity_m_s_{core::Vec3::Zero()};
   DacCounts dac_counts_{};
-  DacCounts sent_{};
-  DacCounts sent_before_{};
-  std::optional<bool> echoes_this_request_;
-  BoardReading reading_;
   std::int64_t largest_step_{0};
-  std::uint64_t guardian_rounds_{0};
-  double guardian_silent_s_{0.0};
   bool is_homed_{false};
-  bool has_position_{false};
+  HeldHand held_;
+  double unread_s_{0.0};  // since the position was last read
+  double without_voltage_s_{0.0};
   DeviceDetail detail_;
 };
 }  // namespace tapstudy::device

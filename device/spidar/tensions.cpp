@@ -33,8 +33,10 @@ Tensions TensionSolver::solve(const Strings& strings_now, const Wrench& wanted) 
   problem.c[strings] = share_weight;
   problem.low << PerString::Constant(range_.min_n), 0.0;
   problem.high << PerString::Constant(range_.max_n), 1.0;
-  latest_ = solver_.solve(problem, latest_).x;
+  const BoxQpSolution<strings + 1> solution = solver_.solve(problem, latest_);
+  latest_ = solution.x;
   Tensions found;
+  found.is_optimal = solution.is_optimal;
   found.tension_n = latest_.head<strings>();
   found.share = latest_[strings];
   const Vec6 achieved = strings_now.pull.transpose() * found.tension_n;

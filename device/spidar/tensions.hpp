@@ -18,6 +18,7 @@ struct Tensions {
   Wrench achieved;
   double share{};       // achievable fraction of the wanted wrench, 0 to 1
   double residual_n{};  // |achieved - share × wanted|; torques scaled by the grip radius
+  bool is_optimal{};    // the solver reached its optimum
 };
 
 // Tension distribution for a wrench: the minimum tensions that produce it if it is feasible, else

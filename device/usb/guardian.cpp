@@ -3,49 +3,87 @@
 #include <fcntl.h>
 #include <linux/usbdevice_fs.h>
 #include <poll.h>
+#include <sched.h>
 #include <sys/ioctl.h>
 #include <sys/mman.h>
 #include <sys/wait.h>
+#include <termios.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <csignal>
+#include <cstring>
 #include <memory>
 
 #include "device/device.hpp"
 namespace tapstudy::device {
 namespace {
-constexpr unsigned time_out_ms = 100;
-constexpr int round_ms = 20;
-constexpr int max_still_rounds = 5;
+constexpr unsigned time_out_ms = 20;
+constexpr int round_ms = 5;
+constexpr int rounds_a_sign_of_life = 2;
+constexpr int max_farewell_rounds = 60'000 / round_ms;  // a minute
+constexpr int max_wait_for_farewell_ms = 200;
+
+// Raising one's own score needs no privilege; if it fails, all processes are equally likely to be
+// killed when memory runs out.
+void set_oom_score(const char* score) noexcept {
+  const int file = open("/proc/self/oom_score_adj", O_WRONLY | O_CLOEXEC);
+  if (file >= 0) {
+    static_cast<void>(!write(file, score, strlen(score)));
+    close(file);
+  }
+}
 
 // Uses only async-signal-safe functions, as required between fork and _exit.
 class Watchdog {
  public:
-  Watchdog(int life, int node, std::uint8_t endpoint, std::vector<std::uint8_t>& zero_force_packet,
-           WatchdogChannel& channel) noexcept
+  Watchdog(int life, int node, GuardianSettings& settings, WatchdogChannel& channel) noexcept
       : life_{life},
         node_{node},
-        endpoint_{endpoint},
-        zero_force_packet_{zero_force_packet},
-        channel_{channel} {}
+        settings_{settings},
+        channel_{channel},
+        max_still_rounds_{std::max(1, static_cast<int>(1e3 * settings.max_stall_s) / round_ms)} {}
 
   [[noreturn]] void run() noexcept {
-    for (const int signal : std::array{SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGPIPE}) {
+    for (const int signal : std::array{SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGPIPE, SIGTSTP}) {
       struct sigaction ignored {};
       ignored.sa_handler = SIG_IGN;
       sigaction(signal, &ignored, nullptr);
     }
+    ask_for_realtime();
+    set_oom_score("0");  // not the program's own
     while (lives_on()) {
       poll();
       channel_.complete_round();
     }
-    send_zero_force();
+    say_farewell();
     _exit(0);
   }
 
  private:
+  // Until the kernel has taken zero force three times: nobody else can say it now.
+  void say_farewell() noexcept {
+    int taken = 0;
+    for (int i = 0; i < max_farewell_rounds && taken < zero_force_packets; ++i) {
+      taken += send_zero_force() ? 1 : 0;
+      if (taken == 0 && errno == ENODEV) {
+        return;
+      }
+      if (taken < zero_force_packets && i >= zero_force_packets) {
+        ::poll(nullptr, 0, round_ms);
+      }
+    }
+  }
+  // What is refused, is done without.
+  void ask_for_realtime() const noexcept {
+    const sched_param parameters{settings_.fifo_priority};
+    if (settings_.fifo_priority > 0) {
+      sched_setscheduler(0, SCHED_FIFO, &parameters);
+    }
+    mlockall(MCL_CURRENT | MCL_ONFAULT);  // only what it touches, not the program's whole image
+  }
   // Waits for one polling cycle; false once the pipe is closed.
   bool lives_on() const noexcept {
     pollfd waiting{life_, POLLIN, 0};
@@ -59,27 +97,59 @@ class Watchdog {
     const std::uint64_t beats = channel_.beats();
     still_rounds_ = channel_.is_on() && beats == beats_ ? still_rounds_ + 1 : 0;
     beats_ = beats;
-    if (still_rounds_ == max_still_rounds) {
-      channel_.act();  // first: a resumed program must see it before sending
-      send_zero_force();
+    const bool is_stalled = still_rounds_ >= max_still_rounds_;
+    if (is_stalled) {
+      channel_.take_output_over();  // first: a resumed program must see it before sending
+    }
+    if (settings_.relay >= 0 && (is_stalled || channel_.must_repeat())) {
+      tcflush(settings_.relay, TCOFLUSH);  // bytes not yet sent would keep it closed
+    }
+    if ((is_stalled || channel_.must_repeat()) && send_zero_force()) {
+      channel_.note_zero_taken();
+    }
+    if (++round_ % rounds_a_sign_of_life == 0) {
+      give_sign_of_life();
     }
   }
-  void send_zero_force() noexcept {
-    for (int i = 0; i < zero_force_packets; ++i) {
-      usbdevfs_bulktransfer packet{endpoint_, static_cast<unsigned>(zero_force_packet_.size()),
-                                   time_out_ms, zero_force_packet_.data()};
-      ioctl(node_, USBDEVFS_BULK, &packet);  // NOLINT(cppcoreguidelines-pro-type-vararg)
+  void give_sign_of_life() const noexcept {
+    if (settings_.relay >= 0 && channel_.may_close_relay()) {
+      static_cast<void>(!write(settings_.relay, "\x55", 1));
     }
+  }
+  // A halted endpoint takes nothing until its halt is cleared. Only then: clearing waits for the
+  // device's control endpoint, and holds up the program meanwhile.
+  bool send_zero_force() noexcept {
+    if (send_packet()) {
+      return true;
+    }
+    if (errno != EPIPE) {
+      return false;
+    }
+    for (unsigned endpoint :
+         std::array<unsigned, 2>{settings_.out_endpoint, settings_.in_endpoint}) {
+      // NOLINTNEXTLINE(cppcoreguidelines-pro-type-vararg)
+      ioctl(node_, USBDEVFS_CLEAR_HALT, &endpoint);
+    }
+    return send_packet();
+  }
+  bool send_packet() noexcept {
+    const auto size = static_cast<unsigned>(settings_.zero_force_packet.size());
+    usbdevfs_bulktransfer packet{settings_.out_endpoint, size, time_out_ms,
+                                 settings_.zero_force_packet.data()};
+    // NOLINTNEXTLINE(cppcoreguidelines-pro-type-vararg)
+    return ioctl(node_, USBDEVFS_BULK, &packet) == static_cast<int>(size);
   }
 
   int life_;
   int node_;
-  std::uint8_t endpoint_;
-  std::vector<std::uint8_t>& zero_force_packet_;
+  GuardianSettings& settings_;
   WatchdogChannel& channel_;
+  int max_still_rounds_;
   std::uint64_t beats_{0};
   int still_rounds_{0};
+  unsigned round_{0};
 };
+
 }  // namespace
 
 void Guardian::Unmap::operator()(WatchdogChannel* channel) const noexcept {
@@ -95,9 +165,8 @@ std::unique_ptr<WatchdogChannel, Guardian::Unmap> Guardian::shared_channel() {
   return std::unique_ptr<WatchdogChannel, Unmap>{
       std::construct_at(static_cast<WatchdogChannel*>(memory))};
 }
-Guardian::Guardian(const UsbNode& node, std::uint8_t out_endpoint,
-                   std::vector<std::uint8_t> zero_force_packet)
-    : channel_{shared_channel()} {
+
+Guardian::Guardian(const UsbNode& node, GuardianSettings settings) : channel_{shared_channel()} {
   std::array<int, 2> ends{};
   if (pipe2(ends.data(), O_CLOEXEC) != 0) {
     throw DeviceError{"no pipe for the device's guardian"};
@@ -106,7 +175,7 @@ Guardian::Guardian(const UsbNode& node, std::uint8_t out_endpoint,
   if (child_ == 0) {
     setsid();  // detached from Ctrl-C at the terminal
     close(ends[1]);
-    Watchdog{ends[0], node.descriptor(), out_endpoint, zero_force_packet, *channel_}.run();
+    Watchdog{ends[0], node.descriptor(), settings, *channel_}.run();
   }
   close(ends[0]);
   life_ = ends[1];
@@ -114,12 +183,19 @@ Guardian::Guardian(const UsbNode& node, std::uint8_t out_endpoint,
     close(life_);
     throw DeviceError{"the device's guardian cannot be started"};
   }
+  set_oom_score("500");  // the program shall be killed before its guardian
 }
 
+// The child ends by itself once zero force was taken, or stays to repeat it.
 Guardian::~Guardian() {
   close(life_);
-  int status = 0;
-  while (waitpid(child_, &status, 0) < 0 && errno == EINTR) {
+  for (int waited_ms = 0; waited_ms < max_wait_for_farewell_ms; ++waited_ms) {
+    int status = 0;
+    const pid_t ended = waitpid(child_, &status, WNOHANG);
+    if (ended == child_ || (ended < 0 && errno != EINTR)) {
+      return;
+    }
+    ::poll(nullptr, 0, 1);
   }
 }
 }  // namespace tapstudy::device

@@ -130,7 +130,11 @@ struct LibusbPipe::Libusb {
     if (error != LIBUSB_SUCCESS) {
       libusb_close(device);
       libusb_exit(context);
-      throw refusal("the device cannot be claimed (does another program use it?)", error);
+      constexpr const char* what = "the device cannot be claimed (does another program use it?)";
+      if (error == LIBUSB_ERROR_BUSY) {
+        throw ClaimedByAnother{refusal(what, error).what()};
+      }
+      throw refusal(what, error);
     }
     request = std::make_unique<Transfer>();
     reply = std::make_unique<Transfer>();
@@ -198,9 +202,25 @@ UsbOutcome LibusbPipe::exchange(std::span<const std::uint8_t> out,
   return sent != UsbOutcome::ok ? sent : received;
 }
 
-void LibusbPipe::drain() noexcept {
+UsbOutcome LibusbPipe::receive(std::span<std::uint8_t> in) noexcept {
+  if (!libusb_->is_idle() || in.size() > max_packet_bytes) {
+    return UsbOutcome::failed;
+  }
+  if (const UsbOutcome outcome = libusb_->submit_reply(in.size(), libusb_->time_out_ms);
+      outcome != UsbOutcome::ok) {
+    return outcome;
+  }
+  const UsbOutcome received = libusb_->reply->wait(libusb_->context);
+  std::ranges::copy(std::span{libusb_->reply_bytes}.first(in.size()), in.begin());
+  return received;
+}
+
+void LibusbPipe::clear_halt() noexcept {
   libusb_clear_halt(libusb_->device, libusb_->endpoints.in);
   libusb_clear_halt(libusb_->device, libusb_->endpoints.out);
+}
+
+void LibusbPipe::drain() noexcept {
   for (int i = 0; i < max_stale_replies && libusb_->is_idle(); ++i) {
     if (libusb_->submit_reply(max_packet_bytes, 1) != UsbOutcome::ok ||
         libusb_->reply->wait(libusb_->context) == UsbOutcome::timed_out) {

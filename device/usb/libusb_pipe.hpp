@@ -26,6 +26,8 @@ class LibusbPipe final : public UsbPipe {
   UsbOutcome send(std::span<const std::uint8_t> out) noexcept override;
   UsbOutcome exchange(std::span<const std::uint8_t> out,
                       std::span<std::uint8_t> in) noexcept override;
+  UsbOutcome receive(std::span<std::uint8_t> in) noexcept override;
+  void clear_halt() noexcept override;
   void drain() noexcept override;
 
  private:

@@ -21,7 +21,11 @@ class UsbPipe {
   // Sends all of out while waiting for a reply as long as in.
   [[nodiscard]] virtual UsbOutcome exchange(std::span<const std::uint8_t> out,
                                             std::span<std::uint8_t> in) noexcept = 0;
-  // Discards stale replies.
+  // Waits for one more reply, as long as in.
+  [[nodiscard]] virtual UsbOutcome receive(std::span<std::uint8_t> in) noexcept = 0;
+  // Makes halted endpoints usable again.
+  virtual void clear_halt() noexcept = 0;
+  // Discards stale replies; waits for them for about a millisecond each.
   virtual void drain() noexcept = 0;
 };
 }  // namespace tapstudy::device

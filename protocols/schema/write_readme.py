@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""Writes protocols/README.md, the reference of all keys, from the JSON schemas.
+"""Writes rig.schema.json from its parts, and protocols/README.md, the reference of all keys, from
+the JSON schemas.
 
---check writes nothing; exit code 1 if the file is not what would be written.
+--check writes nothing; exit code 1 if a file is not what would be written.
 Either way exit code 1 if a key lacks its description, or its default where it may be missing.
 """
 import json
@@ -9,6 +10,9 @@ import os
 import pathlib
 import sys
 import textwrap
+
+sys.dont_write_bytecode = True
+import rig_schema
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
@@ -291,7 +295,19 @@ def first_difference(old, new):
     return next((i for i, (a, b) in enumerate(pairs, 1) if a != b), 1)
 
 
+def write_or_check(file, text, is_check):
+    if not is_check:
+        file.write_text(text)
+        return
+    old = file.read_text() if file.exists() else ""
+    if old != text:
+        place = f"{file.relative_to(ROOT)}:{first_difference(old, text)}"
+        sys.exit(f"{place}: differs from what it is made of (run {SCRIPT})")
+
+
 def main():
+    is_check = sys.argv[1:] == ["--check"]
+    write_or_check(rig_schema.FILE, rig_schema.assembled(), is_check)
     schemas = {name: json.loads((HERE / f"{name}.schema.json").read_text()) for name in EXAMPLES}
     missing = [f"{name}.schema.json: {gap}" for name in schemas for gap in gaps("", schemas[name])]
     if missing:
@@ -299,14 +315,7 @@ def main():
     lines = [(HERE / "readme_intro.md").read_text()]
     for name, schema in schemas.items():
         lines += schema_lines(name, schema)
-    text = "\n".join(lines).rstrip() + "\n"
-    if sys.argv[1:] != ["--check"]:
-        README.write_text(text)
-        return
-    old = README.read_text() if README.exists() else ""
-    if old != text:
-        line = first_difference(old, text)
-        sys.exit(f"protocols/README.md:{line}: differs from the schemas (run {SCRIPT})")
+    write_or_check(README, "\n".join(lines).rstrip() + "\n", is_check)
 
 
 if __name__ == "__main__":

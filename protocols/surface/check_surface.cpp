@@ -26,8 +26,10 @@ using core::Vec3;
 using Mesh = CGAL::Surface_mesh<CGAL::Exact_predicates_inexact_constructions_kernel::Point_3>;
 constexpr double min_size_m = 1e-3;
 constexpr double max_size_m = 10.0;
-constexpr double no_area = 1e-12;   // of a triangle, as a fraction of its longest side squared
-constexpr double no_volume = 1e-9;  // as a fraction of the bounding cube's
+constexpr double no_area = 1e-12;  // of a triangle, as a fraction of its longest side squared
+constexpr double flat_cap = 1e-5;  // height over longest side, as rounding to float gives
+constexpr double flat_cap_of_side = 1e-2;  // height over shortest side
+constexpr double no_volume = 1e-9;         // as a fraction of the bounding cube's
 constexpr Eigen::Index max_triangles = 200000;
 
 std::string place(const TriangleSurface& surface, int point) {
@@ -62,6 +64,15 @@ void check_areas(const TriangleSurface& surface) {
     if (!(ab.cross(ac).norm() > no_area * longest)) {
       throw InvalidInput{fmt::format("surface: triangle {} at {} has no area", i,
                                      place(surface, surface.triangles(i, 0)))};
+    }
+    // of a needle, by contrast, the shortest side is as short as it is high
+    const double shortest = std::min({ab.squaredNorm(), ac.squaredNorm(), (ac - ab).squaredNorm()});
+    const double height = ab.cross(ac).norm() / std::sqrt(longest);
+    if (height < flat_cap * std::sqrt(longest) && height < flat_cap_of_side * std::sqrt(shortest)) {
+      throw InvalidInput{fmt::format(
+          "surface: triangle {} at {} is flat: a corner lies on the opposite side (repair the "
+          "surface: move that corner, or swap the side)",
+          i, place(surface, surface.triangles(i, 0)))};
     }
   }
 }

@@ -19,11 +19,12 @@ using Triangulation = CGAL::Constrained_Delaunay_triangulation_2<
     CGAL::No_constraint_intersection_tag>;
 using Outline = std::vector<Kernel::Point_2>;
 
-// Newell's method: twice the area along the normal, of any closed polygon.
+// Newell's method: twice the area along the normal, of any closed polygon. From its first corner,
+// so that no digits are lost far from the origin.
 core::Vec3 doubled_area(const std::vector<core::Vec3>& corners) {
   core::Vec3 sum = core::Vec3::Zero();
-  for (std::size_t i = 0; i < corners.size(); ++i) {
-    sum += corners[i].cross(corners[(i + 1) % corners.size()]);
+  for (std::size_t i = 2; i < corners.size(); ++i) {
+    sum += (corners[i - 1] - corners.front()).cross(corners[i] - corners.front());
   }
   return sum;
 }

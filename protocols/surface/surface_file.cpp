@@ -17,6 +17,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/bounded_child.hpp"
 #include "core/error.hpp"
 #include "core/sha256.hpp"
 #include "protocols/surface/cut_polygon.hpp"
@@ -52,6 +53,12 @@ std::string ending_of(const std::string& file) {
   return ending;
 }
 
+[[noreturn]] void refuse(const SurfaceSource& source) {
+  throw core::InvalidInput{source.file +
+                           ": is not a surface (one of: .stl, .ply, .off, .obj, with at least "
+                           "one face; is it cut short?)"};
+}
+
 Soup soup_of(const SurfaceSource& source) {
   Soup soup;
   std::istringstream bytes{source.bytes};
@@ -67,9 +74,7 @@ Soup soup_of(const SurfaceSource& source) {
            });
   };
   if (!is_read || soup.polygons.empty() || !std::ranges::all_of(soup.polygons, is_inside)) {
-    throw core::InvalidInput{source.file +
-                             ": is not a surface (one of: .stl, .ply, .off, .obj, with at least "
-                             "one face; is it cut short?)"};
+    refuse(source);
   }
   return soup;
 }
@@ -141,6 +146,22 @@ class JoinedPoints {
   std::vector<Place> points_;
 };
 
+// CGAL's readers take a file at its word, and crash or take all memory where it lies: what they
+// survive elsewhere, they survive here.
+void try_reading(const SurfaceSource& source) {
+  constexpr core::ChildLimits limits{15, 2'000'000'000};
+  try {
+    core::in_bounded_child(
+        source.file,
+        [&] {
+          soup_of(source);
+          return std::string{"read"};
+        },
+        limits);
+  } catch (const core::ModelError&) {
+    refuse(source);
+  }
+}
 }  // namespace
 
 SurfaceSource surface_source(std::string file, std::string bytes) {
@@ -149,6 +170,7 @@ SurfaceSource surface_source(std::string file, std::string bytes) {
 }
 
 core::TriangleSurface read_surface(const SurfaceSource& source, double metres_per_unit) {
+  try_reading(source);
   const Soup soup = soup_of(source);
   check_points(soup, source.file, metres_per_unit);
   JoinedPoints points;

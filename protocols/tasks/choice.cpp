@@ -9,23 +9,28 @@ class Choice final : public Task {
   std::string_view statistic() const override { return "choices"; }
   Claim claim() const override { return Claim::chosen_above_chance; }
   bool needs_reference() const override { return true; }
+  bool has_correct_answer() const override { return false; }
   bool uses_order() const override { return false; }
+  bool is_random(const Block& /*block*/) const override { return true; }
+  int counted_answers(const Block& /*block*/) const override { return 1; }  // a vote
   std::string_view success() const override { return "choose the expected one"; }
 
   void read(MapReader& reader, const Protocol& /*protocol*/, Block& block) const override {
+    block.vote = reader.one_of<Vote>("vote", {{"majority", Vote::majority}, {"first", Vote::first}},
+                                     "majority");
     if (block.stimuli.size() < 2) {
       reader.reject("stimuli", "a choice needs at least two stimuli to choose from");
     }
   }
 
-  // The order of the blind labels is drawn once per participant.
+  // The blind labels are drawn anew for each trial: a label has no history.
   std::vector<PlannedTrial> trials(const Block& block, const Draw& draw) const override {
     core::Rng rng{
         core::derived_seed(draw.participant_seed, core::Purpose::labels, draw.block_index)};
-    std::vector<std::string> alternatives = block.stimuli;
-    rng.shuffle(alternatives);
     std::vector<PlannedTrial> all;
     for (int repetition = 1; repetition <= block.repetitions; ++repetition) {
+      std::vector<std::string> alternatives = block.stimuli;
+      rng.shuffle(alternatives);
       all.push_back({0, block.name, this, block.is_practice, repetition, alternatives});
     }
     return all;

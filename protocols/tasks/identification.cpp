@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 
 #include "protocols/ordering.hpp"
 #include "protocols/protocol.hpp"
@@ -8,18 +9,40 @@
 #include "protocols/tasks/shipped_tasks.hpp"
 namespace tapstudy::protocols {
 namespace {
+// Two answers that read alike cannot be told apart by who gives them.
+void check_labels_differ(MapReader& reader, const Protocol& protocol, const Block& block) {
+  std::map<std::string, std::string> name_of_label;
+  for (const std::string& response : block.responses) {
+    const auto stimulus = std::ranges::find(protocol.stimuli, response, &Stimulus::name);
+    if (stimulus == protocol.stimuli.end()) {
+      continue;  // rejected already
+    }
+    const auto [known, is_new] = name_of_label.emplace(stimulus->label, response);
+    if (!is_new) {
+      reader.reject("responses", fmt::format("'{}' and '{}' have the same label, '{}'",
+                                             known->second, response, stimulus->label));
+    }
+  }
+}
+
 class Identification final : public Task {
  public:
   std::string_view name() const override { return "identification"; }
   std::string_view statistic() const override { return "confusion"; }
   Claim claim() const override { return Claim::accuracy_above_chance; }
   bool needs_reference() const override { return false; }
+  bool has_correct_answer() const override { return true; }
   bool uses_order() const override { return true; }
+  bool is_random(const Block& block) const override { return block.order != Order::listed; }
+  int counted_answers(const Block& block) const override {
+    return block.repetitions * static_cast<int>(block.stimuli.size());
+  }
   std::string_view success() const override { return "be right"; }
 
   void read(MapReader& reader, const Protocol& protocol, Block& block) const override {
     block.responses =
         reader.words("responses", "stimulus", stimulus_names(protocol), block.stimuli);
+    check_labels_differ(reader, protocol, block);
     if (block.responses.size() < 2) {
       reader.reject("responses", "an identification needs at least two possible answers");
     }
@@ -35,7 +58,8 @@ class Identification final : public Task {
     core::Rng rng{
         core::derived_seed(draw.participant_seed, core::Purpose::schedule, draw.block_index)};
     std::vector<PlannedTrial> all;
-    for (const OrderedStimulus& next : ordered_stimuli(block, rng, draw.participant_index)) {
+    for (const OrderedStimulus& next :
+         ordered_stimuli(block, rng, {draw.participant_index, draw.counterbalancing_seed})) {
       all.push_back({0, block.name, this, block.is_practice, next.repetition, {next.stimulus}});
     }
     return all;

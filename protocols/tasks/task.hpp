@@ -32,6 +32,7 @@ struct Draw {
   std::uint64_t participant_seed{};
   int participant_index{};  // from 0; used for counterbalancing
   std::size_t block_index{};
+  std::uint64_t counterbalancing_seed{};  // of the study
 };
 
 // An allowed answer: its name in the data and the label shown to participants.
@@ -67,8 +68,12 @@ class Task {
   virtual Claim claim() const = 0;
   // Whether simulated participants need simulation.observer.reference.
   virtual bool needs_reference() const = 0;
+  // Whether some answers are right and others wrong.
+  virtual bool has_correct_answer() const = 0;
   // Whether the block's order, Williams's among others, decides what is presented when.
   virtual bool uses_order() const = 0;
+  // Whether what is presented when depends on the seeds.
+  virtual bool is_random(const Block& block) const = 0;
 
   // The block's trials, numbers left open.
   virtual std::vector<PlannedTrial> trials(const Block& block, const Draw& draw) const = 0;
@@ -83,6 +88,8 @@ class Task {
   // nullopt if the task has no correct answer.
   virtual std::optional<bool> is_correct(const PlannedTrial& trial,
                                          const std::string& response) const = 0;
+  // Of one participant's answers to a block, how many are counted as independent ones.
+  virtual int counted_answers(const Block& block) const = 0;
   // "of 80 answers 27 must …"
   virtual std::string_view success() const = 0;
 

@@ -27,10 +27,13 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
 }
 }  // namespace
 
+std::string Problems::place(int line, int column, const std::string& key_path) const {
+  return fmt::format("{}:{}:{}{}{}", file_, line + 1, column + 1, key_path.empty() ? "" : ": ",
+                     key_path);
+}
+
 void Problems::add(int line, int column, const std::string& key_path, const std::string& what) {
-  problems_.push_back({line, column,
-                       fmt::format("{}:{}:{}: {}{}{}", file_, line + 1, column + 1, key_path,
-                                   key_path.empty() ? "" : ": ", what)});
+  problems_.push_back({line, column, place(line, column, key_path) + ": " + what});
 }
 
 void Problems::throw_if_any() const {

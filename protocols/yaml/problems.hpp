@@ -10,6 +10,8 @@ class Problems {
   explicit Problems(std::string file) : file_{std::move(file)} {}
   // line and column count from 0.
   void add(int line, int column, const std::string& key_path, const std::string& what);
+  // "file:line:column: key.path"
+  std::string place(int line, int column, const std::string& key_path) const;
   // Throws InvalidInput if there are any, one line per problem, `file:line:column: key.path: what`,
   // in the order of the file.
   void throw_if_any() const;

@@ -10,6 +10,7 @@
 #include <cmath>
 
 #include "core/error.hpp"
+#include "protocols/yaml/documents.hpp"
 #include "protocols/yaml/yaml_words.hpp"
 namespace tapstudy::protocols {
 namespace {
@@ -51,11 +52,10 @@ MapReader MapReader::whole_file(const std::string& text, const std::string& file
     throw core::InvalidInput{fmt::format("{}:1:1: not UTF-8 text", file)};
   }
   try {
-    const std::vector<YAML::Node> documents = YAML::LoadAll(text);
-    if (documents.size() > 1) {
+    if (holds_two_documents(text)) {
       throw core::InvalidInput{fmt::format("{}: holds more than one YAML document", file)};
     }
-    MapReader reader{documents.empty() ? YAML::Node{} : documents.front(), "", "", problems};
+    MapReader reader{YAML::Load(text), "", "", problems};
     if (!reader.node_->IsMap()) {
       throw core::InvalidInput{fmt::format("{}:1:1: not a mapping of keys to values", file)};
     }
@@ -87,6 +87,17 @@ void MapReader::reject(const std::string& key, const std::string& what) {
   const YAML::Node& whole = *node_;
   const YAML::Node value = whole[key];
   reject_at(value.IsDefined() ? value : whole, path_of(key), what);
+}
+
+std::string MapReader::stated_at() const {
+  const YAML::Mark mark = node_->Mark();
+  return problems_->place(std::max(0, mark.line), std::max(0, mark.column), path_);
+}
+std::string MapReader::stated_at(const std::string& key) const {
+  const YAML::Node& whole = *node_;
+  const YAML::Node value = whole[key];
+  const YAML::Mark mark = value.IsDefined() ? value.Mark() : whole.Mark();
+  return problems_->place(std::max(0, mark.line), std::max(0, mark.column), path_of(key));
 }
 
 bool MapReader::has(const std::string& key) const {

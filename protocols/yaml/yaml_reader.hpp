@@ -87,6 +87,9 @@ class MapReader {
                  const std::function<void(const std::string&, const std::string&)>& take);
   void list(const std::string& key, Presence presence, const ReadMap& read);
 
+  // "file:line:column: key.path" of this mapping, or of one of its keys.
+  std::string stated_at() const;
+  std::string stated_at(const std::string& key) const;
   // A problem with this mapping as a whole, or with one of its keys.
   void reject(const std::string& what);
   void reject(const std::string& key, const std::string& what);

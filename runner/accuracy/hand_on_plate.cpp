@@ -68,7 +68,7 @@ LoopBehaviour tap_and_stay(core::TapRenderer& renderer, const core::HandBody& bo
   double energy_j = 0.0;
   for (int tick = 0; tick < ticks && behaviour.is_finite; ++tick) {
     core::HandState state;
-    static_cast<void>(hand.read(state));
+    static_cast<void>(hand.read(state, dt_s));
     core::HandState tip = placement.to_plate(state);
     tip.position_m.x() += tap.sliding_m * tick / ticks;
     const core::RenderedTick rendered = renderer.tick(tip);

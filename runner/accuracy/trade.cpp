@@ -8,13 +8,14 @@
 #include <limits>
 
 #include "core/error.hpp"
+#include "core/model/stopwatch.hpp"
 #include "runner/accuracy/errors.hpp"
 #include "runner/accuracy/workbench.hpp"
 namespace tapstudy::runner {
 namespace {
 constexpr double session_s = 600.0;
-constexpr std::array<double, 3> tets_tried{200.0, 700.0, 2500.0};
-constexpr double tets_of_reference = 8000.0;
+// Ascending: the last is the reference, the last but one its check.
+constexpr std::array<double, 4> tets_of_meshes{200.0, 700.0, 2500.0, 8000.0};
 constexpr std::array<double, 3> rates_tried{1.0, 2.0, 4.0};  // of the protocol's
 constexpr double max_rate_hz = 10000.0;
 
@@ -28,7 +29,8 @@ struct Bands {
 // Beyond the protocol's band only if damping ratios are available there.
 Bands bands_of(const core::PlateSpec& plate) {
   const double own = plate.band_limit_hz;
-  if (std::holds_alternative<core::ModalDamping>(plate.material.damping)) {
+  const auto* modal = std::get_if<core::ModalDamping>(&plate.material.damping);
+  if (modal != nullptr && !modal->further_ratio) {
     return {{0.5 * own, own}, own};
   }
   return {{0.5 * own, own, 2.0 * own}, 4.0 * own};
@@ -49,45 +51,80 @@ core::ModalModel held_from_tick_to_tick(core::ModalModel model, double rate_hz) 
   return model;
 }
 
+// A sparse factorisation's time grows with a power of the number of nodes, some five times as many
+// with quadratic elements.
+double work_of(int order, double tets) {
+  constexpr double growth = 1.34;
+  return std::pow(order == 2 ? 5.0 * tets : tets, growth);
+}
+
+// The share of the work that is done, and the time the rest will take.
+class Estimate {
+ public:
+  void plan(double work) { planned_ += work; }
+  void finish(double work) { done_ += work; }
+  std::string words() const {
+    if (done_ <= 0.0) {
+      return "";
+    }
+    const double left_s = watch_.elapsed_s() * std::max(0.0, planned_ - done_) / done_;
+    return fmt::format(", about {:.0f} s left", std::ceil(left_s));
+  }
+
+ private:
+  double planned_{0.0};
+  double done_{0.0};
+  core::Stopwatch watch_;
+};
+
 class Tradeoff {
  public:
-  Tradeoff(const protocols::Protocol& protocol, const protocols::Stimulus& stimulus,
+  Tradeoff(const protocols::Protocol& protocol, const protocols::Stimulus& stimulus, Effort effort,
            const core::ProgressHook& progress)
       : protocol_{protocol},
         bench_{protocol, stimulus,
                [this, progress](std::string_view stage) {
-                 core::tell(progress, fmt::format("{}, {}", building_, stage));
+                 core::tell(progress, fmt::format("{}{}, {}", building_, left_.words(), stage));
                }},
-        bands_{bands_of(bench_.spec())} {}
+        bands_{bands_of(bench_.spec())},
+        tets_{tets_of_meshes.begin(), tets_of_meshes.end() - (effort == Effort::quick ? 1 : 0)} {
+    const auto bands = static_cast<double>(bands_.tried_hz.size());
+    for (const double tets : tets_) {
+      left_.plan(tets < tets_.back() ? bands * (work_of(1, tets) + work_of(2, tets))
+                                     : work_of(2, tets));
+    }
+    left_.plan(work_of(2, tets_[tets_.size() - 2]));
+  }
 
   Reference make_reference() {
     const double band_hz = bands_.tried_hz.back();
-    const core::BodyModes fine = solved(tets_of_reference);
+    const core::BodyModes fine = solved(tets_.back());
     bench_.fix_damping(fine);
-    const core::BodyModes coarser = solved(tets_tried.back());
-    frequency_hz_ = bench_.model_of(fine, bands_.beyond_hz).frequency_hz;
-    const Eigen::Index modes = (frequency_hz_ < band_hz).count();
+    const core::BodyModes coarser = solved(tets_[tets_.size() - 2]);
+    modes_ = sampled(fine);
+    const Eigen::Index modes = (modes_.frequency_hz < band_hz).count();
     if (modes == 0) {
       throw core::ModelError{fmt::format("nothing vibrates below {} Hz", band_hz)};
     }
     forces_n_ = exact_forces(fine, band_hz);
-    const Eigen::ArrayXd coarser_hz = bench_.model_of(coarser, band_hz).frequency_hz;
     return {fine.report.tets,
             fine.report.dofs,
             band_hz,
             static_cast<int>(modes),
             fine.report.cost.total_s(),
             coarser.report.tets,
-            frequency_error(frequency_hz_, coarser_hz, band_hz),
+            match_modes(modes_, sampled(coarser), band_hz).frequency_error,
             force_error(forces_n_, exact_forces(coarser, band_hz)),
+            level_error_db(forces_n_, exact_forces(coarser, band_hz), protocol_.rate_hz,
+                           protocol_.band_limit_hz),
             force_error(exact_forces(fine, bands_.beyond_hz), forces_n_)};
   }
 
   void try_all(Trade& trade) {
     std::vector<core::Meshing> meshes{bench_.spec().mesh};
     for (const int order : {1, 2}) {
-      for (const double tets : tets_tried) {
-        meshes.push_back(mesh_of(bench_.spec(), order, tets));
+      for (std::size_t i = 0; i + 1 < tets_.size(); ++i) {
+        meshes.push_back(mesh_of(bench_.spec(), order, tets_[i]));
       }
     }
     std::size_t number = 0;
@@ -95,20 +132,28 @@ class Tradeoff {
       for (const double band_hz : bands_.tried_hz) {
         building_ = fmt::format("model {} of {}", ++number, meshes.size() * bands_.tried_hz.size());
         try_model(meshes[i], band_hz, i == 0, trade);
+        if (i > 0) {  // the protocol's own mesh is not planned for
+          left_.finish(work_of(meshes[i].order, tets_[(i - 1) % (tets_.size() - 1)]));
+        }
       }
     }
   }
 
  private:
-  core::BodyModes solved(double tets) const {
-    return bench_.solve(mesh_of(bench_.spec(), 2, tets), bands_.beyond_hz);
+  core::BodyModes solved(double tets) {
+    core::BodyModes body = bench_.solve(mesh_of(bench_.spec(), 2, tets), bands_.beyond_hz);
+    left_.finish(work_of(2, tets));
+    return body;
+  }
+  SampledModes sampled(const core::BodyModes& body) const {
+    return bench_.sampled(bench_.plate_of(bench_.model_of(body, bands_.beyond_hz)));
   }
   Forces exact_forces(const core::BodyModes& body, double band_hz) const {
     return bench_.forces_n(bench_.plate_of(bench_.model_of(body, band_hz)), core::Integrator::exact,
                            protocol_.rate_hz);
   }
 
-  void try_model(const core::Meshing& mesh, double band_hz, bool is_own, Trade& trade) const {
+  void try_model(const core::Meshing& mesh, double band_hz, bool is_own, Trade& trade) {
     const bool is_protocols = is_own && band_hz == protocol_.band_limit_hz;
     try {
       const core::BodyModes body = bench_.solve(mesh, band_hz);
@@ -156,33 +201,41 @@ class Tradeoff {
                Evaluation& one) const {
     const Setting& setting = one.setting;
     one.cost_s = one.build_s + 1e-9 * one.tick_ns * setting.rate_hz * session_s;
-    one.frequency_error = frequency_error(
-        frequency_hz_,
-        numerical_frequency_hz(plate.model.frequency_hz, setting.integrator, setting.rate_hz),
-        setting.band_limit_hz);
+    SampledModes modes = bench_.sampled(plate);
+    modes.frequency_hz =
+        numerical_frequency_hz(plate.model.frequency_hz, setting.integrator, setting.rate_hz);
+    const ModeMatch match = match_modes(modes_, modes, protocol_.band_limit_hz);
+    one.frequency_error = match.frequency_error;
+    one.missing_modes = match.missing;
+    one.extra_modes = match.extra;
     one.force_error =
         force_error(forces_n_, bench_.forces_n(plate, setting.integrator, setting.rate_hz));
+    const Forces felt_n = bench_.forces_n(held, setting.integrator, setting.rate_hz);
     one.level_error_db =
-        level_error_db(forces_n_, bench_.forces_n(held, setting.integrator, setting.rate_hz));
+        level_error_db(forces_n_, felt_n, protocol_.rate_hz, protocol_.band_limit_hz);
+    one.decay_error_db =
+        decay_error_db(forces_n_, felt_n, protocol_.rate_hz, protocol_.band_limit_hz);
   }
 
   const protocols::Protocol& protocol_;
   std::string building_{"reference"};  // for the progress
   Workbench bench_;
   Bands bands_;
-  Eigen::ArrayXd frequency_hz_;  // of the reference's body, beyond its band too
-  Forces forces_n_;              // of the reference
+  std::vector<double> tets_;
+  Estimate left_;
+  SampledModes modes_;  // of the reference's body, beyond its band too
+  Forces forces_n_;     // of the reference
 };
 }  // namespace
 
 Trade measure_trade(const protocols::Protocol& protocol, const protocols::Stimulus& stimulus,
-                    const Tolerance& tolerance, const core::ProgressHook& progress) {
+                    const Tolerance& tolerance, Effort effort, const core::ProgressHook& progress) {
   if (!stimulus.technique->needs_model()) {
     throw core::InvalidInput{
         fmt::format("stimulus '{}': technique '{}' has no model to trade accuracy of",
                     stimulus.name, stimulus.technique->name)};
   }
-  Tradeoff tradeoff{protocol, stimulus, progress};
+  Tradeoff tradeoff{protocol, stimulus, effort, progress};
   Trade trade;
   trade.stimulus = stimulus.name;
   trade.tolerance = tolerance;
@@ -198,11 +251,13 @@ void mark_pareto_front(Trade& trade) {
   double best = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < trade.settings.size(); ++i) {
     Evaluation& one = trade.settings[i];
-    one.is_on_front = one.force_error < best;
+    one.is_on_front = one.force_error < best && !one.is_worse_than_silence();
     best = std::min(best, one.force_error);
     one.is_inside_tolerance = one.frequency_error <= trade.tolerance.frequency &&
-                              one.level_error_db <= trade.tolerance.level_db;
-    if (one.is_inside_tolerance && trade.cheapest < 0) {
+                              one.level_error_db <= trade.tolerance.level_db &&
+                              one.decay_error_db <= trade.tolerance.level_db;
+    const bool is_known = trade.reference.has_settled(trade.tolerance);
+    if (is_known && one.is_inside_tolerance && trade.cheapest < 0) {
       trade.cheapest = static_cast<int>(i);
     }
   }

@@ -11,13 +11,37 @@
 namespace tapstudy::runner {
 namespace {
 constexpr double compared_s = 0.3;
+
+core::SurfacePoint under_finger(const core::VibratingPlate& plate, const core::Vec3& at_m,
+                                double margin_m) {
+  core::Contact contact;
+  contact.god_object_m = at_m;
+  if (plate.triangles) {
+    const core::Vec3 up{0.0, 0.0, margin_m};
+    contact.triangle = plate.triangles->first_entered(at_m + up, at_m - up, 0.0).triangle;
+    if (contact.triangle == core::TriangleTree::none) {
+      return {};
+    }
+    contact.barycentric = plate.triangles->barycentric(contact.triangle, at_m);
+  }
+  return plate.place_of(contact);
 }
+
+// Displacement per unit of each modal coordinate: x, y, z by mode.
+Eigen::MatrixXd shape_at(const core::ModalModel& model, const core::SurfacePoint& point) {
+  Eigen::MatrixXd shape = Eigen::MatrixXd::Zero(3, model.frequency_hz.size());
+  for (std::size_t i = 0; i < point.count; ++i) {
+    shape += point.weights[i] * model.shape.middleRows<3>(3 * point.nodes[i]);
+  }
+  return shape;
+}
+}  // namespace
 
 Workbench::Workbench(const protocols::Protocol& protocol, const protocols::Stimulus& stimulus,
                      core::ProgressHook progress)
     : protocol_{protocol}, spec_{plate_spec(protocol, stimulus)}, progress_{std::move(progress)} {
   const core::TopHeight top{spec_.shape};
-  for (const auto& [name, at_m] : protocol.tapping_points_m) {
+  for (const auto& [name, at_m] : stimulus.plate->tapping_points_m) {
     if (const auto z_m = top.at_m(at_m)) {
       strikes_.push_back({{at_m.x(), at_m.y(), *z_m}, protocol.simulation.taps.speed_m_s});
     }
@@ -63,6 +87,30 @@ Forces Workbench::forces_n(const core::VibratingPlate& plate, core::Integrator i
     forces.col(static_cast<Eigen::Index>(i)) = force(Eigen::seqN(0, rows, stride));
   }
   return forces;
+}
+
+SampledModes Workbench::sampled(const core::VibratingPlate& plate) const {
+  constexpr int grid = 9;
+  const core::TopHeight top{spec_.shape};
+  const core::Bounds body = core::bounds(spec_.shape);
+  std::vector<Eigen::MatrixXd> rows;
+  for (int i = 0; i < grid * grid; ++i) {
+    const int row = i / grid;
+    const Eigen::Array2d share{(i % grid + 0.5) / grid, (row + 0.5) / grid};
+    const Eigen::Vector2d at_m =
+        body.low_m.head<2>().array() + share * body.size_m().head<2>().array();
+    if (const auto z_m = top.at_m(at_m)) {
+      rows.push_back(shape_at(
+          plate.model, under_finger(plate, {at_m.x(), at_m.y(), *z_m}, body.size_m().norm())));
+    }
+  }
+  SampledModes modes{
+      plate.model.frequency_hz,
+      Eigen::MatrixXd{3 * static_cast<Eigen::Index>(rows.size()), plate.model.frequency_hz.size()}};
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    modes.shape.middleRows<3>(3 * static_cast<Eigen::Index>(i)) = rows[i];
+  }
+  return modes;
 }
 
 double Workbench::tick_ns(const core::VibratingPlate& plate) const {

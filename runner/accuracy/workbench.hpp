@@ -26,6 +26,8 @@ class Workbench {
   Forces forces_n(const core::VibratingPlate& plate, core::Integrator integrator,
                   double rate_hz) const;
   double tick_ns(const core::VibratingPlate& plate) const;
+  // Mode shapes on a grid over the body, seen from above; the same points for every mesh.
+  SampledModes sampled(const core::VibratingPlate& plate) const;
 
  private:
   const protocols::Protocol& protocol_;

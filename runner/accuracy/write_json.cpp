@@ -17,7 +17,10 @@ nlohmann::ordered_json json_of(const Evaluation& one) {
           {"tick_ns", one.tick_ns},
           {"cost_s", one.cost_s},
           {"frequency_error", one.frequency_error},
+          {"missing_modes", one.missing_modes},
+          {"extra_modes", one.extra_modes},
           {"level_error_db", one.level_error_db},
+          {"decay_error_db", one.decay_error_db},
           {"force_error", one.force_error},
           {"is_on_front", one.is_on_front},
           {"is_inside_tolerance", one.is_inside_tolerance},
@@ -33,6 +36,7 @@ nlohmann::ordered_json json_of(const Reference& reference) {
           {"coarser_elements", reference.coarser_tets},
           {"moved_frequency", reference.moved_frequency},
           {"moved_force", reference.moved_force},
+          {"moved_level_db", reference.moved_level_db},
           {"force_beyond", reference.force_beyond}};
 }
 }  // namespace

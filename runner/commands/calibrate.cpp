@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <chrono>
 #include <memory>
 
 #include "core/output_file.hpp"
@@ -10,11 +9,10 @@
 #include "protocols/spidar_calibration.hpp"
 #include "runner/commands/commands.hpp"
 #include "runner/terminal/operator_at_terminal.hpp"
+#include "runner/terminal/say.hpp"
 #include "runner/terminal/stop_signal.hpp"
 namespace tapstudy::runner {
 namespace {
-constexpr std::chrono::milliseconds max_reply{100};
-
 struct CalibrateOptions {
   std::string type;
   std::string out;
@@ -25,15 +23,16 @@ void run_calibrate(const CalibrateOptions& options) {
   core::check_is_new(options.out);
   const device::UsbListing listing = device::find_only_spidar();
   listen_for_stop();
-  device::OpenBoard open{listing, max_reply};
+  // the terminal is polled less often than a haptic loop beats
+  device::OpenBoard open{listing, {.max_stall_s = 0.5}};
   LineInput input{STDIN_FILENO};
   OperatorAtTerminal person{input};
-  fmt::print(stderr,
-             "You need a ruler and a force gauge. Strings are numbered as in the frame's drawing, "
-             "from 1;\nonly the string being measured pulls, and only with little "
-             "force.\n");
+  say("You need a ruler and a force gauge. Strings are numbered as in the frame's drawing, "
+      "from 1;\nonly the string being measured pulls, and only with little "
+      "force.\n");
+  device::MonotonicClock clock;
   const core::SpidarCalibration calibration =
-      device::calibrate_spidar(*open.board, open.pipe, person);
+      device::calibrate_spidar(*open.board, open.pipe, open.guardian.channel(), clock, person);
   core::write_new_file(options.out, [&](std::ostream& out) {
     protocols::write_calibration(out, options.type, calibration);
   });

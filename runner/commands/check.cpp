@@ -12,6 +12,7 @@
 #include "protocols/schedule.hpp"
 #include "runner/commands/commands.hpp"
 #include "runner/commands/seed.hpp"
+#include "runner/devices/device_kind.hpp"
 #include "runner/devices/rigs.hpp"
 #include "runner/session/session_row.hpp"
 #include "runner/stimuli/model_library.hpp"
@@ -24,6 +25,23 @@ struct CheckOptions {
   std::string rig;
 };
 constexpr double alpha = 0.05;
+
+// Newmark's amplification of an overdamped mode is negative at large steps: the force changes sign
+// with every tick.
+void warn_of_overdamped_modes(const protocols::Protocol& protocol, ModelLibrary& models) {
+  if (protocol.rendering.integrator != core::Integrator::newmark) {
+    return;
+  }
+  for (const protocols::Stimulus& stimulus : protocol.stimuli) {
+    if (stimulus.technique->needs_model() &&
+        (models.plate_of(protocol, stimulus)->model.damping_ratio > 1.0).any()) {
+      fmt::print(
+          "  warning: {} has overdamped modes, which Newmark may let alternate at half the rate "
+          "(integrator: exact does not)\n",
+          stimulus.name);
+    }
+  }
+}
 
 void print_models(const protocols::Protocol& protocol) {
   fmt::print("\nmodels\n");
@@ -46,21 +64,31 @@ void print_models(const protocols::Protocol& protocol) {
                report.tets, report.order == 2 ? "quadratic" : "linear", report.dofs,
                plate->model.frequency_hz.size(), protocol.band_limit_hz, cost);
   }
+  warn_of_overdamped_modes(protocol, models);
   if (models.bodies_used() == 0) {
     fmt::print("  none: no technique here vibrates\n");
   }
 }
 
-void print_contact(const protocols::Protocol& protocol) {
+// The bound of a device that acts later than it is told is lower.
+void print_contact(const protocols::Protocol& protocol, int delay_ticks) {
   const double asked = protocol.rendering.penalty_stiffness_n_per_m;
   core::HandBody hand = protocol.simulation.hand;
-  const double limit = device::largest_stable_penalty_n_per_m(hand, protocol.rendering.dt_s);
-  fmt::print("\ncontact\n  penalty {} N/m; at {} Hz the simulated hand rests on up to {:.0f} N/m\n",
+  const auto limit_of = [&](int delay) {
+    return device::largest_stable_penalty_n_per_m(hand, protocol.rendering.dt_s, delay);
+  };
+  const double limit = limit_of(delay_ticks);
+  fmt::print("\ncontact\n  penalty {} N/m; at {} Hz the simulated hand rests on up to {:.0f} N/m",
              asked, protocol.rate_hz, limit);
+  if (delay_ticks > 0) {
+    fmt::print(" with this device, whose force acts {} tick late\n", delay_ticks);
+  } else {
+    fmt::print(",\n  on a device whose force acts a tick late up to {:.0f} N/m\n", limit_of(1));
+  }
   hand.muscle_damping_n_s_per_m *= 0.5;
   if (asked >= limit) {
     fmt::print("  warning: it will chatter (lower penalty_stiffness_n_per_m or raise rate_hz)\n");
-  } else if (asked >= device::largest_stable_penalty_n_per_m(hand, protocol.rendering.dt_s)) {
+  } else if (asked >= limit_of(delay_ticks)) {
     fmt::print("  note: a hand with half its damping would chatter\n");
   }
 }
@@ -70,12 +98,15 @@ void warn_of_balance(const protocols::Block& block, int participants) {
     return;
   }
   const int conditions = static_cast<int>(block.stimuli.size());
-  const int rows = protocols::williams_rows(conditions);
+  if (conditions < 2) {
+    return;
+  }
+  const int rows = protocols::williams_sequences(conditions, block.repetitions);
   if (block.order != protocols::Order::williams) {
     fmt::print(
         "    note: random orders balance only on average; order: williams balances {} "
-        "stimuli over every {} participants\n",
-        conditions, rows);
+        "stimuli, {} times each, over every {} participants\n",
+        conditions, block.repetitions, rows);
   } else if (participants % rows != 0) {
     fmt::print("    warning: {} participants do not balance the {} orders (use a multiple of {})\n",
                participants, rows, rows);
@@ -90,7 +121,7 @@ void print_power(const protocols::Protocol& protocol, const protocols::Block& bl
                  int participants) {
   const std::size_t options = block.task->options(block, protocol).size();
   const double chance = 1.0 / static_cast<double>(options);
-  const int answers = participants * trials_of(block);
+  const int answers = participants * block.task->counted_answers(block);
   const int critical = analysis::critical_successes(answers, chance, alpha);
   fmt::print(
       "    chance {:.0f} %; of {} answers {} must {} for p < .05 (one-sided, answers "
@@ -126,14 +157,16 @@ void run_check(const CheckOptions& options) {
     throw core::InvalidInput{
         fmt::format("--participants: {} is not allowed (from 1 to 10000)", options.participants)};
   }
+  int delay_ticks = 0;
   if (!options.rig.empty()) {
     const protocols::Rig rig = read_rig(options.rig);
     loop_settings(protocol, rig);
     check_fits(protocol, rig);
+    delay_ticks = kind_of(rig).delay_ticks(rig);
   }
   print_design(protocol, options.participants);
   print_models(protocol);
-  print_contact(protocol);
+  print_contact(protocol, delay_ticks);
   const int index = options.participants - 1;
   const std::uint64_t seed =
       core::derived_seed(seed_from(options.seed, "--seed"), core::Purpose::participant,
@@ -150,7 +183,8 @@ void add_check(CommandParser& line) {
   command.argument("protocol", options->protocol, "Study (YAML)");
   command.option_with_default("--participants", options->participants, "How many are planned");
   command.option_with_default("--seed", options->seed, "Seed of the schedule shown");
-  command.option("--rig", options->rig, "Check that this device can reach the tapping points");
+  command.option("--rig", options->rig,
+                 "Check that this device reaches the tapping points; bound of its contact");
   command.on_run([options] { run_check(*options); });
 }
 }  // namespace tapstudy::runner

@@ -1,10 +1,11 @@
 #include <fmt/format.h>
 
+#include <functional>
 #include <memory>
-#include <optional>
 
 #include "analysis/figures/figure.hpp"
 #include "device/device.hpp"
+#include "device/loop/sleep_inhibitor.hpp"
 #include "runner/commands/commands.hpp"
 #include "runner/devices/device_kind.hpp"
 #include "runner/devices/diagnosis.hpp"
@@ -23,21 +24,32 @@ double microseconds(device::Nanoseconds time) {
 }
 
 void print(const char* name, const device::LatenessCount& times, const std::string& late) {
-  fmt::print("  {:<11}{:>10.1f}{:>10.1f}{:>10.1f}{:>10.1f}{:>8}\n", name,
+  fmt::print("  {:<11}{:>10.1f}{:>10.1f}{:>10.1f}{:>10.1f}{}\n", name,
              microseconds(times.quantile(0.5)), microseconds(times.quantile(0.99)),
              microseconds(times.quantile(0.999)), microseconds(times.worst()), late);
 }
 
+void print(const char* name, const RepeatedProbe& probed) {
+  print(name, probed.total.lateness,
+        fmt::format("{:>8}{:>5} of {}", probed.total.late, probed.fit, probed.made));
+}
+
 void print(const Diagnosis& diagnosis) {
-  fmt::print("loop       {}\n", diagnosis.idle.realtime);
-  fmt::print("governor   {}\n", diagnosis.governor);
-  fmt::print("timer      slack {} ns\n", diagnosis.idle.timer_slack_ns);
-  fmt::print("\nlateness [us] of {} ticks at {} Hz\n", diagnosis.idle.lateness.count(),
+  fmt::print("loop       {}\n", diagnosis.idle.total.realtime);
+  for (const auto& [name, value] : diagnosis.machine) {
+    fmt::print("{:<11}{}\n", name, value);
+  }
+  fmt::print("timer      slack {} ns\n", diagnosis.idle.total.timer_slack_ns);
+  fmt::print("sleep      {}\n", diagnosis.sleep);
+  fmt::print("\nlateness [us] of {} ticks at {} Hz\n", diagnosis.idle.total.lateness.count(),
              1e9 / static_cast<double>(diagnosis.period));
-  fmt::print("               median       p99     p99.9     worst    late\n");
-  print("idle", diagnosis.idle.lateness, std::to_string(diagnosis.idle.late));
+  fmt::print("               median       p99     p99.9     worst    late   holds\n");
+  print("idle", diagnosis.idle);
   if (diagnosis.loaded) {
-    print("loaded", diagnosis.loaded->lateness, std::to_string(diagnosis.loaded->late));
+    print("loaded", *diagnosis.loaded);
+  }
+  if (diagnosis.on_device) {
+    print("on device", *diagnosis.on_device);
   }
   if (diagnosis.round_trip) {
     fmt::print("\nround trip [us] of {} requests to the device\n", diagnosis.round_trip->count());
@@ -56,6 +68,15 @@ analysis::Series series_of(const char* label, const device::ProbedLoop& probed) 
   return series;
 }
 
+// A vertical line.
+analysis::Series limit_of(const char* label, device::Nanoseconds lateness) {
+  constexpr double min_share = 1e-4;
+  return {label,
+          analysis::Axis::left,
+          {microseconds(lateness), microseconds(lateness)},
+          {min_share, 1.0}};
+}
+
 void draw(const Diagnosis& diagnosis, const std::string& file) {
   analysis::draw_svg(
       {"Lateness of the loop",
@@ -63,33 +84,38 @@ void draw(const Diagnosis& diagnosis, const std::string& file) {
        "share of ticks that are later",
        "",
        1,
-       {{"", {series_of("idle", diagnosis.idle), series_of("loaded", *diagnosis.loaded)}}},
+       {{"",
+         {series_of("idle", diagnosis.idle.total), series_of("loaded", diagnosis.loaded->total),
+          limit_of("99.9 % must be earlier", max_p999_lateness(diagnosis.period)),
+          limit_of("all must be earlier", max_lateness(diagnosis.period))}}},
        analysis::Scale::logarithmic},
       file);
 }
 
-// Of the rig's device; without a rig, of any device that is plugged in and accessible.
-std::optional<device::LatenessCount> round_trip(const DoctorOptions& options,
-                                                const protocols::Rig& rig) {
+// With the rig's device; without a rig, with any that is plugged in and accessible.
+std::function<void()> zero_force_exchange(const DoctorOptions& options, const protocols::Rig& rig) {
   if (!options.rig.empty()) {
-    return kind_of(rig).round_trip();
+    return kind_of(rig).zero_force_exchange(rig);
   }
   for (const DeviceKind* const kind : device_kinds()) {
     if (!kind->listing().empty() && kind->is_there()) {
-      return kind->round_trip();
+      return kind->zero_force_exchange(rig);
     }
   }
-  return std::nullopt;
+  return {};
 }
 
 void run_doctor(const DoctorOptions& options) {
   const protocols::Rig rig = options.rig.empty() ? simulated_rig() : read_rig(options.rig);
-  const auto answered = round_trip(options, rig);
+  const std::string release = kind_of(rig).tried_release(rig);
   Diagnosis diagnosis =
       diagnose(rig.realtime, static_cast<device::Nanoseconds>(1e9 / options.rate_hz),
-               options.seconds, Under::load_too);
-  diagnosis.round_trip = answered;
+               options.seconds, Under::load_too, zero_force_exchange(options, rig));
+  diagnosis.sleep = device::SleepInhibitor{}.outcome();
   print(diagnosis);
+  if (!release.empty()) {
+    fmt::print("\nrelease    {}\n", release);
+  }
   if (!options.figure.empty()) {
     draw(diagnosis, options.figure);
   }
@@ -107,7 +133,7 @@ void add_doctor(CommandParser& line) {
   command.option("--rig", options->rig, "Rig whose real-time settings to use (YAML)");
   command.number_within("--rate-hz", options->rate_hz, 500.0, 10000.0, "Rate of the loop");
   command.number_within("--seconds", options->seconds, 0.1, 600.0,
-                        "Duration of each measurement, idle and under load");
+                        "Duration of the measurements, idle and under load each");
   command.file("--figure", options->figure, ".svg", "Draw the lateness (.svg)");
   command.on_run([options] { run_doctor(*options); });
 }

@@ -11,6 +11,7 @@
 #include "core/output_file.hpp"
 #include "protocols/read_protocol.hpp"
 #include "runner/commands/commands.hpp"
+#include "runner/stimuli/at_its_line.hpp"
 #include "runner/stimuli/model_library.hpp"
 #include "runner/terminal/progress.hpp"
 namespace tapstudy::runner {
@@ -128,19 +129,20 @@ void draw_modes(const ModesOptions& options, const core::Shape& shape, core::Mod
 
 void run_modes(const ModesOptions& options) {
   const protocols::Protocol protocol = protocols::read_protocol(options.protocol);
-  const core::PlateSpec spec = plate_spec(protocol, protocol.stimulus(options.stimulus));
+  const protocols::Stimulus& stimulus = protocol.stimulus(options.stimulus);
+  const core::PlateSpec spec = plate_spec(protocol, stimulus);
   for (const std::string& file : outputs(options)) {
     core::check_is_new(file);
   }
   const core::PlateModel plate = [&] {
     Progress progress{fmt::format("building the model of '{}'", options.stimulus)};
-    return core::build_plate_model(spec, progress.hook());
+    return at_its_line(stimulus, [&] { return core::build_plate_model(spec, progress.hook()); });
   }();
   if (!options.mesh_out.empty()) {
     core::write_tetgen_files(plate.body.mesh, options.mesh_out);
   }
   if (!options.vtu.empty()) {
-    core::write_vtu(plate.body, plate.modal.frequency_hz, options.vtu);
+    core::write_vtu(plate.body, plate.modal, spec.material.density_kg_per_m3, options.vtu);
   }
   if (!options.figure.empty()) {
     draw_modes(options, spec.shape, plate.modal);

@@ -5,17 +5,23 @@
 #include <filesystem>
 #include <fstream>
 #include <iostream>
+#include <map>
 #include <memory>
 #include <set>
+#include <sstream>
+#include <utility>
 
 #include "analysis/report/writers.hpp"
 #include "analysis/statistics/counts_csv.hpp"
 #include "core/error.hpp"
 #include "core/output_file.hpp"
 #include "protocols/read_protocol.hpp"
+#include "protocols/tasks/shipped_tasks.hpp"
 #include "results/store.hpp"
 #include "runner/commands/commands.hpp"
 #include "runner/experiments/study_design.hpp"
+#include "runner/session/given_up_trials.hpp"
+#include "runner/terminal/logging.hpp"
 namespace tapstudy::runner {
 namespace {
 namespace fs = std::filesystem;
@@ -27,6 +33,7 @@ struct ReportOptions {
   std::string counts;
   std::string out;
   std::string mode;
+  std::string responses;
   bool replace{false};
 };
 
@@ -65,6 +72,26 @@ std::vector<std::pair<std::string, std::string>> provenance(
           {"seeds", fmt::format("{}", fmt::join(seeds, ", "))}};
 }
 
+// The sessions that ended early: "P03: 5 of 8 trials".
+std::vector<std::string> unfinished(results::Store& store, const protocols::Protocol& protocol,
+                                    const std::vector<results::SessionRow>& sessions, Mode mode) {
+  std::map<std::string, std::ptrdiff_t> planned;
+  for (const results::SessionRow& session : sessions) {
+    if (session.mode == mode) {
+      planned[session.participant_id] = std::ranges::count(session.planned_order, '\n');
+    }
+  }
+  std::vector<std::string> found;
+  for (const auto& [participant, trials] : planned) {
+    const auto done = std::ssize(store.answered_trials(participant)) +
+                      std::ssize(given_up_trials(protocol, participant, store));
+    if (done < trials) {
+      found.push_back(fmt::format("{}: {} of {} trials", participant, done, trials));
+    }
+  }
+  return found;
+}
+
 // From the store alone: the files named by the protocol may no longer exist.
 protocols::Protocol stored_protocol(const results::StudyRow& study) {
   return protocols::parse_protocol(
@@ -77,8 +104,19 @@ protocols::Protocol stored_protocol(const results::StudyRow& study) {
       });
 }
 
+// The journal alone is left where the database was lost.
+results::Store store_to_report(const std::string& directory) {
+  if (results::Store::has_database(directory) || !results::Store::has_journal(directory)) {
+    return results::Store::open_existing(directory);
+  }
+  warn(directory +
+       ": study.db is missing; this report is made from answers.journal alone, without what the "
+       "participants did (impacts, visits, late ticks)");
+  return results::Store::from_journal(directory);
+}
+
 Summary summary_of_study(const ReportOptions& options) {
-  results::Store store = results::Store::open_existing(options.directory);
+  results::Store store = store_to_report(options.directory);
   const results::StudyRow study = store.study();
   const std::vector<results::SessionRow> sessions = store.sessions();
   const Mode mode = mode_to_report(options, sessions);
@@ -96,20 +134,41 @@ Summary summary_of_study(const ReportOptions& options) {
     return std::ranges::find(answers, visit.participant_id, &results::AnswerRow::participant_id) ==
            answers.end();
   });
-  Summary summary = analysis::summarise(design_of(protocol), answers, visits);
+  Summary summary = analysis::summarise(design_of(protocol, mode), answers, visits);
   summary.provenance = provenance(study, sessions, mode);
+  summary.unfinished = unfinished(store, protocol, sessions, mode);
   return summary;
 }
 
-Summary summary_of_counts(const std::string& file) {
+std::vector<std::string> listed(const std::string& words) {
+  std::vector<std::string> all;
+  std::istringstream stream{words};
+  for (std::string word; std::getline(stream, word, ',');) {
+    all.push_back(word);
+  }
+  return all;
+}
+
+Summary summary_of_counts(const std::string& file, const std::string& responses) {
   std::ifstream text{file};
   if (!text) {
     throw core::InvalidInput{file + ": cannot be read"};
   }
-  Summary summary =
-      analysis::summarise(analysis::read_counts(text, file), fs::path{file}.stem().string());
+  const analysis::CountsTable counts = analysis::read_counts(text, file, listed(responses));
+  Summary summary = analysis::summarise(counts.matrix, fs::path{file}.stem().string(),
+                                        protocols::identification().name(), counts.mode);
   summary.provenance = {{"counts", file}};
   return summary;
+}
+
+// A table that leaves its report still says whose answers it holds.
+std::string table_text(const Summary& summary, const analysis::CsvTable& table) {
+  std::ostringstream text;
+  if (!banner(summary).empty()) {
+    text << analysis::mode_mark << summary.modes << '\n';
+  }
+  table.write(text);
+  return text.str();
 }
 
 void write_files(const ReportOptions& options, const Summary& summary) {
@@ -118,21 +177,26 @@ void write_files(const ReportOptions& options, const Summary& summary) {
   if (!fs::is_directory(options.out, error)) {
     throw core::InvalidInput{options.out + ": cannot be made a directory"};
   }
-  const auto write = [&](const std::string& name, const core::Write& content) {
-    const std::string file = (fs::path{options.out} / name).string();
-    if (options.replace) {
-      core::replace_file(file, content);
-    } else {
-      core::write_new_file(file, content);
-    }
-    fmt::print("{}\n", file);
+  std::vector<core::NewFile> files;
+  const auto add = [&](const std::string& name, std::string text) {
+    files.push_back({(fs::path{options.out} / name).string(), std::move(text)});
   };
-  write("report.html", [&](std::ostream& out) { analysis::write_html(out, summary); });
-  write("report.json", [&](std::ostream& out) { analysis::write_json(out, summary); });
+  const auto written = [&](void (*write)(std::ostream&, const Summary&)) {
+    std::ostringstream text;
+    write(text, summary);
+    return text.str();
+  };
+  add("report.html", written(analysis::write_html));
+  add("report.json", written(analysis::write_json));
   for (const auto& block : summary.blocks) {
     for (const analysis::CsvTable& table : block->tables()) {
-      write(block->block.empty() ? table.name : block->block + "_" + table.name, table.write);
+      add(block->block.empty() ? table.name : block->block + "_" + table.name,
+          table_text(summary, table));
     }
+  }
+  core::write_all_or_none(files, options.replace ? core::Existing::replaced : core::Existing::kept);
+  for (const core::NewFile& file : files) {
+    fmt::print("{}\n", file.name);
   }
 }
 
@@ -140,8 +204,9 @@ void run_report(ReportOptions options) {
   if (options.directory.empty() == options.counts.empty()) {
     throw core::InvalidInput{"report takes either the directory of a study or --counts FILE.csv"};
   }
-  const Summary summary =
-      options.counts.empty() ? summary_of_study(options) : summary_of_counts(options.counts);
+  const Summary summary = options.counts.empty()
+                              ? summary_of_study(options)
+                              : summary_of_counts(options.counts, options.responses);
   analysis::write_text(std::cout, summary);
   std::cout << std::endl;
   if (options.out.empty() && options.counts.empty()) {
@@ -160,6 +225,8 @@ void add_report(CommandParser& line) {
   command.argument("directory", options->directory, "Directory of a study", Need::optional);
   command.option("--counts", options->counts,
                  "Instead of a study: a matrix or a stimulus,response table (CSV)");
+  command.option("--responses", options->responses,
+                 "With --counts: answers that are no stimuli, comma-separated");
   command.option("--out", options->out, "Output directory; default: the study's directory");
   command.one_of("--mode", options->mode, {"real", "pilot", "simulated"},
                  "Which sessions: real, pilot or simulated");

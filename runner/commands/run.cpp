@@ -33,10 +33,13 @@ SessionRequest request_of(const RunOptions& options) {
 void run(const RunOptions& options) {
   const protocols::Protocol protocol = protocols::read_protocol(options.protocol);
   const protocols::Rig rig = options.rig.empty() ? simulated_rig() : read_rig(options.rig);
-  const std::size_t trials =
+  const LiveOutcome outcome =
       run_live_session({protocol, options.protocol, rig, options.directory, request_of(options)});
-  fmt::print("participant {}: all {} trials are stored in {}/study.db\n", options.participant,
-             trials, options.directory);
+  fmt::print("participant {}: all {} trials are stored in {}/study.db{}\n", options.participant,
+             outcome.answered + outcome.without_answer, options.directory,
+             outcome.without_answer == 0
+                 ? ""
+                 : fmt::format(", {} of them without an answer", outcome.without_answer));
 }
 }  // namespace
 

@@ -39,14 +39,17 @@ double seconds_of(const TraceSample& sample) {
 
 void write_csv(std::ostream& out, const std::vector<TraceSample>& trace) {
   out << "t_s,position_x_m,position_y_m,position_z_m,velocity_x_m_s,velocity_y_m_s,velocity_z_m_s,"
-         "penetration_m,penalty_n,vibration_n,sinusoid_n,force_n,touching,impact,saturated\n";
+         "penetration_m,penalty_n,vibration_n,sinusoid_n,force_x_n,force_y_n,force_z_n,touching,"
+         "impact,"
+         "saturated\n";
   for (const TraceSample& s : trace) {
     core::print(out,
                 "{:.6f},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},"
-                "{:.17g},{:.17g},{:d},{:d},{:d}\n",
+                "{:.17g},{:.17g},{:.17g},{:.17g},{:d},{:d},{:d}\n",
                 seconds_of(s), s.position_m[0], s.position_m[1], s.position_m[2], s.velocity_m_s[0],
                 s.velocity_m_s[1], s.velocity_m_s[2], s.penetration_m, s.penalty_n, s.vibration_n,
-                s.sinusoid_n, core::along_normal(s.force_n), s.touching, s.impact, s.saturated);
+                s.sinusoid_n, s.force_n[0], s.force_n[1], s.force_n[2], s.touching, s.impact,
+                s.saturated);
   }
 }
 
@@ -138,7 +141,7 @@ void draw_panels(const TapOptions& options, const protocols::Protocol& protocol)
       if (stimulus.plate != plate) {
         continue;
       }
-      for (const auto& [point, at_m] : protocol.tapping_points_m) {
+      for (const auto& [point, at_m] : plate->tapping_points_m) {
         const ScriptedTap tap{stimulus.name, at_m, options.speed_m_s, options.seconds};
         figure.panels.push_back(panel_of(fmt::format("{}, {}", stimulus.label, point),
                                          trace_of(tap, protocol, rig, models)));
@@ -184,8 +187,9 @@ void run_tap(const TapOptions& options) {
     }
   }
   ModelLibrary models;
-  const ScriptedTap tap{options.stimulus, point_on_plate(options.at, protocol), options.speed_m_s,
-                        options.seconds};
+  const ScriptedTap tap{options.stimulus,
+                        point_on_plate(options.at, *protocol.stimulus(options.stimulus).plate),
+                        options.speed_m_s, options.seconds};
   const auto trace = trace_of(tap, protocol, simulated_rig(), models);
   if (!options.frames.empty()) {
     draw_frames(options, protocol, tap.at_m, models);

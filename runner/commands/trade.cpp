@@ -7,6 +7,7 @@
 #include "protocols/read_protocol.hpp"
 #include "runner/accuracy/writers.hpp"
 #include "runner/commands/commands.hpp"
+#include "runner/stimuli/at_its_line.hpp"
 #include "runner/terminal/progress.hpp"
 namespace tapstudy::runner {
 namespace {
@@ -14,6 +15,7 @@ struct TradeOptions {
   std::string protocol;
   std::string stimulus;
   Tolerance tolerance;
+  bool is_quick{false};
   bool wants_json{false};
   std::string out;
 };
@@ -33,7 +35,10 @@ void run_trade(const TradeOptions& options) {
     make_room(options.out);
   }
   Progress progress{fmt::format("measuring '{}'", options.stimulus)};
-  const Trade trade = measure_trade(protocol, stimulus, options.tolerance, progress.hook());
+  const Trade trade = at_its_line(stimulus, [&] {
+    return measure_trade(protocol, stimulus, options.tolerance,
+                         options.is_quick ? Effort::quick : Effort::full, progress.hook());
+  });
   const Stability stability = measure_stability(protocol, stimulus, progress.hook());
   if (!options.out.empty()) {
     write_files(options.out, trade, stability);
@@ -55,6 +60,8 @@ void add_trade(CommandParser& line) {
                         "Largest relative error of a natural frequency");
   command.number_within("--level-tolerance-db", options->tolerance.level_db, 1e-6, 100.0,
                         "Largest error of the vibration's level");
+  command.flag("--quick", options->is_quick,
+               "Without the finest mesh: less sure, and some ten times sooner");
   command.flag("--json", options->wants_json, "Output as JSON");
   command.option("--out", options->out,
                  "Write trade.csv, trade.json, trade.svg and stability.csv into this directory");

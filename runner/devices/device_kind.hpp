@@ -1,6 +1,6 @@
 #pragma once
+#include <functional>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,8 +18,8 @@ struct DeviceRequest {
 
 // A kind of device: its section of the rig (protocols::RigDevice), its detection, and how it is
 // opened. To add one: a file in this folder with its class, a row in device_table.cpp, and its
-// section of the rig's JSON schema. Only what is the device's own (its calibration and the command
-// for it) refers to it by name.
+// section in protocols/schema/devices. Only what is the device's own (its calibration and the
+// command for it) refers to it by name.
 class DeviceKind : public protocols::RigDevice {
  public:
   // Throws InvalidInput if its section of the rig is implausible.
@@ -28,15 +28,23 @@ class DeviceKind : public protocols::RigDevice {
   virtual std::unique_ptr<SessionDevice> open(const DeviceRequest& request) const = 0;
   // Whether it is present and could be opened now.
   virtual bool is_there() const { return true; }
+  // How many ticks later than a force is computed it is exerted: it lowers the stability bound of
+  // the contact (device/hand/penalty_limit.hpp).
+  virtual int delay_ticks(const protocols::Rig& /*rig*/) const { return 0; }
   // Whether its hand is a participant's, or a simulation of one.
   virtual bool has_participant() const { return true; }
 
   // What is plugged in of this kind, a line each.
   virtual std::vector<std::string> listing() const { return {}; }
-  // Measures the communication round trip at zero force; nullopt for a kind without a
-  // communication link. Throws DeviceError if none answers; of several devices
-  // the first that may be opened is measured.
-  virtual std::optional<device::LatenessCount> round_trip() const { return std::nullopt; }
+  // One exchange with the device at zero force, for measurements: empty for a kind without a
+  // communication link. Throws DeviceError if none answers, now or when called; of several devices
+  // the first that may be opened is taken.
+  virtual std::function<void()> zero_force_exchange(const protocols::Rig& /*rig*/) const {
+    return {};
+  }
+  // Tries whether the device lets go of the force by itself when the program falls silent, at zero
+  // force; what was found, or empty if there is nothing to try. Throws DeviceError if it does not.
+  virtual std::string tried_release(const protocols::Rig& /*rig*/) const { return {}; }
 };
 
 // All there are.

@@ -11,13 +11,14 @@ std::unique_ptr<SessionDevice> reconnect(const std::string& what_happened,
   if (!request.rig.has_hardware) {
     throw gives_up;
   }
-  broken.reset();  // only one can hold the device
   const DeviceKind& kind = kind_of(request.rig);
   std::string task = fmt::format(
       "\n{}.\nType quit to stop here; or check the device, its power and cable, and to continue",
       what_happened);
   while (asked_and_done(request.operator_input, task)) {
     if (kind.is_there()) {
+      broken
+          .reset();  // only one can hold the device, and its guardian may have repeated zero force
       return kind.open(request);
     }
     task = "It is not there yet. To try again";

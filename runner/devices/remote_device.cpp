@@ -9,9 +9,12 @@
 #include "runner/terminal/session_lock.hpp"
 namespace tapstudy::runner {
 namespace {
+constexpr std::chrono::milliseconds tried_silence{150};
+
 struct RemoteSection final : protocols::DeviceSection {
   std::uint16_t port{};
   double max_reply_s{0.003};  // of the other program to a tick's question
+  int delay_ticks{1};         // of its force
 };
 
 class RemoteDevice final : public SessionDevice {
@@ -21,6 +24,7 @@ class RemoteDevice final : public SessionDevice {
               fmt::format("remote: UDP port {} is in use by another session", section.port)},
         hand_{section.port, std::chrono::microseconds{std::llround(1e6 * section.max_reply_s)}} {}
   device::Device& device() override { return hand_; }
+  device::RemoteHand& hand() { return hand_; }
   void get_ready() override {}
 
  private:
@@ -38,8 +42,38 @@ class RemoteKind final : public DeviceKind {
     top.map("remote", protocols::MapReader::Presence::required, [&](protocols::MapReader& reader) {
       section->port = static_cast<std::uint16_t>(reader.integer("port", 1024, 65535));
       section->max_reply_s = reader.number("max_reply_s", {0.001, 0.1}, section->max_reply_s);
+      section->delay_ticks = reader.integer("delay_ticks", 0, 10, section->delay_ticks);
     });
     return section;
+  }
+  int delay_ticks(const protocols::Rig& rig) const override {
+    return dynamic_cast<const RemoteSection&>(*rig.section).delay_ticks;
+  }
+  std::function<void()> zero_force_exchange(const protocols::Rig& rig) const override {
+    const auto opened =
+        std::make_shared<RemoteDevice>(dynamic_cast<const RemoteSection&>(*rig.section));
+    return [opened] {
+      core::HandState ignored;
+      core::TickFault fault = opened->hand().read(ignored, 0.0);
+      fault = fault == core::TickFault::none ? opened->hand().write(core::Vec3::Zero()) : fault;
+      if (fault != core::TickFault::none) {
+        throw device::DeviceError{fmt::format("remote: {}", to_text(fault))};
+      }
+    };
+  }
+  std::string tried_release(const protocols::Rig& rig) const override {
+    RemoteDevice opened{dynamic_cast<const RemoteSection&>(*rig.section)};
+    const auto lets_go = opened.hand().lets_go_after(tried_silence);
+    if (!lets_go) {
+      return "the other program does not tell, or did not reply (version 1 cannot): try it by hand";
+    }
+    if (!*lets_go) {
+      throw device::DeviceError{fmt::format(
+          "remote: the other program did not let go of the force after {} ms of silence",
+          tried_silence.count())};
+    }
+    return fmt::format("the other program lets go of the force after {} ms of silence",
+                       tried_silence.count());
   }
   std::unique_ptr<SessionDevice> open(const DeviceRequest& request) const override {
     return std::make_unique<RemoteDevice>(dynamic_cast<const RemoteSection&>(*request.rig.section));

@@ -23,10 +23,10 @@ void check_workspace(const protocols::Protocol& protocol, const protocols::Rig& 
   std::string out_of_reach;
   for (const auto& [name, plate] : protocol.plates) {
     const core::TopHeight top{plate->shape};
-    for (const auto& [point, at_m] : protocol.tapping_points_m) {
+    for (const auto& [point, at_m] : plate->tapping_points_m) {
       const auto z_m = top.at_m(at_m);
-      const core::Vec3 on_device_m =
-          placement.point_to_device({at_m.x(), at_m.y(), z_m.value_or(0.0)});
+      const core::Vec3 on_device_m = placement.scaled(plate->lateral_ratio)
+                                         .point_to_device({at_m.x(), at_m.y(), z_m.value_or(0.0)});
       if (z_m && on_device_m.norm() > rig.gate.workspace_radius_m) {
         out_of_reach += fmt::format("\n  {} on plate '{}' is {:.1f} mm from the device's middle",
                                     point, name, 1e3 * on_device_m.norm());
@@ -36,7 +36,7 @@ void check_workspace(const protocols::Protocol& protocol, const protocols::Rig& 
   if (!out_of_reach.empty()) {
     throw core::InvalidInput{
         fmt::format("these tapping points lie beyond workspace_radius_m, {:.1f} mm (lower "
-                    "placement.lateral_scale, {}, or move origin_m):{}",
+                    "lateral_scale, in placement {}, or move origin_m):{}",
                     1e3 * rig.gate.workspace_radius_m, placement.lateral_scale, out_of_reach)};
   }
 }
@@ -68,17 +68,18 @@ device::LoopSettings loop_settings(const protocols::Protocol& protocol, const pr
   settings.period = std::llround(1e9 / protocol.rate_hz);
   settings.gate = rig.gate;
   settings.max_late_in_a_row = rig.max_late_ticks_in_a_row;
+  settings.max_stall = std::llround(1e9 * rig.max_stall_s);
   if (rig.has_hardware) {
     settings.max_heartbeat_gap = max_heartbeat_gap;
   }
   settings.placement = rig.placement.value_or(protocol.placement);
   for (const auto& [name, plate] : protocol.plates) {
-    if (settings.placement.lateral_scale != 1.0 &&
-        std::holds_alternative<core::Solid>(plate->shape)) {
+    const double scale = settings.placement.scaled(plate->lateral_ratio).lateral_scale;
+    if (std::abs(scale - 1.0) > 1e-12 && std::holds_alternative<core::Solid>(plate->shape)) {
       throw core::InvalidInput{
-          fmt::format("rig: placement.lateral_scale: {} is not allowed with plate '{}' (1: only a "
+          fmt::format("rig: a lateral scale of {} is not allowed with plate '{}' (1: only a "
                       "flat plate can be scaled sideways)",
-                      settings.placement.lateral_scale, name)};
+                      scale, name)};
     }
   }
   return settings;

@@ -21,7 +21,8 @@ class SimulatedDevice final : public SessionDevice {
     rng_ = core::Rng{core::derived_seed(seed, core::Purpose::hand)};
   }
   void get_ready() override {
-    hand_.follow(draw_taps(protocol_, placement_, taps_without_end, rng_));
+    hand_.follow(
+        draw_taps(protocol_, protocol_.simulation.taps, placement_, taps_without_end, rng_));
   }
 
  private:
@@ -35,6 +36,7 @@ class SimulatedHandKind final : public DeviceKind {
  public:
   std::string_view name() const override { return kind_name; }
   bool has_hardware() const override { return false; }
+  bool has_participant() const override { return false; }
   std::shared_ptr<const protocols::DeviceSection> read_section(
       protocols::MapReader& /*top*/, const protocols::RigText& /*rig*/) const override {
     return nullptr;

@@ -22,12 +22,15 @@ using protocols::MapReader;
 using protocols::Range;
 constexpr int tightening_steps = 500;
 constexpr std::chrono::milliseconds tightening_step{1};
+constexpr int max_steps_without_voltage = 3000;
 
 struct SpidarSection final : protocols::DeviceSection {
   std::string type;
   std::optional<int> rotary_switch;  // selects the board if there are several
   double max_turn_rad{0.3};          // of the grip, from how it was homed
   double max_reply_s{0.003};         // reply timeout of the board
+  std::string relay;                 // serial port of a dead-man relay; empty: there is none
+  bool is_amplifier_sensed{true};    // by the voltages that the board measures
   core::SpidarCalibration calibration;
 };
 
@@ -42,18 +45,36 @@ device::SpidarSettings settings_of(const SpidarSection& section, double dt_s,
   settings.calibration = section.calibration;
   settings.limits.max_turn_rad = section.max_turn_rad;
   settings.dt_s = dt_s;
+  settings.is_amplifier_sensed = section.is_amplifier_sensed;
   settings.watchdog = &guardian.channel();
   return settings;
+}
+
+// The guardian leaves the loop time to find its own stalls first, and is never the slower to wake.
+double guardian_stall_s(double max_stall_s) {
+  constexpr double min_s = 0.02;
+  constexpr double where_any_is_allowed_s = 0.1;
+  return max_stall_s > 0.0 ? std::max(min_s, 2.0 * max_stall_s) : where_any_is_allowed_s;
+}
+
+device::BoardSettings board_settings(const protocols::Rig& rig) {
+  constexpr int max_priority = 99;
+  const int priority = rig.realtime.fifo_priority;
+  return {std::chrono::milliseconds{std::llround(1e3 * section_of(rig).max_reply_s)},
+          guardian_stall_s(rig.max_stall_s),
+          priority > 0 ? std::min(priority + 1, max_priority) : 0, section_of(rig).relay};
 }
 
 // The chain from USB node to device; members in order of construction.
 class SpidarDevice final : public SessionDevice {
  public:
-  SpidarDevice(const device::UsbListing& listing, const SpidarSection& section, double dt_s,
-               LineInput& operator_input)
-      : input_{operator_input},
-        open_{listing, std::chrono::milliseconds{std::llround(1e3 * section.max_reply_s)}},
-        spidar_{open_.pipe, *open_.board, settings_of(section, dt_s, open_.guardian)},
+  SpidarDevice(const device::UsbListing& listing, const DeviceRequest& request)
+      : input_{request.operator_input},
+        open_{listing, board_settings(request.rig)},
+        spidar_{
+            open_.pipe, *open_.board,
+            settings_of(section_of(request.rig), request.protocol.rendering.dt_s, open_.guardian)},
+        is_amplifier_sensed_{section_of(request.rig).is_amplifier_sensed},
         round_trip_{device::round_trips(open_)} {}
   device::Device& device() override { return spidar_; }
   int rotary_switch() const { return spidar_.rotary_switch(); }
@@ -66,9 +87,11 @@ class SpidarDevice final : public SessionDevice {
   }
 
  private:
-  static void check(core::TickFault fault) {
+  void check(core::TickFault fault) {
     if (fault != core::TickFault::none) {
-      throw device::DeviceError{fmt::format("SPIDAR-G6: {}", to_text(fault))};
+      const bool is_off = spidar_.emergency_stop() == device::StopOutcome::confirmed;
+      throw device::DeviceError{fmt::format("SPIDAR-G6: {}{}{}", to_text(fault), is_off ? "" : "; ",
+                                            is_off ? "" : device::force_may_be_on)};
     }
   }
   void tighten() {
@@ -76,7 +99,18 @@ class SpidarDevice final : public SessionDevice {
       check(spidar_.tighten(static_cast<double>(step) / tightening_steps));
       std::this_thread::sleep_for(tightening_step);
     }
+    // a relay may close late: its microcontroller starts when its port is opened
+    for (int step = 0; step < max_steps_without_voltage && is_without_voltage(); ++step) {
+      check(spidar_.tighten(1.0));
+      std::this_thread::sleep_for(tightening_step);
+    }
+    if (is_without_voltage()) {
+      throw device::DeviceError{
+          "SPIDAR-G6: the motors get no voltage (is the amplifier on? if this board does not "
+          "measure it, set spidar.amplifier_sensed: false)"};
+    }
   }
+  bool is_without_voltage() const { return is_amplifier_sensed_ && !spidar_.has_motor_voltage(); }
   void home() {
     if (!asked_and_done(input_, "\nHold the grip in the middle of the frame, not turned, and")) {
       throw Stopped{"stopped before the grip was in the middle"};
@@ -87,6 +121,7 @@ class SpidarDevice final : public SessionDevice {
   LineInput& input_;
   device::OpenBoard open_;
   device::SpidarG6 spidar_;
+  bool is_amplifier_sensed_;
   device::LatenessCount round_trip_;
 };
 
@@ -113,15 +148,18 @@ class SpidarKind final : public DeviceKind {
           "{} SPIDAR-G6 are plugged in: say in the rig which (spidar.rotary_switch)", all.size())};
     }
     for (const device::UsbListing& listing : all) {
-      auto found = std::make_unique<SpidarDevice>(listing, section, request.protocol.rendering.dt_s,
-                                                  request.operator_input);
-      if (!section.rotary_switch || found->rotary_switch() == *section.rotary_switch) {
+      std::unique_ptr<SpidarDevice> found = opened(listing, request, all.size());
+      if (found && (!section.rotary_switch || found->rotary_switch() == *section.rotary_switch)) {
         return found;
       }
     }
-    throw device::DeviceError{fmt::format("no SPIDAR-G6 with its rotary switch on {} is plugged in",
-                                          *section.rotary_switch)};
+    throw device::DeviceError{
+        fmt::format("no SPIDAR-G6 with its rotary switch on {} is plugged in, or another "
+                    "program uses it",
+                    *section.rotary_switch)};
   }
+  // an exchange sends the tensions of the tick before
+  int delay_ticks(const protocols::Rig& /*rig*/) const override { return 1; }
   bool is_there() const override {
     return std::ranges::any_of(device::usb_devices(), [](const device::UsbListing& listing) {
       return device::is_spidar(listing) && listing.may_open;
@@ -139,13 +177,30 @@ class SpidarKind final : public DeviceKind {
     }
     return lines;
   }
-  std::optional<device::LatenessCount> round_trip() const override {
+  // needs neither a rig nor a calibration
+  std::function<void()> zero_force_exchange(const protocols::Rig& /*rig*/) const override {
     const std::vector<device::UsbListing> all = device::find_spidars();
     const auto openable = std::ranges::find_if(all, &device::UsbListing::may_open);
-    return device::probed_round_trip(openable == all.end() ? all.front() : *openable);
+    const auto open =
+        std::make_shared<device::OpenBoard>(openable == all.end() ? all.front() : *openable);
+    open->pipe.clear_halt();
+    open->pipe.drain();
+    return [open] { device::exchange_zero_force(*open); };
   }
 
  private:
+  // Of several boards, one that another session has claimed is passed over.
+  static std::unique_ptr<SpidarDevice> opened(const device::UsbListing& listing,
+                                              const DeviceRequest& request, std::size_t boards) {
+    try {
+      return std::make_unique<SpidarDevice>(listing, request);
+    } catch (const device::ClaimedByAnother& refusal) {
+      if (boards == 1) {
+        throw;
+      }
+      return nullptr;
+    }
+  }
   static void read(MapReader& reader, const protocols::RigText& rig, SpidarSection& section) {
     section.type = reader.word("type", "type", device::spidar_types());
     if (reader.has("rotary_switch")) {
@@ -154,6 +209,10 @@ class SpidarKind final : public DeviceKind {
     section.max_turn_rad =
         reader.number("max_turn_rad", Range::positive(0.5), section.max_turn_rad);
     section.max_reply_s = reader.number("max_reply_s", {0.001, 0.1}, section.max_reply_s);
+    if (reader.has("relay")) {
+      section.relay = reader.text("relay");
+    }
+    section.is_amplifier_sensed = reader.yes_or_no("amplifier_sensed", section.is_amplifier_sensed);
     const std::string calibration = reader.text("calibration");
     if (section.type.empty() || calibration.empty()) {
       return;

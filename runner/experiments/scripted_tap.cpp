@@ -19,12 +19,11 @@ namespace {
 constexpr double hover_m = 0.005;
 
 double height_m(const ScriptedTap& tap, const core::Shape& shape) {
-  const auto height_m = core::TopHeight{shape}.at_m(tap.at_m);
+  const core::TopHeight top{shape};
+  const auto height_m = top.at_m(tap.at_m);
   if (!height_m) {
-    const core::Bounds body = core::bounds(shape);
-    throw core::InvalidInput{fmt::format(
-        "--at: ({}, {}) is off the plate (x from {} to {} m, y from {} to {} m)", tap.at_m.x(),
-        tap.at_m.y(), body.low_m.x(), body.high_m.x(), body.low_m.y(), body.high_m.y())};
+    throw core::InvalidInput{fmt::format("--at: ({}, {}) is off the plate ({})", tap.at_m.x(),
+                                         tap.at_m.y(), top.outline_words(tap.at_m))};
   }
   return *height_m;
 }
@@ -75,7 +74,8 @@ std::vector<core::TraceSample> trace_of(const ScriptedTap& tap, const protocols:
   device::SimulatedHand hand{protocol.simulation.hand, protocol.rendering.dt_s,
                              device::SimulatedHand::Memory::none};
   device::PlannedTap planned;
-  planned.point_m = settings.placement.point_to_device({tap.at_m.x(), tap.at_m.y(), z_m});
+  planned.point_m = settings.placement.scaled(stimulus.plate->lateral_ratio)
+                        .point_to_device({tap.at_m.x(), tap.at_m.y(), z_m});
   planned.speed_m_s = tap.speed_m_s;
   planned.hover_m = hover_m;
   planned.run_up_m = 0.0;
@@ -86,9 +86,9 @@ std::vector<core::TraceSample> trace_of(const ScriptedTap& tap, const protocols:
   return samples_of(hand, stimuli.alternatives, settings, hover_m / tap.speed_m_s + tap.seconds);
 }
 
-Eigen::Vector2d point_on_plate(const std::string& text, const protocols::Protocol& protocol) {
-  const auto named = protocol.tapping_points_m.find(text);
-  if (named != protocol.tapping_points_m.end()) {
+Eigen::Vector2d point_on_plate(const std::string& text, const protocols::Plate& plate) {
+  const auto named = plate.tapping_points_m.find(text);
+  if (named != plate.tapping_points_m.end()) {
     return named->second;
   }
   const auto comma = text.find(',');
@@ -96,7 +96,7 @@ Eigen::Vector2d point_on_plate(const std::string& text, const protocols::Protoco
   const auto y = comma == std::string::npos ? std::nullopt : number(text.substr(comma + 1));
   if (!x || !y) {
     std::vector<std::string> names;
-    for (const auto& [name, at] : protocol.tapping_points_m) {
+    for (const auto& [name, at] : plate.tapping_points_m) {
       names.push_back(name);
     }
     throw core::InvalidInput{

@@ -19,5 +19,5 @@ std::vector<core::TraceSample> trace_of(const ScriptedTap& tap, const protocols:
                                         const protocols::Rig& rig, ModelLibrary& models);
 
 // "X,Y" in metres or the name of a tapping point. Throws InvalidInput if it is neither.
-Eigen::Vector2d point_on_plate(const std::string& text, const protocols::Protocol& protocol);
+Eigen::Vector2d point_on_plate(const std::string& text, const protocols::Plate& plate);
 }  // namespace tapstudy::runner

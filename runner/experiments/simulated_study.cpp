@@ -108,7 +108,8 @@ SimulatedTime simulate(const SimulatedStudy& study, const protocols::Protocol& p
   models.build_all(protocol);
   results::Store store =
       results::Store::open_or_create(study.directory, study_row(protocol, study.protocol_file));
-  const std::vector<PlannedSession> sessions = add_sessions(study, protocol, rig, store);
+  std::vector<PlannedSession> sessions;
+  store.in_one_transaction([&] { sessions = add_sessions(study, protocol, rig, store); });
   const Progress progress{fmt::format("simulating {} participants", study.participants)};
   std::atomic<std::int64_t> ticks{0};
   std::atomic<int> trials{0};
@@ -116,7 +117,13 @@ SimulatedTime simulate(const SimulatedStudy& study, const protocols::Protocol& p
   Workers::share(sessions, [&](const PlannedSession& session) {
     SimulatedParticipant participant{protocol, settings, models, session.seed};
     VirtualTrialLoop trial_loop{participant.hand(), settings};
-    TrialEngine engine{protocol, models, trial_loop, participant, recorder};
+    const TrialEngine* running = nullptr;
+    SessionStates states{session.id, [&] {
+                           const std::int64_t tapped = running == nullptr ? 0 : running->ticks();
+                           return static_cast<double>(tapped) / protocol.rate_hz;
+                         }};
+    TrialEngine engine{protocol, models, trial_loop, participant, recorder, states};
+    running = &engine;
     std::set<int> done;
     if (const auto interruption = engine.run(session.id, session.schedule, done)) {
       throw device::DeviceError{to_text(*interruption)};

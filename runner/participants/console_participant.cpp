@@ -6,15 +6,14 @@
 #include <algorithm>
 #include <cctype>
 #include <charconv>
+#include <chrono>
+#include <thread>
 
+#include "runner/terminal/operator_prompt.hpp"
+#include "runner/terminal/say.hpp"
 #include "runner/terminal/stop_signal.hpp"
 namespace tapstudy::runner {
 namespace {
-template <class... Parts>
-void say(fmt::format_string<Parts...> format, Parts&&... parts) {
-  fmt::print(stderr, format, std::forward<Parts>(parts)...);
-}
-
 std::string upper_case_without_spaces(const std::string& line) {
   std::string word;
   for (const char c : line) {
@@ -41,9 +40,61 @@ std::optional<std::size_t> index_of(const std::string& label,
 }
 }  // namespace
 
+// A script is not asked: its lines are answers.
+void ConsoleParticipant::wait_for_enter() {
+  if (input_.is_terminal() && !asked_and_done(input_, "\nTo go on,")) {
+    ask_to_stop();
+    stop_if_asked();
+  }
+}
+
+void ConsoleParticipant::read(const std::string& instructions) {
+  say("\n{}\n", instructions.substr(0, instructions.find_last_not_of('\n') + 1));
+  wait_for_enter();
+}
+
+void ConsoleParticipant::rest(double min_seconds) {
+  say("\nTime for a break{}.\n",
+      min_seconds > 0.0 ? fmt::format(", of {:.3g} s at least", min_seconds) : "");
+  const auto until = std::chrono::steady_clock::now() + std::chrono::duration<double>{min_seconds};
+  while (std::chrono::steady_clock::now() < until) {
+    stop_if_asked();
+    std::this_thread::sleep_for(std::chrono::milliseconds{20});
+  }
+  wait_for_enter();
+}
+
+// Without one at the end of input, or when the session is to stop: the answer is stored all the
+// same.
+std::optional<int> ConsoleParticipant::confidence(const protocols::Confidence& scale) {
+  if (input_.forget_typed_ahead()) {
+    ask_to_stop();
+    return std::nullopt;
+  }
+  say("  How sure are you? 1 ({}) to {} ({}): ", scale.low, scale.steps, scale.high);
+  while (const auto line = input_.next([] { return !stop_was_asked(); })) {
+    if (asks_to_quit(*line)) {
+      ask_to_stop();
+      return std::nullopt;
+    }
+    if (const auto step =
+            number_in(upper_case_without_spaces(*line), static_cast<std::size_t>(scale.steps))) {
+      return static_cast<int>(*step) + 1;
+    }
+    say("  please type a number from 1 to {}: ", scale.steps);
+  }
+  return std::nullopt;
+}
+
+void ConsoleParticipant::feedback(bool is_correct, const std::string& right_label) {
+  say("  {}: it was {}\n", is_correct ? "right" : "not right", right_label);
+}
+
 void ConsoleParticipant::get_ready(const TrialPrompt& prompt) {
   move_hand_();
-  input_.forget_typed_ahead();
+  if (input_.forget_typed_ahead()) {
+    ask_to_stop();
+  }
   say("\nTrial {} of {}{}. {}\n", prompt.number, prompt.total,
       prompt.is_practice ? " (practice)" : "", prompt.question);
   if (prompt.alternative_labels.empty()) {
@@ -62,8 +113,7 @@ std::optional<std::string> ConsoleParticipant::next_line(const Exploration& expl
   if (!line) {
     return std::nullopt;
   }
-  std::string word = upper_case_without_spaces(*line);
-  return word == "QUIT" ? std::nullopt : std::optional{std::move(word)};
+  return asks_to_quit(*line) ? std::nullopt : std::optional{upper_case_without_spaces(*line)};
 }
 
 std::optional<std::size_t> ConsoleParticipant::perform(const TrialPrompt& prompt,
@@ -72,10 +122,28 @@ std::optional<std::size_t> ConsoleParticipant::perform(const TrialPrompt& prompt
                                            : chosen_alternative(prompt, exploration);
 }
 
+void ConsoleParticipant::let_script_wait(const TrialPrompt& prompt, std::size_t alternative,
+                                         Exploration& exploration) const {
+  constexpr double step_s = 0.005;
+  constexpr double patience_s = 60.0;
+  const double until_s = exploration.time_s() + patience_s + prompt.explore.min_seconds;
+  while (!input_.is_terminal() && exploration.is_running() && !stop_was_asked() &&
+         (exploration.contacts(alternative) < prompt.explore.min_contacts ||
+          exploration.time_s() < prompt.explore.min_seconds)) {
+    if (exploration.time_s() > until_s) {
+      say("  the plate was tapped {} of {} times in {:.0f} s: nobody is there\n",
+          exploration.contacts(alternative), prompt.explore.min_contacts, patience_s);
+      ask_to_stop();
+    }
+    exploration.pass_time(step_s);
+  }
+}
+
 std::optional<std::size_t> ConsoleParticipant::number_of_answer(const TrialPrompt& prompt,
-                                                                const Exploration& exploration) {
+                                                                Exploration& exploration) {
   while (const auto word = next_line(exploration)) {
     if (const auto option = number_in(*word, prompt.options.size())) {
+      let_script_wait(prompt, 0, exploration);
       return option;
     }
     say("  please type a number from 1 to {}, or quit\n", prompt.options.size());
@@ -95,12 +163,38 @@ std::optional<std::size_t> ConsoleParticipant::chosen_alternative(const TrialPro
     if (alternative) {
       exploration.switch_to(*alternative);
       say("  now {} (takes effect once the finger is off the plate)\n", labels[*alternative]);
+      let_script_wait(prompt, *alternative, exploration);
       continue;
     }
     say("  please type {} to feel one, = and a label to choose it, or quit\n",
         fmt::join(labels, ", "));
   }
   return std::nullopt;
+}
+
+void ConsoleParticipant::repeats(const TrialPrompt& prompt) {
+  say("  trial {} is presented again: the loop was not on time\n", prompt.number);
+}
+
+void ConsoleParticipant::refused(const TrialPrompt& /*prompt*/, const std::string& why) {
+  say("  {}\n", why);
+}
+
+void ConsoleParticipant::timed_out(const TrialPrompt& prompt, bool is_presented_again) {
+  say("\n  the time for trial {} is over{}\n", prompt.number,
+      is_presented_again ? ": it comes again later" : "");
+  wait_for_enter();  // or trials would run on without anybody
+}
+
+// Only an empty line is a yes: an answer that was typed ahead is not.
+bool ConsoleParticipant::saves_again(const std::string& cause) {
+  say("\n{}\n  The trial is not stored yet, but kept. Press Enter to try again, or type quit: ",
+      cause);
+  if (input_.forget_typed_ahead()) {
+    return false;
+  }
+  const auto line = input_.next([] { return !stop_was_asked(); });
+  return line && line->empty();
 }
 
 void ConsoleParticipant::saved(const TrialPrompt& prompt) {

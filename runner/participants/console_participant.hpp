@@ -13,14 +13,25 @@ class ConsoleParticipant final : public Participant {
   // device for the person to hold.
   ConsoleParticipant(LineInput& input, std::function<void()> move_hand)
       : input_{input}, move_hand_{std::move(move_hand)} {}
+  void read(const std::string& instructions) override;
+  void rest(double min_seconds) override;
   void get_ready(const TrialPrompt& prompt) override;
   std::optional<std::size_t> perform(const TrialPrompt& prompt, Exploration& exploration) override;
+  std::optional<int> confidence(const protocols::Confidence& scale) override;
+  void feedback(bool is_correct, const std::string& right_label) override;
   void saved(const TrialPrompt& prompt) override;
+  bool saves_again(const std::string& cause) override;
+  void repeats(const TrialPrompt& prompt) override;
+  void refused(const TrialPrompt& prompt, const std::string& why) override;
+  void timed_out(const TrialPrompt& prompt, bool is_presented_again) override;
 
  private:
+  void wait_for_enter();
+  // A script cannot be asked to tap first: its next line waits until the plate was touched.
+  void let_script_wait(const TrialPrompt& prompt, std::size_t alternative,
+                       Exploration& exploration) const;
   std::optional<std::string> next_line(const Exploration& exploration);
-  std::optional<std::size_t> number_of_answer(const TrialPrompt& prompt,
-                                              const Exploration& exploration);
+  std::optional<std::size_t> number_of_answer(const TrialPrompt& prompt, Exploration& exploration);
   std::optional<std::size_t> chosen_alternative(const TrialPrompt& prompt,
                                                 Exploration& exploration);
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "protocols/tasks/task.hpp"
+#include "protocols/protocol.hpp"
 #include "runner/trial_loop/exploration.hpp"
 namespace tapstudy::runner {
 // A trial as presented to the participant. Does not disclose the rendered stimulus.
@@ -14,6 +14,7 @@ struct TrialPrompt {
   const protocols::Task* task{};
   std::string question;
   std::vector<protocols::Option> options;  // the allowed answers
+  protocols::ExploreLimits explore;
   std::vector<std::string>
       alternative_labels;  // to switch among; empty: there is nothing to switch
 };
@@ -22,12 +23,27 @@ struct TrialPrompt {
 class Participant {
  public:
   virtual ~Participant() = default;
+  // Between trials; each returns once the participant goes on, and throws Stopped where none does.
+  virtual void read(const std::string& /*instructions*/) {}
+  virtual void rest(double /*min_seconds*/) {}
   // Before the trial's loop starts.
   virtual void get_ready(const TrialPrompt& /*prompt*/) {}
   // Explores and answers: the index of an option, or nullopt if the trial could not be finished.
   virtual std::optional<std::size_t> perform(const TrialPrompt& prompt,
                                              Exploration& exploration) = 0;
+  // How sure the participant is of the answer just given; nullopt if that is not said.
+  virtual std::optional<int> confidence(const protocols::Confidence& /*scale*/) { return {}; }
+  // Which answer was right.
+  virtual void feedback(bool /*is_correct*/, const std::string& /*right_label*/) {}
+  // Called where the answer came too early: why. perform is called again.
+  virtual void refused(const TrialPrompt& /*prompt*/, const std::string& /*why*/) {}
+  // Called where the trial took too long; whether it is presented again later.
+  virtual void timed_out(const TrialPrompt& /*prompt*/, bool /*is_presented_again*/) {}
+  // Called where the trial cannot be stored: whether to try again, once somebody has seen to it.
+  virtual bool saves_again(const std::string& /*cause*/) { return false; }
   // Called once the answer is stored.
   virtual void saved(const TrialPrompt& /*prompt*/) {}
+  // Called instead where the answer does not count and the trial is presented again.
+  virtual void repeats(const TrialPrompt& /*prompt*/) {}
 };
 }  // namespace tapstudy::runner

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "core/error.hpp"
 namespace tapstudy::runner {
@@ -24,15 +25,23 @@ Features mean_of(std::span<const FeltTap> taps) {
 
 }  // namespace
 
-SimulatedObserver::SimulatedObserver(std::vector<core::Vec3> places_m, double noise_db,
+SimulatedObserver::SimulatedObserver(std::vector<core::Vec3> places_m, const Person& person,
                                      core::Rng rng)
-    : places_m_{std::move(places_m)}, noise_db_{noise_db}, rng_{rng} {}
+    : places_m_{std::move(places_m)}, person_{person}, rng_{rng} {}
 
-std::size_t SimulatedObserver::index_of_least(const std::vector<double>& values) {
-  const double least = *std::ranges::min_element(values);
+double SimulatedObserver::bias_towards(std::size_t answer) const {
+  core::Rng rng{core::derived_seed(person_.bias_seed, core::Purpose::person, answer)};
+  return person_.bias * rng.normal();
+}
+
+std::size_t SimulatedObserver::index_of_least(std::vector<double> distances) {
+  for (std::size_t i = 0; i < distances.size(); ++i) {
+    distances[i] -= bias_towards(i);
+  }
+  const double least = *std::ranges::min_element(distances);
   std::vector<std::size_t> equals;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    if (values[i] == least) {
+  for (std::size_t i = 0; i < distances.size(); ++i) {
+    if (distances[i] == least) {
       equals.push_back(i);
     }
   }
@@ -83,7 +92,7 @@ Features SimulatedObserver::difference(std::span<const FeltTap> felt, const Memo
 
 Features SimulatedObserver::noise() {
   Features noise{};
-  std::ranges::generate(noise, [&] { return noise_db_ * rng_.normal(); });
+  std::ranges::generate(noise, [&] { return person_.noise_db * rng_.normal(); });
   return noise;
 }
 
@@ -92,9 +101,9 @@ double SimulatedObserver::distance(const Features& difference, const Features& n
   double sum = 0.0;
   for (std::size_t i = 0; i < difference.size(); ++i) {
     const double felt = difference.at(i) + noise.at(i);
-    sum +=
-        felt * felt /
-        (noise_db_ * noise_db_ + memory.variance_db2.at(i) + min_difference_db * min_difference_db);
+    sum += felt * felt /
+           (person_.noise_db * person_.noise_db + memory.variance_db2.at(i) +
+            min_difference_db * min_difference_db);
   }
   return sum;
 }
@@ -116,7 +125,7 @@ std::size_t SimulatedObserver::most_similar(std::span<const FeltTap> felt,
   for (const std::string& stimulus : stimuli) {
     distances.push_back(distance(difference(felt, memories_.at(stimulus)), blur, common));
   }
-  return index_of_least(distances);
+  return index_of_least(std::move(distances));
 }
 
 std::size_t SimulatedObserver::most_similar(const std::vector<std::vector<FeltTap>>& felt,
@@ -127,6 +136,6 @@ std::size_t SimulatedObserver::most_similar(const std::vector<std::vector<FeltTa
     distances.push_back(taps.empty() ? std::numeric_limits<double>::infinity()
                                      : distance(difference(taps, memory), noise(), memory));
   }
-  return index_of_least(distances);
+  return index_of_least(std::move(distances));
 }
 }  // namespace tapstudy::runner

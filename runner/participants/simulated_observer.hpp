@@ -14,10 +14,16 @@ namespace tapstudy::runner {
 // the mean difference from that memory over its taps; one draw of internal noise per feature is
 // added (noise_db, the same for all candidates, so that only the difference between the plates
 // matters), and the candidate at the smallest distance is the answer. Distances weight each feature
-// by its noise and its variance between taps in memory.
+// by its noise and its variance between taps in memory. A bias favours some answers, by their place
+// in the list.
 class SimulatedObserver {
  public:
-  SimulatedObserver(std::vector<core::Vec3> places_m, double noise_db, core::Rng rng);
+  struct Person {
+    double noise_db;
+    double bias;  // standard deviation over answers, of the distance
+    std::uint64_t bias_seed;
+  };
+  SimulatedObserver(std::vector<core::Vec3> places_m, const Person& person, core::Rng rng);
 
   // Places never tapped are remembered as the plate's mean. Throws InvalidInput if taps is empty.
   void remember(const std::string& stimulus, std::span<const FeltTap> taps);
@@ -36,11 +42,12 @@ class SimulatedObserver {
   std::size_t place_of(const FeltTap& tap) const;
   Features difference(std::span<const FeltTap> felt, const Memory& memory) const;
   Features noise();
-  std::size_t index_of_least(const std::vector<double>& values);  // ties broken at random
+  std::size_t index_of_least(std::vector<double> distances);  // biased; ties broken at random
+  double bias_towards(std::size_t answer) const;
   double distance(const Features& difference, const Features& noise, const Memory& memory) const;
 
   std::vector<core::Vec3> places_m_;
-  double noise_db_;
+  Person person_;
   core::Rng rng_;
   std::map<std::string, Memory> memories_;
 };

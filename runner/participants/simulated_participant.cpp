@@ -1,8 +1,11 @@
 #include "runner/participants/simulated_participant.hpp"
 
-#include <algorithm>
-#include <set>
+#include <fmt/format.h>
 
+#include <algorithm>
+#include <map>
+
+#include "core/error.hpp"
 #include "runner/participants/tap_drawing.hpp"
 #include "runner/stimuli/trial_stimuli.hpp"
 #include "runner/trial_loop/virtual_trial_loop.hpp"
@@ -10,20 +13,43 @@ namespace tapstudy::runner {
 namespace {
 using core::Purpose;
 
-// The stimuli that must be memorised for this protocol's tasks.
-std::set<std::string> remembered_stimuli(const protocols::Protocol& protocol) {
-  std::set<std::string> names;
+// The stimuli that must be memorised for this protocol's tasks, in the order of the protocol.
+std::vector<std::string> remembered_stimuli(const protocols::Protocol& protocol) {
+  std::vector<std::string> names;
   for (const protocols::Block& block : protocol.blocks) {
-    const auto of_block = block.task->remembered_stimuli(block, protocol.simulation);
-    names.insert(of_block.begin(), of_block.end());
+    for (const std::string& name : block.task->remembered_stimuli(block, protocol.simulation)) {
+      if (std::ranges::find(names, name) == names.end()) {
+        names.push_back(name);
+      }
+    }
   }
   return names;
 }
 
-// The real counterparts of the stimuli: vibrating at their true natural frequencies.
+// The real counterparts of the stimuli: without a technique of their own, vibrating at their true
+// natural frequencies.
 protocols::Protocol made_real(protocols::Protocol protocol) {
   protocol.rendering.integrator = core::Integrator::exact;
+  const core::Technique* const reality = protocol.simulation.observer.reality;
+  if (const auto missing = reality->missing(protocol.rendering); !missing.empty()) {
+    throw core::InvalidInput{
+        fmt::format("simulation.observer.reality: '{}' needs {}", reality->name, missing)};
+  }
+  for (protocols::Stimulus& stimulus : protocol.stimuli) {
+    stimulus.technique = reality;
+  }
   return protocol;
+}
+
+// What this participant is like, among others.
+protocols::Simulation drawn_person(protocols::Simulation simulation, std::uint64_t seed) {
+  core::Rng rng{core::derived_seed(seed, Purpose::person)};
+  const protocols::SimulatedPeopleSettings& people = simulation.people;
+  simulation.observer.noise_db = rng.log_normal(simulation.observer.noise_db, people.noise_spread);
+  simulation.observer.threshold_n =
+      rng.log_normal(simulation.observer.threshold_n, people.threshold_spread);
+  simulation.taps.speed_m_s = rng.log_normal(simulation.taps.speed_m_s, people.speed_spread);
+  return simulation;
 }
 }  // namespace
 
@@ -36,7 +62,7 @@ class SimulatedParticipant::Touch final : public protocols::SimulatedTouch {
     if (felt_.size() > 1) {
       exploration_.switch_to(alternative);
     }
-    const auto taps = self_.tap(exploration_, self_.protocol_.simulation.taps.taps_per_visit);
+    const auto taps = self_.tap(exploration_, self_.person_.taps.taps_per_visit);
     felt_.at(alternative).insert(felt_.at(alternative).end(), taps.begin(), taps.end());
   }
   std::size_t most_similar_stimulus(const std::vector<std::string>& stimuli) override {
@@ -57,10 +83,12 @@ SimulatedParticipant::SimulatedParticipant(const protocols::Protocol& protocol,
                                            const device::LoopSettings& settings,
                                            ModelLibrary& models, std::uint64_t seed)
     : protocol_{protocol},
+      person_{drawn_person(protocol.simulation, seed)},
       settings_{settings},
       hand_{protocol.simulation.hand, protocol.rendering.dt_s, device::SimulatedHand::Memory::kept},
       hand_rng_{core::derived_seed(seed, Purpose::memory)},
-      observer_{aims_m(protocol, settings.placement), protocol.simulation.observer.noise_db,
+      observer_{aims_m(protocol, settings.placement),
+                {person_.observer.noise_db, person_.people.bias, seed},
                 core::Rng{core::derived_seed(seed, Purpose::observer)}} {
   remember_real_stimuli(models);
   hand_rng_ = core::Rng{core::derived_seed(seed, Purpose::hand)};
@@ -69,26 +97,53 @@ SimulatedParticipant::SimulatedParticipant(const protocols::Protocol& protocol,
 void SimulatedParticipant::remember_real_stimuli(ModelLibrary& models) {
   const protocols::Protocol reality = made_real(protocol_);
   VirtualTrialLoop world{hand_, settings_, Keep::nothing};
-  for (const std::string& stimulus : remembered_stimuli(protocol_)) {
-    TrialStimuli stimuli = build_trial_stimuli(reality, {stimulus}, models);
-    world.run(stimuli.alternatives, [&](Exploration& exploration) {
-      observer_.remember(stimulus,
-                         tap(exploration, protocol_.simulation.observer.familiarisation_taps));
-    });
+  using Body = std::pair<const core::Plate*, const core::Material*>;
+  std::map<Body, std::vector<FeltTap>> felt;
+  for (const std::string& name : remembered_stimuli(protocol_)) {
+    const protocols::Stimulus& stimulus = protocol_.stimulus(name);
+    const Body body{stimulus.plate.get(), stimulus.material.get()};
+    if (!felt.contains(body)) {
+      TrialStimuli stimuli = build_trial_stimuli(reality, {name}, models);
+      world.run(stimuli.alternatives, [&](Exploration& exploration) {
+        felt[body] = tap(exploration, person_.observer.familiarisation_taps);
+      });
+    }
+    observer_.remember(name, felt.at(body));
   }
 }
 
 std::vector<FeltTap> SimulatedParticipant::tap(Exploration& exploration, int count) {
   hand_.forget();
-  exploration.pass_time(hand_.follow(draw_taps(protocol_, settings_.placement, count, hand_rng_)));
-  return felt_taps(hand_.felt(), protocol_.rendering.dt_s,
-                   protocol_.simulation.observer.threshold_n);
+  exploration.pass_time(
+      hand_.follow(draw_taps(protocol_, person_.taps, settings_.placement, count, hand_rng_)));
+  return felt_taps(hand_.felt(), protocol_.rendering.dt_s, person_.observer.threshold_n);
+}
+
+void SimulatedParticipant::refused(const TrialPrompt& prompt, const std::string& why) {
+  constexpr int patience = 1000;  // visits
+  refusals_ = prompt.number == refused_trial_ ? refusals_ + 1 : 1;
+  refused_trial_ = prompt.number;
+  if (refusals_ > patience) {
+    throw core::InvalidInput{
+        fmt::format("trial {}: a simulated participant cannot meet the block's explore limits ({})",
+                    prompt.number, why)};
+  }
+}
+
+void SimulatedParticipant::timed_out(const TrialPrompt& prompt, bool is_presented_again) {
+  if (is_presented_again) {  // it would take as long again, without end
+    throw core::InvalidInput{
+        fmt::format("trial {}: a simulated participant takes longer than the block's "
+                    "explore.max_seconds (lower "
+                    "simulation.taps.taps_per_visit or visits, or raise max_seconds)",
+                    prompt.number)};
+  }
 }
 
 std::optional<std::size_t> SimulatedParticipant::perform(const TrialPrompt& prompt,
                                                          Exploration& exploration) {
   const std::size_t alternatives = std::max<std::size_t>(1, prompt.alternative_labels.size());
   Touch touch{*this, alternatives, exploration};
-  return prompt.task->simulated_answer(prompt.options, protocol_.simulation, touch);
+  return prompt.task->simulated_answer(prompt.options, person_, touch);
 }
 }  // namespace tapstudy::runner

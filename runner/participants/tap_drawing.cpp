@@ -1,21 +1,23 @@
 #include "runner/participants/tap_drawing.hpp"
 
 #include <algorithm>
+#include <optional>
 
 #include "core/model/shape/top_height.hpp"
 namespace tapstudy::runner {
 namespace {
 constexpr double timing_spread = 0.1;  // of the logarithm of dwell and pause
 
-// Where taps may land: on every plate of the protocol. They agree on their heights at the tapping
-// points.
+// Where taps may land: on every plate of the protocol, in the plate frame at the placement's scale.
+// They agree on their heights at the tapping points.
 class TapArea {
  public:
   explicit TapArea(const protocols::Protocol& protocol) {
     for (const auto& [name, plate] : protocol.plates) {
-      half_m_ = half_m_.cwiseMin(0.999 * core::bounds(plate->shape).high_m.head<2>());
+      half_m_ = half_m_.cwiseMin(0.999 * plate->lateral_ratio *
+                                 core::bounds(plate->shape).high_m.head<2>());
       is_flat_ = is_flat_ && std::holds_alternative<core::Box>(plate->shape);
-      heights_.emplace_back(plate->shape);
+      plates_.push_back({core::TopHeight{plate->shape}, plate->lateral_ratio});
     }
   }
   // Every tap lands on the plate: the drawn point, else clamped to just inside the edge of the
@@ -26,15 +28,22 @@ class TapArea {
       return {inside_m.x(), inside_m.y(), 0.0};
     }
     const bool is_on_all = std::ranges::all_of(
-        heights_, [&](const core::TopHeight& height) { return height.at_m(place_m).has_value(); });
+        plates_, [&](const Top& plate) { return plate.height_m(place_m).has_value(); });
     const Eigen::Vector2d& at_m = is_on_all ? place_m : aim_m;
-    return {at_m.x(), at_m.y(), heights_.front().at_m(at_m).value_or(0.0)};
+    return {at_m.x(), at_m.y(), plates_.front().height_m(at_m).value_or(0.0)};
   }
 
  private:
+  struct Top {
+    core::TopHeight height;
+    double lateral_ratio;
+    std::optional<double> height_m(const Eigen::Vector2d& at_m) const {
+      return height.at_m(at_m / lateral_ratio);
+    }
+  };
   Eigen::Vector2d half_m_{Eigen::Vector2d::Constant(1e3)};
   bool is_flat_{true};
-  std::vector<core::TopHeight> heights_;
+  std::vector<Top> plates_;
 };
 }  // namespace
 
@@ -50,9 +59,9 @@ std::vector<core::Vec3> aims_m(const protocols::Protocol& protocol,
 }
 
 std::vector<device::PlannedTap> draw_taps(const protocols::Protocol& protocol,
+                                          const protocols::SimulatedTapSettings& settings,
                                           const core::Placement& placement, int count,
                                           core::Rng& rng) {
-  const protocols::SimulatedTapSettings& settings = protocol.simulation.taps;
   const TapArea area{protocol};
   std::vector<std::string> round;
   std::vector<device::PlannedTap> taps;

@@ -13,6 +13,7 @@ std::vector<core::Vec3> aims_m(const protocols::Protocol& protocol,
 // Random taps: every point once in random order, then again; position, speed and dwell time vary
 // from tap to tap. All land on the plate.
 std::vector<device::PlannedTap> draw_taps(const protocols::Protocol& protocol,
+                                          const protocols::SimulatedTapSettings& settings,
                                           const core::Placement& placement, int count,
                                           core::Rng& rng);
 }  // namespace tapstudy::runner

@@ -5,6 +5,7 @@
 #include <random>
 
 #include "core/error.hpp"
+#include "runner/session/given_up_trials.hpp"
 #include "runner/session/session_row.hpp"
 namespace tapstudy::runner {
 namespace {
@@ -29,15 +30,18 @@ std::optional<results::SessionRow> earlier_session(const SessionRequest& request
   return earlier;
 }
 
-void resume(const results::SessionRow& earlier, results::Store& store, BegunSession& session) {
+void resume(const results::SessionRow& earlier, const protocols::Protocol& protocol,
+            results::Store& store, BegunSession& session) {
   if (earlier.planned_order != session.row.planned_order) {
     throw core::InvalidInput{
         "--resume: this program would plan another order than the stored "
         "one; resume with the version that began the session"};
   }
   session.row.resumes = earlier.id;
-  const std::vector<int> done = store.answered_trials(earlier.participant_id);
-  session.done = {done.begin(), done.end()};
+  const std::vector<int> answered = store.answered_trials(earlier.participant_id);
+  session.done = {answered.begin(), answered.end()};
+  const std::vector<int> given_up = given_up_trials(protocol, earlier.participant_id, store);
+  session.done.insert(given_up.begin(), given_up.end());
 }
 }  // namespace
 
@@ -48,18 +52,21 @@ BegunSession begin_session(const SessionRequest& request, const protocols::Proto
   plan.participant_id = request.participant_id;
   plan.mode = request.mode;
   plan.device = preflight.device;
-  plan.scheduler = preflight.diagnosis.idle.realtime;
+  plan.scheduler = preflight.diagnosis.idle.total.realtime;
   plan.doctor = to_json(preflight.diagnosis);
-  plan.participant_index = store.index_of(plan.participant_id, plan.mode);
-  const auto earlier = earlier_session(request, store);
-  plan.seed = earlier ? earlier->seed : request.seed ? *request.seed : drawn_seed();
   BegunSession session;
-  session.schedule = make_schedule(protocol, plan.seed, plan.participant_index);
-  session.row = session_row(plan, protocol, rig, session.schedule);
-  if (earlier) {
-    resume(*earlier, store, session);
-  }
-  store.add_session(session.row);
+  // sessions begun at the same time must not get the same index
+  store.in_one_transaction([&] {
+    plan.participant_index = store.index_of(plan.participant_id, plan.mode);
+    const auto earlier = earlier_session(request, store);
+    plan.seed = earlier ? earlier->seed : request.seed ? *request.seed : drawn_seed();
+    session.schedule = make_schedule(protocol, plan.seed, plan.participant_index);
+    session.row = session_row(plan, protocol, rig, session.schedule);
+    if (earlier) {
+      resume(*earlier, protocol, store, session);
+    }
+    store.add_session(session.row);
+  });
   return session;
 }
 }  // namespace tapstudy::runner

@@ -3,17 +3,23 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <filesystem>
+#include <optional>
 #include <utility>
 
 #include "core/error.hpp"
+#include "device/loop/sleep_inhibitor.hpp"
 #include "results/recorder.hpp"
 #include "runner/devices/device_kind.hpp"
 #include "runner/devices/reconnect.hpp"
 #include "runner/devices/rigs.hpp"
 #include "runner/participants/console_participant.hpp"
+#include "runner/session/given_up_trials.hpp"
 #include "runner/session/session_row.hpp"
 #include "runner/session/trial_engine.hpp"
+#include "runner/terminal/logging.hpp"
+#include "runner/terminal/no_flow_control.hpp"
 #include "runner/terminal/session_lock.hpp"
 #include "runner/terminal/stop_signal.hpp"
 #include "runner/trial_loop/live_trial_loop.hpp"
@@ -23,18 +29,28 @@ namespace {
 void check(const LiveSession& live) {
   check_has_blocks(live.protocol);
   check_participant_id(live.request.participant_id);
-  if (!kind_of(live.rig).has_participant() && live.request.mode != results::Mode::pilot) {
-    throw core::InvalidInput{"a replayed hand is not a participant: use --pilot"};
-  }
   check_fits(live.protocol, live.rig);
   if (live.request.resume == Resume::yes) {
     results::Store::open_existing(live.directory);  // or there is nothing to resume
   }
 }
 
+// A hand that is not a participant's makes the session a rehearsal.
+SessionRequest request_of(const LiveSession& live) {
+  SessionRequest request = live.request;
+  if (!kind_of(live.rig).has_participant() && request.mode == results::Mode::real) {
+    request.mode = results::Mode::pilot;
+    warn(
+        "this session is a rehearsal and stored as a pilot: the hand is simulated or replayed "
+        "(--rig names a participant's device)");
+  }
+  return request;
+}
+
 SessionLock lock_of(const LiveSession& live) {
   const std::string& id = live.request.participant_id;
-  return {std::filesystem::absolute(live.directory).lexically_normal().string() + " " + id,
+  // a link and what it leads to are one study
+  return {std::filesystem::weakly_canonical(live.directory).string() + " " + id,
           fmt::format("participant '{}' is in a session of this study right now", id)};
 }
 
@@ -45,7 +61,12 @@ void run_trials(const LiveSession& live, const device::LoopSettings& settings, M
   ConsoleParticipant participant{device_request.operator_input, [&] { device->get_ready(); }};
   results::Recorder recorder{store};
   LiveTrialLoop trial_loop{device->device(), settings, live.rig.realtime, recorder};
-  TrialEngine engine{live.protocol, models, trial_loop, participant, recorder};
+  const auto begun = std::chrono::steady_clock::now();
+  SessionStates states{
+      session.row.id, [begun] {
+        return std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+      }};
+  TrialEngine engine{live.protocol, models, trial_loop, participant, recorder, states};
   while (const auto interruption = engine.run(session.row.id, session.schedule, session.done)) {
     device = reconnect(to_text(*interruption), device_request, std::move(device));
     device->begin_session(session.row.seed);
@@ -54,22 +75,31 @@ void run_trials(const LiveSession& live, const device::LoopSettings& settings, M
 }
 }  // namespace
 
-std::size_t run_live_session(const LiveSession& live) {
+LiveOutcome run_live_session(const LiveSession& live) {
   const device::LoopSettings settings = loop_settings(live.protocol, live.rig);
   check(live);
   ModelLibrary models;
   models.build_all(live.protocol);
   const SessionLock lock = lock_of(live);
   listen_for_stop();
+  const NoFlowControl no_flow_control{STDIN_FILENO};
   LineInput input{STDIN_FILENO};
+  std::optional<device::SleepInhibitor> inhibitor;
+  if (live.rig.has_hardware) {
+    inhibitor.emplace();
+  }
   const DeviceRequest device_request{live.protocol, live.rig, input};
   std::unique_ptr<SessionDevice> device = kind_of(live.rig).open(device_request);
   results::Store store =
       results::Store::open_or_create(live.directory, study_row(live.protocol, live.protocol_file));
-  BegunSession session = begin_session(live.request, live.protocol, live.rig,
-                                       run_preflight(live.rig, *device, settings.period), store);
+  BegunSession session = begin_session(
+      request_of(live), live.protocol, live.rig,
+      run_preflight(live.rig, *device, settings.period, inhibitor ? inhibitor->outcome() : ""),
+      store);
   device->begin_session(session.row.seed);
   run_trials(live, settings, models, device_request, std::move(device), store, session);
-  return session.schedule.size();
+  const std::size_t given_up =
+      given_up_trials(live.protocol, session.row.participant_id, store).size();
+  return {session.schedule.size() - given_up, given_up};
 }
 }  // namespace tapstudy::runner

@@ -14,9 +14,14 @@ struct LiveSession {
   SessionRequest request;
 };
 
-// Takes the participant through all unanswered trials, and returns the session's number of trials.
+struct LiveOutcome {
+  std::size_t answered{};
+  std::size_t without_answer{};  // their time was over
+};
+
+// Takes the participant through all unanswered trials.
 // After a device fault the operator may check the device and continue.
 // Throws InvalidInput if the session cannot be run, DeviceError if the device fails permanently,
 // StoreError if an answer cannot be stored, Stopped if the participant or the operator stops.
-std::size_t run_live_session(const LiveSession& live);
+LiveOutcome run_live_session(const LiveSession& live);
 }  // namespace tapstudy::runner

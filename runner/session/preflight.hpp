@@ -10,7 +10,8 @@ struct PreflightReport {
   std::string device;
   Diagnosis diagnosis;
 };
-// Takes half a second. Warns if the machine or the device is too slow for the loop.
+// Takes half a second. Warns if the machine or the device is too slow for the loop. `sleep` is the
+// outcome of asking the system not to sleep, if it was asked.
 PreflightReport run_preflight(const protocols::Rig& rig, SessionDevice& device,
-                              device::Nanoseconds period);
+                              device::Nanoseconds period, const std::string& sleep);
 }  // namespace tapstudy::runner

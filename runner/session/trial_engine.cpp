@@ -2,33 +2,90 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <deque>
+#include <exception>
+#include <iterator>
+
+#include "results/store_error.hpp"
+#include "runner/session/explore_limits.hpp"
 #include "runner/session/trial_record.hpp"
 #include "runner/stimuli/trial_stimuli.hpp"
 #include "runner/terminal/exit_code.hpp"
+#include "runner/terminal/logging.hpp"
 #include "runner/terminal/stop_signal.hpp"
 namespace tapstudy::runner {
 using protocols::PlannedTrial;
+using Ending = TrialEnding;
+
+namespace {
+bool has_late_impact(const TrialResult& result) {
+  return std::ranges::any_of(result.trace.events, [](const results::EventRow& event) {
+    return event.kind == "late_impact";
+  });
+}
+}  // namespace
 
 std::string to_text(const Interruption& interruption) {
   return fmt::format(
-      "trial {}: {}; force is off, {}", interruption.trial, core::to_text(interruption.fault),
+      "trial {}: {}; {}, {}", interruption.trial, core::to_text(interruption.fault),
+      interruption.is_force_off
+          ? "force is off"
+          : fmt::format("{} (the device did not confirm zero force)", device::force_may_be_on),
       interruption.is_answered ? "the answer is stored" : "the trial is stored as interrupted");
 }
 
 std::optional<Interruption> TrialEngine::run(std::int64_t session_id,
                                              const protocols::Schedule& schedule,
                                              std::set<int>& done_trials) {
-  for (const PlannedTrial& trial : schedule) {
-    if (done_trials.contains(trial.number)) {
+  try {
+    const auto interruption = run_all(session_id, schedule, done_trials);
+    if (!interruption) {
+      states_.enter(SessionState::ended);
+    }
+    note_events();
+    return interruption;
+  } catch (const Stopped&) {
+    states_.enter(SessionState::stopped);
+    note_events();
+    throw;
+  }
+}
+
+// The record of states is worth less than what comes next: going on after a fault, the end.
+void TrialEngine::note_events() {
+  try {
+    recorder_.note(states_.take_events()).get();
+  } catch (const results::StoreError& error) {
+    warn(fmt::format("the session's latest changes of state are not stored: {}", error.what()));
+  }
+}
+
+std::optional<Interruption> TrialEngine::run_all(std::int64_t session_id,
+                                                 const protocols::Schedule& schedule,
+                                                 std::set<int>& done_trials) {
+  std::deque<PlannedTrial> waiting;
+  std::ranges::copy_if(schedule, std::back_inserter(waiting), [&](const PlannedTrial& trial) {
+    return !done_trials.contains(trial.number);
+  });
+  while (!waiting.empty()) {
+    stop_if_asked();
+    const PlannedTrial trial = waiting.front();
+    waiting.pop_front();
+    interludes_.before(trial);
+    const Outcome outcome =
+        run_until_it_counts(session_id, trial, static_cast<int>(schedule.size()));
+    if (outcome.is_requeued) {
+      const auto next_block = std::ranges::find_if(
+          waiting, [&](const PlannedTrial& other) { return other.block != trial.block; });
+      waiting.insert(next_block, trial);
       continue;
     }
-    stop_if_asked();
-    const auto interruption = run_trial(session_id, trial, static_cast<int>(schedule.size()));
-    if (!interruption || interruption->is_answered) {
+    if (!outcome.interruption || outcome.interruption->is_answered) {
       done_trials.insert(trial.number);
     }
-    if (interruption) {
-      return interruption;
+    if (outcome.interruption) {
+      return outcome.interruption;
     }
   }
   return std::nullopt;
@@ -36,43 +93,179 @@ std::optional<Interruption> TrialEngine::run(std::int64_t session_id,
 
 TrialPrompt TrialEngine::prompt_of(const PlannedTrial& trial, int total) const {
   const protocols::Block& block = protocol_.block(trial.block);
-  return {trial.number,
-          total,
-          trial.is_practice,
-          trial.task,
-          block.question,
-          trial.task->options(block, protocol_),
-          trial.task->alternative_labels(trial)};
+  return {trial.number,      total,
+          trial.is_practice, trial.task,
+          block.question,    trial.task->options(block, protocol_),
+          block.explore,     trial.task->alternative_labels(trial)};
 }
 
-std::optional<Interruption> TrialEngine::run_trial(std::int64_t session_id,
-                                                   const PlannedTrial& trial, int total) {
-  const TrialPrompt prompt = prompt_of(trial, total);
+TrialEngine::Outcome TrialEngine::run_until_it_counts(std::int64_t session_id,
+                                                      const PlannedTrial& trial, int total) {
+  Outcome outcome;
+  do {
+    outcome = run_trial(session_id, trial, total);
+  } while (outcome.is_repeated);
+  return outcome;
+}
+
+// The answer is kept while the operator frees space or ends what locks the database.
+void TrialEngine::save(const std::shared_ptr<const results::TrialRecord>& record) {
+  while (true) {
+    try {
+      if (recorder_.save(record).get() == results::SaveOutcome::partly_in_log && !has_warned_) {
+        has_warned_ = true;
+        warn(
+            "another program holds study.db open: a copy of that file alone would lack the latest "
+            "trials (copy study.db-wal with it, or close the other program)");
+      }
+      return;
+    } catch (const results::StoreRewritten&) {
+      throw;
+    } catch (const results::StoreError& error) {
+      if (!participant_.saves_again(error.what())) {
+        throw;
+      }
+    }
+  }
+}
+
+// Until an answer that may be given, the end of the block's time, a stop or a fault.
+void TrialEngine::present(const TrialPrompt& prompt, const PlannedTrial& trial,
+                          Exploration& exploration, Presentation& presentation) {
+  LimitedExploration limited{exploration, prompt.explore};
+  while (const auto option = participant_.perform(prompt, limited)) {
+    if (limited.is_over()) {
+      break;
+    }
+    const std::string why = too_early(prompt, *option, limited);
+    const bool is_rendering = limited.is_rendering();
+    if (why.empty() && is_rendering) {
+      presentation.answer = Answer{
+          trial.task->response(trial, protocol_.block(trial.block), *option), limited.time_s()};
+      return;
+    }
+    if (!is_rendering) {
+      presentation.is_answered_in_a_stall = true;
+      return;
+    }
+    participant_.refused(prompt, why);
+  }
+  presentation.is_timed_out = exploration.is_running() && limited.is_over() && !stop_was_asked();
+}
+
+// The answer stays, whatever becomes of this question.
+void TrialEngine::ask_confidence(const protocols::Block& block, int trial, Answer& answer) {
+  if (block.confidence) {
+    states_.enter(SessionState::confidence, trial);
+    answer.confidence = participant_.confidence(*block.confidence);
+  }
+}
+
+void TrialEngine::give_feedback(const PlannedTrial& trial, const TrialPrompt& prompt,
+                                const std::string& response) {
+  const protocols::Block& block = protocol_.block(trial.block);
+  const auto is_right = [&](const std::string& other) {
+    return trial.task->is_correct(trial, other).value_or(false);
+  };
+  for (std::size_t i = 0; i < prompt.options.size(); ++i) {
+    if (is_right(trial.task->response(trial, block, i))) {
+      states_.enter(SessionState::feedback, trial.number);
+      participant_.feedback(is_right(response), prompt.options[i].label);
+      return;
+    }
+  }
+}
+
+TrialEngine::Presentation TrialEngine::presented(const TrialPrompt& prompt,
+                                                 const PlannedTrial& trial) {
   TrialStimuli stimuli = build_trial_stimuli(protocol_, trial.stimuli, models_);
+  states_.enter(SessionState::ready, trial.number);
   participant_.get_ready(prompt);
-  std::optional<Answer> answer;
-  TrialResult result = trial_loop_.run(stimuli.alternatives, [&](Exploration& exploration) {
-    const auto option = participant_.perform(prompt, exploration);
-    if (option && exploration.is_running()) {
-      answer = Answer{trial.task->response(trial, protocol_.block(trial.block), *option),
-                      exploration.time_s()};
+  Presentation presentation;
+  states_.enter(SessionState::exploring, trial.number);
+  presentation.result = trial_loop_.run(stimuli.alternatives, [&](Exploration& exploration) {
+    try {
+      present(prompt, trial, exploration, presentation);
+    } catch (...) {
+      presentation.failure = std::current_exception();
     }
   });
-  const core::TickFault fault = result.loop.stopped_by;
-  ticks_ += result.loop.ticks;
-  recorder_
-      .save(trial_record(session_id, trial, ++attempts_[trial.number], answer, std::move(result)))
-      .get();
-  if (fault != core::TickFault::none) {
-    return Interruption{trial.number, fault, answer.has_value()};
+  ticks_ += presentation.result.loop.ticks;
+  if (presentation.result.loop.stop == device::StopOutcome::unconfirmed) {
+    warn(device::force_may_be_on);  // before anything else can fail
   }
-  if (!answer) {
-    throw Stopped{
-        fmt::format("stopped in trial {} of {}; every answer given so far is kept (go on "
-                    "with --resume)",
-                    trial.number, total)};
+  return presentation;
+}
+
+TrialEngine::Ending TrialEngine::ending_of(const Presentation& presentation,
+                                           const PlannedTrial& trial) {
+  if (presentation.result.loop.stopped_by != core::TickFault::none) {
+    return Ending::faulted;
+  }
+  const bool is_late = presentation.answer && has_late_impact(presentation.result);
+  if (presentation.is_answered_in_a_stall ||
+      (is_late && repeats_after_late_impacts_[trial.number]++ <
+                      protocol_.block(trial.block).max_late_impact_repeats)) {
+    return Ending::repeated;
+  }
+  if (presentation.answer) {
+    return Ending::answered;
+  }
+  return presentation.is_timed_out ? Ending::timed_out : Ending::interrupted;
+}
+
+void TrialEngine::store(std::int64_t session_id, const PlannedTrial& trial,
+                        Presentation presentation, Ending ending) {
+  const core::TickFault fault = presentation.result.loop.stopped_by;
+  if (const auto state = state_of(ending)) {
+    states_.enter(*state, trial.number, core::to_text(fault));
+  }
+  auto record = std::make_shared<results::TrialRecord>(
+      trial_record(session_id, trial, ++attempts_[trial.number],
+                   status_of(ending, presentation.answer.has_value()), presentation.answer,
+                   std::move(presentation.result)));
+  record->session_events = states_.take_events();
+  save(record);
+  if (presentation.failure) {
+    std::rethrow_exception(presentation.failure);
+  }
+}
+
+TrialEngine::Outcome TrialEngine::run_trial(std::int64_t session_id, const PlannedTrial& trial,
+                                            int total) {
+  const TrialPrompt prompt = prompt_of(trial, total);
+  const protocols::Block& block = protocol_.block(trial.block);
+  Presentation presentation = presented(prompt, trial);
+  const Ending ending = ending_of(presentation, trial);
+  if (ending == Ending::answered) {
+    ask_confidence(block, trial.number, *presentation.answer);
+  }
+  const std::optional<Answer> answer = presentation.answer;
+  const core::TickFault fault = presentation.result.loop.stopped_by;
+  store(session_id, trial, std::move(presentation), ending);
+  switch (ending) {
+    case Ending::faulted:
+      return {.interruption = Interruption{trial.number, fault, answer.has_value(),
+                                           trial_loop_.is_force_off()}};
+    case Ending::timed_out: {
+      const bool is_requeued = block.explore.at_limit == protocols::AtLimit::requeue;
+      participant_.timed_out(prompt, is_requeued);
+      return {.is_requeued = is_requeued};
+    }
+    case Ending::repeated:
+      participant_.repeats(prompt);
+      return {.is_repeated = true};
+    case Ending::interrupted:
+      throw Stopped{fmt::format(
+          "stopped in trial {} of {}; every answer given so far is kept (go on with --resume)",
+          trial.number, total)};
+    case Ending::answered:
+      break;
   }
   participant_.saved(prompt);
-  return std::nullopt;
+  if (block.gives_feedback) {
+    give_feedback(trial, prompt, answer->response);
+  }
+  return {};
 }
 }  // namespace tapstudy::runner

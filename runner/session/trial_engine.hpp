@@ -1,5 +1,7 @@
 #pragma once
+#include <exception>
 #include <map>
+#include <memory>
 #include <optional>
 #include <set>
 #include <string>
@@ -9,15 +11,19 @@
 #include "protocols/schedule.hpp"
 #include "results/recorder.hpp"
 #include "runner/participants/participant.hpp"
+#include "runner/session/interludes.hpp"
+#include "runner/session/session_states.hpp"
+#include "runner/session/trial_ending.hpp"
+#include "runner/session/trial_record.hpp"
 #include "runner/stimuli/model_library.hpp"
 #include "runner/trial_loop/trial_loop.hpp"
 namespace tapstudy::runner {
-// A trial ended by a fault; it is stored, and the force is off. The fault may have occurred after
-// the answer.
+// A trial ended by a fault, and stored. The fault may have occurred after the answer.
 struct Interruption {
   int trial{};
   core::TickFault fault{};
   bool is_answered{};
+  bool is_force_off{};  // confirmed by the device, or taken from its guardian
 };
 std::string to_text(const Interruption& interruption);
 
@@ -26,31 +32,65 @@ std::string to_text(const Interruption& interruption);
 class TrialEngine {
  public:
   TrialEngine(const protocols::Protocol& protocol, ModelLibrary& models, TrialLoop& trial_loop,
-              Participant& participant, results::Recorder& recorder)
-      : protocol_{protocol},
+              Participant& participant, results::Recorder& recorder, SessionStates& states)
+      : states_{states},
+        interludes_{protocol, participant, states},
+        protocol_{protocol},
         models_{models},
         trial_loop_{trial_loop},
         participant_{participant},
         recorder_{recorder} {}
 
   // Runs the trials not in `done`, adding each, until all are done or a fault ends one; called
-  // again, it repeats that one. Throws Stopped if the participant or the operator stops, StoreError
+  // again, it repeats that one. A trial that took too long comes again at the end of its block, if
+  // the block says so. Throws Stopped if the participant or the operator stops, StoreError
   // if a trial cannot be stored; the trial in progress is stored as interrupted, if possible.
   std::optional<Interruption> run(std::int64_t session_id, const protocols::Schedule& schedule,
                                   std::set<int>& done_trials);
   std::int64_t ticks() const noexcept { return ticks_; }  // rendered so far
 
  private:
-  std::optional<Interruption> run_trial(std::int64_t session_id,
-                                        const protocols::PlannedTrial& trial, int total);
+  struct Outcome {
+    std::optional<Interruption> interruption{};
+    bool is_repeated{};  // its answer does not count
+    bool is_requeued{};
+  };
+  std::optional<Interruption> run_all(std::int64_t session_id, const protocols::Schedule& schedule,
+                                      std::set<int>& done_trials);
+  void note_events();
+  void ask_confidence(const protocols::Block& block, int trial, Answer& answer);
+  void give_feedback(const protocols::PlannedTrial& trial, const TrialPrompt& prompt,
+                     const std::string& response);
+  struct Presentation {
+    TrialResult result;
+    std::optional<Answer> answer;
+    bool is_answered_in_a_stall{};
+    bool is_timed_out{};
+    std::exception_ptr failure;  // thrown again once the trial is stored
+  };
+  void present(const TrialPrompt& prompt, const protocols::PlannedTrial& trial,
+               Exploration& exploration, Presentation& presentation);
+  Presentation presented(const TrialPrompt& prompt, const protocols::PlannedTrial& trial);
+  using Ending = TrialEnding;
+  Ending ending_of(const Presentation& presentation, const protocols::PlannedTrial& trial);
+  void store(std::int64_t session_id, const protocols::PlannedTrial& trial,
+             Presentation presentation, Ending ending);
+  Outcome run_trial(std::int64_t session_id, const protocols::PlannedTrial& trial, int total);
+  Outcome run_until_it_counts(std::int64_t session_id, const protocols::PlannedTrial& trial,
+                              int total);
+  void save(const std::shared_ptr<const results::TrialRecord>& record);
   TrialPrompt prompt_of(const protocols::PlannedTrial& trial, int total) const;
 
+  SessionStates& states_;
+  Interludes interludes_;
   const protocols::Protocol& protocol_;
   ModelLibrary& models_;
   TrialLoop& trial_loop_;
   Participant& participant_;
   results::Recorder& recorder_;
   std::map<int, int> attempts_;  // by the trial's number
+  std::map<int, int> repeats_after_late_impacts_;
   std::int64_t ticks_{0};
+  bool has_warned_{false};
 };
 }  // namespace tapstudy::runner

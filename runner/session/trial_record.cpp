@@ -11,7 +11,7 @@ std::optional<double> first_contact_s(const std::vector<results::EventRow>& even
 results::ResponseRow response_row(const protocols::PlannedTrial& trial, const Answer& answer,
                                   const std::vector<results::EventRow>& events) {
   results::ResponseRow response{answer.response, trial.task->is_correct(trial, answer.response),
-                                answer.response_time_s, std::nullopt};
+                                answer.response_time_s, std::nullopt, answer.confidence};
   if (const auto contact_s = first_contact_s(events)) {
     response.time_from_first_contact_s = answer.response_time_s - *contact_s;
   }
@@ -20,8 +20,8 @@ results::ResponseRow response_row(const protocols::PlannedTrial& trial, const An
 }  // namespace
 
 results::TrialRecord trial_record(std::int64_t session_id, const protocols::PlannedTrial& trial,
-                                  int attempt, const std::optional<Answer>& answer,
-                                  TrialResult result) {
+                                  int attempt, std::string status,
+                                  const std::optional<Answer>& answer, TrialResult result) {
   results::TrialRecord record;
   record.trial = {session_id,
                   trial.number,
@@ -30,7 +30,7 @@ results::TrialRecord trial_record(std::int64_t session_id, const protocols::Plan
                   std::string{trial.task->name()},
                   trial.is_practice,
                   trial.repetition,
-                  answer ? "answered" : "interrupted",
+                  std::move(status),
                   result.trace.duration_s};
   const std::vector<std::string> labels = trial.task->alternative_labels(trial);
   for (std::size_t i = 0; i < trial.stimuli.size(); ++i) {

@@ -8,9 +8,10 @@ namespace tapstudy::runner {
 struct Answer {
   std::string response;  // as the task stores it
   double response_time_s{};
+  std::optional<int> confidence{};
 };
-// A trial as the store takes it. Without an answer it is one that was interrupted.
+// A trial as the store takes it; its status is a TrialRow's.
 results::TrialRecord trial_record(std::int64_t session_id, const protocols::PlannedTrial& trial,
-                                  int attempt, const std::optional<Answer>& answer,
-                                  TrialResult result);
+                                  int attempt, std::string status,
+                                  const std::optional<Answer>& answer, TrialResult result);
 }  // namespace tapstudy::runner

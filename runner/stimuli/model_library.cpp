@@ -7,6 +7,7 @@
 
 #include "core/error.hpp"
 #include "runner/build_info.hpp"
+#include "runner/stimuli/at_its_line.hpp"
 #include "runner/terminal/logging.hpp"
 #include "runner/terminal/progress.hpp"
 namespace tapstudy::runner {
@@ -25,14 +26,29 @@ std::string cache_directory() {
   return variable("HOME").empty() ? std::string{} : variable("HOME") + "/.cache/tapstudy";
 }
 
-// Prefixes model errors with the stimulus that required the model.
-template <class Build>
-auto with_stimulus_name(const protocols::Stimulus& stimulus, const Build& build) {
-  try {
-    return build();
-  } catch (const core::ModelError& error) {
-    throw core::ModelError{fmt::format("stimulus '{}': {}", stimulus.name, error.what())};
+// Sought in ever wider bands.
+std::string first_frequency(core::PlateSpec spec) {
+  constexpr int max_doublings = 8;
+  for (int i = 0; i < max_doublings; ++i) {
+    spec.band_limit_hz *= 2.0;
+    const core::ModalModel model = core::model_of(core::solve_body(core::body_of(spec), {}).modes,
+                                                  spec.material, spec.band_limit_hz);
+    if (model.frequency_hz.size() > 0) {
+      return fmt::format("{:.4g} Hz", model.frequency_hz[0]);
+    }
   }
+  return fmt::format("more than {:.4g} Hz (is youngs_modulus_pa right?)", spec.band_limit_hz);
+}
+
+// A body without a mode in the band would be felt as one that does not vibrate at all.
+void check_has_mode(const core::ModalModel& model, const core::PlateSpec& spec) {
+  if (model.frequency_hz.size() > 0) {
+    return;
+  }
+  throw core::ModelError{fmt::format(
+      "no mode lies below band_limit_hz ({} Hz), so that it would not vibrate: its first is at "
+      "{}",
+      spec.band_limit_hz, first_frequency(spec))};
 }
 }  // namespace
 
@@ -89,7 +105,7 @@ ModelLibrary::Body ModelLibrary::body(const protocols::Protocol& protocol,
 ModelLibrary::Body ModelLibrary::body_of(const protocols::Protocol& protocol,
                                          const protocols::Stimulus& stimulus) {
   const std::lock_guard lock{mutex_};
-  return with_stimulus_name(stimulus, [&] { return body(protocol, stimulus); });
+  return at_its_line(stimulus, [&] { return body(protocol, stimulus); });
 }
 
 ModelLibrary::Plate ModelLibrary::plate_of(const protocols::Protocol& protocol,
@@ -99,9 +115,10 @@ ModelLibrary::Plate ModelLibrary::plate_of(const protocols::Protocol& protocol,
   Plate& plate = plates_[fmt::format("{} {} {:a}", core::content_key(body_spec(protocol, stimulus)),
                                      core::content_key(spec.material), spec.band_limit_hz)];
   if (!plate) {
-    plate = with_stimulus_name(stimulus, [&] {
+    plate = at_its_line(stimulus, [&] {
       core::ModalModel model =
           core::model_of(*body(protocol, stimulus), spec.material, spec.band_limit_hz);
+      check_has_mode(model, spec);
       return std::make_shared<const core::VibratingPlate>(
           vibrating_plate(spec.shape, std::move(model)));
     });

@@ -10,9 +10,10 @@ TrialStimuli build_trial_stimuli(const protocols::Protocol& protocol,
     const ModelLibrary::Plate plate =
         stimulus.technique->needs_model() ? models.plate_of(protocol, stimulus) : nullptr;
     built.plates.push_back(plate);
-    built.alternatives.push_back(core::make_renderer(*stimulus.technique, protocol.rendering,
-                                                     touched_shape(stimulus.plate->shape),
-                                                     plate.get()));
+    core::RenderSettings settings = protocol.rendering;
+    settings.lateral_ratio = stimulus.plate->lateral_ratio;
+    built.alternatives.push_back(core::make_renderer(
+        *stimulus.technique, settings, touched_shape(stimulus.plate->shape), plate.get()));
   }
   return built;
 }

@@ -4,31 +4,78 @@
 #include <termios.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
+#include <cctype>
+#include <utility>
 namespace tapstudy::runner {
 namespace {
 constexpr int poll_ms = 20;
 constexpr std::size_t max_line = 4096;
 }  // namespace
 
+bool asks_to_quit(const std::string& line) {
+  std::string word;
+  for (const char c : line) {
+    if (std::isspace(static_cast<unsigned char>(c)) == 0) {
+      word += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    }
+  }
+  return word == "quit";
+}
+
+// The line that is too long is dropped whole: its tail would be taken for an answer.
 std::optional<std::string> LineInput::take_line() {
   const auto end = received_.find('\n');
   if (end == std::string::npos) {
+    is_too_long_ = is_too_long_ || received_.size() > max_line;
+    if (is_too_long_) {
+      received_.clear();
+    }
     return std::nullopt;
   }
   std::string line = received_.substr(0, end);
   received_.erase(0, end + 1);
+  if (std::exchange(is_too_long_, false) || line.size() > max_line) {
+    return "(a line that is too long)";
+  }
   if (!line.empty() && line.back() == '\r') {
     line.pop_back();
   }
   return line;
 }
 
-void LineInput::forget_typed_ahead() {
-  if (isatty(descriptor_) != 0) {
-    tcflush(descriptor_, TCIFLUSH);
-    received_.clear();
+bool LineInput::is_terminal() const {
+  return isatty(descriptor_) != 0;
+}
+
+// What was typed ahead answers a question that nobody had seen; only a wish to stop is heeded.
+bool LineInput::forget_typed_ahead() {
+  if (!is_terminal()) {
+    return false;
   }
+  bool has_quit = false;
+  while (receive(0)) {
+  }
+  while (const auto line = take_line()) {
+    has_quit = has_quit || asks_to_quit(*line);
+  }
+  tcflush(descriptor_, TCIFLUSH);
+  received_.clear();
+  return has_quit;
+}
+
+// Whether anything arrived within this time.
+bool LineInput::receive(int time_out_ms) {
+  pollfd waiting{descriptor_, POLLIN, 0};
+  if (poll(&waiting, 1, time_out_ms) <= 0) {
+    return false;
+  }
+  std::array<char, 512> bytes{};
+  const ssize_t count = read(descriptor_, bytes.data(), bytes.size());
+  has_ended_ = count <= 0;
+  received_.append(bytes.data(), static_cast<std::size_t>(std::max<ssize_t>(count, 0)));
+  return !has_ended_;
 }
 
 std::optional<std::string> LineInput::next(const std::function<bool()>& keep_waiting) {
@@ -36,18 +83,8 @@ std::optional<std::string> LineInput::next(const std::function<bool()>& keep_wai
     if (auto line = take_line()) {
       return line;
     }
-    pollfd waiting{descriptor_, POLLIN, 0};
-    if (poll(&waiting, 1, poll_ms) <= 0) {
-      continue;
-    }
-    std::array<char, 512> bytes{};
-    const ssize_t count = read(descriptor_, bytes.data(), bytes.size());
-    if (count <= 0) {
+    if (!receive(poll_ms) && has_ended_) {
       return std::nullopt;
-    }
-    received_.append(bytes.data(), static_cast<std::size_t>(count));
-    if (received_.size() > max_line && received_.find('\n') == std::string::npos) {
-      received_.clear();  // no answer is that long
     }
   }
   return std::nullopt;

@@ -1,16 +1,18 @@
 #include "runner/terminal/operator_at_terminal.hpp"
 
-#include <fmt/format.h>
-
 #include <charconv>
 
 #include "runner/terminal/exit_code.hpp"
 #include "runner/terminal/operator_prompt.hpp"
+#include "runner/terminal/say.hpp"
 #include "runner/terminal/stop_signal.hpp"
 namespace tapstudy::runner {
-std::string OperatorAtTerminal::next_line() {
-  const auto line = input_.next([] { return !stop_was_asked(); });
-  if (!line || *line == "quit") {
+std::string OperatorAtTerminal::next_line(const std::function<void()>& keep_waiting) {
+  const auto line = input_.next([&] {
+    keep_waiting();
+    return !stop_was_asked();
+  });
+  if (!line || asks_to_quit(*line)) {
     throw Stopped{"stopped; nothing was written"};
   }
   return *line;
@@ -22,16 +24,21 @@ void OperatorAtTerminal::please(const std::string& task) {
   }
 }
 
-double OperatorAtTerminal::how_much(const std::string& task, double max) {
+void OperatorAtTerminal::warn(const std::string& what) noexcept {
+  write_to_terminal("\n" + what + "\n");
+}
+
+double OperatorAtTerminal::how_much(const std::string& task, double max,
+                                    const std::function<void()>& keep_waiting) {
   while (true) {
-    fmt::print(stderr, "{}: ", task);
-    const std::string line = next_line();
+    say("{}: ", task);
+    const std::string line = next_line(keep_waiting);
     double value = 0.0;
     const auto [end, error] = std::from_chars(line.data(), line.data() + line.size(), value);
     if (error == std::errc{} && end == line.data() + line.size() && value > 0.0 && value <= max) {
       return value;
     }
-    fmt::print(stderr, "  please type a number above 0, at most {}\n", max);
+    say("  please type a number above 0, at most {}\n", max);
   }
 }
 }  // namespace tapstudy::runner

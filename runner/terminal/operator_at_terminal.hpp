@@ -10,10 +10,12 @@ class OperatorAtTerminal final : public device::CalibrationOperator {
  public:
   explicit OperatorAtTerminal(LineInput& input) : input_{input} {}
   void please(const std::string& task) override;
-  double how_much(const std::string& task, double max) override;
+  double how_much(const std::string& task, double max,
+                  const std::function<void()>& keep_waiting) override;
+  void warn(const std::string& what) noexcept override;
 
  private:
-  std::string next_line();
+  std::string next_line(const std::function<void()>& keep_waiting);
   LineInput& input_;
 };
 }  // namespace tapstudy::runner

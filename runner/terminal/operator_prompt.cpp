@@ -1,20 +1,21 @@
 #include "runner/terminal/operator_prompt.hpp"
 
-#include <fmt/format.h>
-
+#include "runner/terminal/say.hpp"
 #include "runner/terminal/stop_signal.hpp"
 namespace tapstudy::runner {
 bool asked_and_done(LineInput& input, const std::string& task) {
-  fmt::print(stderr, "{} press Enter. ", task);
-  input.forget_typed_ahead();
+  say("{} press Enter. ", task);
+  if (input.forget_typed_ahead()) {
+    return false;
+  }
   while (const auto line = input.next([] { return !stop_was_asked(); })) {
     if (line->empty()) {
       return true;
     }
-    if (*line == "quit") {
+    if (asks_to_quit(*line)) {
       return false;
     }
-    fmt::print(stderr, "Type quit to stop here; or press Enter. ");
+    say("Type quit to stop here; or press Enter. ");
   }
   return false;
 }

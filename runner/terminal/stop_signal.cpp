@@ -25,6 +25,10 @@ void listen_for_stop() {
   }
 }
 
+void ask_to_stop() noexcept {
+  asked.store(true);
+}
+
 bool stop_was_asked() {
   return asked.load();
 }

@@ -10,7 +10,11 @@ class Exploration {
   // Lets the trial continue; returns early if a fault has ended it.
   virtual void pass_time(double seconds) = 0;
   virtual bool is_running() const = 0;
+  // Whether the alternatives are rendered right now: an answer given in a stall is none.
+  virtual bool is_rendering() const { return is_running(); }
   virtual double time_s() const = 0;  // since the trial began
+  // How often the finger has come down on an alternative.
+  virtual int contacts(std::size_t alternative) const = 0;
 };
 using Explore = std::function<void(Exploration&)>;
 }  // namespace tapstudy::runner

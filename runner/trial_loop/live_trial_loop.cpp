@@ -12,8 +12,9 @@ constexpr std::chrono::milliseconds poll_interval{5};
 
 class LiveExploration final : public Exploration {
  public:
-  LiveExploration(device::HapticLoop& loop, const std::atomic<bool>& has_ended)
-      : loop_{loop}, has_ended_{has_ended} {}
+  LiveExploration(device::HapticLoop& loop, device::TickClock& clock,
+                  const std::atomic<bool>& has_ended)
+      : loop_{loop}, clock_{clock}, has_ended_{has_ended} {}
   void switch_to(std::size_t alternative) override { loop_.request_alternative(alternative); }
   void pass_time(double seconds) override {
     const auto until = std::chrono::steady_clock::now() + std::chrono::duration<double>{seconds};
@@ -26,12 +27,16 @@ class LiveExploration final : public Exploration {
     loop_.beat();
     return !has_ended_.load(std::memory_order_acquire);
   }
+  bool is_rendering() const override { return is_running() && loop_.is_ticking(clock_.now()); }
   double time_s() const override {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
   }
 
+  int contacts(std::size_t alternative) const override { return loop_.contacts(alternative); }
+
  private:
   device::HapticLoop& loop_;
+  device::TickClock& clock_;
   const std::atomic<bool>& has_ended_;
   std::chrono::steady_clock::time_point start_{std::chrono::steady_clock::now()};
 };
@@ -64,9 +69,10 @@ TrialResult LiveTrialLoop::run(std::span<core::TapRenderer> alternatives, const 
       loop.run(stop);
       has_ended.store(true, std::memory_order_release);
     }};
-    LiveExploration exploration{loop, has_ended};
+    LiveExploration exploration{loop, clock, has_ended};
     explore(exploration);
-  }  // the haptic thread has left the device at zero force and ended
+  }  // the haptic thread has commanded zero force and ended
+  stop_ = loop.report().stop;
   return {collector.finish(), loop.report(), static_cast<std::int64_t>(ring.dropped())};
 }
 }  // namespace tapstudy::runner

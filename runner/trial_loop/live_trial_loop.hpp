@@ -17,9 +17,13 @@ class LiveTrialLoop final : public TrialLoop {
   // From the next trial on.
   void use(device::Device& device) { device_ = &device; }
   TrialResult run(std::span<core::TapRenderer> alternatives, const Explore& explore) override;
+  bool is_force_off() const override {
+    return stop_ == device::StopOutcome::confirmed || device_->is_force_off();
+  }
 
  private:
   device::Device* device_;
+  device::StopOutcome stop_{device::StopOutcome::confirmed};
   device::LoopSettings settings_;
   core::RealtimeRequest realtime_;
   results::Recorder& recorder_;

@@ -18,5 +18,7 @@ class TrialLoop {
  public:
   virtual ~TrialLoop() = default;
   virtual TrialResult run(std::span<core::TapRenderer> alternatives, const Explore& explore) = 0;
+  // Whether the device is known to exert no force after the latest run.
+  virtual bool is_force_off() const { return true; }
 };
 }  // namespace tapstudy::runner

@@ -24,6 +24,8 @@ class VirtualExploration final : public Exploration {
   bool is_running() const override { return loop_.report().stopped_by == core::TickFault::none; }
   double time_s() const override { return static_cast<double>(loop_.report().ticks) * period_s_; }
 
+  int contacts(std::size_t alternative) const override { return loop_.contacts(alternative); }
+
  private:
   device::HapticLoop& loop_;
   results::TraceCollector& collector_;

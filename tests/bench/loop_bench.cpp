@@ -13,7 +13,9 @@ using namespace tapstudy;
 namespace {
 class Nothing final : public device::Device {
  public:
-  core::TickFault read(core::HandState& /*hand*/) noexcept override { return {}; }
+  core::TickFault read(core::HandState& /*hand*/, double /*elapsed_s*/) noexcept override {
+    return {};
+  }
   core::TickFault write(const core::Vec3& /*force_n*/) noexcept override { return {}; }
   device::DeviceDetail detail() const noexcept override { return {}; }
   std::string description() const override { return "nothing"; }

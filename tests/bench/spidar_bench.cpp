@@ -19,7 +19,7 @@ void run(benchmark::State& state, device::UsbPipe& pipe) {
   int tick = 0;
   for (auto _ : state) {
     const double turn = 0.01 * ++tick;
-    if (spidar.read(hand) != core::TickFault::none ||
+    if (spidar.read(hand, 1e-3) != core::TickFault::none ||
         spidar.write({2.0 * std::sin(turn), 3.0 * std::cos(turn), 1.0}) != core::TickFault::none) {
       state.SkipWithError("a tick failed");
       break;
@@ -36,7 +36,9 @@ void spidar_tick_through_libusb(benchmark::State& state) {
   const std::vector<testing::Bytes> all = testing::replies_of_a_moving_grip();
   std::size_t next = 0;
   testing::FakeBus bus{device::cyverse_vendor, device::sh4_product, [&](auto request) {
-                         return testing::with_echo(all[next++ % all.size()], request);
+                         testing::Bytes reply = all[next++ % all.size()];
+                         testing::echo(request, reply);
+                         return reply;
                        }};
   bus.forget_requests_as_they_come();
   const device::UsbNode node{testing::node_of(bus)};

@@ -16,9 +16,9 @@ TEST_CASE("along the normal plate and device agree one to one", "[core][placemen
 }
 
 TEST_CASE("sideways a centimetre of device is ten of plate", "[core][placement]") {
-  const HandState right{{0.02, -0.02, 0.03}, {}};
+  const HandState right{{0.02, -0.02, 0.03}, Vec3::Zero()};
   CHECK(placement.to_plate(right).position_m.isApprox(Vec3{0.1, 0.0, 0.0}));
-  const HandState towards_participant{{0.01, -0.02, 0.04}, {}};
+  const HandState towards_participant{{0.01, -0.02, 0.04}, Vec3::Zero()};
   CHECK(placement.to_plate(towards_participant).position_m.isApprox(Vec3{0.0, -0.1, 0.0}));
 }
 

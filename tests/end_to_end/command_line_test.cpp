@@ -142,7 +142,7 @@ TEST_CASE("the demo study runs, is stored whole and is reported", "[end_to_end]"
   REQUIRE(report.exit_code == 0);
   CHECK_THAT(report.standard_output, Contains("presented \\ answered"));
   CHECK_THAT(report.standard_output, Contains("SIMULATED"));
-  CHECK_THAT(testing::contents(study + "/report.html"), Contains("Simulated participants"));
+  CHECK_THAT(testing::contents(study + "/report.html"), Contains("SIMULATED participants"));
   const auto json = nlohmann::json::parse(testing::contents(study + "/report.json"));
   int total = 0;
   for (const auto& row : json["blocks"][0]["counts"]) {
@@ -343,10 +343,12 @@ TEST_CASE("a file that is no protocol is refused however long it is", "[end_to_e
 TEST_CASE("check warns of a contact that the hand cannot rest on", "[end_to_end]") {
   const TempDirectory directory;
   const auto checked = [&](const std::string& stiffness) {
-    return testing::tapstudy({"check", changed(directory, "discrimination.yaml",
-                                               "penalty_stiffness_n_per_m: 3000",
-                                               "penalty_stiffness_n_per_m: " + stiffness)})
-        .standard_output;
+    const auto run = testing::tapstudy(
+        {"check", changed(directory, "discrimination.yaml", "penalty_stiffness_n_per_m: 3000",
+                          "penalty_stiffness_n_per_m: " + stiffness)});
+    INFO(run.standard_error);
+    CHECK(run.exit_code == 0);
+    return run.standard_output;
   };
   CHECK_THAT(checked("3000"), Contains("rests on up to") && !Contains("chatter"));
   CHECK_THAT(checked("15000"), Contains("half its damping would chatter"));
@@ -456,6 +458,26 @@ TEST_CASE("a report needs the study's directory alone, and no session goes on wi
   CHECK(report.exit_code == 0);
 }
 
+TEST_CASE("what only the finished model shows to be wrong is told at its line", "[end_to_end]") {
+  const TempDirectory directory;
+  const auto said = [&](const std::string& from, const std::string& to) {
+    const auto run =
+        testing::tapstudy({"modes", changed(directory, "discrimination.yaml", from, to),
+                           "--stimulus", "acrylic_two"});
+    CHECK(run.exit_code == 4);
+    return run.standard_error;
+  };
+  CHECK_THAT(
+      said("damping: {alpha_per_s: 120.0, beta_s: 8.50e-5}", "damping: {modal_ratios: [0.1]}"),
+      Contains("materials.acrylic.damping: stimulus 'acrylic_two': 1 modal ratios are given, "
+               "3 modes") &&
+          Catch::Matchers::Matches("(.|\n)*\\.yaml:[0-9]+:[0-9]+: materials(.|\n)*"));
+  CHECK_THAT(
+      said("  two_fixations:\n", "  two_fixations:\n    mesh: {accuracy: 0.1}\n"),
+      Contains("plates.two_fixations: stimulus 'acrylic_two': mesh.accuracy: fixation 1 is a "
+               "point or a line"));
+}
+
 TEST_CASE("damping that is fitted, and damping mode by mode, reach the modes", "[end_to_end]") {
   const TempDirectory directory;
   const auto modes = [&](const std::string& damping) {
@@ -471,6 +493,8 @@ TEST_CASE("damping that is fitted, and damping mode by mode, reach the modes", "
   const auto by_mode = modes("{modal_ratios: [0.011, 0.022, 0.033, 0.044]}");
   CHECK(by_mode["damping_ratios"] == std::vector<double>{0.011, 0.022, 0.033});
   CHECK_FALSE(by_mode.contains("alpha_per_s"));
+  CHECK(modes("{modal_ratios: [0.011], further_ratio: 0.05}")["damping_ratios"] ==
+        std::vector<double>{0.011, 0.05, 0.05});
   // points that lie on one Rayleigh curve, alpha 10 1/s and beta 2e-5 s, and one twice
   const auto ratio = [](double hz) {
     return 0.5 * (10.0 / (2.0 * M_PI * hz) + 2e-5 * 2.0 * M_PI * hz);

@@ -42,10 +42,11 @@ TEST_CASE("a session asks every question and stores every answer", "[end_to_end]
   CHECK_THAT(sql(directory,
                  "SELECT mode, seed, device, scheduler FROM session "
                  "JOIN participant USING (participant_id)"),
-             Catch::Matchers::StartsWith("real|5|simulated_hand|SCHED_"));
+             Catch::Matchers::StartsWith("pilot|5|simulated_hand|SCHED_"));
   CHECK(sql(directory,
-            "SELECT doctor ->> '$.idle.count', length(doctor ->> '$.verdict') > 20 "
-            "FROM session") == "500|1\n");
+            "SELECT doctor ->> '$.idle.count' BETWEEN 490 AND 510, length(doctor ->> '$.verdict') "
+            "> 20 "
+            "FROM session") == "1|1\n");
   CHECK(sql(directory, "SELECT sum(dropped_samples) FROM tick_statistics") == "0\n");
   CHECK(sql(directory, "PRAGMA integrity_check") == "ok\n");
 }
@@ -70,7 +71,7 @@ TEST_CASE("a stopped session keeps its answers and is resumed at the next trial"
 
 TEST_CASE("in a choice one switches freely and every visit is stored", "[end_to_end][threads]") {
   const TempDirectory directory;
-  const auto result = session(directory, "reality_finger.yaml", "a\nb\nz\nB\n= c\n");
+  const auto result = session(directory, "reality_finger.yaml", "a\nb\nz\nC\n= c\n");
   INFO(result.standard_error);
   REQUIRE(result.exit_code == 0);
   CHECK_THAT(result.standard_error, !Contains("finite_elements"));  // blind
@@ -80,17 +81,49 @@ TEST_CASE("in a choice one switches freely and every visit is stored", "[end_to_
             "FROM response") == "1\n");
 }
 
-TEST_CASE("a pilot stays out of the report of real participants", "[end_to_end][threads]") {
+TEST_CASE("instructions, rests, confidence and feedback come in their places and are stored",
+          "[end_to_end][threads]") {
   const TempDirectory directory;
-  REQUIRE(session(directory, "reality_finger.yaml", "= a\n", {"--pilot"}).exit_code == 0);
-  REQUIRE(testing::tapstudy({"run", paper("reality_finger.yaml"), "--participant", "P02", "--out",
-                             directory / "the_study"},
-                            "= b\n")
-              .exit_code == 0);
+  std::string text = testing::contents(paper("discrimination.yaml"));
+  text = testing::replaced(text, "finger:\n", "instructions: Tap the plates.\n\nfinger:\n");
+  text = testing::replaced(text, "    task: identification\n",
+                           "    task: identification\n    practice: true\n    feedback: true\n"
+                           "    instructions: Some practice first.\n"
+                           "    confidence: {steps: 3, low: unsure, high: sure}\n"
+                           "    breaks: {every_trials: 4}\n");
+  testing::write(directory / "study.yaml", text);
+  const auto run = testing::tapstudy({"run", directory / "study.yaml", "--participant", "P01",
+                                      "--out", directory / "the_study", "--seed", "5"},
+                                     "1\n9\n1\n2\n2\n3\n3\n4\n1\n1\n2\n2\n3\n3\n1\n4\n2\n");
+  INFO(run.standard_error);
+  REQUIRE(run.exit_code == 0);
+  CHECK_THAT(run.standard_error,
+             Contains("Tap the plates.\n\nSome practice first.\n\nTrial 1 of 8 (practice)") &&
+                 Contains("How sure are you? 1 (unsure) to 3 (sure)") &&
+                 Contains("please type a number from 1 to 3") && Contains("right: it was ") &&
+                 Contains("Time for a break"));
+  CHECK(sql(directory, "SELECT group_concat(confidence) FROM response") == "1,2,3,1,2,3,1,2\n");
+  CHECK(
+      sql(directory,
+          "SELECT group_concat(state) FROM session_event WHERE number = 5 OR "
+          "number IS NULL") ==
+      "begun,instructions,instructions,resting,ready,exploring,confidence,saved,feedback,ended\n");
+  CHECK(sql(directory,
+            "SELECT count(*) FROM session_event AS a JOIN session_event AS b "
+            "ON b.rowid = a.rowid + 1 WHERE b.t_s < a.t_s") == "0\n");
+  CHECK_THAT(testing::contents((directory / "the_study") + "/answers.journal"),
+             Contains("\"confidence\":3"));
+}
+
+TEST_CASE("without a participant's device a session is a rehearsal, and the report says so",
+          "[end_to_end][threads]") {
+  const TempDirectory directory;
+  const auto result = session(directory, "reality_finger.yaml", "a\nb\nc\n= a\n");
+  REQUIRE(result.exit_code == 0);
+  CHECK_THAT(result.standard_error, Contains("a rehearsal and stored as a pilot"));
   const auto report = testing::tapstudy({"report", directory / "the_study"});
   CHECK(report.exit_code == 0);
-  CHECK_THAT(report.standard_output, Contains("1/1"));
-  CHECK_THAT(report.standard_output, !Contains("/2"));
+  CHECK_THAT(report.standard_output, Contains("PILOT sessions"));
 }
 
 TEST_CASE("Ctrl-C in a session keeps what was answered and says how to go on",
@@ -98,7 +131,7 @@ TEST_CASE("Ctrl-C in a session keeps what was answered and says how to go on",
   const TempDirectory directory;
   // in the foreground: else the whole process group is told too, and a second signal ends at once
   const std::string script =
-      "(echo 1; sleep 30) | /usr/bin/timeout --foreground --preserve-status -s INT 5 \"$0\" run "
+      "(echo 1; sleep 7) | /usr/bin/timeout --foreground --preserve-status -s INT 5 \"$0\" run "
       "\"$1\" "
       "--participant P01 --seed 5 --out \"$2\" 2>\"$3\"; echo $?; kill $(jobs -p) 2>/dev/null";
   const auto result = testing::run_program({"/bin/bash", "-c", "set -o pipefail; " + script,
@@ -119,15 +152,21 @@ TEST_CASE("a session runs on a device that another program drives, and can be re
   testing::write(directory / "rig.yaml",
                  testing::replaced(testing::contents(testing::shipped("rigs/remote.yaml")),
                                    "port: 50607, max_reply_s: 0.003",
-                                   fmt::format("port: {}, max_reply_s: 0.1", port)));
+                                   fmt::format("port: {}, max_reply_s: 0.1", port)) +
+                     "loop: {max_late_ticks_in_a_row: 0, max_stall_s: 0}\n");
   const auto live = testing::run_program(
-      {"/bin/bash", "-c",
+      {"/usr/bin/python3", testing::source("tests/support/with_logind.py"), "/bin/bash", "-c",
        "for i in 1 2 3 4 1 2 3 4; do sleep 0.9; echo $i; done | \"$0\" run \"$1\" --rig \"$2\" "
        "--participant P01 --seed 5 --out \"$3\"",
        TAPSTUDY_PROGRAM, paper("discrimination.yaml"), directory / "rig.yaml",
        directory / "the_study"});
   INFO(live.standard_error);
   REQUIRE(live.exit_code == 0);
+  CHECK_THAT(live.standard_output,
+             Contains("inhibited: sleep:idle:handle-lid-switch tapstudy a haptic device is in use "
+                      "block\nstill inhibited: 0"));
+  CHECK_THAT(sql(directory, "SELECT doctor FROM session"),
+             Contains(R"("sleep":"sleep inhibited")"));
   CHECK(sql(directory, "SELECT device FROM session") ==
         "remote device at UDP port " + std::to_string(port) + "\n");
   CHECK(sql(directory, "SELECT count(*) FROM response") == "8\n");
@@ -140,12 +179,9 @@ TEST_CASE("a session runs on a device that another program drives, and can be re
                                         "--rig",         directory / "replay.yaml",
                                         "--participant", "P02",
                                         "--out",         directory / "replayed"};
-  const auto no_participant = testing::tapstudy(replay, "1\n");
-  CHECK(no_participant.exit_code == 2);
-  CHECK_THAT(no_participant.standard_error, Contains("a replayed hand is not a participant"));
-  std::vector<std::string> pilot = replay;
-  pilot.emplace_back("--pilot");
-  CHECK(testing::tapstudy(pilot, "1\n2\n3\n4\n1\n2\n3\n4\n").exit_code == 0);
+  const auto replayed = testing::tapstudy(replay, "1\n2\n3\n4\n1\n2\n3\n4\n");
+  CHECK(replayed.exit_code == 0);
+  CHECK_THAT(replayed.standard_error, Contains("a rehearsal and stored as a pilot"));
   CHECK(testing::run_program({"/usr/bin/sqlite3", directory / "replayed/study.db",
                               "SELECT device, mode FROM session JOIN participant "
                               "USING (participant_id)"})
@@ -155,7 +191,7 @@ TEST_CASE("a session runs on a device that another program drives, and can be re
 TEST_CASE("report --mode takes the sessions that it names, and no others",
           "[end_to_end][threads]") {
   const TempDirectory directory;
-  REQUIRE(session(directory, "reality_finger.yaml", "= a\n", {"--pilot"}).exit_code == 0);
+  REQUIRE(session(directory, "reality_finger.yaml", "a\nb\nc\n= a\n", {"--pilot"}).exit_code == 0);
   REQUIRE(testing::tapstudy({"simulate", paper("reality_finger.yaml"), "--participants", "3",
                              "--out", directory / "the_study"})
               .exit_code == 0);

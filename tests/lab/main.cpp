@@ -34,7 +34,7 @@ using lab::MockedBoard;
 namespace {
 constexpr int exchanges_a_trial = 500;
 constexpr int exchanges_a_tap = 200;
-constexpr unsigned max_run_s = 240;
+constexpr unsigned max_run_s = 90;
 
 struct Options {
   std::string report;
@@ -46,6 +46,9 @@ struct Options {
   int stop_after{0};
   int kill_guardian_after{0};
   int unplug_after{0};
+  int amplifier_off_after{0};
+  int halt_after{0};
+  int nak_after{0};
   bool is_silent{false};
   bool answers_nonsense{false};
   std::vector<std::string> command;
@@ -167,6 +170,10 @@ class Lab {
         plug_in_another();
       }
       is_tapping_ = false;
+      switch_amplifier(true);
+      if (options_.nak_after > 0) {
+        boards_.front()->take_again();
+      }
       boards_.back()->set_heir(guardian());  // the device may have been opened anew
       type("\n");
     } else if (unanswered_.ends_with("> ")) {
@@ -184,6 +191,11 @@ class Lab {
     if (write(keyboard_.ends[1], text.data(), text.size()) < 0) {
       perror("keyboard");
     }
+  }
+
+  void switch_amplifier(bool is_on) {
+    boards_.front()->with_hardware(
+        [is_on](testing::SimulatedSpidar& spidar) { spidar.switch_amplifier(is_on); });
   }
 
   // As Ctrl-Z does.
@@ -231,6 +243,15 @@ class Lab {
     if (exchange == options_.unplug_after) {
       boards_.front()->unplug();
     }
+    if (exchange == options_.halt_after) {
+      boards_.front()->halt();
+    }
+    if (exchange == options_.nak_after) {
+      boards_.front()->stop_taking();
+    }
+    if (exchange == options_.amplifier_off_after) {
+      switch_amplifier(false);
+    }
   }
 
   Options options_;
@@ -262,6 +283,9 @@ int main(int count, char** words) {
   app.add_option("--stop-after", options.stop_after);
   app.add_option("--kill-guardian-after", options.kill_guardian_after);
   app.add_option("--unplug-after", options.unplug_after);
+  app.add_option("--amplifier-off-after", options.amplifier_off_after);
+  app.add_option("--halt-after", options.halt_after);
+  app.add_option("--nak-after", options.nak_after);
   app.add_flag("--silent", options.is_silent);
   app.add_flag("--nonsense", options.answers_nonsense);
   char** const end = words + count;

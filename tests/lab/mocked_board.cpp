@@ -108,6 +108,21 @@ void MockedBoard::unplug() {
   umockdev_testbed_remove_device(bed_, name().c_str());
 }
 
+void MockedBoard::halt() {
+  const std::lock_guard lock{mutex_};
+  usbfs_.halt_out(1);
+}
+
+void MockedBoard::stop_taking() {
+  const std::lock_guard lock{mutex_};
+  usbfs_.persist_in(testing::FakeUsbfs::Trouble::out_nak);
+}
+
+void MockedBoard::take_again() {
+  const std::lock_guard lock{mutex_};
+  usbfs_.persist_in(testing::FakeUsbfs::Trouble::none);
+}
+
 MockedBoard::Log MockedBoard::log() {
   const std::lock_guard lock{mutex_};
   return log_;
@@ -148,6 +163,9 @@ bool MockedBoard::answer(UMockdevIoctlClient* client) {
       return true;
     case static_cast<unsigned>(USBDEVFS_BULK):
       bulk(client);
+      return true;
+    case static_cast<unsigned>(USBDEVFS_CLEAR_HALT):  // of the heir's, maybe: see bulk()
+      complete_with(client, usbfs_.ioctl(USBDEVFS_CLEAR_HALT, nullptr));
       return true;
     default:
       return pass_on(client);

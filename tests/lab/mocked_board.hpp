@@ -41,6 +41,10 @@ class MockedBoard : private testing::UsbBoard {
 
   void plug_in();
   void unplug();
+  // Its OUT endpoint is halted until that is cleared; takes nothing; takes requests again.
+  void halt();
+  void stop_taking();
+  void take_again();
   void fall_silent() { usbfs_.persist_in(testing::FakeUsbfs::Trouble::missing); }
   std::string node() const;
   Log log();

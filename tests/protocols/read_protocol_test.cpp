@@ -24,11 +24,20 @@ std::string discrimination() {
 }
 }  // namespace
 
+TEST_CASE("a comma where a document should begin is no endless row of documents", "[protocols]") {
+  const std::string text = discrimination();
+  CHECK(refusal(",,," + text) != "accepted");
+  CHECK(refusal(replaced(text, "finger:", ",finger:")) != "accepted");
+  CHECK_THAT(refusal(text + "---\ntitle: another\n"), Contains("more than one YAML document"));
+}
+
 TEST_CASE("every shipped protocol can be read", "[protocols]") {
-  for (const auto& entry : std::filesystem::directory_iterator{testing::shipped("paper")}) {
-    if (entry.path().extension() == ".yaml") {
-      INFO(entry.path().string());
-      CHECK_NOTHROW(protocols::read_protocol(entry.path().string()));
+  for (const char* const folder : {"paper", "recommended"}) {
+    for (const auto& entry : std::filesystem::directory_iterator{testing::shipped(folder)}) {
+      if (entry.path().extension() == ".yaml") {
+        INFO(entry.path().string());
+        CHECK_NOTHROW(protocols::read_protocol(entry.path().string()));
+      }
     }
   }
 }
@@ -53,6 +62,34 @@ TEST_CASE("all that is wrong is said at once, in the order of the file", "[proto
   CHECK_THAT(said, Contains("stimuli.acrylic_two.plate: 'two_fixation' is not a known plate"));
   CHECK(said.find("mass_kg") < said.find("poissons_ratio"));
   CHECK(said.find("poissons_ratio") < said.find("two_fixation"));
+}
+
+TEST_CASE("a plate with a scale of its own is tapped at the same places of the device",
+          "[protocols]") {
+  const std::string plate = "  two_fixations:\n    size_m: [0.6, 0.6, 0.05]\n";
+  const std::string larger =
+      "  two_fixations:\n    size_m: [1.2, 1.2, 0.05]\n    lateral_scale: 0.05\n";
+  const auto read = [&](const std::string& plate_text) {
+    return protocols::parse_protocol(
+        replaced(
+            replaced(replaced(discrimination(), plate, plate_text), "[-0.3, -0.3]", "[-0.6, -0.6]"),
+            "[0.3, -0.3]", "[0.6, -0.6]"),
+        "study.yaml");
+  };
+  const protocols::Protocol protocol = read(larger);
+  const protocols::Plate& own = *protocol.plates.at("two_fixations");
+  for (const auto& [name, at_m] : protocol.tapping_points_m) {
+    const core::Vec3 usual = protocol.placement.point_to_device({at_m.x(), at_m.y(), 0.0});
+    const Eigen::Vector2d own_m = own.tapping_points_m.at(name);
+    CHECK(own_m.isApprox(2.0 * at_m));
+    CHECK(protocol.placement.scaled(own.lateral_ratio)
+              .point_to_device({own_m.x(), own_m.y(), 0.0})
+              .isApprox(usual));
+  }
+  const std::string elsewhere = larger + "    tapping_points_m: {P1: [0.1, 0.1]}\n";
+  CHECK_THROWS_WITH(read(elsewhere), Contains("must not be distinguishable by where"));
+  const std::string unknown = larger + "    tapping_points_m: {P9: [0.1, 0.1]}\n";
+  CHECK_THROWS_WITH(read(unknown), Contains("'P9' is not among the study's tapping points"));
 }
 
 TEST_CASE("what makes no sense as a study is refused", "[protocols]") {

@@ -1,9 +1,12 @@
 #include "protocols/schedule.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <map>
 #include <set>
 
+#include "core/error.hpp"
 #include "protocols/ordering.hpp"
 #include "protocols/read_protocol.hpp"
 #include "support/texts.hpp"
@@ -96,16 +99,154 @@ TEST_CASE("in a Williams square everything follows everything else equally often
   }
 }
 
-TEST_CASE("blind labels are drawn anew for each participant and kept within one",
+TEST_CASE(
+    "over its participants a Williams order is balanced across repetitions, whatever the seed",
+    "[protocols][schedule]") {
+  const int n = GENERATE(2, 3, 4, 5, 6);
+  const int repetitions = GENERATE(1, 2, 3, 4);
+  const std::uint64_t seed = GENERATE(1U, 2U);
+  CAPTURE(n, repetitions, seed);
+  protocols::Block block;
+  block.order = protocols::Order::williams;
+  block.repetitions = repetitions;
+  for (int i = 0; i < n; ++i) {
+    block.stimuli.push_back(std::string(1, static_cast<char>('a' + i)));
+  }
+  std::map<std::string, int> successions;
+  std::map<std::string, int> places;
+  const int participants = protocols::williams_sequences(n, repetitions);
+  for (int participant = 0; participant < participants; ++participant) {
+    core::Rng rng{1};
+    const auto order = protocols::ordered_stimuli(block, rng, {participant, seed});
+    REQUIRE(order.size() == static_cast<std::size_t>(n * repetitions));
+    for (std::size_t place = 0; place < order.size(); ++place) {
+      ++places[order[place].stimulus + std::to_string(place)];
+      if (place > 0) {
+        ++successions[order[place - 1].stimulus + order[place].stimulus];
+      }
+    }
+  }
+  CHECK(successions.size() == static_cast<std::size_t>(n * (n - 1)));  // none follows itself
+  for (const auto& [pair, count] : successions) {
+    CHECK(count == successions.begin()->second);
+  }
+  for (const auto& [place, count] : places) {
+    CHECK(count == participants / n);
+  }
+}
+
+TEST_CASE("the seed of the study deals the balanced orders out", "[protocols][schedule]") {
+  protocols::Protocol protocol = paper("discrimination.yaml");
+  protocol.blocks[0].order = protocols::Order::williams;
+  const auto order = [&](std::uint64_t seed, int index) {
+    protocol.counterbalancing_seed = seed;
+    return protocols::described(make_schedule(protocol, 1, index));
+  };
+  std::set<std::string> first;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    first.insert(order(seed, 0));
+  }
+  CHECK(first.size() > 5);
+  CHECK(order(3, 0) == order(3, 0));
+}
+
+TEST_CASE("blind labels are drawn anew for each trial: none has a history",
           "[protocols][schedule]") {
   protocols::Protocol protocol = paper("reality_finger.yaml");
-  protocol.blocks[0].repetitions = 3;
+  protocol.blocks[0].repetitions = 4;
   std::set<std::vector<std::string>> mappings;
-  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+  int same_as_before = 0;
+  constexpr int participants = 400;
+  for (std::uint64_t seed = 0; seed < participants; ++seed) {
     const auto schedule = make_schedule(protocol, seed, 0);
-    REQUIRE(schedule.size() == 3);
-    CHECK(schedule[0].stimuli == schedule[2].stimuli);
+    REQUIRE(schedule.size() == 4);
     mappings.insert(schedule[0].stimuli);
+    for (std::size_t i = 1; i < 4; ++i) {
+      same_as_before += schedule[i].stimuli[0] == schedule[i - 1].stimuli[0] ? 1 : 0;
+    }
   }
+  // one time in three, within four standard deviations
+  CHECK(same_as_before == Approx(participants).margin(4.0 * std::sqrt(participants * 2.0 / 3.0)));
   CHECK(mappings.size() == 6);  // all orders of three
+}
+
+TEST_CASE("a constrained order is any of those that satisfy it, equally often",
+          "[protocols][schedule]") {
+  protocols::Block block;
+  block.name = "b";
+  block.stimuli = {"a", "b", "c"};
+  block.repetitions = 2;
+  block.constraints = {1, 1};
+  // of the 90 orders of aabbcc, 30 have no immediate repetition (inclusion and exclusion)
+  std::map<std::string, int> counts;
+  core::Rng rng{11};
+  constexpr int draws = 9000;
+  for (int i = 0; i < draws; ++i) {
+    std::string order;
+    for (const auto& next : protocols::ordered_stimuli(block, rng, {})) {
+      order += next.stimulus;
+    }
+    ++counts[order];
+  }
+  REQUIRE(counts.size() == 30);
+  double chi_square = 0.0;
+  for (const auto& [order, count] : counts) {
+    chi_square += std::pow(count - draws / 30.0, 2) / (draws / 30.0);
+    CHECK(std::adjacent_find(order.begin(), order.end()) == order.end());
+  }
+  CHECK(chi_square < 58.3);  // 29 degrees of freedom, p = .001
+}
+
+TEST_CASE("within repetitions too a constrained order is any that satisfies it, equally often",
+          "[protocols][schedule]") {
+  protocols::Block block;
+  block.name = "b";
+  block.stimuli = {"a", "b", "c"};
+  block.repetitions = 2;
+  block.order = protocols::Order::shuffle_within_repetition;
+  block.constraints = {1, 1};
+  // of the 36 pairs of orders of abc, the second begins in 24 with another than the first ended
+  // with
+  std::map<std::string, int> counts;
+  core::Rng rng{12};
+  constexpr int draws = 7200;
+  for (int i = 0; i < draws; ++i) {
+    std::string order;
+    for (const auto& next : protocols::ordered_stimuli(block, rng, {})) {
+      order += next.stimulus;
+    }
+    ++counts[order];
+  }
+  REQUIRE(counts.size() == 24);
+  double chi_square = 0.0;
+  for (const auto& [order, count] : counts) {
+    chi_square += std::pow(count - draws / 24.0, 2) / (draws / 24.0);
+    CHECK(std::set<char>(order.begin(), order.begin() + 3).size() == 3);
+    CHECK(std::adjacent_find(order.begin(), order.end()) == order.end());
+  }
+  CHECK(chi_square < 49.7);  // 23 degrees of freedom, p = .001
+}
+
+TEST_CASE("two presentations of a stimulus are as far apart as is asked, and no run is longer",
+          "[protocols][schedule]") {
+  protocols::Block block;
+  block.name = "b";
+  block.stimuli = {"a", "b", "c", "d"};
+  block.repetitions = 2;
+  core::Rng rng{3};
+  block.constraints = {0, 3};
+  for (int i = 0; i < 50; ++i) {
+    const auto order = protocols::ordered_stimuli(block, rng, {});
+    for (std::size_t k = 0; k + 2 < order.size(); ++k) {
+      CHECK(order[k].stimulus != order[k + 1].stimulus);
+      CHECK(order[k].stimulus != order[k + 2].stimulus);
+    }
+  }
+  block.constraints = {0, 5};  // four stimuli cannot
+  CHECK_THROWS_AS(protocols::ordered_stimuli(block, rng, {}), core::InvalidInput);
+  block.repetitions = 10;
+  block.constraints = {1, 1};  // met by one random order in fourteen thousand
+  const auto rare = protocols::ordered_stimuli(block, rng, {});
+  CHECK(rare.size() == 40);
+  CHECK(std::ranges::adjacent_find(rare, {}, &protocols::OrderedStimulus::stimulus) == rare.end());
 }

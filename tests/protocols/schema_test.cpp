@@ -88,6 +88,8 @@ TEST_CASE("the schema has exactly the keys that the reader asks for", "[protocol
 TEST_CASE("schema and reader accept the same protocols", "[protocols][schema][slow]") {
   const auto [from, to] = GENERATE(values<Change>({
       {"title: Every", "title: Every"},
+      {"youngs_modulus_pa: 1.0e10", "youngs_modulus_pa: 10"},
+      {"{ratio: 0.02}", "{ratio: 0.02, beta_s: 0}"},
       {"order: 2", "order: 3"},
       {"flattening: 1", "flattening: 0.5"},
       {"accuracy: 0.01", "accuracy: 1"},
@@ -96,6 +98,14 @@ TEST_CASE("schema and reader accept the same protocols", "[protocols][schema][sl
       {"region: side, side: left", "region: side, side: left, radius_m: 1"},
       {"metres_per_unit: 0.001", "metres_per_unit: 0"},
       {"modal_ratios: [0.02, 0.01]", "modal_ratios: []"},
+      {"modal_ratios: [0.02, 0.01], further", "further"},
+      {"vote: first", "vote: last"},
+      {"vote: first", "feedback: true"},
+      {"    practice: true\n", ""},
+      {"every_trials: 3, ", ""},
+      {"steps: 4", "steps: 8"},
+      {"at_limit: give_up", "at_limit: forget"},
+      {"stimuli: [b, a]\n", "stimuli: [b, a]\n    vote: first\n"},
       {"modal_ratios: [0.02, 0.01]", "modal_ratios: [0.02, 0.01], first_ratio: 0.1"},
       {"modal_ratios: [0.02, 0.01]", "modal_ratios: [0.02], alpha_per_s: 1, beta_s: 1"},
       {"task: choice, ", "task: choice, order: shuffle, "},
@@ -121,11 +131,13 @@ TEST_CASE("schema and reader accept the same protocols", "[protocols][schema][sl
       {"technique: none", "technique: magic"},
       {"factors: {material: mdf}", "factors: {material: [1]}"},
       {"task: identification", "task: guessing"},
-      {"stimuli: [a]\n", "stimuli: []\n"},
-      {"stimuli: [a, b]}", "stimuli: [a, a]}"},
+      {"stimuli: [b, a]\n", "stimuli: []\n"},
+      {"stimuli: [a, b], vote", "stimuli: [a, a], vote"},
       {"responses: [a, b]", "respones: [a, b]"},
       {"repetitions: 2", "repetitions: 2.5"},
-      {"order: williams", "order: latin"},
+      {"order: shuffle", "order: latin"},
+      {"order: shuffle", "order: williams"},
+      {"max_run: 1", "max_run: 0"},
       {"practice: true", "practice: maybe"},
       {"claim: chosen_above_chance, stimulus: a", "claim: chosen_above_chance"},
       {"taps_per_visit: 4", "taps_per_visit: 0"},
@@ -176,7 +188,7 @@ TEST_CASE("the schemas of rigs and calibrations have exactly the keys that the r
     asked.merge(runner::rig_keys_asked_for(rig, directory / "rig.yaml"));
   }
   // these are asked for only where they stand
-  asked.insert({"loop.cpu", "spidar.rotary_switch"});
+  asked.insert({"loop.cpu", "spidar.relay", "spidar.rotary_switch"});
   CHECK(keys_in("rig") == asked);
   CHECK(keys_in("calibration") ==
         protocols::calibration_keys_asked_for(calibration(), "calibration.yaml"));
@@ -201,6 +213,12 @@ TEST_CASE("schema and reader accept the same rigs", "[protocols][rig][schema][sl
       {"spidar_g6", "type: X3R", "type: X3F"},
       {"spidar_g6", "type: X3R", "type: X3R, rotary_switch: 3"},
       {"spidar_g6", "type: X3R", "type: X3R, rotary_switch: 16"},
+      {"spidar_g6", "type: X3R", "type: X3R, relay: /dev/ttyACM0"},
+      {"spidar_g6", "type: X3R", "type: X3R, relay: \"\""},
+      {"spidar_g6", "type: X3R", "type: X3R, amplifier_sensed: false"},
+      {"spidar_g6", "type: X3R", "type: X3R, amplifier_sensed: 2"},
+      {"spidar_g6", "fifo_priority: 80", "fifo_priority: 80, max_stall_s: 0"},
+      {"spidar_g6", "fifo_priority: 80", "fifo_priority: 80, max_stall_s: 0.2"},
       {"spidar_g6", "max_turn_rad: 0.3,", ""},
       {"spidar_g6", "max_turn_rad: 0.3,", "max_turn_rad: 0.6,"},
       {"spidar_g6", "max_reply_s: 0.003}", "max_reply_s: 3}"},
@@ -208,6 +226,8 @@ TEST_CASE("schema and reader accept the same rigs", "[protocols][rig][schema][sl
       {"spidar_g6", "lateral_scale: 0.05", "lateral_scale: 0"},
       {"remote", "port: 50607", "port: 80"},
       {"remote", "max_reply_s: 0.003", "max_reply_s: 0"},
+      {"remote", "max_reply_s: 0.003", "delay_ticks: 2"},
+      {"remote", "max_reply_s: 0.003", "delay_ticks: -1"},
       {"replay", "trial_id: 1", "trial_id: 0"},
       {"replay", ", trial_id: 1", ""},
   }));

@@ -1,5 +1,7 @@
 #include "results/store.hpp"
 
+#include <sys/stat.h>
+
 #include <catch2/catch.hpp>
 #include <filesystem>
 
@@ -9,44 +11,19 @@
 #include "results/store_error.hpp"
 #include "results/trace_codec.hpp"
 #include "support/processes.hpp"
+#include "support/small_study.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;
 using namespace tapstudy::results;
+using namespace tapstudy::testing::small_study;
 using Catch::Matchers::Contains;
 using tapstudy::core::sha256;
-
-namespace {
-const StudyRow study{
-    "a study", "study.yaml", "format: tapstudy/1", sha256("format: tapstudy/1"), {}};
-
-SessionRow session(const std::string& participant, Mode mode = Mode::real) {
-  SessionRow row;
-  row.participant_id = participant;
-  row.mode = mode;
-  row.seed = 0xfedcba9876543210ULL;  // does not fit a signed integer
-  row.planned_order = "1 main 1 a\n";
-  row.rate_hz = 1000.0;
-  return row;
-}
-
-TrialRecord trial(std::int64_t session_id, int number, const std::string& response) {
-  TrialRecord record;
-  record.trial = {session_id, number, 1, "main", "identification", false, 1, "answered", 2.0};
-  record.alternatives = {{0, "", "a"}};
-  record.response = ResponseRow{response, response == "a", 1.5, 1.25};
-  record.events = {{0.1, "contact", 0.0}};
-  record.trace = {{0, 3, encode_trace(std::vector<core::TraceSample>(3))}};
-  record.statistics.ticks = 3;
-  return record;
-}
-}  // namespace
+namespace fs = std::filesystem;
 
 TEST_CASE("what is stored comes back", "[results][store]") {
   const testing::TempDirectory directory;
   {
-    Store store = Store::open_or_create(directory.path(), study);
-    SessionRow row = session("P01");
-    store.add_session(row);
+    auto [store, row] = begun_study(directory.path());
     store.add_trial(trial(row.id, 1, "a"));
     store.add_trial(trial(row.id, 2, "b"));
   }
@@ -66,9 +43,7 @@ TEST_CASE("what is stored comes back", "[results][store]") {
 
 TEST_CASE("a trial is there whole or not at all", "[results][store]") {
   const testing::TempDirectory directory;
-  Store store = Store::open_or_create(directory.path(), study);
-  SessionRow row = session("P01");
-  store.add_session(row);
+  auto [store, row] = begun_study(directory.path());
   TrialRecord broken = trial(row.id, 1, "a");
   broken.trace.push_back(broken.trace.front());  // the same ticks twice: refused after other rows
   CHECK_THROWS_AS(store.add_trial(broken), StoreError);
@@ -80,9 +55,7 @@ TEST_CASE("a trial is there whole or not at all", "[results][store]") {
 
 TEST_CASE("a trial cannot be stored over another", "[results][store]") {
   const testing::TempDirectory directory;
-  Store store = Store::open_or_create(directory.path(), study);
-  SessionRow row = session("P01");
-  store.add_session(row);
+  auto [store, row] = begun_study(directory.path());
   store.add_trial(trial(row.id, 1, "a"));
   CHECK_THROWS_AS(store.add_trial(trial(row.id, 1, "b")), StoreError);
   CHECK(store.answers().front().response == "a");
@@ -116,12 +89,143 @@ TEST_CASE("participants are counted once and keep to one mode", "[results][store
   CHECK_THROWS_AS(store.index_of("P01", Mode::pilot), core::InvalidInput);
 }
 
+TEST_CASE("a database deleted in a session is written anew with all that it held",
+          "[results][store]") {
+  const testing::TempDirectory directory;
+  auto [store, row] = begun_study(directory.path());
+  store.add_trial(trial(row.id, 1, "a"));
+  const bool is_all_gone = GENERATE(true, false);
+  for (const char* const file : {"study.db", "study.db-wal", "study.db-shm", "answers.journal"}) {
+    if (is_all_gone || std::string{file} == "study.db") {
+      fs::remove(directory / file);
+    }
+  }
+  CHECK_THROWS_AS(store.add_trial(trial(row.id, 2, "a")), StoreRewritten);
+  CHECK(Store::open_existing(directory.path()).answered_trials("P01") == std::vector<int>{1, 2});
+}
+
+TEST_CASE("a study that was moved is said, and goes on once it is back", "[results][store]") {
+  const testing::TempDirectory directory;
+  const std::string here = directory / "study";
+  auto [store, row] = begun_study(here);
+  fs::rename(here, directory / "elsewhere");
+  CHECK_THROWS_AS(store.add_trial(trial(row.id, 1, "a")), StoreError);
+  fs::rename(directory / "elsewhere", here);
+  CHECK(store.add_trial(trial(row.id, 1, "a")) == SaveOutcome::in_one_file);
+  CHECK(Store::open_existing(here).answered_trials("P01") == std::vector<int>{1});
+  CHECK(read_journal(here).answers.size() == 1);
+}
+
+TEST_CASE("a copy of study.db made after any trial is whole", "[results][store]") {
+  const testing::TempDirectory directory;
+  auto [store, row] = begun_study(directory.path());
+  for (int number = 1; number <= 3; ++number) {
+    CHECK(store.add_trial(trial(row.id, number, "a")) == SaveOutcome::in_one_file);
+    const std::string copy = directory / ("copy_" + std::to_string(number));
+    fs::create_directory(copy);
+    fs::copy_file(directory / "study.db", copy + "/study.db");
+    CHECK(Store::open_existing(copy).answers().size() == static_cast<std::size_t>(number));
+  }
+  Database reader{directory / "study.db", Database::Access::read};
+  reader.run("BEGIN; SELECT count(*) FROM trial");
+  CHECK(store.add_trial(trial(row.id, 4, "a")) == SaveOutcome::partly_in_log);
+}
+
+TEST_CASE("a database that holds what tapstudy did not put there is refused", "[results][store]") {
+  const testing::TempDirectory directory;
+  { Store::open_or_create(directory.path(), study); }
+  const std::string sql =
+      GENERATE("CREATE TRIGGER t AFTER INSERT ON response BEGIN DELETE FROM response; END",
+               "CREATE VIEW v AS WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n) "
+               "SELECT * FROM n",
+               "DROP TABLE event", "ALTER TABLE trial ADD COLUMN note TEXT");
+  {
+    Database database{directory / "study.db", Database::Access::write};
+    database.run(sql);
+  }
+  CAPTURE(sql);
+  CHECK_THROWS_AS(Store::open_existing(directory.path()), StoreError);
+  CHECK_THROWS_AS(Store::open_or_create(directory.path(), study), StoreError);
+}
+
+TEST_CASE("a page that rotted is seen when the study is opened", "[results][store]") {
+  const testing::TempDirectory directory;
+  {
+    auto [store, row] = begun_study(directory.path());
+    for (int number = 1; number <= 200; ++number) {
+      store.add_trial(trial(row.id, number, "a"));
+    }
+  }
+  std::string bytes = testing::contents(directory / "study.db");
+  const std::size_t page = 4096;
+  REQUIRE(bytes.size() > 20 * page);
+  bytes.replace(19 * page, 200, std::string(200, '\x5a'));
+  testing::write(directory / "study.db", bytes);
+  CHECK_THROWS_AS(Store::open_existing(directory.path()), StoreError);
+}
+
+TEST_CASE("a pipe is no study", "[results][store]") {
+  const testing::TempDirectory directory;
+  REQUIRE(mkfifo((directory / "study.db").c_str(), 0600) == 0);
+  CHECK_THROWS_AS(Store::open_existing(directory.path()), StoreError);
+}
+
+TEST_CASE("a trial has one answer", "[results][store]") {
+  const testing::TempDirectory directory;
+  {
+    auto [store, row] = begun_study(directory.path());
+    store.add_trial(trial(row.id, 1, "a"));
+  }
+  Database database{directory / "study.db", Database::Access::write};
+  CHECK_THROWS_AS(database.run("INSERT INTO response (trial_id, response, response_time_s) "
+                               "VALUES (1, 'b', 1.0)"),
+                  StoreError);
+}
+
+TEST_CASE("a study whose database is lost is read from its journal", "[results][store]") {
+  const testing::TempDirectory directory;
+  {
+    Store store = Store::open_or_create(directory.path(), study);
+    for (const char* const participant : {"P01", "P02"}) {
+      SessionRow row = session(participant);
+      row.participant_index = store.index_of(participant, Mode::real);
+      store.add_session(row);
+      store.add_trial(trial(row.id, 1, "a"));
+      store.add_trial(trial(row.id, 2, "b"));
+    }
+  }
+  fs::remove(directory / "study.db");
+  CHECK_THROWS_AS(Store::open_or_create(directory.path(), study), StoreError);  // not begun anew
+  Store store = Store::from_journal(directory.path());
+  CHECK(store.study().protocol_text == study.protocol_text);
+  const auto answers = store.answers();
+  REQUIRE(answers.size() == 4);
+  CHECK(answers[3].participant_id == "P02");
+  CHECK(answers[3].response == "b");
+  CHECK(answers[3].response_time_s == 1.5);
+}
+
+TEST_CASE(
+    "an answer that a killed program left out of the journal is added when the study is opened",
+    "[results][store]") {
+  const testing::TempDirectory directory;
+  {
+    auto [store, row] = begun_study(directory.path());
+    store.add_trial(trial(row.id, 1, "a"));
+    store.add_trial(trial(row.id, 2, "b"));
+  }
+  const std::string file = journal_file(directory.path());
+  const std::string whole = testing::contents(file);
+  testing::write(file, whole.substr(0, whole.rfind("\n{") + 1));
+  REQUIRE(read_journal(directory.path()).answers.size() == 1);
+  { Store::open_or_create(directory.path(), study); }
+  CHECK(testing::contents(file) == whole);
+}
+
 TEST_CASE("the recorder saves from its own thread and hands failures back",
           "[results][recorder][threads]") {
   const testing::TempDirectory directory;
-  Store store = Store::open_or_create(directory.path(), study);
-  SessionRow row = session("P01");
-  store.add_session(row);
+  auto [store, row] = begun_study(directory.path());
   core::SpscRing<core::TraceSample> ring{64};
   TraceCollector collector{ring};
   {
@@ -138,9 +242,9 @@ TEST_CASE("the recorder saves from its own thread and hands failures back",
     TrialRecord record = trial(row.id, 1, "a");
     auto collected = collector.finish();
     record.trace = std::move(collected.chunks);
-    recorder.save(record).get();
-    CHECK_THROWS_AS(recorder.save(record).get(), StoreError);
-    recorder.save(trial(row.id, 2, "a"));  // not waited for
+    recorder.save(std::make_shared<const TrialRecord>(record)).get();
+    CHECK_THROWS_AS(recorder.save(std::make_shared<const TrialRecord>(record)).get(), StoreError);
+    recorder.save(std::make_shared<const TrialRecord>(trial(row.id, 2, "a")));  // not waited for
   }
   CHECK(store.answered_trials("P01") == std::vector<int>{1, 2});
   CHECK(store.trace(1).size() == 5000);

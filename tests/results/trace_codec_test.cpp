@@ -27,6 +27,9 @@ std::vector<TraceSample> wild_samples(std::size_t count) {
     s.achieved_n = {rng.normal(), 1.0, -0.0};
     s.pose_residual_m = rng.uniform();
     s.closure_margin = -rng.uniform();
+    s.motor_voltage_v = rng.uniform();
+    s.missed_replies = static_cast<std::uint8_t>(rng.below(4));
+    s.late = rng.below(2) == 1;
     s.alternative = static_cast<std::uint8_t>(rng.below(256));
     s.touching = rng.below(2) == 1;
     s.impact = rng.below(2) == 1;
@@ -64,6 +67,9 @@ TEST_CASE("a trace comes back to the last bit, NaN and denormals included", "[re
     CHECK(decoded[i].touching == samples[i].touching);
     CHECK(decoded[i].impact == samples[i].impact);
     CHECK(decoded[i].saturated == samples[i].saturated);
+    CHECK(same_bits(decoded[i].motor_voltage_v, samples[i].motor_voltage_v));
+    CHECK(decoded[i].missed_replies == samples[i].missed_replies);
+    CHECK(decoded[i].late == samples[i].late);
     CHECK(decoded[i].fault == samples[i].fault);
   }
 }

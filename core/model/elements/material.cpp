@@ -26,10 +26,16 @@ std::string key_of(const FittedDamping& damping) {
   }
   return key;
 }
+std::string key_of(const ConstantDamping& damping) {
+  return fmt::format("constant({:a})", damping.ratio);
+}
 std::string key_of(const ModalDamping& damping) {
   std::string key{"modal"};
   for (const double ratio : damping.ratios) {
     key += fmt::format(" {:a}", ratio);
+  }
+  if (damping.further_ratio) {
+    key += fmt::format(" further {:a}", *damping.further_ratio);
   }
   return key;
 }

@@ -1,4 +1,5 @@
 #pragma once
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -22,11 +23,18 @@ struct FittedDamping {
   };
   std::vector<Point> points;  // at least two different frequencies
 };
-// One damping ratio per mode inside the band, lowest first.
+// One damping ratio per mode inside the band, lowest first. Bodies of one material differ in their
+// number of modes: those beyond the list have a ratio of their own, or the list must reach.
 struct ModalDamping {
   std::vector<double> ratios;
+  std::optional<double> further_ratio{};
 };
-using Damping = std::variant<RayleighDamping, TwoRatioDamping, FittedDamping, ModalDamping>;
+// The same ratio for every mode.
+struct ConstantDamping {
+  double ratio{0.0};
+};
+using Damping =
+    std::variant<RayleighDamping, TwoRatioDamping, FittedDamping, ModalDamping, ConstantDamping>;
 
 // Homogeneous, isotropic, linearly elastic.
 struct Material {

@@ -5,8 +5,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 #include <new>
+#include <utility>
 
+#include "core/bounded_child.hpp"
 #include "core/error.hpp"
 #include "core/model/mesh/box_outline.hpp"
 
@@ -160,12 +164,47 @@ void find_surface(TetMesh& mesh) {
   }
 }
 
-TetMesh mesh_from(const tetgenio& out, const Thickening& thickening) {
+// What crosses from the child that meshes: points as TetGen has them, and the corners.
+struct RawMesh {
+  Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor> points;
+  TetMesh::Indices tets;
+};
+
+std::string packed(const tetgenio& out) {
+  const std::array<std::int64_t, 2> counts{out.numberofpoints, out.numberoftetrahedra};
+  std::string bytes;
+  const auto append = [&](const auto* data, std::size_t count) {
+    // NOLINTNEXTLINE(cppcoreguidelines-pro-type-reinterpret-cast): bytes, for a pipe
+    bytes.append(reinterpret_cast<const char*>(data), count * sizeof *data);
+  };
+  append(counts.data(), counts.size());
+  append(out.pointlist, 3 * static_cast<std::size_t>(counts[0]));
+  append(out.tetrahedronlist, 4 * static_cast<std::size_t>(counts[1]));
+  return bytes;
+}
+
+RawMesh unpacked(const std::string& bytes) {
+  std::size_t at = 0;
+  const auto take = [&](auto* data, std::size_t count) {
+    std::memcpy(data, bytes.data() + at, count * sizeof *data);
+    at += count * sizeof *data;
+  };
+  std::array<std::int64_t, 2> counts{};
+  take(counts.data(), counts.size());
+  RawMesh raw;
+  raw.points.resize(counts[0], 3);
+  raw.tets.resize(counts[1], 4);
+  take(raw.points.data(), static_cast<std::size_t>(raw.points.size()));
+  take(raw.tets.data(), static_cast<std::size_t>(raw.tets.size()));
+  return raw;
+}
+
+TetMesh mesh_from(RawMesh raw, const Thickening& thickening) {
   TetMesh mesh;
-  mesh.nodes_m = Eigen::Map<const decltype(mesh.nodes_m)>(out.pointlist, out.numberofpoints, 3);
+  mesh.nodes_m = std::move(raw.points);
   mesh.nodes_m.col(2) /= thickening.flattening;
   mesh.nodes_m.rowwise() += thickening.low_m.transpose();
-  mesh.tets = Eigen::Map<const TetMesh::Indices>(out.tetrahedronlist, out.numberoftetrahedra, 4);
+  mesh.tets = std::move(raw.tets);
   make_volumes_positive(mesh);
   find_surface(mesh);
   return mesh;
@@ -193,13 +232,12 @@ std::string reason_for(int tetgen_code) {
       return fmt::format("code {}", tetgen_code);
   }
 }
-}  // namespace
 
-TetMesh mesh_shape(const Shape& shape, const MeshSize& size, const std::vector<Vec3>& points_m) {
-  check_count(shape, size);
+// TetGen crashes or hangs on some surfaces, so this runs in a process of its own.
+std::string tetrahedralised(const Shape& shape, const MeshSize& size,
+                            const std::vector<Vec3>& points_m, const Thickening& thickening) {
   tetgenio in;
   tetgenio out;
-  const Thickening thickening{bounds(shape).low_m, size.flattening};
   if (const auto* box = std::get_if<Box>(&shape)) {
     fill(in, outline(*box, points_m, bounds(shape).snap_m()), thickening);
   } else {
@@ -220,6 +258,16 @@ TetMesh mesh_shape(const Shape& shape, const MeshSize& size, const std::vector<V
         "max_tet_volume_m3 or a surface without tiny triangles)",
         max_tets, max_added_points)};
   }
-  return mesh_from(out, thickening);
+  return packed(out);
+}
+}  // namespace
+
+TetMesh mesh_shape(const Shape& shape, const MeshSize& size, const std::vector<Vec3>& points_m) {
+  check_count(shape, size);
+  const Thickening thickening{bounds(shape).low_m, size.flattening};
+  return mesh_from(unpacked(in_bounded_child(
+                       "mesh: TetGen could not mesh the body",
+                       [&] { return tetrahedralised(shape, size, points_m, thickening); })),
+                   thickening);
 }
 }  // namespace tapstudy::core

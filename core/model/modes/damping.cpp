@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <numbers>
 
 #include "core/algebra/lapack.hpp"
@@ -10,23 +11,37 @@ namespace tapstudy::core {
 namespace {
 RayleighDamping not_negative(const RayleighDamping& damping, const std::string& source) {
   if (damping.alpha_per_s < 0.0 || damping.beta_s < 0.0) {
-    throw ModelError{fmt::format(
-        "damping: {} give alpha {:.4g} 1/s and beta {:.4g} s (neither may be negative: modes "
-        "elsewhere would gain energy)",
-        source, damping.alpha_per_s, damping.beta_s)};
+    throw DampingError{
+        fmt::format("{} give alpha {:.4g} 1/s and beta {:.4g} s (neither may be negative: modes "
+                    "elsewhere would gain energy)",
+                    source, damping.alpha_per_s, damping.beta_s)};
   }
   return damping;
 }
 
 Eigen::ArrayXd as_measured(const ModalDamping& damping, Eigen::Index modes) {
   const auto given = static_cast<Eigen::Index>(damping.ratios.size());
-  if (given < modes) {
-    throw ModelError{fmt::format(
-        "damping: {} modal ratios are given, {} modes lie inside the band (give one for each, or "
-        "lower band_limit_hz)",
+  if (given < modes && !damping.further_ratio) {
+    throw DampingError{fmt::format(
+        "{} modal ratios are given, {} modes lie inside the band (give one for each, or "
+        "further_ratio for those beyond the list)",
         given, modes)};
   }
-  return Eigen::Map<const Eigen::ArrayXd>{damping.ratios.data(), given}.head(modes);
+  Eigen::ArrayXd ratios = Eigen::ArrayXd::Constant(modes, damping.further_ratio.value_or(0.0));
+  const Eigen::Index listed = std::min(given, modes);
+  ratios.head(listed) = Eigen::Map<const Eigen::ArrayXd>{damping.ratios.data(), listed};
+  return ratios;
+}
+
+// It is the lowest and the highest at once.
+double ratio_of_only_mode(const TwoRatioDamping& ratios) {
+  if (ratios.first_ratio != ratios.last_ratio) {
+    throw DampingError{
+        fmt::format("one mode lies inside the band, which cannot have both ratios {} and {} (make "
+                    "them equal, or use ratio)",
+                    ratios.first_ratio, ratios.last_ratio)};
+  }
+  return ratios.first_ratio;
 }
 
 RayleighDamping rayleigh_of(const Damping& damping, const Eigen::ArrayXd& omega_rad_s) {
@@ -47,7 +62,7 @@ RayleighDamping rayleigh_of(const Damping& damping, const Eigen::ArrayXd& omega_
 RayleighDamping rayleigh_from_two_ratios(const TwoRatioDamping& ratios, double first_rad_s,
                                          double last_rad_s) {
   if (!(0.0 < first_rad_s && first_rad_s < last_rad_s)) {
-    throw ModelError{"damping: two damping ratios need two different frequencies inside the band"};
+    throw DampingError{"two damping ratios need two different frequencies inside the band"};
   }
   // eq. 13
   const double scale =
@@ -77,7 +92,7 @@ RayleighDamping rayleigh_by_least_squares(const FittedDamping& measured) {
   const Eigen::RowVector2d size = share.colwise().norm();
   const LeastSquares fit = least_squares(share * size.cwiseInverse().asDiagonal(), ratio);
   if (fit.rank < 2) {
-    throw ModelError{"damping: a fit needs ratios at two different frequencies at least"};
+    throw DampingError{"a fit needs ratios at two different frequencies at least"};
   }
   const Eigen::Vector2d solution = fit.solution.cwiseQuotient(size.transpose());
   return not_negative({solution[0], solution[1]},
@@ -87,6 +102,13 @@ RayleighDamping rayleigh_by_least_squares(const FittedDamping& measured) {
 DampedModes damp(const Damping& damping, const Eigen::ArrayXd& omega_rad_s) {
   if (const auto* modal = std::get_if<ModalDamping>(&damping)) {
     return {std::nullopt, as_measured(*modal, omega_rad_s.size())};
+  }
+  if (const auto* constant = std::get_if<ConstantDamping>(&damping)) {
+    return {std::nullopt, Eigen::ArrayXd::Constant(omega_rad_s.size(), constant->ratio)};
+  }
+  if (const auto* ratios = std::get_if<TwoRatioDamping>(&damping);
+      ratios != nullptr && omega_rad_s.size() == 1) {
+    return {std::nullopt, Eigen::ArrayXd::Constant(1, ratio_of_only_mode(*ratios))};
   }
   const RayleighDamping rayleigh = rayleigh_of(damping, omega_rad_s);
   return {rayleigh, damping_ratios(rayleigh, omega_rad_s)};

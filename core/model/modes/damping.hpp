@@ -21,6 +21,7 @@ struct DampedModes {
   std::optional<RayleighDamping> rayleigh;
   Eigen::ArrayXd ratios;
 };
-// Applies a material's damping to these modes. Throws ModelError if it does not fit them.
+// Applies a material's damping to these modes; rayleigh is unset where no coefficients are behind
+// it. Throws ModelError if it does not fit them.
 DampedModes damp(const Damping& damping, const Eigen::ArrayXd& omega_rad_s);
 }  // namespace tapstudy::core

@@ -21,8 +21,9 @@ struct Modes {
 // Exactly the modes below band_limit_hz: the factorisation of K - sigma M at the band limit gives
 // their number (inertia count) and also serves to compute them. K, M: n × n, M positive definite, K
 // positive semidefinite.
-// Throws ModelError if the solver does not converge, if a residual exceeds 1e-8 plus a rounding
-// allowance, or 1e-6, if the result disagrees with the count, or for more than a thousand modes.
+// Throws ModelError if the solver does not converge, if a residual exceeds 1e-6 or what rounding
+// leaves (some units of |K| |x|, 1e-2 at most), if the result disagrees with the count, or for more
+// than a thousand modes.
 Modes solve_modes(const StiffnessAndMass& matrices, double band_limit_hz,
                   const ProgressHook& progress = {});
 }  // namespace tapstudy::core

@@ -18,7 +18,9 @@
 
 // NOLINTBEGIN(cppcoreguidelines-pro-type-reinterpret-cast): sockets take addresses in no other way
 namespace {
-constexpr timeval max_silence{0, 100'000};
+constexpr double max_force_n = 5.0;
+constexpr timeval max_silence{0, 20'000};     // then the force is let go
+constexpr int silences_until_forgotten = 50;  // then another sender may begin
 
 // A finger of 0.1 kg on a muscle that lets it tap twice a second, pushed by the force; y is up.
 struct Finger {
@@ -50,6 +52,103 @@ int listening_socket(int port) {
   }
   return descriptor;
 }
+
+struct Request {
+  std::uint32_t kind = 0;
+  std::uint32_t number = 0;
+  std::array<double, 3> force_n{};
+};
+
+// Scaled down to what the device may exert.
+void limit(std::array<double, 3>& force_n) {
+  const double size_n = std::hypot(force_n[0], force_n[1], force_n[2]);
+  for (double& part_n : force_n) {
+    part_n *= size_n > max_force_n ? max_force_n / size_n : 1.0;
+  }
+}
+
+// False if it is none of ours, or not a force.
+bool read_request(const std::array<char, 64>& bytes, ssize_t count, Request& request) {
+  if (count != 36 || std::memcmp(bytes.data(), "TAPS", 4) != 0) {
+    return false;
+  }
+  std::memcpy(&request.kind, bytes.data() + 4, 4);
+  std::memcpy(&request.number, bytes.data() + 8, 4);
+  std::memcpy(request.force_n.data(), bytes.data() + 12, 24);
+  limit(request.force_n);
+  return std::isfinite(request.force_n[0]) && std::isfinite(request.force_n[1]) &&
+         std::isfinite(request.force_n[2]);
+}
+
+// One sender at a time: the kernel keeps other senders' datagrams away from a connected socket.
+class Bridge {
+ public:
+  explicit Bridge(int port) : socket_{listening_socket(port)} {}
+
+  void serve() {
+    std::array<char, 64> bytes{};
+    sockaddr_in from{};
+    socklen_t from_size = sizeof from;
+    const ssize_t count = recvfrom(socket_, bytes.data(), bytes.size(), 0,
+                                   reinterpret_cast<sockaddr*>(&from), &from_size);
+    Request request;
+    if (count < 0) {
+      note_silence();
+    } else if (read_request(bytes, count, request) && is_next(from, request.number)) {
+      if (!has_sender_) {
+        connect(socket_, reinterpret_cast<sockaddr*>(&from), from_size);
+        has_sender_ = true;
+        sender_ = from;
+      }
+      obey(request);
+    }
+  }
+
+ private:
+  void note_silence() {
+    has_let_go_ = true;
+    force_n_ = {};
+    if (++silences_ == silences_until_forgotten && has_sender_) {
+      sockaddr nobody{};
+      nobody.sa_family = AF_UNSPEC;
+      connect(socket_, &nobody, sizeof nobody);
+      has_sender_ = false;
+    }
+  }
+  // Datagrams that arrived before the socket was connected may be of anybody.
+  bool is_next(const sockaddr_in& from, std::uint32_t number) const {
+    return !has_sender_ || (from.sin_port == sender_.sin_port && number > number_);
+  }
+  void obey(const Request& request) {
+    silences_ = 0;
+    number_ = request.number;
+    force_n_ = request.force_n;
+    if (request.kind == 1) {
+      finger_.move(force_n_);
+      reply();
+    }
+  }
+  void reply() {
+    const std::uint32_t status = 1U | (has_let_go_ ? 2U : 0U);
+    has_let_go_ = false;
+    std::array<char, 88> reply{'T', 'A', 'P', 'R', 2};
+    std::memcpy(reply.data() + 8, &number_, 4);
+    std::memcpy(reply.data() + 12, finger_.position_m.data(), 24);
+    std::memcpy(reply.data() + 36, finger_.velocity_m_s.data(), 24);
+    std::memcpy(reply.data() + 60, &status, 4);
+    std::memcpy(reply.data() + 64, force_n_.data(), 24);
+    send(socket_, reply.data(), reply.size(), 0);
+  }
+
+  int socket_;
+  sockaddr_in sender_{};
+  bool has_sender_ = false;
+  bool has_let_go_ = false;
+  int silences_ = 0;
+  std::uint32_t number_ = 0;
+  std::array<double, 3> force_n_{};
+  Finger finger_;
+};
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -57,31 +156,9 @@ int main(int argc, char** argv) {
     std::fputs("usage: bridge PORT\n", stderr);
     return 2;
   }
-  const int descriptor = listening_socket(std::atoi(argv[1]));
-  Finger finger;
-  std::array<double, 3> force_n{};
+  Bridge bridge{std::atoi(argv[1])};
   while (true) {
-    std::array<char, 36> request{};
-    sockaddr_in from{};
-    socklen_t from_size = sizeof from;
-    const ssize_t count = recvfrom(descriptor, request.data(), request.size(), 0,
-                                   reinterpret_cast<sockaddr*>(&from), &from_size);
-    if (count != 36 || std::memcmp(request.data(), "TAPS", 4) != 0) {
-      force_n = {};  // timeout or foreign packet: release the force
-      continue;
-    }
-    std::uint32_t kind = 0;
-    std::memcpy(&kind, request.data() + 4, 4);
-    std::memcpy(force_n.data(), request.data() + 12, 24);
-    if (kind == 1) {
-      finger.move(force_n);
-      std::array<char, 60> reply{'T', 'A', 'P', 'R', 1};
-      std::memcpy(reply.data() + 8, request.data() + 8, 4);
-      std::memcpy(reply.data() + 12, finger.position_m.data(), 24);
-      std::memcpy(reply.data() + 36, finger.velocity_m_s.data(), 24);
-      sendto(descriptor, reply.data(), reply.size(), 0, reinterpret_cast<sockaddr*>(&from),
-             from_size);
-    }
+    bridge.serve();
   }
 }
 // NOLINTEND(cppcoreguidelines-pro-type-reinterpret-cast)

@@ -1,7 +1,9 @@
 #include <catch2/catch.hpp>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "analysis/blocks/wording.hpp"
 #include "analysis/choice/choice_summary.hpp"
 #include "analysis/identification/identification_summary.hpp"
 #include "analysis/report/summary.hpp"
@@ -17,7 +19,7 @@ using Catch::Matchers::Contains;
 namespace {
 ConfusionMatrix matrix_from(const std::string& text) {
   std::istringstream stream{text};
-  return read_counts(stream, "counts.csv");
+  return read_counts(stream, "counts.csv").matrix;
 }
 std::string refusal(const std::string& text) {
   try {
@@ -46,14 +48,14 @@ TEST_CASE("the paper's Table 2 says what the paper says", "[analysis][confusion]
 
 TEST_CASE("a matrix that is written is read back the same", "[analysis][confusion]") {
   std::ostringstream text;
-  IdentificationSummary{"", "", table2()}.tables().front().write(text);
+  IdentificationSummary{BlockDesign{}, table2()}.tables().front().write(text);
   CHECK(matrix_from(text.str()).counts == table2().counts);
   CHECK(factors_of(matrix_from(text.str())) == std::vector<std::string>{"material", "structure"});
 }
 
 TEST_CASE("answers one a line make the same matrix as their counts", "[analysis][confusion]") {
   const ConfusionMatrix matrix = matrix_from("stimulus,response,rt\na,a,1\na,b,2\nb,b,3\nb,b,3\n");
-  CHECK(matrix.counts == std::vector<std::vector<int>>{{1, 1}, {0, 2}});
+  CHECK(matrix.counts == std::vector<std::vector<std::int64_t>>{{1, 1}, {0, 2}});
   CHECK(is(overall_accuracy(matrix), 3, 4));
 }
 
@@ -66,7 +68,7 @@ TEST_CASE("a cell in quotes may hold commas, quotes and line ends, and is writte
   CHECK(matrix.responses.at(1).name == "say \"b\"");
   CHECK(is(overall_accuracy(matrix), 5, 6));
   std::ostringstream text;
-  IdentificationSummary{"", "", matrix}.tables().front().write(text);
+  IdentificationSummary{BlockDesign{}, matrix}.tables().front().write(text);
   CHECK(matrix_from(text.str()).counts == matrix.counts);
   CHECK(matrix_from(text.str()).stimuli.at(1).name == "say \"b\"");
   CHECK_THAT(refusal("stimulus,a,b\na,1,2\nb,\"1,2\n"), Contains("counts.csv:3: a quote"));
@@ -74,16 +76,93 @@ TEST_CASE("a cell in quotes may hold commas, quotes and line ends, and is writte
 
 TEST_CASE("an answer that names no stimulus counts as an answer", "[analysis][confusion]") {
   const ConfusionMatrix matrix =
-      matrix_from("stimulus,material,a,b,unsure\na,wood,11,3,6\nb,metal,2,5,13\n");
+      matrix_from("stimulus,factor:material,a,b,unsure\na,wood,11,3,6\nb,metal,2,5,13\n");
   CHECK(is(overall_accuracy(matrix), 16, 40));
   CHECK(is(factor_accuracy(matrix, "material"), 16, 40));
   CHECK(matrix.chance() == Approx(1.0 / 3.0));
 }
 
+TEST_CASE("a column is a factor only if its header says so", "[analysis][confusion]") {
+  const ConfusionMatrix matrix = matrix_from("stimulus,unsure,a,b\na,9,1,0\nb,6,0,1\n");
+  CHECK(is(overall_accuracy(matrix), 2, 17));
+  CHECK_THAT(refusal("stimulus,material,a,b\na,wood,1,2\nb,metal,1,2\n"),
+             Contains("counts.csv:2: 'wood' is not a count") && Contains("factor:NAME"));
+  CHECK_THAT(refusal("stimulus,a,factor:m,b\na,1,x,2\nb,1,y,2\n"), Contains("counts.csv:1"));
+}
+
+TEST_CASE("a typing mistake is no class of its own", "[analysis][confusion]") {
+  CHECK_THAT(refusal("stimulus,response\na,a\nb,bb\n"),
+             Contains("counts.csv:3: response 'bb' is no stimulus"));
+  std::istringstream stream{"stimulus,response\na,a\nb,unsure\n"};
+  CHECK(read_counts(stream, "counts.csv", {"unsure"}).matrix.responses.size() == 3);
+}
+
+TEST_CASE("a stimulus may be called #1, and only comments above the header are skipped",
+          "[analysis][confusion]") {
+  const ConfusionMatrix matrix = matrix_from("# a comment\nstimulus,#1,b\n#1,3,1\nb,0,2\n");
+  CHECK(is(overall_accuracy(matrix), 5, 6));
+}
+
+TEST_CASE("what is no text is refused at its line", "[analysis][confusion]") {
+  CHECK_THAT(refusal("stimulus,a,b\na,1,2\n\xff\xfe,1,2\n"),
+             Contains("counts.csv:3: is not UTF-8"));
+  CHECK_THAT(refusal("stimulus,a,b\na\x1b[2J,1,2\nb,1,2\n"),
+             Contains("counts.csv:2: has a control character"));
+  std::ifstream endless{"/dev/zero"};
+  CHECK_THROWS_AS(read_counts(endless, "/dev/zero"), core::InvalidInput);
+}
+
+TEST_CASE("a table of simulated participants says so, and so does a report made of it",
+          "[analysis][report]") {
+  std::istringstream stream{"# mode: simulated\nstimulus,a,b\na,1,2\nb,1,2\n"};
+  const CountsTable table = read_counts(stream, "counts.csv");
+  CHECK_THAT(banner(summarise(table.matrix, "a table", "tell_apart", table.mode)),
+             Contains("SIMULATED"));
+}
+
+TEST_CASE("the largest table is added up without overflow", "[analysis][confusion]") {
+  std::string text = "stimulus";
+  for (int i = 0; i < 47; ++i) {
+    text += ",s" + std::to_string(i);
+  }
+  for (int i = 0; i < 47; ++i) {
+    text += "\ns" + std::to_string(i);
+    for (int j = 0; j < 47; ++j) {
+      text += ",1000000";
+    }
+  }
+  const ConfusionMatrix matrix = matrix_from(text + "\n");
+  CHECK(matrix.total() == 2'209'000'000);
+  CHECK(overall_accuracy(matrix).value() == Approx(1.0 / 47.0));
+}
+
+TEST_CASE(
+    "an interval's ends are told apart, a factor of one level and an empty block are left out",
+    "[analysis][report]") {
+  const ConfusionMatrix matrix =
+      matrix_from("stimulus,factor:material,a,b\na,wood,250000,750000\nb,wood,750000,250000\n");
+  CHECK(factors_of(matrix).empty());
+  CHECK(with_interval(overall_accuracy(matrix)) == "500000/2000000 = 25.0 % (95 % CI 24.9–25.1 %)");
+  const BlockDesign block{"empty",
+                          "tell_apart",
+                          "Which?",
+                          "confusion",
+                          matrix.stimuli,
+                          matrix.responses,
+                          {{"h", "better than chance", ""}},
+                          {},
+                          1,
+                          ""};
+  const Summary summary = summarise({"study", "", {block}}, {}, {});
+  std::ostringstream text;
+  write_text(text, summary);
+  CHECK_THAT(text.str(), Contains("not tested: there are no answers") && !Contains("p = "));
+}
+
 TEST_CASE("the chance of a factor weighs stimuli as they were presented", "[analysis][confusion]") {
   // three of four responses are wood; wood was presented 10 times, metal 40
   const ConfusionMatrix matrix = matrix_from(
-      "stimulus,material,a,b,c,d\na,wood,10,0,0,0\nb,wood,0,0,0,0\nc,wood,0,0,0,0\n"
+      "stimulus,factor:material,a,b,c,d\na,wood,10,0,0,0\nb,wood,0,0,0,0\nc,wood,0,0,0,0\n"
       "d,metal,0,0,0,40\n");
   CHECK(factor_chance(matrix, "material", "") == Approx((10 * 0.75 + 40 * 0.25) / 50));
 }
@@ -96,7 +175,7 @@ TEST_CASE("a table that is no confusion matrix is refused at its line", "[analys
   CHECK_THAT(refusal("stimulus,a,b\na,1,-1\nb,1,2\n"), Contains("'-1' is not a count"));
   CHECK_THAT(refusal("stimulus,a,b\na,1,2\na,1,2\n"), Contains("is there twice"));
   CHECK_THAT(refusal("stimulus,a,b\na,0,0\nb,0,0\n"), Contains("no answers"));
-  CHECK_THAT(refusal("stimulus,material\na,wood\nb,metal\n"), Contains("fewer than two"));
+  CHECK_THAT(refusal("stimulus,factor:material\na,wood\nb,metal\n"), Contains("fewer than two"));
   CHECK_THAT(refusal("stimulus,a,a,b\na,1,2,3\nb,1,2,3\n"), Contains("'a' is there twice"));
   CHECK_THAT(refusal("stimulus,a,b\na,2147483647,1\nb,1,2\n"), Contains("is not a count"));
 }
@@ -104,7 +183,7 @@ TEST_CASE("a table that is no confusion matrix is refused at its line", "[analys
 TEST_CASE("reports of an empty row or an unanswered block say so", "[analysis][report]") {
   ConfusionMatrix matrix{{{"a", "A & <b>", {}}, {"b", "B", {}}}, {{"a", "A", {}}, {"b", "B", {}}}};
   matrix.add("a", "a");
-  const Summary summary = summarise(matrix, "one answer");
+  const Summary summary = summarise(matrix, "one answer", "tell_apart", "");
   std::ostringstream html;
   write_html(html, summary);
   CHECK_THAT(html.str(), Contains("A &amp; &lt;b&gt;"));
@@ -129,8 +208,22 @@ TEST_CASE("a summary counts by participant, block and task", "[analysis][summary
         "confusion",
         {a, b},
         {a, b},
-        {{"h", "better than chance", ""}}},
-       {"pick", "pick_one", "Best?", "choices", {a, b}, {}, {{"h2", "a is best", "a"}}}}};
+        {{"h", "better than chance", ""}},
+        [](int /*participant*/, std::uint64_t draw) {
+          return draw % 2 == 0 ? std::vector<int>{0, 1} : std::vector<int>{1, 0};
+        },
+        1,
+        ""},
+       {"pick",
+        "pick_one",
+        "Best?",
+        "choices",
+        {a, b},
+        {},
+        {{"h2", "a is best", "a"}},
+        {},
+        3,
+        ""}}};
   std::vector<results::AnswerRow> answers;
   const auto add = [&](const char* who, const char* block, const char* stimulus,
                        const char* response) {
@@ -140,6 +233,7 @@ TEST_CASE("a summary counts by participant, block and task", "[analysis][summary
     row.block = block;
     row.stimulus = stimulus;
     row.response = response;
+    row.number = row.stimulus == "b" ? 2 : 1;
     if (!row.stimulus.empty()) {
       row.is_correct = row.stimulus == row.response;
     }
@@ -162,11 +256,22 @@ TEST_CASE("a summary counts by participant, block and task", "[analysis][summary
   CHECK(tell.hypotheses.at(0).chance == Approx(tell.matrix.chance()));
   CHECK(tell.as_json()["task"] == "tell_apart");
   const auto& pick = dynamic_cast<const ChoiceSummary&>(*summary.blocks.at(1));
-  CHECK(is(pick.alternatives.at(0).chosen, 2, 3));
+  CHECK(is(pick.alternatives.at(0).chosen, 1, 2));  // P2's first of two equals is b
   CHECK(pick.alternatives.at(0).visits == 3);
   CHECK(pick.has_repeated_choices);
+  StudyDesign first = design;
+  first.blocks.at(1).vote = Vote::first;
+  add("P3", "pick", "", "a");
+  add("P3", "pick", "", "b");
+  add("P3", "pick", "", "b");
+  const auto chosen_a = [&](const StudyDesign& declared) {
+    const Summary voted = summarise(declared, answers, {});
+    return dynamic_cast<const ChoiceSummary&>(*voted.blocks.at(1)).alternatives.at(0).chosen;
+  };
+  CHECK(is(chosen_a(design), 1, 3));
+  CHECK(is(chosen_a(first), 2, 3));
   CHECK(pick.as_json()["task"] == "pick_one");
-  CHECK(pick.hypotheses.at(0).p == Approx(0.5));
+  CHECK(pick.hypotheses.at(0).p.value() == Approx(0.75));
   std::ostringstream text;
   write_text(text, summary);
   CHECK_THAT(text.str(), Contains("SIMULATED"));

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/error.hpp"
+#include "core/model/mesh/tetgen_mesher.hpp"
 #include "core/model/plate_model.hpp"
 #include "support/plates.hpp"
 using namespace tapstudy;
@@ -104,6 +105,37 @@ TEST_CASE("a free cube has Lamé's exact mode among its modes", "[core][model]")
   CHECK(nearest < 0.002);
 }
 
+// Navier's solution: f = pi/2 (m²/a² + n²/b²) sqrt(D / rho h), D = E h³ / 12 (1 - nu²) (Leissa
+// 1969).
+TEST_CASE("sheets of a millimetre and below, simply supported, have Navier's frequencies",
+          "[core][model][slow]") {
+  struct Sheet {
+    Eigen::Vector3d size_m;
+    double tet_volume_m3;
+    double flattening;
+    double tolerance;  // of the first frequency, at this mesh; the second is half as smooth
+  };
+  const Sheet sheet = GENERATE(Sheet{{0.3, 0.2, 0.001}, 1.5e-8, 5.0, 0.005},
+                               Sheet{{0.6, 0.6, 0.0005}, 2.4e-8, 20.0, 0.12});
+  const Eigen::Vector3d& size_m = sheet.size_m;
+  CAPTURE(size_m.transpose());
+  const auto navier_hz = [&](int m, int n) {
+    constexpr double poisson = 0.3;
+    return 0.5 * M_PI * (std::pow(m / size_m.x(), 2) + std::pow(n / size_m.y(), 2)) * size_m.z() *
+           std::sqrt(youngs_pa / (12.0 * density * (1.0 - poisson * poisson)));
+  };
+  core::PlateSpec plate = body(size_m, 0.3, sheet.tet_volume_m3, 1.3 * navier_hz(2, 1));
+  plate.mesh.size.flattening = sheet.flattening;
+  for (const core::Side side :
+       {core::Side::left, core::Side::right, core::Side::front, core::Side::back}) {
+    plate.fixations.push_back(held_side(side, {false, false, true}));
+  }
+  const auto built = core::build_plate_model(plate);
+  REQUIRE(built.modal.frequency_hz.size() >= 2);
+  CHECK(built.modal.frequency_hz[0] == Approx(navier_hz(1, 1)).epsilon(sheet.tolerance));
+  CHECK(built.modal.frequency_hz[1] == Approx(navier_hz(2, 1)).epsilon(2.0 * sheet.tolerance));
+}
+
 TEST_CASE("order 2 comes nearer than order 1 on the same tetrahedra, and from above",
           "[core][model]") {
   core::PlateSpec plate = testing::paper_plate(4, testing::mdf());
@@ -152,5 +184,34 @@ TEST_CASE("an accuracy is reached by refining, and out of reach is refused",
   CHECK(report.refinement.back().moved <= 0.01);
   bar.mesh.order = 1;
   bar.mesh.accuracy = 1e-5;
-  CHECK_THROWS_WITH(core::build_plate_model(bar), Contains("still move"));
+  CHECK_THROWS_WITH(core::build_plate_model(bar), Contains("have not settled"));
+}
+
+TEST_CASE("a body held by points or a line has no frequencies to refine towards", "[core][model]") {
+  core::PlateSpec bar = body({0.3, 0.03, 0.01}, 0.3, 1e-6, 500.0);
+  bar.mesh.accuracy = 0.01;
+  core::Fixation vertex;
+  vertex.at_m = {-0.15, 0.0, 0.0};
+  core::Fixation line;
+  line.shape = core::RegionShape::box;
+  line.low_m = {-0.15, -0.015, 0.0};
+  line.high_m = {-0.15, 0.015, 0.0};
+  bar.fixations = {held_side(core::Side::left), GENERATE_COPY(vertex, line)};
+  CHECK_THROWS_WITH(core::build_plate_model(bar), Contains("fixation 2 is a point or a line"));
+}
+
+TEST_CASE("the area held by a side is that side's, by a disc nearly a circle's", "[core][model]") {
+  const core::Shape shape = core::Box{{0.3, 0.2, 0.01}};
+  core::Fixation disc;
+  disc.shape = core::RegionShape::disc;
+  disc.at_m = {0.1, 0.05, 0.0};
+  disc.radius_m = 0.02;
+  disc.face = core::Face::top;
+  const std::vector<core::Fixation> fixations{held_side(core::Side::left), disc};
+  core::MeshSize size;
+  size.max_tet_volume_m3 = 1e-8;
+  const core::TetMesh mesh = core::mesh_shape(shape, size, core::points_to_mesh(fixations, shape));
+  const std::vector<double> areas_m2 = core::held_areas_m2(mesh, shape, fixations);
+  CHECK(areas_m2.at(0) == Approx(0.2 * 0.01));
+  CHECK(areas_m2.at(1) == Approx(M_PI * 0.02 * 0.02).epsilon(0.15));
 }

@@ -2,6 +2,9 @@
 
 #include <catch2/catch.hpp>
 #include <vector>
+
+#include "core/placement.hpp"
+#include "core/rng.hpp"
 using namespace tapstudy::core;
 
 namespace {
@@ -57,4 +60,20 @@ TEST_CASE("a finger that slides over the edge is free", "[core][contact]") {
   CHECK(contact.tick(at(-0.001, 0.0, 0.299)).touching);
   CHECK_FALSE(contact.tick(at(-0.001, 0.0, 0.301)).touching);
   CHECK_FALSE(contact.tick(at(-0.001, 0.0, 0.299)).touching);
+}
+
+TEST_CASE("a finger on the very edge of a plate lands, wherever the plate is placed",
+          "[core][contact]") {
+  Rng rng{3};
+  const PlateFace face{0.3, 0.2};
+  for (int i = 0; i < 200; ++i) {
+    const Placement placement{{rng.uniform(), rng.uniform(), rng.uniform()}, 0.05 + rng.uniform()};
+    const auto in_plate = [&](double x_m, double y_m, double z_m) {
+      return placement.to_plate({placement.point_to_device({x_m, y_m, z_m}), Vec3::Zero()});
+    };
+    const double y_m = i % 2 == 0 ? 0.2 : 0.4 * rng.uniform() - 0.2;  // a corner, or along an edge
+    PlateContact contact{face, release_height_m};
+    contact.tick(in_plate(0.3, y_m, 0.01));
+    CHECK(contact.tick(in_plate(0.3, y_m, -0.001)).touching);
+  }
 }

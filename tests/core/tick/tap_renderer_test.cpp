@@ -39,6 +39,32 @@ std::vector<RenderedTick> tapped(const char* technique, double x_m, double y_m) 
 }
 }  // namespace
 
+TEST_CASE("on a plate of half the lateral scale the finger is twice as far out and no deeper",
+          "[core][technique]") {
+  RenderSettings half = settings();
+  half.lateral_ratio = 0.5;
+  TapRenderer renderer = make_renderer(*find_technique("none"), half, PlateFace{0.3, 0.3}, nullptr);
+  renderer.tick({{0.1, 0.05, 0.001}, {0.0, 0.0, -0.3}});
+  const RenderedTick touched = renderer.tick({{0.1, 0.05, -0.001}, {0.0, 0.0, -0.3}});
+  CHECK(touched.contact.god_object_m.isApprox(Vec3{0.2, 0.1, 0.0}));
+  CHECK(touched.force_n.isApprox(Vec3{0.0, 0.0, 3.0}));
+}
+
+TEST_CASE("a switch to a plate of another lateral scale keeps the finger where it is",
+          "[core][technique]") {
+  const auto renderer_with = [](double ratio) {
+    RenderSettings own = settings();
+    own.lateral_ratio = ratio;
+    return make_renderer(*find_technique("none"), own, PlateFace{0.3, 0.3}, nullptr);
+  };
+  TapRenderer wide = renderer_with(0.1);
+  TapRenderer narrow = renderer_with(1.0);
+  wide.tick({{0.02, 0.01, 0.001}, {0.0, 0.0, -0.3}});
+  narrow.take_over_from(wide);
+  const RenderedTick touched = narrow.tick({{0.02, 0.01, -0.001}, {0.0, 0.0, -0.3}});
+  CHECK(touched.contact.god_object_m.isApprox(Vec3{0.02, 0.01, 0.0}));
+}
+
 TEST_CASE("every technique has the penalty force of eq. 1 and is the sum of its parts (eq. 18)",
           "[core][technique]") {
   for (const Technique& technique : techniques()) {

@@ -10,7 +10,7 @@ namespace {
 constexpr double dt_s = 1e-3;
 core::HandState state_of(device::SimulatedHand& hand) {
   core::HandState state;
-  CHECK(hand.read(state) == core::TickFault::none);
+  CHECK(hand.read(state, 1e-3) == core::TickFault::none);
   return state;
 }
 void push(device::SimulatedHand& hand, const Vec3& force_n) {

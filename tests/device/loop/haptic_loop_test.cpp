@@ -13,9 +13,10 @@ namespace {
 // In a plate 2 mm deep from the second reading on; fails on cue.
 class FakeDevice final : public device::Device {
  public:
-  core::TickFault read(core::HandState& hand) noexcept override {
+  core::TickFault read(core::HandState& hand, double seconds) noexcept override {
     hand.position_m = {0.0, ++reads_ == 1 ? 0.01 : height_m, 0.0};
     hand.velocity_m_s = {0.0, speed_m_s, 0.0};
+    elapsed_s = seconds;
     return reads_ == fail_read_at ? core::TickFault::no_reply : core::TickFault::none;
   }
   core::TickFault write(const Vec3& force_n) noexcept override {
@@ -23,14 +24,28 @@ class FakeDevice final : public device::Device {
     ++writes_;
     return writes_ == fail_write_at ? core::TickFault::device_gone : core::TickFault::none;
   }
-  device::DeviceDetail detail() const noexcept override { return {last_force_n}; }
-  void emergency_stop() noexcept override {
+  device::DeviceDetail detail() const noexcept override {
+    device::DeviceDetail detail{last_force_n};
+    detail.missed_replies = missed_replies;
+    return detail;
+  }
+  core::TickFault begin() noexcept override { return fault_at_begin; }
+  device::StopOutcome zero_force() noexcept override {
+    last_force_n = Vec3::Zero();
+    return stop;
+  }
+  device::StopOutcome emergency_stop() noexcept override {
     last_force_n = Vec3::Zero();
     ++emergency_stops;
+    return device::StopOutcome::confirmed;
   }
   std::string description() const override { return "fake"; }
 
   int emergency_stops{0};
+  int missed_replies{0};
+  double elapsed_s{0.0};
+  core::TickFault fault_at_begin{core::TickFault::none};
+  device::StopOutcome stop{device::StopOutcome::confirmed};
   double height_m{-0.002};
   double speed_m_s{0.0};
   int fail_read_at{-1};
@@ -51,7 +66,9 @@ class CrankedClock final : public device::TickClock {
     ++waits_;
     return now_;
   }
+  device::Nanoseconds suspended() noexcept override { return slept; }
   std::vector<device::Nanoseconds> lateness;
+  device::Nanoseconds slept{0};
 
  private:
   std::size_t waits_{0};
@@ -81,6 +98,12 @@ struct Bench {
   device::LoopSettings settings;
   core::SpscRing<core::TraceSample> trace;
 };
+
+void stop(device::HapticLoop& loop) {
+  std::stop_source source;
+  source.request_stop();
+  loop.run(source.get_token());
+}
 }  // namespace
 
 TEST_CASE("the loop pushes back on a finger inside the plate", "[device][loop]") {
@@ -276,9 +299,7 @@ TEST_CASE("asked to stop, the loop lets force fall gently where the rig says so"
   bench.settings.max_heartbeat_gap = 20'000'000;  // nobody beats while it falls
   device::HapticLoop loop = bench.loop();
   loop.run_ticks(10);
-  std::stop_source stop;
-  stop.request_stop();
-  loop.run(stop.get_token());
+  stop(loop);
   const auto samples = bench.samples();
   REQUIRE(samples.size() == Approx(110).margin(2));
   for (std::size_t i = 11; i < samples.size(); ++i) {
@@ -286,4 +307,146 @@ TEST_CASE("asked to stop, the loop lets force fall gently where the rig says so"
     CHECK(samples[i - 1].force_n[1] - samples[i].force_n[1] < 0.07);
   }
   CHECK(bench.hand.last_force_n == Vec3::Zero());
+}
+
+TEST_CASE("a device is told the time that passed, not the nominal period", "[device][loop]") {
+  Bench bench;
+  bench.clock.lateness = {0, 0, 2'500'000};
+  device::HapticLoop loop = bench.loop();
+  loop.run_ticks(2);
+  CHECK(bench.hand.elapsed_s == Approx(0.001));
+  loop.run_ticks(1);
+  CHECK(bench.hand.elapsed_s == Approx(0.0035));
+  loop.run_ticks(1);
+  CHECK(bench.hand.elapsed_s == Approx(0.0005));  // the rhythm stays
+  const auto samples = bench.samples();
+  CHECK_FALSE(samples[1].late);
+  CHECK(samples[2].late);
+}
+
+TEST_CASE(
+    "one long stall is a fault where the rig says so, and after a shorter one force rises anew",
+    "[device][loop][safety]") {
+  Bench bench;
+  bench.settings.gate.force_rise_s = 0.1;
+  bench.settings.max_stall = 10'000'000;
+  bench.hand.height_m = 0.001;
+  bench.clock.lateness = std::vector<device::Nanoseconds>(400, 0);
+  const device::Nanoseconds stall = GENERATE(1'000'000, 4'000'000, 11'000'000);
+  bench.clock.lateness[300] = stall;
+  device::HapticLoop loop = bench.loop();
+  loop.run_ticks(50);
+  bench.hand.height_m = -0.002;
+  loop.run_ticks(250);
+  REQUIRE(bench.hand.last_force_n.y() == Approx(6.0));
+  loop.run_ticks(1);
+  CAPTURE(stall);
+  CHECK((loop.report().stopped_by == core::TickFault::loop_stalled) == (stall > 9'000'000));
+  CHECK((bench.hand.last_force_n.y() < 0.1) == (stall > 3'000'000));
+  if (stall == 4'000'000) {
+    loop.run_ticks(110);
+    CHECK(bench.hand.last_force_n.y() == Approx(6.0));
+    const auto samples = bench.samples();
+    CHECK_FALSE(samples[299].late);  // the rise at the beginning follows no gap
+    CHECK(samples[300].late);
+    CHECK(samples[390].late);  // on time, but force is not what the plate's would be
+    CHECK_FALSE(samples.back().late);
+  }
+}
+
+TEST_CASE("a loop that has made no tick for longer than a stall may last is not rendering",
+          "[device][loop][safety]") {
+  Bench bench;
+  bench.settings.max_stall = 10'000'000;
+  device::HapticLoop loop = bench.loop();
+  loop.run_ticks(10);
+  CHECK(loop.is_ticking(bench.clock.now() + 10'000'000));
+  CHECK_FALSE(loop.is_ticking(bench.clock.now() + 10'000'001));
+  bench.clock.lateness = std::vector<device::Nanoseconds>(11, 20'000'000);
+  loop.run_ticks(1);  // found by the loop itself
+  CHECK(loop.report().stopped_by == core::TickFault::loop_stalled);
+  CHECK_FALSE(loop.is_ticking(bench.clock.now()));
+}
+
+TEST_CASE("a machine that slept is a fault", "[device][loop][safety]") {
+  Bench bench;
+  bench.clock.slept = 7'000'000'000;  // before the trial, which is none
+  device::HapticLoop loop = bench.loop();
+  loop.run_ticks(10);
+  REQUIRE(loop.report().stopped_by == core::TickFault::none);
+  bench.clock.slept += 1'000'000'000;
+  loop.run_ticks(1);
+  CHECK(loop.report().stopped_by == core::TickFault::suspended);
+  CHECK(bench.hand.last_force_n == Vec3::Zero());
+}
+
+TEST_CASE("while replies are missing force fades by thirds", "[device][loop][safety]") {
+  Bench bench;
+  device::HapticLoop loop = bench.loop();
+  loop.run_ticks(5);
+  for (int missed = 1; missed <= 3; ++missed) {
+    bench.hand.missed_replies = missed;
+    loop.run_ticks(1);
+    CHECK(bench.hand.last_force_n.y() == Approx(6.0 * (3 - missed) / 3.0).margin(1e-12));
+    CHECK(bench.samples().back().missed_replies == missed);
+  }
+  CHECK(loop.report().bridged == 3);
+  bench.hand.missed_replies = 0;
+  loop.run_ticks(1);
+  CHECK(bench.hand.last_force_n.y() == Approx(6.0));
+}
+
+TEST_CASE("after missing replies force rises again from where it faded to",
+          "[device][loop][safety]") {
+  Bench bench;
+  bench.settings.gate.force_rise_s = 0.1;
+  bench.hand.height_m = 0.001;
+  device::HapticLoop loop = bench.loop();
+  loop.run_ticks(50);
+  bench.hand.height_m = -0.002;
+  loop.run_ticks(200);
+  REQUIRE(bench.hand.last_force_n.y() == Approx(6.0));
+  bench.hand.missed_replies = 2;
+  loop.run_ticks(1);
+  CHECK(bench.hand.last_force_n.y() == Approx(2.0));
+  bench.hand.missed_replies = 0;
+  loop.run_ticks(10);
+  CHECK(bench.hand.last_force_n.y() == Approx(2.0 + 6.0 * 0.1).epsilon(0.01));
+  loop.run_ticks(100);
+  CHECK(bench.hand.last_force_n.y() == Approx(6.0));
+}
+
+TEST_CASE("a device that cannot begin gets no tick", "[device][loop][safety]") {
+  Bench bench;
+  bench.hand.fault_at_begin = core::TickFault::guardian_lost;
+  device::HapticLoop loop = bench.loop();
+  loop.run_ticks(10);
+  CHECK(loop.report().stopped_by == core::TickFault::guardian_lost);
+  CHECK(loop.report().ticks == 1);
+  CHECK(std::isnan(bench.samples().back().position_m[1]));
+}
+
+TEST_CASE("a stop that the device does not confirm is a fault", "[device][loop][safety]") {
+  Bench bench;
+  bench.hand.stop = device::StopOutcome::unconfirmed;
+  device::HapticLoop loop = bench.loop();
+  stop(loop);
+  CHECK(loop.report().stopped_by == core::TickFault::stop_unconfirmed);
+  CHECK(loop.report().stop == device::StopOutcome::unconfirmed);
+}
+
+TEST_CASE("a soft stop never ends in a step, though the rate limit be slower than the ramp",
+          "[device][loop][safety]") {
+  Bench bench;
+  bench.settings.gate.limits = {10.0, 100.0};  // 6 N take 60 ms
+  bench.settings.gate.force_fall_s = 0.01;
+  device::HapticLoop loop = bench.loop();
+  loop.run_ticks(200);
+  stop(loop);
+  const auto samples = bench.samples();
+  REQUIRE(samples[199].force_n[1] == Approx(6.0));
+  for (std::size_t i = 200; i < samples.size(); ++i) {
+    CHECK(samples[i - 1].force_n[1] - samples[i].force_n[1] < 0.1 + 1e-9);
+  }
+  CHECK(samples.back().force_n[1] == 0.0);
 }

@@ -1,14 +1,17 @@
 #include "device/remote/remote_hand.hpp"
 
 #include <arpa/inet.h>
+#include <poll.h>
 #include <signal.h>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
+#include <bit>
 #include <catch2/catch.hpp>
 #include <cstring>
+#include <limits>
 #include <thread>
 
 #include "device/hand/replay_hand.hpp"
@@ -48,7 +51,7 @@ TEST_CASE("the bridge's finger moves under the force it is sent", "[device][remo
   core::HandState state;
   double sideways_m = 0.0;
   for (int i = 0; i < 2000; ++i) {
-    REQUIRE(hand.read(state) == TickFault::none);
+    REQUIRE(hand.read(state, 1e-3) == TickFault::none);
     REQUIRE(hand.write({1.0, 0.0, 0.0}) == TickFault::none);
     sideways_m = state.position_m.x();
   }
@@ -56,7 +59,7 @@ TEST_CASE("the bridge's finger moves under the force it is sent", "[device][remo
   bridge.end();
   TickFault fault = TickFault::none;
   for (int i = 0; i < 3 && fault == TickFault::none; ++i) {
-    fault = hand.read(state);
+    fault = hand.read(state, 1e-3);
   }
   CHECK((fault == TickFault::device_gone || fault == TickFault::no_reply));
 }
@@ -71,13 +74,107 @@ TEST_CASE("a replayed hand goes where the recorded one went, and stays there", "
                           "a test"};
   core::HandState state;
   for (int turn = 0; turn < 2; ++turn) {
-    CHECK(hand.read(state) == TickFault::none);
+    CHECK(hand.read(state, 1e-3) == TickFault::none);
     CHECK(state.position_m == Vec3{1, 0, 0});
-    CHECK(hand.read(state) == TickFault::none);
+    CHECK(hand.read(state, 1e-3) == TickFault::none);
     CHECK(state.velocity_m_s == Vec3{0, 2, 0});
-    CHECK(hand.read(state) == TickFault::none);
+    CHECK(hand.read(state, 1e-3) == TickFault::none);
     CHECK(state.position_m == Vec3{2, 0, 0});
     CHECK(state.velocity_m_s == Vec3::Zero());
     hand.rewind();
   }
+}
+
+namespace {
+// Another program on this machine that would like to move the device.
+class RogueSender {
+ public:
+  explicit RogueSender(std::uint16_t port) {
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_port = htons(port);
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    const auto generic = std::bit_cast<sockaddr>(address);
+    REQUIRE(connect(socket_, &generic, sizeof generic) == 0);
+  }
+  ~RogueSender() { close(socket_); }
+  RogueSender(const RogueSender&) = delete;
+  RogueSender& operator=(const RogueSender&) = delete;
+  RogueSender(RogueSender&&) = delete;
+  RogueSender& operator=(RogueSender&&) = delete;
+  void send(const Vec3& force_n) {
+    const auto bytes = device::encoded({device::RequestKind::no_reply, 4'000'000'000U, force_n});
+    static_cast<void>(::send(socket_, bytes.data(), bytes.size(), 0));
+    static_cast<void>(::send(socket_, "nonsense", 8, 0));
+  }
+  // The force that the reply tells, if there is one.
+  std::optional<Vec3> ask(const device::RemoteRequest& request) {
+    const auto bytes = device::encoded(request);
+    REQUIRE(::send(socket_, bytes.data(), bytes.size(), 0) == 36);
+    pollfd waiting{socket_, POLLIN, 0};
+    if (poll(&waiting, 1, 10) <= 0) {
+      return std::nullopt;
+    }
+    std::array<std::uint8_t, 128> reply{};
+    const auto count = static_cast<std::size_t>(recv(socket_, reply.data(), reply.size(), 0));
+    return device::decoded_reply(std::span{reply}.first(count)).value().exerted_n;
+  }
+
+ private:
+  int socket_{socket(AF_INET, SOCK_DGRAM, 0)};
+};
+}  // namespace
+
+TEST_CASE("the example bridge obeys one sender, and never more force than the device may exert",
+          "[device][remote][safety]") {
+  const std::uint16_t port = free_port();
+  const ExampleBridge bridge{port};
+  device::RemoteHand hand{port, std::chrono::milliseconds{100}};
+  RogueSender rogue{port};
+  core::HandState state;
+  REQUIRE(hand.write({0.0, 2.0, 0.0}) == TickFault::none);
+  for (int i = 0; i < 200; ++i) {
+    rogue.send({0.0, -9.0, 0.0});
+    REQUIRE(hand.read(state, 1e-3) == TickFault::none);
+    REQUIRE(hand.detail().achieved_n == Vec3{0.0, 2.0, 0.0});
+  }
+  REQUIRE(hand.write({300.0, 400.0, 0.0}) == TickFault::none);
+  REQUIRE(hand.read(state, 1e-3) == TickFault::none);
+  CHECK(hand.detail().achieved_n.isApprox(Vec3{3.0, 4.0, 0.0}));
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  REQUIRE(hand.write({1.0, nan, 0.0}) == TickFault::none);
+  CHECK(hand.zero_force() == device::StopOutcome::confirmed);
+  CHECK(hand.detail().achieved_n == Vec3::Zero());
+}
+
+TEST_CASE("the example bridge obeys no request that is older than the last one",
+          "[device][remote][safety]") {
+  const std::uint16_t port = free_port();
+  const ExampleBridge bridge{port};
+  usleep(100'000);
+  RogueSender sender{port};
+  const auto exerted_n = [&](std::uint32_t number, const Vec3& force_n) {
+    return sender.ask({device::RequestKind::reply, number, force_n});
+  };
+  CHECK(exerted_n(10, {1.0, 0.0, 0.0}) == Vec3{1.0, 0.0, 0.0});
+  CHECK_FALSE(exerted_n(9, {3.0, 0.0, 0.0}));
+  CHECK_FALSE(exerted_n(10, {3.0, 0.0, 0.0}));
+  CHECK(exerted_n(11, {2.0, 0.0, 0.0}) == Vec3{2.0, 0.0, 0.0});
+}
+
+TEST_CASE("the example bridge lets go of the force when nobody asks", "[device][remote][safety]") {
+  const std::uint16_t port = free_port();
+  const ExampleBridge bridge{port};
+  device::RemoteHand hand{port, std::chrono::milliseconds{100}};
+  CHECK(hand.lets_go_after(std::chrono::milliseconds{150}) == true);
+}
+
+TEST_CASE("a remote stop is confirmed by a reply, or it is not a stop",
+          "[device][remote][safety]") {
+  const std::uint16_t port = free_port();
+  ExampleBridge bridge{port};
+  device::RemoteHand hand{port, std::chrono::milliseconds{100}};
+  CHECK(hand.emergency_stop() == device::StopOutcome::confirmed);
+  bridge.end();
+  CHECK(hand.emergency_stop() == device::StopOutcome::unconfirmed);
 }

@@ -1,7 +1,10 @@
 #include "device/spidar/calibration_procedure.hpp"
 
+#include <unistd.h>
+
 #include <catch2/catch.hpp>
 #include <sstream>
+#include <thread>
 
 #include "core/error.hpp"
 #include "device/device.hpp"
@@ -22,6 +25,14 @@ struct Workbench {
   device::UsbNode node{testing::node_of(bus)};
   device::LibusbPipe pipe{node, {}, std::chrono::milliseconds{100}};
   std::unique_ptr<device::SpidarBoard> board{device::board_of(device::sh4_product)};
+  device::WatchdogChannel watchdog;
+  device::VirtualClock clock;
+  std::jthread guardian{[this](const std::stop_token& stop) {
+    while (!stop.stop_requested()) {
+      watchdog.complete_round();
+      usleep(1000);
+    }
+  }};
 
   static double metres_per_count(std::size_t i) {
     return (i % 2 == 0 ? 1.0 : -1.0) * (1.6e-5 + 1e-7 * static_cast<double>(i));
@@ -48,8 +59,10 @@ class SkilledOperator final : public device::CalibrationOperator {
  public:
   explicit SkilledOperator(Workbench& bench) : bench_{bench} {}
   void please(const std::string& /*task*/) override { ++string_; }
-  double how_much(const std::string& task, double /*max*/) override {
+  double how_much(const std::string& task, double /*max*/,
+                  const std::function<void()>& keep_waiting) override {
     const auto i = static_cast<std::size_t>(string_);
+    keep_waiting();
     if (task.find("metres") != std::string::npos) {
       bench_.count.at(i) += static_cast<int>(0.1 / Workbench::metres_per_count(i));
       return 0.1;
@@ -65,14 +78,19 @@ class SkilledOperator final : public device::CalibrationOperator {
 class IdleOperator final : public device::CalibrationOperator {
  public:
   void please(const std::string& /*task*/) override {}
-  double how_much(const std::string& /*task*/, double /*max*/) override { return 0.1; }
+  double how_much(const std::string& /*task*/, double /*max*/,
+                  const std::function<void()>& /*keep_waiting*/) override {
+    return 0.1;
+  }
 };
 }  // namespace
 
 TEST_CASE("what a skilled operator measures is what the strings are", "[device][calibration]") {
   Workbench bench;
   SkilledOperator person{bench};
-  const auto strings = device::calibrate_spidar(*bench.board, bench.pipe, person).strings;
+  const auto strings =
+      device::calibrate_spidar(*bench.board, bench.pipe, bench.watchdog, bench.clock, person)
+          .strings;
   for (std::size_t i = 0; i < 8; ++i) {
     CHECK(strings.at(i).metres_per_count == Approx(Workbench::metres_per_count(i)).epsilon(1e-3));
     const double newtons_per_dac_count =
@@ -87,7 +105,7 @@ TEST_CASE("what calibration writes, a rig reads", "[device][calibration]") {
   Workbench bench;
   SkilledOperator person{bench};
   const core::SpidarCalibration measured =
-      device::calibrate_spidar(*bench.board, bench.pipe, person);
+      device::calibrate_spidar(*bench.board, bench.pipe, bench.watchdog, bench.clock, person);
   std::ostringstream file;
   protocols::write_calibration(file, "X3R", measured);
   const core::SpidarCalibration read =
@@ -106,8 +124,9 @@ TEST_CASE("an encoder that does not move ends calibration, with all outputs zero
           "[device][calibration]") {
   Workbench bench;
   IdleOperator person;
-  CHECK_THROWS_WITH(device::calibrate_spidar(*bench.board, bench.pipe, person),
-                    Contains("string 1: its encoder counted 0"));
+  CHECK_THROWS_WITH(
+      device::calibrate_spidar(*bench.board, bench.pipe, bench.watchdog, bench.clock, person),
+      Contains("string 1: its encoder counted 0"));
   CHECK(std::ranges::all_of(bench.dac_counts, [](int dac_counts) { return dac_counts == 0; }));
 }
 
@@ -115,5 +134,97 @@ TEST_CASE("a board that is unplugged ends calibration", "[device][calibration]")
   Workbench bench;
   SkilledOperator person{bench};
   bench.bus.plan(testing::FakeBus::Trouble::unplugged, 10);
-  CHECK_THROWS_AS(device::calibrate_spidar(*bench.board, bench.pipe, person), device::DeviceError);
+  CHECK_THROWS_AS(
+      device::calibrate_spidar(*bench.board, bench.pipe, bench.watchdog, bench.clock, person),
+      device::DeviceError);
+}
+
+namespace {
+// Reads the gauge never: something else happens while a string pulls.
+class SlowOperator final : public device::CalibrationOperator {
+ public:
+  explicit SlowOperator(std::function<void()> meanwhile) : meanwhile_{std::move(meanwhile)} {}
+  void please(const std::string& /*task*/) override {}
+  double how_much(const std::string& task, double /*max*/,
+                  const std::function<void()>& keep_waiting) override {
+    if (task.find("metres") != std::string::npos) {
+      length_();
+      return 0.1;
+    }
+    meanwhile_();
+    keep_waiting();
+    return 1.0;
+  }
+  std::function<void()> length_;
+
+ private:
+  std::function<void()> meanwhile_;
+};
+}  // namespace
+
+TEST_CASE("a string under calibration pulls under watch, and for a minute at most",
+          "[device][calibration][safety]") {
+  Workbench bench;
+  std::string reason;
+  bool was_watched = false;
+  int output_meanwhile = 0;
+  SlowOperator person{[&] {
+    was_watched = bench.watchdog.is_on();
+    output_meanwhile = bench.dac_counts.at(0);
+    if (reason.find("minute") != std::string::npos) {
+      bench.clock.wait_until(bench.clock.now() + 61'000'000'000);
+    } else {
+      bench.watchdog.take_output_over();
+    }
+  }};
+  person.length_ = [&] { bench.count.at(0) += 6000; };
+  const auto [why, said] = GENERATE(table<std::string, std::string>(
+      {{"a minute has passed", "pulled for 60 s"}, {"stood still", "took the force off"}}));
+  reason = why;
+  CHECK_THROWS_WITH(
+      device::calibrate_spidar(*bench.board, bench.pipe, bench.watchdog, bench.clock, person),
+      Contains(said));
+  CHECK(was_watched);
+  CHECK(output_meanwhile > 0);
+  CHECK_FALSE(bench.watchdog.is_on());
+  CHECK(std::ranges::all_of(bench.dac_counts, [](int dac_counts) { return dac_counts == 0; }));
+}
+
+TEST_CASE("without a guardian no string pulls, and one that cannot be let go is told",
+          "[device][calibration][safety]") {
+  Workbench bench;
+  std::string warning;
+  class Warned final : public device::CalibrationOperator {
+   public:
+    Warned(Workbench& bench, std::string& warning) : bench_{bench}, warning_{warning} {}
+    void please(const std::string& /*task*/) override {}
+    double how_much(const std::string& task, double /*max*/,
+                    const std::function<void()>& /*keep_waiting*/) override {
+      if (task.find("metres") != std::string::npos) {
+        bench_.count.at(0) += 6000;
+      } else {
+        bench_.bus.persist_in(testing::FakeBus::Trouble::missing);
+      }
+      return 0.1;
+    }
+    void warn(const std::string& what) noexcept override { warning_ = what; }
+
+   private:
+    Workbench& bench_;
+    std::string& warning_;
+  } person{bench, warning};
+  SECTION("no guardian") {
+    bench.guardian = {};
+    CHECK_THROWS_WITH(
+        device::calibrate_spidar(*bench.board, bench.pipe, bench.watchdog, bench.clock, person),
+        Contains("guards the force has ended"));
+    CHECK(bench.max_dac_counts == 0);
+  }
+  SECTION("no reply to zero force") {
+    CHECK_THROWS_AS(
+        device::calibrate_spidar(*bench.board, bench.pipe, bench.watchdog, bench.clock, person),
+        device::DeviceError);
+    CHECK_THAT(warning, Contains("FORCE MAY STILL BE ON"));
+    CHECK(bench.watchdog.must_repeat());
+  }
 }

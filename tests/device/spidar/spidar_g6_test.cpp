@@ -2,8 +2,10 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <thread>
 
 #include "core/techniques/make_renderer.hpp"
+#include "device/hand/penalty_limit.hpp"
 #include "device/loop/haptic_loop.hpp"
 #include "support/no_alloc.hpp"
 #include "support/usb/played_back.hpp"
@@ -24,9 +26,9 @@ struct Bench : testing::SpidarOnBus {
     REQUIRE(spidar.home() == TickFault::none);
     home_m = hardware.position_m();
   }
-  TickFault tick(const Vec3& force_n) {
+  TickFault tick(const Vec3& force_n, double elapsed_s = 1e-3) {
     core::HandState hand;
-    const TickFault fault = spidar.read(hand);
+    const TickFault fault = spidar.read(hand, elapsed_s);
     seen = fault == TickFault::none ? hand : seen;
     return fault == TickFault::none ? spidar.write(force_n) : fault;
   }
@@ -34,6 +36,17 @@ struct Bench : testing::SpidarOnBus {
   Vec3 home_m{Vec3::Zero()};  // the strings' own pull displaces the hand a little
 };
 
+// A SPIDAR that answers at once, and what it shares with a guardian.
+struct Watched {
+  testing::PlayedBack pipe;
+  std::unique_ptr<device::SpidarBoard> board{device::board_of(device::sh4_product)};
+  device::WatchdogChannel watch;
+  device::SpidarG6 spidar{pipe, *board, [this] {
+                            device::SpidarSettings settings = testing::simulated_settings();
+                            settings.watchdog = &watch;
+                            return settings;
+                          }()};
+};
 }  // namespace
 
 TEST_CASE("a SPIDAR starts with no force, tightens to its least tension and is homed",
@@ -43,7 +56,7 @@ TEST_CASE("a SPIDAR starts with no force, tightens to its least tension and is h
     CHECK(testing::has_no_force(request));
   }
   core::HandState hand;
-  CHECK(bench.spidar.read(hand) == TickFault::not_homed);
+  CHECK(bench.spidar.read(hand, 1e-3) == TickFault::not_homed);
   bench.start();
   CHECK(bench.hardware.tension_n().minCoeff() == Approx(0.3).epsilon(0.03));
   CHECK(bench.hardware.tension_n().maxCoeff() <= 0.3);
@@ -86,30 +99,182 @@ TEST_CASE("a loop on the grip ends in zero outputs, said three times, whatever g
           "[device][spidar][usb]") {
   struct Case {
     Trouble trouble;
-    int delay_ms;
     TickFault fault;
   };
-  const Case one = GENERATE(Case{Trouble::late, 50, TickFault::no_reply},
-                            Case{Trouble::missing, 0, TickFault::no_reply},
-                            Case{Trouble::short_reply, 0, TickFault::bad_reply},
-                            Case{Trouble::stalled, 0, TickFault::bad_reply},
-                            Case{Trouble::protocol, 0, TickFault::bad_reply},
-                            Case{Trouble::overflow, 0, TickFault::bad_reply},
-                            Case{Trouble::not_accepted, 0, TickFault::bad_reply});
+  const Case one = GENERATE(Case{Trouble::short_reply, TickFault::bad_reply},
+                            Case{Trouble::stalled, TickFault::bad_reply},
+                            Case{Trouble::protocol, TickFault::bad_reply},
+                            Case{Trouble::overflow, TickFault::bad_reply},
+                            Case{Trouble::not_accepted, TickFault::bad_reply});
   Bench bench;
   bench.start();
   for (int i = 0; i < 50; ++i) {
     REQUIRE(bench.tick({3, 0, 0}) == TickFault::none);
   }
-  bench.bus.plan(one.trouble, 0, std::chrono::milliseconds{one.delay_ms});
+  bench.bus.plan(one.trouble);
   CHECK(bench.tick({3, 0, 0}) == one.fault);
   bench.bus.forget_requests();
-  bench.spidar.emergency_stop();
+  CHECK(bench.spidar.emergency_stop() == device::StopOutcome::confirmed);
   const auto sent = bench.bus.requests();
   REQUIRE(sent.size() == 3);
   CHECK(std::ranges::all_of(sent, testing::has_no_force));
   core::HandState hand;
-  CHECK(bench.spidar.read(hand) == TickFault::not_homed);
+  CHECK(bench.spidar.read(hand, 1e-3) == TickFault::not_homed);
+}
+
+TEST_CASE("up to three replies in a row may be missing, then it is a fault",
+          "[device][spidar][usb]") {
+  const bool echoes_before = GENERATE(false, true);
+  Bench bench;
+  if (echoes_before) {
+    bench.hardware.echo_the_request_before();
+  }
+  bench.start();
+  for (int i = 0; i < 50; ++i) {
+    REQUIRE(bench.tick({0.01 * i, 0, 0}) == TickFault::none);
+  }
+  const Vec3 last_m = bench.seen.position_m;
+  for (int missed = 1; missed <= 3; ++missed) {
+    bench.bus.plan(Trouble::missing);
+    CHECK(bench.tick({0.01 * missed, 0, 0}) == TickFault::none);
+    CHECK(bench.spidar.detail().missed_replies == missed);
+    CHECK(bench.seen.position_m == last_m);
+  }
+  SECTION("the fourth is there") {
+    CHECK(bench.tick({0, 0, 0}) == TickFault::none);
+    CHECK(bench.spidar.detail().missed_replies == 0);
+    CHECK(bench.tick({1, 0, 0}) == TickFault::none);
+  }
+  SECTION("the fourth is missing as well") {
+    bench.bus.plan(Trouble::missing);
+    CHECK(bench.tick({0, 0, 0}) == TickFault::no_reply);
+  }
+}
+
+TEST_CASE("a late reply at the end of a trial does not cost the grip's home",
+          "[device][spidar][usb]") {
+  Bench bench;
+  bench.start();
+  REQUIRE(bench.tick({3, 0, 0}) == TickFault::none);
+  bench.bus.plan(Trouble::missing);
+  CHECK(bench.spidar.zero_force() == device::StopOutcome::confirmed);
+  CHECK(bench.spidar.is_homed());
+}
+
+TEST_CASE("after a late reply the position is again that of the tick, though nothing else changes",
+          "[device][spidar][usb]") {
+  Bench bench;
+  bench.hardware.be_rigid();
+  bench.start();
+  for (int i = 0; i < 40; ++i) {
+    const double x_m = 1e-4 * i;
+    bench.hardware.put_at({x_m, 0.0, 0.0});
+    if (i == 20) {
+      bench.bus.plan(Trouble::late, 0, std::chrono::milliseconds{40});
+    }
+    REQUIRE(bench.tick(Vec3::Zero(), 0.025) == TickFault::none);
+    if (i < 20 || i > 22) {
+      CHECK(bench.seen.position_m.x() == Approx(x_m).margin(4e-5));
+    }
+  }
+}
+
+TEST_CASE("an amplifier that is switched off is a fault, however still the hand",
+          "[device][spidar][safety]") {
+  Bench bench;
+  bench.hardware.be_rigid();
+  bench.start();
+  for (int i = 0; i < 50; ++i) {
+    REQUIRE(bench.tick({0, 0, 0}) == TickFault::none);
+  }
+  CHECK(bench.spidar.detail().motor_voltage_v > 0.05);
+  bench.hardware.switch_amplifier(false);
+  int ticks = 0;
+  TickFault fault = TickFault::none;
+  for (; ticks < 100 && fault == TickFault::none; ++ticks) {
+    fault = bench.tick({0, 0, 0});
+  }
+  CHECK(fault == TickFault::amplifier_off);
+  CHECK(ticks < 25);
+  CHECK_FALSE(bench.spidar.has_motor_voltage());
+}
+
+TEST_CASE("a speed is a distance by the time that passed, however late the tick",
+          "[device][spidar]") {
+  const double late_by_s = GENERATE(0.0, 0.002, 0.005, 0.010, 0.020);
+  CAPTURE(late_by_s);
+  constexpr double speed_m_s = 0.3;
+  constexpr double from_m = -0.012;
+  Bench bench;
+  bench.hardware.be_rigid();
+  bench.start();
+  bench.hardware.put_at({from_m, 0.0, 0.0});
+  REQUIRE(bench.spidar.begin() == TickFault::none);
+  double time_s = 0.0;
+  for (int i = 0; i < 50; ++i) {
+    const double elapsed_s = i == 40 ? 0.001 + late_by_s : 0.001;
+    time_s += elapsed_s;
+    bench.hardware.put_at({from_m + speed_m_s * time_s, 0.0, 0.0});
+    REQUIRE(bench.tick(Vec3::Zero(), elapsed_s) == TickFault::none);
+    if (i >= 25) {
+      CHECK(bench.seen.velocity_m_s.x() == Approx(speed_m_s).epsilon(0.05));
+    }
+  }
+}
+
+TEST_CASE("a halted endpoint is cleared, and an unconfirmed stop is said to be one",
+          "[device][spidar][safety][usb]") {
+  Bench bench;
+  bench.start();
+  for (int i = 0; i < 50; ++i) {
+    REQUIRE(bench.tick({3, 0, 0}) == TickFault::none);
+  }
+  SECTION("halted until it is cleared") {
+    bench.bus.halt_out(1);
+    CHECK(bench.tick({3, 0, 0}) == TickFault::bad_reply);
+    CHECK(bench.spidar.emergency_stop() == device::StopOutcome::confirmed);
+    CHECK(bench.hardware.tension_n().maxCoeff() == 0.0);
+    CHECK(bench.spidar.is_force_off());
+  }
+  SECTION("halted for good") {
+    bench.bus.halt_out(1'000'000);
+    CHECK(bench.tick({3, 0, 0}) == TickFault::bad_reply);
+    CHECK(bench.spidar.emergency_stop() == device::StopOutcome::unconfirmed);
+    CHECK_FALSE(bench.spidar.is_force_off());
+  }
+  SECTION("not taken, or taken and lost") {
+    bench.bus.persist_in(GENERATE(Trouble::out_nak, Trouble::out_lost));
+    CHECK(bench.spidar.emergency_stop() == device::StopOutcome::unconfirmed);
+    CHECK_FALSE(bench.spidar.is_force_off());
+  }
+}
+
+TEST_CASE(
+    "a wall on the grip rests up to the bound of a force that acts a tick late, and chatters "
+    "above",
+    "[device][spidar][stability]") {
+  const double part = GENERATE(0.85, 1.15);
+  const double penalty_n_per_m =
+      part * device::largest_stable_penalty_n_per_m(core::HandBody{}, 1e-3, 1);
+  Bench bench;
+  bench.start();
+  bench.hardware.hold_at({0.0, -0.012, 0.0});
+  double low_n = 1e9;
+  double high_n = 0.0;
+  for (int i = 0; i < 3000; ++i) {
+    core::HandState hand;
+    REQUIRE(bench.spidar.read(hand, 1e-3) == TickFault::none);
+    const double share = std::min(1.0, i / 1000.0);  // no impact, which would bounce
+    const double force_n = std::clamp(-share * penalty_n_per_m * hand.position_m.y(), 0.0, 8.0);
+    REQUIRE(bench.spidar.write({0.0, force_n, 0.0}) == TickFault::none);
+    if (i > 2000) {
+      low_n = std::min(low_n, force_n);
+      high_n = std::max(high_n, force_n);
+    }
+  }
+  CAPTURE(penalty_n_per_m, low_n, high_n);
+  // at rest it still follows the encoders' steps
+  CHECK((high_n - low_n > 1.0) == (part > 1.0));
 }
 
 TEST_CASE("a late reply within the time allowed is no fault", "[device][spidar][usb]") {
@@ -161,46 +326,72 @@ TEST_CASE("a reply of a tick ago is told from this one's, whichever request the 
 
 TEST_CASE("with force on, a SPIDAR is watched and its guardian with it",
           "[device][spidar][safety]") {
-  testing::PlayedBack pipe;
-  const auto board = device::board_of(device::sh4_product);
-  device::WatchdogChannel watch;
-  device::SpidarSettings settings = testing::simulated_settings();
-  settings.watchdog = &watch;
-  device::SpidarG6 spidar{pipe, *board, settings};
+  Watched watched;
+  device::WatchdogChannel& watch = watched.watch;
+  device::SpidarG6& spidar = watched.spidar;
+  REQUIRE(spidar.tighten(1.0) == TickFault::none);
   REQUIRE(spidar.home() == TickFault::none);
   CHECK_FALSE(watch.is_on());
-  spidar.begin();
+  std::jthread guardian{[&](const std::stop_token& stop) {
+    while (!stop.stop_requested()) {
+      watch.complete_round();
+      usleep(1000);
+    }
+  }};
+  REQUIRE(spidar.begin() == TickFault::none);
+  guardian = {};
   CHECK(watch.is_on());
   core::HandState hand;
   const auto tick = [&] {
     const std::uint64_t beats = watch.beats();
-    const TickFault fault = spidar.read(hand);
+    const TickFault fault = spidar.read(hand, 1e-3);
     CHECK(watch.beats() == beats + 1);
     return fault;
   };
   SECTION("a guardian that acted ends it") {
     REQUIRE(tick() == TickFault::none);
-    watch.act();
+    watch.take_output_over();
     CHECK(tick() == TickFault::stood_still);
   }
-  SECTION("a guardian that is silent for a second ends it") {
+  SECTION("a guardian that is silent for a tenth of a second ends it") {
     int ticks = 0;
     for (; ticks < 3000 && tick() == TickFault::none; ++ticks) {
-      if (ticks < 1000 && ticks % 900 == 0) {
+      if (ticks < 1000 && ticks % 90 == 0) {
         watch.complete_round();
       }
     }
-    CHECK(ticks == Approx(1900).margin(2));
+    CHECK(ticks == Approx(990 + 101).margin(2));
     CHECK(tick() == TickFault::guardian_lost);
   }
   SECTION("at rest nobody need watch") {
-    spidar.zero_force();
+    CHECK(spidar.zero_force() == device::StopOutcome::confirmed);
     CHECK_FALSE(watch.is_on());
   }
   SECTION("nor after a fault") {
-    spidar.emergency_stop();
+    CHECK(spidar.emergency_stop() == device::StopOutcome::confirmed);
     CHECK_FALSE(watch.is_on());
   }
+  SECTION("unless zero force was not confirmed: then the guardian repeats it") {
+    watched.pipe.fail_from_now_on();
+    CHECK(spidar.emergency_stop() == device::StopOutcome::unconfirmed);
+    CHECK(watch.is_on());
+    CHECK(watch.must_repeat());
+    CHECK_FALSE(spidar.is_force_off());
+    watch.note_zero_taken();
+    CHECK(spidar.is_force_off());
+  }
+  SECTION("an output that the guardian takes in the middle of an exchange is the guardian's") {
+    REQUIRE(tick() == TickFault::none);
+    watched.pipe.in_the_middle_of_an_exchange([&] { watch.take_output_over(); });
+    CHECK(tick() == TickFault::stood_still);
+  }
+}
+
+TEST_CASE("without a guardian that is seen to be alive there is no force",
+          "[device][spidar][safety]") {
+  Watched watched;
+  CHECK(watched.spidar.begin() == TickFault::guardian_lost);
+  CHECK_FALSE(watched.watch.is_on());
 }
 
 TEST_CASE("a thousand ticks of the loop on a SPIDAR allocate nothing",

@@ -1,12 +1,18 @@
 #include "device/usb/guardian.hpp"
 
+#include <fcntl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
 #include <catch2/catch.hpp>
 #include <csignal>
+#include <cstdlib>
+#include <fstream>
+#include <optional>
+#include <string>
 
+#include "device/relay/dead_man_relay.hpp"
 #include "device/spidar/sh4_board.hpp"
 #include "support/usb/fake_bus.hpp"
 using namespace tapstudy;
@@ -14,6 +20,11 @@ using testing::Bytes;
 using testing::FakeBus;
 
 namespace {
+device::GuardianSettings settings() {
+  const auto zero_force_packet = device::Sh4Board::request({});
+  return {0x02, 0x86, {zero_force_packet.begin(), zero_force_packet.end()}, 0.02, 0};
+}
+
 // Everything that arrives until all writers are gone.
 Bytes all_from(int descriptor) {
   Bytes all;
@@ -39,10 +50,8 @@ TEST_CASE("however the program dies, the last packets are of no force, three of 
     std::signal(SIGABRT, SIG_DFL);
     std::signal(SIGTERM, SIG_DFL);
     const device::UsbNode node{bus.open()};
-    const auto zero_force_packet = device::Sh4Board::request({});
     {
-      const device::Guardian guardian{
-          node, 0x02, {zero_force_packet.begin(), zero_force_packet.end()}};
+      const device::Guardian guardian{node, settings()};
       if (end != 0) {
         kill(getpid(), end);
         pause();
@@ -63,28 +72,212 @@ TEST_CASE("however the program dies, the last packets are of no force, three of 
   }
 }
 
-TEST_CASE("a program that stands still with force on loses it, and may find out",
-          "[device][usb][guardian]") {
-  const bool has_force = GENERATE(false, true);
+namespace {
+// A board whose plain bulk packets come out of a pipe, and a guardian for it.
+struct Watched {
   std::array<int, 2> ends{};
-  REQUIRE(pipe(ends.data()) == 0);
   FakeBus bus{device::cyverse_vendor, device::sh4_product,
               [](std::span<const std::uint8_t>) { return Bytes{}; }};
-  bus.copy_plain_bulk_to(ends[1]);
-  const device::UsbNode node{bus.open()};
-  const auto zero_force_packet = device::Sh4Board::request({});
-  {
-    device::Guardian guardian{node, 0x02, {zero_force_packet.begin(), zero_force_packet.end()}};
-    if (has_force) {
-      guardian.channel().begin();
-    }
-    while (guardian.channel().rounds() < 10 && !guardian.channel().has_acted()) {
+  std::optional<device::UsbNode> node;
+  std::optional<device::Guardian> guardian;
+
+  Watched() {
+    REQUIRE(pipe2(ends.data(), O_NONBLOCK) == 0);
+    bus.copy_plain_bulk_to(ends[1]);
+    node.emplace(bus.open());
+  }
+  ~Watched() {
+    guardian.reset();
+    close(ends[0]);
+    close(ends[1]);
+  }
+  Watched(const Watched&) = delete;
+  Watched& operator=(const Watched&) = delete;
+  Watched(Watched&&) = delete;
+  Watched& operator=(Watched&&) = delete;
+
+  device::WatchdogChannel& watch(int relay = -1) {
+    device::GuardianSettings with_relay = settings();
+    with_relay.relay = relay;
+    guardian.emplace(*node, with_relay);
+    return guardian->channel();
+  }
+  void pass_rounds(std::uint64_t count) {
+    const std::uint64_t from = guardian->channel().rounds();
+    while (guardian->channel().rounds() < from + count) {
       usleep(1000);
     }
-    CHECK(guardian.channel().has_acted() == has_force);
   }
-  close(ends[1]);
-  const Bytes sent = all_from(ends[0]);
-  close(ends[0]);
-  CHECK(sent.size() == (has_force ? 6U : 3U) * zero_force_packet.size());  // and at the orderly end
+  // Since asked before.
+  std::size_t packets() {
+    std::array<std::uint8_t, 512> packet{};
+    std::size_t count = 0;
+    while (read(ends[0], packet.data(), packet.size()) > 0) {
+      ++count;
+    }
+    return count;
+  }
+};
+}  // namespace
+
+TEST_CASE("a program that stands still with force on loses it, every round anew, and may find out",
+          "[device][usb][guardian]") {
+  Watched watched;
+  device::WatchdogChannel& watch = watched.watch();
+  watched.pass_rounds(10);
+  CHECK_FALSE(watch.has_acted());
+  CHECK(watched.packets() == 0);
+  watch.begin();
+  watched.pass_rounds(10);  // four without a beat
+  CHECK(watch.has_acted());
+  CHECK_FALSE(watch.claim_output());
+  CHECK(watched.packets() >= 5);
+  // continued, and stopped again before its next beat: it may have sent one packet
+  watched.pass_rounds(10);
+  CHECK(watched.packets() >= 9);
+}
+
+TEST_CASE(
+    "a guardian asked to repeat zero force clears a halted endpoint and tells when it is taken",
+    "[device][usb][guardian][safety]") {
+  const int clears = GENERATE(0, 1, 1'000'000);
+  Watched watched;
+  watched.bus.halt_out(clears);
+  device::WatchdogChannel& watch = watched.watch();
+  watch.begin();
+  watch.repeat_zero_force();
+  for (int i = 0; i < 10; ++i) {
+    watch.beat();
+    watched.pass_rounds(1);
+  }
+  CHECK(watch.is_zero_taken() == (clears < 2));
+  CHECK((watched.packets() > 5) == (clears < 2));
+  CHECK_FALSE(watch.has_acted());
+  watch.end();
+  watched.pass_rounds(2);
+  watched.packets();
+  watched.pass_rounds(5);
+  CHECK(watched.packets() == 0);
+}
+
+TEST_CASE("a guardian left alone repeats zero force until it is taken, three times",
+          "[device][usb][guardian][safety]") {
+  Watched watched;
+  watched.bus.halt_out(20);  // longer than three attempts
+  static_cast<void>(watched.watch());
+  watched.guardian.reset();
+  CHECK(watched.packets() == 3);
+}
+
+TEST_CASE("a program stopped, continued and stopped again cannot leave its force on",
+          "[device][usb][guardian][safety]") {
+  Watched watched;
+  const pid_t program = fork();
+  if (program == 0) {
+    {
+      device::WatchdogChannel& watch = watched.watch();
+      watch.begin();
+      raise(SIGSTOP);  // with a packet in hand
+      raise(SIGSTOP);  // just after it went out
+      pause();
+    }
+    _exit(0);
+  }
+  int status = 0;
+  for (int stop = 0; stop < 2; ++stop) {
+    REQUIRE(waitpid(program, &status, WUNTRACED) == program);
+    REQUIRE(WIFSTOPPED(status));
+    usleep(100'000);
+    CHECK(watched.packets() >= 3);
+    kill(program, SIGCONT);
+  }
+  kill(program, SIGKILL);
+  waitpid(program, &status, 0);
+}
+
+TEST_CASE("a kernel short of memory takes the program before its guardian",
+          "[device][usb][guardian]") {
+  Watched watched;
+  const pid_t program = fork();
+  if (program == 0) {
+    static_cast<void>(watched.watch());
+    std::ifstream score{"/proc/self/oom_score_adj"};
+    int value = 0;
+    score >> value;
+    _exit(value == 500 ? 0 : 1);
+  }
+  int status = 0;
+  REQUIRE(waitpid(program, &status, 0) == program);
+  CHECK(WEXITSTATUS(status) == 0);
+}
+
+namespace {
+// A serial port: what is written to it comes out here.
+struct SerialPort {
+  int far_end{};
+  std::string name;
+  SerialPort() : far_end{posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK)} {
+    REQUIRE((far_end >= 0 && grantpt(far_end) == 0 && unlockpt(far_end) == 0));
+    name = ptsname(far_end);
+  }
+  ~SerialPort() { close(far_end); }
+  SerialPort(const SerialPort&) = delete;
+  SerialPort& operator=(const SerialPort&) = delete;
+  SerialPort(SerialPort&&) = delete;
+  SerialPort& operator=(SerialPort&&) = delete;
+  // Since asked before.
+  std::size_t signs_of_life() const {
+    std::array<char, 4096> bytes{};
+    const ssize_t count = read(far_end, bytes.data(), bytes.size());
+    return count > 0 ? static_cast<std::size_t>(count) : 0;
+  }
+};
+}  // namespace
+
+TEST_CASE("a relay is kept closed while all is well, and by nothing else",
+          "[device][usb][guardian][safety]") {
+  const SerialPort port;
+  Watched watched;
+  const device::DeadManRelay relay{port.name};
+  device::WatchdogChannel& watch = watched.watch(relay.descriptor());
+  const auto signs_of_twenty_rounds = [&](bool beats) {
+    watched.pass_rounds(1);
+    static_cast<void>(port.signs_of_life());
+    for (int i = 0; i < 20; ++i) {
+      beats ? watch.beat() : void();
+      watched.pass_rounds(1);
+    }
+    return port.signs_of_life();
+  };
+  CHECK(signs_of_twenty_rounds(false) == 0);  // zero force is not confirmed yet
+  watch.allow_power();
+  CHECK(signs_of_twenty_rounds(false) >= 9);  // at rest nobody need beat
+  watch.begin();
+  CHECK(signs_of_twenty_rounds(true) >= 9);
+  SECTION("a stop that is not confirmed opens it, until it is") {
+    watch.repeat_zero_force();
+    CHECK(signs_of_twenty_rounds(true) <= 1);
+    watch.end();
+    CHECK(signs_of_twenty_rounds(false) >= 9);
+  }
+  SECTION("a program that stands still opens it for good") {
+    watched.pass_rounds(8);
+    CHECK(signs_of_twenty_rounds(false) == 0);
+    CHECK(signs_of_twenty_rounds(true) == 0);
+  }
+  SECTION("without a guardian nobody holds it") {
+    watched.guardian.reset();
+    static_cast<void>(port.signs_of_life());
+    usleep(60'000);
+    CHECK(port.signs_of_life() == 0);
+  }
+}
+
+TEST_CASE("a port that is none, or is another's, is refused", "[device][guardian]") {
+  const SerialPort port;
+  const device::DeadManRelay relay{port.name};
+  CHECK_THROWS_WITH(device::DeadManRelay{port.name}, Catch::Matchers::Contains("another session"));
+  CHECK_THROWS_WITH(device::DeadManRelay{"/dev/null"}, Catch::Matchers::Contains("no serial port"));
+  CHECK_THROWS_WITH(device::DeadManRelay{"/dev/ttyNone"},
+                    Catch::Matchers::Contains("cannot be opened: No such file"));
 }

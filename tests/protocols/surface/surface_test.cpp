@@ -6,6 +6,7 @@
 #include "core/error.hpp"
 #include "core/model/body_modes.hpp"
 #include "core/model/shape/top_height.hpp"
+#include "protocols/read_protocol.hpp"
 #include "protocols/surface/check_surface.hpp"
 #include "protocols/surface/surface_file.hpp"
 #include "protocols/yaml/text_file.hpp"
@@ -265,4 +266,60 @@ TEST_CASE("a surface folded onto itself is refused though no edge passes through
     }
   }
   CHECK_THROWS_WITH(check_surface(box), Contains("through itself"));
+}
+
+TEST_CASE("a triangle whose corner lies on its opposite side is refused with what and where",
+          "[protocols][surface]") {
+  // a cube of 0.1 m, one edge of it cut on one side only
+  const std::string text =
+      "OFF\n9 14 0\n0 0 0\n0.1 0 0\n0.1 0.1 0\n0 0.1 0\n0 0 0.1\n0.1 0 0.1\n0.1 0.1 0.1\n"
+      "0 0.1 0.1\n0.03 1e-9 0\n"
+      "3 0 2 8\n3 8 2 1\n3 0 8 1\n3 0 3 2\n3 4 5 6\n3 4 6 7\n3 0 1 5\n3 0 5 4\n3 2 3 7\n"
+      "3 2 7 6\n3 1 2 6\n3 1 6 5\n3 0 4 7\n3 0 7 3\n";
+  CHECK_THROWS_WITH(protocols::check_surface(
+                        protocols::read_surface(protocols::surface_source("cap.off", text), 1.0)),
+                    Catch::Matchers::Contains("is flat: a corner lies on the opposite side"));
+}
+
+TEST_CASE(
+    "files that lie about themselves are refused, and take neither the program nor its memory",
+    "[protocols][surface]") {
+  const auto [name, text] = GENERATE(table<std::string, std::string>({
+      {"no_triangle.stl", std::string(80, ' ') + std::string(4, '\0')},
+      {"property_first.ply",
+       "ply\nformat ascii 1.0\nproperty float x\nelement vertex 3\nend_header\n0 0 0\n"},
+      {"long_list.ply",
+       "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+       "property float z\nelement face 1\nproperty list uint int vertex_indices\nend_header\n"
+       "0 0 0\n1 0 0\n0 1 0\n4294967295 0 1 2\n"},
+      {"many_points.off", "OFF\n4294967295 4294967295 0\n0 0 0\n"},
+      {"many_triangles.stl", std::string(80, ' ') + std::string(4, '\xff') + "x"},
+  }));
+  CAPTURE(name);
+  CHECK_THROWS_AS(protocols::read_surface(protocols::surface_source(name, text), 1.0),
+                  core::InvalidInput);
+}
+
+TEST_CASE("a surface is turned about its vector, then moved; beside it is its nearest place",
+          "[protocols][surface]") {
+  const std::string file = testing::source("tests/data/every_key.yaml");
+  const std::string text = testing::contents(file);
+  const auto solid = [&](const std::string& pose) {
+    return protocols::parse_protocol(
+               testing::replaced(text, "offset_m: [0, 0, 0], rotation_rad: [0, 0, 0]", pose), file)
+        .plates.at("tetrahedron")
+        ->shape;
+  };
+  const core::Bounds usual = core::bounds(solid("offset_m: [0, 0, 0]"));
+  // half a turn about the upright, so that the height under the tapping point stays
+  const core::Bounds turned =
+      core::bounds(solid("offset_m: [0, 0, 0.0005], rotation_rad: [0, 0, 3.141592653589793]"));
+  CHECK(turned.high_m.isApprox(
+      core::Vec3{-usual.low_m.x(), -usual.low_m.y(), usual.high_m.z() + 0.0005}, 1e-9));
+  CHECK(turned.low_m.isApprox(
+      core::Vec3{-usual.high_m.x(), -usual.high_m.y(), usual.low_m.z() + 0.0005}, 1e-9));
+  const core::TopHeight top{solid("offset_m: [0, 0, 0]")};
+  const Eigen::Vector2d beside{usual.high_m.x() + 1.0, 0.0};
+  REQUIRE_FALSE(top.at_m(beside));
+  CHECK_THAT(top.outline_words(beside), Contains("nearest place is ("));
 }

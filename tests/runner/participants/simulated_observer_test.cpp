@@ -28,14 +28,15 @@ analysis::Summary simulated(const std::string& text, int participants, std::uint
   const protocols::Protocol protocol = protocols::parse_protocol(text, "study.yaml");
   runner::simulate({"study.yaml", directory / "study", participants, seed}, protocol);
   results::Store store = results::Store::open_existing(directory / "study");
-  return analysis::summarise(runner::design_of(protocol), store.answers(), store.visits());
+  return analysis::summarise(runner::design_of(protocol, results::Mode::simulated), store.answers(),
+                             store.visits());
 }
 const analysis::IdentificationSummary& identification(const analysis::Summary& summary) {
   return dynamic_cast<const analysis::IdentificationSummary&>(*summary.blocks.at(0));
 }
 // Within four standard errors of guessing.
 bool is_chance(const Proportion& accuracy, double chance) {
-  const double error = std::sqrt(chance * (1.0 - chance) / accuracy.trials);
+  const double error = std::sqrt(chance * (1.0 - chance) / static_cast<double>(accuracy.trials));
   return std::abs(accuracy.value() - chance) < 4.0 * error;
 }
 }  // namespace
@@ -83,7 +84,8 @@ TEST_CASE("shuffled labels give chance", "[runner][observer][slow]") {
     answers[i].stimulus = names[i];
     answers[i].is_correct = answers[i].response == names[i];
   }
-  const auto summary = analysis::summarise(runner::design_of(protocol), answers, {});
+  const auto summary =
+      analysis::summarise(runner::design_of(protocol, results::Mode::simulated), answers, {});
   CHECK(is_chance(identification(summary).accuracy, 0.25));
 }
 
@@ -135,13 +137,14 @@ TEST_CASE("the observer chooses what feels like its reference", "[runner][observ
     return -1.0;
   };
   CHECK(chosen(simulated(text, 20), "finite_elements") > 0.8);
-  CHECK(
-      chosen(simulated(replaced(text, "reference: finite_elements", "reference: no_vibration"), 20),
-             "no_vibration") > 0.8);
+  CHECK(chosen(simulated(replaced(text, "reference: finite_elements",
+                                  "reference: finite_elements, reality: none"),
+                         20),
+               "no_vibration") > 0.8);
 }
 
 TEST_CASE("with nothing felt the answer is a guess", "[runner][observer]") {
-  runner::SimulatedObserver observer{{core::Vec3::Zero()}, 1.0, core::Rng{1}};
+  runner::SimulatedObserver observer{{core::Vec3::Zero()}, {1.0, 0.0, 1}, core::Rng{1}};
   const runner::FeltTap tap{core::Vec3::Zero(), {}};
   observer.remember("a", std::vector{tap});
   observer.remember("b", std::vector{tap});
@@ -150,4 +153,73 @@ TEST_CASE("with nothing felt the answer is a guess", "[runner][observer]") {
     first += observer.most_similar(std::vector<runner::FeltTap>{}, {"a", "b"}) == 0 ? 1 : 0;
   }
   CHECK(first == Approx(500).margin(4.0 * std::sqrt(250.0)));
+}
+
+TEST_CASE("techniques of one body are no different realities: telling them apart is chance",
+          "[runner][observer][slow]") {
+  std::string text = with_noise("1");
+  for (const char* technique : {"none", "fem", "fem", "fem"}) {
+    text = replaced(text, "technique: fem", std::string{"technique: "} + technique + " ");
+  }
+  for (const char* name : {"mdf_two", "mdf_three"}) {
+    const auto at = text.find(std::string{"  "} + name + ":\n");
+    text.replace(text.find("material: mdf", at), 13, "material: acrylic");
+  }
+  for (int i = 0; i < 2; ++i) {
+    text = replaced(text, "plate: three_fixations", "plate: two_fixations");
+  }
+  CHECK(is_chance(identification(simulated(text, 60)).accuracy, 0.25));
+}
+
+TEST_CASE("what a simulated participant answers does not depend on what stimuli are called",
+          "[runner][observer][slow]") {
+  const auto answers_of = [](const std::string& text) {
+    const testing::TempDirectory directory;
+    const protocols::Protocol protocol = protocols::parse_protocol(text, "study.yaml");
+    runner::simulate({"study.yaml", directory / "study", 4, 7}, protocol);
+    std::vector<std::size_t> places;
+    for (const auto& answer : results::Store::open_existing(directory / "study").answers()) {
+      const auto& names = protocol.blocks.at(0).stimuli;
+      places.push_back(
+          static_cast<std::size_t>(std::ranges::find(names, answer.response) - names.begin()));
+    }
+    return places;
+  };
+  std::string renamed = discrimination();
+  for (const auto& [from, to] :
+       {std::pair{"acrylic_two", "zebra"}, std::pair{"mdf_three", "ape"}}) {
+    for (auto at = renamed.find(from); at != std::string::npos; at = renamed.find(from)) {
+      renamed.replace(at, std::string{from}.size(), to);
+    }
+  }
+  CHECK(answers_of(renamed) == answers_of(discrimination()));
+}
+
+TEST_CASE("simulated participants differ by more than chance between answers",
+          "[runner][observer][slow]") {
+  const auto variance_over_binomial = [](const std::string& people) {
+    // many short trials each
+    const std::string text =
+        replaced(replaced(discrimination(), "repetitions: 2", "repetitions: 8"),
+                 "taps_per_visit: 10", "taps_per_visit: 2");
+    const auto summary = simulated(text + "  people: {" + people + "}\n", 30);
+    const auto& participants = identification(summary).participants;
+    double mean = 0.0;
+    for (const auto& one : participants) {
+      mean += one.accuracy.value() / static_cast<double>(participants.size());
+    }
+    double variance = 0.0;
+    for (const auto& one : participants) {
+      variance +=
+          std::pow(one.accuracy.value() - mean, 2) / static_cast<double>(participants.size() - 1);
+    }
+    return variance /
+           (mean * (1.0 - mean) / static_cast<double>(participants.front().accuracy.trials));
+  };
+  const double alike =
+      variance_over_binomial("noise_spread: 0, threshold_spread: 0, speed_spread: 0, bias: 0");
+  const double unlike = variance_over_binomial("noise_spread: 2, bias: 0");
+  CAPTURE(alike, unlike);
+  CHECK(alike < 1.0 + 3.0 * std::sqrt(2.0 / 29.0));
+  CHECK(unlike > 2.0);
 }

@@ -30,9 +30,9 @@ TEST_CASE("none and sinusoid build no mesh", "[runner][stimuli]") {
 TEST_CASE("materials of one Poisson's ratio share one solution", "[runner][stimuli]") {
   protocols::Protocol protocol = paper("discrimination.yaml");
   for (protocols::Stimulus& stimulus : protocol.stimuli) {
-    core::Material material = *stimulus.material;
+    protocols::Material material = *stimulus.material;
     material.poissons_ratio = 0.3;
-    stimulus.material = std::make_shared<const core::Material>(material);
+    stimulus.material = std::make_shared<const protocols::Material>(material);
   }
   runner::ModelLibrary models{core::ModelCache{"", ""}};
   models.build_all(protocol);
@@ -49,4 +49,16 @@ TEST_CASE("a second library finds on disk what the first has solved", "[runner][
   second.build_all(protocol);
   CHECK(second.bodies_solved() == 0);
   CHECK(second.bodies_used() == 4);
+}
+
+TEST_CASE("a body that does not vibrate in the band is refused, with its first frequency",
+          "[runner][stimuli]") {
+  const protocols::Protocol protocol = protocols::parse_protocol(
+      testing::replaced(testing::contents(testing::shipped("paper/discrimination.yaml")),
+                        "band_limit_hz: 300", "band_limit_hz: 20"),
+      "study.yaml");
+  runner::ModelLibrary models{core::ModelCache{"", ""}};
+  CHECK_THROWS_WITH(models.build_all(protocol),
+                    Catch::Matchers::Contains("no mode lies below band_limit_hz (20 Hz)") &&
+                        Catch::Matchers::Contains("its first is at "));
 }

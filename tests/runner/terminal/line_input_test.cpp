@@ -1,5 +1,6 @@
 #include "runner/terminal/line_input.hpp"
 
+#include <poll.h>
 #include <pty.h>
 #include <unistd.h>
 
@@ -7,6 +8,7 @@
 #include <catch2/catch.hpp>
 #include <string>
 
+#include "runner/terminal/no_flow_control.hpp"
 using namespace tapstudy;
 namespace {
 struct Terminal {
@@ -40,10 +42,30 @@ TEST_CASE("what was typed at a terminal before the question does not answer it",
   runner::LineInput input{terminal.program};
   type(terminal.keyboard, "1\n2\n3\n");
   REQUIRE(line_of(input) == "1");
-  input.forget_typed_ahead();
+  CHECK_FALSE(input.forget_typed_ahead());
   CHECK(line_of(input) == "nothing");
   type(terminal.keyboard, "4\n");
   CHECK(line_of(input) == "4");
+}
+
+TEST_CASE("quit typed ahead is heeded, whatever else was", "[runner][terminal]") {
+  const Terminal terminal;
+  runner::LineInput input{terminal.program};
+  type(terminal.keyboard, "1\n Quit \n3");
+  CHECK(input.forget_typed_ahead());
+  CHECK_FALSE(input.forget_typed_ahead());
+}
+
+TEST_CASE("a line that is too long is no answer, nor is its tail", "[runner][terminal]") {
+  std::array<int, 2> ends{};
+  REQUIRE(pipe(ends.data()) == 0);
+  runner::LineInput input{ends[0]};
+  type(ends[1], std::string(9000, 'x') + "\n2\n");
+  close(ends[1]);
+  const auto next = [&] { return input.next([] { return true; }).value_or("nothing"); };
+  CHECK_THAT(next(), Catch::Matchers::Contains("too long"));
+  CHECK(next() == "2");
+  close(ends[0]);
 }
 
 TEST_CASE("what a file holds is not typed ahead", "[runner][terminal]") {
@@ -53,8 +75,24 @@ TEST_CASE("what a file holds is not typed ahead", "[runner][terminal]") {
   type(ends[1], "1\n2\n");
   close(ends[1]);
   CHECK(line_of(input) == "1");
-  input.forget_typed_ahead();
+  CHECK_FALSE(input.forget_typed_ahead());
   CHECK(line_of(input) == "2");
   CHECK(line_of(input) == "nothing");
   close(ends[0]);
+}
+
+TEST_CASE("Ctrl-S at the terminal does not stop the program's output", "[runner][terminal]") {
+  const Terminal terminal;
+  const auto is_output_taken = [&] {
+    type(terminal.keyboard, "\x13");
+    pollfd writable{terminal.program, POLLOUT, 0};
+    const bool is_taken = poll(&writable, 1, 0) == 1 && (writable.revents & POLLOUT) != 0;
+    type(terminal.keyboard, "\x11");
+    return is_taken;
+  };
+  {
+    const runner::NoFlowControl during_a_session{terminal.program};
+    CHECK(is_output_taken());
+  }
+  CHECK_FALSE(is_output_taken());
 }

@@ -41,7 +41,7 @@ double measured(const std::string& typed) {
   const Typed operator_typed{typed};
   runner::LineInput input{operator_typed.end()};
   runner::OperatorAtTerminal person{input};
-  return person.how_much("How long is it", 0.5);
+  return person.how_much("How long is it", 0.5, [] {});
 }
 }  // namespace
 
@@ -49,8 +49,8 @@ TEST_CASE("Enter alone says that it is done; quit and the end of the input that 
           "[runner][terminal]") {
   CHECK(is_done("\n"));
   CHECK(is_done("what?\n\n"));  // asked again
-  CHECK_FALSE(is_done("quit\n"));
-  CHECK_FALSE(is_done("what?\nquit\n"));
+  CHECK_FALSE(is_done("quit\n\n"));
+  CHECK_FALSE(is_done("what?\nquit\n\n"));
   CHECK_FALSE(is_done(""));
 }
 
@@ -58,6 +58,6 @@ TEST_CASE("a measurement is a number in its range, asked for until it is one",
           "[runner][terminal]") {
   CHECK(measured("0.1\n") == 0.1);
   CHECK(measured("ten\n-1\n0\n0.6\nnan\n0.1 m\n0.25\n") == 0.25);
-  CHECK_THROWS_AS(measured("quit\n"), runner::Stopped);
+  CHECK_THROWS_AS(measured("quit\n0.1\n"), runner::Stopped);
   CHECK_THROWS_AS(measured("ten\n"), runner::Stopped);
 }

@@ -58,6 +58,16 @@ void FakeBus::plan(Trouble trouble, int after, std::chrono::milliseconds delay) 
   usbfs_.plan(trouble, after, delay);
 }
 
+void FakeBus::persist_in(Trouble trouble) {
+  const std::lock_guard lock{mutex_};
+  usbfs_.persist_in(trouble);
+}
+
+void FakeBus::halt_out(int clears) {
+  const std::lock_guard lock{mutex_};
+  usbfs_.halt_out(clears);
+}
+
 std::vector<Bytes> FakeBus::requests() const {
   const std::lock_guard lock{mutex_};
   return requests_;

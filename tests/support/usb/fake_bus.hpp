@@ -31,6 +31,10 @@ class FakeBus : private UsbBoard {
   void copy_plain_bulk_to(int descriptor) { plain_bulk_copy_ = descriptor; }
   // Trouble with the next request, or with the one after so many more.
   void plan(Trouble trouble, int after = 0, std::chrono::milliseconds delay = {});
+  // Trouble with every request from now on.
+  void persist_in(Trouble trouble);
+  // Requests stall until the halt was cleared so many times.
+  void halt_out(int clears);
   void unplug();
   std::vector<Bytes> requests() const;
   void forget_requests();

@@ -99,16 +99,43 @@ void FakeUsbfs::deliver_what_is_due() {
   }
 }
 
+// Whether the request gets no further than the kernel, or than the bus.
+bool FakeUsbfs::is_held_up(usbdevfs_urb* urb, Trouble trouble) {
+  if (clears_needed_ > 0) {
+    complete(urb, -EPIPE, 0);
+    return true;
+  }
+  if (trouble == Trouble::out_nak) {
+    not_taken_.push_back(urb);
+    return true;
+  }
+  if (trouble == Trouble::out_lost) {
+    complete(urb, 0, urb->buffer_length);
+    return true;
+  }
+  return false;
+}
+
+int FakeUsbfs::clear_halt() {
+  clears_needed_ = std::max(0, clears_needed_ - 1);
+  return is_gone_ ? -ENODEV : 0;
+}
+
 int FakeUsbfs::take_request(usbdevfs_urb* urb) {
   const Trouble trouble = trouble_now();
   if (trouble == Trouble::not_accepted) {
     return -ENOMEM;
+  }
+  if (is_held_up(urb, trouble)) {
+    return 0;
   }
   complete(urb, 0, urb->buffer_length);
   const std::span request{static_cast<const std::uint8_t*>(urb->buffer),
                           static_cast<std::size_t>(urb->buffer_length)};
   if (Bytes reply = board_.answer(request); !reply.empty()) {
     send_back(std::move(reply), trouble);
+  } else if (trouble != lasting_) {
+    plan(trouble, 0, delay_);  // it comes with the next reply
   }
   return 0;
 }
@@ -138,18 +165,25 @@ int FakeUsbfs::reap(void** urb) {
 }
 
 int FakeUsbfs::discard(const void* urb) {
-  const auto found = std::ranges::find(waiting_, urb);
-  if (found == waiting_.end()) {
-    return -EINVAL;
+  for (std::deque<usbdevfs_urb*>* const under_way : {&waiting_, &not_taken_}) {
+    if (const auto found = std::ranges::find(*under_way, urb); found != under_way->end()) {
+      complete(*found, -ENOENT, 0);
+      under_way->erase(found);
+      return 0;
+    }
   }
-  complete(*found, -ENOENT, 0);
-  waiting_.erase(found);
-  return 0;
+  return -EINVAL;
 }
 
 int FakeUsbfs::bulk(const usbdevfs_bulktransfer& transfer) {
   if (is_gone_) {
     return -ENODEV;
+  }
+  if (clears_needed_ > 0) {
+    return -EPIPE;
+  }
+  if (lasting_ == Trouble::out_nak) {
+    return -ETIMEDOUT;
   }
   const int error =
       board_.take_plain_bulk({static_cast<const std::uint8_t*>(transfer.data), transfer.len});
@@ -169,11 +203,13 @@ int FakeUsbfs::ioctl(unsigned long request, void* argument) {
       return 0;
     case static_cast<unsigned>(USBDEVFS_CONTROL):
       return control(*static_cast<const usbdevfs_ctrltransfer*>(argument));
+    case static_cast<unsigned>(USBDEVFS_CLEAR_HALT):
+      // which endpoint is of no matter: replies never halt for longer than one
+      return clear_halt();
     case static_cast<unsigned>(USBDEVFS_GETDRIVER):
       return -ENODATA;
     case static_cast<unsigned>(USBDEVFS_CLAIMINTERFACE):
     case static_cast<unsigned>(USBDEVFS_RELEASEINTERFACE):
-    case static_cast<unsigned>(USBDEVFS_CLEAR_HALT):
     case static_cast<unsigned>(USBDEVFS_SETINTERFACE):
     case static_cast<unsigned>(USBDEVFS_RESET):
       return is_gone_ ? -ENODEV : 0;

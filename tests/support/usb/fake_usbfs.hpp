@@ -35,6 +35,8 @@ class FakeUsbfs {
     stale,         // the reply before once more
     unplugged,     // while the reply is waited for
     not_accepted,  // the kernel has no memory for the request
+    out_nak,       // the board takes no request: it stays with the kernel until it is cancelled
+    out_lost,      // the request is taken, and never reaches the board
   };
 
   FakeUsbfs(UsbBoard& board, unsigned address) : board_{board}, address_{address} {}
@@ -45,6 +47,8 @@ class FakeUsbfs {
   void plan(Trouble trouble, int after, std::chrono::milliseconds delay);
   // Trouble with every request that none is planned for.
   void persist_in(Trouble trouble) { lasting_ = trouble; }
+  // Requests stall until the halt was cleared so many times, of both endpoints.
+  void halt_out(int clears) { clears_needed_ = 2 * clears; }
   void unplug();
   void deliver_what_is_due();
 
@@ -58,6 +62,8 @@ class FakeUsbfs {
   using Clock = std::chrono::steady_clock;
   int submit(usbdevfs_urb* urb);
   int take_request(usbdevfs_urb* urb);
+  bool is_held_up(usbdevfs_urb* urb, Trouble trouble);
+  int clear_halt();
   void send_back(Bytes reply, Trouble trouble);
   void complete(usbdevfs_urb* urb, int status, int length);
   int reap(void** urb);
@@ -68,8 +74,10 @@ class FakeUsbfs {
   UsbBoard& board_;
   unsigned address_;
   bool is_gone_{false};
-  std::deque<usbdevfs_urb*> waiting_;  // for a reply
+  std::deque<usbdevfs_urb*> waiting_;    // for a reply
+  std::deque<usbdevfs_urb*> not_taken_;  // requests that the board does not take
   std::deque<usbdevfs_urb*> done_;
+  int clears_needed_{0};
   struct Reply {
     Bytes bytes;
     int status{0};

@@ -1,6 +1,7 @@
 #pragma once
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -23,10 +24,10 @@ inline std::vector<Bytes> replies_of_a_moving_grip() {
   return all;
 }
 
-// Echoes the request, as the board does.
-inline Bytes with_echo(Bytes reply, std::span<const std::uint8_t> request) {
+// Echoes the request and gives the motors its voltages, as the board does.
+inline void echo(std::span<const std::uint8_t> request, std::span<std::uint8_t> reply) {
   std::copy_n(request.begin() + 2, 16, reply.begin());
-  return reply;
+  std::copy_n(request.begin() + 2, 16, reply.begin() + 32);
 }
 
 // A board without a bus: it answers at once, out of memory that was taken before.
@@ -37,13 +38,29 @@ class PlayedBack final : public device::UsbPipe {
   }
   device::UsbOutcome exchange(std::span<const std::uint8_t> out,
                               std::span<std::uint8_t> in) noexcept override {
+    if (meanwhile_) {
+      meanwhile_();
+    }
+    if (fails_) {
+      return device::UsbOutcome::stalled;
+    }
     std::ranges::copy(replies_[next_++ % replies_.size()], in.begin());
-    std::copy_n(out.begin() + 2, 16, in.begin());
+    echo(out, in);
     return device::UsbOutcome::ok;
   }
+  device::UsbOutcome receive(std::span<std::uint8_t> /*in*/) noexcept override {
+    return device::UsbOutcome::timed_out;
+  }
+  void clear_halt() noexcept override {}
   void drain() noexcept override {}
+  void fail_from_now_on() { fails_ = true; }
+  void in_the_middle_of_an_exchange(std::function<void()> meanwhile) {
+    meanwhile_ = std::move(meanwhile);
+  }
 
  private:
+  bool fails_{false};
+  std::function<void()> meanwhile_;
   std::vector<Bytes> replies_{replies_of_a_moving_grip()};
   std::size_t next_{0};
 };

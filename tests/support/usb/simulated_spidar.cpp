@@ -11,6 +11,13 @@ constexpr double newtons_per_dac_count = 1.0 / (0.365296803653 * 415.0);
 // Counts fall as strings 0, 1, 6 and 7 get longer, and rise as the others do.
 constexpr std::array<int, 8> sign{-1, -1, 1, 1, 1, 1, -1, -1};
 constexpr double metres_per_count = 1.66555e-5;
+
+// Little-endian.
+void put(Bytes& bytes, std::size_t at, std::int64_t value, std::size_t size = 2) {
+  for (std::size_t i = 0; i < size; ++i) {
+    bytes[at + i] = static_cast<std::uint8_t>(value >> 8 * i & 0xFF);
+  }
+}
 }  // namespace
 
 core::SpidarCalibration SimulatedSpidar::calibration() {
@@ -24,6 +31,9 @@ core::SpidarCalibration SimulatedSpidar::calibration() {
 }
 
 void SimulatedSpidar::pass_a_tick() {
+  if (is_rigid_) {
+    return;
+  }
   for (int step = 0; step < steps_a_tick; ++step) {
     const device::Strings strings =
         strings_at(geometry_, {position_m_, Eigen::Matrix3d::Identity()});
@@ -35,36 +45,76 @@ void SimulatedSpidar::pass_a_tick() {
   }
 }
 
-Bytes SimulatedSpidar::reply() const {
-  Bytes bytes(512, 0);
-  const auto put = [&](std::size_t at, std::int64_t value) {
-    bytes[at] = static_cast<std::uint8_t>(value & 0xFF);
-    bytes[at + 1] = static_cast<std::uint8_t>(value >> 8 & 0xFF);
-  };
+std::array<std::int64_t, 8> SimulatedSpidar::counters() const {
+  std::array<std::int64_t, 8> all{};
   const device::PerString length_m =
       strings_at(geometry_, {position_m_, Eigen::Matrix3d::Identity()}).length_m;
-  for (std::size_t i = 0; i < 8; ++i) {
+  for (std::size_t i = 0; i < all.size(); ++i) {
     const auto k = static_cast<Eigen::Index>(i);
     const auto counts =
         std::llround(sign.at(i) * (length_m[k] - length_at_rest_m_[k]) / metres_per_count);
-    const auto& echoed = echoes_the_request_before_ ? dac_counts_before_ : dac_counts_;
-    put(2 * i, echoed.at(i) + (echoes_wrongly_ ? 1 : 0));
-    put(16 + 2 * i, first_count_ + counts + slip_.at(i));
+    all.at(i) = first_count_ + counts + slip_.at(i);
   }
-  put(48, rotary_switch_ << 4);
+  return all;
+}
+
+// The counters are latched when the request arrives, before its outputs act.
+Bytes SimulatedSpidar::reply_with_counters() const {
+  Bytes bytes(512, 0);
+  const auto counts = counters();
+  for (std::size_t i = 0; i < 8; ++i) {
+    put(bytes, 16 + 2 * i, counts.at(i));
+    put(bytes, 32 + 2 * i, is_amplifier_on_ ? dac_counts_.at(i) : 0);
+  }
+  put(bytes, 48, rotary_switch_ << 4);
   return bytes;
 }
 
+void SimulatedSpidar::echo_into(Bytes& reply) const {
+  const auto& echoed = echoes_the_request_before_ ? dac_counts_before_ : dac_counts_;
+  for (std::size_t i = 0; i < 8; ++i) {
+    put(reply, 2 * i, echoed.at(i) + (echoes_wrongly_ ? 1 : 0));
+  }
+}
+
+void SimulatedSpidar::take_outputs(std::span<const std::uint8_t> words) {
+  dac_counts_before_ = dac_counts_;
+  for (std::size_t i = 0; i < 8; ++i) {
+    dac_counts_.at(i) = static_cast<std::uint16_t>(words[2 * i] | words[2 * i + 1] << 8);
+    tension_n_[static_cast<Eigen::Index>(i)] =
+        is_amplifier_on_ ? newtons_per_dac_count * dac_counts_.at(i) : 0.0;
+  }
+}
+
+// Outputs and the reading of the counters are two commands; a tick passes before the outputs.
+Bytes SimulatedSpidar::answer_as_simple_board(std::span<const std::uint8_t> request) {
+  if (request[0] == 0x52) {
+    pass_a_tick();
+    take_outputs(request.subspan(1));
+  }
+  if (request[0] != 0x51) {
+    return {};
+  }
+  Bytes latched(32, 0);
+  const auto counts = counters();
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    put(latched, 3 * i, counts.at(i), 3);
+  }
+  put(latched, 24, rotary_switch_ << 4, 1);
+  return latched;
+}
+
 Bytes SimulatedSpidar::answer(std::span<const std::uint8_t> request) {
+  if (request.size() == 32) {
+    return answer_as_simple_board(request);
+  }
   if (request.size() != 512 || request[0] != 0x01 || request[1] != 0x0E) {
     return {};
   }
-  dac_counts_before_ = dac_counts_;
-  for (std::size_t i = 0; i < 8; ++i) {
-    dac_counts_.at(i) = static_cast<std::uint16_t>(request[2 + 2 * i] | request[3 + 2 * i] << 8);
-    tension_n_[static_cast<Eigen::Index>(i)] = newtons_per_dac_count * dac_counts_.at(i);
-  }
-  pass_a_tick();
-  return reply();
+  pass_a_tick();  // since the request before, under the outputs that it set
+  Bytes latched = reply_with_counters();
+  take_outputs(request.subspan(2));
+  echo_into(latched);
+  return latched;
 }
 }  // namespace tapstudy::testing

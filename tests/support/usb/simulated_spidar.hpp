@@ -7,9 +7,10 @@
 #include "device/spidar/pose.hpp"
 #include "support/usb/descriptors.hpp"
 namespace tapstudy::testing {
-// A SPIDAR-G6 X3R with an SH4 board as it would be: a grip with mass, held by a hand's spring and
-// by eight motors whose currents follow the board's outputs, and encoders that count. Time passes
-// with every request, one tick each. It knows requests and replies only by their bytes.
+// A SPIDAR-G6 X3R as it would be: a grip with mass, held by a hand's spring and by eight motors
+// whose currents follow the board's outputs, and encoders that count. Time passes with every
+// request, one tick each. It knows requests and replies only by their bytes: those of 512 are an
+// SH4 board's, those of 32 a Simple board's, which neither echoes nor measures voltages.
 class SimulatedSpidar {
  public:
   static core::SpidarCalibration calibration();
@@ -19,7 +20,12 @@ class SimulatedSpidar {
   const core::Vec3& position_m() const { return position_m_; }
   const device::PerString& tension_n() const { return tension_n_; }
   void start_counters_at(std::int64_t count) { first_count_ = count; }
+  // Off: no tension and no voltage, whatever is commanded.
+  void switch_amplifier(bool is_on) { is_amplifier_on_ = is_on; }
   void turn_rotary_switch_to(int position) { rotary_switch_ = position; }
+  // Moved from outside instead of by the hand's muscle and the strings.
+  void be_rigid() { is_rigid_ = true; }
+  void put_at(const core::Vec3& position_m) { position_m_ = position_m; }
   void pass_with_each_request(double seconds) { tick_s_ = seconds; }
   // What the board gets wrong.
   void jump(std::size_t string, int counts) { slip_.at(string) += counts; }
@@ -29,7 +35,11 @@ class SimulatedSpidar {
 
  private:
   void pass_a_tick();
-  Bytes reply() const;
+  std::array<std::int64_t, 8> counters() const;
+  void take_outputs(std::span<const std::uint8_t> words);
+  Bytes answer_as_simple_board(std::span<const std::uint8_t> request);
+  Bytes reply_with_counters() const;
+  void echo_into(Bytes& reply) const;
   device::SpidarGeometry geometry_{device::spidar_geometry("X3R")};
   device::PerString length_at_rest_m_{strings_at(geometry_, {}).length_m};
   device::PerString tension_n_{device::PerString::Zero()};
@@ -42,6 +52,8 @@ class SimulatedSpidar {
   double tick_s_{1e-3};
   int rotary_switch_{3};
   std::array<int, 8> slip_{};
+  bool is_rigid_{false};
+  bool is_amplifier_on_{true};
   bool echoes_wrongly_{false};
   bool echoes_the_request_before_{false};
 };

@@ -21,18 +21,28 @@ inline device::SpidarSettings simulated_settings() {
 
 // The real libusb between a SpidarG6 and a simulated one.
 struct SpidarOnBus {
+  explicit SpidarOnBus(std::uint16_t board_product = device::sh4_product)
+      : product{board_product} {}
+  std::uint16_t product;
   SimulatedSpidar hardware;
-  FakeBus bus{device::cyverse_vendor, device::sh4_product,
+  FakeBus bus{device::cyverse_vendor, product,
               [this](auto request) { return hardware.answer(request); }};
   device::UsbNode node{node_of(bus)};
   // half of what a late reply takes, and ample for a machine that runs other tests meanwhile
   device::LibusbPipe pipe{node, {}, std::chrono::milliseconds{25}};
-  std::unique_ptr<device::SpidarBoard> board{device::board_of(device::sh4_product)};
+  std::unique_ptr<device::SpidarBoard> board{device::board_of(product)};
   device::SpidarG6 spidar{pipe, *board, simulated_settings()};
 };
 
-inline bool has_no_force(const Bytes& sh4_request) {
-  return std::all_of(sh4_request.begin() + 2, sh4_request.begin() + 18,
-                     [](std::uint8_t byte) { return byte == 0; });
+// The outputs that a request to either board sets; empty if it sets none.
+inline std::span<const std::uint8_t> outputs_in(const Bytes& request) {
+  if (request.size() == 512) {
+    return std::span{request}.subspan(2, 16);
+  }
+  return request.front() == 0x52 ? std::span{request}.subspan(1, 16)
+                                 : std::span<const std::uint8_t>{};
+}
+inline bool has_no_force(const Bytes& request) {
+  return std::ranges::all_of(outputs_in(request), [](std::uint8_t byte) { return byte == 0; });
 }
 }  // namespace tapstudy::testing

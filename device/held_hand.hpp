@@ -1,0 +1,36 @@
+#pragma once
+#include <optional>
+
+#include "core/haptic_state.hpp"
+namespace tapstudy::device {
+// So many replies in a row may be missing before it is a fault; the loop lets force fade meanwhile.
+inline constexpr int max_missed_replies = 3;
+
+// The hand as last read, which stands in for a reply that is missing.
+class HeldHand {
+ public:
+  void forget() noexcept {
+    hand_.reset();
+    missed_replies_ = 0;
+  }
+  void keep(const core::HandState& hand) noexcept {
+    hand_ = hand;
+    missed_replies_ = 0;
+  }
+  // False where nothing is known, or has stood in for too long.
+  bool stands_in(core::HandState& hand) noexcept {
+    if (!hand_ || missed_replies_ == max_missed_replies) {
+      return false;
+    }
+    ++missed_replies_;
+    hand = *hand_;
+    return true;
+  }
+  bool is_known() const noexcept { return hand_.has_value(); }
+  int missed_replies() const noexcept { return missed_replies_; }
+
+ private:
+  std::optional<core::HandState> hand_;
+  int missed_replies_{0};
+};
+}  // namespace tapstudy::device

@@ -1,0 +1,45 @@
+#include "device/relay/dead_man_relay.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+
+#include "device/device.hpp"
+namespace tapstudy::device {
+namespace {
+DeviceError refusal(const std::string& port, const std::string& why) {
+  return DeviceError{fmt::format("relay: '{}' {}", port, why)};
+}
+}  // namespace
+
+DeadManRelay::DeadManRelay(const std::string& port)
+    // NOLINTNEXTLINE(cppcoreguidelines-pro-type-vararg): the C library's own
+    : descriptor_{open(port.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC)} {
+  if (descriptor_ < 0) {
+    throw refusal(port, fmt::format("cannot be opened: {}", std::strerror(errno)));
+  }
+  termios modes{};
+  const bool is_serial = tcgetattr(descriptor_, &modes) == 0;
+  cfmakeraw(&modes);
+  modes.c_cflag |= static_cast<tcflag_t>(CLOCAL);
+  modes.c_cflag &= ~static_cast<tcflag_t>(CRTSCTS | CSTOPB | HUPCL);
+  cfsetspeed(&modes, B115200);
+  if (!is_serial || tcsetattr(descriptor_, TCSANOW, &modes) != 0) {
+    close(descriptor_);
+    throw refusal(port, "is no serial port");
+  }
+  if (flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
+    close(descriptor_);
+    throw refusal(port, "is in use by another session");
+  }
+}
+
+DeadManRelay::~DeadManRelay() {
+  close(descriptor_);
+}
+}  // namespace tapstudy::device

@@ -1,0 +1,116 @@
+#include "protocols/constrained_order.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+namespace tapstudy::protocols {
+namespace {
+constexpr std::size_t max_states = 60'000;
+constexpr int max_presentations = 2'000;
+}  // namespace
+
+ConstrainedOrders::ConstrainedOrders(const Block& block)
+    : begin_{std::vector<int>(block.stimuli.size(), block.repetitions), {}, 0},
+      constraints_{block.constraints},
+      is_within_repetition_{block.order == Order::shuffle_within_repetition},
+      is_too_large_{static_cast<int>(block.stimuli.size()) * block.repetitions >
+                    max_presentations} {}
+
+bool ConstrainedOrders::may_come(const State& state, std::size_t stimulus) const {
+  if (state.left[stimulus] == 0 ||
+      (is_within_repetition_ && state.left[stimulus] < std::ranges::max(state.left))) {
+    return false;  // or what comes less often than another would come twice in a repetition
+  }
+  if (constraints_.min_distance > 1) {
+    return std::ranges::find(state.recent, stimulus) == state.recent.end();
+  }
+  const bool is_again = !state.recent.empty() && state.recent.back() == stimulus;
+  return !is_again || constraints_.max_run == 0 || state.run < constraints_.max_run;
+}
+
+ConstrainedOrders::State ConstrainedOrders::after(State state, std::size_t stimulus) const {
+  --state.left[stimulus];
+  state.run = !state.recent.empty() && state.recent.back() == stimulus ? state.run + 1 : 1;
+  state.recent.push_back(stimulus);
+  const auto remembered = static_cast<std::size_t>(std::max(1, constraints_.min_distance - 1));
+  if (state.recent.size() > remembered) {
+    state.recent.erase(state.recent.begin());
+  }
+  return state;
+}
+
+std::string ConstrainedOrders::key_of(const State& state) {
+  std::vector<int> others;
+  for (std::size_t i = 0; i < state.left.size(); ++i) {
+    if (std::ranges::find(state.recent, i) == state.recent.end()) {
+      others.push_back(state.left[i]);
+    }
+  }
+  std::ranges::sort(others);
+  std::string key = std::to_string(state.run) + "|";
+  for (const std::size_t stimulus : state.recent) {
+    key += std::to_string(state.left[stimulus]) + ",";
+  }
+  for (const int left : others) {
+    key += ";" + std::to_string(left);
+  }
+  return key;
+}
+
+double ConstrainedOrders::completions(const State& state) {
+  if (std::ranges::all_of(state.left, [](int left) { return left == 0; })) {
+    return 1.0;
+  }
+  const std::string key = key_of(state);
+  if (const auto known = counted_.find(key); known != counted_.end()) {
+    return known->second;
+  }
+  is_too_large_ = is_too_large_ || counted_.size() >= max_states;
+  if (is_too_large_) {
+    return 0.0;
+  }
+  double sum = 0.0;
+  std::map<int, double> of_others;  // alike are those that are not recent and as often to come
+  for (std::size_t i = 0; i < state.left.size(); ++i) {
+    if (!may_come(state, i)) {
+      continue;
+    }
+    const bool is_recent = std::ranges::find(state.recent, i) != state.recent.end();
+    const auto alike = of_others.find(state.left[i]);
+    const bool is_known = !is_recent && alike != of_others.end();
+    const double orders = is_known ? alike->second : completions(after(state, i));
+    if (!is_recent) {
+      of_others[state.left[i]] = orders;
+    }
+    sum += orders;
+  }
+  counted_[key] = sum;
+  return sum;
+}
+
+std::optional<double> ConstrainedOrders::count() {
+  const double orders = completions(begin_);
+  return is_too_large_ || !std::isfinite(orders) ? std::nullopt : std::optional{orders};
+}
+
+std::vector<std::size_t> ConstrainedOrders::draw(core::Rng& rng) {
+  std::vector<std::size_t> order;
+  State state = begin_;
+  const int presentations = std::accumulate(begin_.left.begin(), begin_.left.end(), 0);
+  while (std::ssize(order) < presentations) {
+    double left = rng.uniform() * completions(state);
+    std::size_t next = state.left.size();
+    for (std::size_t i = 0; i < state.left.size() && (next == state.left.size() || left >= 0.0);
+         ++i) {
+      const double weight = may_come(state, i) ? completions(after(state, i)) : 0.0;
+      if (weight > 0.0) {
+        next = i;  // the last that may come, where rounding leaves a rest
+        left -= weight;
+      }
+    }
+    order.push_back(next);
+    state = after(state, next);
+  }
+  return order;
+}
+}  // namespace tapstudy::protocols

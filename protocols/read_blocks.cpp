@@ -1,0 +1,170 @@
+// Blocks: the parts of a session.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/error.hpp"
+#include "protocols/ordering.hpp"
+#include "protocols/read_sections.hpp"
+namespace tapstudy::protocols {
+namespace {
+using Presence = MapReader::Presence;
+constexpr double same_place_m = 1e-3;  // on the device
+
+void check_places(MapReader& top, const Protocol& protocol) {
+  for (const auto& [name, plate] : protocol.plates) {
+    for (const auto& [point, at_m] : plate->tapping_points_m) {
+      const double apart_m =
+          protocol.placement.lateral_scale *
+          (plate->lateral_ratio * at_m - protocol.tapping_points_m.at(point)).norm();
+      if (apart_m > same_place_m) {
+        top.reject("plates",
+                   fmt::format("{}.tapping_points_m.{}: lies {:.4g} m from the study's {} on the "
+                               "device (plates must not be distinguishable by where they are "
+                               "tapped; within {} m)",
+                               name, point, apart_m, point, same_place_m));
+      }
+    }
+  }
+}
+
+std::vector<std::string> task_names() {
+  std::vector<std::string> names;
+  for (const Task* const task : tasks()) {
+    names.emplace_back(task->name());
+  }
+  return names;
+}
+
+ExploreLimits read_explore(MapReader& block) {
+  ExploreLimits limits;
+  block.map("explore", Presence::optional, [&](MapReader& reader) {
+    limits.min_contacts = reader.integer("min_contacts", 0, 1000, limits.min_contacts);
+    limits.must_visit_all = reader.yes_or_no("visit_all", limits.must_visit_all);
+    limits.min_seconds = reader.number("min_seconds", {0.0, 3600.0}, limits.min_seconds);
+    if (reader.has("max_seconds")) {
+      limits.max_seconds = reader.number("max_seconds", Range::positive(3600.0));
+      if (*limits.max_seconds <= limits.min_seconds) {
+        reader.reject("max_seconds", "is not above min_seconds");
+      }
+    }
+    limits.at_limit = reader.one_of<AtLimit>(
+        "at_limit", {{"requeue", AtLimit::requeue}, {"give_up", AtLimit::give_up}}, "requeue");
+  });
+  return limits;
+}
+
+// What a participant reads and is asked besides the trials' question.
+void read_asides(MapReader& reader, Block& block) {
+  block.instructions = reader.paragraphs("instructions", "");
+  reader.map("confidence", Presence::optional, [&](MapReader& inner) {
+    Confidence confidence;
+    confidence.steps = inner.integer("steps", 2, 7, confidence.steps);
+    confidence.low = inner.text("low", confidence.low);
+    confidence.high = inner.text("high", confidence.high);
+    block.confidence = confidence;
+  });
+  reader.map("breaks", Presence::optional, [&](MapReader& inner) {
+    block.breaks = Breaks{inner.integer("every_trials", 1, 1000),
+                          inner.number("min_seconds", {0.0, 3600.0}, 0.0)};
+  });
+  block.gives_feedback = reader.yes_or_no("feedback", false);
+  if (block.gives_feedback && !block.is_practice) {
+    reader.reject("feedback", "is for practice: elsewhere it teaches the answers");
+  }
+}
+
+OrderConstraints read_constraints(MapReader& block) {
+  OrderConstraints constraints;
+  block.map("constraints", Presence::optional, [&](MapReader& reader) {
+    if (reader.has("max_run")) {
+      constraints.max_run = reader.integer("max_run", 1, 1000);
+    }
+    constraints.min_distance = reader.integer("min_distance", 1, 1000, 1);
+  });
+  return constraints;
+}
+
+void check_constraints(MapReader& reader, const Block& block) {
+  if (!block.constraints.are_any()) {
+    return;
+  }
+  if (block.order == Order::listed || block.order == Order::williams) {
+    reader.reject("constraints", "are for random orders: this one is given");
+    return;
+  }
+  try {
+    core::Rng rng{1};
+    ordered_stimuli(block, rng, {});
+  } catch (const core::InvalidInput& error) {
+    reader.reject("constraints", error.what());
+  }
+}
+
+// The keys that blocks of every task have; the task reads its own.
+Block read_block(MapReader& reader, const Protocol& protocol) {
+  Block block;
+  block.name = reader.name("name");
+  block.task = find_task(reader.word("task", "task", task_names()));
+  block.question = reader.text("question");
+  block.stimuli = reader.words("stimuli", "stimulus", stimulus_names(protocol));
+  block.repetitions = reader.integer("repetitions", 1, 1000, 1);
+  block.order =
+      reader.one_of<Order>("order",
+                           {{"shuffle", Order::shuffle},
+                            {"listed", Order::listed},
+                            {"shuffle_within_repetition", Order::shuffle_within_repetition},
+                            {"williams", Order::williams}},
+                           "shuffle");
+  block.is_practice = reader.yes_or_no("practice", false);
+  if (block.task != nullptr && block.task->uses_order()) {
+    block.constraints = read_constraints(reader);
+  }
+  block.explore = read_explore(reader);
+  read_asides(reader, block);
+  block.max_late_impact_repeats = reader.integer("max_late_impact_repeats", 0, 10, 0);
+  if (block.task != nullptr) {
+    block.task->read(reader, protocol, block);
+    if (block.gives_feedback && !block.task->has_correct_answer()) {
+      reader.reject("feedback",
+                    fmt::format("no answer is right in a {} block", block.task->name()));
+    }
+    if (!block.task->uses_order() && reader.has("order")) {
+      reader.reject("order", fmt::format("a {} block draws the order of its alternatives anew for "
+                                         "each participant and takes no order",
+                                         block.task->name()));
+    }
+  }
+  return block;
+}
+
+void check_block(MapReader& reader, const Block& block, const Protocol& protocol) {
+  if (block.task != nullptr && !block.stimuli.empty()) {
+    check_constraints(reader, block);
+  }
+  if (std::ranges::find(protocol.blocks, block.name, &Block::name) != protocol.blocks.end()) {
+    reader.reject("name", fmt::format("'{}' is the name of an earlier block", block.name));
+  }
+  if (block.order == Order::williams && block.stimuli.size() < 2) {
+    reader.reject("order", "a Williams order needs at least two stimuli");
+  }
+  if (block.stimuli.size() > 26) {
+    reader.reject("stimuli", "a block has at most 26 stimuli");
+  }
+}
+}  // namespace
+
+void read_blocks(MapReader& top, Protocol& protocol) {
+  constexpr int max_seed = 1'000'000'000;
+  protocol.counterbalancing_seed =
+      static_cast<std::uint64_t>(top.integer("counterbalancing_seed", 0, max_seed, 1));
+  top.list("blocks", Presence::optional, [&](MapReader& reader) {
+    const Block block = read_block(reader, protocol);
+    check_block(reader, block, protocol);
+    protocol.blocks.push_back(block);
+  });
+  if (!protocol.blocks.empty()) {
+    check_places(top, protocol);
+  }
+}
+}  // namespace tapstudy::protocols

@@ -1,0 +1,124 @@
+#include "results/journal.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+
+#include "core/sha256.hpp"
+#include "results/journal_lines.hpp"
+#include "results/store_error.hpp"
+namespace tapstudy::results {
+namespace {
+StoreError failure(const std::string& file, const char* what) {
+  return StoreError{fmt::format("{}: {}: {}", file, what, std::strerror(errno))};
+}
+
+// Open and locked for as long as this lives.
+class LockedFile {
+ public:
+  explicit LockedFile(const std::string& file)
+      // NOLINTNEXTLINE(cppcoreguidelines-pro-type-vararg): the way of the C library
+      : descriptor_{open(file.c_str(), O_RDWR | O_APPEND | O_CREAT | O_CLOEXEC, 0644)} {
+    if (descriptor_ < 0 || flock(descriptor_, LOCK_EX) != 0) {
+      const StoreError error = failure(file, "cannot be opened");
+      close(descriptor_);
+      throw error;
+    }
+  }
+  ~LockedFile() { close(descriptor_); }
+  LockedFile(const LockedFile&) = delete;
+  LockedFile& operator=(const LockedFile&) = delete;
+  LockedFile(LockedFile&&) = delete;
+  LockedFile& operator=(LockedFile&&) = delete;
+  int descriptor() const { return descriptor_; }
+
+ private:
+  int descriptor_;
+};
+
+bool write_all(int descriptor, const std::string& text) {
+  std::size_t written = 0;
+  while (written < text.size()) {
+    const ssize_t count = write(descriptor, text.data() + written, text.size() - written);
+    if (count < 0 && errno != EINTR) {
+      return false;
+    }
+    written += count > 0 ? static_cast<std::size_t>(count) : 0;
+  }
+  return fsync(descriptor) == 0;
+}
+}  // namespace
+
+std::string journal_file(const std::string& directory) {
+  return (std::filesystem::path{directory} / "answers.journal").string();
+}
+
+// What other programs have appended since, too. Half a line at the end is cut off.
+void Journal::read_on(int descriptor) {
+  struct stat status {};
+  fstat(descriptor, &status);
+  if (status.st_size < read_bytes_) {  // it is another file now
+    known_.clear();
+    chain_.clear();
+    read_bytes_ = 0;
+  }
+  std::string text(static_cast<std::size_t>(status.st_size - read_bytes_), '\0');
+  if (pread(descriptor, text.data(), text.size(), read_bytes_) !=
+      static_cast<ssize_t>(text.size())) {
+    throw failure(file_, "cannot be read");
+  }
+  std::size_t begin = 0;
+  for (auto end = text.find('\n'); end != std::string::npos; end = text.find('\n', begin)) {
+    const JournalLine line = split_line(text.substr(begin, end - begin));
+    known_.insert(line.body);
+    chain_ = line.chain;
+    begin = end + 1;
+  }
+  read_bytes_ += static_cast<std::int64_t>(begin);
+  if (begin < text.size() && ftruncate(descriptor, read_bytes_) != 0) {
+    throw failure(file_, "cannot be written");
+  }
+}
+
+std::string Journal::chained(const std::string& body) {
+  chain_ = chain_of(chain_, body);
+  return join_line({body, chain_}) + "\n";
+}
+
+void Journal::complete(const std::function<StudyRow()>& study,
+                       const std::vector<SessionRow>& sessions,
+                       const std::vector<JournalledAnswer>& answers) {
+  const LockedFile file{file_};
+  read_on(file.descriptor());
+  std::vector<std::string> bodies;
+  if (known_.empty()) {
+    bodies.push_back(to_line(study()));
+  }
+  for (const SessionRow& session : sessions) {
+    bodies.push_back(to_line(session));
+  }
+  for (const JournalledAnswer& answer : answers) {
+    bodies.push_back(to_line(answer));
+  }
+  std::erase_if(bodies, [this](const std::string& body) { return known_.contains(body); });
+  const std::string chain_before = chain_;
+  std::string text;
+  for (const std::string& body : bodies) {
+    text += chained(body);
+  }
+  if (!text.empty() && !write_all(file.descriptor(), text)) {
+    const StoreError error = failure(file_, "writing failed");
+    chain_ = chain_before;
+    static_cast<void>(!ftruncate(file.descriptor(), read_bytes_));  // else cut off when read next
+    throw error;
+  }
+  known_.insert(bodies.begin(), bodies.end());
+  read_bytes_ += static_cast<std::int64_t>(text.size());
+}
+}  // namespace tapstudy::results

@@ -1,0 +1,54 @@
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "results/rows.hpp"
+namespace tapstudy::results {
+// An answered trial without its traces and events.
+struct JournalledAnswer {
+  TrialRow trial;
+  std::vector<AlternativeRow> alternatives;
+  ResponseRow response;
+};
+
+std::string journal_file(const std::string& directory);
+
+// DIR/answers.journal: a second record of what was answered, in plain text, in case the database is
+// lost. Only ever appended to, each line flushed to the disk: one JSON object a line, the study
+// first (with its protocol and surfaces), each session before its answers. Each line ends with
+//   "chain":"SHA-256 of the previous line's chain and of this line up to here"
+// so that a line that was changed, removed or inserted is noticed. Several programs may append at
+// once. A half line at the end, left by a power failure, was never confirmed and is cut off.
+class Journal {
+ public:
+  explicit Journal(const std::string& directory) : file_{journal_file(directory)} {}
+  // Appends what it does not hold yet; the study is asked for if it is new. Throws StoreError if it
+  // cannot be written; its end is then as it was before.
+  void complete(const std::function<StudyRow()>& study, const std::vector<SessionRow>& sessions,
+                const std::vector<JournalledAnswer>& answers);
+
+ private:
+  void read_on(int descriptor);
+  std::string chained(const std::string& body);
+  std::string file_;
+  std::set<std::string> known_;  // lines without their chain
+  std::string chain_;            // of the last line known
+  std::int64_t read_bytes_{0};
+};
+
+// What the journal of a study holds. Throws StoreError with file and line where it does not hold
+// together.
+struct JournalContent {
+  StudyRow study;
+  std::vector<SessionRow> sessions;
+  std::vector<JournalledAnswer> answers;
+};
+JournalContent read_journal(const std::string& directory);
+
+// One text per answer, equal if and only if the answers are.
+std::string to_line(const JournalledAnswer& answer);
+}  // namespace tapstudy::results

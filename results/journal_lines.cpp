@@ -1,0 +1,230 @@
+#include "results/journal_lines.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <span>
+
+#include "core/sha256.hpp"
+#include "results/compression.hpp"
+#include "results/store_error.hpp"
+namespace tapstudy::results {
+namespace {
+using Json = nlohmann::ordered_json;
+constexpr const char* format = "tapstudy-journal/2";
+constexpr std::string_view chain_key = ",\"chain\":\"";
+
+// What is no UTF-8 becomes a replacement character: the journal is text.
+std::string dumped(const Json& json) {
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+std::string to_hex(std::span<const std::byte> bytes) {
+  std::string hex;
+  for (const std::byte byte : bytes) {
+    hex += fmt::format("{:02x}", std::to_integer<int>(byte));
+  }
+  return hex;
+}
+
+std::vector<std::byte> from_hex(const std::string& hex) {
+  std::vector<std::byte> bytes(hex.size() / 2);
+  for (std::size_t i = 0; i < bytes.size(); ++i) {
+    unsigned value = 0;
+    const char* const first = hex.data() + 2 * i;
+    std::from_chars(first, first + 2, value, 16);
+    bytes[i] = static_cast<std::byte>(value);
+  }
+  return bytes;
+}
+
+template <class Value>
+Json or_null(const std::optional<Value>& value) {
+  return value ? Json(*value) : Json();
+}
+template <class Value>
+std::optional<Value> optional_of(const Json& json) {
+  return json.is_null() ? std::nullopt : std::optional{json.get<Value>()};
+}
+
+StudyRow study_from(const Json& line) {
+  if (line.at("format") != format) {
+    throw StoreError{"is not in a format that this program reads"};
+  }
+  StudyRow study{line.at("title"),
+                 line.at("protocol_file"),
+                 line.at("protocol_text"),
+                 line.at("protocol_sha256"),
+                 {}};
+  for (const Json& surface : line.at("surfaces")) {
+    const auto bytes = decompressed(from_hex(surface.at("zstd_hex")), surface.at("size"),
+                                    surface.at("file").get<std::string>());
+    SurfaceRow row{surface.at("file"), surface.at("sha256"), {}};
+    for (const std::byte byte : bytes) {
+      row.bytes += std::to_integer<char>(byte);
+    }
+    study.surfaces.push_back(std::move(row));
+  }
+  return study;
+}
+
+SessionRow session_from(const Json& line) {
+  SessionRow session;
+  session.id = line.at("session_id");
+  session.participant_id = line.at("participant_id");
+  session.participant_index = line.at("participant_index");
+  session.mode = mode_from(line.at("mode"));
+  session.seed = line.at("seed");
+  session.planned_order = line.at("planned_order");
+  session.resumes = optional_of<std::int64_t>(line.at("resumes"));
+  session.rate_hz = line.at("rate_hz");
+  session.rig_text = line.at("rig_text");
+  session.device = line.at("device");
+  session.scheduler = line.at("scheduler");
+  session.doctor = line.at("doctor");
+  session.program_version = line.at("program_version");
+  session.git_hash = line.at("git_hash");
+  session.compiler = line.at("compiler");
+  session.started_utc = line.at("started_utc");
+  return session;
+}
+
+JournalledAnswer answer_from(const Json& line) {
+  JournalledAnswer answer;
+  answer.trial = {line.at("session_id"), line.at("number"), line.at("attempt"),
+                  line.at("block"),      line.at("task"),   line.at("is_practice"),
+                  line.at("repetition"), "answered",        line.at("duration_s")};
+  for (const Json& alternative : line.at("alternatives")) {
+    answer.alternatives.push_back({static_cast<int>(answer.alternatives.size()),
+                                   alternative.at("label"), alternative.at("stimulus")});
+  }
+  answer.response = {line.at("response"), optional_of<bool>(line.at("is_correct")),
+                     line.at("response_time_s"),
+                     optional_of<double>(line.at("time_from_first_contact_s")),
+                     optional_of<int>(line.at("confidence"))};
+  return answer;
+}
+
+void add_line(const Json& line, JournalContent& content) {
+  const std::string kind = line.at("kind");
+  if (kind == "study") {
+    content.study = study_from(line);
+  } else if (kind == "session") {
+    content.sessions.push_back(session_from(line));
+  } else if (kind == "answer") {
+    content.answers.push_back(answer_from(line));
+  } else {
+    throw StoreError{"is of an unknown kind"};
+  }
+}
+}  // namespace
+
+JournalLine split_line(const std::string& line) {
+  const auto at = line.rfind(chain_key);
+  if (at == std::string::npos || !line.ends_with("\"}")) {
+    return {line, ""};
+  }
+  const std::size_t chain_at = at + chain_key.size();
+  return {line.substr(0, at) + "}", line.substr(chain_at, line.size() - chain_at - 2)};
+}
+
+std::string join_line(const JournalLine& line) {
+  return fmt::format("{}{}{}\"}}", line.body.substr(0, line.body.size() - 1), chain_key,
+                     line.chain);
+}
+
+std::string chain_of(const std::string& chain_before, const std::string& body) {
+  return core::sha256(chain_before + body);
+}
+
+std::string to_line(const StudyRow& study) {
+  Json line{{"kind", "study"},
+            {"format", format},
+            {"title", study.title},
+            {"protocol_file", study.protocol_file},
+            {"protocol_sha256", study.protocol_sha256},
+            {"protocol_text", study.protocol_text},
+            {"surfaces", Json::array()}};
+  for (const SurfaceRow& surface : study.surfaces) {
+    line["surfaces"].push_back(
+        {{"file", surface.file},
+         {"sha256", surface.sha256},
+         {"size", surface.bytes.size()},
+         {"zstd_hex", to_hex(compressed(std::as_bytes(std::span{surface.bytes})))}});
+  }
+  return dumped(line);
+}
+
+std::string to_line(const SessionRow& session) {
+  return dumped({{"kind", "session"},
+                 {"session_id", session.id},
+                 {"participant_id", session.participant_id},
+                 {"mode", to_text(session.mode)},
+                 {"participant_index", session.participant_index},
+                 {"seed", session.seed},
+                 {"resumes", or_null(session.resumes)},
+                 {"started_utc", session.started_utc},
+                 {"rate_hz", session.rate_hz},
+                 {"device", session.device},
+                 {"scheduler", session.scheduler},
+                 {"program_version", session.program_version},
+                 {"git_hash", session.git_hash},
+                 {"compiler", session.compiler},
+                 {"planned_order", session.planned_order},
+                 {"rig_text", session.rig_text},
+                 {"doctor", session.doctor}});
+}
+
+std::string to_line(const JournalledAnswer& answer) {
+  Json alternatives = Json::array();
+  for (const AlternativeRow& alternative : answer.alternatives) {
+    alternatives.push_back({{"label", alternative.label}, {"stimulus", alternative.stimulus}});
+  }
+  return dumped({{"kind", "answer"},
+                 {"session_id", answer.trial.session_id},
+                 {"number", answer.trial.number},
+                 {"attempt", answer.trial.attempt},
+                 {"block", answer.trial.block},
+                 {"task", answer.trial.task},
+                 {"is_practice", answer.trial.is_practice},
+                 {"repetition", answer.trial.repetition},
+                 {"duration_s", answer.trial.duration_s},
+                 {"alternatives", alternatives},
+                 {"response", answer.response.response},
+                 {"is_correct", or_null(answer.response.is_correct)},
+                 {"response_time_s", answer.response.response_time_s},
+                 {"time_from_first_contact_s", or_null(answer.response.time_from_first_contact_s)},
+                 {"confidence", or_null(answer.response.confidence)}});
+}
+
+JournalContent read_journal(const std::string& directory) {
+  const std::string file = journal_file(directory);
+  std::ifstream stream{file};
+  if (!stream) {
+    throw StoreError{file + ": cannot be read"};
+  }
+  JournalContent content;
+  std::string chain;
+  int number = 0;
+  for (std::string text; std::getline(stream, text) && !stream.eof();) {
+    ++number;
+    const JournalLine line = split_line(text);
+    if (line.chain != chain_of(chain, line.body)) {
+      throw StoreError{fmt::format(
+          "{}, line {}: was changed, or a line before it was removed or inserted", file, number)};
+    }
+    chain = line.chain;
+    try {
+      add_line(Json::parse(line.body), content);
+    } catch (const std::exception& error) {
+      throw StoreError{fmt::format("{}, line {}: {}", file, number, error.what())};
+    }
+  }
+  if (content.study.protocol_text.empty()) {
+    throw StoreError{file + ": names no study"};
+  }
+  return content;
+}
+}  // namespace tapstudy::results

@@ -1,0 +1,12 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "protocols/protocol.hpp"
+#include "results/store.hpp"
+namespace tapstudy::runner {
+// The trials that a participant ended without an answer and that do not come again (at_limit:
+// give_up).
+std::vector<int> given_up_trials(const protocols::Protocol& protocol,
+                                 const std::string& participant_id, results::Store& store);
+}  // namespace tapstudy::runner

@@ -1,0 +1,76 @@
+#include "runner/session/session_states.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+#include <utility>
+namespace tapstudy::runner {
+namespace {
+using enum SessionState;
+struct Row {
+  SessionState state;
+  std::string_view name;
+  std::vector<SessionState> next;
+};
+
+// Between two trials anything may come that is not part of one.
+const std::vector<SessionState>& between_trials() {
+  static const std::vector<SessionState> states{instructions, resting, ready, stopped, ended};
+  return states;
+}
+std::vector<SessionState> between_trials_or(SessionState one, SessionState other) {
+  std::vector<SessionState> states = between_trials();
+  states.insert(states.end(), {one, other});
+  return states;
+}
+
+const std::array<Row, 13>& table() {
+  static const std::array<Row, 13> rows{
+      {{begun, "begun", between_trials()},
+       {instructions, "instructions", between_trials()},
+       {resting, "resting", between_trials()},
+       {ready, "ready", {exploring, stopped}},
+       {exploring, "exploring", {confidence, saved, repeated, timed_out, faulted, stopped}},
+       {confidence, "confidence", {saved, repeated, faulted, stopped}},
+       {saved, "saved", between_trials_or(feedback, faulted)},
+       {repeated, "repeated", {ready, stopped}},
+       {timed_out, "timed_out", between_trials()},
+       {feedback, "feedback", between_trials()},
+       {faulted, "faulted", between_trials()},
+       {stopped, "stopped", {}},
+       {ended, "ended", {}}}};
+  return rows;
+}
+const Row& row_of(SessionState state) {
+  return *std::ranges::find(table(), state, &Row::state);
+}
+}  // namespace
+
+std::string_view name(SessionState state) {
+  return row_of(state).name;
+}
+
+bool may_follow(SessionState before, SessionState after) {
+  return std::ranges::find(row_of(before).next, after) != row_of(before).next.end();
+}
+
+SessionStates::SessionStates(std::int64_t session_id, Now now_s)
+    : session_id_{session_id}, now_s_{std::move(now_s)} {
+  events_.push_back({session_id_, now_s_(), std::string{name(state_)}, {}, {}});
+}
+
+void SessionStates::enter(SessionState state, std::optional<int> trial, std::string detail) {
+  if (!may_follow(state_, state)) {
+    throw std::logic_error{
+        fmt::format("a session that is {} cannot become {}", name(state_), name(state))};
+  }
+  state_ = state;
+  events_.push_back({session_id_, now_s_(), std::string{name(state)}, trial, std::move(detail)});
+}
+
+std::vector<results::SessionEventRow> SessionStates::take_events() {
+  return std::exchange(events_, {});
+}
+}  // namespace tapstudy::runner

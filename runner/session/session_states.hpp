@@ -1,0 +1,45 @@
+#pragma once
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "results/rows.hpp"
+namespace tapstudy::runner {
+// What a session is doing. The names are those of the store.
+enum class SessionState {
+  begun,
+  instructions,
+  resting,
+  ready,       // the trial is shown, nothing is rendered
+  exploring,   // go: the plate is rendered
+  confidence,  // the answer is given, force is off
+  saved,
+  repeated,   // stored, but presented again
+  timed_out,  // likewise, or given up
+  feedback,
+  faulted,
+  stopped,
+  ended
+};
+std::string_view name(SessionState state);
+bool may_follow(SessionState before, SessionState after);
+
+// The state of one session and the record of its changes, with the times of a monotonic clock.
+class SessionStates {
+ public:
+  using Now = std::function<double()>;  // [s], from the session's begin
+  SessionStates(std::int64_t session_id, Now now_s);
+  // Throws std::logic_error if the state may not follow the present one.
+  void enter(SessionState state, std::optional<int> trial = {}, std::string detail = {});
+  // The changes since the last call.
+  std::vector<results::SessionEventRow> take_events();
+
+ private:
+  std::int64_t session_id_;
+  Now now_s_;
+  SessionState state_{SessionState::begun};
+  std::vector<results::SessionEventRow> events_;
+};
+}  // namespace tapstudy::runner

@@ -1,0 +1,14 @@
+#pragma once
+#include <optional>
+#include <string>
+
+#include "runner/session/session_states.hpp"
+namespace tapstudy::runner {
+enum class TrialEnding { answered, repeated, timed_out, interrupted, faulted };
+
+// The session's state after it; nullopt: it is about to be stopped.
+std::optional<SessionState> state_of(TrialEnding ending);
+
+// As a TrialRow has it. A fault after the answer does not take it back.
+std::string status_of(TrialEnding ending, bool is_answered);
+}  // namespace tapstudy::runner

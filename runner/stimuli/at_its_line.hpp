@@ -1,0 +1,23 @@
+#pragma once
+#include <fmt/format.h>
+
+#include "core/error.hpp"
+#include "protocols/protocol.hpp"
+namespace tapstudy::runner {
+// Builds something of a stimulus's model. A ModelError names the protocol's line at fault and the
+// stimulus.
+template <class Build>
+auto at_its_line(const protocols::Stimulus& stimulus, const Build& build) {
+  const auto told = [&](const std::string& stated_at, const core::ModelError& error) {
+    return core::ModelError{
+        fmt::format("{}: stimulus '{}': {}", stated_at, stimulus.name, error.what())};
+  };
+  try {
+    return build();
+  } catch (const core::DampingError& error) {
+    throw told(stimulus.material->damping_stated_at, error);
+  } catch (const core::ModelError& error) {
+    throw told(stimulus.plate->stated_at, error);
+  }
+}
+}  // namespace tapstudy::runner

@@ -1,0 +1,111 @@
+#include "analysis/statistics/permutation_test.hpp"
+
+#include <fmt/format.h>
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "analysis/identification/identification_summary.hpp"
+#include "core/rng.hpp"
+#include "protocols/read_protocol.hpp"
+#include "protocols/schedule.hpp"
+#include "runner/experiments/study_design.hpp"
+#include "support/texts.hpp"
+using namespace tapstudy;
+using analysis::Answers;
+using protocols::Order;
+
+namespace {
+// Whoever cannot feel anything: answers that depend on the place of the trial alone, as of those
+// who use up every answer once a repetition.
+std::vector<results::AnswerRow> guesses(const protocols::Protocol& protocol, std::uint64_t study) {
+  std::vector<results::AnswerRow> answers;
+  core::Rng rng{core::derived_seed(study, core::Purpose::observer)};
+  for (int participant = 0; participant < 6; ++participant) {
+    const auto index = static_cast<std::uint64_t>(participant);
+    const std::uint64_t seed = core::derived_seed(study, core::Purpose::participant, index);
+    std::vector<std::string> left;
+    for (const protocols::PlannedTrial& trial : make_schedule(protocol, seed, participant)) {
+      if (left.empty()) {
+        left = protocol.blocks[0].stimuli;
+        rng.shuffle(left);
+      }
+      results::AnswerRow answer;
+      answer.participant_id = std::to_string(participant);
+      answer.participant_index = participant;
+      answer.block = trial.block;
+      answer.number = trial.number;
+      answer.stimulus = trial.stimuli.front();
+      answer.response = left.back();
+      answer.is_correct = answer.response == answer.stimulus;
+      left.pop_back();
+      answers.push_back(answer);
+    }
+  }
+  return answers;
+}
+}  // namespace
+
+TEST_CASE(
+    "of studies in which nobody felt anything, no more than the level are significant, "
+    "whatever the order",
+    "[analysis][slow]") {
+  protocols::Protocol protocol =
+      protocols::read_protocol(testing::shipped("paper/discrimination.yaml").string());
+  protocols::Block& block = protocol.blocks.at(0);
+  block.order = GENERATE(Order::shuffle, Order::shuffle_within_repetition, Order::williams);
+  constexpr int studies = 400;
+  constexpr int draws = 199;
+  int significant = 0;
+  for (int study = 0; study < studies; ++study) {
+    protocol.counterbalancing_seed = static_cast<std::uint64_t>(study);
+    const auto rows = guesses(protocol, static_cast<std::uint64_t>(study));
+    std::vector<Answers> people(6);
+    const auto code = [&](const std::string& name) {
+      return static_cast<int>(std::ranges::find(block.stimuli, name) - block.stimuli.begin());
+    };
+    for (const auto& row : rows) {
+      Answers& person = people.at(static_cast<std::size_t>(row.participant_index));
+      person.stimuli.push_back(code(row.stimulus));
+      person.responses.push_back(code(row.response));
+    }
+    const auto design = runner::design_of(protocol, results::Mode::real);
+    const auto result = analysis::permutation_test(
+        people,
+        [&](std::size_t person, std::uint64_t draw) {
+          return design.blocks[0].redraw(static_cast<int>(person), draw);
+        },
+        draws, static_cast<std::uint64_t>(study));
+    significant += result.p <= 0.05 ? 1 : 0;
+  }
+  fmt::print("  order {}: {} of {} null studies significant at .05\n",
+             static_cast<int>(block.order), significant, studies);
+  const double error = std::sqrt(0.05 * 0.95 * studies);
+  CHECK(significant <= 0.05 * studies + 4.0 * error);
+  CHECK(significant >= 0.05 * studies - 4.0 * error);
+}
+
+TEST_CASE("an order that was not drawn has no test of chance", "[analysis]") {
+  protocols::Protocol protocol =
+      protocols::read_protocol(testing::shipped("paper/discrimination.yaml").string());
+  protocol.blocks.at(0).order = Order::listed;
+  const auto design = runner::design_of(protocol, results::Mode::real);
+  const auto summary =
+      analysis::summarise_identification(design.blocks.at(0), {guesses(protocol, 1), {}});
+  const auto& hypothesis =
+      dynamic_cast<const analysis::IdentificationSummary&>(*summary).hypotheses.at(0);
+  CHECK_FALSE(hypothesis.p);
+  CHECK(hypothesis.test.find("listed") != std::string::npos);
+}
+
+TEST_CASE("someone who always gives one answer is not better than chance", "[analysis]") {
+  const Answers stubborn{{0, 1, 0, 1}, {0, 0, 0, 0}};
+  const auto result = analysis::permutation_test(
+      {stubborn},
+      [](std::size_t /*person*/, std::uint64_t draw) {
+        return draw % 2 == 0 ? std::vector<int>{0, 1, 0, 1} : std::vector<int>{1, 0, 1, 0};
+      },
+      99, 1);
+  CHECK(result.p == 1.0);
+  CHECK(result.as_good == 99);
+}

@@ -1,0 +1,179 @@
+// What every fault of a remote device does in every state of the loop.
+#include <arpa/inet.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <bit>
+#include <catch2/catch.hpp>
+#include <cstring>
+#include <limits>
+#include <thread>
+
+#include "device/remote/packets.hpp"
+#include "device/remote/remote_hand.hpp"
+#include "support/staged_loop.hpp"
+using namespace tapstudy;
+using core::TickFault;
+
+namespace {
+enum class Trouble {
+  none,
+  deaf,
+  mute,
+  slow,
+  short_reply,
+  old_number,
+  not_a_number,
+  jump,
+  no_power,
+  gone
+};
+
+// A program that drives a device: a finger held by a muscle, pushed by the force.
+class MockProgram {
+ public:
+  MockProgram() {
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    auto generic = std::bit_cast<sockaddr>(address);
+    REQUIRE(bind(socket_, &generic, sizeof generic) == 0);
+    socklen_t size = sizeof generic;
+    REQUIRE(getsockname(socket_, &generic, &size) == 0);
+    port = ntohs(std::bit_cast<sockaddr_in>(generic).sin_port);
+    thread_ = std::jthread{[this](const std::stop_token& stop) { serve(stop); }};
+  }
+  std::uint16_t port{};
+  std::atomic<Trouble> trouble{Trouble::none};
+  std::atomic<double> height_m{0.01};
+  std::atomic<double> exerted_n{0.0};
+  std::atomic<int> forces_since_trouble{0};
+
+ private:
+  void serve(const std::stop_token& stop) {
+    while (!stop.stop_requested() && trouble != Trouble::gone) {
+      std::array<std::uint8_t, 64> request{};
+      sockaddr from{};
+      socklen_t size = sizeof from;
+      pollfd waiting{socket_, POLLIN, 0};
+      if (poll(&waiting, 1, 1) == 1 &&
+          recvfrom(socket_, request.data(), request.size(), 0, &from, &size) == 36) {
+        obey(request, from, size);
+      }
+    }
+    close(socket_);
+  }
+  void obey(const std::array<std::uint8_t, 64>& request, const sockaddr& from, socklen_t size) {
+    if (trouble == Trouble::deaf) {
+      return;
+    }
+    double force_n = 0.0;
+    std::memcpy(&force_n, request.data() + 20, sizeof force_n);
+    exerted_n = force_n;
+    forces_since_trouble += trouble != Trouble::none && force_n > 0.0 ? 1 : 0;
+    if (request[4] == 1 && trouble != Trouble::mute) {
+      usleep(trouble == Trouble::slow ? 20'000 : 0);
+      const auto reply = reply_to(request);
+      const std::size_t length = trouble == Trouble::short_reply ? 30
+                                 : trouble == Trouble::no_power  ? 88
+                                                                 : 60;
+      static_cast<void>(sendto(socket_, reply.data(), length, 0, &from, size));
+    }
+  }
+  std::array<std::uint8_t, 88> reply_to(const std::array<std::uint8_t, 64>& request) {
+    std::array<std::uint8_t, 88> reply{'T', 'A', 'P', 'R', 1};
+    reply[4] = trouble == Trouble::no_power ? 2 : 1;  // with a status of zero
+    std::copy_n(request.begin() + 8, 4, reply.begin() + 8);
+    reply[8] = static_cast<std::uint8_t>(reply[8] - (trouble == Trouble::old_number ? 1 : 0));
+    const double y_m = trouble == Trouble::not_a_number ? std::numeric_limits<double>::quiet_NaN()
+                       : trouble == Trouble::jump       ? 0.3
+                                                        : height_m.load();
+    std::memcpy(reply.data() + 20, &y_m, sizeof y_m);
+    return reply;
+  }
+
+  int socket_{socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)};
+  std::jthread thread_;
+};
+
+struct Stage : MockProgram {
+  device::RemoteHand hand{port, std::chrono::milliseconds{5}};
+  testing::StagedLoop loop{hand};
+
+  void arm() { loop.tick(5); }
+  void press() {
+    loop.tick(200);
+    for (int i = 1; i <= 100; ++i) {
+      height_m = 0.01 - 1.1e-4 * i;  // 1 mm deep, slowly enough
+      loop.tick(1);
+    }
+    usleep(3000);  // the last force is under way
+    REQUIRE(exerted_n == Approx(3.0).epsilon(0.01));
+  }
+};
+
+struct Fault {
+  const char* name;
+  Trouble trouble;
+  std::vector<TickFault> seen_as;
+  bool is_stop_confirmed;
+};
+const std::vector<Fault> all_faults{
+    {"hears nothing", Trouble::deaf, {TickFault::no_reply}, false},
+    {"hears, and is mute", Trouble::mute, {TickFault::no_reply}, false},
+    {"replies after 20 ms", Trouble::slow, {TickFault::no_reply}, false},
+    {"half a reply", Trouble::short_reply, {TickFault::bad_reply}, false},
+    {"an old reply", Trouble::old_number, {TickFault::no_reply}, false},
+    {"position is NaN", Trouble::not_a_number, {TickFault::non_finite_force}, true},
+    {"position jumps", Trouble::jump, {TickFault::too_fast, TickFault::outside_workspace}, true},
+    {"motors are off", Trouble::no_power, {TickFault::amplifier_off}, true},
+    {"has ended", Trouble::gone, {TickFault::device_gone, TickFault::no_reply}, false}};
+
+struct State {
+  const char* name;
+  void (Stage::*reach)();
+  TickFault (testing::StagedLoop::*go_on)();
+};
+}  // namespace
+
+TEST_CASE("the fault matrix of a remote device: no force is sent once the fault is found",
+          "[device][safety][remote]") {
+  const std::vector<State> states{
+      {"armed", &Stage::arm, &testing::StagedLoop::go_on},
+      {"rendering", &Stage::press, &testing::StagedLoop::go_on},
+      {"stopping", &Stage::press, &testing::StagedLoop::go_on_and_stop}};
+  testing::print_fault_heading("remote device");
+  for (const Fault& fault : all_faults) {
+    for (const State& state : states) {
+      CAPTURE(fault.name, state.name);
+      Stage stage;
+      (stage.*state.reach)();
+      const std::int64_t before = stage.loop.loop->report().ticks;
+      stage.trouble = fault.trouble;
+      usleep(3000);
+      const TickFault seen = (stage.loop.*state.go_on)();
+      usleep(30'000);
+      const auto& report = stage.loop.loop->report();
+      const std::int64_t ticks = report.ticks - before;
+      const bool is_confirmed = report.stop == device::StopOutcome::confirmed;
+      stage.loop.tick(20);
+      const bool is_latched = report.ticks == before + ticks;
+      const std::string stored = core::to_text(stage.loop.last_sample().fault);
+      testing::print({fault.name, state.name, ticks, is_latched, is_confirmed, stored});
+      CAPTURE(core::to_text(seen));
+      CHECK(std::ranges::count(fault.seen_as, seen) == 1);
+      CHECK(stored == core::to_text(seen));
+      CHECK(is_latched);
+      CHECK(is_confirmed == fault.is_stop_confirmed);
+      CHECK(ticks <= 1 + device::max_missed_replies);
+      CHECK(stage.forces_since_trouble <= 2 * ticks);
+      // whoever hears us exerts nothing at the end
+      const bool hears = fault.trouble != Trouble::deaf && fault.trouble != Trouble::gone;
+      CHECK((!hears || stage.exerted_n == 0.0));
+    }
+  }
+}

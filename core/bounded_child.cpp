@@ -2,6 +2,8 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <spawn.h>
+#include <sys/mman.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -10,12 +12,18 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <new>
+#include <stdexcept>
 
 #include "core/error.hpp"
 namespace tapstudy::core {
 namespace {
 enum class Ended : char { result = 'r', model_error = 'm', invalid_input = 'i', other = 'o' };
+constexpr std::array deadly{SIGSEGV, SIGABRT, SIGBUS, SIGFPE, SIGILL, SIGXCPU, SIGALRM, SIGPIPE};
+constexpr const char* child_name = "tapstudy-child";
+const ChildJob* all_jobs = nullptr;
+bool is_served = false;
 
 // Of this process now; 0 if unknown.
 std::size_t memory_in_use_bytes() {
@@ -38,20 +46,14 @@ void restrict_this_process(const ChildLimits& limits) {
   limit(RLIMIT_CPU, static_cast<std::size_t>(limits.processor_s));
   limit(RLIMIT_AS, memory_in_use_bytes() + limits.memory_bytes);
   alarm(static_cast<unsigned>(3 * limits.processor_s));  // one that waits uses no processor time
-  for (const int signal : {SIGSEGV, SIGABRT, SIGBUS, SIGFPE, SIGILL, SIGXCPU, SIGALRM, SIGPIPE}) {
-    std::signal(signal, SIG_DFL);
-  }
-  const int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);  // NOLINT: variadic in C
-  dup2(nowhere, STDOUT_FILENO);                                 // the libraries' own messages
-  dup2(nowhere, STDERR_FILENO);
 }
 
-std::string outcome_of(const std::function<std::string()>& act) {
+std::string outcome_of(const ChildJob& job, const std::string& input) {
   const auto tagged = [](Ended ended, const std::string& bytes) {
     return static_cast<char>(ended) + bytes;
   };
   try {
-    return tagged(Ended::result, act());
+    return tagged(Ended::result, job(input));
   } catch (const ModelError& error) {
     return tagged(Ended::model_error, error.what());
   } catch (const InvalidInput& error) {
@@ -63,19 +65,16 @@ std::string outcome_of(const std::function<std::string()>& act) {
   }
 }
 
-[[noreturn]] void run_child(int to_parent, const std::function<std::string()>& act,
-                            const ChildLimits& limits) {
-  restrict_this_process(limits);
-  const std::string outcome = outcome_of(act);
+bool write_all(int descriptor, const std::string& bytes) {
   std::size_t written = 0;
-  while (written < outcome.size()) {
-    const ssize_t count = write(to_parent, outcome.data() + written, outcome.size() - written);
+  while (written < bytes.size()) {
+    const ssize_t count = write(descriptor, bytes.data() + written, bytes.size() - written);
     if (count < 0) {
-      break;
+      return false;
     }
     written += static_cast<std::size_t>(count);
   }
-  _exit(0);
+  return true;
 }
 
 std::string all_from(int descriptor) {
@@ -91,6 +90,51 @@ std::string all_from(int descriptor) {
   }
 }
 
+// What libraries print on standard output must not become part of the result.
+int result_instead_of_output() {
+  const int result = dup(STDOUT_FILENO);
+  const int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);  // NOLINT: variadic in C
+  dup2(nowhere, STDOUT_FILENO);
+  return result;
+}
+
+// A file in memory: unlike a pipe, it needs no reader to take what is written.
+int file_holding(const std::string& bytes) {
+  const int file = memfd_create("input of a child", MFD_CLOEXEC);
+  if (file >= 0 && (!write_all(file, bytes) || lseek(file, 0, SEEK_SET) != 0)) {
+    close(file);
+    return -1;
+  }
+  return file;
+}
+
+// 0 or the error's number, as posix_spawn.
+int start(const ChildJob& job, const ChildLimits& limits, int input, int output, pid_t& child) {
+  posix_spawn_file_actions_t files{};
+  posix_spawn_file_actions_init(&files);
+  posix_spawn_file_actions_adddup2(&files, input, STDIN_FILENO);
+  posix_spawn_file_actions_adddup2(&files, output, STDOUT_FILENO);
+  posix_spawn_file_actions_addopen(&files, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
+  posix_spawnattr_t attributes{};
+  posix_spawnattr_init(&attributes);
+  sigset_t signals{};
+  sigemptyset(&signals);
+  posix_spawnattr_setsigmask(&attributes, &signals);
+  for (const int signal : deadly) {
+    sigaddset(&signals, signal);
+  }
+  posix_spawnattr_setsigdefault(&attributes, &signals);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
+  std::array words{std::string{child_name}, std::string{job.name()},
+                   std::to_string(limits.processor_s), std::to_string(limits.memory_bytes)};
+  std::array<char*, 5> pointers{words[0].data(), words[1].data(), words[2].data(), words[3].data()};
+  const int error =
+      posix_spawn(&child, "/proc/self/exe", &files, &attributes, pointers.data(), environ);
+  posix_spawnattr_destroy(&attributes);
+  posix_spawn_file_actions_destroy(&files);
+  return error;
+}
+
 const char* reason(int signal) {
   switch (signal) {
     case SIGXCPU:
@@ -101,32 +145,57 @@ const char* reason(int signal) {
       return "the program that does it crashed on this input";
   }
 }
-}  // namespace
 
-std::string in_bounded_child(const std::string& what, const std::function<std::string()>& act,
-                             const ChildLimits& limits) {
+// The child's output; throws ModelError if there is no whole one.
+std::string output_of(const ChildJob& job, const std::string& input, const std::string& what,
+                      const ChildLimits& limits) {
   std::array<int, 2> ends{};
   if (pipe2(ends.data(), O_CLOEXEC) != 0) {
     throw ModelError{what + ": no pipe"};
   }
-  const pid_t child = fork();
-  if (child == 0) {
-    close(ends[0]);
-    run_child(ends[1], act, limits);
-  }
+  const int given = file_holding(input);
+  pid_t child = 0;
+  const bool is_started = given >= 0 && start(job, limits, given, ends[1], child) == 0;
   close(ends[1]);
-  const std::string outcome = child < 0 ? std::string{} : all_from(ends[0]);
+  if (given >= 0) {
+    close(given);
+  }
+  std::string output = is_started ? all_from(ends[0]) : std::string{};
   close(ends[0]);
+  if (!is_started) {
+    throw ModelError{what + ": no new process"};
+  }
   int status = 0;
-  while (child > 0 && waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
-  if (child < 0 || WIFSIGNALED(status) || outcome.empty()) {
-    throw ModelError{fmt::format(
-        "{}: {}", what,
-        child < 0 ? "no new process" : reason(WIFSIGNALED(status) ? WTERMSIG(status) : 0))};
+  if (WIFSIGNALED(status) || output.empty()) {
+    throw ModelError{
+        fmt::format("{}: {}", what, reason(WIFSIGNALED(status) ? WTERMSIG(status) : 0))};
   }
-  const std::string bytes = outcome.substr(1);
-  switch (static_cast<Ended>(outcome.front())) {
+  return output;
+}
+}  // namespace
+
+ChildJob::ChildJob(const char* name, Act act) noexcept : name_{name}, act_{act}, next_{all_jobs} {
+  all_jobs = this;
+}
+
+const ChildJob* ChildJob::find(const std::string& name) {
+  const ChildJob* job = all_jobs;
+  while (job != nullptr && name != job->name_) {
+    job = job->next_;
+  }
+  return job;
+}
+
+std::string in_bounded_child(const ChildJob& job, const std::string& input, const std::string& what,
+                             const ChildLimits& limits) {
+  if (!is_served) {
+    throw std::logic_error{"main() does not begin with serve_if_child()"};
+  }
+  const std::string output = output_of(job, input, what, limits);
+  const std::string bytes = output.substr(1);
+  switch (static_cast<Ended>(output.front())) {
     case Ended::result:
       return bytes;
     case Ended::model_error:
@@ -136,5 +205,20 @@ std::string in_bounded_child(const std::string& what, const std::function<std::s
     default:
       throw ModelError{fmt::format("{}: {}", what, bytes)};
   }
+}
+
+void serve_if_child(int count, char** words) {
+  is_served = true;
+  if (count != 4 || words[0] != std::string{child_name}) {
+    return;
+  }
+  const ChildJob* const job = ChildJob::find(words[1]);
+  if (job == nullptr) {
+    _exit(1);
+  }
+  const int result = result_instead_of_output();
+  restrict_this_process({std::atoi(words[2]), std::strtoull(words[3], nullptr, 10)});
+  write_all(result, outcome_of(*job, all_from(STDIN_FILENO)));
+  _exit(0);
 }
 }  // namespace tapstudy::core

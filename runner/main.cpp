@@ -5,6 +5,7 @@
 #include <exception>
 #include <iostream>
 
+#include "core/bounded_child.hpp"
 #include "core/error.hpp"
 #include "device/device.hpp"
 #include "results/store_error.hpp"
@@ -58,6 +59,7 @@ void survive_failed_writing() {
 }  // namespace
 
 int main(int argc, char** argv) {
+  tapstudy::core::serve_if_child(argc, argv);
   open_standard_descriptors();
   survive_failed_writing();
   try {

@@ -19,6 +19,7 @@
 
 #include "core/bounded_child.hpp"
 #include "core/error.hpp"
+#include "core/packed_bytes.hpp"
 #include "core/sha256.hpp"
 #include "protocols/surface/cut_polygon.hpp"
 namespace tapstudy::protocols {
@@ -146,18 +147,22 @@ class JoinedPoints {
   std::vector<Place> points_;
 };
 
+const core::ChildJob reading{"read a surface", [](const std::string& packed) {
+                               core::UnpackedBytes bytes{packed};
+                               auto file = bytes.get<std::string>();
+                               soup_of({std::move(file), bytes.get<std::string>(), {}});
+                               return std::string{"read"};
+                             }};
+
 // CGAL's readers take a file at its word, and crash or take all memory where it lies: what they
 // survive elsewhere, they survive here.
 void try_reading(const SurfaceSource& source) {
   constexpr core::ChildLimits limits{15, 2'000'000'000};
+  core::PackedBytes bytes;
+  bytes.put(source.file);
+  bytes.put(source.bytes);
   try {
-    core::in_bounded_child(
-        source.file,
-        [&] {
-          soup_of(source);
-          return std::string{"read"};
-        },
-        limits);
+    core::in_bounded_child(reading, bytes.take(), source.file, limits);
   } catch (const core::ModelError&) {
     refuse(source);
   }

@@ -5,22 +5,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
-#include <cstring>
-#include <new>
 #include <utility>
 
-#include "core/bounded_child.hpp"
 #include "core/error.hpp"
 #include "core/model/mesh/box_outline.hpp"
-
-#define TETLIBRARY
-#include <tetgen.h>
+#include "core/model/mesh/tetgen_job.hpp"
 namespace tapstudy::core {
 namespace {
-// Maximum number of Steiner points: bounds refinement that may not terminate on a bad surface.
-constexpr int max_added_points = 400000;
-
 // A well-shaped tetrahedron has about a sixth of the volume of its cube; the thickness of a thin
 // sheet bounds the element size.
 void check_count(const Shape& shape, const MeshSize& size) {
@@ -53,27 +44,6 @@ void check_count(const Shape& shape, const MeshSize& size) {
       extent.x(), extent.y(), extent.z(), std::max(from_shape, from_size), max_tets, advice)};
 }
 
-// TetGen frees its input with delete[], so its structures must be allocated with new[].
-// NOLINTBEGIN(cppcoreguidelines-owning-memory)
-tetgenio::polygon polygon_of(const std::vector<int>& vertices) {
-  tetgenio::polygon polygon{};
-  tetgenio::init(&polygon);
-  polygon.numberofvertices = static_cast<int>(vertices.size());
-  polygon.vertexlist = new int[vertices.size()];
-  std::ranges::copy(vertices, polygon.vertexlist);
-  return polygon;
-}
-
-void fill_facet(tetgenio::facet& facet, const BoxOutline::Side& side) {
-  tetgenio::init(&facet);
-  facet.numberofpolygons = static_cast<int>(1 + side.inside.size());
-  facet.polygonlist = new tetgenio::polygon[1 + side.inside.size()];
-  facet.polygonlist[0] = polygon_of(side.loop);
-  for (std::size_t i = 0; i < side.inside.size(); ++i) {
-    facet.polygonlist[1 + i] = polygon_of({side.inside[i]});
-  }
-}
-
 // From body to TetGen's coordinates and back: relative to the low corner, thickened.
 struct Thickening {
   Vec3 low_m;
@@ -84,43 +54,35 @@ struct Thickening {
   }
 };
 
-template <class PointList>
-void fill_points(tetgenio& in, const PointList& points, std::size_t count,
-                 const Thickening& thickening) {
-  in.firstnumber = 0;
-  in.numberofpoints = static_cast<int>(count);
-  in.pointlist = new REAL[3 * count];
-  for (std::size_t i = 0; i < count; ++i) {
-    Eigen::Map<Vec3>{in.pointlist + 3 * i} = thickening.in(points(i));
-  }
+void append(std::vector<double>& coordinates, const Vec3& point) {
+  coordinates.insert(coordinates.end(), {point.x(), point.y(), point.z()});
 }
 
-void fill(tetgenio& in, const BoxOutline& outline, const Thickening& thickening) {
-  fill_points(
-      in, [&](std::size_t i) { return outline.points_m[i]; }, outline.points_m.size(), thickening);
-  in.numberoffacets = static_cast<int>(outline.sides.size());
-  in.facetlist = new tetgenio::facet[outline.sides.size()];
-  in.facetmarkerlist = nullptr;
-  for (std::size_t i = 0; i < outline.sides.size(); ++i) {
-    fill_facet(in.facetlist[i], outline.sides.at(i));
+TetgenInput input_for(const BoxOutline& outline, const Thickening& thickening) {
+  TetgenInput input;
+  for (const Vec3& point : outline.points_m) {
+    append(input.coordinates, thickening.in(point));
   }
+  for (const BoxOutline::Side& side : outline.sides) {
+    auto& polygons = input.facets.emplace_back();
+    polygons.push_back(side.loop);
+    for (const int point : side.inside) {
+      polygons.push_back({point});
+    }
+  }
+  return input;
 }
 
-void fill(tetgenio& in, const TriangleSurface& surface, const Thickening& thickening) {
-  fill_points(
-      in, [&](std::size_t i) -> Vec3 { return surface.points_m.row(static_cast<Eigen::Index>(i)); },
-      static_cast<std::size_t>(surface.points_m.rows()), thickening);
-  const auto count = static_cast<std::size_t>(surface.triangles.rows());
-  in.numberoffacets = static_cast<int>(count);
-  in.facetlist = new tetgenio::facet[count];
-  in.facetmarkerlist = nullptr;
-  for (std::size_t i = 0; i < count; ++i) {
-    const auto triangle = surface.triangles.row(static_cast<Eigen::Index>(i));
-    fill_facet(in.facetlist[i], {{triangle[0], triangle[1], triangle[2]}, {}});
+TetgenInput input_for(const TriangleSurface& surface, const Thickening& thickening) {
+  TetgenInput input;
+  for (const auto& point : surface.points_m.rowwise()) {
+    append(input.coordinates, thickening.in(point));
   }
+  for (const auto& triangle : surface.triangles.rowwise()) {
+    input.facets.push_back({{triangle[0], triangle[1], triangle[2]}});
+  }
+  return input;
 }
-
-// NOLINTEND(cppcoreguidelines-owning-memory)
 
 void make_volumes_positive(TetMesh& mesh) {
   for (Eigen::Index tet = 0; tet < mesh.tets.rows(); ++tet) {
@@ -164,47 +126,15 @@ void find_surface(TetMesh& mesh) {
   }
 }
 
-// What crosses from the child that meshes: points as TetGen has them, and the corners.
-struct RawMesh {
-  Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor> points;
-  TetMesh::Indices tets;
-};
-
-std::string packed(const tetgenio& out) {
-  const std::array<std::int64_t, 2> counts{out.numberofpoints, out.numberoftetrahedra};
-  std::string bytes;
-  const auto append = [&](const auto* data, std::size_t count) {
-    // NOLINTNEXTLINE(cppcoreguidelines-pro-type-reinterpret-cast): bytes, for a pipe
-    bytes.append(reinterpret_cast<const char*>(data), count * sizeof *data);
-  };
-  append(counts.data(), counts.size());
-  append(out.pointlist, 3 * static_cast<std::size_t>(counts[0]));
-  append(out.tetrahedronlist, 4 * static_cast<std::size_t>(counts[1]));
-  return bytes;
-}
-
-RawMesh unpacked(const std::string& bytes) {
-  std::size_t at = 0;
-  const auto take = [&](auto* data, std::size_t count) {
-    std::memcpy(data, bytes.data() + at, count * sizeof *data);
-    at += count * sizeof *data;
-  };
-  std::array<std::int64_t, 2> counts{};
-  take(counts.data(), counts.size());
-  RawMesh raw;
-  raw.points.resize(counts[0], 3);
-  raw.tets.resize(counts[1], 4);
-  take(raw.points.data(), static_cast<std::size_t>(raw.points.size()));
-  take(raw.tets.data(), static_cast<std::size_t>(raw.tets.size()));
-  return raw;
-}
-
-TetMesh mesh_from(RawMesh raw, const Thickening& thickening) {
+TetMesh mesh_from(const TetgenOutput& output, const Thickening& thickening) {
+  using Points = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
   TetMesh mesh;
-  mesh.nodes_m = std::move(raw.points);
+  mesh.nodes_m = Eigen::Map<const Points>{
+      output.coordinates.data(), static_cast<Eigen::Index>(output.coordinates.size() / 3), 3};
   mesh.nodes_m.col(2) /= thickening.flattening;
   mesh.nodes_m.rowwise() += thickening.low_m.transpose();
-  mesh.tets = std::move(raw.tets);
+  mesh.tets = Eigen::Map<const TetMesh::Indices>{
+      output.corners.data(), static_cast<Eigen::Index>(output.corners.size() / 4), 4};
   make_volumes_positive(mesh);
   find_surface(mesh);
   return mesh;
@@ -218,56 +148,27 @@ std::string tetgen_switches(const MeshSize& size) {
   return switches;
 }
 
-std::string reason_for(int tetgen_code) {
-  switch (tetgen_code) {
-    case 1:
-      return "not enough memory";
-    case 3:
-      return "the surface runs through itself";
-    case 4:
-      return "the surface has features too small for its size";
-    case 5:
-      return "two faces nearly coincide";
-    default:
-      return fmt::format("code {}", tetgen_code);
-  }
-}
-
-// TetGen crashes or hangs on some surfaces, so this runs in a process of its own.
-std::string tetrahedralised(const Shape& shape, const MeshSize& size,
-                            const std::vector<Vec3>& points_m, const Thickening& thickening) {
-  tetgenio in;
-  tetgenio out;
-  if (const auto* box = std::get_if<Box>(&shape)) {
-    fill(in, outline(*box, points_m, bounds(shape).snap_m()), thickening);
-  } else {
-    fill(in, std::get<Solid>(shape).surface(), thickening);
-  }
-  std::string switches = tetgen_switches(size);
-  try {
-    tetrahedralize(switches.data(), &in, &out);
-  } catch (int code) {
-    throw ModelError{fmt::format("mesh: TetGen failed to mesh the body: {}", reason_for(code))};
-  } catch (const std::bad_alloc&) {
-    throw ModelError{"mesh: not enough memory for so many tetrahedra"};
-  }
-  if (out.numberofpoints - in.numberofpoints >= max_added_points ||
-      out.numberoftetrahedra > max_tets) {
+void check_end(const TetgenInput& input, const TetgenOutput& output) {
+  const std::size_t added = (output.coordinates.size() - input.coordinates.size()) / 3;
+  if (added >= max_added_points || static_cast<double>(output.corners.size() / 4) > max_tets) {
     throw ModelError{fmt::format(
         "mesh: it needs more than {:.0g} tetrahedra or {} added points (choose a larger "
         "max_tet_volume_m3 or a surface without tiny triangles)",
         max_tets, max_added_points)};
   }
-  return packed(out);
 }
 }  // namespace
 
 TetMesh mesh_shape(const Shape& shape, const MeshSize& size, const std::vector<Vec3>& points_m) {
   check_count(shape, size);
   const Thickening thickening{bounds(shape).low_m, size.flattening};
-  return mesh_from(unpacked(in_bounded_child(
-                       "mesh: TetGen could not mesh the body",
-                       [&] { return tetrahedralised(shape, size, points_m, thickening); })),
-                   thickening);
+  const auto* const box = std::get_if<Box>(&shape);
+  TetgenInput input = box != nullptr
+                          ? input_for(outline(*box, points_m, bounds(shape).snap_m()), thickening)
+                          : input_for(std::get<Solid>(shape).surface(), thickening);
+  input.switches = tetgen_switches(size);
+  const TetgenOutput output = run_tetgen(input);
+  check_end(input, output);
+  return mesh_from(output, thickening);
 }
 }  // namespace tapstudy::core

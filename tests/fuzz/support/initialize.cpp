@@ -1,0 +1,6 @@
+#include "core/bounded_child.hpp"
+
+extern "C" int LLVMFuzzerInitialize(int* count, char*** words) {
+  tapstudy::core::serve_if_child(*count, *words);
+  return 0;
+}

@@ -27,10 +27,10 @@ std::vector<OrderedStimulus> listed(const Block& block) {
 int sequence_of(int sequences, const Counterbalancing& counterbalancing) {
   std::vector<int> order(static_cast<std::size_t>(sequences));
   std::iota(order.begin(), order.end(), 0);
-  const auto run = static_cast<std::uint64_t>(counterbalancing.participant_index / sequences);
+  const auto run = static_cast<std::uint64_t>(counterbalancing.order_index / sequences);
   core::Rng rng{core::derived_seed(counterbalancing.seed, core::Purpose::counterbalancing, run)};
   rng.shuffle(order);
-  return order.at(static_cast<std::size_t>(counterbalancing.participant_index % sequences));
+  return order.at(static_cast<std::size_t>(counterbalancing.order_index % sequences));
 }
 
 std::vector<OrderedStimulus> williams(const Block& block,

@@ -11,8 +11,8 @@ struct OrderedStimulus {
 };
 // Which participants get which of the balanced sequences.
 struct Counterbalancing {
-  int participant_index{};  // from 0
-  std::uint64_t seed{};     // of the study
+  int order_index{};     // from 0
+  std::uint64_t seed{};  // of the study
 };
 // A block's stimuli in the specified order, each presented `repetitions` times. Where constraints
 // are set, all random orders that satisfy them are equally likely. Throws InvalidInput if there are

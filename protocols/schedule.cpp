@@ -3,13 +3,12 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 namespace tapstudy::protocols {
-Schedule make_schedule(const Protocol& protocol, std::uint64_t participant_seed,
-                       int participant_index) {
+Schedule make_schedule(const Protocol& protocol, std::uint64_t participant_seed, int order_index) {
   Schedule schedule;
   for (std::size_t i = 0; i < protocol.blocks.size(); ++i) {
     const Block& block = protocol.blocks[i];
     for (PlannedTrial& trial : block.task->trials(
-             block, {participant_seed, participant_index, i, protocol.counterbalancing_seed})) {
+             block, {participant_seed, order_index, i, protocol.counterbalancing_seed})) {
       trial.number = static_cast<int>(schedule.size()) + 1;
       schedule.push_back(std::move(trial));
     }

@@ -9,8 +9,7 @@ using Schedule = std::vector<PlannedTrial>;
 
 // The complete trial order of one participant. The seed is the participant's own; counterbalancing
 // uses the participant index, from 0. The result does not depend on the compiler.
-Schedule make_schedule(const Protocol& protocol, std::uint64_t participant_seed,
-                       int participant_index);
+Schedule make_schedule(const Protocol& protocol, std::uint64_t participant_seed, int order_index);
 
 // One line a trial, for the store and for people.
 std::string described(const Schedule& schedule);

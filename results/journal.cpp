@@ -6,9 +6,11 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <iterator>
 
 #include "core/sha256.hpp"
 #include "results/journal_lines.hpp"
@@ -92,8 +94,7 @@ std::string Journal::chained(const std::string& body) {
 }
 
 void Journal::complete(const std::function<StudyRow()>& study,
-                       const std::vector<SessionRow>& sessions,
-                       const std::vector<JournalledAnswer>& answers) {
+                       const std::vector<SessionRow>& sessions, const JournalEntries& entries) {
   const LockedFile file{file_};
   read_on(file.descriptor());
   std::vector<std::string> bodies;
@@ -103,9 +104,7 @@ void Journal::complete(const std::function<StudyRow()>& study,
   for (const SessionRow& session : sessions) {
     bodies.push_back(to_line(session));
   }
-  for (const JournalledAnswer& answer : answers) {
-    bodies.push_back(to_line(answer));
-  }
+  std::ranges::move(to_lines(entries), std::back_inserter(bodies));
   std::erase_if(bodies, [this](const std::string& body) { return known_.contains(body); });
   const std::string chain_before = chain_;
   std::string text;

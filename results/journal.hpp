@@ -15,11 +15,19 @@ struct JournalledAnswer {
   ResponseRow response;
 };
 
+// What a journal holds of the trials. Each of these is a line.
+struct JournalEntries {
+  std::vector<JournalledAnswer> answers{};  // as first given
+  std::vector<CorrectionRow> corrections{};
+  std::vector<OperatorActionRow> actions{};
+};
+
 std::string journal_file(const std::string& directory);
 
-// DIR/answers.journal: a second record of what was answered, in plain text, in case the database is
-// lost. Only ever appended to, each line flushed to the disk: one JSON object a line, the study
-// first (with its protocol and surfaces), each session before its answers. Each line ends with
+// DIR/answers.journal: a second record of what was answered and of what the operator did, in plain
+// text, in case the database is lost. Only ever appended to, each line flushed to the disk: one
+// JSON object a line, the study first (with its protocol and surfaces), each session before its
+// answers. Each line ends with
 //   "chain":"SHA-256 of the previous line's chain and of this line up to here"
 // so that a line that was changed, removed or inserted is noticed. Several programs may append at
 // once. A half line at the end, left by a power failure, was never confirmed and is cut off.
@@ -29,7 +37,7 @@ class Journal {
   // Appends what it does not hold yet; the study is asked for if it is new. Throws StoreError if it
   // cannot be written; its end is then as it was before.
   void complete(const std::function<StudyRow()>& study, const std::vector<SessionRow>& sessions,
-                const std::vector<JournalledAnswer>& answers);
+                const JournalEntries& entries);
 
  private:
   void read_on(int descriptor);
@@ -45,10 +53,10 @@ class Journal {
 struct JournalContent {
   StudyRow study;
   std::vector<SessionRow> sessions;
-  std::vector<JournalledAnswer> answers;
+  JournalEntries entries;
 };
 JournalContent read_journal(const std::string& directory);
 
-// One text per answer, equal if and only if the answers are.
-std::string to_line(const JournalledAnswer& answer);
+// One text per entry, equal if and only if the entries are; answers, corrections, then actions.
+std::vector<std::string> to_lines(const JournalEntries& entries);
 }  // namespace tapstudy::results

@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <span>
 
@@ -13,7 +15,7 @@
 namespace tapstudy::results {
 namespace {
 using Json = nlohmann::ordered_json;
-constexpr const char* format = "tapstudy-journal/2";
+constexpr const char* format = "tapstudy-journal/3";
 constexpr std::string_view chain_key = ",\"chain\":\"";
 
 // What is no UTF-8 becomes a replacement character: the journal is text.
@@ -75,6 +77,7 @@ SessionRow session_from(const Json& line) {
   session.id = line.at("session_id");
   session.participant_id = line.at("participant_id");
   session.participant_index = line.at("participant_index");
+  session.order_index = line.at("order_index");
   session.mode = mode_from(line.at("mode"));
   session.seed = line.at("seed");
   session.planned_order = line.at("planned_order");
@@ -114,7 +117,14 @@ void add_line(const Json& line, JournalContent& content) {
   } else if (kind == "session") {
     content.sessions.push_back(session_from(line));
   } else if (kind == "answer") {
-    content.answers.push_back(answer_from(line));
+    content.entries.answers.push_back(answer_from(line));
+  } else if (kind == "correction") {
+    content.entries.corrections.push_back({line.at("session_id"), line.at("number"),
+                                           line.at("response"),
+                                           optional_of<bool>(line.at("is_correct"))});
+  } else if (kind == "operator_action") {
+    content.entries.actions.push_back({line.at("session_id"), line.at("t_s"), line.at("action"),
+                                       optional_of<int>(line.at("number")), line.at("detail")});
   } else {
     throw StoreError{"is of an unknown kind"};
   }
@@ -163,6 +173,7 @@ std::string to_line(const SessionRow& session) {
                  {"participant_id", session.participant_id},
                  {"mode", to_text(session.mode)},
                  {"participant_index", session.participant_index},
+                 {"order_index", session.order_index},
                  {"seed", session.seed},
                  {"resumes", or_null(session.resumes)},
                  {"started_utc", session.started_utc},
@@ -177,6 +188,7 @@ std::string to_line(const SessionRow& session) {
                  {"doctor", session.doctor}});
 }
 
+namespace {
 std::string to_line(const JournalledAnswer& answer) {
   Json alternatives = Json::array();
   for (const AlternativeRow& alternative : answer.alternatives) {
@@ -197,6 +209,36 @@ std::string to_line(const JournalledAnswer& answer) {
                  {"response_time_s", answer.response.response_time_s},
                  {"time_from_first_contact_s", or_null(answer.response.time_from_first_contact_s)},
                  {"confidence", or_null(answer.response.confidence)}});
+}
+
+std::string to_line(const CorrectionRow& correction) {
+  return dumped({{"kind", "correction"},
+                 {"session_id", correction.session_id},
+                 {"number", correction.number},
+                 {"response", correction.response},
+                 {"is_correct", or_null(correction.is_correct)}});
+}
+
+std::string to_line(const OperatorActionRow& action) {
+  return dumped({{"kind", "operator_action"},
+                 {"session_id", action.session_id},
+                 {"t_s", action.t_s},
+                 {"action", action.action},
+                 {"number", or_null(action.number)},
+                 {"detail", action.detail}});
+}
+}  // namespace
+
+std::vector<std::string> to_lines(const JournalEntries& entries) {
+  std::vector<std::string> lines;
+  const auto add = [&](const auto& rows) {
+    std::ranges::transform(rows, std::back_inserter(lines),
+                           [](const auto& row) { return to_line(row); });
+  };
+  add(entries.answers);
+  add(entries.corrections);
+  add(entries.actions);
+  return lines;
 }
 
 JournalContent read_journal(const std::string& directory) {

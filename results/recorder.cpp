@@ -61,6 +61,21 @@ std::future<void> Recorder::note(std::vector<SessionEventRow> events) {
   return promise->get_future();
 }
 
+std::future<void> Recorder::note(OperatorActionRow action) {
+  auto promise = std::make_shared<std::promise<void>>();
+  queue(promised(promise,
+                 [this, action = std::move(action)] { store_.add_operator_action(action); }));
+  return promise->get_future();
+}
+
+std::future<void> Recorder::correct(CorrectionRow correction, OperatorActionRow action) {
+  auto promise = std::make_shared<std::promise<void>>();
+  queue(promised(promise, [this, correction = std::move(correction), action = std::move(action)] {
+    store_.add_correction(correction, action);
+  }));
+  return promise->get_future();
+}
+
 void Recorder::follow(TraceCollector& collector) {
   const std::lock_guard lock{mutex_};
   followed_ = &collector;

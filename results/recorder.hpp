@@ -27,6 +27,8 @@ class Recorder {
 
   // Ready once the events are stored, or carries the StoreError.
   std::future<void> note(std::vector<SessionEventRow> events);
+  std::future<void> note(OperatorActionRow action);
+  std::future<void> correct(CorrectionRow correction, OperatorActionRow action);
 
   // Drains the collector every few milliseconds, until leave() returns. If draining fails, the loop
   // continues, dropped samples are counted, and what is written next fails with the cause.

@@ -31,7 +31,8 @@ struct StudyRow {
 struct SessionRow {
   std::int64_t id{};
   std::string participant_id;
-  int participant_index{};  // from 0 within its mode; used for counterbalancing
+  int participant_index{};  // from 0 within its mode
+  int order_index{};        // which of the balanced orders, from 0
   Mode mode{Mode::real};
   std::uint64_t seed{};
   std::string planned_order;              // one line a trial
@@ -67,6 +68,21 @@ struct SessionEventRow {
   std::optional<int> number;  // of the trial; unset between trials
   std::string detail;
 };
+// What the operator did during a session.
+struct OperatorActionRow {
+  std::int64_t session_id{};
+  double t_s{};  // as a SessionEventRow's
+  std::string action;
+  std::optional<int> number;  // of the trial that it concerns
+  std::string detail;
+};
+// Takes the place of a stored answer; that one stays in the store.
+struct CorrectionRow {
+  std::int64_t session_id{};
+  int number{};  // of the trial
+  std::string response;
+  std::optional<bool> is_correct;
+};
 struct EventRow {
   double t_s{};      // from the first tick of the trial
   std::string kind;  // contact, impact, late_impact, release, switch
@@ -95,14 +111,16 @@ struct TrialRow {
   std::string task;
   bool is_practice{};
   int repetition{};
-  // answered; interrupted; repeated: its answer does not count; timed_out: it had none in time
+  // answered; interrupted; repeated: its answer does not count; timed_out: it had none in time;
+  // skipped by the operator
   std::string status;
   double duration_s{};
 };
 
-struct TimedOutTrial {
+struct UnansweredTrial {
   int number{};
   std::string block;
+  bool is_skipped{};  // else timed out
 };
 
 // A trial with all its data: stored atomically.
@@ -120,6 +138,7 @@ struct TrialRecord {
 struct AnswerRow {
   std::string participant_id;
   int participant_index{};  // within the mode
+  int order_index{};
   Mode mode{};
   std::string block;
   std::string task;

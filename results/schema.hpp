@@ -2,7 +2,7 @@
 namespace tapstudy::results {
 // PRAGMA application_id of a study's database ("taps") and PRAGMA user_version of its schema.
 inline constexpr int application_id = 0x74617073;
-inline constexpr int schema_version = 7;
+inline constexpr int schema_version = 8;
 
 inline constexpr const char* schema_sql = R"sql(
 CREATE TABLE study (
@@ -22,7 +22,8 @@ CREATE TABLE surface (
 CREATE TABLE participant (
   participant_id TEXT PRIMARY KEY,
   mode TEXT NOT NULL CHECK (mode IN ('real', 'pilot', 'simulated')),
-  participant_index INTEGER NOT NULL,  -- from 0 in each mode: pilots take no place of real ones
+  participant_index INTEGER NOT NULL,  -- from 0 in each mode
+  order_index INTEGER NOT NULL,        -- which of the balanced orders, from 0
   UNIQUE (mode, participant_index)
 ) STRICT;
 CREATE TABLE session (
@@ -51,7 +52,7 @@ CREATE TABLE trial (
   is_practice INTEGER NOT NULL,
   repetition INTEGER NOT NULL,
   status TEXT NOT NULL CHECK (status IN ('answered', 'interrupted', 'repeated',
-    'timed_out')),
+    'timed_out', 'skipped')),
   duration_s REAL NOT NULL,
   UNIQUE (session_id, number, attempt)
 ) STRICT;
@@ -69,9 +70,14 @@ CREATE TABLE response (
   is_correct INTEGER,               -- NULL where no answer is right
   response_time_s REAL NOT NULL,
   time_from_first_contact_s REAL,
-  confidence INTEGER                -- from 1; NULL where it was not asked or not given
+  confidence INTEGER,               -- from 1; NULL where it was not asked or not given
+  supersedes INTEGER UNIQUE REFERENCES response,  -- a correction: the response that was wrong
+  given_by TEXT NOT NULL CHECK (given_by IN ('participant', 'operator'))
 ) STRICT;
-CREATE UNIQUE INDEX response_of_trial ON response (trial_id);
+CREATE UNIQUE INDEX first_response_of_trial ON response (trial_id) WHERE supersedes IS NULL;
+CREATE INDEX response_of_trial ON response (trial_id);
+CREATE VIEW current_response AS SELECT * FROM response WHERE response_id NOT IN
+  (SELECT supersedes FROM response WHERE supersedes IS NOT NULL);
 CREATE TABLE event (
   trial_id INTEGER NOT NULL REFERENCES trial,
   t_s REAL NOT NULL,
@@ -87,6 +93,15 @@ CREATE TABLE session_event (
   detail TEXT NOT NULL
 ) STRICT;
 CREATE INDEX event_of_session ON session_event (session_id);
+CREATE TABLE operator_action (
+  action_id INTEGER PRIMARY KEY,
+  session_id INTEGER NOT NULL REFERENCES session,
+  t_s REAL NOT NULL,                -- as in session_event
+  action TEXT NOT NULL,             -- pause, note, correct, exclude …
+  number INTEGER,                   -- of the trial that it concerns; NULL between trials
+  detail TEXT NOT NULL              -- note, reason, the corrected answer
+) STRICT;
+CREATE INDEX action_of_session ON operator_action (session_id);
 CREATE TABLE trace_chunk (
   trial_id INTEGER NOT NULL REFERENCES trial,
   first_tick INTEGER NOT NULL,

@@ -77,7 +77,7 @@ Store Store::open_or_create(const std::string& directory, const StudyRow& study)
   store.create_or_check(study);
   // a program killed between the two leaves the journal an answer behind
   store.journal_->complete([&] { return store.study(); }, store.sessions(),
-                           store.answers_for_journal());
+                           store.entries_for_journal());
   return store;
 }
 
@@ -108,10 +108,18 @@ Store Store::from_journal(const std::string& directory) {
     store.add_session(session);
     new_ids[id] = session.id;
   }
-  for (const JournalledAnswer& answer : content.answers) {
+  for (const JournalledAnswer& answer : content.entries.answers) {
     TrialRecord record{answer.trial, answer.alternatives, answer.response, {}, {}, {}, {}};
     record.trial.session_id = new_ids[answer.trial.session_id];
     store.add_trial(record);
+  }
+  for (CorrectionRow correction : content.entries.corrections) {
+    correction.session_id = new_ids[correction.session_id];
+    store.insert_correction(correction);
+  }
+  for (OperatorActionRow action : content.entries.actions) {
+    action.session_id = new_ids[action.session_id];
+    store.insert_action(action);
   }
   return store;
 }

@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -40,9 +41,15 @@ class Store {
 
   // Includes its surfaces, decompressed.
   StudyRow study();
-  // The index of an existing participant, or the next free one of the mode.
+  struct Place {
+    int participant_index;
+    int order_index;
+  };
+  // Of an existing participant, or the next free one of the mode. The order is the first that no
+  // other participant of the mode has, who has finished or is in a session: those who stopped or
+  // were excluded use none up.
   // Throws InvalidInput if the participant is there already in another mode.
-  int index_of(const std::string& participant_id, Mode mode);
+  Place place_of(const std::string& participant_id, Mode mode);
   bool has_sessions(const std::string& participant_id);
   // No other program adds anything while `act` runs; all that it adds is kept, or nothing.
   void in_one_transaction(const std::function<void()>& act);
@@ -55,20 +62,25 @@ class Store {
   SaveOutcome add_trial(const TrialRecord& record);
 
   void add_session_events(const std::vector<SessionEventRow>& events);
+  void add_operator_action(const OperatorActionRow& action);
+  // Supersedes the participant's answer to that trial. Throws StoreError if there is none.
+  void add_correction(const CorrectionRow& correction, const OperatorActionRow& action);
 
   // The participant's latest session, to resume it.
   std::optional<SessionRow> latest_session(const std::string& participant_id);
   // Numbers of the trials that the participant has answered, in any session.
   std::vector<int> answered_trials(const std::string& participant_id);
-  // Those whose time ended without an answer, and that were not answered later.
-  std::vector<TimedOutTrial> timed_out_trials(const std::string& participant_id);
+  // Those that were presented, timed out or skipped, and not answered later.
+  std::vector<UnansweredTrial> unanswered_trials(const std::string& participant_id);
+  // By id: why.
+  std::map<std::string, std::string> excluded_participants();
   // Of all participants and modes, including practice: the caller filters. Sorted by mode,
   // participant index and trial number. Who a participant is, the id says; an index is unique only
   // within a mode.
   std::vector<AnswerRow> answers();
   std::vector<VisitRow> visits();
   std::vector<SessionRow> sessions();
-  std::vector<JournalledAnswer> answers_for_journal();
+  JournalEntries entries_for_journal();
   std::vector<std::int64_t> trials();  // the ids of all, whatever became of them
   // Every tick of a trial, in order; empty if there is no such trial.
   std::vector<core::TraceSample> trace(std::int64_t trial_id);
@@ -84,6 +96,14 @@ class Store {
   void write_anew();
   void check_is_in_place(const TrialRow& trial);
   void add_to_journal(const TrialRecord& record);
+  void journal(JournalEntries entries, std::int64_t session_id);
+  void insert_action(const OperatorActionRow& action);
+  void insert_correction(const CorrectionRow& correction);
+  int next_participant_index(Mode mode);
+  int free_order_index(Mode mode);
+  std::vector<JournalledAnswer> answers_for_journal();
+  std::vector<CorrectionRow> corrections_for_journal();
+  std::vector<OperatorActionRow> actions_for_journal();
   SessionRow session_of(std::int64_t session_id);
   std::vector<AlternativeRow> alternatives_of(std::int64_t trial_id);
   StudyRow study_without_surfaces();

@@ -17,7 +17,8 @@ std::uint64_t seed_from(const std::string& text) {
 }
 
 constexpr const char* session_columns =
-    "session_id, participant_id, participant_index, mode, seed, planned_order, resumes, rate_hz, "
+    "session_id, participant_id, participant_index, order_index, mode, seed, planned_order, "
+    "resumes, rate_hz, "
     "rig_text, device, scheduler, doctor, program_version, git_hash, compiler, started_utc";
 
 SessionRow session_from(Statement& row) {
@@ -25,19 +26,20 @@ SessionRow session_from(Statement& row) {
   session.id = row.integer(0);
   session.participant_id = row.text(1);
   session.participant_index = static_cast<int>(row.integer(2));
-  session.mode = mode_from(row.text(3));
-  session.seed = seed_from(row.text(4));
-  session.planned_order = row.text(5);
-  session.resumes = row.integer(6) != 0 ? std::optional{row.integer(6)} : std::nullopt;
-  session.rate_hz = row.real(7);
-  session.rig_text = row.text(8);
-  session.device = row.text(9);
-  session.scheduler = row.text(10);
-  session.doctor = row.text(11);
-  session.program_version = row.text(12);
-  session.git_hash = row.text(13);
-  session.compiler = row.text(14);
-  session.started_utc = row.text(15);
+  session.order_index = static_cast<int>(row.integer(3));
+  session.mode = mode_from(row.text(4));
+  session.seed = seed_from(row.text(5));
+  session.planned_order = row.text(6);
+  session.resumes = row.integer(7) != 0 ? std::optional{row.integer(7)} : std::nullopt;
+  session.rate_hz = row.real(8);
+  session.rig_text = row.text(9);
+  session.device = row.text(10);
+  session.scheduler = row.text(11);
+  session.doctor = row.text(12);
+  session.program_version = row.text(13);
+  session.git_hash = row.text(14);
+  session.compiler = row.text(15);
+  session.started_utc = row.text(16);
   return session;
 }
 }  // namespace
@@ -69,7 +71,7 @@ std::vector<JournalledAnswer> Store::answers_for_journal() {
                 "SELECT trial_id, session_id, number, attempt, block, task, is_practice, "
                 "repetition, status, duration_s, response, is_correct, response_time_s, "
                 "time_from_first_contact_s, confidence FROM trial JOIN response USING (trial_id) "
-                "WHERE status = 'answered' ORDER BY trial_id"};
+                "WHERE status = 'answered' AND supersedes IS NULL ORDER BY trial_id"};
   std::vector<JournalledAnswer> answers;
   while (row.step()) {
     JournalledAnswer answer;
@@ -125,17 +127,18 @@ std::vector<int> Store::answered_trials(const std::string& participant_id) {
   return numbers;
 }
 
-std::vector<TimedOutTrial> Store::timed_out_trials(const std::string& participant_id) {
+std::vector<UnansweredTrial> Store::unanswered_trials(const std::string& participant_id) {
   const std::vector<int> answered = answered_trials(participant_id);
   Statement row{database_,
-                "SELECT DISTINCT number, block FROM trial JOIN session USING (session_id) "
-                "WHERE participant_id = ? AND status = 'timed_out' ORDER BY number"};
+                "SELECT number, block, max(status = 'skipped') FROM trial "
+                "JOIN session USING (session_id) WHERE participant_id = ? "
+                "AND status IN ('timed_out', 'skipped') GROUP BY number, block ORDER BY number"};
   row.bind(participant_id);
-  std::vector<TimedOutTrial> trials;
+  std::vector<UnansweredTrial> trials;
   while (row.step()) {
     const int number = static_cast<int>(row.integer(0));
     if (!std::ranges::binary_search(answered, number)) {
-      trials.push_back({number, row.text(1)});
+      trials.push_back({number, row.text(1), row.integer(2) != 0});
     }
   }
   return trials;
@@ -143,7 +146,8 @@ std::vector<TimedOutTrial> Store::timed_out_trials(const std::string& participan
 
 std::vector<AnswerRow> Store::answers() {
   Statement row{database_,
-                "SELECT participant_id, participant_index, mode, block, task, is_practice, number, "
+                "SELECT participant_id, participant_index, order_index, mode, block, task, "
+                "  is_practice, number, "
                 "  CASE WHEN EXISTS (SELECT 1 FROM alternative AS second "
                 "    WHERE second.trial_id = trial.trial_id AND second.position = 1) THEN '' "
                 "  ELSE (SELECT stimulus FROM alternative "
@@ -154,17 +158,18 @@ std::vector<AnswerRow> Store::answers() {
                 "  (SELECT count(*) FROM event WHERE event.trial_id = trial.trial_id "
                 "    AND kind = 'late_impact'), "
                 "  trial_id "
-                "FROM trial JOIN session USING (session_id) JOIN response USING (trial_id) "
+                "FROM trial JOIN session USING (session_id) JOIN current_response USING (trial_id) "
                 "JOIN tick_statistics USING (trial_id) JOIN participant USING (participant_id) "
                 "WHERE status = 'answered' ORDER BY mode, participant_index, number"};
   std::vector<AnswerRow> answers;
   while (row.step()) {
-    answers.push_back({row.text(0), static_cast<int>(row.integer(1)), mode_from(row.text(2)),
-                       row.text(3), row.text(4), row.integer(5) != 0,
-                       static_cast<int>(row.integer(6)), row.text(7), row.text(8),
-                       row.is_null(9) ? std::nullopt : std::optional{row.integer(9) != 0},
-                       row.real(10), row.integer(11), row.integer(12), row.integer(13),
-                       row.integer(14), row.integer(15), row.integer(16), row.integer(17)});
+    answers.push_back({row.text(0), static_cast<int>(row.integer(1)),
+                       static_cast<int>(row.integer(2)), mode_from(row.text(3)), row.text(4),
+                       row.text(5), row.integer(6) != 0, static_cast<int>(row.integer(7)),
+                       row.text(8), row.text(9),
+                       row.is_null(10) ? std::nullopt : std::optional{row.integer(10) != 0},
+                       row.real(11), row.integer(12), row.integer(13), row.integer(14),
+                       row.integer(15), row.integer(16), row.integer(17), row.integer(18)});
   }
   return answers;
 }

@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <map>
+#include <set>
 
 #include "results/store.hpp"
 #include "results/store_error.hpp"
@@ -9,23 +11,48 @@
 namespace tapstudy::results {
 namespace fs = std::filesystem;
 
-int Store::index_of(const std::string& participant_id, Mode mode) {
-  Statement row{database_,
-                "SELECT participant_index, mode FROM participant WHERE participant_id = ?"};
+Store::Place Store::place_of(const std::string& participant_id, Mode mode) {
+  Statement row{
+      database_,
+      "SELECT participant_index, order_index, mode FROM participant WHERE participant_id = ?"};
   row.bind(participant_id);
   if (!row.step()) {
-    Statement next{
-        database_,
-        "SELECT coalesce(max(participant_index) + 1, 0) FROM participant WHERE mode = ?"};
-    next.bind(to_text(mode)).step();
-    return static_cast<int>(next.integer(0));
+    return {next_participant_index(mode), free_order_index(mode)};
   }
-  if (row.text(1) != to_text(mode)) {
+  if (row.text(2) != to_text(mode)) {
     throw core::InvalidInput{
         fmt::format("participant '{}' is in this study already, in {} sessions (choose another id)",
-                    participant_id, row.text(1))};
+                    participant_id, row.text(2))};
   }
-  return static_cast<int>(row.integer(0));
+  return {static_cast<int>(row.integer(0)), static_cast<int>(row.integer(1))};
+}
+
+int Store::next_participant_index(Mode mode) {
+  Statement next{database_,
+                 "SELECT coalesce(max(participant_index) + 1, 0) FROM participant WHERE mode = ?"};
+  next.bind(to_text(mode)).step();
+  return static_cast<int>(next.integer(0));
+}
+
+int Store::free_order_index(Mode mode) {
+  const std::map<std::string, std::string> excluded = excluded_participants();
+  Statement row{database_,
+                "SELECT participant_id, order_index, coalesce((SELECT state FROM session_event "
+                "JOIN session USING (session_id) WHERE session.participant_id = "
+                "participant.participant_id ORDER BY session_event.rowid DESC LIMIT 1), '') "
+                "FROM participant WHERE mode = ?"};
+  row.bind(to_text(mode));
+  std::set<int> used;
+  while (row.step()) {
+    if (!excluded.contains(row.text(0)) && row.text(2) != "stopped") {
+      used.insert(static_cast<int>(row.integer(1)));
+    }
+  }
+  int free = 0;
+  while (used.contains(free)) {
+    ++free;
+  }
+  return free;
 }
 
 bool Store::has_sessions(const std::string& participant_id) {
@@ -41,11 +68,13 @@ void Store::in_one_transaction(const std::function<void()>& act) {
 void Store::add_session(SessionRow& session) {
   Transaction all{database_};
   Statement{database_,
-            "INSERT INTO participant (participant_id, mode, participant_index) VALUES (?, ?, ?) "
+            "INSERT INTO participant (participant_id, mode, participant_index, order_index) "
+            "VALUES (?, ?, ?, ?) "
             "ON CONFLICT (participant_id) DO NOTHING"}
       .bind(session.participant_id)
       .bind(to_text(session.mode))
       .bind(session.participant_index)
+      .bind(session.order_index)
       .finish();
   Statement{
       database_,
@@ -129,8 +158,8 @@ void Store::check_is_in_place(const TrialRow& trial) {
 
 void Store::add_to_journal(const TrialRecord& record) {
   if (record.response && record.trial.status == "answered") {
-    journal_->complete([this] { return study(); }, {session_of(record.trial.session_id)},
-                       {{record.trial, record.alternatives, *record.response}});
+    journal({.answers = {{record.trial, record.alternatives, *record.response}}},
+            record.trial.session_id);
   }
 }
 
@@ -198,7 +227,8 @@ void Store::add_details(std::int64_t trial_id, const TrialRecord& record) {
   if (record.response) {
     Statement{database_,
               "INSERT INTO response (trial_id, response, is_correct, response_time_s, "
-              "time_from_first_contact_s, confidence) VALUES (?, ?, ?, ?, ?, ?)"}
+              "time_from_first_contact_s, confidence, given_by) "
+              "VALUES (?, ?, ?, ?, ?, ?, 'participant')"}
         .bind(trial_id)
         .bind(record.response->response)
         .bind(record.response->is_correct)

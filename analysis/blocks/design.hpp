@@ -25,7 +25,7 @@ struct BlockDesign {
   std::vector<PlannedHypothesis> hypotheses;
   // The stimuli (places in the list above) that a participant's trials of this block would have had
   // in another draw of its order; empty where the order is not random.
-  std::function<std::vector<int>(int participant_index, std::uint64_t draw)> redraw;
+  std::function<std::vector<int>(int order_index, std::uint64_t draw)> redraw;
   int first_trial{1};  // the number of its first trial
   // Where the participants' answers follow from an assumption of the simulation: which. Nothing is
   // tested then.

@@ -22,6 +22,7 @@ struct Summary {
   std::string notes;
   std::string modes;  // "simulated", "real", "pilot", or "counts" if only a table was given
   std::vector<std::string> unfinished;  // sessions, with what was answered of what was planned
+  std::vector<std::string> excluded;    // participants, with the operator's reason
   int participants{};
   std::vector<std::shared_ptr<const BlockSummary>> blocks;
   std::optional<LoopQuality> loop;

@@ -11,6 +11,9 @@ void write_text(std::ostream& out, const Summary& summary) {
   for (const std::string& session : summary.unfinished) {
     core::print(out, "unfinished: {}\n", session);
   }
+  for (const std::string& participant : summary.excluded) {
+    core::print(out, "excluded by the operator: {}\n", participant);
+  }
   for (const auto& block : summary.blocks) {
     core::print(out, "\n");
     if (!block->block.empty()) {

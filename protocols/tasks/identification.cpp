@@ -59,7 +59,7 @@ class Identification final : public Task {
         core::derived_seed(draw.participant_seed, core::Purpose::schedule, draw.block_index)};
     std::vector<PlannedTrial> all;
     for (const OrderedStimulus& next :
-         ordered_stimuli(block, rng, {draw.participant_index, draw.counterbalancing_seed})) {
+         ordered_stimuli(block, rng, {draw.order_index, draw.counterbalancing_seed})) {
       all.push_back({0, block.name, this, block.is_practice, next.repetition, {next.stimulus}});
     }
     return all;

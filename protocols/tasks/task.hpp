@@ -30,7 +30,7 @@ struct PlannedTrial {
 // Participant and block for which an order is drawn.
 struct Draw {
   std::uint64_t participant_seed{};
-  int participant_index{};  // from 0; used for counterbalancing
+  int order_index{};  // which of the balanced orders, from 0
   std::size_t block_index{};
   std::uint64_t counterbalancing_seed{};  // of the study
 };

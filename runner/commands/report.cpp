@@ -75,9 +75,10 @@ std::vector<std::pair<std::string, std::string>> provenance(
 // The sessions that ended early: "P03: 5 of 8 trials".
 std::vector<std::string> unfinished(results::Store& store, const protocols::Protocol& protocol,
                                     const std::vector<results::SessionRow>& sessions, Mode mode) {
+  const std::map<std::string, std::string> excluded = store.excluded_participants();
   std::map<std::string, std::ptrdiff_t> planned;
   for (const results::SessionRow& session : sessions) {
-    if (session.mode == mode) {
+    if (session.mode == mode && !excluded.contains(session.participant_id)) {
       planned[session.participant_id] = std::ranges::count(session.planned_order, '\n');
     }
   }
@@ -120,9 +121,10 @@ Summary summary_of_study(const ReportOptions& options) {
   const results::StudyRow study = store.study();
   const std::vector<results::SessionRow> sessions = store.sessions();
   const Mode mode = mode_to_report(options, sessions);
+  const std::map<std::string, std::string> excluded = store.excluded_participants();
   std::vector<results::AnswerRow> answers = store.answers();
   std::erase_if(answers, [&](const results::AnswerRow& answer) {
-    return answer.mode != mode || answer.is_practice;
+    return answer.mode != mode || answer.is_practice || excluded.contains(answer.participant_id);
   });
   if (answers.empty()) {
     throw core::InvalidInput{fmt::format("{}: no answers of {} participants to report",
@@ -137,6 +139,9 @@ Summary summary_of_study(const ReportOptions& options) {
   Summary summary = analysis::summarise(design_of(protocol, mode), answers, visits);
   summary.provenance = provenance(study, sessions, mode);
   summary.unfinished = unfinished(store, protocol, sessions, mode);
+  for (const auto& [participant, reason] : excluded) {
+    summary.excluded.push_back(fmt::format("{}: {}", participant, reason));
+  }
   return summary;
 }
 

@@ -1,7 +1,9 @@
 #include <fmt/format.h>
 
+#include <charconv>
 #include <memory>
 
+#include "core/error.hpp"
 #include "protocols/read_protocol.hpp"
 #include "runner/commands/commands.hpp"
 #include "runner/commands/seed.hpp"
@@ -15,9 +17,19 @@ struct RunOptions {
   std::string directory;
   std::string rig;
   std::string seed;
+  std::string row;
   bool resume{false};
   bool pilot{false};
 };
+
+int row_from(const std::string& text) {
+  int row = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), row);
+  if (error != std::errc{} || end != text.data() + text.size() || row < 1 || row > 1'000'000) {
+    throw core::InvalidInput{fmt::format("--row: '{}' is not a number from 1 to 1000000", text)};
+  }
+  return row;
+}
 
 SessionRequest request_of(const RunOptions& options) {
   SessionRequest request;
@@ -26,6 +38,9 @@ SessionRequest request_of(const RunOptions& options) {
   request.resume = options.resume ? Resume::yes : Resume::no;
   if (!options.seed.empty()) {
     request.seed = seed_from(options.seed, "--seed");
+  }
+  if (!options.row.empty()) {
+    request.order_index = row_from(options.row) - 1;
   }
   return request;
 }
@@ -51,6 +66,8 @@ void add_run(CommandParser& line) {
   command.option("--out", options->directory, "Directory of the study", Need::required);
   command.option("--rig", options->rig, "Device and limits (YAML); else a simulated hand");
   command.option("--seed", options->seed, "Seed of the order; drawn and stored if not given");
+  command.option("--row", options->row,
+                 "Which of the balanced orders, from 1; else the first that nobody has");
   command.flag("--resume", options->resume, "Resume the participant's last session");
   command.flag("--pilot", options->pilot, "Mark as a pilot, kept out of reports");
   command.on_run([options] { run(*options); });

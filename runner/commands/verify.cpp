@@ -13,12 +13,9 @@ struct VerifyOptions {
   std::string directory;
 };
 
-std::set<std::string> lines_of(const std::vector<results::JournalledAnswer>& answers) {
-  std::set<std::string> lines;
-  for (const results::JournalledAnswer& answer : answers) {
-    lines.insert(results::to_line(answer));
-  }
-  return lines;
+std::set<std::string> lines_of(const results::JournalEntries& entries) {
+  const std::vector<std::string> lines = results::to_lines(entries);
+  return {lines.begin(), lines.end()};
 }
 
 // How many of these lines the others lack; prints the first few.
@@ -41,17 +38,19 @@ void verify(const VerifyOptions& options) {
   for (const std::int64_t trial : trials) {
     ticks += static_cast<std::int64_t>(store.trace(trial).size());
   }
-  const auto stored = lines_of(store.answers_for_journal());
+  const results::JournalEntries in_store = store.entries_for_journal();
   fmt::print("study.db         {} trials, {} answers, {} ticks: sound\n", trials.size(),
-             stored.size(), ticks);
-  const auto journalled = lines_of(results::read_journal(options.directory).answers);
+             in_store.answers.size(), ticks);
+  const results::JournalEntries in_journal = results::read_journal(options.directory).entries;
   fmt::print("answers.journal  {} answers: every line follows from the one before\n",
-             journalled.size());
+             in_journal.answers.size());
+  const auto stored = lines_of(in_store);
+  const auto journalled = lines_of(in_journal);
   const int missing = print_missing(stored, journalled, "answers.journal") +
                       print_missing(journalled, stored, "study.db");
   if (missing > 0) {
-    throw results::StoreError{
-        fmt::format("{}: {} answers are not the same in both", options.directory, missing)};
+    throw results::StoreError{fmt::format("{}: {} answers or actions are not the same in both",
+                                          options.directory, missing)};
   }
   fmt::print("the two agree\n");
 }

@@ -39,20 +39,22 @@ std::vector<PlannedSession> add_sessions(const SimulatedStudy& study,
     SessionPlan plan{
         fmt::format("sim-{:02}", i + 1),
         0,
+        0,
         results::Mode::simulated,
         core::derived_seed(study.seed, core::Purpose::participant, static_cast<std::uint64_t>(i)),
         "simulated hand",
         "virtual time",
         ""};
-    plan.participant_index = store.index_of(plan.participant_id, plan.mode);
+    const auto place = store.place_of(plan.participant_id, plan.mode);
+    plan.participant_index = place.participant_index;
+    plan.order_index = place.order_index;
     if (store.has_sessions(plan.participant_id)) {
       throw core::InvalidInput{
           fmt::format("{}: participant '{}' is in this study already (choose "
                       "another --out)",
                       study.directory, plan.participant_id)};
     }
-    PlannedSession session{0, plan.seed,
-                           make_schedule(protocol, plan.seed, plan.participant_index)};
+    PlannedSession session{0, plan.seed, make_schedule(protocol, plan.seed, plan.order_index)};
     results::SessionRow row = session_row(plan, protocol, rig, session.schedule);
     store.add_session(row);
     session.id = row.id;
@@ -122,7 +124,8 @@ SimulatedTime simulate(const SimulatedStudy& study, const protocols::Protocol& p
                            const std::int64_t tapped = running == nullptr ? 0 : running->ticks();
                            return static_cast<double>(tapped) / protocol.rate_hz;
                          }};
-    TrialEngine engine{protocol, models, trial_loop, participant, recorder, states};
+    Operator nobody;
+    TrialEngine engine{{protocol, models, trial_loop, participant, nobody, states}, recorder};
     running = &engine;
     std::set<int> done;
     if (const auto interruption = engine.run(session.id, session.schedule, done)) {

@@ -9,7 +9,6 @@
 #include <chrono>
 #include <thread>
 
-#include "runner/terminal/operator_prompt.hpp"
 #include "runner/terminal/say.hpp"
 #include "runner/terminal/stop_signal.hpp"
 namespace tapstudy::runner {
@@ -40,11 +39,47 @@ std::optional<std::size_t> index_of(const std::string& label,
 }
 }  // namespace
 
+std::optional<std::string> ConsoleParticipant::next_of_participant(
+    const std::function<bool()>& keep_waiting) {
+  while (auto line = input_.next([&] { return keep_waiting() && !stop_was_asked(); })) {
+    if (!line->starts_with(':')) {
+      return line;
+    }
+    say("  {}\n> ", obey_(line->substr(1)));
+  }
+  return std::nullopt;
+}
+
 // A script is not asked: its lines are answers.
 void ConsoleParticipant::wait_for_enter() {
-  if (input_.is_terminal() && !asked_and_done(input_, "\nTo go on,")) {
-    ask_to_stop();
-    stop_if_asked();
+  if (!input_.is_terminal()) {
+    return;
+  }
+  say("\nTo go on, press Enter. ");
+  bool has_quit = input_.forget_typed_ahead();
+  while (!has_quit) {
+    const auto line = next_of_participant([] { return true; });
+    if (line && line->empty()) {
+      return;
+    }
+    has_quit = !line || asks_to_quit(*line);
+    say("{}", has_quit ? "" : "Type quit to stop here; or press Enter. ");
+  }
+  ask_to_stop();
+  stop_if_asked();
+}
+
+void ConsoleParticipant::wait_while(const std::function<bool()>& is_paused) {
+  say("\nPaused; force is off. To go on, type :resume\n> ");
+  while (is_paused()) {
+    const auto line = next_of_participant(is_paused);
+    if (!line && is_paused()) {  // the end of input
+      ask_to_stop();
+    } else if (line && asks_to_quit(*line)) {
+      ask_to_stop();
+    } else if (line) {
+      say("  paused: type :resume to go on, or quit\n> ");
+    }
   }
 }
 
@@ -72,7 +107,7 @@ std::optional<int> ConsoleParticipant::confidence(const protocols::Confidence& s
     return std::nullopt;
   }
   say("  How sure are you? 1 ({}) to {} ({}): ", scale.low, scale.steps, scale.high);
-  while (const auto line = input_.next([] { return !stop_was_asked(); })) {
+  while (const auto line = next_of_participant([] { return true; })) {
     if (asks_to_quit(*line)) {
       ask_to_stop();
       return std::nullopt;
@@ -109,7 +144,7 @@ void ConsoleParticipant::get_ready(const TrialPrompt& prompt) {
 
 std::optional<std::string> ConsoleParticipant::next_line(const Exploration& exploration) {
   say("> ");
-  const auto line = input_.next([&] { return exploration.is_running() && !stop_was_asked(); });
+  const auto line = next_of_participant([&] { return exploration.is_running(); });
   if (!line) {
     return std::nullopt;
   }
@@ -173,7 +208,11 @@ std::optional<std::size_t> ConsoleParticipant::chosen_alternative(const TrialPro
 }
 
 void ConsoleParticipant::repeats(const TrialPrompt& prompt) {
-  say("  trial {} is presented again: the loop was not on time\n", prompt.number);
+  say("  trial {} is presented again\n", prompt.number);
+}
+
+void ConsoleParticipant::skipped(const TrialPrompt& prompt) {
+  say("  trial {} is skipped\n", prompt.number);
 }
 
 void ConsoleParticipant::refused(const TrialPrompt& /*prompt*/, const std::string& why) {

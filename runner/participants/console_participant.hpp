@@ -6,15 +6,17 @@
 namespace tapstudy::runner {
 // A person at the terminal. Questions go to stderr, answers come from the input: the number of an
 // answer; in trials with several alternatives, a label to feel that one and "= label" to choose it.
-// "quit" or end of input stops the session.
+// "quit" or end of input stops the session; a line that begins with a colon is the operator's.
 class ConsoleParticipant final : public Participant {
  public:
   // move_hand is called before each trial; it starts the taps of a simulated hand if there is no
-  // device for the person to hold.
-  ConsoleParticipant(LineInput& input, std::function<void()> move_hand)
-      : input_{input}, move_hand_{std::move(move_hand)} {}
+  // device for the person to hold. obey gets the operator's command and returns what to tell.
+  using Obey = std::function<std::string(const std::string& command)>;
+  ConsoleParticipant(LineInput& input, std::function<void()> move_hand, Obey obey)
+      : input_{input}, move_hand_{std::move(move_hand)}, obey_{std::move(obey)} {}
   void read(const std::string& instructions) override;
   void rest(double min_seconds) override;
+  void wait_while(const std::function<bool()>& is_paused) override;
   void get_ready(const TrialPrompt& prompt) override;
   std::optional<std::size_t> perform(const TrialPrompt& prompt, Exploration& exploration) override;
   std::optional<int> confidence(const protocols::Confidence& scale) override;
@@ -22,11 +24,14 @@ class ConsoleParticipant final : public Participant {
   void saved(const TrialPrompt& prompt) override;
   bool saves_again(const std::string& cause) override;
   void repeats(const TrialPrompt& prompt) override;
+  void skipped(const TrialPrompt& prompt) override;
   void refused(const TrialPrompt& prompt, const std::string& why) override;
   void timed_out(const TrialPrompt& prompt, bool is_presented_again) override;
 
  private:
   void wait_for_enter();
+  // The participant's next line; the operator's are obeyed.
+  std::optional<std::string> next_of_participant(const std::function<bool()>& keep_waiting);
   // A script cannot be asked to tap first: its next line waits until the plate was touched.
   void let_script_wait(const TrialPrompt& prompt, std::size_t alternative,
                        Exploration& exploration) const;
@@ -37,5 +42,6 @@ class ConsoleParticipant final : public Participant {
 
   LineInput& input_;
   std::function<void()> move_hand_;
+  Obey obey_;
 };
 }  // namespace tapstudy::runner

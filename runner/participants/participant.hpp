@@ -1,4 +1,5 @@
 #pragma once
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -26,6 +27,8 @@ class Participant {
   // Between trials; each returns once the participant goes on, and throws Stopped where none does.
   virtual void read(const std::string& /*instructions*/) {}
   virtual void rest(double /*min_seconds*/) {}
+  // The operator's pause, until is_paused is false.
+  virtual void wait_while(const std::function<bool()>& /*is_paused*/) {}
   // Before the trial's loop starts.
   virtual void get_ready(const TrialPrompt& /*prompt*/) {}
   // Explores and answers: the index of an option, or nullopt if the trial could not be finished.
@@ -35,6 +38,8 @@ class Participant {
   virtual std::optional<int> confidence(const protocols::Confidence& /*scale*/) { return {}; }
   // Which answer was right.
   virtual void feedback(bool /*is_correct*/, const std::string& /*right_label*/) {}
+  // Called where the operator ended the trial without an answer.
+  virtual void skipped(const TrialPrompt& /*prompt*/) {}
   // Called where the answer came too early: why. perform is called again.
   virtual void refused(const TrialPrompt& /*prompt*/, const std::string& /*why*/) {}
   // Called where the trial took too long; whether it is presented again later.

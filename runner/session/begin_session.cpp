@@ -57,10 +57,17 @@ BegunSession begin_session(const SessionRequest& request, const protocols::Proto
   BegunSession session;
   // sessions begun at the same time must not get the same index
   store.in_one_transaction([&] {
-    plan.participant_index = store.index_of(plan.participant_id, plan.mode);
     const auto earlier = earlier_session(request, store);
+    if (earlier && request.order_index) {
+      throw core::InvalidInput{
+          "--row: the order of a participant who resumes is the one begun with"};
+    }
+    const auto place = store.place_of(plan.participant_id, plan.mode);
+    plan.participant_index = place.participant_index;
+    plan.order_index =
+        earlier ? place.order_index : request.order_index.value_or(place.order_index);
     plan.seed = earlier ? earlier->seed : request.seed ? *request.seed : drawn_seed();
-    session.schedule = make_schedule(protocol, plan.seed, plan.participant_index);
+    session.schedule = make_schedule(protocol, plan.seed, plan.order_index);
     session.row = session_row(plan, protocol, rig, session.schedule);
     if (earlier) {
       resume(*earlier, protocol, store, session);

@@ -18,6 +18,7 @@ struct SessionRequest {
   results::Mode mode{results::Mode::real};
   Resume resume{Resume::no};
   std::optional<std::uint64_t> seed;  // of a new session; drawn if unset
+  std::optional<int> order_index;     // of a new participant; the first free one if unset
 };
 
 struct BegunSession {

@@ -16,6 +16,7 @@ class LimitedExploration final : public Exploration {
   LimitedExploration(Exploration& inner, const protocols::ExploreLimits& limits)
       : inner_{inner}, limits_{limits} {}
   void switch_to(std::size_t alternative) override { inner_.switch_to(alternative); }
+  std::size_t current() const override { return inner_.current(); }
   void pass_time(double seconds) override {
     const double left_s = limits_.max_seconds ? *limits_.max_seconds - time_s() : seconds;
     inner_.pass_time(std::clamp(seconds, 0.0, std::max(0.0, left_s)));

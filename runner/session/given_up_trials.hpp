@@ -5,8 +5,8 @@
 #include "protocols/protocol.hpp"
 #include "results/store.hpp"
 namespace tapstudy::runner {
-// The trials that a participant ended without an answer and that do not come again (at_limit:
-// give_up).
+// The trials that ended without an answer and do not come again: skipped by the operator, or timed
+// out (at_limit: give_up).
 std::vector<int> given_up_trials(const protocols::Protocol& protocol,
                                  const std::string& participant_id, results::Store& store);
 }  // namespace tapstudy::runner

@@ -14,6 +14,7 @@
 #include "runner/devices/device_kind.hpp"
 #include "runner/devices/reconnect.hpp"
 #include "runner/devices/rigs.hpp"
+#include "runner/operators/operator_desk.hpp"
 #include "runner/participants/console_participant.hpp"
 #include "runner/session/given_up_trials.hpp"
 #include "runner/session/session_row.hpp"
@@ -54,19 +55,31 @@ SessionLock lock_of(const LiveSession& live) {
           fmt::format("participant '{}' is in a session of this study right now", id)};
 }
 
+// At once, so that the trial's supervisor does not wait for the disk.
+std::string obeyed(OperatorDesk& desk, const std::string& command) {
+  try {
+    const OperatorCommand parsed = parse_operator_command(command);
+    desk.post(parsed);
+    return fmt::format("{}: accepted", name(parsed.action));
+  } catch (const core::InvalidInput& error) {
+    return error.what();
+  }
+}
+
 // Runs the remaining trials, reopening the device after a fault.
 void run_trials(const LiveSession& live, const device::LoopSettings& settings, ModelLibrary& models,
                 const DeviceRequest& device_request, std::unique_ptr<SessionDevice> device,
                 results::Store& store, BegunSession& session) {
-  ConsoleParticipant participant{device_request.operator_input, [&] { device->get_ready(); }};
   results::Recorder recorder{store};
   LiveTrialLoop trial_loop{device->device(), settings, live.rig.realtime, recorder};
-  const auto begun = std::chrono::steady_clock::now();
-  SessionStates states{
-      session.row.id, [begun] {
-        return std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
-      }};
-  TrialEngine engine{live.protocol, models, trial_loop, participant, recorder, states};
+  const auto now_s = [begun = std::chrono::steady_clock::now()] {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+  };
+  SessionStates states{session.row.id, now_s};
+  OperatorDesk desk{{live.protocol, session.row.id, now_s}, recorder};
+  ConsoleParticipant participant{device_request.operator_input, [&] { device->get_ready(); },
+                                 [&](const std::string& command) { return obeyed(desk, command); }};
+  TrialEngine engine{{live.protocol, models, trial_loop, participant, desk, states}, recorder};
   while (const auto interruption = engine.run(session.row.id, session.schedule, session.done)) {
     device = reconnect(to_text(*interruption), device_request, std::move(device));
     device->begin_session(session.row.seed);

@@ -28,6 +28,7 @@ results::SessionRow session_row(const SessionPlan& plan, const protocols::Protoc
   results::SessionRow session;
   session.participant_id = plan.participant_id;
   session.participant_index = plan.participant_index;
+  session.order_index = plan.order_index;
   session.mode = plan.mode;
   session.seed = plan.seed;
   session.planned_order = protocols::described(schedule);

@@ -14,6 +14,7 @@ results::StudyRow study_row(const protocols::Protocol& protocol, const std::stri
 struct SessionPlan {
   std::string participant_id;
   int participant_index{};
+  int order_index{};
   results::Mode mode{};
   std::uint64_t seed{};
   std::string device;

@@ -17,7 +17,8 @@ struct Row {
 
 // Between two trials anything may come that is not part of one.
 const std::vector<SessionState>& between_trials() {
-  static const std::vector<SessionState> states{instructions, resting, ready, stopped, ended};
+  static const std::vector<SessionState> states{instructions, resting, ready,
+                                                paused,       stopped, ended};
   return states;
 }
 std::vector<SessionState> between_trials_or(SessionState one, SessionState other) {
@@ -26,17 +27,21 @@ std::vector<SessionState> between_trials_or(SessionState one, SessionState other
   return states;
 }
 
-const std::array<Row, 13>& table() {
-  static const std::array<Row, 13> rows{
+const std::array<Row, 15>& table() {
+  static const std::array<Row, 15> rows{
       {{begun, "begun", between_trials()},
        {instructions, "instructions", between_trials()},
        {resting, "resting", between_trials()},
        {ready, "ready", {exploring, stopped}},
-       {exploring, "exploring", {confidence, saved, repeated, timed_out, faulted, stopped}},
+       {exploring,
+        "exploring",
+        {confidence, saved, repeated, timed_out, skipped, paused, faulted, stopped}},
        {confidence, "confidence", {saved, repeated, faulted, stopped}},
        {saved, "saved", between_trials_or(feedback, faulted)},
-       {repeated, "repeated", {ready, stopped}},
+       {repeated, "repeated", {ready, paused, stopped}},
        {timed_out, "timed_out", between_trials()},
+       {skipped, "skipped", between_trials()},
+       {paused, "paused", between_trials()},
        {feedback, "feedback", between_trials()},
        {faulted, "faulted", between_trials()},
        {stopped, "stopped", {}},
@@ -68,6 +73,9 @@ void SessionStates::enter(SessionState state, std::optional<int> trial, std::str
   }
   state_ = state;
   events_.push_back({session_id_, now_s_(), std::string{name(state)}, trial, std::move(detail)});
+  for (const Listener& listener : listeners_) {
+    listener(events_.back());
+  }
 }
 
 std::vector<results::SessionEventRow> SessionStates::take_events() {

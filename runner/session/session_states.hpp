@@ -18,6 +18,8 @@ enum class SessionState {
   saved,
   repeated,   // stored, but presented again
   timed_out,  // likewise, or given up
+  skipped,    // stored without an answer: the operator's wish
+  paused,     // by the operator; a running trial is stored and presented again
   feedback,
   faulted,
   stopped,
@@ -33,6 +35,10 @@ class SessionStates {
   SessionStates(std::int64_t session_id, Now now_s);
   // Throws std::logic_error if the state may not follow the present one.
   void enter(SessionState state, std::optional<int> trial = {}, std::string detail = {});
+  // Called at each change.
+  using Listener = std::function<void(const results::SessionEventRow&)>;
+  void listen(Listener listener) { listeners_.push_back(std::move(listener)); }
+  SessionState state() const { return state_; }
   // The changes since the last call.
   std::vector<results::SessionEventRow> take_events();
 
@@ -41,5 +47,6 @@ class SessionStates {
   Now now_s_;
   SessionState state_{SessionState::begun};
   std::vector<results::SessionEventRow> events_;
+  std::vector<Listener> listeners_;
 };
 }  // namespace tapstudy::runner

@@ -8,6 +8,10 @@ std::optional<SessionState> state_of(TrialEnding ending) {
       return SessionState::repeated;
     case TrialEnding::timed_out:
       return SessionState::timed_out;
+    case TrialEnding::skipped:
+      return SessionState::skipped;
+    case TrialEnding::paused:
+      return SessionState::paused;
     case TrialEnding::faulted:
       return SessionState::faulted;
     case TrialEnding::interrupted:
@@ -24,8 +28,11 @@ std::string status_of(TrialEnding ending, bool is_answered) {
       return "repeated";
     case TrialEnding::timed_out:
       return "timed_out";
+    case TrialEnding::skipped:
+      return "skipped";
     case TrialEnding::faulted:
       return is_answered ? "answered" : "interrupted";
+    case TrialEnding::paused:
     case TrialEnding::interrupted:
       break;
   }

@@ -4,7 +4,7 @@
 
 #include "runner/session/session_states.hpp"
 namespace tapstudy::runner {
-enum class TrialEnding { answered, repeated, timed_out, interrupted, faulted };
+enum class TrialEnding { answered, repeated, timed_out, skipped, paused, interrupted, faulted };
 
 // The session's state after it; nullopt: it is about to be stopped.
 std::optional<SessionState> state_of(TrialEnding ending);

@@ -8,9 +8,7 @@
 #include <iterator>
 
 #include "results/store_error.hpp"
-#include "runner/session/explore_limits.hpp"
 #include "runner/session/trial_record.hpp"
-#include "runner/stimuli/trial_stimuli.hpp"
 #include "runner/terminal/exit_code.hpp"
 #include "runner/terminal/logging.hpp"
 #include "runner/terminal/stop_signal.hpp"
@@ -41,12 +39,12 @@ std::optional<Interruption> TrialEngine::run(std::int64_t session_id,
   try {
     const auto interruption = run_all(session_id, schedule, done_trials);
     if (!interruption) {
-      states_.enter(SessionState::ended);
+      parts_.states.enter(SessionState::ended);
     }
     note_events();
     return interruption;
   } catch (const Stopped&) {
-    states_.enter(SessionState::stopped);
+    parts_.states.enter(SessionState::stopped, {}, parts_.by.end_reason());
     note_events();
     throw;
   }
@@ -55,7 +53,7 @@ std::optional<Interruption> TrialEngine::run(std::int64_t session_id,
 // The record of states is worth less than what comes next: going on after a fault, the end.
 void TrialEngine::note_events() {
   try {
-    recorder_.note(states_.take_events()).get();
+    recorder_.note(parts_.states.take_events()).get();
   } catch (const results::StoreError& error) {
     warn(fmt::format("the session's latest changes of state are not stored: {}", error.what()));
   }
@@ -92,10 +90,10 @@ std::optional<Interruption> TrialEngine::run_all(std::int64_t session_id,
 }
 
 TrialPrompt TrialEngine::prompt_of(const PlannedTrial& trial, int total) const {
-  const protocols::Block& block = protocol_.block(trial.block);
+  const protocols::Block& block = parts_.protocol.block(trial.block);
   return {trial.number,      total,
           trial.is_practice, trial.task,
-          block.question,    trial.task->options(block, protocol_),
+          block.question,    trial.task->options(block, parts_.protocol),
           block.explore,     trial.task->alternative_labels(trial)};
 }
 
@@ -103,9 +101,22 @@ TrialEngine::Outcome TrialEngine::run_until_it_counts(std::int64_t session_id,
                                                       const PlannedTrial& trial, int total) {
   Outcome outcome;
   do {
+    wait_while_paused();
     outcome = run_trial(session_id, trial, total);
   } while (outcome.is_repeated);
   return outcome;
+}
+
+void TrialEngine::wait_while_paused() {
+  if (!parts_.by.is_paused()) {
+    return;
+  }
+  if (parts_.states.state() != SessionState::paused) {
+    parts_.states.enter(SessionState::paused);
+  }
+  note_events();
+  parts_.participant.wait_while([this] { return parts_.by.is_paused() && !stop_was_asked(); });
+  stop_if_asked();
 }
 
 // The answer is kept while the operator frees space or ends what locks the database.
@@ -122,79 +133,34 @@ void TrialEngine::save(const std::shared_ptr<const results::TrialRecord>& record
     } catch (const results::StoreRewritten&) {
       throw;
     } catch (const results::StoreError& error) {
-      if (!participant_.saves_again(error.what())) {
+      if (!parts_.participant.saves_again(error.what())) {
         throw;
       }
     }
   }
 }
 
-// Until an answer that may be given, the end of the block's time, a stop or a fault.
-void TrialEngine::present(const TrialPrompt& prompt, const PlannedTrial& trial,
-                          Exploration& exploration, Presentation& presentation) {
-  LimitedExploration limited{exploration, prompt.explore};
-  while (const auto option = participant_.perform(prompt, limited)) {
-    if (limited.is_over()) {
-      break;
-    }
-    const std::string why = too_early(prompt, *option, limited);
-    const bool is_rendering = limited.is_rendering();
-    if (why.empty() && is_rendering) {
-      presentation.answer = Answer{
-          trial.task->response(trial, protocol_.block(trial.block), *option), limited.time_s()};
-      return;
-    }
-    if (!is_rendering) {
-      presentation.is_answered_in_a_stall = true;
-      return;
-    }
-    participant_.refused(prompt, why);
-  }
-  presentation.is_timed_out = exploration.is_running() && limited.is_over() && !stop_was_asked();
-}
-
 // The answer stays, whatever becomes of this question.
 void TrialEngine::ask_confidence(const protocols::Block& block, int trial, Answer& answer) {
   if (block.confidence) {
-    states_.enter(SessionState::confidence, trial);
-    answer.confidence = participant_.confidence(*block.confidence);
+    parts_.states.enter(SessionState::confidence, trial);
+    answer.confidence = parts_.participant.confidence(*block.confidence);
   }
 }
 
 void TrialEngine::give_feedback(const PlannedTrial& trial, const TrialPrompt& prompt,
                                 const std::string& response) {
-  const protocols::Block& block = protocol_.block(trial.block);
+  const protocols::Block& block = parts_.protocol.block(trial.block);
   const auto is_right = [&](const std::string& other) {
     return trial.task->is_correct(trial, other).value_or(false);
   };
   for (std::size_t i = 0; i < prompt.options.size(); ++i) {
     if (is_right(trial.task->response(trial, block, i))) {
-      states_.enter(SessionState::feedback, trial.number);
-      participant_.feedback(is_right(response), prompt.options[i].label);
+      parts_.states.enter(SessionState::feedback, trial.number);
+      parts_.participant.feedback(is_right(response), prompt.options[i].label);
       return;
     }
   }
-}
-
-TrialEngine::Presentation TrialEngine::presented(const TrialPrompt& prompt,
-                                                 const PlannedTrial& trial) {
-  TrialStimuli stimuli = build_trial_stimuli(protocol_, trial.stimuli, models_);
-  states_.enter(SessionState::ready, trial.number);
-  participant_.get_ready(prompt);
-  Presentation presentation;
-  states_.enter(SessionState::exploring, trial.number);
-  presentation.result = trial_loop_.run(stimuli.alternatives, [&](Exploration& exploration) {
-    try {
-      present(prompt, trial, exploration, presentation);
-    } catch (...) {
-      presentation.failure = std::current_exception();
-    }
-  });
-  ticks_ += presentation.result.loop.ticks;
-  if (presentation.result.loop.stop == device::StopOutcome::unconfirmed) {
-    warn(device::force_may_be_on);  // before anything else can fail
-  }
-  return presentation;
 }
 
 TrialEngine::Ending TrialEngine::ending_of(const Presentation& presentation,
@@ -202,10 +168,16 @@ TrialEngine::Ending TrialEngine::ending_of(const Presentation& presentation,
   if (presentation.result.loop.stopped_by != core::TickFault::none) {
     return Ending::faulted;
   }
+  if (presentation.wish) {
+    return *presentation.wish == TrialWish::skip ? Ending::skipped : Ending::repeated;
+  }
+  if (presentation.is_paused) {
+    return Ending::paused;
+  }
   const bool is_late = presentation.answer && has_late_impact(presentation.result);
   if (presentation.is_answered_in_a_stall ||
       (is_late && repeats_after_late_impacts_[trial.number]++ <
-                      protocol_.block(trial.block).max_late_impact_repeats)) {
+                      parts_.protocol.block(trial.block).max_late_impact_repeats)) {
     return Ending::repeated;
   }
   if (presentation.answer) {
@@ -218,13 +190,13 @@ void TrialEngine::store(std::int64_t session_id, const PlannedTrial& trial,
                         Presentation presentation, Ending ending) {
   const core::TickFault fault = presentation.result.loop.stopped_by;
   if (const auto state = state_of(ending)) {
-    states_.enter(*state, trial.number, core::to_text(fault));
+    parts_.states.enter(*state, trial.number, core::to_text(fault));
   }
   auto record = std::make_shared<results::TrialRecord>(
       trial_record(session_id, trial, ++attempts_[trial.number],
                    status_of(ending, presentation.answer.has_value()), presentation.answer,
                    std::move(presentation.result)));
-  record->session_events = states_.take_events();
+  record->session_events = parts_.states.take_events();
   save(record);
   if (presentation.failure) {
     std::rethrow_exception(presentation.failure);
@@ -234,8 +206,9 @@ void TrialEngine::store(std::int64_t session_id, const PlannedTrial& trial,
 TrialEngine::Outcome TrialEngine::run_trial(std::int64_t session_id, const PlannedTrial& trial,
                                             int total) {
   const TrialPrompt prompt = prompt_of(trial, total);
-  const protocols::Block& block = protocol_.block(trial.block);
-  Presentation presentation = presented(prompt, trial);
+  const protocols::Block& block = parts_.protocol.block(trial.block);
+  Presentation presentation = present({trial, prompt, attempts_[trial.number] + 1}, parts_);
+  ticks_ += presentation.result.loop.ticks;
   const Ending ending = ending_of(presentation, trial);
   if (ending == Ending::answered) {
     ask_confidence(block, trial.number, *presentation.answer);
@@ -246,15 +219,20 @@ TrialEngine::Outcome TrialEngine::run_trial(std::int64_t session_id, const Plann
   switch (ending) {
     case Ending::faulted:
       return {.interruption = Interruption{trial.number, fault, answer.has_value(),
-                                           trial_loop_.is_force_off()}};
+                                           parts_.trial_loop.is_force_off()}};
     case Ending::timed_out: {
       const bool is_requeued = block.explore.at_limit == protocols::AtLimit::requeue;
-      participant_.timed_out(prompt, is_requeued);
+      parts_.participant.timed_out(prompt, is_requeued);
       return {.is_requeued = is_requeued};
     }
     case Ending::repeated:
-      participant_.repeats(prompt);
+      parts_.participant.repeats(prompt);
       return {.is_repeated = true};
+    case Ending::paused:
+      return {.is_repeated = true};
+    case Ending::skipped:
+      parts_.participant.skipped(prompt);
+      return {};
     case Ending::interrupted:
       throw Stopped{fmt::format(
           "stopped in trial {} of {}; every answer given so far is kept (go on with --resume)",
@@ -262,7 +240,8 @@ TrialEngine::Outcome TrialEngine::run_trial(std::int64_t session_id, const Plann
     case Ending::answered:
       break;
   }
-  participant_.saved(prompt);
+  parts_.by.answer_is_stored({trial, prompt.options, answer->response});
+  parts_.participant.saved(prompt);
   if (block.gives_feedback) {
     give_feedback(trial, prompt, answer->response);
   }

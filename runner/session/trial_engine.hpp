@@ -12,6 +12,7 @@
 #include "results/recorder.hpp"
 #include "runner/participants/participant.hpp"
 #include "runner/session/interludes.hpp"
+#include "runner/session/presentation.hpp"
 #include "runner/session/session_states.hpp"
 #include "runner/session/trial_ending.hpp"
 #include "runner/session/trial_record.hpp"
@@ -31,14 +32,9 @@ std::string to_text(const Interruption& interruption);
 // the participant explores, and stores the complete trial.
 class TrialEngine {
  public:
-  TrialEngine(const protocols::Protocol& protocol, ModelLibrary& models, TrialLoop& trial_loop,
-              Participant& participant, results::Recorder& recorder, SessionStates& states)
-      : states_{states},
-        interludes_{protocol, participant, states},
-        protocol_{protocol},
-        models_{models},
-        trial_loop_{trial_loop},
-        participant_{participant},
+  TrialEngine(const SessionParts& parts, results::Recorder& recorder)
+      : parts_{parts},
+        interludes_{parts.protocol, parts.participant, parts.states},
         recorder_{recorder} {}
 
   // Runs the trials not in `done`, adding each, until all are done or a fault ends one; called
@@ -61,16 +57,7 @@ class TrialEngine {
   void ask_confidence(const protocols::Block& block, int trial, Answer& answer);
   void give_feedback(const protocols::PlannedTrial& trial, const TrialPrompt& prompt,
                      const std::string& response);
-  struct Presentation {
-    TrialResult result;
-    std::optional<Answer> answer;
-    bool is_answered_in_a_stall{};
-    bool is_timed_out{};
-    std::exception_ptr failure;  // thrown again once the trial is stored
-  };
-  void present(const TrialPrompt& prompt, const protocols::PlannedTrial& trial,
-               Exploration& exploration, Presentation& presentation);
-  Presentation presented(const TrialPrompt& prompt, const protocols::PlannedTrial& trial);
+  void wait_while_paused();
   using Ending = TrialEnding;
   Ending ending_of(const Presentation& presentation, const protocols::PlannedTrial& trial);
   void store(std::int64_t session_id, const protocols::PlannedTrial& trial,
@@ -81,12 +68,8 @@ class TrialEngine {
   void save(const std::shared_ptr<const results::TrialRecord>& record);
   TrialPrompt prompt_of(const protocols::PlannedTrial& trial, int total) const;
 
-  SessionStates& states_;
+  SessionParts parts_;
   Interludes interludes_;
-  const protocols::Protocol& protocol_;
-  ModelLibrary& models_;
-  TrialLoop& trial_loop_;
-  Participant& participant_;
   results::Recorder& recorder_;
   std::map<int, int> attempts_;  // by the trial's number
   std::map<int, int> repeats_after_late_impacts_;

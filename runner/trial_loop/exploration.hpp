@@ -7,6 +7,7 @@ class Exploration {
  public:
   virtual ~Exploration() = default;
   virtual void switch_to(std::size_t alternative) = 0;
+  virtual std::size_t current() const { return 0; }  // the alternative last switched to
   // Lets the trial continue; returns early if a fault has ended it.
   virtual void pass_time(double seconds) = 0;
   virtual bool is_running() const = 0;

@@ -15,7 +15,11 @@ class LiveExploration final : public Exploration {
   LiveExploration(device::HapticLoop& loop, device::TickClock& clock,
                   const std::atomic<bool>& has_ended)
       : loop_{loop}, clock_{clock}, has_ended_{has_ended} {}
-  void switch_to(std::size_t alternative) override { loop_.request_alternative(alternative); }
+  void switch_to(std::size_t alternative) override {
+    current_ = alternative;
+    loop_.request_alternative(alternative);
+  }
+  std::size_t current() const override { return current_; }
   void pass_time(double seconds) override {
     const auto until = std::chrono::steady_clock::now() + std::chrono::duration<double>{seconds};
     while (is_running() && std::chrono::steady_clock::now() < until) {
@@ -38,6 +42,7 @@ class LiveExploration final : public Exploration {
   device::HapticLoop& loop_;
   device::TickClock& clock_;
   const std::atomic<bool>& has_ended_;
+  std::size_t current_{0};
   std::chrono::steady_clock::time_point start_{std::chrono::steady_clock::now()};
 };
 

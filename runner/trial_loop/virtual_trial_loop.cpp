@@ -11,7 +11,11 @@ class VirtualExploration final : public Exploration {
   VirtualExploration(device::HapticLoop& loop, results::TraceCollector& collector, double period_s,
                      Keep keep)
       : loop_{loop}, collector_{collector}, period_s_{period_s}, keep_{keep} {}
-  void switch_to(std::size_t alternative) override { loop_.request_alternative(alternative); }
+  void switch_to(std::size_t alternative) override {
+    current_ = alternative;
+    loop_.request_alternative(alternative);
+  }
+  std::size_t current() const override { return current_; }
   void pass_time(double seconds) override {
     auto left = static_cast<std::int64_t>(std::llround(seconds / period_s_));
     while (left > 0 && is_running()) {
@@ -31,6 +35,7 @@ class VirtualExploration final : public Exploration {
   results::TraceCollector& collector_;
   double period_s_;
   Keep keep_;
+  std::size_t current_{0};
 };
 }  // namespace
 

@@ -31,7 +31,7 @@ SessionRow session() {
 void write_three(const std::string& directory) {
   Journal journal{directory};
   for (int number = 1; number <= 3; ++number) {
-    journal.complete(study, {session()}, {answer(number, "one")});
+    journal.complete(study, {session()}, {.answers = {answer(number, "one")}});
   }
 }
 std::vector<std::string> lines_of(const std::string& text) {
@@ -54,14 +54,16 @@ std::string joined(const std::vector<std::string>& lines) {
 TEST_CASE("what a journal was told comes back, once each", "[results][journal]") {
   const testing::TempDirectory directory;
   write_three(directory.path());
-  Journal{directory.path()}.complete(study, {session()}, {answer(2, "one")});  // known already
+  Journal{directory.path()}.complete(study, {session()},
+                                     {.answers = {answer(2, "one")}});  // known already
   const JournalContent content = read_journal(directory.path());
   CHECK(content.study.protocol_text == study().protocol_text);
   CHECK(content.study.surfaces.at(0).bytes == "solid\n");
   REQUIRE(content.sessions.size() == 1);
   CHECK(content.sessions[0].seed == session().seed);
-  REQUIRE(content.answers.size() == 3);
-  CHECK(to_line(content.answers[2]) == to_line(answer(3, "one")));
+  REQUIRE(content.entries.answers.size() == 3);
+  CHECK(to_lines({.answers = {content.entries.answers[2]}}) ==
+        to_lines({.answers = {answer(3, "one")}}));
 }
 
 TEST_CASE("a journal's line that was changed, removed, inserted or moved is noticed",
@@ -94,8 +96,8 @@ TEST_CASE("half a line at a journal's end is cut off, and what it said is said a
   const std::string file = journal_file(directory.path());
   const std::string whole = testing::contents(file);
   testing::write(file, whole.substr(0, whole.size() - 20));
-  CHECK(read_journal(directory.path()).answers.size() == 2);
-  Journal{directory.path()}.complete(study, {}, {answer(3, "one")});
+  CHECK(read_journal(directory.path()).entries.answers.size() == 2);
+  Journal{directory.path()}.complete(study, {}, {.answers = {answer(3, "one")}});
   CHECK(testing::contents(file) == whole);
 }
 
@@ -104,10 +106,10 @@ TEST_CASE("several programs append to one journal", "[results][journal]") {
   Journal one{directory.path()};
   Journal other{directory.path()};
   for (int number = 1; number <= 20; number += 2) {
-    one.complete(study, {session()}, {answer(number, "one")});
-    other.complete(study, {session()}, {answer(number + 1, "two")});
+    one.complete(study, {session()}, {.answers = {answer(number, "one")}});
+    other.complete(study, {session()}, {.answers = {answer(number + 1, "two")}});
   }
-  CHECK(read_journal(directory.path()).answers.size() == 20);
+  CHECK(read_journal(directory.path()).entries.answers.size() == 20);
 }
 
 TEST_CASE("a journal that cannot be written ends as it was before", "[results][journal]") {
@@ -121,9 +123,9 @@ TEST_CASE("a journal that cannot be written ends as it was before", "[results][j
   rlimit tight = limit;
   tight.rlim_cur = before.size() + 20;  // the line is longer
   setrlimit(RLIMIT_FSIZE, &tight);
-  CHECK_THROWS_AS(journal.complete(study, {}, {answer(4, "one")}), StoreError);
+  CHECK_THROWS_AS(journal.complete(study, {}, {.answers = {answer(4, "one")}}), StoreError);
   setrlimit(RLIMIT_FSIZE, &limit);
   CHECK(testing::contents(journal_file(directory.path())) == before);
-  journal.complete(study, {}, {answer(4, "one")});
-  CHECK(read_journal(directory.path()).answers.size() == 4);
+  journal.complete(study, {}, {.answers = {answer(4, "one")}});
+  CHECK(read_journal(directory.path()).entries.answers.size() == 4);
 }

@@ -81,12 +81,12 @@ TEST_CASE("what is not a study is refused", "[results][store]") {
 TEST_CASE("participants are counted once and keep to one mode", "[results][store]") {
   const testing::TempDirectory directory;
   Store store = Store::open_or_create(directory.path(), study);
-  CHECK(store.index_of("P01", Mode::real) == 0);
+  CHECK(store.place_of("P01", Mode::real).participant_index == 0);
   SessionRow first = session("P01");
   store.add_session(first);
-  CHECK(store.index_of("P01", Mode::real) == 0);
-  CHECK(store.index_of("P02", Mode::real) == 1);
-  CHECK_THROWS_AS(store.index_of("P01", Mode::pilot), core::InvalidInput);
+  CHECK(store.place_of("P01", Mode::real).participant_index == 0);
+  CHECK(store.place_of("P02", Mode::real).participant_index == 1);
+  CHECK_THROWS_AS(store.place_of("P01", Mode::pilot), core::InvalidInput);
 }
 
 TEST_CASE("a database deleted in a session is written anew with all that it held",
@@ -113,7 +113,7 @@ TEST_CASE("a study that was moved is said, and goes on once it is back", "[resul
   fs::rename(directory / "elsewhere", here);
   CHECK(store.add_trial(trial(row.id, 1, "a")) == SaveOutcome::in_one_file);
   CHECK(Store::open_existing(here).answered_trials("P01") == std::vector<int>{1});
-  CHECK(read_journal(here).answers.size() == 1);
+  CHECK(read_journal(here).entries.answers.size() == 1);
 }
 
 TEST_CASE("a copy of study.db made after any trial is whole", "[results][store]") {
@@ -188,7 +188,7 @@ TEST_CASE("a study whose database is lost is read from its journal", "[results][
     Store store = Store::open_or_create(directory.path(), study);
     for (const char* const participant : {"P01", "P02"}) {
       SessionRow row = session(participant);
-      row.participant_index = store.index_of(participant, Mode::real);
+      row.participant_index = store.place_of(participant, Mode::real).participant_index;
       store.add_session(row);
       store.add_trial(trial(row.id, 1, "a"));
       store.add_trial(trial(row.id, 2, "b"));
@@ -217,7 +217,7 @@ TEST_CASE(
   const std::string file = journal_file(directory.path());
   const std::string whole = testing::contents(file);
   testing::write(file, whole.substr(0, whole.rfind("\n{") + 1));
-  REQUIRE(read_journal(directory.path()).answers.size() == 1);
+  REQUIRE(read_journal(directory.path()).entries.answers.size() == 1);
   { Store::open_or_create(directory.path(), study); }
   CHECK(testing::contents(file) == whole);
 }

@@ -32,7 +32,7 @@ std::vector<results::AnswerRow> guesses(const protocols::Protocol& protocol, std
       }
       results::AnswerRow answer;
       answer.participant_id = std::to_string(participant);
-      answer.participant_index = participant;
+      answer.order_index = participant;
       answer.block = trial.block;
       answer.number = trial.number;
       answer.stimulus = trial.stimuli.front();
@@ -65,7 +65,7 @@ TEST_CASE(
       return static_cast<int>(std::ranges::find(block.stimuli, name) - block.stimuli.begin());
     };
     for (const auto& row : rows) {
-      Answers& person = people.at(static_cast<std::size_t>(row.participant_index));
+      Answers& person = people.at(static_cast<std::size_t>(row.order_index));
       person.stimuli.push_back(code(row.stimulus));
       person.responses.push_back(code(row.response));
     }

@@ -73,7 +73,8 @@ struct Study {
     std::set<int> done;
     results::Recorder recorder{store};
     runner::SessionStates states{session.id, [] { return 0.0; }};
-    runner::TrialEngine engine{protocol, models, loop, participant, recorder, states};
+    runner::Operator nobody;
+    runner::TrialEngine engine{{protocol, models, loop, participant, nobody, states}, recorder};
     CHECK_FALSE(engine.run(session.id, schedule, done));
     CHECK(done.size() == schedule.size());
   }
@@ -168,11 +169,12 @@ struct HastySession {
       results::Recorder recorder{store};
       runner::ModelLibrary models;
       runner::SessionStates states{session.id, [] { return 0.0; }};
-      runner::TrialEngine engine{protocol, models, loop, participant, recorder, states};
+      runner::Operator nobody;
+      runner::TrialEngine engine{{protocol, models, loop, participant, nobody, states}, recorder};
       CHECK_FALSE(engine.run(session.id, protocols::make_schedule(protocol, 1, 0), done));
     }
     answers = store.answers();
-    for (const results::TimedOutTrial& trial : store.timed_out_trials("P01")) {
+    for (const results::UnansweredTrial& trial : store.unanswered_trials("P01")) {
       timed_out.push_back(trial.number);
     }
   }

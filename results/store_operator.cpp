@@ -1,0 +1,106 @@
+// What the operator adds to a study, and what follows from it.
+#include <fmt/format.h>
+
+#include "results/store.hpp"
+#include "results/store_error.hpp"
+namespace tapstudy::results {
+void Store::journal(JournalEntries entries, std::int64_t session_id) {
+  if (journal_) {
+    journal_->complete([this] { return study(); }, {session_of(session_id)}, entries);
+  }
+}
+
+void Store::insert_action(const OperatorActionRow& action) {
+  Statement{database_,
+            "INSERT INTO operator_action (session_id, t_s, action, number, detail) "
+            "VALUES (?, ?, ?, ?, ?)"}
+      .bind(action.session_id)
+      .bind(action.t_s)
+      .bind(action.action)
+      .bind(action.number)
+      .bind(action.detail)
+      .finish();
+}
+
+void Store::add_operator_action(const OperatorActionRow& action) {
+  Transaction all{database_};
+  insert_action(action);
+  all.commit();
+  journal({.actions = {action}}, action.session_id);
+}
+
+// The times are those of the answer that the participant gave.
+void Store::insert_correction(const CorrectionRow& correction) {
+  Statement{database_,
+            "INSERT INTO response (trial_id, response, is_correct, response_time_s, "
+            "time_from_first_contact_s, confidence, supersedes, given_by) "
+            "SELECT trial_id, ?, ?, response_time_s, time_from_first_contact_s, confidence, "
+            "response_id, 'operator' FROM current_response JOIN trial USING (trial_id) "
+            "WHERE session_id = ? AND number = ? AND status = 'answered'"}
+      .bind(correction.response)
+      .bind(correction.is_correct)
+      .bind(correction.session_id)
+      .bind(correction.number)
+      .finish();
+  Statement changes{database_, "SELECT changes()"};
+  changes.step();
+  if (changes.integer(0) != 1) {
+    throw StoreError{fmt::format("{}: trial {} has no answer that could be corrected",
+                                 database_.file(), correction.number)};
+  }
+}
+
+void Store::add_correction(const CorrectionRow& correction, const OperatorActionRow& action) {
+  Transaction all{database_};
+  insert_correction(correction);
+  insert_action(action);
+  all.commit();
+  journal({.corrections = {correction}, .actions = {action}}, correction.session_id);
+}
+
+std::map<std::string, std::string> Store::excluded_participants() {
+  Statement row{database_,
+                "SELECT participant_id, action, detail FROM operator_action "
+                "JOIN session USING (session_id) WHERE action IN ('exclude', 'include') "
+                "ORDER BY action_id"};
+  std::map<std::string, std::string> excluded;
+  while (row.step()) {
+    if (row.text(1) == "exclude") {
+      excluded[row.text(0)] = row.text(2);
+    } else {
+      excluded.erase(row.text(0));
+    }
+  }
+  return excluded;
+}
+
+JournalEntries Store::entries_for_journal() {
+  return {answers_for_journal(), corrections_for_journal(), actions_for_journal()};
+}
+
+std::vector<CorrectionRow> Store::corrections_for_journal() {
+  Statement row{database_,
+                "SELECT session_id, number, response, is_correct FROM response "
+                "JOIN trial USING (trial_id) WHERE supersedes IS NOT NULL ORDER BY response_id"};
+  std::vector<CorrectionRow> corrections;
+  while (row.step()) {
+    corrections.push_back({row.integer(0), static_cast<int>(row.integer(1)), row.text(2),
+                           row.is_null(3) ? std::nullopt : std::optional{row.integer(3) != 0}});
+  }
+  return corrections;
+}
+
+std::vector<OperatorActionRow> Store::actions_for_journal() {
+  Statement row{database_,
+                "SELECT session_id, t_s, action, number, detail FROM operator_action "
+                "ORDER BY action_id"};
+  std::vector<OperatorActionRow> actions;
+  while (row.step()) {
+    actions.push_back(
+        {row.integer(0), row.real(1), row.text(2),
+         row.is_null(3) ? std::nullopt : std::optional{static_cast<int>(row.integer(3))},
+         row.text(4)});
+  }
+  return actions;
+}
+}  // namespace tapstudy::results

@@ -1,0 +1,40 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "protocols/protocol.hpp"
+#include "protocols/schedule.hpp"
+#include "runner/participants/participant.hpp"
+namespace tapstudy::runner {
+struct TrialInView {
+  protocols::PlannedTrial trial;
+  TrialPrompt prompt;
+  int attempt{};
+};
+struct AnswerInView {
+  protocols::PlannedTrial trial;
+  std::vector<protocols::Option> options;
+  std::string response;  // as the task stores it
+};
+
+// What the operator wants to become of the running trial.
+enum class TrialWish { repeat, skip };
+
+// The person who runs a session, as the trial engine sees them. This one wants nothing: nobody runs
+// a simulated study.
+class Operator {
+ public:
+  virtual ~Operator() = default;
+  virtual void trial_begins(const TrialInView& /*trial*/) {}
+  virtual void trial_is_over() {}
+  virtual void answer_is_stored(const AnswerInView& /*answer*/) {}
+
+  virtual bool is_paused() const { return false; }
+  virtual std::optional<TrialWish> wish() const { return {}; }     // for the running trial
+  virtual std::optional<std::size_t> take_switch() { return {}; }  // to which alternative
+  virtual std::string end_reason() const { return {}; }            // if the operator ended it
+
+  bool wants_trial_over() const { return is_paused() || wish().has_value(); }
+};
+}  // namespace tapstudy::runner

@@ -1,0 +1,66 @@
+#include "runner/operators/operator_command.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include "core/error.hpp"
+namespace tapstudy::runner {
+namespace {
+using enum OperatorAction;
+constexpr std::array<ActionInfo, 10> actions{
+    {{pause, "pause", ActionText::optional,
+      "take the force away; the running trial is presented again"},
+     {resume, "resume", ActionText::none, "go on after a pause"},
+     {repeat, "repeat", ActionText::optional, "present the running trial again"},
+     {skip, "skip", ActionText::optional, "end the running trial without an answer"},
+     {correct, "correct", ActionText::required,
+      "N: the last answer was option N; the first one stays in the store"},
+     {switch_to, "switch", ActionText::required, "N: render alternative N of the running trial"},
+     {note, "note", ActionText::required, "TEXT: store a remark with its time"},
+     {end, "end", ActionText::required, "REASON: end the session; all answers are kept"},
+     {exclude, "exclude", ActionText::required, "REASON: keep this participant out of reports"},
+     {include, "include", ActionText::optional, "take back an exclusion"}}};
+constexpr std::size_t max_text = 2000;
+
+std::string trimmed(const std::string& text) {
+  const auto first = text.find_first_not_of(" \t\r\n");
+  const auto last = text.find_last_not_of(" \t\r\n");
+  return first == std::string::npos ? std::string{} : text.substr(first, last - first + 1);
+}
+}  // namespace
+
+std::span<const ActionInfo> operator_actions() {
+  return actions;
+}
+
+std::string_view name(OperatorAction action) {
+  return std::ranges::find(actions, action, &ActionInfo::action)->name;
+}
+
+OperatorCommand parse_operator_command(const std::string& line) {
+  const std::string command = trimmed(line);
+  const std::string word = command.substr(0, command.find_first_of(" \t"));
+  const auto found = std::ranges::find(actions, word, &ActionInfo::name);
+  if (found == actions.end()) {
+    std::vector<std::string_view> names;
+    std::ranges::transform(actions, std::back_inserter(names), &ActionInfo::name);
+    throw core::InvalidInput{
+        fmt::format("'{}' is no command (one of: {})", word, fmt::join(names, ", "))};
+  }
+  std::string text = trimmed(command.substr(word.size()));
+  if (text.empty() && found->text == ActionText::required) {
+    throw core::InvalidInput{fmt::format("{} {}", found->name, found->help)};
+  }
+  if (!text.empty() && found->text == ActionText::none) {
+    throw core::InvalidInput{fmt::format("{} takes nothing more", found->name)};
+  }
+  if (text.size() > max_text) {
+    throw core::InvalidInput{fmt::format("at most {} characters", max_text)};
+  }
+  return {found->action, std::move(text)};
+}
+}  // namespace tapstudy::runner

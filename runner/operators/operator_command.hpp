@@ -1,0 +1,35 @@
+#pragma once
+#include <span>
+#include <string>
+#include <string_view>
+namespace tapstudy::runner {
+// What an operator can do during a session. The names are typed, and stored.
+enum class OperatorAction {
+  pause,
+  resume,
+  repeat,
+  skip,
+  correct,
+  switch_to,
+  note,
+  end,
+  exclude,
+  include
+};
+enum class ActionText { none, optional, required };
+struct ActionInfo {
+  OperatorAction action;
+  std::string_view name;
+  ActionText text;
+  std::string_view help;
+};
+std::span<const ActionInfo> operator_actions();
+std::string_view name(OperatorAction action);
+
+struct OperatorCommand {
+  OperatorAction action{};
+  std::string text{};
+};
+// "note the participant coughed". Throws InvalidInput naming what is allowed.
+OperatorCommand parse_operator_command(const std::string& line);
+}  // namespace tapstudy::runner

@@ -1,0 +1,197 @@
+#include "runner/operators/operator_desk.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <chrono>
+
+#include "core/error.hpp"
+#include "runner/terminal/stop_signal.hpp"
+namespace tapstudy::runner {
+namespace {
+// From 1, as people count. Throws InvalidInput if there are fewer.
+std::size_t number_up_to(std::size_t most, const std::string& text) {
+  std::size_t number{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc{} || end != text.data() + text.size() || number < 1 || number > most) {
+    throw core::InvalidInput{fmt::format("'{}' is not a number from 1 to {}", text, most)};
+  }
+  return number - 1;
+}
+
+bool is_over(const std::shared_future<void>& future) {
+  return future.wait_for(std::chrono::seconds{0}) == std::future_status::ready;
+}
+
+bool has_succeeded(const std::shared_future<void>& future) {
+  try {
+    future.get();
+    return true;
+  } catch (const std::exception&) {
+    return false;
+  }
+}
+}  // namespace
+
+bool OperatorDesk::is_possible(OperatorAction action) const {
+  switch (action) {
+    case OperatorAction::pause:
+      return !is_paused_;
+    case OperatorAction::resume:
+      return is_paused_;
+    case OperatorAction::repeat:
+    case OperatorAction::skip:
+      return trial_ && !is_paused_ && !wish_;
+    case OperatorAction::switch_to:
+      return trial_ && trial_->prompt.alternative_labels.size() > 1;
+    case OperatorAction::correct:
+      return last_answer_.has_value();
+    case OperatorAction::exclude:
+      return !is_excluded_;
+    case OperatorAction::include:
+      return is_excluded_;
+    case OperatorAction::note:
+    case OperatorAction::end:
+      return true;
+  }
+  return false;
+}
+
+void OperatorDesk::check_is_possible(const OperatorCommand& command) const {
+  if (!is_possible(command.action)) {
+    throw core::InvalidInput{fmt::format("{} is not possible now", name(command.action))};
+  }
+  if (command.action == OperatorAction::switch_to) {
+    number_up_to(trial_->prompt.alternative_labels.size(), command.text);
+  }
+}
+
+std::optional<int> OperatorDesk::trial_of(OperatorAction action) const {
+  if (action == OperatorAction::correct) {
+    return last_answer_->trial.number;
+  }
+  return trial_ ? std::optional{trial_->trial.number} : std::nullopt;
+}
+
+results::CorrectionRow OperatorDesk::correction(const std::string& option,
+                                                std::string& detail) const {
+  const protocols::PlannedTrial& trial = last_answer_->trial;
+  const std::size_t index = number_up_to(last_answer_->options.size(), option);
+  results::CorrectionRow row;
+  row.session_id = session_.id;
+  row.number = trial.number;
+  row.response = trial.task->response(trial, session_.protocol.block(trial.block), index);
+  row.is_correct = trial.task->is_correct(trial, row.response);
+  detail = row.response;
+  return row;
+}
+
+// What the engine asks about.
+void OperatorDesk::heed(const OperatorCommand& command) {
+  switch (command.action) {
+    case OperatorAction::pause:
+    case OperatorAction::resume:
+      is_paused_ = command.action == OperatorAction::pause;
+      break;
+    case OperatorAction::repeat:
+      wish_ = TrialWish::repeat;
+      break;
+    case OperatorAction::skip:
+      wish_ = TrialWish::skip;
+      break;
+    case OperatorAction::switch_to:
+      switch_to_ = number_up_to(trial_->prompt.alternative_labels.size(), command.text);
+      break;
+    case OperatorAction::end:
+      end_reason_ = command.text;
+      ask_to_stop();
+      break;
+    case OperatorAction::exclude:
+    case OperatorAction::include:
+      is_excluded_ = command.action == OperatorAction::exclude;
+      break;
+    case OperatorAction::correct:
+    case OperatorAction::note:
+      break;
+  }
+}
+
+std::shared_future<void> OperatorDesk::post(const OperatorCommand& command) {
+  const std::lock_guard lock{mutex_};
+  check_is_possible(command);
+  results::OperatorActionRow row{session_.id, session_.now_s(), std::string{name(command.action)},
+                                 trial_of(command.action), command.text};
+  std::shared_future<void> stored;
+  if (command.action == OperatorAction::correct) {
+    results::CorrectionRow corrected = correction(command.text, row.detail);
+    last_answer_->response = corrected.response;
+    stored = recorder_.correct(std::move(corrected), row).share();
+  } else {
+    stored = recorder_.note(row).share();
+  }
+  heed(command);
+  log_.push_back({std::move(row), stored});
+  ++version_;
+  return stored;
+}
+
+DeskView OperatorDesk::view() const {
+  const std::lock_guard lock{mutex_};
+  DeskView view{trial_, last_answer_, {}, is_paused_, {}};
+  for (const Logged& logged : log_) {
+    view.log.push_back({logged.row, is_over(logged.stored) && has_succeeded(logged.stored)});
+  }
+  for (const ActionInfo& info : operator_actions()) {
+    if (is_possible(info.action)) {
+      view.possible.push_back(info.action);
+    }
+  }
+  return view;
+}
+
+int OperatorDesk::version() const {
+  const std::lock_guard lock{mutex_};
+  return version_;
+}
+
+void OperatorDesk::trial_begins(const TrialInView& trial) {
+  const std::lock_guard lock{mutex_};
+  trial_ = trial;
+  ++version_;
+}
+
+void OperatorDesk::trial_is_over() {
+  const std::lock_guard lock{mutex_};
+  trial_.reset();
+  wish_.reset();
+  switch_to_.reset();
+  ++version_;
+}
+
+void OperatorDesk::answer_is_stored(const AnswerInView& answer) {
+  const std::lock_guard lock{mutex_};
+  last_answer_ = answer;
+  ++version_;
+}
+
+bool OperatorDesk::is_paused() const {
+  const std::lock_guard lock{mutex_};
+  return is_paused_;
+}
+
+std::optional<TrialWish> OperatorDesk::wish() const {
+  const std::lock_guard lock{mutex_};
+  return wish_;
+}
+
+std::optional<std::size_t> OperatorDesk::take_switch() {
+  const std::lock_guard lock{mutex_};
+  return std::exchange(switch_to_, std::nullopt);
+}
+
+std::string OperatorDesk::end_reason() const {
+  const std::lock_guard lock{mutex_};
+  return end_reason_;
+}
+}  // namespace tapstudy::runner

@@ -1,0 +1,77 @@
+#pragma once
+#include <functional>
+#include <future>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "protocols/protocol.hpp"
+#include "results/recorder.hpp"
+#include "runner/operators/operator.hpp"
+#include "runner/operators/operator_command.hpp"
+namespace tapstudy::runner {
+// What a page or a terminal shows of it.
+struct DeskView {
+  struct Entry {
+    results::OperatorActionRow row;
+    bool is_stored{};
+  };
+  std::optional<TrialInView> trial;  // that is running
+  std::optional<AnswerInView> last_answer;
+  std::vector<Entry> log;
+  bool is_paused{};
+  std::vector<OperatorAction> possible;
+};
+
+// Takes the operator's commands from any thread, stores each as a row, and hands what concerns the
+// trial to the engine. Refuses what cannot be done now.
+class OperatorDesk final : public Operator {
+ public:
+  struct Session {
+    const protocols::Protocol& protocol;
+    std::int64_t id;
+    std::function<double()> now_s;  // as of its events
+  };
+  OperatorDesk(Session session, results::Recorder& recorder)
+      : session_{std::move(session)}, recorder_{recorder} {}
+
+  // Any thread. Ready once the action is stored, or carries the StoreError. Throws InvalidInput if
+  // it is impossible now: nothing is stored then.
+  std::shared_future<void> post(const OperatorCommand& command);
+  DeskView view() const;
+  int version() const;  // changes with the view
+
+  void trial_begins(const TrialInView& trial) override;
+  void trial_is_over() override;
+  void answer_is_stored(const AnswerInView& answer) override;
+  bool is_paused() const override;
+  std::optional<TrialWish> wish() const override;
+  std::optional<std::size_t> take_switch() override;
+  std::string end_reason() const override;
+
+ private:
+  bool is_possible(OperatorAction action) const;
+  void check_is_possible(const OperatorCommand& command) const;
+  std::optional<int> trial_of(OperatorAction action) const;
+  void heed(const OperatorCommand& command);
+  results::CorrectionRow correction(const std::string& option, std::string& detail) const;
+
+  Session session_;
+  results::Recorder& recorder_;
+  mutable std::mutex mutex_;
+  struct Logged {
+    results::OperatorActionRow row;
+    std::shared_future<void> stored;
+  };
+  std::vector<Logged> log_;
+  std::optional<TrialInView> trial_;
+  std::optional<AnswerInView> last_answer_;
+  std::optional<TrialWish> wish_;
+  std::optional<std::size_t> switch_to_;
+  std::string end_reason_;
+  bool is_paused_{false};
+  bool is_excluded_{false};
+  int version_{0};
+};
+}  // namespace tapstudy::runner

@@ -1,0 +1,27 @@
+#pragma once
+#include "runner/operators/operator.hpp"
+#include "runner/trial_loop/exploration.hpp"
+namespace tapstudy::runner {
+// An exploration that the operator can end, or switch to another alternative.
+class OperatedExploration final : public Exploration {
+ public:
+  OperatedExploration(Exploration& inner, Operator& by) : inner_{inner}, operator_{by} {}
+  void switch_to(std::size_t alternative) override { inner_.switch_to(alternative); }
+  std::size_t current() const override { return inner_.current(); }
+  void pass_time(double seconds) override { inner_.pass_time(seconds); }
+  // Called continually while anybody waits, so the operator's switches are made here.
+  bool is_running() const override {
+    if (const auto alternative = operator_.take_switch()) {
+      inner_.switch_to(*alternative);
+    }
+    return inner_.is_running() && !operator_.wants_trial_over();
+  }
+  bool is_rendering() const override { return inner_.is_rendering(); }
+  double time_s() const override { return inner_.time_s(); }
+  int contacts(std::size_t alternative) const override { return inner_.contacts(alternative); }
+
+ private:
+  Exploration& inner_;
+  Operator& operator_;
+};
+}  // namespace tapstudy::runner

@@ -1,0 +1,63 @@
+#include "runner/session/presentation.hpp"
+
+#include "runner/session/explore_limits.hpp"
+#include "runner/session/operated_exploration.hpp"
+#include "runner/stimuli/trial_stimuli.hpp"
+#include "runner/terminal/logging.hpp"
+#include "runner/terminal/stop_signal.hpp"
+namespace tapstudy::runner {
+namespace {
+// Until an answer that may be given, the end of the block's time, a wish of the operator, a stop or
+// a fault.
+void ask(const TrialInView& view, Exploration& exploration, const SessionParts& parts,
+         Presentation& presentation) {
+  const protocols::PlannedTrial& trial = view.trial;
+  OperatedExploration operated{exploration, parts.by};
+  LimitedExploration limited{operated, view.prompt.explore};
+  while (const auto option = parts.participant.perform(view.prompt, limited)) {
+    if (limited.is_over()) {
+      break;
+    }
+    const std::string why = too_early(view.prompt, *option, limited);
+    const bool is_rendering = limited.is_rendering();
+    if (why.empty() && is_rendering) {
+      presentation.answer =
+          Answer{trial.task->response(trial, parts.protocol.block(trial.block), *option),
+                 limited.time_s()};
+      return;
+    }
+    if (!is_rendering) {
+      presentation.is_answered_in_a_stall = exploration.is_running();
+      break;
+    }
+    parts.participant.refused(view.prompt, why);
+  }
+  if (exploration.is_running() && !stop_was_asked()) {
+    presentation.is_timed_out = limited.is_over();
+    presentation.wish = parts.by.wish();
+    presentation.is_paused = parts.by.is_paused();
+  }
+}
+}  // namespace
+
+Presentation present(const TrialInView& trial, const SessionParts& parts) {
+  TrialStimuli stimuli = build_trial_stimuli(parts.protocol, trial.trial.stimuli, parts.models);
+  parts.states.enter(SessionState::ready, trial.trial.number);
+  parts.participant.get_ready(trial.prompt);
+  Presentation presentation;
+  parts.states.enter(SessionState::exploring, trial.trial.number);
+  parts.by.trial_begins(trial);
+  presentation.result = parts.trial_loop.run(stimuli.alternatives, [&](Exploration& exploration) {
+    try {
+      ask(trial, exploration, parts, presentation);
+    } catch (...) {
+      presentation.failure = std::current_exception();
+    }
+  });
+  parts.by.trial_is_over();
+  if (presentation.result.loop.stop == device::StopOutcome::unconfirmed) {
+    warn(device::force_may_be_on);  // before anything else can fail
+  }
+  return presentation;
+}
+}  // namespace tapstudy::runner

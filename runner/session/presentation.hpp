@@ -1,0 +1,37 @@
+#pragma once
+#include <exception>
+#include <optional>
+
+#include "protocols/schedule.hpp"
+#include "runner/operators/operator.hpp"
+#include "runner/participants/participant.hpp"
+#include "runner/session/session_states.hpp"
+#include "runner/session/trial_record.hpp"
+#include "runner/stimuli/model_library.hpp"
+#include "runner/trial_loop/trial_loop.hpp"
+namespace tapstudy::runner {
+// What came of presenting a trial once.
+struct Presentation {
+  TrialResult result{};
+  std::optional<Answer> answer{};
+  bool is_answered_in_a_stall{};
+  bool is_timed_out{};
+  std::optional<TrialWish> wish{};  // of the operator, that ended it
+  bool is_paused{};                 // likewise
+  std::exception_ptr failure{};     // thrown again once the trial is stored
+};
+
+// What a session is made of: who takes part, and what they work with.
+struct SessionParts {
+  const protocols::Protocol& protocol;
+  ModelLibrary& models;
+  TrialLoop& trial_loop;
+  Participant& participant;
+  Operator& by;
+  SessionStates& states;
+};
+
+// Builds the trial's stimuli and renders them until the participant has given an answer that
+// counts, time is up, the operator or a fault ends it, or the participant stops.
+Presentation present(const TrialInView& trial, const SessionParts& parts);
+}  // namespace tapstudy::runner

@@ -1,0 +1,83 @@
+// Corrections, exclusions, and who gets which of the balanced orders.
+#include <catch2/catch.hpp>
+#include <filesystem>
+
+#include "results/store.hpp"
+#include "results/store_error.hpp"
+#include "support/small_study.hpp"
+#include "support/texts.hpp"
+using namespace tapstudy;
+using namespace tapstudy::results;
+namespace small_study = testing::small_study;
+using small_study::begun_study;
+
+namespace {
+OperatorActionRow action(std::int64_t session_id, const std::string& name,
+                         const std::string& detail) {
+  return {session_id, 1.0, name, std::nullopt, detail};
+}
+
+SessionRow add_participant(Store& store, const std::string& id) {
+  SessionRow row = small_study::session(id);
+  const Store::Place place = store.place_of(id, Mode::real);
+  row.participant_index = place.participant_index;
+  row.order_index = place.order_index;
+  store.add_session(row);
+  return row;
+}
+}  // namespace
+
+TEST_CASE("a correction supersedes an answer, which stays in the store", "[results][store]") {
+  const testing::TempDirectory directory;
+  const bool is_from_journal = GENERATE(false, true);
+  {
+    auto [store, row] = begun_study(directory.path());
+    store.add_trial(small_study::trial(row.id, 1, "a"));
+    for (const char* const response : {"b", "c"}) {
+      store.add_correction({row.id, 1, response, true}, action(row.id, "correct", response));
+    }
+    CHECK_THROWS_AS(store.add_correction({row.id, 2, "b", true}, action(row.id, "correct", "b")),
+                    StoreError);
+  }
+  if (is_from_journal) {
+    std::filesystem::remove(directory / "study.db");
+  }
+  Store store = is_from_journal ? Store::from_journal(directory.path())
+                                : Store::open_existing(directory.path());
+  REQUIRE(store.answers().size() == 1);
+  CHECK(store.answers().front().response == "c");
+  CHECK(store.answers().front().is_correct == true);
+  const JournalEntries entries = store.entries_for_journal();
+  CHECK(entries.answers.front().response.response == "a");
+  CHECK(entries.corrections.size() == 2);
+  CHECK(entries.actions.size() == 2);  // none of the one refused
+}
+
+TEST_CASE("the last word on a participant's exclusion holds", "[results][store]") {
+  const testing::TempDirectory directory;
+  auto [store, row] = begun_study(directory.path());
+  store.add_operator_action(action(row.id, "exclude", "asleep"));
+  CHECK(store.excluded_participants() == std::map<std::string, std::string>{{"P01", "asleep"}});
+  store.add_operator_action(action(row.id, "include", ""));
+  CHECK(store.excluded_participants().empty());
+}
+
+TEST_CASE("who stopped or was excluded uses no balanced order up, who is in a session does",
+          "[results][store]") {
+  const testing::TempDirectory directory;
+  Store store = Store::open_or_create(directory.path(), small_study::study);
+  const SessionRow stopped = add_participant(store, "P01");
+  const SessionRow ended = add_participant(store, "P02");
+  const SessionRow active = add_participant(store, "P03");
+  const SessionRow excluded = add_participant(store, "P04");
+  CHECK(excluded.order_index == 3);
+  store.add_session_events({{stopped.id, 1.0, "stopped", {}, {}},
+                            {ended.id, 1.0, "ended", {}, {}},
+                            {excluded.id, 1.0, "ended", {}, {}}});
+  store.add_operator_action(action(excluded.id, "exclude", "asleep"));
+  CHECK(add_participant(store, "P05").order_index == stopped.order_index);
+  CHECK(add_participant(store, "P06").order_index == excluded.order_index);
+  CHECK(add_participant(store, "P07").order_index == 4);
+  CHECK(store.place_of("P01", Mode::real).order_index == stopped.order_index);  // if resumed
+  CHECK(store.place_of("Q01", Mode::pilot).order_index == 0);
+}

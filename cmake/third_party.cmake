@@ -25,6 +25,12 @@ add_library(libusb::libusb INTERFACE IMPORTED)
 target_include_directories(libusb::libusb SYSTEM INTERFACE ${LIBUSB_INCLUDE})
 target_link_libraries(libusb::libusb INTERFACE ${LIBUSB_LIBRARY})
 
+find_path(CIVETWEB_INCLUDE civetweb.h REQUIRED)
+find_library(CIVETWEB_LIBRARY civetweb REQUIRED)
+add_library(civetweb::civetweb INTERFACE IMPORTED)
+target_include_directories(civetweb::civetweb SYSTEM INTERFACE ${CIVETWEB_INCLUDE})
+target_link_libraries(civetweb::civetweb INTERFACE ${CIVETWEB_LIBRARY})
+
 find_path(CSV_INCLUDE csv.h REQUIRED)
 find_library(CSV_LIBRARY csv REQUIRED)
 add_library(csv::csv INTERFACE IMPORTED)

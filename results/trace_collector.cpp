@@ -14,6 +14,9 @@ void TraceCollector::drain() {
   core::TraceSample sample{};
   while (ring_->try_pop(sample)) {
     note_events(sample);
+    if (watch_) {
+      watch_(sample);
+    }
     pending_.push_back(sample);
     if (pending_.size() == ticks_per_chunk) {
       pack();

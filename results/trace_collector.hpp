@@ -1,5 +1,7 @@
 #pragma once
+#include <functional>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "core/haptic_state.hpp"
@@ -13,6 +15,9 @@ namespace tapstudy::results {
 class TraceCollector {
  public:
   explicit TraceCollector(core::SpscRing<core::TraceSample>& ring) : ring_{&ring} {}
+  // Called with each sample as it is drained, by whoever drains.
+  using Watch = std::function<void(const core::TraceSample&)>;
+  void watch(Watch watch) { watch_ = std::move(watch); }
   void drain();
   // Empties the ring and discards its contents.
   void discard();
@@ -30,6 +35,7 @@ class TraceCollector {
   void pack();
 
   core::SpscRing<core::TraceSample>* ring_;
+  Watch watch_;
   std::vector<core::TraceSample> pending_;
   Collected collected_;
   core::TraceSample previous_{};

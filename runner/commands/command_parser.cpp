@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <utility>
+#include <vector>
 
 #include "core/error.hpp"
 namespace tapstudy::runner {
@@ -17,7 +18,7 @@ void refuse_empty_values(CLI::App& app) {
                                  ""};
   for (CLI::App* const command : app.get_subcommands({})) {
     for (CLI::Option* const option : command->get_options()) {
-      if (option->get_items_expected_max() > 0) {
+      if (option->get_items_expected_min() > 0) {
         option->check(not_empty);
       }
     }
@@ -52,6 +53,18 @@ void Command::argument(const std::string& name, std::string& value, const std::s
 void Command::option(const std::string& name, std::string& value, const std::string& help,
                      Need need) {
   app_->add_option(name, value, help)->required(need == Need::required);
+}
+
+void Command::option_with_or_without_value(const std::string& name, std::string& value,
+                                           const std::string& alone, const std::string& help) {
+  app_->add_option_function<std::vector<std::string>>(
+          name,
+          [&value, alone](const std::vector<std::string>& values) {
+            const bool is_alone = values.empty() || values.front().empty();
+            value = is_alone ? alone : values.front();
+          },
+          help)
+      ->expected(0, 1);
 }
 
 void Command::option_with_default(const std::string& name, std::string& value,

@@ -19,6 +19,9 @@ class Command {
                 Need need = Need::required);
   void option(const std::string& name, std::string& value, const std::string& help,
               Need need = Need::optional);
+  // "--name" alone sets `alone`, "--name VALUE" the value.
+  void option_with_or_without_value(const std::string& name, std::string& value,
+                                    const std::string& alone, const std::string& help);
   // Help shows the default.
   void option_with_default(const std::string& name, std::string& value, const std::string& help);
   void option_with_default(const std::string& name, int& value, const std::string& help);

@@ -18,17 +18,38 @@ struct RunOptions {
   std::string rig;
   std::string seed;
   std::string row;
+  std::string console;
+  std::string listen;
+  std::string language{"en"};
   bool resume{false};
   bool pilot{false};
 };
 
-int row_from(const std::string& text) {
-  int row = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), row);
-  if (error != std::errc{} || end != text.data() + text.size() || row < 1 || row > 1'000'000) {
-    throw core::InvalidInput{fmt::format("--row: '{}' is not a number from 1 to 1000000", text)};
+int whole_number(const std::string& text, int low, int high, const char* option) {
+  int number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc{} || end != text.data() + text.size() || number < low || number > high) {
+    throw core::InvalidInput{
+        fmt::format("{}: '{}' is not a number from {} to {}", option, text, low, high)};
   }
-  return row;
+  return number;
+}
+
+std::optional<ConsoleRequest> console_of(const RunOptions& options) {
+  if (options.console.empty()) {
+    if (!options.listen.empty()) {
+      throw core::InvalidInput{"--listen: there is no page to serve without --console"};
+    }
+    return std::nullopt;
+  }
+  constexpr int max_port = 65535;
+  ConsoleRequest request;
+  request.address.port = whole_number(options.console, 0, max_port, "--console");
+  request.language = options.language;
+  if (!options.listen.empty()) {
+    request.address.host = options.listen;
+  }
+  return request;
 }
 
 SessionRequest request_of(const RunOptions& options) {
@@ -40,7 +61,8 @@ SessionRequest request_of(const RunOptions& options) {
     request.seed = seed_from(options.seed, "--seed");
   }
   if (!options.row.empty()) {
-    request.order_index = row_from(options.row) - 1;
+    constexpr int max_row = 1'000'000;
+    request.order_index = whole_number(options.row, 1, max_row, "--row") - 1;
   }
   return request;
 }
@@ -48,8 +70,8 @@ SessionRequest request_of(const RunOptions& options) {
 void run(const RunOptions& options) {
   const protocols::Protocol protocol = protocols::read_protocol(options.protocol);
   const protocols::Rig rig = options.rig.empty() ? simulated_rig() : read_rig(options.rig);
-  const LiveOutcome outcome =
-      run_live_session({protocol, options.protocol, rig, options.directory, request_of(options)});
+  const LiveOutcome outcome = run_live_session({protocol, options.protocol, rig, options.directory,
+                                                request_of(options), console_of(options)});
   fmt::print("participant {}: all {} trials are stored in {}/study.db{}\n", options.participant,
              outcome.answered + outcome.without_answer, options.directory,
              outcome.without_answer == 0
@@ -68,6 +90,12 @@ void add_run(CommandParser& line) {
   command.option("--seed", options->seed, "Seed of the order; drawn and stored if not given");
   command.option("--row", options->row,
                  "Which of the balanced orders, from 1; else the first that nobody has");
+  command.option_with_or_without_value(
+      "--console", options->console, "0",
+      "Serve a page each for participant and operator, at this port or a free one");
+  command.option("--listen", options->listen,
+                 "Address of this machine to serve the pages at; else only to itself");
+  command.one_of("--language", options->language, {"en", "ja", "de"}, "Of the pages' own words");
   command.flag("--resume", options->resume, "Resume the participant's last session");
   command.flag("--pilot", options->pilot, "Mark as a pilot, kept out of reports");
   command.on_run([options] { run(*options); });

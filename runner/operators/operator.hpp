@@ -27,6 +27,7 @@ class Operator {
  public:
   virtual ~Operator() = default;
   virtual void trial_begins(const TrialInView& /*trial*/) {}
+  virtual void alternative_is_felt(std::size_t /*alternative*/) {}
   virtual void trial_is_over() {}
   virtual void answer_is_stored(const AnswerInView& /*answer*/) {}
 

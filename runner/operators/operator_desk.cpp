@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <chrono>
+#include <thread>
 
 #include "core/error.hpp"
 #include "runner/terminal/stop_signal.hpp"
@@ -132,13 +133,26 @@ std::shared_future<void> OperatorDesk::post(const OperatorCommand& command) {
   }
   heed(command);
   log_.push_back({std::move(row), stored});
-  ++version_;
   return stored;
+}
+
+bool OperatorDesk::waits_for_operator(const std::string& why) {
+  const auto hold = [&](const std::string& held_by) {
+    const std::lock_guard lock{mutex_};
+    held_by_ = held_by;
+    is_paused_ = !held_by.empty();
+  };
+  hold(why);
+  while (is_paused() && !stop_was_asked()) {
+    std::this_thread::sleep_for(std::chrono::milliseconds{20});
+  }
+  hold("");
+  return !stop_was_asked();
 }
 
 DeskView OperatorDesk::view() const {
   const std::lock_guard lock{mutex_};
-  DeskView view{trial_, last_answer_, {}, is_paused_, {}};
+  DeskView view{trial_, current_, last_answer_, {}, is_paused_, held_by_, {}};
   for (const Logged& logged : log_) {
     view.log.push_back({logged.row, is_over(logged.stored) && has_succeeded(logged.stored)});
   }
@@ -150,15 +164,15 @@ DeskView OperatorDesk::view() const {
   return view;
 }
 
-int OperatorDesk::version() const {
-  const std::lock_guard lock{mutex_};
-  return version_;
-}
-
 void OperatorDesk::trial_begins(const TrialInView& trial) {
   const std::lock_guard lock{mutex_};
   trial_ = trial;
-  ++version_;
+  current_ = 0;
+}
+
+void OperatorDesk::alternative_is_felt(std::size_t alternative) {
+  const std::lock_guard lock{mutex_};
+  current_ = alternative;
 }
 
 void OperatorDesk::trial_is_over() {
@@ -166,13 +180,11 @@ void OperatorDesk::trial_is_over() {
   trial_.reset();
   wish_.reset();
   switch_to_.reset();
-  ++version_;
 }
 
 void OperatorDesk::answer_is_stored(const AnswerInView& answer) {
   const std::lock_guard lock{mutex_};
   last_answer_ = answer;
-  ++version_;
 }
 
 bool OperatorDesk::is_paused() const {

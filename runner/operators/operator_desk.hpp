@@ -18,9 +18,11 @@ struct DeskView {
     bool is_stored{};
   };
   std::optional<TrialInView> trial;  // that is running
+  std::size_t current{};             // its alternative that is felt
   std::optional<AnswerInView> last_answer;
   std::vector<Entry> log;
   bool is_paused{};
+  std::string held_by;  // why the operator is needed; empty: not
   std::vector<OperatorAction> possible;
 };
 
@@ -39,10 +41,12 @@ class OperatorDesk final : public Operator {
   // Any thread. Ready once the action is stored, or carries the StoreError. Throws InvalidInput if
   // it is impossible now: nothing is stored then.
   std::shared_future<void> post(const OperatorCommand& command);
+  // Tells why, and waits until the operator resumes; false if the session is to stop.
+  bool waits_for_operator(const std::string& why);
   DeskView view() const;
-  int version() const;  // changes with the view
 
   void trial_begins(const TrialInView& trial) override;
+  void alternative_is_felt(std::size_t alternative) override;
   void trial_is_over() override;
   void answer_is_stored(const AnswerInView& answer) override;
   bool is_paused() const override;
@@ -66,12 +70,13 @@ class OperatorDesk final : public Operator {
   };
   std::vector<Logged> log_;
   std::optional<TrialInView> trial_;
+  std::size_t current_{0};
   std::optional<AnswerInView> last_answer_;
   std::optional<TrialWish> wish_;
   std::optional<std::size_t> switch_to_;
   std::string end_reason_;
   bool is_paused_{false};
+  std::string held_by_;
   bool is_excluded_{false};
-  int version_{0};
 };
 }  // namespace tapstudy::runner

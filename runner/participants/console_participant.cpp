@@ -215,8 +215,8 @@ void ConsoleParticipant::skipped(const TrialPrompt& prompt) {
   say("  trial {} is skipped\n", prompt.number);
 }
 
-void ConsoleParticipant::refused(const TrialPrompt& /*prompt*/, const std::string& why) {
-  say("  {}\n", why);
+void ConsoleParticipant::refused(const TrialPrompt& /*prompt*/, const TooEarly& why) {
+  say("  {}\n", to_text(why));
 }
 
 void ConsoleParticipant::timed_out(const TrialPrompt& prompt, bool is_presented_again) {

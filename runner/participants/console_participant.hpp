@@ -25,7 +25,7 @@ class ConsoleParticipant final : public Participant {
   bool saves_again(const std::string& cause) override;
   void repeats(const TrialPrompt& prompt) override;
   void skipped(const TrialPrompt& prompt) override;
-  void refused(const TrialPrompt& prompt, const std::string& why) override;
+  void refused(const TrialPrompt& prompt, const TooEarly& why) override;
   void timed_out(const TrialPrompt& prompt, bool is_presented_again) override;
 
  private:

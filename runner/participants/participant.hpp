@@ -20,6 +20,16 @@ struct TrialPrompt {
       alternative_labels;  // to switch among; empty: there is nothing to switch
 };
 
+// Why an answer would be too early.
+struct TooEarly {
+  enum class Reason { plate_untouched, alternatives_untouched, time };
+  Reason reason{};
+  int min_contacts{};
+  std::vector<std::string> labels{};  // of the alternatives to touch
+  double min_seconds{};
+};
+std::string to_text(const TooEarly& too_early);
+
 // A participant: a person at the terminal, or a simulation.
 class Participant {
  public:
@@ -41,7 +51,7 @@ class Participant {
   // Called where the operator ended the trial without an answer.
   virtual void skipped(const TrialPrompt& /*prompt*/) {}
   // Called where the answer came too early: why. perform is called again.
-  virtual void refused(const TrialPrompt& /*prompt*/, const std::string& /*why*/) {}
+  virtual void refused(const TrialPrompt& /*prompt*/, const TooEarly& /*why*/) {}
   // Called where the trial took too long; whether it is presented again later.
   virtual void timed_out(const TrialPrompt& /*prompt*/, bool /*is_presented_again*/) {}
   // Called where the trial cannot be stored: whether to try again, once somebody has seen to it.

@@ -119,14 +119,14 @@ std::vector<FeltTap> SimulatedParticipant::tap(Exploration& exploration, int cou
   return felt_taps(hand_.felt(), protocol_.rendering.dt_s, person_.observer.threshold_n);
 }
 
-void SimulatedParticipant::refused(const TrialPrompt& prompt, const std::string& why) {
+void SimulatedParticipant::refused(const TrialPrompt& prompt, const TooEarly& why) {
   constexpr int patience = 1000;  // visits
   refusals_ = prompt.number == refused_trial_ ? refusals_ + 1 : 1;
   refused_trial_ = prompt.number;
   if (refusals_ > patience) {
     throw core::InvalidInput{
         fmt::format("trial {}: a simulated participant cannot meet the block's explore limits ({})",
-                    prompt.number, why)};
+                    prompt.number, to_text(why))};
   }
 }
 

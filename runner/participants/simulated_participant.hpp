@@ -21,7 +21,7 @@ class SimulatedParticipant final : public Participant {
   device::Device& hand() { return hand_; }
 
   // Throws InvalidInput if its taps can never meet the block's limits.
-  void refused(const TrialPrompt& prompt, const std::string& why) override;
+  void refused(const TrialPrompt& prompt, const TooEarly& why) override;
   void timed_out(const TrialPrompt& prompt, bool is_presented_again) override;
   std::optional<std::size_t> perform(const TrialPrompt& prompt, Exploration& exploration) override;
 

@@ -1,15 +1,8 @@
 #include "runner/session/explore_limits.hpp"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 #include <vector>
 namespace tapstudy::runner {
 namespace {
-std::string times(int count) {
-  return count == 1 ? "" : fmt::format(" {} times", count);
-}
-
 // Labels of the alternatives that still have to be touched.
 std::vector<std::string> untouched(const TrialPrompt& prompt, std::size_t answer,
                                    const Exploration& exploration) {
@@ -24,20 +17,20 @@ std::vector<std::string> untouched(const TrialPrompt& prompt, std::size_t answer
 }
 }  // namespace
 
-std::string too_early(const TrialPrompt& prompt, std::size_t answer,
-                      const Exploration& exploration) {
+std::optional<TooEarly> too_early(const TrialPrompt& prompt, std::size_t answer,
+                                  const Exploration& exploration) {
+  using Reason = TooEarly::Reason;
   const protocols::ExploreLimits& limits = prompt.explore;
   if (prompt.alternative_labels.empty()) {
     if (exploration.contacts(0) < limits.min_contacts) {
-      return fmt::format("please tap the plate{} first", times(limits.min_contacts));
+      return TooEarly{Reason::plate_untouched, limits.min_contacts};
     }
   } else if (const auto labels = untouched(prompt, answer, exploration); !labels.empty()) {
-    return fmt::format("please tap {}{} first", fmt::join(labels, ", "),
-                       times(limits.min_contacts));
+    return TooEarly{Reason::alternatives_untouched, limits.min_contacts, labels};
   }
   if (exploration.time_s() < limits.min_seconds) {
-    return fmt::format("please take {:.3g} s at least", limits.min_seconds);
+    return TooEarly{Reason::time, 0, {}, limits.min_seconds};
   }
-  return "";
+  return std::nullopt;
 }
 }  // namespace tapstudy::runner

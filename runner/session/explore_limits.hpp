@@ -1,14 +1,14 @@
 #pragma once
 #include <algorithm>
-#include <string>
+#include <optional>
 
 #include "protocols/protocol.hpp"
 #include "runner/participants/participant.hpp"
 #include "runner/trial_loop/exploration.hpp"
 namespace tapstudy::runner {
-// Why an answer given now would be too early, as told to the participant; empty: it is not.
-std::string too_early(const TrialPrompt& prompt, std::size_t answer,
-                      const Exploration& exploration);
+// Why an answer given now would be too early; nullopt: it is not.
+std::optional<TooEarly> too_early(const TrialPrompt& prompt, std::size_t answer,
+                                  const Exploration& exploration);
 
 // An exploration that ends once the block's time is up.
 class LimitedExploration final : public Exploration {

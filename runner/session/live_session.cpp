@@ -1,8 +1,10 @@
 #include "runner/session/live_session.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <optional>
@@ -11,6 +13,7 @@
 #include "core/error.hpp"
 #include "device/loop/sleep_inhibitor.hpp"
 #include "results/recorder.hpp"
+#include "runner/console/operator_terminal.hpp"
 #include "runner/devices/device_kind.hpp"
 #include "runner/devices/reconnect.hpp"
 #include "runner/devices/rigs.hpp"
@@ -21,6 +24,7 @@
 #include "runner/session/trial_engine.hpp"
 #include "runner/terminal/logging.hpp"
 #include "runner/terminal/no_flow_control.hpp"
+#include "runner/terminal/say.hpp"
 #include "runner/terminal/session_lock.hpp"
 #include "runner/terminal/stop_signal.hpp"
 #include "runner/trial_loop/live_trial_loop.hpp"
@@ -55,6 +59,14 @@ SessionLock lock_of(const LiveSession& live) {
           fmt::format("participant '{}' is in a session of this study right now", id)};
 }
 
+void introduce(const Console& console) {
+  say("participant's page: {}\noperator's page:    {}\n", console.url(Role::participant),
+      console.url(Role::operator_of_session));
+  std::vector<std::string_view> names;
+  std::ranges::transform(operator_actions(), std::back_inserter(names), &ActionInfo::name);
+  say("here: {}, quit\n", fmt::join(names, ", "));
+}
+
 // At once, so that the trial's supervisor does not wait for the disk.
 std::string obeyed(OperatorDesk& desk, const std::string& command) {
   try {
@@ -79,8 +91,25 @@ void run_trials(const LiveSession& live, const device::LoopSettings& settings, M
   OperatorDesk desk{{live.protocol, session.row.id, now_s}, recorder};
   ConsoleParticipant participant{device_request.operator_input, [&] { device->get_ready(); },
                                  [&](const std::string& command) { return obeyed(desk, command); }};
-  TrialEngine engine{{live.protocol, models, trial_loop, participant, desk, states}, recorder};
-  while (const auto interruption = engine.run(session.row.id, session.schedule, session.done)) {
+  std::optional<Console> console;
+  if (live.console) {
+    console.emplace(*live.console, Console::Session{live.protocol, session.row, desk,
+                                                    [&] { device->get_ready(); }});
+    trial_loop.watch([&](const core::TraceSample& sample) { console->watch(sample); });
+    states.listen([&](const results::SessionEventRow& event) { console->note_state(event); });
+    introduce(*console);
+  }
+  TrialEngine engine{{live.protocol, models, trial_loop,
+                      console ? console->participant() : participant, desk, states},
+                     recorder};
+  const auto run_engine = [&] {
+    std::optional<OperatorTerminal> terminal;
+    if (console) {
+      terminal.emplace(device_request.operator_input, desk);
+    }
+    return engine.run(session.row.id, session.schedule, session.done);
+  };
+  while (const auto interruption = run_engine()) {
     device = reconnect(to_text(*interruption), device_request, std::move(device));
     device->begin_session(session.row.seed);
     trial_loop.use(device->device());

@@ -1,17 +1,20 @@
 #pragma once
+#include <optional>
 #include <string>
 
 #include "protocols/protocol.hpp"
 #include "protocols/rig.hpp"
+#include "runner/console/console.hpp"
 #include "runner/session/begin_session.hpp"
 namespace tapstudy::runner {
-// One participant at the terminal, on the rig's device, in real time.
+// One participant, at the terminal or at a page, on the rig's device, in real time.
 struct LiveSession {
   const protocols::Protocol& protocol;
   std::string protocol_file;
   const protocols::Rig& rig;
   std::string directory;  // of the study
   SessionRequest request;
+  std::optional<ConsoleRequest> console;  // else at the terminal
 };
 
 struct LiveOutcome {

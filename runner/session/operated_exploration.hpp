@@ -1,4 +1,6 @@
 #pragma once
+#include <utility>
+
 #include "runner/operators/operator.hpp"
 #include "runner/trial_loop/exploration.hpp"
 namespace tapstudy::runner {
@@ -14,6 +16,9 @@ class OperatedExploration final : public Exploration {
     if (const auto alternative = operator_.take_switch()) {
       inner_.switch_to(*alternative);
     }
+    if (std::exchange(told_, inner_.current()) != inner_.current()) {
+      operator_.alternative_is_felt(told_);
+    }
     return inner_.is_running() && !operator_.wants_trial_over();
   }
   bool is_rendering() const override { return inner_.is_rendering(); }
@@ -23,5 +28,6 @@ class OperatedExploration final : public Exploration {
  private:
   Exploration& inner_;
   Operator& operator_;
+  mutable std::size_t told_{0};
 };
 }  // namespace tapstudy::runner

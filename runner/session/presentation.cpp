@@ -18,9 +18,9 @@ void ask(const TrialInView& view, Exploration& exploration, const SessionParts& 
     if (limited.is_over()) {
       break;
     }
-    const std::string why = too_early(view.prompt, *option, limited);
+    const std::optional<TooEarly> why = too_early(view.prompt, *option, limited);
     const bool is_rendering = limited.is_rendering();
-    if (why.empty() && is_rendering) {
+    if (!why && is_rendering) {
       presentation.answer =
           Answer{trial.task->response(trial, parts.protocol.block(trial.block), *option),
                  limited.time_s()};
@@ -30,7 +30,7 @@ void ask(const TrialInView& view, Exploration& exploration, const SessionParts& 
       presentation.is_answered_in_a_stall = exploration.is_running();
       break;
     }
-    parts.participant.refused(view.prompt, why);
+    parts.participant.refused(view.prompt, *why);
   }
   if (exploration.is_running() && !stop_was_asked()) {
     presentation.is_timed_out = limited.is_over();

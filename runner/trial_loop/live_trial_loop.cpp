@@ -64,6 +64,7 @@ class Following {
 TrialResult LiveTrialLoop::run(std::span<core::TapRenderer> alternatives, const Explore& explore) {
   core::SpscRing<core::TraceSample> ring{ring_capacity};
   results::TraceCollector collector{ring};
+  collector.watch(watch_);
   device::MonotonicClock clock;
   device::HapticLoop loop{*device_, alternatives, settings_, ring, clock};
   std::atomic<bool> has_ended{false};

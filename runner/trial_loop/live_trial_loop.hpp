@@ -14,6 +14,8 @@ class LiveTrialLoop final : public TrialLoop {
         settings_{std::move(settings)},
         realtime_{realtime},
         recorder_{recorder} {}
+  // Called with each tick, milliseconds later, by the recorder's thread.
+  void watch(results::TraceCollector::Watch watch) { watch_ = std::move(watch); }
   // From the next trial on.
   void use(device::Device& device) { device_ = &device; }
   TrialResult run(std::span<core::TapRenderer> alternatives, const Explore& explore) override;
@@ -27,5 +29,6 @@ class LiveTrialLoop final : public TrialLoop {
   device::LoopSettings settings_;
   core::RealtimeRequest realtime_;
   results::Recorder& recorder_;
+  results::TraceCollector::Watch watch_;
 };
 }  // namespace tapstudy::runner

@@ -150,7 +150,7 @@ std::string tetgen_switches(const MeshSize& size) {
 
 void check_end(const TetgenInput& input, const TetgenOutput& output) {
   const std::size_t added = (output.coordinates.size() - input.coordinates.size()) / 3;
-  if (added >= max_added_points || static_cast<double>(output.corners.size() / 4) > max_tets) {
+  if (added >= max_added_points || static_cast<double>(output.corners.size()) > 4.0 * max_tets) {
     throw ModelError{fmt::format(
         "mesh: it needs more than {:.0g} tetrahedra or {} added points (choose a larger "
         "max_tet_volume_m3 or a surface without tiny triangles)",

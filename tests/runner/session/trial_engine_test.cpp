@@ -143,8 +143,8 @@ class Hasty final : public runner::Participant {
     exploration.pass_time(1.0);
     return exploration.is_running() ? std::optional<std::size_t>{0} : std::nullopt;
   }
-  void refused(const runner::TrialPrompt& /*prompt*/, const std::string& why) override {
-    reasons.push_back(why);
+  void refused(const runner::TrialPrompt& /*prompt*/, const runner::TooEarly& why) override {
+    reasons.push_back(to_text(why));
   }
   void timed_out(const runner::TrialPrompt& prompt, bool is_presented_again) override {
     ended.emplace_back(prompt.number, is_presented_again);

@@ -1,0 +1,135 @@
+#include "runner/console/browser_participant.hpp"
+
+#include <chrono>
+#include <thread>
+
+#include "runner/terminal/stop_signal.hpp"
+namespace tapstudy::runner {
+namespace {
+constexpr std::chrono::milliseconds poll_interval{10};
+}
+
+std::int64_t BrowserParticipant::show(Screen screen) {
+  screen.progress = progress_;
+  return screens_.show(screen);
+}
+
+ScreenInput BrowserParticipant::answer_to(Screen screen) {
+  const std::int64_t number = show(std::move(screen));
+  while (true) {
+    if (const auto input = screens_.take(number)) {
+      return *input;
+    }
+    stop_if_asked();
+    std::this_thread::sleep_for(poll_interval);
+  }
+}
+
+void BrowserParticipant::tell(Message message) {
+  answer_to({.kind = ScreenKind::message, .message = message});
+}
+
+void BrowserParticipant::read(const std::string& instructions) {
+  answer_to({.kind = ScreenKind::instructions, .text = instructions});
+}
+
+// The page counts the time down, but does not decide.
+void BrowserParticipant::rest(double min_seconds) {
+  const auto until = std::chrono::steady_clock::now() + std::chrono::duration<double>{min_seconds};
+  double left_s = min_seconds;
+  do {
+    answer_to({.kind = ScreenKind::rest, .min_seconds = left_s});
+    left_s = std::chrono::duration<double>(until - std::chrono::steady_clock::now()).count();
+  } while (left_s > 0.0);
+}
+
+void BrowserParticipant::wait_while(const std::function<bool()>& is_paused) {
+  show({.kind = ScreenKind::paused});
+  while (is_paused()) {
+    std::this_thread::sleep_for(poll_interval);
+  }
+}
+
+// Nothing is rendered before somebody can see what is asked.
+void BrowserParticipant::get_ready(const TrialPrompt& prompt) {
+  progress_ = Progress{prompt.number - 1, prompt.total, prompt.is_practice};
+  notice_.reset();
+  if (screens_.open_pages() == 0) {
+    show({.kind = ScreenKind::wait});
+  }
+  while (screens_.open_pages() == 0) {
+    stop_if_asked();
+    std::this_thread::sleep_for(poll_interval);
+  }
+  surroundings_.move_hand();
+}
+
+std::int64_t BrowserParticipant::show_trial(const TrialPrompt& prompt, std::size_t current) {
+  return show({.kind = ScreenKind::trial,
+               .trial = TrialScreen{prompt, current, notice_},
+               .scene = surroundings_.scene(current)});
+}
+
+std::optional<std::size_t> BrowserParticipant::perform(const TrialPrompt& prompt,
+                                                       Exploration& exploration) {
+  constexpr double poll_s = 0.01;
+  std::size_t current = exploration.current();
+  std::int64_t number = show_trial(prompt, current);
+  while (exploration.is_running() && !stop_was_asked()) {
+    const auto input = screens_.take(number);
+    if (input && input->action == ScreenAction::answer) {
+      notice_.reset();
+      return input->value;
+    }
+    if (input) {
+      exploration.switch_to(input->value);
+    }
+    if (input || exploration.current() != current) {  // switched here, or by the operator
+      current = exploration.current();
+      number = show_trial(prompt, current);
+    }
+    exploration.pass_time(poll_s);
+  }
+  return std::nullopt;
+}
+
+std::optional<int> BrowserParticipant::confidence(const protocols::Confidence& scale) {
+  const std::int64_t number = show({.kind = ScreenKind::confidence, .confidence = scale});
+  while (!stop_was_asked()) {
+    if (const auto input = screens_.take(number)) {
+      return static_cast<int>(input->value);
+    }
+    std::this_thread::sleep_for(poll_interval);
+  }
+  return std::nullopt;
+}
+
+void BrowserParticipant::feedback(bool is_correct, const std::string& right_label) {
+  answer_to({.kind = ScreenKind::feedback, .feedback = FeedbackScreen{is_correct, right_label}});
+}
+
+void BrowserParticipant::refused(const TrialPrompt& /*prompt*/, const TooEarly& why) {
+  notice_ = why;
+}
+
+void BrowserParticipant::timed_out(const TrialPrompt& /*prompt*/, bool is_presented_again) {
+  tell(is_presented_again ? Message::comes_again : Message::time_is_over);
+}
+
+bool BrowserParticipant::saves_again(const std::string& cause) {
+  show({.kind = ScreenKind::message, .message = Message::operator_is_needed});
+  return surroundings_.ask_operator(cause);
+}
+
+void BrowserParticipant::repeats(const TrialPrompt& /*prompt*/) {
+  tell(Message::presented_again);
+}
+
+void BrowserParticipant::skipped(const TrialPrompt& /*prompt*/) {
+  tell(Message::skipped);
+}
+
+void BrowserParticipant::saved(const TrialPrompt& prompt) {
+  progress_ = Progress{prompt.number, prompt.total, prompt.is_practice};
+}
+}  // namespace tapstudy::runner

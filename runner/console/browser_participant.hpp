@@ -1,0 +1,46 @@
+#pragma once
+#include <functional>
+#include <optional>
+
+#include "runner/console/screen_exchange.hpp"
+#include "runner/participants/participant.hpp"
+namespace tapstudy::runner {
+// A person at the participant's page.
+class BrowserParticipant final : public Participant {
+ public:
+  struct Surroundings {
+    std::function<void()> move_hand;  // as a ConsoleParticipant's
+    // What is drawn while an alternative of the trial that is shown can be felt.
+    std::function<std::optional<int>(std::size_t alternative)> scene;
+    // Tells the operator; whether to try again.
+    std::function<bool(const std::string& cause)> ask_operator;
+  };
+  BrowserParticipant(ScreenExchange& screens, Surroundings surroundings)
+      : screens_{screens}, surroundings_{std::move(surroundings)} {}
+  void read(const std::string& instructions) override;
+  void rest(double min_seconds) override;
+  void wait_while(const std::function<bool()>& is_paused) override;
+  void get_ready(const TrialPrompt& prompt) override;
+  std::optional<std::size_t> perform(const TrialPrompt& prompt, Exploration& exploration) override;
+  std::optional<int> confidence(const protocols::Confidence& scale) override;
+  void feedback(bool is_correct, const std::string& right_label) override;
+  void refused(const TrialPrompt& prompt, const TooEarly& why) override;
+  void timed_out(const TrialPrompt& prompt, bool is_presented_again) override;
+  bool saves_again(const std::string& cause) override;
+  void repeats(const TrialPrompt& prompt) override;
+  void skipped(const TrialPrompt& prompt) override;
+  void saved(const TrialPrompt& prompt) override;
+
+ private:
+  std::int64_t show(Screen screen);
+  std::int64_t show_trial(const TrialPrompt& prompt, std::size_t current);
+  // Until it is answered; throws Stopped if the session is to stop.
+  ScreenInput answer_to(Screen screen);
+  void tell(Message message);
+
+  ScreenExchange& screens_;
+  Surroundings surroundings_;
+  std::optional<Progress> progress_;
+  std::optional<TooEarly> notice_;
+};
+}  // namespace tapstudy::runner

@@ -1,0 +1,53 @@
+#include "runner/console/console.hpp"
+
+#include <chrono>
+#include <thread>
+
+namespace tapstudy::runner {
+Console::Console(const ConsoleRequest& request, const Session& session)
+    : scenes_{session.protocol, true, false},
+      screens_{request.language, session.protocol.title},
+      participant_{screens_, surroundings(session)},
+      api_{in_view(request, session), screens_, session.desk, live_, scenes_},
+      server_{request.address, api_} {}
+
+Console::~Console() {
+  constexpr std::chrono::milliseconds time_to_arrive{300};
+  screens_.show({.kind = ScreenKind::ended});
+  if (screens_.open_pages() > 0) {
+    std::this_thread::sleep_for(time_to_arrive);
+  }
+}
+
+BrowserParticipant::Surroundings Console::surroundings(const Session& session) {
+  OperatorDesk& desk = session.desk;
+  return {session.move_hand,
+          [this, &desk](std::size_t alternative) -> std::optional<int> {
+            const auto trial = desk.view().trial;
+            return trial ? std::optional{scenes_.number_of(trial->trial.stimuli.at(alternative))}
+                         : std::nullopt;
+          },
+          [&desk](const std::string& cause) { return desk.waits_for_operator(cause); }};
+}
+
+ConsoleApi::Session Console::in_view(const ConsoleRequest& request, const Session& session) {
+  const auto guarded = [this](const std::string& text) {
+    return [this, &text] {
+      const std::lock_guard lock{mutex_};
+      return text;
+    };
+  };
+  return {session.protocol.title, session.row.participant_id, results::to_text(session.row.mode),
+          session.row.device,     request.language,           false,
+          guarded(state_),        guarded(last_fault_)};
+}
+
+void Console::note_state(const results::SessionEventRow& event) {
+  if (event.state == "exploring") {
+    live_.begin_trial();
+  }
+  const std::lock_guard lock{mutex_};
+  state_ = event.state;
+  last_fault_ = event.state == "faulted" ? event.detail : "";
+}
+}  // namespace tapstudy::runner

@@ -1,0 +1,53 @@
+#pragma once
+#include <functional>
+#include <mutex>
+#include <string>
+
+#include "results/rows.hpp"
+#include "runner/console/browser_participant.hpp"
+#include "runner/console/console_api.hpp"
+#include "runner/console/console_server.hpp"
+namespace tapstudy::runner {
+struct ConsoleRequest {
+  ServerAddress address;
+  std::string language{"en"};
+};
+
+// The pages of one session, their server, and the participant who sits before one of them.
+class Console {
+ public:
+  struct Session {
+    const protocols::Protocol& protocol;
+    const results::SessionRow& row;
+    OperatorDesk& desk;
+    std::function<void()> move_hand;  // as a ConsoleParticipant's
+  };
+  // Throws InvalidInput if the address cannot be listened to.
+  Console(const ConsoleRequest& request, const Session& session);
+  // Tells open pages that the session has ended.
+  ~Console();
+  Console(const Console& other) = delete;
+  Console& operator=(const Console& other) = delete;
+  Console(Console&& other) = delete;
+  Console& operator=(Console&& other) = delete;
+
+  Participant& participant() { return participant_; }
+  void watch(const core::TraceSample& sample) { live_.add(sample); }
+  void note_state(const results::SessionEventRow& event);
+  std::string url(Role role) const { return server_.url(role); }
+
+ private:
+  ConsoleApi::Session in_view(const ConsoleRequest& request, const Session& session);
+  BrowserParticipant::Surroundings surroundings(const Session& session);
+
+  std::mutex mutex_;
+  std::string state_{"begun"};
+  std::string last_fault_;
+  LiveView live_;
+  Scenes scenes_;
+  ScreenExchange screens_;
+  BrowserParticipant participant_;
+  ConsoleApi api_;
+  ConsoleServer server_;
+};
+}  // namespace tapstudy::runner

@@ -1,0 +1,117 @@
+#include "runner/console/console_api.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+
+#include "core/error.hpp"
+#include "results/store_error.hpp"
+#include "runner/console/operator_json.hpp"
+#include "runner/console/pages.hpp"
+namespace tapstudy::runner {
+namespace {
+Reply not_found() {
+  return {404, "text/plain; charset=utf-8", "There is nothing here.\n"};
+}
+
+Reply outcome(const std::string& why_not) {
+  return why_not.empty() ? Reply{200, "application/json", R"({"accepted":true})"}
+                         : Reply{409, "application/json", refusal_json(why_not)};
+}
+
+std::string event(const char* name, const std::string& data) {
+  return fmt::format("event: {}\ndata: {}\n\n", name, data);
+}
+}  // namespace
+
+Reply ConsoleApi::get(Role role, const std::string& path) const {
+  constexpr std::string_view scene = "scene/";
+  if (path.starts_with(scene)) {
+    int number = -1;
+    const char* const end = path.data() + path.size();
+    const auto [stopped, error] = std::from_chars(path.data() + scene.size(), end, number);
+    const bool is_known =
+        error == std::errc{} && stopped == end && number >= 0 && number < scenes_.count();
+    return is_known ? Reply{200, "application/json", scenes_.json(number)} : not_found();
+  }
+  const char* const own = role == Role::participant ? "participant.html" : "operator.html";
+  const Page* const page = find_page(path.empty() ? own : path);
+  return page == nullptr ? not_found() : Reply{200, page->media_type, std::string{page->content}};
+}
+
+Reply ConsoleApi::post_input(Role role, const std::string& body) {
+  try {
+    if (role == Role::participant) {
+      std::int64_t screen = -1;
+      const ScreenInput input = parse_input(body, screen);
+      return outcome(screens_.post(screen, input));
+    }
+    desk_.post(parse_operator_command(command_in(body))).get();
+    return outcome("");
+  } catch (const core::InvalidInput& error) {
+    return outcome(error.what());
+  } catch (const results::StoreError& error) {
+    return outcome(fmt::format("not stored: {}", error.what()));
+  }
+}
+
+void ConsoleApi::page_opened(Role role) {
+  if (role == Role::participant) {
+    screens_.page_opened();
+  }
+}
+
+void ConsoleApi::page_closed(Role role) {
+  if (role == Role::participant) {
+    screens_.page_closed();
+  }
+}
+
+std::string ConsoleApi::events(Role role, SentToPage& sent) const {
+  return role == Role::participant ? participant_events(sent) : operator_events(sent);
+}
+
+std::string ConsoleApi::participant_events(SentToPage& sent) const {
+  std::string text;
+  if (screens_.number() != sent.screen) {
+    const ScreenExchange::Shown shown = screens_.shown();
+    sent.screen = shown.number;
+    sent.scene = shown.scene;
+    text += event("screen", shown.json);
+  }
+  const LiveView::Pointer pointer = live_.pointer();
+  if (sent.scene && pointer.tick != sent.pointer_tick) {
+    sent.pointer_tick = pointer.tick;
+    const core::Vec3 at = scenes_.to_scene(*sent.scene, pointer.position_m);
+    text += event("hand", fmt::format(R"({{"p":[{:.5f},{:.5f},{:.5f}],"t":{}}})", at.x(), at.y(),
+                                      at.z(), pointer.is_touching));
+  }
+  return text;
+}
+
+std::string ConsoleApi::operator_events(SentToPage& sent) const {
+  std::string text;
+  constexpr std::chrono::milliseconds state_interval{200};
+  const auto now = std::chrono::steady_clock::now();
+  if (now - sent.state_at >= state_interval) {
+    sent.state_at = now;
+    if (std::string state = operator_state(); state != sent.state) {
+      text += event("state", state);
+      sent.state = std::move(state);
+    }
+  }
+  const LiveView::Steps steps = live_.since(sent.steps);
+  if (!steps.steps.empty()) {
+    sent.steps = steps.end;
+    text += event("live", live_json(steps, live_.totals(), scenes_.surface_along_normal_m()));
+  }
+  return text;
+}
+
+std::string ConsoleApi::operator_state() const {
+  return state_json(
+      {session_.title, session_.participant_id, session_.mode, session_.device, session_.language,
+       session_.is_blind, session_.state(), session_.last_fault(), screens_.open_pages() > 0},
+      desk_.view(), live_.totals());
+}
+}  // namespace tapstudy::runner

@@ -1,0 +1,219 @@
+#include "runner/console/console_server.hpp"
+
+#include <civetweb.h>
+#include <fmt/format.h>
+#include <sys/random.h>
+#include <sys/resource.h>
+
+#include <chrono>
+#include <cstring>
+#include <thread>
+#include <vector>
+
+#include "core/error.hpp"
+namespace tapstudy::runner {
+namespace {
+constexpr int max_streams = 8;         // of each role
+constexpr const char* threads = "24";  // one for each open stream, the rest for requests
+constexpr long long max_body_bytes = 65536;
+constexpr std::chrono::milliseconds frame{16};
+constexpr std::chrono::seconds sign_of_life{3};
+
+std::string random_token() {
+  std::array<unsigned char, 16> bytes{};
+  if (getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size())) {
+    throw core::InvalidInput{"--console: this machine gives no random numbers"};
+  }
+  std::string token;
+  for (const unsigned char byte : bytes) {
+    token += fmt::format("{:02x}", byte);
+  }
+  return token;
+}
+
+// In a time that does not tell how much of it was right.
+bool is_same(std::string_view one, std::string_view other) {
+  unsigned difference = one.size() == other.size() ? 0U : 1U;
+  for (std::size_t i = 0; i < one.size() && i < other.size(); ++i) {
+    difference |= static_cast<unsigned>(one[i] ^ other[i]);
+  }
+  return difference == 0U;
+}
+
+std::string header(mg_connection* connection, const char* name) {
+  const char* const value = mg_get_header(connection, name);
+  return value == nullptr ? "" : value;
+}
+
+constexpr const char* common_headers =
+    "Cache-Control: no-store\r\n"
+    "Content-Security-Policy: default-src 'self'; frame-ancestors 'none'\r\n"
+    "X-Content-Type-Options: nosniff\r\n"
+    "Referrer-Policy: no-referrer\r\n"
+    "Cross-Origin-Resource-Policy: same-origin\r\n";
+
+bool send_all(mg_connection* connection, const std::string& text) {
+  return mg_write(connection, text.data(), text.size()) == static_cast<int>(text.size());
+}
+
+int send(mg_connection* connection, const Reply& reply) {
+  const char* const reason = mg_get_response_code_text(connection, reply.status);
+  send_all(connection, fmt::format("HTTP/1.1 {} {}\r\n{}Content-Type: {}\r\nContent-Length: "
+                                   "{}\r\nConnection: close\r\n\r\n{}",
+                                   reply.status, reason, common_headers, reply.media_type,
+                                   reply.body.size(), reply.body));
+  return reply.status;
+}
+
+Reply refusal(int status) {
+  return {status, "text/plain; charset=utf-8", "Not here.\n"};
+}
+
+// nullopt: too long, or not whole.
+std::optional<std::string> body_of(mg_connection* connection) {
+  const long long length = mg_get_request_info(connection)->content_length;
+  if (length < 0 || length > max_body_bytes) {
+    return std::nullopt;
+  }
+  std::string body(static_cast<std::size_t>(length), '\0');
+  std::size_t have = 0;
+  while (have < body.size()) {
+    const int count = mg_read(connection, body.data() + have, body.size() - have);
+    if (count <= 0) {
+      return std::nullopt;
+    }
+    have += static_cast<std::size_t>(count);
+  }
+  return body;
+}
+
+// The haptic loop and the recorder come first, also where no real-time priority was granted.
+void be_modest(const mg_context* /*context*/, int /*kind*/) {
+  constexpr int nice = 10;
+  setpriority(PRIO_PROCESS, 0, nice);
+}
+void* begin_thread(const mg_context* context, int kind) {
+  be_modest(context, kind);
+  return nullptr;
+}
+}  // namespace
+
+ConsoleServer::ConsoleServer(ServerAddress address, ConsoleApi& api)
+    : address_{std::move(address)}, api_{api} {
+  for (std::string& token : tokens_) {
+    token = random_token();
+  }
+  const std::string listening = fmt::format("{}:{}", address_.host, address_.port);
+  std::vector<const char*> options{"listening_ports",
+                                   listening.c_str(),
+                                   "num_threads",
+                                   threads,
+                                   "request_timeout_ms",
+                                   "5000",
+                                   "max_request_size",
+                                   "16384",
+                                   "enable_directory_listing",
+                                   "no",
+                                   nullptr};
+  mg_callbacks callbacks{};
+  callbacks.init_thread = begin_thread;
+  callbacks.log_message = [](const mg_connection*, const char*) { return 1; };
+  context_ = mg_start(&callbacks, this, options.data());
+  mg_server_port port{};
+  if (context_ == nullptr || mg_get_server_ports(context_, 1, &port) != 1) {
+    mg_stop(context_);
+    throw core::InvalidInput{fmt::format(
+        "--console: {} cannot be listened to (is the port in use, is the address this machine's?)",
+        listening)};
+  }
+  address_.port = port.port;
+  mg_set_request_handler(context_, "/", &ConsoleServer::handle, this);
+}
+
+ConsoleServer::~ConsoleServer() {
+  is_closing_ = true;
+  mg_stop(context_);
+}
+
+std::string ConsoleServer::url(Role role) const {
+  return fmt::format("http://{}:{}/{}/", address_.host, address_.port, token(role));
+}
+
+int ConsoleServer::handle(mg_connection* connection, void* self) {
+  try {
+    return static_cast<ConsoleServer*>(self)->serve(connection);
+  } catch (const std::exception&) {  // none may leave a callback of C
+    return send(connection, refusal(500));
+  }
+}
+
+// A page of another site, or a name that leads here (DNS rebinding), gets nothing.
+bool ConsoleServer::is_from_here(mg_connection* connection) const {
+  const std::string host = header(connection, "Host");
+  const std::string origin = header(connection, "Origin");
+  const std::string site = header(connection, "Sec-Fetch-Site");
+  bool is_known = false;
+  for (const std::string& name : {address_.host, std::string{"localhost"}}) {
+    is_known = is_known || host == fmt::format("{}:{}", name, address_.port);
+  }
+  return is_known && (origin.empty() || origin == "http://" + host) &&
+         site != "cross-site" && site != "same-site";
+}
+
+int ConsoleServer::serve(mg_connection* connection) {
+  const mg_request_info* const request = mg_get_request_info(connection);
+  const std::string path = request->local_uri == nullptr ? "" : request->local_uri;
+  const auto end = path.find('/', 1);
+  if (!is_from_here(connection) || end == std::string::npos) {
+    return send(connection, refusal(403));
+  }
+  const std::string given = path.substr(1, end - 1);
+  const std::string rest = path.substr(end + 1);
+  const std::string method = request->request_method;
+  for (const Role role : roles) {
+    if (!is_same(given, token(role))) {
+      continue;
+    }
+    if (method == "GET" && rest == "events") {
+      stream(connection, role);
+      return 200;
+    }
+    if (method == "GET") {
+      return send(connection, api_.get(role, rest));
+    }
+    if (method == "POST" && rest == "input" && header(connection, "X-Tapstudy") == "1") {
+      const auto body = body_of(connection);
+      return send(connection, body ? api_.post_input(role, *body) : refusal(413));
+    }
+    return send(connection, refusal(405));
+  }
+  return send(connection, refusal(403));
+}
+
+// Until the page has gone, newer ones have taken its place, or it is so slow that its connection is
+// full for too long: it then connects again and gets the latest.
+void ConsoleServer::stream(mg_connection* connection, Role role) {
+  std::atomic<int>& opened = streams_.at(static_cast<std::size_t>(role));
+  const int number = ++opened;
+  api_.page_opened(role);
+  bool is_there =
+      send_all(connection, fmt::format("HTTP/1.1 200 OK\r\n{}Content-Type: text/event-stream\r\n"
+                                       "Connection: close\r\n\r\nretry: 500\n\n",
+                                       common_headers));
+  SentToPage sent;
+  auto last = std::chrono::steady_clock::now();
+  while (is_there && !is_closing_ && number > opened - max_streams) {
+    std::string events = api_.events(role, sent);
+    const auto now = std::chrono::steady_clock::now();
+    if (events.empty() && now - last > sign_of_life) {
+      events = ": \n\n";
+    }
+    if (!events.empty()) {
+      is_there = send_all(connection, events);
+      last = now;
+    }
+    std::this_thread::sleep_for(frame);
+  }
+  api_.page_closed(role);
+}
+}  // namespace tapstudy::runner

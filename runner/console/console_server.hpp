@@ -1,0 +1,43 @@
+#pragma once
+#include <array>
+#include <atomic>
+#include <memory>
+#include <string>
+
+#include "runner/console/console_api.hpp"
+struct mg_connection;
+struct mg_context;
+namespace tapstudy::runner {
+struct ServerAddress {
+  std::string host{"127.0.0.1"};  // an address of this machine
+  int port{0};                    // 0: any that is free
+};
+
+// Serves the pages of one session by HTTP. A page's address holds a random token; without it, or
+// with a foreign Host or Origin header, nothing is served. Its threads never touch the haptic loop.
+class ConsoleServer {
+ public:
+  // Throws InvalidInput if the address cannot be listened to.
+  ConsoleServer(ServerAddress address, ConsoleApi& api);
+  ~ConsoleServer();
+  ConsoleServer(const ConsoleServer& other) = delete;
+  ConsoleServer& operator=(const ConsoleServer& other) = delete;
+  ConsoleServer(ConsoleServer&& other) = delete;
+  ConsoleServer& operator=(ConsoleServer&& other) = delete;
+  std::string url(Role role) const;
+
+ private:
+  static int handle(mg_connection* connection, void* self);
+  int serve(mg_connection* connection);
+  bool is_from_here(mg_connection* connection) const;
+  void stream(mg_connection* connection, Role role);
+  std::string token(Role role) const { return tokens_.at(static_cast<std::size_t>(role)); }
+
+  ServerAddress address_;
+  ConsoleApi& api_;
+  std::array<std::string, roles.size()> tokens_;
+  std::atomic<bool> is_closing_{false};
+  std::array<std::atomic<int>, roles.size()> streams_{};  // ever opened
+  mg_context* context_{nullptr};
+};
+}  // namespace tapstudy::runner

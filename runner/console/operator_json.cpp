@@ -1,0 +1,128 @@
+#include "runner/console/operator_json.hpp"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "core/error.hpp"
+namespace tapstudy::runner {
+namespace {
+using Json = nlohmann::ordered_json;
+
+std::string dumped(const Json& json) {
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+Json labels_of(const std::vector<protocols::Option>& options) {
+  Json labels = Json::array();
+  for (const protocols::Option& option : options) {
+    labels.push_back(option.label);
+  }
+  return labels;
+}
+
+Json json_of(const TrialInView& view, std::size_t current, bool is_blind) {
+  Json alternatives = Json::array();
+  const auto& labels = view.prompt.alternative_labels;
+  for (std::size_t i = 0; i < view.trial.stimuli.size(); ++i) {
+    Json alternative{{"label", labels.empty() ? "" : labels[i]}};
+    if (!is_blind) {
+      alternative["stimulus"] = view.trial.stimuli[i];
+    }
+    alternatives.push_back(alternative);
+  }
+  return {{"number", view.trial.number},      {"attempt", view.attempt},
+          {"block", view.trial.block},        {"is_practice", view.trial.is_practice},
+          {"question", view.prompt.question}, {"options", labels_of(view.prompt.options)},
+          {"alternatives", alternatives},     {"current", current}};
+}
+
+Json json_of(const AnswerInView& answer, bool is_blind) {
+  Json json{{"number", answer.trial.number}, {"options", labels_of(answer.options)}};
+  if (!is_blind) {
+    json["response"] = answer.response;
+  }
+  return json;
+}
+
+Json actions_of(const DeskView& desk) {
+  Json actions = Json::array();
+  for (const ActionInfo& info : operator_actions()) {
+    actions.push_back(
+        {{"name", info.name},
+         {"takes_text", info.text != ActionText::none},
+         {"needs_text", info.text == ActionText::required},
+         {"is_possible", std::ranges::find(desk.possible, info.action) != desk.possible.end()}});
+  }
+  return actions;
+}
+
+Json log_of(const DeskView& desk) {
+  Json log = Json::array();
+  for (const DeskView::Entry& entry : desk.log) {
+    log.push_back({{"t_s", entry.row.t_s},
+                   {"action", entry.row.action},
+                   {"text", entry.row.detail},
+                   {"is_stored", entry.is_stored}});
+  }
+  return log;
+}
+}  // namespace
+
+std::string state_json(const SessionInView& session, const DeskView& desk,
+                       const LiveView::Totals& totals) {
+  Json json{
+      {"language", session.language},
+      {"study", session.title},
+      {"participant", session.participant_id},
+      {"mode", session.mode},
+      {"is_blind", session.is_blind},
+      {"state", session.state},
+      {"progress", desk.trial ? Json{{"done", desk.trial->prompt.number - 1},
+                                     {"total", desk.trial->prompt.total}}
+                              : Json{}},
+      {"trial", desk.trial ? json_of(*desk.trial, desk.current, session.is_blind) : Json{}},
+      {"last_answer", desk.last_answer ? json_of(*desk.last_answer, session.is_blind) : Json{}},
+      {"actions", actions_of(desk)},
+      {"log", log_of(desk)},
+      {"is_paused", desk.is_paused},
+      {"participant_page", session.has_participant_page},
+      {"device", session.device},
+      {"force_is_off", !desk.trial.has_value()},
+      {"ticks", {{"total", totals.ticks}, {"late", totals.late}}},
+      {"masking", nullptr},
+      {"warnings", Json::array()}};
+  for (const std::string& warning : {session.last_fault, desk.held_by}) {
+    if (!warning.empty()) {
+      json["warnings"].push_back(warning);
+    }
+  }
+  return dumped(json);
+}
+
+std::string live_json(const LiveView::Steps& steps, const LiveView::Totals& totals,
+                      double surface_along_normal_m) {
+  Json force = Json::array();
+  Json height = Json::array();
+  for (const LiveView::Step& step : steps.steps) {
+    force.push_back(step.force_n);
+    height.push_back(step.normal_m - surface_along_normal_m);
+  }
+  return dumped({{"t_s", LiveView::step_s * static_cast<double>(steps.end)},
+                 {"step_s", LiveView::step_s},
+                 {"force_n", force},
+                 {"height_m", height},
+                 {"contacts", totals.contacts}});
+}
+
+std::string refusal_json(const std::string& why) {
+  return dumped({{"accepted", false}, {"why", why}});
+}
+
+std::string command_in(const std::string& text) {
+  try {
+    return Json::parse(text).at("command").get<std::string>();
+  } catch (const Json::exception&) {
+    throw core::InvalidInput{"is no command"};
+  }
+}
+}  // namespace tapstudy::runner

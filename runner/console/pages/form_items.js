@@ -1,0 +1,115 @@
+// The kinds of items in a form. Each has an element, value() (null: not answered) and problem(),
+// the words for what is wrong with it or null.
+
+import { el } from "./dom.js";
+import { anchors, newGroupName, pickedValue, radioCard, steps } from "./radio_cards.js";
+import { word } from "./words.js";
+
+function radios(body, valueOf) {
+  return {
+    body,
+    value: () => {
+      const picked = pickedValue(body);
+      return picked === null ? null : valueOf(picked);
+    },
+    clear: () => body.querySelectorAll("input").forEach((input) => { input.checked = false; }),
+  };
+}
+
+const likert = (item) => radios(steps({ count: item.steps, low: item.low, high: item.high }), Number);
+
+function choice(item) {
+  const group = newGroupName();
+  const cards = item.options.map((label, index) => radioCard({ group, value: index, label }));
+  return radios(el("div", { className: "options" }, ...cards), (index) => item.options[Number(index)]);
+}
+
+// A visual analogue scale: without a mark until it is touched.
+function scale(item) {
+  const input = el("input", { type: "range", min: 0, max: 1, step: 0.01, value: 0.5, "aria-label": item.question });
+  const body = el("div", { className: "scale" }, input, anchors(item.low ?? "", item.high ?? ""));
+  let isTouched = false;
+  function setTouched(is) {
+    isTouched = is;
+    input.classList.toggle("is-touched", is);
+    if (is) input.setAttribute("aria-valuetext", word("scale_value", { percent: Math.round(100 * input.value), low: item.low ?? "", high: item.high ?? "" }));
+    else input.setAttribute("aria-valuetext", word("scale_untouched"));
+  }
+  input.addEventListener("input", () => setTouched(true));
+  input.addEventListener("pointerup", () => setTouched(true));
+  input.addEventListener("keydown", (event) => { if (event.key === " ") setTouched(true); });
+  setTouched(false);
+  return {
+    body,
+    value: () => (isTouched ? Number(input.value) : null),
+    clear: () => { input.value = 0.5; setTouched(false); },
+  };
+}
+
+function rangeProblem(item, value) {
+  const { min, max } = item;
+  const isInside = (min ?? -Infinity) <= value && value <= (max ?? Infinity);
+  if (isInside) return null;
+  if (min === undefined || min === null) return word("at_most", { max });
+  if (max === undefined || max === null) return word("at_least", { min });
+  return word("between", { min, max });
+}
+
+function number(item, id) {
+  const input = el("input", { type: "number", id, step: "any", inputMode: "decimal", min: item.min, max: item.max });
+  const value = () => (input.value === "" ? null : Number(input.value));
+  return {
+    body: input,
+    value,
+    problem: () => {
+      if (input.validity.badInput) return word("not_a_number");
+      return value() === null ? null : rangeProblem(item, value());
+    },
+  };
+}
+
+function text(item, id) {
+  const input = el("textarea", { id, rows: 3 });
+  return { body: input, value: () => (input.value.trim() === "" ? null : input.value) };
+}
+
+const makers = { likert, scale, number, choice, text };
+const areLabelled = new Set(["number", "text"]);
+
+function titleOf(item, id) {
+  const optional = item.is_required ? null : el("span", { className: "optional" }, ` (${word("optional")})`);
+  if (areLabelled.has(item.kind)) return el("label", { htmlFor: id, className: "question" }, item.question, optional);
+  return el("legend", { className: "question" }, item.question, optional);
+}
+
+function clearButton(item, field) {
+  if (item.is_required || !field.clear) return null;
+  const spoken = `${word("clear")}: ${item.question}`;
+  return el("button", { type: "button", className: "quiet", "aria-label": spoken, onclick: field.clear }, word("clear"));
+}
+
+export function formItem(item, id) {
+  const field = makers[item.kind](item, id);
+  const error = el("p", { className: "error", id: `${id}-error` });
+  const element = el(areLabelled.has(item.kind) ? "div" : "fieldset", { className: `item ${item.kind}` },
+    titleOf(item, id), field.body, error, clearButton(item, field));
+  element.dataset.name = item.name;
+  const inputs = element.querySelectorAll("input, textarea");
+  inputs.forEach((input) => input.setAttribute("aria-describedby", error.id));
+
+  function show(problem) {
+    error.textContent = problem ?? "";
+    element.classList.toggle("is-wrong", problem !== null);
+    inputs.forEach((input) => {
+      if (input.type !== "radio") input.setAttribute("aria-invalid", String(problem !== null));
+    });
+  }
+  function check() {
+    const missing = item.is_required && field.value() === null ? word("answer_needed") : null;
+    const problem = field.problem?.() ?? missing;
+    show(problem);
+    return problem === null;
+  }
+  element.addEventListener("change", () => { if (error.textContent) check(); });
+  return { name: item.name, element, value: field.value, check, focus: () => inputs[0].focus() };
+}

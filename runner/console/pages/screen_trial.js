@@ -1,0 +1,72 @@
+// A trial: which option is this, or which of several alternatives to feel is the right one.
+
+import { el } from "./dom.js";
+import { question } from "./question.js";
+import { newGroupName, pickNumber, radioCard } from "./radio_cards.js";
+import { word } from "./words.js";
+
+function optionCards(options) {
+  const group = newGroupName();
+  const cards = options.map((label, index) =>
+    radioCard({ group, value: index, label, key: index < 9 ? String(index + 1) : null }));
+  return el("div", { className: "options" }, ...cards);
+}
+
+const letterOf = (label, index) =>
+  /^[a-z]$/i.test(label) ? label.toLowerCase() : String.fromCharCode("a".charCodeAt(0) + index);
+
+function alternativeCard({ label, index, group, feel }) {
+  const button = el("button", { type: "button", className: "feel", "aria-pressed": "false", onclick: () => feel(index) },
+    el("span", {}, word("feel", { label })));
+  const choose = radioCard({
+    group, value: index, label: word("this_one"), key: index < 9 ? String(index + 1) : null,
+    spokenLabel: `${word("this_one")}: ${label}`,
+  });
+  return el("div", { className: "alternative" }, button, choose);
+}
+
+function hint(labels) {
+  const keys = labels.map((label, index) => letterOf(label, index).toUpperCase()).join(", ");
+  return el("p", { className: "hint" }, word("feel_hint"), " ",
+    el("span", { className: "keys" }, word("feel_keys", { keys })));
+}
+
+function alternativeCards(labels, feel) {
+  const group = newGroupName();
+  const cards = labels.map((label, index) => alternativeCard({ label, index, group, feel }));
+  return el("div", { className: "alternatives" }, ...cards);
+}
+
+function showCurrent(element, current) {
+  element.querySelectorAll(".feel").forEach((button, index) => {
+    button.setAttribute("aria-pressed", String(index === current));
+  });
+}
+
+export function trialScreen({ trial }, { send, feel, say }) {
+  const labels = trial.alternatives ?? [];
+  let current = trial.current;
+  const feelOther = (index) => { if (index !== current) feel(index); };
+  const asked = question({
+    title: trial.question,
+    className: "trial",
+    body: labels.length > 0
+      ? [hint(labels), alternativeCards(labels, feelOther)]
+      : [optionCards(trial.options)],
+    say,
+    send: (value) => send("answer", Number(value)),
+  });
+  showCurrent(asked.element, current);
+
+  function press(key) {
+    const index = labels.findIndex((label, at) => letterOf(label, at) === key.toLowerCase());
+    if (index < 0) return pickNumber(asked.element, key);
+    feelOther(index);
+    return true;
+  }
+  function update(screen) {
+    current = screen.trial.current;
+    showCurrent(asked.element, current);
+  }
+  return { ...asked, press, update };
+}

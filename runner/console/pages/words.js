@@ -1,0 +1,26 @@
+// The page's own words in the session's language. Texts of the study come ready-made.
+
+let all = { en: {} };
+let words = {};
+
+export async function loadWords() {
+  const response = await fetch("messages.json");
+  if (!response.ok) throw new Error(`messages.json: ${response.status}`);
+  all = await response.json();
+  const preferred = navigator.languages.map((tag) => tag.slice(0, 2)).find((tag) => tag in all);
+  setLanguage(preferred ?? "en");
+}
+
+export function setLanguage(language) {
+  const known = language in all ? language : "en";
+  words = all[known];
+  document.documentElement.lang = known;
+}
+
+export function word(key, values = {}) {
+  const text = words[key] ?? all.en[key] ?? key;
+  return text.replace(/\{(\w+)\}/g, (whole, name) => values[name] ?? whole);
+}
+
+// For names that come from the program and may be newer than these pages.
+export const wordOr = (key, otherwise) => words[key] ?? otherwise;

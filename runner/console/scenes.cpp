@@ -1,0 +1,89 @@
+#include "runner/console/scenes.hpp"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <variant>
+namespace tapstudy::runner {
+namespace {
+using Json = nlohmann::json;
+
+Json json_of(const core::Vec3& v) {
+  return {v.x(), v.y(), v.z()};
+}
+
+Json json_of(const core::Fixation& fixation) {
+  switch (fixation.shape) {
+    case core::RegionShape::vertex:
+      return {{"kind", "vertex"}, {"at_m", json_of(fixation.at_m)}};
+    case core::RegionShape::disc:
+      return {{"kind", "disc"},
+              {"at_m", {fixation.at_m.x(), fixation.at_m.y()}},
+              {"radius_m", fixation.radius_m}};
+    case core::RegionShape::box:
+      return {{"kind", "box"},
+              {"low_m", json_of(fixation.low_m)},
+              {"high_m", json_of(fixation.high_m)}};
+    case core::RegionShape::ball:
+    case core::RegionShape::side:
+      break;
+  }
+  return nullptr;
+}
+
+Json shape_of(const core::Box& box) {
+  const core::Vec3 size_m = core::bounds(core::Shape{box}).size_m();
+  return {{"kind", "box"}, {"size_m", json_of(size_m)}};
+}
+
+Json shape_of(const core::Solid& solid) {
+  const core::TriangleSurface& surface = solid.surface();
+  std::vector<double> points;
+  for (const auto& point : surface.points_m.rowwise()) {
+    points.insert(points.end(), {point.x(), point.y(), point.z()});
+  }
+  std::vector<int> triangles;
+  for (const auto& triangle : surface.triangles.rowwise()) {
+    triangles.insert(triangles.end(), {triangle[0], triangle[1], triangle[2]});
+  }
+  return {{"kind", "surface"}, {"points_m", points}, {"triangles", triangles}};
+}
+
+Json points_of(const protocols::Protocol& protocol, const protocols::Plate& plate) {
+  Json points = Json::array();
+  const auto& own = plate.tapping_points_m;
+  for (const auto& [name, point] : own.empty() ? protocol.tapping_points_m : own) {
+    points.push_back({point.x(), point.y(), 0.0});
+  }
+  return points;
+}
+}  // namespace
+
+Scenes::Scenes(const protocols::Protocol& protocol, bool shows_tapping_points, bool shows_fixations)
+    : protocol_{protocol} {
+  for (const auto& [name, plate] : protocol.plates) {
+    Json json = std::visit([](const auto& shape) { return shape_of(shape); }, plate->shape);
+    json["tapping_points_m"] = shows_tapping_points ? points_of(protocol, *plate) : Json::array();
+    json["fixations"] = Json::array();
+    for (const core::Fixation& fixation : plate->fixations) {
+      if (const Json shown = json_of(fixation); shows_fixations && !shown.is_null()) {
+        json["fixations"].push_back(shown);
+      }
+    }
+    all_.push_back({plate.get(), protocol.placement.scaled(plate->lateral_ratio), json.dump()});
+  }
+}
+
+int Scenes::number_of(const std::string& stimulus) const {
+  const auto found =
+      std::ranges::find(all_, protocol_.stimulus(stimulus).plate.get(), &Scene::plate);
+  return static_cast<int>(found - all_.begin());
+}
+
+double Scenes::surface_along_normal_m() const {
+  return core::along_normal(protocol_.placement.origin_m);
+}
+
+core::Vec3 Scenes::to_scene(int number, const core::Vec3& device_position_m) const {
+  return at(number).placement.to_plate({device_position_m, core::Vec3::Zero()}).position_m;
+}
+}  // namespace tapstudy::runner

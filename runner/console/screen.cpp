@@ -1,0 +1,127 @@
+#include "runner/console/screen.hpp"
+
+#include <algorithm>
+#include <array>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "core/error.hpp"
+namespace tapstudy::runner {
+namespace {
+using Json = nlohmann::ordered_json;
+
+const char* name(ScreenKind kind) {
+  constexpr std::array names{"wait",     "instructions", "rest",   "trial", "confidence",
+                             "feedback", "message",      "paused", "ended"};
+  return names.at(static_cast<std::size_t>(kind));
+}
+
+const char* name(Message message) {
+  constexpr std::array names{
+      "", "presented_again", "skipped", "time_is_over", "comes_again", "operator_is_needed"};
+  return names.at(static_cast<std::size_t>(message));
+}
+
+Json json_of(const TooEarly& notice) {
+  constexpr std::array reasons{"plate_untouched", "alternatives_untouched", "time"};
+  return {{"reason", reasons.at(static_cast<std::size_t>(notice.reason))},
+          {"contacts", notice.min_contacts},
+          {"labels", notice.labels},
+          {"seconds", notice.min_seconds}};
+}
+
+Json json_of(const TrialScreen& trial) {
+  Json options = Json::array();
+  for (const protocols::Option& option : trial.prompt.options) {
+    options.push_back(option.label);
+  }
+  return {{"number", trial.prompt.number},
+          {"question", trial.prompt.question},
+          {"options", options},
+          {"alternatives", trial.prompt.alternative_labels},
+          {"current", trial.current},
+          {"notice", trial.notice ? json_of(*trial.notice) : Json{}}};
+}
+
+Json json_of(const protocols::Confidence& scale) {
+  return {{"steps", scale.steps}, {"low", scale.low}, {"high", scale.high}};
+}
+Json json_of(const FeedbackScreen& feedback) {
+  return {{"is_correct", feedback.is_correct}, {"right", feedback.right}};
+}
+Json json_of(const Progress& progress) {
+  return {
+      {"done", progress.done}, {"total", progress.total}, {"is_practice", progress.is_practice}};
+}
+Json json_of(int scene) {
+  return scene;
+}
+template <class Value>
+Json or_null(const std::optional<Value>& value) {
+  return value ? json_of(*value) : Json{};
+}
+
+// A message that only says what happened is read and dismissed.
+bool can_be_dismissed(const Screen& screen) {
+  return screen.kind == ScreenKind::message && screen.message != Message::operator_is_needed;
+}
+}  // namespace
+
+bool accepts(const Screen& screen, const ScreenInput& input) {
+  switch (input.action) {
+    case ScreenAction::go_on:
+      return screen.kind == ScreenKind::instructions || screen.kind == ScreenKind::rest ||
+             screen.kind == ScreenKind::feedback || can_be_dismissed(screen);
+    case ScreenAction::switch_to:
+      return screen.trial && input.value < screen.trial->prompt.alternative_labels.size();
+    case ScreenAction::answer:
+      return screen.trial && input.value < screen.trial->prompt.options.size();
+    case ScreenAction::confidence:
+      return screen.confidence && input.value >= 1 &&
+             input.value <= static_cast<std::size_t>(screen.confidence->steps);
+  }
+  return false;
+}
+
+ScreenInput parse_input(const std::string& text, std::int64_t& screen) {
+  static const std::array<std::pair<std::string, ScreenAction>, 4> actions{
+      {{"go_on", ScreenAction::go_on},
+       {"switch", ScreenAction::switch_to},
+       {"answer", ScreenAction::answer},
+       {"confidence", ScreenAction::confidence}}};
+  try {
+    const Json json = Json::parse(text);
+    const std::string action = json.at("action");
+    const auto found = std::ranges::find(actions, action, &decltype(actions)::value_type::first);
+    if (found == actions.end()) {
+      throw core::InvalidInput{"'" + action + "' is no action"};
+    }
+    screen = json.at("screen").get<std::int64_t>();
+    const bool has_value = found->second != ScreenAction::go_on;
+    const Json value = has_value ? json.at("value") : Json(0U);
+    if (!value.is_number_unsigned()) {
+      throw core::InvalidInput{"value is no number"};
+    }
+    return {found->second, value.get<std::size_t>()};
+  } catch (const Json::exception&) {
+    throw core::InvalidInput{"is no input of a screen"};
+  }
+}
+
+std::string to_json(const Screen& screen, const ScreenContext& context) {
+  const Json json{{"number", context.number},
+                  {"language", context.language},
+                  {"kind", name(screen.kind)},
+                  {"title", context.title},
+                  {"progress", or_null(screen.progress)},
+                  {"text", screen.text},
+                  {"message", name(screen.message)},
+                  {"min_seconds", screen.min_seconds},
+                  {"can_go_on", accepts(screen, {ScreenAction::go_on, 0})},
+                  {"trial", or_null(screen.trial)},
+                  {"confidence", or_null(screen.confidence)},
+                  {"feedback", or_null(screen.feedback)},
+                  {"scene", or_null(screen.scene)}};
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+}  // namespace tapstudy::runner

@@ -1,0 +1,77 @@
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "runner/participants/participant.hpp"
+namespace tapstudy::runner {
+enum class ScreenKind {
+  wait,
+  instructions,
+  rest,
+  trial,
+  confidence,
+  feedback,
+  message,
+  paused,
+  ended
+};
+// Sentences that are the program's own; pages say them in their language.
+enum class Message {
+  none,
+  presented_again,
+  skipped,
+  time_is_over,
+  comes_again,
+  operator_is_needed
+};
+
+struct TrialScreen {
+  TrialPrompt prompt;
+  std::size_t current{};  // the alternative that is rendered
+  std::optional<TooEarly> notice;
+};
+struct FeedbackScreen {
+  bool is_correct{};
+  std::string right;
+};
+struct Progress {
+  int done{};
+  int total{};
+  bool is_practice{};
+};
+
+// What the participant sees.
+struct Screen {
+  ScreenKind kind{ScreenKind::wait};
+  std::string text{};
+  Message message{Message::none};
+  double min_seconds{};  // of a rest
+  std::optional<Progress> progress{};
+  std::optional<TrialScreen> trial{};
+  std::optional<protocols::Confidence> confidence{};
+  std::optional<FeedbackScreen> feedback{};
+  std::optional<int> scene{};
+};
+
+// What the participant does with it.
+enum class ScreenAction { go_on, switch_to, answer, confidence };
+struct ScreenInput {
+  ScreenAction action{};
+  std::size_t value{};
+};
+// Whether that is one of the things that can be done with this screen.
+bool accepts(const Screen& screen, const ScreenInput& input);
+
+// Throws InvalidInput if the text is no input; the number of the screen that it belongs to is
+// returned in `screen`.
+ScreenInput parse_input(const std::string& json, std::int64_t& screen);
+
+struct ScreenContext {
+  std::int64_t number{};
+  std::string language;
+  std::string title;  // of the study
+};
+std::string to_json(const Screen& screen, const ScreenContext& context);
+}  // namespace tapstudy::runner

@@ -1,0 +1,60 @@
+#include "runner/console/screen_exchange.hpp"
+namespace tapstudy::runner {
+std::int64_t ScreenExchange::show(const Screen& screen) {
+  const std::lock_guard lock{mutex_};
+  screen_ = screen;
+  input_.reset();
+  is_taken_ = false;
+  return ++number_;
+}
+
+std::optional<ScreenInput> ScreenExchange::take(std::int64_t number) {
+  const std::lock_guard lock{mutex_};
+  if (number != number_ || !input_ || is_taken_) {
+    return std::nullopt;
+  }
+  is_taken_ = true;
+  return input_;
+}
+
+ScreenExchange::Shown ScreenExchange::shown() const {
+  const std::lock_guard lock{mutex_};
+  return {number_, to_json(screen_, {number_, language_, title_}), screen_.scene};
+}
+
+std::int64_t ScreenExchange::number() const {
+  const std::lock_guard lock{mutex_};
+  return number_;
+}
+
+std::string ScreenExchange::post(std::int64_t number, const ScreenInput& input) {
+  const std::lock_guard lock{mutex_};
+  if (number != number_) {
+    return "the screen has changed";
+  }
+  if (!accepts(screen_, input)) {
+    return "this screen has no such answer";
+  }
+  if (input_) {
+    const bool is_same = input_->action == input.action && input_->value == input.value;
+    return is_same ? "" : "this screen is answered already";
+  }
+  input_ = input;
+  return "";
+}
+
+void ScreenExchange::page_opened() {
+  const std::lock_guard lock{mutex_};
+  ++open_pages_;
+}
+
+void ScreenExchange::page_closed() {
+  const std::lock_guard lock{mutex_};
+  --open_pages_;
+}
+
+int ScreenExchange::open_pages() const {
+  const std::lock_guard lock{mutex_};
+  return open_pages_;
+}
+}  // namespace tapstudy::runner

@@ -1,0 +1,45 @@
+#pragma once
+#include <cstdint>
+#include <mutex>
+#include <optional>
+#include <string>
+
+#include "runner/console/screen.hpp"
+namespace tapstudy::runner {
+// Between the session, which shows screens, and the server's threads, which take what is done with
+// them. An input belongs to one screen: what comes for an earlier one, or a second time, is
+// refused.
+class ScreenExchange {
+ public:
+  ScreenExchange(std::string language, std::string title)
+      : language_{std::move(language)}, title_{std::move(title)} {}
+
+  // The session's thread. Returns the screen's number.
+  std::int64_t show(const Screen& screen);
+  std::optional<ScreenInput> take(std::int64_t number);
+
+  // Any thread.
+  struct Shown {
+    std::int64_t number{};
+    std::string json;
+    std::optional<int> scene;
+  };
+  Shown shown() const;
+  std::int64_t number() const;
+  // Empty: accepted; otherwise why not. The same input again, of the same screen, is accepted.
+  std::string post(std::int64_t number, const ScreenInput& input);
+  void page_opened();
+  void page_closed();
+  int open_pages() const;
+
+ private:
+  std::string language_;
+  std::string title_;
+  mutable std::mutex mutex_;
+  Screen screen_;
+  std::int64_t number_{0};
+  std::optional<ScreenInput> input_;
+  bool is_taken_{false};
+  int open_pages_{0};
+};
+}  // namespace tapstudy::runner

@@ -1,0 +1,19 @@
+#include "runner/participants/participant.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+namespace tapstudy::runner {
+std::string to_text(const TooEarly& too_early) {
+  const std::string times =
+      too_early.min_contacts == 1 ? "" : fmt::format(" {} times", too_early.min_contacts);
+  switch (too_early.reason) {
+    case TooEarly::Reason::plate_untouched:
+      return fmt::format("please tap the plate{} first", times);
+    case TooEarly::Reason::alternatives_untouched:
+      return fmt::format("please tap {}{} first", fmt::join(too_early.labels, ", "), times);
+    case TooEarly::Reason::time:
+      break;
+  }
+  return fmt::format("please take {:.3g} s at least", too_early.min_seconds);
+}
+}  // namespace tapstudy::runner

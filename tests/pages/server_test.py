@@ -1,0 +1,136 @@
+"""The pages' server against whoever is not meant, and against too much of everything."""
+import http.client
+import json
+import re
+import socket
+import sys
+import threading
+import time
+import unittest
+from urllib.parse import urlparse
+
+from program import Session
+
+
+class ServerTest(unittest.TestCase):
+    def setUp(self):
+        self.session = Session("paper/discrimination.yaml")
+        self.addCleanup(self.session.close)
+        self.at = urlparse(self.session.participant)
+        self.of_operator = urlparse(self.session.operator)
+
+    def ask(self, path, method="GET", body=None, headers=(), host=None):
+        connection = http.client.HTTPConnection(self.at.hostname, self.at.port, timeout=10)
+        try:
+            connection.putrequest(method, path, skip_host=True)
+            for name, value in {"Host": host or self.at.netloc, **dict(headers)}.items():
+                connection.putheader(name, value)
+            if body is not None:
+                connection.putheader("Content-Length", str(len(body)))
+            connection.endheaders(body)
+            reply = connection.getresponse()
+            return reply.status, reply.read()
+        finally:
+            connection.close()
+
+    def post(self, base, message, headers=(("X-Tapstudy", "1"),)):
+        return self.ask(base.path + "input", "POST", json.dumps(message).encode(), headers)
+
+    def test_nothing_is_served_without_the_token(self):
+        wrong = "0" * (len(self.at.path) - 2)
+        for path in ("/", "/style.css", f"/{wrong}/", f"/{wrong}/events", "//", "/%2e%2e/etc/passwd",
+                     self.at.path[:-2] + "/", self.at.path[1:-1]):
+            for method in ("GET", "POST", "PUT", "DELETE", "OPTIONS", "TRACE"):
+                status = self.ask(path, method, b"{}")[0]
+                self.assertIn(status, (400, 403, 404, 405, 501), f"{method} {path}")
+        self.assertEqual(self.ask(self.at.path)[0], 200)
+
+    def test_nothing_outside_the_pages_is_served(self):
+        for path in ("../../../etc/passwd", "%2e%2e/%2e%2e/etc/passwd", "..%2f..%2fetc/passwd",
+                     "scene/-1", "scene/99999999999999999999", "scene/", "no.js"):
+            status, body = self.ask(self.at.path + path)
+            self.assertIn(status, (400, 403, 404), path)
+            self.assertNotIn(b"root:", body)
+
+    def test_other_sites_and_names_are_refused(self):
+        for headers in ({"Origin": "http://evil.example"}, {"Origin": "null"},
+                        {"Sec-Fetch-Site": "cross-site"}, {"Sec-Fetch-Site": "same-site"}):
+            self.assertEqual(self.ask(self.at.path, headers=headers)[0], 403, headers)
+        for host in ("evil.example", f"evil.example:{self.at.port}", "127.0.0.1", "127.0.0.1:1"):
+            self.assertEqual(self.ask(self.at.path, host=host)[0], 403, host)
+        own = {"Origin": f"http://{self.at.netloc}", "Sec-Fetch-Site": "same-origin"}
+        self.assertEqual(self.ask(self.at.path, headers=own)[0], 200)
+
+    def test_a_form_of_another_page_cannot_post(self):
+        self.assertEqual(self.post(self.of_operator, {"command": "note x"}, ())[0], 405)
+        self.assertEqual(self.session.rows("SELECT * FROM operator_action"), [])
+
+    def test_each_page_can_do_only_its_own(self):
+        self.assertEqual(self.post(self.at, {"command": "end it"})[0], 409)
+        self.assertEqual(self.post(self.of_operator, {"screen": 1, "action": "go_on"})[0], 409)
+        self.assertEqual(self.post(self.of_operator, {"command": "note x"})[0], 200)
+        self.assertEqual(self.session.rows("SELECT detail FROM operator_action"), [("x",)])
+
+    def test_bodies_that_are_no_input_are_refused(self):
+        deep = b"[" * 60000
+        for body, allowed in ((b"", (409,)), (b"{", (409,)), (b"\xff\xfe", (409,)), (deep, (409,)),
+                              (b"x" * 70000, (413,))):
+            status = self.ask(self.at.path + "input", "POST", body, {"X-Tapstudy": "1"})[0]
+            self.assertIn(status, allowed)
+        self.assertEqual(self.post(self.of_operator, {"command": "note " + "x" * 3000})[0], 409)
+        self.assertEqual(self.post(self.of_operator, {"command": "note \u0000\u202e<script>"})[0], 200)
+
+    def stream(self):
+        """An open stream of events; nobody reads it."""
+        connection = socket.create_connection((self.at.hostname, self.at.port), timeout=10)
+        connection.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 1024)
+        connection.sendall(f"GET {self.at.path}events HTTP/1.1\r\nHost: {self.at.netloc}\r\n\r\n".encode())
+        self.addCleanup(connection.close)
+        return connection
+
+    def test_the_session_goes_on_with_a_flood_and_pages_that_do_not_read(self):
+        for _ in range(40):
+            self.stream()
+        is_over = threading.Event()
+
+        def flood():
+            while not is_over.is_set():
+                try:
+                    self.ask(self.at.path + "three.module.js")
+                except (OSError, http.client.HTTPException):
+                    pass
+        floods = [threading.Thread(target=flood) for _ in range(8)]
+        for one in floods:
+            one.start()
+        try:
+            self.answer_all()
+        finally:
+            is_over.set()
+            for one in floods:
+                one.join()
+        self.assertEqual(self.session.wait(), 0, self.session.said())
+        self.assertEqual(len(self.session.responses()), 8)
+
+    def screen_now(self):
+        connection = self.stream()
+        received = b""
+        while not (found := re.search(rb'"number":(\d+),"language"', received)):
+            part = connection.recv(1024)
+            if not part:
+                raise OSError("the stream ended")
+            received += part
+        connection.close()
+        return int(found.group(1))
+
+    def answer_all(self):
+        end = time.monotonic() + 60
+        while self.session.process.poll() is None and time.monotonic() < end:
+            try:
+                self.post(self.at, {"screen": self.screen_now(), "action": "answer", "value": 0})
+            except (OSError, http.client.HTTPException):
+                pass  # closed in the flood, or the session is over
+            time.sleep(0.2)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv, verbosity=2)

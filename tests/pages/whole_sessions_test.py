@@ -1,0 +1,172 @@
+"""The paper's three studies, each a whole session in a browser, by a participant and an operator."""
+import os
+import re
+import sys
+import unittest
+from pathlib import Path
+
+import browser
+from program import PROGRAM, Session
+
+SHOTS = os.environ.get("TAPSTUDY_SHOTS")
+DISCRIMINATION = ["acrylic_two", "mdf_two", "acrylic_three", "mdf_three"]
+
+
+class WholeSession(unittest.TestCase):
+    def start(self, protocol, *options, width=1280, height=800, **look):
+        self.session = Session(protocol, *options)
+        self.addCleanup(self.session.close)
+        self.driver = browser.start_browser(width, height, **look)
+        self.addCleanup(self.driver.quit)
+        browser.open_participant(self.driver, self.session.participant)
+
+    def watch(self):
+        self.operator = browser.start_browser(820, 1180)
+        self.addCleanup(self.operator.quit)
+        browser.open_operator(self.operator, self.session.operator)
+
+    def shoot(self, name, driver=None):
+        if SHOTS:
+            browser.screenshot(driver or self.driver, Path(SHOTS) / f"{name}.png")
+
+    def contacts(self):
+        found = re.search(r"\d+", browser.find(self.operator, "#contacts").text)
+        return int(found.group()) if found else 0
+
+    def wait_for_touch(self, contacts=2):
+        """So often from now on, by the simulated hand; an answer before is refused."""
+        before = self.contacts()
+        browser.wait_until(self.operator, f"{contacts} contacts",
+                           lambda: self.contacts() >= before + contacts)
+
+    def next_trial(self, number):
+        seen = lambda: (screen := browser.current_screen(self.driver)) and \
+            screen["kind"] == "trial" and self.trial_number() == number and screen["isSettled"] and screen
+        return browser.wait_until(self.driver, f"trial {number}", seen, 30)
+
+    def trial_number(self):
+        found = re.search(r"\d+", browser.find(self.driver, "#progress-text").text)
+        return int(found.group()) + 1 if found else None
+
+    def answer_until_accepted(self, answer, index):
+        """As a person does who is told to tap first."""
+        screen = browser.current_screen(self.driver)
+        answer(self.driver, index)
+
+        def moved_on():
+            now = browser.current_screen(self.driver)
+            if now and now["kind"] == "trial" and now["status"] and not now["isBusy"] and \
+                    now["progress"] == screen["progress"]:
+                answer(self.driver, index)
+                return False
+            return now and (now["kind"] != "trial" or now["progress"] != screen["progress"])
+        browser.wait_until(self.driver, "the next screen", moved_on, 30)
+
+    def finish(self):
+        browser.wait_for_screen(self.driver, "ended", patience_s=30)
+        self.assertEqual(self.session.wait(), 0, self.session.said())
+
+    def test_discrimination_by_mouse(self):
+        self.start("paper/discrimination.yaml")
+        given = []
+        for number in range(1, 9):
+            self.next_trial(number)
+            browser.check_no_sideways_scrolling(self.driver)
+            if number == 1:
+                self.assertEqual(browser.wait_for_view(self.driver), "canvas")
+                browser.check_axe(self.driver, ("serious", "critical"))
+            if number == 2:
+                self.shoot("participant")
+            self.answer_until_accepted(browser.answer_by_mouse, number % 4)
+            given.append(DISCRIMINATION[number % 4])
+        self.finish()
+        self.assertEqual(self.session.responses(), given)
+        browser.check_browser_log_is_empty(self.driver, but_for=("events", "ERR_"))
+
+    def choose(self, by_keyboard):
+        feel = browser.feel_by_keyboard if by_keyboard else browser.feel_by_mouse
+        answer = browser.answer_by_keyboard if by_keyboard else browser.answer_by_mouse
+        screen = browser.wait_for_screen(self.driver, "trial", patience_s=30)
+        browser.check_no_sideways_scrolling(self.driver)
+        count = len(screen["alternatives"])
+        for alternative in range(count):
+            feel(self.driver, alternative)
+            self.wait_for_touch()
+        self.answer_until_accepted(answer, count - 1)
+
+    def finish_choices(self, by_keyboard):
+        while browser.wait_for_screen(self.driver, "trial", "ended", patience_s=30)["kind"] == "trial":
+            self.choose(by_keyboard)
+        self.finish()
+        chosen = self.session.rows(
+            "SELECT response = (SELECT stimulus FROM alternative WHERE alternative.trial_id = "
+            "trial.trial_id ORDER BY position DESC LIMIT 1) FROM current_response "
+            "JOIN trial USING (trial_id) WHERE status = 'answered'")
+        self.assertTrue(chosen)
+        self.assertEqual({row[0] for row in chosen}, {1})  # the last label, whatever it stood for
+
+    def test_reality_of_vibration_by_keyboard_on_a_phone_in_german(self):
+        self.start("paper/reality_vibration.yaml", "--language", "de", width=375, height=700)
+        self.watch()
+        self.finish_choices(by_keyboard=True)
+
+    def test_reality_at_the_finger_by_mouse_in_japanese_without_webgl(self):
+        self.start("paper/reality_finger.yaml", "--language", "ja", has_webgl=False)
+        self.watch()
+        self.assertEqual(browser.wait_for_view(self.driver), "svg")
+        self.finish_choices(by_keyboard=False)
+
+    def test_the_operator_pauses_corrects_and_ends(self):
+        self.start("paper/discrimination.yaml")
+        self.watch()
+        browser.wait_for_state(self.operator, "exploring")
+        browser.check_axe(self.operator, ("serious", "critical"))
+        self.next_trial(1)
+        self.wait_for_touch()
+        self.shoot("operator", self.operator)
+        self.answer_until_accepted(browser.answer_by_mouse, 0)
+        self.next_trial(2)
+        browser.correct_to(self.operator, 3)
+        browser.wait_until(self.operator, "the correction",
+                           lambda: self.session.responses() == [DISCRIMINATION[3]])
+        browser.write_note(self.operator, "the participant coughed")
+        browser.command(self.operator, "pause")
+        browser.wait_for_screen(self.driver, "paused")
+        browser.wait_for_state(self.operator, "paused")
+        self.assertEqual(browser.operator_state(self.operator)["force"], "off")
+        self.session.type("resume")
+        self.next_trial(2)
+        self.session.type("skip")
+        browser.wait_for_screen(self.driver, "message")
+        browser.go_on_by_mouse(self.driver)
+        self.next_trial(3)
+        browser.command_with_reason(self.operator, "end", "feels sick")
+        browser.wait_for_screen(self.driver, "ended")
+        self.assertEqual(self.session.wait(), 130)
+        actions = [row[0] for row in self.session.rows(
+            "SELECT action || ' ' || detail FROM operator_action ORDER BY action_id")]
+        self.assertEqual(actions, ["correct mdf_three", "note the participant coughed", "pause ",
+                                   "resume ", "skip ", "end feels sick"])
+        self.assertEqual(self.session.rows("SELECT detail FROM session_event WHERE state = 'stopped'"),
+                         [("feels sick",)])
+
+    def test_a_page_that_vanishes_comes_back_to_the_same_question(self):
+        self.start("paper/discrimination.yaml")
+        self.next_trial(1)
+        self.driver.get("about:blank")
+        browser.open_participant(self.driver, self.session.participant)
+        self.next_trial(1)
+        self.answer_until_accepted(browser.answer_by_mouse, 1)
+        self.next_trial(2)
+        self.session.kill()
+        browser.wait_until(self.driver, "the banner", lambda: browser.current_screen(self.driver)["banner"])
+        self.session = Session("paper/discrimination.yaml", "--resume", directory=self.session.directory)
+        self.addCleanup(self.session.close)
+        browser.open_participant(self.driver, self.session.participant)
+        self.next_trial(2)
+        self.assertEqual(self.session.responses(), [DISCRIMINATION[1]])
+
+
+if __name__ == "__main__":
+    assert Path(PROGRAM).exists(), PROGRAM
+    unittest.main(argv=sys.argv, verbosity=2)

@@ -1,0 +1,69 @@
+#include "runner/console/screen_exchange.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "core/error.hpp"
+using namespace tapstudy;
+using namespace tapstudy::runner;
+
+namespace {
+Screen trial_screen() {
+  TrialPrompt prompt;
+  prompt.options = {{"mdf", "MDF"}, {"acrylic", "acrylic"}};
+  return {.kind = ScreenKind::trial, .trial = TrialScreen{prompt, 0, {}}};
+}
+const ScreenInput first{ScreenAction::answer, 0};
+const ScreenInput second{ScreenAction::answer, 1};
+}  // namespace
+
+TEST_CASE("an answer belongs to one screen, is taken once, and may be sent again",
+          "[runner][console]") {
+  ScreenExchange screens{"en", "a study"};
+  const auto instructions = screens.show({.kind = ScreenKind::instructions, .text = "Tap."});
+  const auto trial = screens.show(trial_screen());
+  CHECK_FALSE(screens.post(instructions, {ScreenAction::go_on, 0}).empty());
+  CHECK_FALSE(screens.take(trial));
+  CHECK(screens.post(trial, second).empty());
+  CHECK(screens.post(trial, second).empty());       // the network lost the reply
+  CHECK_FALSE(screens.post(trial, first).empty());  // a second thought comes too late
+  REQUIRE(screens.take(trial));
+  CHECK_FALSE(screens.take(trial));
+  CHECK(screens.post(trial, second).empty());
+  CHECK_FALSE(screens.take(trial));
+  const auto next = screens.show(trial_screen());
+  CHECK_FALSE(screens.post(trial, second).empty());
+  CHECK_FALSE(screens.take(next));
+}
+
+TEST_CASE("a screen takes what can be done with it and nothing else", "[runner][console]") {
+  const Screen trial = trial_screen();
+  CHECK(accepts(trial, second));
+  CHECK_FALSE(accepts(trial, {ScreenAction::answer, 2}));
+  CHECK_FALSE(accepts(trial, {ScreenAction::switch_to, 0}));  // there is nothing to switch
+  CHECK_FALSE(accepts(trial, {ScreenAction::go_on, 0}));
+  const Screen sure{.kind = ScreenKind::confidence, .confidence = protocols::Confidence{}};
+  CHECK_FALSE(accepts(sure, {ScreenAction::confidence, 0}));
+  CHECK(accepts(sure, {ScreenAction::confidence, 5}));
+  CHECK_FALSE(accepts(sure, {ScreenAction::confidence, 6}));
+  for (const ScreenKind kind : {ScreenKind::wait, ScreenKind::paused, ScreenKind::ended}) {
+    CHECK_FALSE(accepts({.kind = kind}, {ScreenAction::go_on, 0}));
+  }
+  CHECK_FALSE(accepts({.kind = ScreenKind::message, .message = Message::operator_is_needed},
+                      {ScreenAction::go_on, 0}));
+}
+
+TEST_CASE("what is no input is refused, whatever it is", "[runner][console]") {
+  std::int64_t screen = 0;
+  CHECK(parse_input(R"({"screen":7,"action":"answer","value":1})", screen).value == 1);
+  CHECK(screen == 7);
+  for (const char* const text :
+       {"", "{", "[]", "null", R"({"screen":7})", R"({"screen":7,"action":"quit"})",
+        R"({"screen":"7","action":"go_on"})", R"({"screen":7,"action":"answer"})",
+        R"({"screen":7,"action":"answer","value":-1})",
+        R"({"screen":7,"action":"answer","value":1.5})",
+        R"({"screen":7,"action":"answer","value":"1"})",
+        R"({"screen":7,"action":["answer"],"value":1})"}) {
+    CAPTURE(text);
+    CHECK_THROWS_AS(parse_input(text, screen), core::InvalidInput);
+  }
+}

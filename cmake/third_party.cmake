@@ -19,6 +19,12 @@ add_library(systemd::systemd INTERFACE IMPORTED)
 target_include_directories(systemd::systemd SYSTEM INTERFACE ${SYSTEMD_INCLUDE})
 target_link_libraries(systemd::systemd INTERFACE ${SYSTEMD_LIBRARY})
 
+find_path(ALSA_INCLUDE alsa/asoundlib.h REQUIRED)
+find_library(ALSA_LIBRARY asound REQUIRED)
+add_library(alsa::alsa INTERFACE IMPORTED)
+target_include_directories(alsa::alsa SYSTEM INTERFACE ${ALSA_INCLUDE})
+target_link_libraries(alsa::alsa INTERFACE ${ALSA_LIBRARY})
+
 find_path(LIBUSB_INCLUDE libusb.h PATH_SUFFIXES libusb-1.0 REQUIRED)
 find_library(LIBUSB_LIBRARY usb-1.0 REQUIRED)
 add_library(libusb::libusb INTERFACE IMPORTED)

@@ -55,6 +55,15 @@ void read_device(MapReader& top, const std::string& file, RigDevices devices, Ri
       (*device)->read_section(top, {std::filesystem::path{file}.parent_path().string(), &rig.text});
 }
 
+void read_audio(MapReader& top, Rig& rig) {
+  top.map("audio", Presence::optional, [&](MapReader& reader) {
+    core::AudioOutput& audio = rig.audio.emplace();
+    audio.card = reader.text("card", audio.card);
+    audio.rate_hz = reader.integer("rate_hz", 8000, 192'000, audio.rate_hz);
+    audio.gain_db = reader.number("gain_db", {-60.0, 60.0}, audio.gain_db);
+  });
+}
+
 Rig parse(const std::string& text, const std::string& file, RigDevices devices,
           Problems& problems) {
   MapReader top = MapReader::whole_file(text, file, problems);
@@ -71,6 +80,7 @@ Rig parse(const std::string& text, const std::string& file, RigDevices devices,
   read_loop(top, rig);
   read_placement(top, Presence::optional,
                  [&](const core::Placement& placement) { rig.placement = placement; });
+  read_audio(top, rig);
   top.finish();
   return rig;
 }

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "core/placement.hpp"
+#include "core/settings/audio_output.hpp"
 #include "core/settings/gate_settings.hpp"
 #include "core/settings/realtime_request.hpp"
 namespace tapstudy::protocols {
@@ -23,5 +24,6 @@ struct Rig {
   int max_late_ticks_in_a_row{0};            // 0: any
   double max_stall_s{0.0};                   // between two ticks; 0: any
   std::optional<core::Placement> placement;  // instead of the protocol's
+  std::optional<core::AudioOutput> audio;    // where masking noise is played
 };
 }  // namespace tapstudy::protocols

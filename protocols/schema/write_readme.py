@@ -30,9 +30,10 @@ EXAMPLES = {
         "rendering": ["protocols/paper/reality_finger.yaml"],
         "materials": [PAPER, EVERY_KEY],
         "plates": [PAPER, EVERY_KEY],
+        "masking": [EVERY_KEY],
         "simulation": ["protocols/paper/reality_finger.yaml", EVERY_KEY],
     },
-    "rig": {"": [SPIDAR], "remote": ["protocols/rigs/remote.yaml"], "replay": []},
+    "rig": {"": [SPIDAR], "remote": ["protocols/rigs/remote.yaml"], "replay": [], "audio": []},
     "calibration": {"": ["tests/data/spidar_calibration.yaml"]},
 }
 
@@ -47,6 +48,7 @@ UNITS = {
     "_rad": "rad",
     "_m3": "m³",
     "_db": "dB",
+    "_db_fs": "dB FS",
     "_hz": "Hz",
     "_kg": "kg",
     "_pa": "Pa",

@@ -12,6 +12,7 @@
 #include "device/loop/sleep_inhibitor.hpp"
 #include "results/recorder.hpp"
 #include "runner/devices/device_kind.hpp"
+#include "runner/devices/masking_noise.hpp"
 #include "runner/devices/reconnect.hpp"
 #include "runner/devices/rigs.hpp"
 #include "runner/participants/console_participant.hpp"
@@ -23,6 +24,7 @@
 #include "runner/terminal/session_lock.hpp"
 #include "runner/terminal/stop_signal.hpp"
 #include "runner/trial_loop/live_trial_loop.hpp"
+#include "runner/trial_loop/masked_trial_loop.hpp"
 namespace tapstudy::runner {
 namespace {
 // All checks possible before the device and the store are opened.
@@ -57,10 +59,15 @@ SessionLock lock_of(const LiveSession& live) {
 // Runs the remaining trials, reopening the device after a fault.
 void run_trials(const LiveSession& live, const device::LoopSettings& settings, ModelLibrary& models,
                 const DeviceRequest& device_request, std::unique_ptr<SessionDevice> device,
-                results::Store& store, BegunSession& session) {
+                device::AudioPlayer* masking, results::Store& store, BegunSession& session) {
   ConsoleParticipant participant{device_request.operator_input, [&] { device->get_ready(); }};
   results::Recorder recorder{store};
-  LiveTrialLoop trial_loop{device->device(), settings, live.rig.realtime, recorder};
+  LiveTrialLoop live_loop{device->device(), settings, live.rig.realtime, recorder};
+  std::optional<MaskedTrialLoop> masked_loop;
+  if (masking != nullptr) {
+    masked_loop.emplace(live_loop, *masking, played_noise(live.protocol, live.rig).level_db_fs);
+  }
+  TrialLoop& trial_loop = masked_loop ? static_cast<TrialLoop&>(*masked_loop) : live_loop;
   const auto begun = std::chrono::steady_clock::now();
   SessionStates states{
       session.row.id, [begun] {
@@ -70,7 +77,7 @@ void run_trials(const LiveSession& live, const device::LoopSettings& settings, M
   while (const auto interruption = engine.run(session.row.id, session.schedule, session.done)) {
     device = reconnect(to_text(*interruption), device_request, std::move(device));
     device->begin_session(session.row.seed);
-    trial_loop.use(device->device());
+    live_loop.use(device->device());
   }
 }
 }  // namespace
@@ -90,6 +97,7 @@ LiveOutcome run_live_session(const LiveSession& live) {
   }
   const DeviceRequest device_request{live.protocol, live.rig, input};
   std::unique_ptr<SessionDevice> device = kind_of(live.rig).open(device_request);
+  std::unique_ptr<device::PcmSink> card = open_masking_card(live.protocol, live.rig);
   results::Store store =
       results::Store::open_or_create(live.directory, study_row(live.protocol, live.protocol_file));
   BegunSession session = begin_session(
@@ -97,7 +105,9 @@ LiveOutcome run_live_session(const LiveSession& live) {
       run_preflight(live.rig, *device, settings.period, inhibitor ? inhibitor->outcome() : ""),
       store);
   device->begin_session(session.row.seed);
-  run_trials(live, settings, models, device_request, std::move(device), store, session);
+  const auto masking = masking_player(std::move(card), live.protocol, live.rig, session.row.seed);
+  run_trials(live, settings, models, device_request, std::move(device), masking.get(), store,
+             session);
   const std::size_t given_up =
       given_up_trials(live.protocol, session.row.participant_id, store).size();
   return {session.schedule.size() - given_up, given_up};

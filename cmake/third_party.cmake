@@ -31,6 +31,12 @@ add_library(libusb::libusb INTERFACE IMPORTED)
 target_include_directories(libusb::libusb SYSTEM INTERFACE ${LIBUSB_INCLUDE})
 target_link_libraries(libusb::libusb INTERFACE ${LIBUSB_LIBRARY})
 
+find_path(LIBLO_INCLUDE lo/lo.h REQUIRED)
+find_library(LIBLO_LIBRARY lo REQUIRED)
+add_library(liblo::liblo INTERFACE IMPORTED)
+target_include_directories(liblo::liblo SYSTEM INTERFACE ${LIBLO_INCLUDE})
+target_link_libraries(liblo::liblo INTERFACE ${LIBLO_LIBRARY})
+
 find_path(CSV_INCLUDE csv.h REQUIRED)
 find_library(CSV_LIBRARY csv REQUIRED)
 add_library(csv::csv INTERFACE IMPORTED)

@@ -64,6 +64,21 @@ void read_audio(MapReader& top, Rig& rig) {
   });
 }
 
+// A file is looked for beside the rig.
+void read_markers(MapReader& top, const std::string& file, Rig& rig) {
+  top.map("markers", Presence::optional, [&](MapReader& reader) {
+    reader.map("osc", Presence::optional, [&](MapReader& osc) {
+      OscTarget& target = rig.markers.osc.emplace();
+      target.host = osc.text("host", target.host);
+      target.port = osc.integer("port", 1, 65'535);
+    });
+    if (reader.has("lines")) {
+      rig.markers.lines =
+          (std::filesystem::path{file}.parent_path() / reader.text("lines")).string();
+    }
+  });
+}
+
 Rig parse(const std::string& text, const std::string& file, RigDevices devices,
           Problems& problems) {
   MapReader top = MapReader::whole_file(text, file, problems);
@@ -81,6 +96,7 @@ Rig parse(const std::string& text, const std::string& file, RigDevices devices,
   read_placement(top, Presence::optional,
                  [&](const core::Placement& placement) { rig.placement = placement; });
   read_audio(top, rig);
+  read_markers(top, file, rig);
   top.finish();
   return rig;
 }

@@ -13,6 +13,16 @@ struct DeviceSection {
   virtual ~DeviceSection() = default;
 };
 
+// Who is told of a session's changes of state: runner/markers/README.md.
+struct OscTarget {
+  std::string host{"127.0.0.1"};
+  int port{};
+};
+struct MarkerSettings {
+  std::optional<OscTarget> osc;
+  std::string lines;  // serial port, named pipe or file; empty: none
+};
+
 // The device and its limits, independent of the study.
 struct Rig {
   std::string text;    // complete source, with a calibration as second document
@@ -25,5 +35,6 @@ struct Rig {
   double max_stall_s{0.0};                   // between two ticks; 0: any
   std::optional<core::Placement> placement;  // instead of the protocol's
   std::optional<core::AudioOutput> audio;    // where masking noise is played
+  MarkerSettings markers;
 };
 }  // namespace tapstudy::protocols

@@ -33,7 +33,7 @@ EXAMPLES = {
         "masking": [EVERY_KEY],
         "simulation": ["protocols/paper/reality_finger.yaml", EVERY_KEY],
     },
-    "rig": {"": [SPIDAR], "remote": ["protocols/rigs/remote.yaml"], "replay": [], "audio": []},
+    "rig": {"": [SPIDAR], "remote": ["protocols/rigs/remote.yaml"], "replay": [], "audio": [], "markers": []},
     "calibration": {"": ["tests/data/spidar_calibration.yaml"]},
 }
 
@@ -227,9 +227,14 @@ def section_text(file, section, schema):
     return "\n".join(line for line in taken if section or line)
 
 
+def flow(value):
+    if not isinstance(value, dict):
+        return str(value)
+    return "{" + ", ".join(f"{key}: {flow(inner)}" for key, inner in value.items()) + "}"
+
+
 def as_yaml(section, example):
-    values = ", ".join(f"{key}: {value}" for key, value in example.items())
-    return f"{section}: {{{values}}}"
+    return f"{section}: {flow(example)}"
 
 
 def examples(name, section, schema):

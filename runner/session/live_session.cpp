@@ -15,6 +15,7 @@
 #include "runner/devices/masking_noise.hpp"
 #include "runner/devices/reconnect.hpp"
 #include "runner/devices/rigs.hpp"
+#include "runner/markers/markers.hpp"
 #include "runner/participants/console_participant.hpp"
 #include "runner/session/given_up_trials.hpp"
 #include "runner/session/session_row.hpp"
@@ -56,23 +57,32 @@ SessionLock lock_of(const LiveSession& live) {
           fmt::format("participant '{}' is in a session of this study right now", id)};
 }
 
+// What plays and what is told beside the trials.
+struct Company {
+  std::unique_ptr<device::AudioPlayer> masking;  // null: none
+  Markers& markers;
+};
+
 // Runs the remaining trials, reopening the device after a fault.
 void run_trials(const LiveSession& live, const device::LoopSettings& settings, ModelLibrary& models,
                 const DeviceRequest& device_request, std::unique_ptr<SessionDevice> device,
-                device::AudioPlayer* masking, results::Store& store, BegunSession& session) {
+                const Company& company, results::Store& store, BegunSession& session) {
   ConsoleParticipant participant{device_request.operator_input, [&] { device->get_ready(); }};
   results::Recorder recorder{store};
   LiveTrialLoop live_loop{device->device(), settings, live.rig.realtime, recorder};
   std::optional<MaskedTrialLoop> masked_loop;
-  if (masking != nullptr) {
-    masked_loop.emplace(live_loop, *masking, played_noise(live.protocol, live.rig).level_db_fs);
+  if (company.masking) {
+    masked_loop.emplace(live_loop, *company.masking,
+                        played_noise(live.protocol, live.rig).level_db_fs);
   }
   TrialLoop& trial_loop = masked_loop ? static_cast<TrialLoop&>(*masked_loop) : live_loop;
   const auto begun = std::chrono::steady_clock::now();
   SessionStates states{
-      session.row.id, [begun] {
+      session.row.id,
+      [begun] {
         return std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
-      }};
+      },
+      [&](const results::SessionEventRow& change) { company.markers.send(change); }};
   TrialEngine engine{live.protocol, models, trial_loop, participant, recorder, states};
   while (const auto interruption = engine.run(session.row.id, session.schedule, session.done)) {
     device = reconnect(to_text(*interruption), device_request, std::move(device));
@@ -97,6 +107,7 @@ LiveOutcome run_live_session(const LiveSession& live) {
   }
   const DeviceRequest device_request{live.protocol, live.rig, input};
   std::unique_ptr<SessionDevice> device = kind_of(live.rig).open(device_request);
+  Markers markers{live.rig.markers};
   std::unique_ptr<device::PcmSink> card = open_masking_card(live.protocol, live.rig);
   results::Store store =
       results::Store::open_or_create(live.directory, study_row(live.protocol, live.protocol_file));
@@ -105,9 +116,9 @@ LiveOutcome run_live_session(const LiveSession& live) {
       run_preflight(live.rig, *device, settings.period, inhibitor ? inhibitor->outcome() : ""),
       store);
   device->begin_session(session.row.seed);
-  const auto masking = masking_player(std::move(card), live.protocol, live.rig, session.row.seed);
-  run_trials(live, settings, models, device_request, std::move(device), masking.get(), store,
-             session);
+  const Company company{masking_player(std::move(card), live.protocol, live.rig, session.row.seed),
+                        markers};
+  run_trials(live, settings, models, device_request, std::move(device), company, store, session);
   const std::size_t given_up =
       given_up_trials(live.protocol, session.row.participant_id, store).size();
   return {session.schedule.size() - given_up, given_up};

@@ -195,7 +195,8 @@ TEST_CASE("the schemas of rigs and calibrations have exactly the keys that the r
   testing::write(directory / "spidar_calibration.yaml", calibration());
   std::set<std::string> asked;
   for (const std::string& rig :
-       {shipped_rig("spidar_g6") + "audio: {}\n", shipped_rig("remote"), replay_rig}) {
+       {shipped_rig("spidar_g6") + "audio: {}\nmarkers: {osc: {port: 9000}, lines: x}\n",
+        shipped_rig("remote"), replay_rig}) {
     asked.merge(runner::rig_keys_asked_for(rig, directory / "rig.yaml"));
   }
   // these are asked for only where they stand
@@ -223,6 +224,11 @@ TEST_CASE("schema and reader accept the same rigs", "[protocols][rig][schema][sl
       {"simulated_hand", "max_force_n: 10\n", "max_force_n: 10\naudio: {rate_hz: 1}\n"},
       {"simulated_hand", "max_force_n: 10\n", "max_force_n: 10\naudio: {gain_db: 61}\n"},
       {"simulated_hand", "max_force_n: 10\n", "max_force_n: 10\naudio: {volume: 1}\n"},
+      {"simulated_hand", "max_force_n: 10\n", "max_force_n: 10\nmarkers: {osc: {port: 9000}}\n"},
+      {"simulated_hand", "max_force_n: 10\n", "max_force_n: 10\nmarkers: {osc: {port: 0}}\n"},
+      {"simulated_hand", "max_force_n: 10\n", "max_force_n: 10\nmarkers: {osc: {host: x}}\n"},
+      {"simulated_hand", "max_force_n: 10\n", "max_force_n: 10\nmarkers: {lines: \"\"}\n"},
+      {"simulated_hand", "max_force_n: 10\n", "max_force_n: 10\nmarkers: {lsl: x}\n"},
       {"spidar_g6", "fifo_priority: 80", "fifo_priority: 100"},
       {"spidar_g6", "lock_memory: true", "lock_memory: 1"},
       {"spidar_g6", "type: X3R,", ""},

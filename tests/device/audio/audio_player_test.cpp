@@ -150,6 +150,7 @@ TEST_CASE("a card that vanishes is told with its cause, and not played on again"
   const int writes = script.writes;
   playing.player.fade_out();
   CHECK(seconds_of([&] { playing.player.fade_in(); }) < 0.5 * slow_s);
+  std::this_thread::sleep_for(std::chrono::milliseconds{100});
   CHECK(script.writes == writes);
   CHECK(playing.player.played().loss);
 }

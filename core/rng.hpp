@@ -60,7 +60,8 @@ enum class Purpose : std::uint64_t {
   memory,
   participant,
   counterbalancing,
-  person
+  person,
+  masking
 };
 
 // The seed of one stream of a study. Mixes by the finaliser of SplitMix64 (Steele et al. 2014).

@@ -9,6 +9,7 @@
 #include "core/model/plate.hpp"
 #include "core/placement.hpp"
 #include "core/settings/hand_body.hpp"
+#include "core/settings/masking_noise.hpp"
 #include "core/settings/render_settings.hpp"
 #include "core/techniques/technique.hpp"
 #include "protocols/surface/surface_source.hpp"
@@ -166,6 +167,7 @@ struct Protocol {
   std::vector<Block> blocks;
   std::uint64_t counterbalancing_seed{1};  // which participant gets which balanced order
   std::vector<Hypothesis> hypotheses;
+  std::optional<core::MaskingNoise> masking;  // in every trial
   Simulation simulation;
 
   // Throws InvalidInput listing the known stimuli.

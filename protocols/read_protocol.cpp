@@ -37,6 +37,7 @@ Protocol parse(const std::string& text, const std::string& file, const ReadFile&
   read_stimuli(top, protocol);
   read_blocks(top, protocol);
   read_hypotheses(top, protocol);
+  read_masking(top, protocol);
   read_simulation(top, protocol);
   top.finish();
   return protocol;

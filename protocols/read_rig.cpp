@@ -55,6 +55,30 @@ void read_device(MapReader& top, const std::string& file, RigDevices devices, Ri
       (*device)->read_section(top, {std::filesystem::path{file}.parent_path().string(), &rig.text});
 }
 
+void read_audio(MapReader& top, Rig& rig) {
+  top.map("audio", Presence::optional, [&](MapReader& reader) {
+    core::AudioOutput& audio = rig.audio.emplace();
+    audio.card = reader.text("card", audio.card);
+    audio.rate_hz = reader.integer("rate_hz", 8000, 192'000, audio.rate_hz);
+    audio.gain_db = reader.number("gain_db", {-60.0, 60.0}, audio.gain_db);
+  });
+}
+
+// A file is looked for beside the rig.
+void read_markers(MapReader& top, const std::string& file, Rig& rig) {
+  top.map("markers", Presence::optional, [&](MapReader& reader) {
+    reader.map("osc", Presence::optional, [&](MapReader& osc) {
+      OscTarget& target = rig.markers.osc.emplace();
+      target.host = osc.text("host", target.host);
+      target.port = osc.integer("port", 1, 65'535);
+    });
+    if (reader.has("lines")) {
+      rig.markers.lines =
+          (std::filesystem::path{file}.parent_path() / reader.text("lines")).string();
+    }
+  });
+}
+
 Rig parse(const std::string& text, const std::string& file, RigDevices devices,
           Problems& problems) {
   MapReader top = MapReader::whole_file(text, file, problems);
@@ -71,6 +95,8 @@ Rig parse(const std::string& text, const std::string& file, RigDevices devices,
   read_loop(top, rig);
   read_placement(top, Presence::optional,
                  [&](const core::Placement& placement) { rig.placement = placement; });
+  read_audio(top, rig);
+  read_markers(top, file, rig);
   top.finish();
   return rig;
 }

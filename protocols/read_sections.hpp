@@ -17,6 +17,7 @@ void read_plates(MapReader& top, Protocol& protocol, const ReadFile& read_file);
 void read_stimuli(MapReader& top, Protocol& protocol);
 void read_blocks(MapReader& top, Protocol& protocol);
 void read_hypotheses(MapReader& top, Protocol& protocol);
+void read_masking(MapReader& top, Protocol& protocol);
 void read_simulation(MapReader& top, Protocol& protocol);
 
 std::vector<std::string> stimulus_names(const Protocol& protocol);

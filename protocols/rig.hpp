@@ -4,12 +4,23 @@
 #include <string>
 
 #include "core/placement.hpp"
+#include "core/settings/audio_output.hpp"
 #include "core/settings/gate_settings.hpp"
 #include "core/settings/realtime_request.hpp"
 namespace tapstudy::protocols {
 // Base class of the device-specific settings in a rig.
 struct DeviceSection {
   virtual ~DeviceSection() = default;
+};
+
+// Who is told of a session's changes of state: runner/markers/README.md.
+struct OscTarget {
+  std::string host{"127.0.0.1"};
+  int port{};
+};
+struct MarkerSettings {
+  std::optional<OscTarget> osc;
+  std::string lines;  // serial port, named pipe or file; empty: none
 };
 
 // The device and its limits, independent of the study.
@@ -23,5 +34,7 @@ struct Rig {
   int max_late_ticks_in_a_row{0};            // 0: any
   double max_stall_s{0.0};                   // between two ticks; 0: any
   std::optional<core::Placement> placement;  // instead of the protocol's
+  std::optional<core::AudioOutput> audio;    // where masking noise is played
+  MarkerSettings markers;
 };
 }  // namespace tapstudy::protocols

@@ -84,9 +84,14 @@ struct CorrectionRow {
   std::optional<bool> is_correct;
 };
 struct EventRow {
-  double t_s{};      // from the first tick of the trial
-  std::string kind;  // contact, impact, late_impact, release, switch
-  double value{};    // impacts: speed m/s; switch: position of the alternative; else 0
+  double t_s{};  // from the first tick of the trial
+  // contact, impact, late_impact, release, switch; of the masking noise, which is played from
+  // before the first tick: masking (it was), and of the whole trial masking_underrun, masking_cut
+  // (only where there were any) and masking_lost (the card plays no more)
+  std::string kind;
+  // impacts: speed m/s; switch: position of the alternative; masking: RMS in dB FS;
+  // masking_underrun, masking_cut: how many gaps, samples beyond full scale; else 0
+  double value{};
 };
 struct TraceChunk {
   std::int64_t first_tick{};

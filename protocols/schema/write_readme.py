@@ -30,9 +30,10 @@ EXAMPLES = {
         "rendering": ["protocols/paper/reality_finger.yaml"],
         "materials": [PAPER, EVERY_KEY],
         "plates": [PAPER, EVERY_KEY],
+        "masking": [EVERY_KEY],
         "simulation": ["protocols/paper/reality_finger.yaml", EVERY_KEY],
     },
-    "rig": {"": [SPIDAR], "remote": ["protocols/rigs/remote.yaml"], "replay": []},
+    "rig": {"": [SPIDAR], "remote": ["protocols/rigs/remote.yaml"], "replay": [], "audio": [], "markers": []},
     "calibration": {"": ["tests/data/spidar_calibration.yaml"]},
 }
 
@@ -47,6 +48,7 @@ UNITS = {
     "_rad": "rad",
     "_m3": "m³",
     "_db": "dB",
+    "_db_fs": "dB FS",
     "_hz": "Hz",
     "_kg": "kg",
     "_pa": "Pa",
@@ -225,9 +227,14 @@ def section_text(file, section, schema):
     return "\n".join(line for line in taken if section or line)
 
 
+def flow(value):
+    if not isinstance(value, dict):
+        return str(value)
+    return "{" + ", ".join(f"{key}: {flow(inner)}" for key, inner in value.items()) + "}"
+
+
 def as_yaml(section, example):
-    values = ", ".join(f"{key}: {value}" for key, value in example.items())
-    return f"{section}: {{{values}}}"
+    return f"{section}: {flow(example)}"
 
 
 def examples(name, section, schema):

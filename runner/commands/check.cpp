@@ -13,6 +13,7 @@
 #include "runner/commands/commands.hpp"
 #include "runner/commands/seed.hpp"
 #include "runner/devices/device_kind.hpp"
+#include "runner/devices/masking_noise.hpp"
 #include "runner/devices/rigs.hpp"
 #include "runner/session/session_row.hpp"
 #include "runner/stimuli/model_library.hpp"
@@ -165,6 +166,9 @@ void run_check(const CheckOptions& options) {
     delay_ticks = kind_of(rig).delay_ticks(rig);
   }
   print_design(protocol, options.participants);
+  if (protocol.masking) {
+    fmt::print("\nmasking\n  {}\n", described(*protocol.masking));
+  }
   print_models(protocol);
   print_contact(protocol, delay_ticks);
   const int index = options.participants - 1;

@@ -9,6 +9,7 @@
 #include "protocols/read_rig.hpp"
 #include "protocols/yaml/text_file.hpp"
 #include "runner/devices/device_kind.hpp"
+#include "runner/devices/masking_noise.hpp"
 namespace tapstudy::runner {
 namespace {
 constexpr device::Nanoseconds max_heartbeat_gap = 100'000'000;
@@ -88,5 +89,6 @@ device::LoopSettings loop_settings(const protocols::Protocol& protocol, const pr
 void check_fits(const protocols::Protocol& protocol, const protocols::Rig& rig) {
   check_workspace(protocol, rig);
   kind_of(rig).check(rig);
+  check_masking(protocol, rig);
 }
 }  // namespace tapstudy::runner

@@ -16,7 +16,7 @@ protocols::Rig simulated_rig();
 
 // The loop settings for this protocol on this rig. Throws InvalidInput if they are incompatible.
 device::LoopSettings loop_settings(const protocols::Protocol& protocol, const protocols::Rig& rig);
-// Throws InvalidInput if a tapping point is outside the device's workspace, or if the device's own
-// section is implausible.
+// Throws InvalidInput if a tapping point is outside the device's workspace, if the device's own
+// section is implausible, or if its card cannot play the masking noise.
 void check_fits(const protocols::Protocol& protocol, const protocols::Rig& rig);
 }  // namespace tapstudy::runner

@@ -61,9 +61,16 @@ bool may_follow(SessionState before, SessionState after) {
   return std::ranges::find(row_of(before).next, after) != row_of(before).next.end();
 }
 
-SessionStates::SessionStates(std::int64_t session_id, Now now_s)
-    : session_id_{session_id}, now_s_{std::move(now_s)} {
-  events_.push_back({session_id_, now_s_(), std::string{name(state_)}, {}, {}});
+SessionStates::SessionStates(std::int64_t session_id, Now now_s, Listener listener)
+    : session_id_{session_id}, now_s_{std::move(now_s)}, listener_{std::move(listener)} {
+  note({}, {});
+}
+
+void SessionStates::note(std::optional<int> trial, std::string detail) {
+  events_.push_back({session_id_, now_s_(), std::string{name(state_)}, trial, std::move(detail)});
+  if (listener_) {
+    listener_(events_.back());
+  }
 }
 
 void SessionStates::enter(SessionState state, std::optional<int> trial, std::string detail) {
@@ -72,10 +79,7 @@ void SessionStates::enter(SessionState state, std::optional<int> trial, std::str
         fmt::format("a session that is {} cannot become {}", name(state_), name(state))};
   }
   state_ = state;
-  events_.push_back({session_id_, now_s_(), std::string{name(state)}, trial, std::move(detail)});
-  for (const Listener& listener : listeners_) {
-    listener(events_.back());
-  }
+  note(trial, std::move(detail));
 }
 
 std::vector<results::SessionEventRow> SessionStates::take_events() {

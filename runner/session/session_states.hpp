@@ -32,21 +32,22 @@ bool may_follow(SessionState before, SessionState after);
 class SessionStates {
  public:
   using Now = std::function<double()>;  // [s], from the session's begin
-  SessionStates(std::int64_t session_id, Now now_s);
+  // Told of each change as it happens, the session's begin included.
+  using Listener = std::function<void(const results::SessionEventRow&)>;
+  SessionStates(std::int64_t session_id, Now now_s, Listener listener = {});
   // Throws std::logic_error if the state may not follow the present one.
   void enter(SessionState state, std::optional<int> trial = {}, std::string detail = {});
-  // Called at each change.
-  using Listener = std::function<void(const results::SessionEventRow&)>;
-  void listen(Listener listener) { listeners_.push_back(std::move(listener)); }
   SessionState state() const { return state_; }
   // The changes since the last call.
   std::vector<results::SessionEventRow> take_events();
 
  private:
+  void note(std::optional<int> trial, std::string detail);
+
   std::int64_t session_id_;
   Now now_s_;
+  Listener listener_;
   SessionState state_{SessionState::begun};
   std::vector<results::SessionEventRow> events_;
-  std::vector<Listener> listeners_;
 };
 }  // namespace tapstudy::runner

@@ -151,3 +151,14 @@ TEST_CASE("stimuli of one plate share it, and so do those of one material", "[pr
   CHECK(protocol.stimulus("mdf_two").material == protocol.stimulus("mdf_three").material);
   CHECK(protocol.stimulus("mdf_two").plate != protocol.stimulus("mdf_three").plate);
 }
+
+TEST_CASE("the edges of masking noise are in order, and for a band only", "[protocols]") {
+  const auto with = [](const std::string& masking) {
+    return refusal(discrimination() + "masking: {" + masking + ", level_db_fs: -30}\n");
+  };
+  CHECK_THAT(with("kind: band, band_hz: [1000, 100]"),
+             Contains("masking.band_hz: its edges are not in order"));
+  CHECK_THAT(with("kind: pink, band_hz: [100, 1000]"),
+             Contains("masking.band_hz: is for kind: band only"));
+  CHECK_THAT(with("kind: band"), Contains("masking.band_hz: is missing"));
+}

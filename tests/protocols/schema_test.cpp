@@ -142,6 +142,16 @@ TEST_CASE("schema and reader accept the same protocols", "[protocols][schema][sl
       {"claim: chosen_above_chance, stimulus: a", "claim: chosen_above_chance"},
       {"taps_per_visit: 4", "taps_per_visit: 0"},
       {"noise_db: 9", "noise_db: -9"},
+      {"kind: band", "kind: brown"},
+      {"kind: band", "kind: pink"},
+      {"kind: band, level_db_fs: -30, band_hz: [100, 1000]", "kind: pink, level_db_fs: -30"},
+      {"level_db_fs: -30, band_hz: [100, 1000]", "level_db_fs: -30"},
+      {"level_db_fs: -30, ", ""},
+      {"level_db_fs: -30", "level_db_fs: -11"},
+      {"band_hz: [100, 1000]", "band_hz: [100]"},
+      {"band_hz: [100, 1000]", "band_hz: [10, 1000]"},
+      {"ramp_s: 0.5", "ramp_s: 0"},
+      {"is_required: true", "is_required: 1"},
       {"simulation:\n  hand: {", "simulation:\n  foot: {}\n  hand: {"},
   }));
   INFO(from << " → " << to);
@@ -184,7 +194,9 @@ TEST_CASE("the schemas of rigs and calibrations have exactly the keys that the r
   const testing::TempDirectory directory;
   testing::write(directory / "spidar_calibration.yaml", calibration());
   std::set<std::string> asked;
-  for (const std::string& rig : {shipped_rig("spidar_g6"), shipped_rig("remote"), replay_rig}) {
+  for (const std::string& rig :
+       {shipped_rig("spidar_g6") + "audio: {}\nmarkers: {osc: {port: 9000}, lines: x}\n",
+        shipped_rig("remote"), replay_rig}) {
     asked.merge(runner::rig_keys_asked_for(rig, directory / "rig.yaml"));
   }
   // these are asked for only where they stand
@@ -207,6 +219,16 @@ TEST_CASE("schema and reader accept the same rigs", "[protocols][rig][schema][sl
       {"simulated_hand", "max_force_n: 10\n", "max_force_n: 0\n"},
       {"simulated_hand", "max_force_n: 10\n", "max_force_n: 10\nloop: {cpu: 1}\n"},
       {"simulated_hand", "max_force_n: 10\n", "max_force_n: 10\nloop: {cpu: -1}\n"},
+      {"simulated_hand", "max_force_n: 10\n", "max_force_n: 10\naudio: {card: \"hw:1,0\"}\n"},
+      {"simulated_hand", "max_force_n: 10\n", "max_force_n: 10\naudio: {card: \"\"}\n"},
+      {"simulated_hand", "max_force_n: 10\n", "max_force_n: 10\naudio: {rate_hz: 1}\n"},
+      {"simulated_hand", "max_force_n: 10\n", "max_force_n: 10\naudio: {gain_db: 61}\n"},
+      {"simulated_hand", "max_force_n: 10\n", "max_force_n: 10\naudio: {volume: 1}\n"},
+      {"simulated_hand", "max_force_n: 10\n", "max_force_n: 10\nmarkers: {osc: {port: 9000}}\n"},
+      {"simulated_hand", "max_force_n: 10\n", "max_force_n: 10\nmarkers: {osc: {port: 0}}\n"},
+      {"simulated_hand", "max_force_n: 10\n", "max_force_n: 10\nmarkers: {osc: {host: x}}\n"},
+      {"simulated_hand", "max_force_n: 10\n", "max_force_n: 10\nmarkers: {lines: \"\"}\n"},
+      {"simulated_hand", "max_force_n: 10\n", "max_force_n: 10\nmarkers: {lsl: x}\n"},
       {"spidar_g6", "fifo_priority: 80", "fifo_priority: 100"},
       {"spidar_g6", "lock_memory: true", "lock_memory: 1"},
       {"spidar_g6", "type: X3R,", ""},

@@ -1,0 +1,138 @@
+#include "device/audio/audio_player.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "device/loop/realtime.hpp"
+namespace tapstudy::device {
+namespace {
+constexpr int max_lost_in_a_row = 10;  // a second
+
+// Cuts to full scale and tells how often; what is no number is silence.
+std::int64_t cut_to_full_scale(std::span<float> samples) noexcept {
+  std::int64_t cut = 0;
+  for (float& sample : samples) {
+    const float allowed = std::isfinite(sample) ? std::clamp(sample, -1.0F, 1.0F) : 0.0F;
+    cut += allowed == sample ? 0 : 1;
+    sample = allowed;
+  }
+  return cut;
+}
+
+// Keeps a thread from spinning where a card takes whatever it is given, as ALSA's null does: it may
+// play at twice the speed of the clock, which leaves a real card free to follow its own.
+class Pace {
+ public:
+  explicit Pace(const PcmSink& sink)
+      : rate_hz_{sink.rate_hz()}, ahead_frames_{static_cast<double>(sink.buffer_frames())} {}
+  void wait_after(std::size_t frames) {
+    frames_ += static_cast<double>(frames);
+    const std::chrono::duration<double> due{(frames_ - ahead_frames_) / (2.0 * rate_hz_)};
+    std::this_thread::sleep_until(begun_ + due);
+  }
+
+ private:
+  std::chrono::steady_clock::time_point begun_{std::chrono::steady_clock::now()};
+  double rate_hz_;
+  double ahead_frames_;
+  double frames_{0.0};
+};
+}  // namespace
+
+AudioPlayer::AudioPlayer(std::unique_ptr<PcmSink> sink, std::unique_ptr<SampleSource> source,
+                         double ramp_s, const core::RealtimeRequest& realtime)
+    : sink_{std::move(sink)},
+      source_{std::move(source)},
+      ramp_time_{ramp_s},
+      realtime_{realtime},
+      ramp_{ramp_s, sink_->rate_hz()},
+      period_(sink_->period_frames()),
+      thread_{[this] { run(); }} {}
+
+AudioPlayer::~AudioPlayer() {
+  {
+    const std::lock_guard lock{mutex_};
+    wanted_ = Heard::no;
+    is_ending_ = true;
+  }
+  changed_.notify_all();
+  thread_.join();
+}
+
+void AudioPlayer::fade_in() {
+  std::unique_lock lock{mutex_};
+  played_ = {0, 0, played_.loss};
+  wanted_ = Heard::yes;
+  changed_.notify_all();
+  changed_.wait_for(lock, ramp_time_, [this] { return played_.loss.has_value(); });
+}
+
+void AudioPlayer::fade_out() {
+  const std::lock_guard lock{mutex_};
+  wanted_ = Heard::no;
+}
+
+Played AudioPlayer::played() const {
+  const std::lock_guard lock{mutex_};
+  return played_;
+}
+
+Heard AudioPlayer::wanted() const {
+  const std::lock_guard lock{mutex_};
+  return wanted_;
+}
+
+bool AudioPlayer::is_asked_to_play() {
+  std::unique_lock lock{mutex_};
+  changed_.wait(lock, [this] { return is_ending_ || (wanted_ == Heard::yes && !played_.loss); });
+  return !is_ending_;
+}
+
+void AudioPlayer::run() {
+  ask_for_realtime(realtime_);
+  while (is_asked_to_play()) {
+    sink_->begin();
+    play();
+    sink_->end();
+  }
+}
+
+// Until it is faded out and all but silence has left the buffer.
+void AudioPlayer::play() {
+  Pace pace{*sink_};
+  std::size_t silent_frames = 0;
+  while (silent_frames <= sink_->buffer_frames()) {
+    const Heard is_wanted = wanted();
+    source_->fill(period_);
+    ramp_.apply(period_, is_wanted);
+    const std::int64_t cut = cut_to_full_scale(period_);
+    const PcmOutcome outcome = sink_->write(period_);
+    const bool fails_at_its_end = is_wanted == Heard::no && outcome != PcmOutcome::played;
+    if (!note(outcome, cut) || fails_at_its_end) {
+      return;
+    }
+    silent_frames = ramp_.is_silent() ? silent_frames + period_.size() : 0;
+    pace.wait_after(period_.size());
+  }
+}
+
+bool AudioPlayer::note(PcmOutcome outcome, std::int64_t cut) {
+  lost_in_a_row_ = outcome == PcmOutcome::lost ? lost_in_a_row_ + 1 : 0;
+  const bool takes_nothing = lost_in_a_row_ >= max_lost_in_a_row;
+  const bool is_gone = outcome == PcmOutcome::gone || takes_nothing;
+  {
+    const std::lock_guard lock{mutex_};
+    played_.cut += cut;
+    played_.underruns += outcome == PcmOutcome::underrun || outcome == PcmOutcome::lost ? 1 : 0;
+    if (is_gone) {
+      played_.loss = AudioLoss{takes_nothing ? "the card takes no samples" : sink_->failure(),
+                               std::chrono::steady_clock::now()};
+    }
+  }
+  if (is_gone) {
+    changed_.notify_all();
+  }
+  return !is_gone;
+}
+}  // namespace tapstudy::device

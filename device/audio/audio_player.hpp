@@ -1,0 +1,72 @@
+#pragma once
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "core/settings/realtime_request.hpp"
+#include "device/audio/pcm_sink.hpp"
+#include "device/audio/ramp.hpp"
+#include "device/audio/sample_source.hpp"
+namespace tapstudy::device {
+// A card that plays no more.
+struct AudioLoss {
+  std::string why;
+  std::chrono::steady_clock::time_point at;
+};
+
+// What became of the samples since the latest fade_in().
+struct Played {
+  std::int64_t underruns{};  // gaps, and periods that the card had no room for in time
+  std::int64_t cut{};        // samples beyond full scale
+  std::optional<AudioLoss> loss;
+};
+
+// Plays a source through a sink on a thread of its own, faded in and out. Neither call waits for
+// the card. After an under-run it plays on; a card that has gone, or takes nothing for a second, is
+// lost for good.
+class AudioPlayer {
+ public:
+  AudioPlayer(std::unique_ptr<PcmSink> sink, std::unique_ptr<SampleSource> source, double ramp_s,
+              const core::RealtimeRequest& realtime);
+  // Fades out.
+  ~AudioPlayer();
+  AudioPlayer(const AudioPlayer&) = delete;
+  AudioPlayer& operator=(const AudioPlayer&) = delete;
+  AudioPlayer(AudioPlayer&&) = delete;
+  AudioPlayer& operator=(AudioPlayer&&) = delete;
+
+  // Returns after the ramp, or as soon as the card is lost.
+  void fade_in();
+  // Returns at once; the ramp goes on.
+  void fade_out();
+  Played played() const;
+
+ private:
+  void run();
+  bool is_asked_to_play();
+  void play();
+  Heard wanted() const;
+  // Whether the card is still there.
+  bool note(PcmOutcome outcome, std::int64_t cut);
+
+  std::unique_ptr<PcmSink> sink_;
+  std::unique_ptr<SampleSource> source_;
+  std::chrono::duration<double> ramp_time_;
+  core::RealtimeRequest realtime_;
+  Ramp ramp_;  // the thread's, like the period
+  std::vector<float> period_;
+  int lost_in_a_row_{0};
+  mutable std::mutex mutex_;  // of what follows
+  std::condition_variable changed_;
+  Heard wanted_{Heard::no};
+  bool is_ending_{false};
+  Played played_;
+  std::thread thread_;
+};
+}  // namespace tapstudy::device

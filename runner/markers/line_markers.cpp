@@ -1,0 +1,115 @@
+#include "runner/markers/line_markers.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+
+#include "device/device.hpp"
+namespace tapstudy::runner {
+namespace {
+constexpr std::size_t max_detail_bytes = 1024;  // a line is then written to a pipe whole or not
+
+void set_up_if_serial(int descriptor) {
+  termios modes{};
+  if (tcgetattr(descriptor, &modes) != 0) {
+    return;
+  }
+  cfmakeraw(&modes);
+  modes.c_cflag |= static_cast<tcflag_t>(CLOCAL);
+  modes.c_cflag &= ~static_cast<tcflag_t>(CRTSCTS | CSTOPB | HUPCL);
+  cfsetspeed(&modes, B115200);
+  tcsetattr(descriptor, TCSANOW, &modes);
+}
+
+// A descriptor, or a negative errno.
+int opened(const std::string& path) {
+  constexpr int flags = O_WRONLY | O_APPEND | O_NOCTTY | O_NONBLOCK | O_CLOEXEC;
+  constexpr int mode = 0644;
+  const int create = path.starts_with("/dev/") ? 0 : O_CREAT;
+  // NOLINTNEXTLINE(cppcoreguidelines-pro-type-vararg): the C library's own
+  const int descriptor = open(path.c_str(), flags | create, mode);
+  if (descriptor < 0) {
+    return -errno;
+  }
+  set_up_if_serial(descriptor);
+  return descriptor;
+}
+
+class LineMarkers final : public MarkerOutput {
+ public:
+  explicit LineMarkers(const std::string& path) : path_{path}, descriptor_{opened(path)} {
+    if (descriptor_ < 0 && descriptor_ != -ENXIO) {
+      throw device::DeviceError{fmt::format("markers.lines: '{}' cannot be opened: {}", path,
+                                            std::strerror(-descriptor_))};
+    }
+  }
+  ~LineMarkers() override { forget(); }
+  LineMarkers(const LineMarkers&) = delete;
+  LineMarkers& operator=(const LineMarkers&) = delete;
+  LineMarkers(LineMarkers&&) = delete;
+  LineMarkers& operator=(LineMarkers&&) = delete;
+  std::string name() const override { return "lines to " + path_; }
+
+  Sent send(const results::SessionEventRow& change) override {
+    if (descriptor_ < 0) {
+      descriptor_ = opened(path_);
+    }
+    if (descriptor_ < 0 || !has_written_rest()) {
+      return Sent::no;
+    }
+    rest_ = line_of(change);
+    const std::size_t whole = rest_.size();
+    if (has_written_rest() || (descriptor_ >= 0 && rest_.size() < whole)) {
+      return Sent::yes;
+    }
+    rest_.clear();
+    return Sent::no;
+  }
+
+ private:
+  // What a full port has not taken of a line goes out before the next one.
+  bool has_written_rest() {
+    while (!rest_.empty()) {
+      const ssize_t written = write(descriptor_, rest_.data(), rest_.size());
+      if (written > 0) {
+        rest_.erase(0, static_cast<std::size_t>(written));
+      } else if (written == 0 || errno == EAGAIN) {
+        return false;
+      } else if (errno != EINTR) {
+        forget();
+        return false;
+      }
+    }
+    return true;
+  }
+  void forget() {
+    if (descriptor_ >= 0) {
+      close(descriptor_);
+    }
+    descriptor_ = -1;
+    rest_.clear();
+  }
+
+  std::string path_;
+  int descriptor_;
+  std::string rest_;  // of the line that was begun last
+};
+}  // namespace
+
+std::string line_of(const results::SessionEventRow& change) {
+  std::string detail = change.detail.substr(0, max_detail_bytes);
+  std::ranges::replace_if(
+      detail, [](unsigned char byte) { return byte < ' '; }, ' ');
+  return fmt::format("{:.6f}\t{}\t{}\t{}\n", change.t_s, change.state, change.number.value_or(-1),
+                     detail);
+}
+
+std::unique_ptr<MarkerOutput> open_line_markers(const std::string& path) {
+  return std::make_unique<LineMarkers>(path);
+}
+}  // namespace tapstudy::runner

@@ -1,0 +1,31 @@
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "protocols/rig.hpp"
+#include "runner/markers/marker_output.hpp"
+namespace tapstudy::runner {
+// All that a rig asks to be told of the session's changes of state. What is lost is counted; of
+// each output that loses markers the operator is warned once, and told at the end how many they
+// were.
+class Markers {
+ public:
+  // Throws InvalidInput or DeviceError if one cannot be opened.
+  explicit Markers(const protocols::MarkerSettings& settings);
+  ~Markers();
+  Markers(const Markers&) = delete;
+  Markers& operator=(const Markers&) = delete;
+  Markers(Markers&&) = delete;
+  Markers& operator=(Markers&&) = delete;
+  void send(const results::SessionEventRow& change);
+  std::int64_t lost() const;
+
+ private:
+  struct Counted {
+    std::unique_ptr<MarkerOutput> output;
+    std::int64_t lost{0};
+  };
+  std::vector<Counted> outputs_;
+};
+}  // namespace tapstudy::runner

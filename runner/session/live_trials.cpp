@@ -1,0 +1,106 @@
+#include "runner/session/live_trials.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+#include <vector>
+
+#include "core/error.hpp"
+#include "runner/console/operator_terminal.hpp"
+#include "runner/devices/masking_noise.hpp"
+#include "runner/devices/reconnect.hpp"
+#include "runner/terminal/say.hpp"
+namespace tapstudy::runner {
+namespace {
+void introduce(const Console& console) {
+  say("participant's page: {}\noperator's page:    {}\n", console.url(Role::participant),
+      console.url(Role::operator_of_session));
+  std::vector<std::string_view> names;
+  std::ranges::transform(operator_actions(), std::back_inserter(names), &ActionInfo::name);
+  say("here: {}, quit\n", fmt::join(names, ", "));
+}
+
+// At once, so that the trial's supervisor does not wait for the disk.
+std::string obeyed(OperatorDesk& desk, const std::string& command) {
+  try {
+    const OperatorCommand parsed = parse_operator_command(command);
+    desk.post(parsed);
+    return fmt::format("{}: accepted", name(parsed.action));
+  } catch (const core::InvalidInput& error) {
+    return error.what();
+  }
+}
+
+std::unique_ptr<Console> console_of(const LiveTrials::Parts& parts, OperatorDesk& desk,
+                                    LiveTrialLoop& loop, std::function<void()> move_hand) {
+  if (!parts.live.console) {
+    return nullptr;
+  }
+  auto console = std::make_unique<Console>(
+      *parts.live.console,
+      Console::Session{parts.live.protocol, parts.session.row, desk, std::move(move_hand)});
+  loop.watch(
+      [seen_by = console.get()](const core::TraceSample& sample) { seen_by->watch(sample); });
+  introduce(*console);
+  return console;
+}
+
+std::optional<MaskedTrialLoop> masked(TrialLoop& loop, const LiveTrials::Parts& parts) {
+  if (parts.masking == nullptr) {
+    return std::nullopt;
+  }
+  return std::make_optional<MaskedTrialLoop>(
+      loop, *parts.masking, played_noise(parts.live.protocol, parts.live.rig).level_db_fs);
+}
+}  // namespace
+
+LiveTrials::LiveTrials(const Parts& parts, std::unique_ptr<SessionDevice> device)
+    : parts_{parts},
+      device_{std::move(device)},
+      recorder_{parts.store},
+      live_loop_{device_->device(), parts.settings, parts.live.rig.realtime, recorder_},
+      masked_loop_{masked(live_loop_, parts)},
+      desk_{{parts.live.protocol, parts.session.row.id, [this] { return now_s(); }}, recorder_},
+      at_terminal_{parts.device_request.operator_input, [this] { device_->get_ready(); },
+                   [this](const std::string& command) { return obeyed(desk_, command); }},
+      console_{console_of(parts, desk_, live_loop_, [this] { device_->get_ready(); })},
+      states_{parts.session.row.id, [this] { return now_s(); },
+              [this](const results::SessionEventRow& change) {
+                parts_.markers.send(change);
+                if (console_) {
+                  console_->note_state(change);
+                }
+              }},
+      engine_{{parts.live.protocol, parts.models, trial_loop(),
+               console_ ? console_->participant() : at_terminal_, desk_, states_},
+              recorder_} {}
+
+double LiveTrials::now_s() const {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begun_).count();
+}
+
+TrialLoop& LiveTrials::trial_loop() {
+  return masked_loop_ ? static_cast<TrialLoop&>(*masked_loop_) : live_loop_;
+}
+
+// What is typed at the terminal is the operator's while the participant is at a page, and the
+// answer to a question about the device between two runs.
+std::optional<Interruption> LiveTrials::run_engine() {
+  std::optional<OperatorTerminal> terminal;
+  if (console_) {
+    terminal.emplace(parts_.device_request.operator_input, desk_);
+  }
+  return engine_.run(parts_.session.row.id, parts_.session.schedule, parts_.session.done);
+}
+
+void LiveTrials::run() {
+  while (const auto interruption = run_engine()) {
+    device_ = reconnect(to_text(*interruption), parts_.device_request, std::move(device_));
+    device_->begin_session(parts_.session.row.seed);
+    live_loop_.use(device_->device());
+  }
+}
+}  // namespace tapstudy::runner

@@ -1,0 +1,55 @@
+#pragma once
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <optional>
+
+#include "device/audio/audio_player.hpp"
+#include "results/recorder.hpp"
+#include "runner/console/console.hpp"
+#include "runner/devices/device_kind.hpp"
+#include "runner/markers/markers.hpp"
+#include "runner/operators/operator_desk.hpp"
+#include "runner/participants/console_participant.hpp"
+#include "runner/session/live_session.hpp"
+#include "runner/session/session_states.hpp"
+#include "runner/session/trial_engine.hpp"
+#include "runner/trial_loop/live_trial_loop.hpp"
+#include "runner/trial_loop/masked_trial_loop.hpp"
+namespace tapstudy::runner {
+// The trials of a live session, with everybody and everything that takes part in them: the
+// participant at the terminal or at a page, the operator, the device, masking noise, markers.
+class LiveTrials {
+ public:
+  struct Parts {
+    const LiveSession& live;
+    const device::LoopSettings& settings;
+    ModelLibrary& models;
+    const DeviceRequest& device_request;
+    device::AudioPlayer* masking;  // nullptr: no noise
+    Markers& markers;
+    results::Store& store;
+    BegunSession& session;
+  };
+  LiveTrials(const Parts& parts, std::unique_ptr<SessionDevice> device);
+  // Runs the remaining trials, reopening the device after a fault; throws as run_live_session.
+  void run();
+
+ private:
+  double now_s() const;  // from the session's begin
+  TrialLoop& trial_loop();
+  std::optional<Interruption> run_engine();
+
+  Parts parts_;
+  std::unique_ptr<SessionDevice> device_;
+  std::chrono::steady_clock::time_point begun_{std::chrono::steady_clock::now()};
+  results::Recorder recorder_;
+  LiveTrialLoop live_loop_;
+  std::optional<MaskedTrialLoop> masked_loop_;
+  OperatorDesk desk_;
+  ConsoleParticipant at_terminal_;
+  std::unique_ptr<Console> console_;  // null: at the terminal
+  SessionStates states_;
+  TrialEngine engine_;
+};
+}  // namespace tapstudy::runner

@@ -1,0 +1,68 @@
+#include "runner/trial_loop/masked_trial_loop.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+
+#include "runner/terminal/logging.hpp"
+namespace tapstudy::runner {
+namespace {
+using Clock = std::chrono::steady_clock;
+
+// RAII: heard during this object's lifetime.
+class Audible {
+ public:
+  explicit Audible(device::AudioPlayer& player) : player_{player} { player_.fade_in(); }
+  ~Audible() { player_.fade_out(); }
+  Audible(const Audible&) = delete;
+  Audible& operator=(const Audible&) = delete;
+  Audible(Audible&&) = delete;
+  Audible& operator=(Audible&&) = delete;
+
+ private:
+  device::AudioPlayer& player_;
+};
+
+void add_events(const device::Played& played, double level_db_fs, Clock::time_point begun,
+                std::vector<results::EventRow>& events) {
+  const auto since_begin_s = [&](Clock::time_point time) {
+    return std::max(0.0, std::chrono::duration<double>(time - begun).count());
+  };
+  events.insert(events.begin(), {0.0, "masking", level_db_fs});
+  if (played.underruns > 0) {
+    events.push_back({0.0, "masking_underrun", static_cast<double>(played.underruns)});
+  }
+  if (played.cut > 0) {
+    events.push_back({0.0, "masking_cut", static_cast<double>(played.cut)});
+  }
+  if (played.loss) {
+    events.push_back({since_begin_s(played.loss->at), "masking_lost", 0.0});
+  }
+}
+}  // namespace
+
+TrialResult MaskedTrialLoop::run(std::span<core::TapRenderer> alternatives,
+                                 const Explore& explore) {
+  TrialResult result;
+  device::Played played;
+  bool has_begun = false;
+  Clock::time_point begun;
+  {
+    const Audible audible{player_};
+    has_begun = !player_.played().loss;
+    begun = Clock::now();
+    result = inner_.run(alternatives, explore);
+    played = player_.played();
+  }
+  if (has_begun) {
+    add_events(played, level_db_fs_, begun, result.trace.events);
+  }
+  if (played.loss && !has_warned_) {
+    has_warned_ = true;
+    warn(fmt::format("masking noise is no longer played ({}); the session goes on without it",
+                     played.loss->why));
+  }
+  return result;
+}
+}  // namespace tapstudy::runner

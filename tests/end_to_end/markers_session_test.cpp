@@ -1,0 +1,61 @@
+// A session that tells others what it does.
+#include <fmt/format.h>
+
+#include <catch2/catch.hpp>
+
+#include "support/processes.hpp"
+#include "support/texts.hpp"
+using namespace tapstudy;
+using Catch::Matchers::Contains;
+using testing::TempDirectory;
+
+namespace {
+testing::ProgramResult session(const TempDirectory& directory, const std::string& markers) {
+  testing::write(directory / "rig.yaml",
+                 testing::contents(testing::shipped("rigs/simulated_hand.yaml")) +
+                     "\nmarkers: " + markers + "\n");
+  return testing::tapstudy(
+      {"run", testing::shipped("paper/discrimination.yaml").string(), "--participant", "P01",
+       "--seed", "5", "--out", directory / "the_study", "--rig", directory / "rig.yaml"},
+      "1\n2\n3\n4\n1\n2\n3\n4\n");
+}
+std::string sql(const TempDirectory& directory, const std::string& query) {
+  return testing::run_program({"/usr/bin/sqlite3", (directory / "the_study") + "/study.db", query})
+      .standard_output;
+}
+}  // namespace
+
+TEST_CASE("the lines of a session are the rows of its changes of state",
+          "[end_to_end][markers][threads]") {
+  const TempDirectory directory;
+  const auto result = session(directory, "{osc: {port: 9}, lines: markers.tsv}");
+  INFO(result.standard_error);
+  REQUIRE(result.exit_code == 0);
+  const std::string lines = testing::contents(directory / "markers.tsv");
+  CHECK(std::ranges::count(lines, '\n') == 1 + 3 * 8 + 1);
+  CHECK(lines ==
+        sql(directory,
+            "SELECT printf('%.6f', t_s) || char(9) || state || char(9) || "
+            "coalesce(number, -1) || char(9) || detail FROM session_event ORDER BY rowid"));
+}
+
+TEST_CASE("a session whose markers nobody reads goes on, and says so once",
+          "[end_to_end][markers][threads]") {
+  const TempDirectory directory;
+  REQUIRE(testing::run_program({"/usr/bin/mkfifo", directory / "pipe"}).exit_code == 0);
+  const auto result = session(directory, "{lines: pipe}");
+  CHECK(result.exit_code == 0);
+  CHECK_THAT(result.standard_error, Contains("'begun' is lost (nobody takes it)"));
+  CHECK_THAT(result.standard_error, Contains("26 were lost"));
+  CHECK_THAT(result.standard_error, !Contains("'ready' is lost"));
+}
+
+TEST_CASE("a port for markers that is not there is refused before anything is stored",
+          "[end_to_end][markers]") {
+  const TempDirectory directory;
+  const auto result = session(directory, "{lines: /dev/no_such_port}");
+  CHECK(result.exit_code == 3);
+  CHECK_THAT(result.standard_error,
+             Contains("markers.lines: '/dev/no_such_port' cannot be opened"));
+  CHECK_FALSE(std::filesystem::exists(directory / "the_study"));
+}

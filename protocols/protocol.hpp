@@ -12,6 +12,7 @@
 #include "core/settings/masking_noise.hpp"
 #include "core/settings/render_settings.hpp"
 #include "core/techniques/technique.hpp"
+#include "protocols/form.hpp"
 #include "protocols/surface/surface_source.hpp"
 #include "protocols/tasks/task.hpp"
 namespace tapstudy::protocols {
@@ -98,6 +99,7 @@ struct Block {
   std::string instructions;    // before its first trial; may be empty
   std::optional<Confidence> confidence;
   std::optional<Breaks> breaks;
+  std::vector<std::string> forms_after;  // names of forms, asked after its last trial
   ExploreLimits explore;
   Vote vote{Vote::majority};
   int max_late_impact_repeats{0};  // of a trial with an impact just after a late tick
@@ -150,6 +152,14 @@ struct Simulation {
   SimulatedPeopleSettings people;
 };
 
+// What the pages of a session show. Of the plate its shape, in neutral colour.
+struct Display {
+  bool shows_plate{true};
+  bool shows_tapping_points{true};
+  bool shows_fixations{false};
+  bool is_operator_blind{false};  // to what is presented and answered
+};
+
 struct Protocol {
   std::string text;                     // the file, whole
   std::vector<SurfaceSource> surfaces;  // the files that its plates name, whole
@@ -164,6 +174,10 @@ struct Protocol {
   std::map<std::string, std::shared_ptr<const Plate>> plates;
   Points tapping_points_m;  // plate frame, at the placement's scale
   std::vector<Stimulus> stimuli;
+  std::map<std::string, Form> forms;
+  std::vector<std::string> forms_before;  // the first trial of a session
+  std::vector<std::string> forms_after;   // the last
+  Display display;
   std::vector<Block> blocks;
   std::uint64_t counterbalancing_seed{1};  // which participant gets which balanced order
   std::vector<Hypothesis> hypotheses;

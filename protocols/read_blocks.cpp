@@ -122,6 +122,7 @@ Block read_block(MapReader& reader, const Protocol& protocol) {
   }
   block.explore = read_explore(reader);
   read_asides(reader, block);
+  block.forms_after = read_form_names(reader, "forms_after", protocol);
   block.max_late_impact_repeats = reader.integer("max_late_impact_repeats", 0, 10, 0);
   if (block.task != nullptr) {
     block.task->read(reader, protocol, block);

@@ -35,6 +35,8 @@ Protocol parse(const std::string& text, const std::string& file, const ReadFile&
   read_points(top, protocol);
   read_plates(top, protocol, read_file);
   read_stimuli(top, protocol);
+  read_forms(top, protocol);
+  read_display(top, protocol);
   read_blocks(top, protocol);
   read_hypotheses(top, protocol);
   read_masking(top, protocol);

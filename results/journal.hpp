@@ -20,6 +20,7 @@ struct JournalEntries {
   std::vector<JournalledAnswer> answers{};  // as first given
   std::vector<CorrectionRow> corrections{};
   std::vector<OperatorActionRow> actions{};
+  std::vector<FormAnswerRow> form_answers{};
 };
 
 std::string journal_file(const std::string& directory);
@@ -57,6 +58,6 @@ struct JournalContent {
 };
 JournalContent read_journal(const std::string& directory);
 
-// One text per entry, equal if and only if the entries are; answers, corrections, then actions.
+// One text per entry, equal if and only if the entries are, kind by kind.
 std::vector<std::string> to_lines(const JournalEntries& entries);
 }  // namespace tapstudy::results

@@ -122,6 +122,10 @@ void add_line(const Json& line, JournalContent& content) {
     content.entries.corrections.push_back({line.at("session_id"), line.at("number"),
                                            line.at("response"),
                                            optional_of<bool>(line.at("is_correct"))});
+  } else if (kind == "form_answer") {
+    content.entries.form_answers.push_back({line.at("session_id"), line.at("t_s"), line.at("form"),
+                                            line.at("asked"), line.at("item"),
+                                            optional_of<std::string>(line.at("answer"))});
   } else if (kind == "operator_action") {
     content.entries.actions.push_back({line.at("session_id"), line.at("t_s"), line.at("action"),
                                        optional_of<int>(line.at("number")), line.at("detail")});
@@ -227,6 +231,16 @@ std::string to_line(const OperatorActionRow& action) {
                  {"number", or_null(action.number)},
                  {"detail", action.detail}});
 }
+
+std::string to_line(const FormAnswerRow& answer) {
+  return dumped({{"kind", "form_answer"},
+                 {"session_id", answer.session_id},
+                 {"t_s", answer.t_s},
+                 {"form", answer.form},
+                 {"asked", answer.asked},
+                 {"item", answer.item},
+                 {"answer", or_null(answer.answer)}});
+}
 }  // namespace
 
 std::vector<std::string> to_lines(const JournalEntries& entries) {
@@ -238,6 +252,7 @@ std::vector<std::string> to_lines(const JournalEntries& entries) {
   add(entries.answers);
   add(entries.corrections);
   add(entries.actions);
+  add(entries.form_answers);
   return lines;
 }
 

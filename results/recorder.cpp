@@ -68,6 +68,12 @@ std::future<void> Recorder::note(OperatorActionRow action) {
   return promise->get_future();
 }
 
+std::future<void> Recorder::save_form(std::vector<FormAnswerRow> answers) {
+  auto promise = std::make_shared<std::promise<void>>();
+  queue(promised(promise, [this, answers = std::move(answers)] { store_.add_form(answers); }));
+  return promise->get_future();
+}
+
 std::future<void> Recorder::correct(CorrectionRow correction, OperatorActionRow action) {
   auto promise = std::make_shared<std::promise<void>>();
   queue(promised(promise, [this, correction = std::move(correction), action = std::move(action)] {

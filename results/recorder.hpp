@@ -28,6 +28,7 @@ class Recorder {
   // Ready once the events are stored, or carries the StoreError.
   std::future<void> note(std::vector<SessionEventRow> events);
   std::future<void> note(OperatorActionRow action);
+  std::future<void> save_form(std::vector<FormAnswerRow> answers);
   std::future<void> correct(CorrectionRow correction, OperatorActionRow action);
 
   // Drains the collector every few milliseconds, until leave() returns. If draining fails, the loop

@@ -68,6 +68,15 @@ struct SessionEventRow {
   std::optional<int> number;  // of the trial; unset between trials
   std::string detail;
 };
+// An answer to one item of a questionnaire.
+struct FormAnswerRow {
+  std::int64_t session_id{};
+  double t_s{};  // as a SessionEventRow's
+  std::string form;
+  std::string asked;  // session begin, session end, or the block that it came after
+  std::string item;
+  std::optional<std::string> answer;  // unset: left out
+};
 // What the operator did during a session.
 struct OperatorActionRow {
   std::int64_t session_id{};

@@ -93,6 +93,15 @@ CREATE TABLE session_event (
   detail TEXT NOT NULL
 ) STRICT;
 CREATE INDEX event_of_session ON session_event (session_id);
+CREATE TABLE form_answer (
+  session_id INTEGER NOT NULL REFERENCES session,
+  t_s REAL NOT NULL,                -- when the form was sent; as in session_event
+  form TEXT NOT NULL,
+  asked TEXT NOT NULL,              -- session begin, session end, or the block that it came after
+  item TEXT NOT NULL,
+  answer TEXT,                      -- NULL: left out; scales from 0 to 1, steps from 1
+  PRIMARY KEY (session_id, form, asked, item)
+) STRICT;
 CREATE TABLE operator_action (
   action_id INTEGER PRIMARY KEY,
   session_id INTEGER NOT NULL REFERENCES session,

@@ -121,6 +121,10 @@ Store Store::from_journal(const std::string& directory) {
     action.session_id = new_ids[action.session_id];
     store.insert_action(action);
   }
+  for (FormAnswerRow answer : content.entries.form_answers) {
+    answer.session_id = new_ids[answer.session_id];
+    store.insert_form_answer(answer);
+  }
   return store;
 }
 

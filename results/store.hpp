@@ -3,7 +3,9 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/haptic_state.hpp"
@@ -62,6 +64,7 @@ class Store {
   SaveOutcome add_trial(const TrialRecord& record);
 
   void add_session_events(const std::vector<SessionEventRow>& events);
+  void add_form(const std::vector<FormAnswerRow>& answers);
   void add_operator_action(const OperatorActionRow& action);
   // Supersedes the participant's answer to that trial. Throws StoreError if there is none.
   void add_correction(const CorrectionRow& correction, const OperatorActionRow& action);
@@ -72,6 +75,8 @@ class Store {
   std::vector<int> answered_trials(const std::string& participant_id);
   // Those that were presented, timed out or skipped, and not answered later.
   std::vector<UnansweredTrial> unanswered_trials(const std::string& participant_id);
+  // Form and where it was asked, of all that the participant has answered.
+  std::set<std::pair<std::string, std::string>> filled_forms(const std::string& participant_id);
   // By id: why.
   std::map<std::string, std::string> excluded_participants();
   // Of all participants and modes, including practice: the caller filters. Sorted by mode,
@@ -103,6 +108,8 @@ class Store {
   int free_order_index(Mode mode);
   std::vector<JournalledAnswer> answers_for_journal();
   std::vector<CorrectionRow> corrections_for_journal();
+  std::vector<FormAnswerRow> forms_for_journal();
+  void insert_form_answer(const FormAnswerRow& answer);
   std::vector<OperatorActionRow> actions_for_journal();
   SessionRow session_of(std::int64_t session_id);
   std::vector<AlternativeRow> alternatives_of(std::int64_t trial_id);

@@ -75,7 +75,8 @@ std::map<std::string, std::string> Store::excluded_participants() {
 }
 
 JournalEntries Store::entries_for_journal() {
-  return {answers_for_journal(), corrections_for_journal(), actions_for_journal()};
+  return {answers_for_journal(), corrections_for_journal(), actions_for_journal(),
+          forms_for_journal()};
 }
 
 std::vector<CorrectionRow> Store::corrections_for_journal() {

@@ -30,6 +30,8 @@ EXAMPLES = {
         "rendering": ["protocols/paper/reality_finger.yaml"],
         "materials": [PAPER, EVERY_KEY],
         "plates": [PAPER, EVERY_KEY],
+        "forms": [EVERY_KEY],
+        "display": [EVERY_KEY],
         "masking": [EVERY_KEY],
         "simulation": ["protocols/paper/reality_finger.yaml", EVERY_KEY],
     },

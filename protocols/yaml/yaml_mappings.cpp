@@ -19,6 +19,27 @@ void MapReader::read_inner(const YAML::Node& node, const std::string& path,
   inner.finish();
 }
 
+std::vector<std::string> MapReader::texts(const std::string& key) {
+  std::vector<std::string> all;
+  const auto node = find(key, true);
+  if (node && (!node->IsSequence() || node->size() == 0)) {
+    reject_at(*node, path_of(key), "is not a list of texts");
+    return all;
+  }
+  for (std::size_t i = 0; node && i < node->size(); ++i) {
+    const YAML::Node item = (*node)[i];
+    const std::string path = fmt::format("{}[{}]", path_of(key), i);
+    if (!item.IsScalar() || item.Scalar().empty() || has_control_characters(item.Scalar())) {
+      reject_at(item, path, fmt::format("{} is not one line of text", kind_of(item)));
+    } else if (std::ranges::find(all, item.Scalar()) != all.end()) {
+      reject_at(item, path, fmt::format("'{}' is listed twice", item.Scalar()));
+    } else {
+      all.push_back(item.Scalar());
+    }
+  }
+  return all;
+}
+
 void MapReader::map(const std::string& key, Presence presence, const ReadMap& read) {
   if (const auto node = find(key, presence == Presence::required)) {
     read_inner(*node, path_of(key), pattern_of(key), read);

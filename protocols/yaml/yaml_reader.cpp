@@ -13,12 +13,6 @@
 #include "protocols/yaml/documents.hpp"
 #include "protocols/yaml/yaml_words.hpp"
 namespace tapstudy::protocols {
-namespace {
-bool has_control_characters(const std::string& text) {
-  return std::ranges::any_of(text, [](unsigned char c) { return std::iscntrl(c) != 0; });
-}
-}  // namespace
-
 bool is_name(const std::string& text) {
   const auto is_inner = [](unsigned char c) {
     return c < 128 && (std::isalnum(c) != 0 || c == '_' || c == '-' || c == '+' || c == '.');

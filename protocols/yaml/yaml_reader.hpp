@@ -47,6 +47,8 @@ class MapReader {
   // Any text on one line; paragraphs may have several.
   std::string text(const std::string& key, const std::optional<std::string>& otherwise = {});
   std::string paragraphs(const std::string& key, const std::optional<std::string>& otherwise = {});
+  // A list of texts, each once.
+  std::vector<std::string> texts(const std::string& key);
   // A name that is valid in data, tables and file names: see is_name.
   std::string name(const std::string& key);
   // `size` numbers in brackets.

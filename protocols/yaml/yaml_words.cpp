@@ -17,6 +17,10 @@ std::string printable(const std::string& text) {
   return text.size() > max_echo ? safe + "…" : safe;
 }
 
+bool has_control_characters(const std::string& text) {
+  return std::ranges::any_of(text, [](unsigned char c) { return std::iscntrl(c) != 0; });
+}
+
 std::string kind_of(const YAML::Node& node) {
   switch (node.Type()) {
     case YAML::NodeType::Undefined:

@@ -43,6 +43,10 @@ void BrowserParticipant::rest(double min_seconds) {
   } while (left_s > 0.0);
 }
 
+Participant::FormAnswers BrowserParticipant::fill_in(const protocols::Form& form) {
+  return answer_to({.kind = ScreenKind::form, .form = form}).answers;
+}
+
 void BrowserParticipant::wait_while(const std::function<bool()>& is_paused) {
   show({.kind = ScreenKind::paused});
   while (is_paused()) {

@@ -19,6 +19,8 @@ class BrowserParticipant final : public Participant {
       : screens_{screens}, surroundings_{std::move(surroundings)} {}
   void read(const std::string& instructions) override;
   void rest(double min_seconds) override;
+  bool fills_in_forms() const override { return true; }
+  FormAnswers fill_in(const protocols::Form& form) override;
   void wait_while(const std::function<bool()>& is_paused) override;
   void get_ready(const TrialPrompt& prompt) override;
   std::optional<std::size_t> perform(const TrialPrompt& prompt, Exploration& exploration) override;

@@ -5,7 +5,8 @@
 
 namespace tapstudy::runner {
 Console::Console(const ConsoleRequest& request, const Session& session)
-    : scenes_{session.protocol, true, false},
+    : shows_plate_{session.protocol.display.shows_plate},
+      scenes_{session.protocol},
       screens_{request.language, session.protocol.title},
       participant_{screens_, surroundings(session)},
       api_{in_view(request, session), screens_, session.desk, live_, scenes_},
@@ -24,8 +25,9 @@ BrowserParticipant::Surroundings Console::surroundings(const Session& session) {
   return {session.move_hand,
           [this, &desk](std::size_t alternative) -> std::optional<int> {
             const auto trial = desk.view().trial;
-            return trial ? std::optional{scenes_.number_of(trial->trial.stimuli.at(alternative))}
-                         : std::nullopt;
+            return trial && shows_plate_
+                       ? std::optional{scenes_.number_of(trial->trial.stimuli.at(alternative))}
+                       : std::nullopt;
           },
           [&desk](const std::string& cause) { return desk.waits_for_operator(cause); }};
 }
@@ -37,9 +39,14 @@ ConsoleApi::Session Console::in_view(const ConsoleRequest& request, const Sessio
       return text;
     };
   };
-  return {session.protocol.title, session.row.participant_id, results::to_text(session.row.mode),
-          session.row.device,     request.language,           false,
-          guarded(state_),        guarded(last_fault_)};
+  return {session.protocol.title,
+          session.row.participant_id,
+          results::to_text(session.row.mode),
+          session.row.device,
+          request.language,
+          session.protocol.display.is_operator_blind,
+          guarded(state_),
+          guarded(last_fault_)};
 }
 
 void Console::note_state(const results::SessionEventRow& event) {

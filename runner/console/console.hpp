@@ -43,6 +43,7 @@ class Console {
   std::mutex mutex_;
   std::string state_{"begun"};
   std::string last_fault_;
+  bool shows_plate_;
   LiveView live_;
   Scenes scenes_;
   ScreenExchange screens_;

@@ -58,14 +58,15 @@ Json points_of(const protocols::Protocol& protocol, const protocols::Plate& plat
 }
 }  // namespace
 
-Scenes::Scenes(const protocols::Protocol& protocol, bool shows_tapping_points, bool shows_fixations)
-    : protocol_{protocol} {
+Scenes::Scenes(const protocols::Protocol& protocol) : protocol_{protocol} {
   for (const auto& [name, plate] : protocol.plates) {
     Json json = std::visit([](const auto& shape) { return shape_of(shape); }, plate->shape);
-    json["tapping_points_m"] = shows_tapping_points ? points_of(protocol, *plate) : Json::array();
+    json["tapping_points_m"] =
+        protocol.display.shows_tapping_points ? points_of(protocol, *plate) : Json::array();
     json["fixations"] = Json::array();
     for (const core::Fixation& fixation : plate->fixations) {
-      if (const Json shown = json_of(fixation); shows_fixations && !shown.is_null()) {
+      if (const Json shown = json_of(fixation);
+          protocol.display.shows_fixations && !shown.is_null()) {
         json["fixations"].push_back(shown);
       }
     }

@@ -10,7 +10,7 @@ namespace tapstudy::runner {
 // its upper face.
 class Scenes {
  public:
-  Scenes(const protocols::Protocol& protocol, bool shows_tapping_points, bool shows_fixations);
+  explicit Scenes(const protocols::Protocol& protocol);
   int number_of(const std::string& stimulus) const;
   int count() const { return static_cast<int>(all_.size()); }
   const std::string& json(int number) const { return at(number).json; }

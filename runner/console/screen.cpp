@@ -11,8 +11,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 const char* name(ScreenKind kind) {
-  constexpr std::array names{"wait",     "instructions", "rest",   "trial", "confidence",
-                             "feedback", "message",      "paused", "ended"};
+  constexpr std::array names{"wait",     "instructions", "rest", "trial",  "confidence",
+                             "feedback", "message",      "form", "paused", "ended"};
   return names.at(static_cast<std::size_t>(kind));
 }
 
@@ -49,6 +49,21 @@ Json json_of(const protocols::Confidence& scale) {
 Json json_of(const FeedbackScreen& feedback) {
   return {{"is_correct", feedback.is_correct}, {"right", feedback.right}};
 }
+Json json_of(const protocols::FormItem& item) {
+  constexpr std::array kinds{"likert", "scale", "number", "single_choice", "text"};
+  return {{"name", item.name},         {"kind", kinds.at(static_cast<std::size_t>(item.kind))},
+          {"question", item.question}, {"is_required", item.is_required},
+          {"steps", item.steps},       {"low", item.low},
+          {"high", item.high},         {"min", item.min},
+          {"max", item.max},           {"options", item.options}};
+}
+Json json_of(const protocols::Form& form) {
+  Json items = Json::array();
+  for (const protocols::FormItem& item : form.items) {
+    items.push_back(json_of(item));
+  }
+  return {{"title", form.title}, {"text", form.text}, {"items", items}};
+}
 Json json_of(const Progress& progress) {
   return {
       {"done", progress.done}, {"total", progress.total}, {"is_practice", progress.is_practice}};
@@ -59,6 +74,28 @@ Json json_of(int scene) {
 template <class Value>
 Json or_null(const std::optional<Value>& value) {
   return value ? json_of(*value) : Json{};
+}
+
+bool are_accepted(const protocols::Form& form, const Participant::FormAnswers& answers) {
+  std::size_t known = 0;
+  const bool are_right = std::ranges::all_of(form.items, [&](const protocols::FormItem& item) {
+    const auto answer = answers.find(item.name);
+    known += answer == answers.end() ? 0 : 1;
+    return wrong_with(item, answer == answers.end() ? "" : answer->second).empty();
+  });
+  return are_right && known == answers.size();
+}
+
+// Numbers and texts, by name.
+Participant::FormAnswers form_answers(const Json& json) {
+  Participant::FormAnswers answers;
+  for (const auto& [name, value] : json.get<std::map<std::string, Json>>()) {
+    if (!value.is_string() && !value.is_number()) {
+      throw core::InvalidInput{name + " is neither a number nor text"};
+    }
+    answers.emplace(name, value.is_string() ? value.get<std::string>() : value.dump());
+  }
+  return answers;
 }
 
 // A message that only says what happened is read and dismissed.
@@ -79,16 +116,19 @@ bool accepts(const Screen& screen, const ScreenInput& input) {
     case ScreenAction::confidence:
       return screen.confidence && input.value >= 1 &&
              input.value <= static_cast<std::size_t>(screen.confidence->steps);
+    case ScreenAction::form:
+      return screen.form && are_accepted(*screen.form, input.answers);
   }
   return false;
 }
 
 ScreenInput parse_input(const std::string& text, std::int64_t& screen) {
-  static const std::array<std::pair<std::string, ScreenAction>, 4> actions{
+  static const std::array<std::pair<std::string, ScreenAction>, 5> actions{
       {{"go_on", ScreenAction::go_on},
        {"switch", ScreenAction::switch_to},
        {"answer", ScreenAction::answer},
-       {"confidence", ScreenAction::confidence}}};
+       {"confidence", ScreenAction::confidence},
+       {"form", ScreenAction::form}}};
   try {
     const Json json = Json::parse(text);
     const std::string action = json.at("action");
@@ -97,12 +137,15 @@ ScreenInput parse_input(const std::string& text, std::int64_t& screen) {
       throw core::InvalidInput{"'" + action + "' is no action"};
     }
     screen = json.at("screen").get<std::int64_t>();
+    if (found->second == ScreenAction::form) {
+      return {found->second, 0, form_answers(json.at("value"))};
+    }
     const bool has_value = found->second != ScreenAction::go_on;
     const Json value = has_value ? json.at("value") : Json(0U);
     if (!value.is_number_unsigned()) {
       throw core::InvalidInput{"value is no number"};
     }
-    return {found->second, value.get<std::size_t>()};
+    return {found->second, value.get<std::size_t>(), {}};
   } catch (const Json::exception&) {
     throw core::InvalidInput{"is no input of a screen"};
   }
@@ -117,10 +160,11 @@ std::string to_json(const Screen& screen, const ScreenContext& context) {
                   {"text", screen.text},
                   {"message", name(screen.message)},
                   {"min_seconds", screen.min_seconds},
-                  {"can_go_on", accepts(screen, {ScreenAction::go_on, 0})},
+                  {"can_go_on", accepts(screen, {ScreenAction::go_on, 0, {}})},
                   {"trial", or_null(screen.trial)},
                   {"confidence", or_null(screen.confidence)},
                   {"feedback", or_null(screen.feedback)},
+                  {"form", or_null(screen.form)},
                   {"scene", or_null(screen.scene)}};
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }

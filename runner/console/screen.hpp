@@ -14,6 +14,7 @@ enum class ScreenKind {
   confidence,
   feedback,
   message,
+  form,
   paused,
   ended
 };
@@ -52,14 +53,17 @@ struct Screen {
   std::optional<TrialScreen> trial{};
   std::optional<protocols::Confidence> confidence{};
   std::optional<FeedbackScreen> feedback{};
+  std::optional<protocols::Form> form{};
   std::optional<int> scene{};
 };
 
 // What the participant does with it.
-enum class ScreenAction { go_on, switch_to, answer, confidence };
+enum class ScreenAction { go_on, switch_to, answer, confidence, form };
 struct ScreenInput {
   ScreenAction action{};
   std::size_t value{};
+  Participant::FormAnswers answers{};  // form
+  bool operator==(const ScreenInput& other) const = default;
 };
 // Whether that is one of the things that can be done with this screen.
 bool accepts(const Screen& screen, const ScreenInput& input);

@@ -36,8 +36,7 @@ std::string ScreenExchange::post(std::int64_t number, const ScreenInput& input) 
     return "this screen has no such answer";
   }
   if (input_) {
-    const bool is_same = input_->action == input.action && input_->value == input.value;
-    return is_same ? "" : "this screen is answered already";
+    return *input_ == input ? "" : "this screen is answered already";
   }
   input_ = input;
   return "";

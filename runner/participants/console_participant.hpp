@@ -16,6 +16,8 @@ class ConsoleParticipant final : public Participant {
       : input_{input}, move_hand_{std::move(move_hand)}, obey_{std::move(obey)} {}
   void read(const std::string& instructions) override;
   void rest(double min_seconds) override;
+  bool fills_in_forms() const override { return true; }
+  FormAnswers fill_in(const protocols::Form& form) override;
   void wait_while(const std::function<bool()>& is_paused) override;
   void get_ready(const TrialPrompt& prompt) override;
   std::optional<std::size_t> perform(const TrialPrompt& prompt, Exploration& exploration) override;
@@ -30,6 +32,7 @@ class ConsoleParticipant final : public Participant {
 
  private:
   void wait_for_enter();
+  std::string answer_to(const protocols::FormItem& item);
   // The participant's next line; the operator's are obeyed.
   std::optional<std::string> next_of_participant(const std::function<bool()>& keep_waiting);
   // A script cannot be asked to tap first: its next line waits until the plate was touched.

@@ -1,5 +1,6 @@
 #pragma once
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -37,6 +38,10 @@ class Participant {
   // Between trials; each returns once the participant goes on, and throws Stopped where none does.
   virtual void read(const std::string& /*instructions*/) {}
   virtual void rest(double /*min_seconds*/) {}
+  // By item, those left out being absent. A simulation has nothing to say about itself.
+  using FormAnswers = std::map<std::string, std::string>;
+  virtual bool fills_in_forms() const { return false; }
+  virtual FormAnswers fill_in(const protocols::Form& /*form*/) { return {}; }
   // The operator's pause, until is_paused is false.
   virtual void wait_while(const std::function<bool()>& /*is_paused*/) {}
   // Before the trial's loop starts.

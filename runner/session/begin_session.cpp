@@ -38,6 +38,7 @@ void resume(const results::SessionRow& earlier, const protocols::Protocol& proto
         "one; resume with the version that began the session"};
   }
   session.row.resumes = earlier.id;
+  session.filled_forms = store.filled_forms(earlier.participant_id);
   const std::vector<int> answered = store.answered_trials(earlier.participant_id);
   session.done = {answered.begin(), answered.end()};
   const std::vector<int> given_up = given_up_trials(protocol, earlier.participant_id, store);

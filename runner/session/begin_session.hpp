@@ -8,6 +8,7 @@
 #include "protocols/rig.hpp"
 #include "protocols/schedule.hpp"
 #include "results/store.hpp"
+#include "runner/session/interludes.hpp"
 #include "runner/session/preflight.hpp"
 namespace tapstudy::runner {
 enum class Resume { no, yes };
@@ -25,6 +26,7 @@ struct BegunSession {
   results::SessionRow row;  // stored
   protocols::Schedule schedule;
   std::set<int> done;  // numbers of trials that are answered already
+  FilledForms filled_forms{};
 };
 
 // Starts a new session, or resumes the participant's last one with its trial order; seed and order

@@ -1,28 +1,74 @@
 #include "runner/session/interludes.hpp"
 namespace tapstudy::runner {
-void Interludes::before(const protocols::PlannedTrial& trial) {
-  const protocols::Block& block = protocol_.block(trial.block);
+namespace {
+// No block can have these names.
+constexpr const char* at_begin = "session begin";
+constexpr const char* at_end = "session end";
+}  // namespace
+
+void Interludes::begin() {
   if (!has_begun_) {
     has_begun_ = true;
-    read(protocol_.instructions, "study");
+    read(parts_.protocol.instructions, "study");
+    ask(parts_.protocol.forms_before, at_begin);
   }
+}
+
+void Interludes::leave_block() {
+  if (block_) {
+    ask(parts_.protocol.block(*block_).forms_after, *block_);
+  }
+}
+
+void Interludes::before(const protocols::PlannedTrial& trial) {
+  begin();
+  const protocols::Block& block = parts_.protocol.block(trial.block);
   if (block_ != trial.block) {
+    leave_block();
     block_ = trial.block;
     since_rest_ = 0;
     read(block.instructions, block.name);
   }
   if (block.breaks && since_rest_ == block.breaks->every_trials) {
     since_rest_ = 0;
-    states_.enter(SessionState::resting);
-    participant_.rest(block.breaks->min_seconds);
+    parts_.states.enter(SessionState::resting);
+    parts_.participant.rest(block.breaks->min_seconds);
   }
   ++since_rest_;
 }
 
+// A session that was interrupted just before its last questionnaires has no trial left.
+void Interludes::after_last_trial() {
+  begin();
+  for (const protocols::Block& block : parts_.protocol.blocks) {
+    ask(block.forms_after, block.name);
+  }
+  ask(parts_.protocol.forms_after, at_end);
+}
+
 void Interludes::read(const std::string& text, const std::string& whose) {
   if (!text.empty()) {
-    states_.enter(SessionState::instructions, {}, whose);
-    participant_.read(text);
+    parts_.states.enter(SessionState::instructions, {}, whose);
+    parts_.participant.read(text);
+  }
+}
+
+void Interludes::ask(const std::vector<std::string>& forms, const std::string& asked) {
+  for (const std::string& name : forms) {
+    if (!parts_.participant.fills_in_forms() || filled_.contains({name, asked})) {
+      continue;
+    }
+    const protocols::Form& form = parts_.protocol.forms.at(name);
+    parts_.states.enter(SessionState::form, {}, name);
+    const Participant::FormAnswers answers = parts_.participant.fill_in(form);
+    std::vector<results::FormAnswerRow> rows;
+    for (const protocols::FormItem& item : form.items) {
+      const auto answer = answers.find(item.name);
+      rows.push_back({0, 0.0, name, asked, item.name,
+                      answer == answers.end() ? std::nullopt : std::optional{answer->second}});
+    }
+    parts_.save_form(std::move(rows));
+    filled_.emplace(name, asked);
   }
 }
 }  // namespace tapstudy::runner

@@ -1,27 +1,46 @@
 #pragma once
-#include <map>
+#include <functional>
+#include <optional>
+#include <set>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "protocols/protocol.hpp"
 #include "protocols/schedule.hpp"
+#include "results/rows.hpp"
 #include "runner/participants/participant.hpp"
 #include "runner/session/session_states.hpp"
 namespace tapstudy::runner {
-// What comes between the trials of a session: instructions, and rests after every so many trials.
+using FilledForms = std::set<std::pair<std::string, std::string>>;  // form, where it was asked
+
+// What comes between the trials of a session: instructions, rests after every so many trials, and
+// questionnaires.
 class Interludes {
  public:
-  Interludes(const protocols::Protocol& protocol, Participant& participant, SessionStates& states)
-      : protocol_{protocol}, participant_{participant}, states_{states} {}
-  // Throws Stopped if the participant stops.
+  struct Parts {
+    const protocols::Protocol& protocol;
+    Participant& participant;
+    SessionStates& states;
+    // Returns once the answers are stored; session and time are filled in.
+    std::function<void(std::vector<results::FormAnswerRow>)> save_form;
+  };
+  // filled: those answered in an earlier session.
+  Interludes(Parts parts, FilledForms filled)
+      : parts_{std::move(parts)}, filled_{std::move(filled)} {}
+  // Both throw Stopped if the participant stops.
   void before(const protocols::PlannedTrial& trial);
+  void after_last_trial();
 
  private:
+  void begin();
+  void leave_block();
   void read(const std::string& text, const std::string& whose);
-  const protocols::Protocol& protocol_;
-  Participant& participant_;
-  SessionStates& states_;
+  void ask(const std::vector<std::string>& forms, const std::string& asked);
+  Parts parts_;
+  FilledForms filled_;
   bool has_begun_{false};
-  std::string block_;
+  std::optional<std::string> block_;
   int since_rest_{0};  // trials
 };
 }  // namespace tapstudy::runner

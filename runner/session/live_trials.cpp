@@ -76,7 +76,8 @@ LiveTrials::LiveTrials(const Parts& parts, std::unique_ptr<SessionDevice> device
               }},
       engine_{{parts.live.protocol, parts.models, trial_loop(),
                console_ ? console_->participant() : at_terminal_, desk_, states_},
-              recorder_} {}
+              recorder_,
+              parts.session.filled_forms} {}
 
 double LiveTrials::now_s() const {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begun_).count();

@@ -17,7 +17,7 @@ struct Row {
 
 // Between two trials anything may come that is not part of one.
 const std::vector<SessionState>& between_trials() {
-  static const std::vector<SessionState> states{instructions, resting, ready,
+  static const std::vector<SessionState> states{instructions, resting, form, ready,
                                                 paused,       stopped, ended};
   return states;
 }
@@ -27,11 +27,12 @@ std::vector<SessionState> between_trials_or(SessionState one, SessionState other
   return states;
 }
 
-const std::array<Row, 15>& table() {
-  static const std::array<Row, 15> rows{
+const std::array<Row, 16>& table() {
+  static const std::array<Row, 16> rows{
       {{begun, "begun", between_trials()},
        {instructions, "instructions", between_trials()},
        {resting, "resting", between_trials()},
+       {form, "form", between_trials()},
        {ready, "ready", {exploring, stopped}},
        {exploring,
         "exploring",

@@ -12,6 +12,7 @@ enum class SessionState {
   begun,
   instructions,
   resting,
+  form,        // a questionnaire is asked
   ready,       // the trial is shown, nothing is rendered
   exploring,   // go: the plate is rendered
   confidence,  // the answer is given, force is off
@@ -37,6 +38,8 @@ class SessionStates {
   SessionStates(std::int64_t session_id, Now now_s, Listener listener = {});
   // Throws std::logic_error if the state may not follow the present one.
   void enter(SessionState state, std::optional<int> trial = {}, std::string detail = {});
+  std::int64_t session_id() const { return session_id_; }
+  double now_s() const { return now_s_(); }
   SessionState state() const { return state_; }
   // The changes since the last call.
   std::vector<results::SessionEventRow> take_events();

@@ -39,6 +39,7 @@ std::optional<Interruption> TrialEngine::run(std::int64_t session_id,
   try {
     const auto interruption = run_all(session_id, schedule, done_trials);
     if (!interruption) {
+      interludes_.after_last_trial();
       parts_.states.enter(SessionState::ended);
     }
     note_events();
@@ -119,16 +120,11 @@ void TrialEngine::wait_while_paused() {
   stop_if_asked();
 }
 
-// The answer is kept while the operator frees space or ends what locks the database.
-void TrialEngine::save(const std::shared_ptr<const results::TrialRecord>& record) {
+// What is to be stored is kept while the operator frees space or ends what locks the database.
+void TrialEngine::retry(const std::function<void()>& write) {
   while (true) {
     try {
-      if (recorder_.save(record).get() == results::SaveOutcome::partly_in_log && !has_warned_) {
-        has_warned_ = true;
-        warn(
-            "another program holds study.db open: a copy of that file alone would lack the latest "
-            "trials (copy study.db-wal with it, or close the other program)");
-      }
+      write();
       return;
     } catch (const results::StoreRewritten&) {
       throw;
@@ -138,6 +134,27 @@ void TrialEngine::save(const std::shared_ptr<const results::TrialRecord>& record
       }
     }
   }
+}
+
+void TrialEngine::save(const std::shared_ptr<const results::TrialRecord>& record) {
+  retry([&] {
+    if (recorder_.save(record).get() == results::SaveOutcome::partly_in_log && !has_warned_) {
+      has_warned_ = true;
+      warn(
+          "another program holds study.db open: a copy of that file alone would lack the latest "
+          "trials (copy study.db-wal with it, or close the other program)");
+    }
+  });
+}
+
+void TrialEngine::save(std::vector<results::FormAnswerRow> answers) {
+  const double now_s = parts_.states.now_s();
+  for (results::FormAnswerRow& answer : answers) {
+    answer.session_id = parts_.states.session_id();
+    answer.t_s = now_s;
+  }
+  note_events();
+  retry([&] { recorder_.save_form(answers).get(); });
 }
 
 // The answer stays, whatever becomes of this question.

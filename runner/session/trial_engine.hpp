@@ -32,9 +32,13 @@ std::string to_text(const Interruption& interruption);
 // the participant explores, and stores the complete trial.
 class TrialEngine {
  public:
-  TrialEngine(const SessionParts& parts, results::Recorder& recorder)
+  // filled_forms: those that an earlier session has the answers to.
+  TrialEngine(const SessionParts& parts, results::Recorder& recorder,
+              const FilledForms& filled_forms = {})
       : parts_{parts},
-        interludes_{parts.protocol, parts.participant, parts.states},
+        interludes_{{parts.protocol, parts.participant, parts.states,
+                     [this](std::vector<results::FormAnswerRow> rows) { save(std::move(rows)); }},
+                    filled_forms},
         recorder_{recorder} {}
 
   // Runs the trials not in `done`, adding each, until all are done or a fault ends one; called
@@ -66,6 +70,9 @@ class TrialEngine {
   Outcome run_until_it_counts(std::int64_t session_id, const protocols::PlannedTrial& trial,
                               int total);
   void save(const std::shared_ptr<const results::TrialRecord>& record);
+  void save(std::vector<results::FormAnswerRow> answers);
+  // Until it succeeds, or the operator gives up: then throws StoreError.
+  void retry(const std::function<void()>& write);
   TrialPrompt prompt_of(const protocols::PlannedTrial& trial, int total) const;
 
   SessionParts parts_;

@@ -219,13 +219,13 @@ def tab_to(driver, selector, limit=80):
 
 
 def fill_in_by_mouse(driver, name, value):
-    """Answers one item of a form: number from 1 (likert), label (choice), 0…1 (scale), text."""
+    """Answers one item of a form: number from 1 (likert), label (single_choice), 0…1 (scale), text."""
     item = find(driver, f'.item[data-name="{name}"]')
     kind = item.get_attribute("class").split()[1]
     driver.execute_script("arguments[0].scrollIntoView({block: 'center'})", item)
     if kind == "likert":
         item.find_elements(By.CSS_SELECTOR, ".option")[value - 1].click()
-    elif kind == "choice":
+    elif kind == "single_choice":
         faces = item.find_elements(By.CSS_SELECTOR, ".option")
         next(face for face in faces if face.text.strip() == value).click()
     elif kind == "scale":
@@ -242,7 +242,7 @@ def fill_in_by_keyboard(driver, name, value):
     """As by mouse; a scale is moved step by step from its middle."""
     kind = find(driver, f'.item[data-name="{name}"]').get_attribute("class").split()[1]
     tab_to(driver, f'.item[data-name="{name}"] :is(input, textarea)')
-    if kind in ("likert", "choice"):
+    if kind in ("likert", "single_choice"):
         labels = [face.text.strip() for face in find_all(driver, f'.item[data-name="{name}"] .option')]
         press(driver, Keys.SPACE)
         press(driver, *[Keys.ARROW_DOWN] * labels.index(str(value)))

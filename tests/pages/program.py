@@ -18,7 +18,7 @@ class Session:
         self.is_own = directory is None
         self.log = open(self.directory / "log.txt", "w+")
         self.process = subprocess.Popen(
-            [PROGRAM, "run", str(SOURCE / "protocols" / protocol), "--participant", participant,
+            [PROGRAM, "run", str(SOURCE / protocol), "--participant", participant,
              "--out", str(self.directory / "study"), "--console", *options],
             stdin=subprocess.PIPE, stdout=self.log, stderr=subprocess.STDOUT, text=True)
         self.participant = self._address("participant's page:")

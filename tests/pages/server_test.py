@@ -14,7 +14,7 @@ from program import Session
 
 class ServerTest(unittest.TestCase):
     def setUp(self):
-        self.session = Session("paper/discrimination.yaml")
+        self.session = Session("protocols/paper/discrimination.yaml")
         self.addCleanup(self.session.close)
         self.at = urlparse(self.session.participant)
         self.of_operator = urlparse(self.session.operator)

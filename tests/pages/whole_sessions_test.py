@@ -67,7 +67,7 @@ class WholeSession(unittest.TestCase):
         self.assertEqual(self.session.wait(), 0, self.session.said())
 
     def test_discrimination_by_mouse(self):
-        self.start("paper/discrimination.yaml")
+        self.start("protocols/paper/discrimination.yaml")
         given = []
         for number in range(1, 9):
             self.next_trial(number)
@@ -106,18 +106,60 @@ class WholeSession(unittest.TestCase):
         self.assertEqual({row[0] for row in chosen}, {1})  # the last label, whatever it stood for
 
     def test_reality_of_vibration_by_keyboard_on_a_phone_in_german(self):
-        self.start("paper/reality_vibration.yaml", "--language", "de", width=375, height=700)
+        self.start("protocols/paper/reality_vibration.yaml", "--language", "de", width=375, height=700)
         self.watch()
         self.finish_choices(by_keyboard=True)
 
     def test_reality_at_the_finger_by_mouse_in_japanese_without_webgl(self):
-        self.start("paper/reality_finger.yaml", "--language", "ja", has_webgl=False)
+        self.start("protocols/paper/reality_finger.yaml", "--language", "ja", has_webgl=False)
         self.watch()
         self.assertEqual(browser.wait_for_view(self.driver), "svg")
         self.finish_choices(by_keyboard=False)
 
+    def test_every_screen_in_its_order(self):
+        self.start("tests/data/every_screen.yaml", is_dark=True)
+        browser.wait_for_screen(self.driver, "instructions")
+        self.check_screen("instructions")
+        browser.go_on_by_mouse(self.driver)
+        browser.wait_for_screen(self.driver, "form")
+        browser.fill_in_by_mouse(self.driver, "hand", "right")
+        self.check_screen("form")
+        browser.send_form_by_mouse(self.driver)
+        for index, is_right in ((0, True), (0, False)):
+            browser.wait_for_screen(self.driver, "trial")
+            self.answer_until_accepted(browser.answer_by_mouse, index)
+            feedback = browser.wait_for_screen(self.driver, "feedback")
+            self.assertEqual("with vibration" in feedback["text"], not is_right)
+            browser.go_on_by_mouse(self.driver)
+        browser.wait_for_screen(self.driver, "instructions")
+        browser.go_on_by_mouse(self.driver)
+        for trial in range(2):
+            if trial == 1:
+                browser.wait_for_screen(self.driver, "rest")
+                browser.go_on_by_mouse(self.driver)
+            browser.wait_for_screen(self.driver, "trial")
+            self.answer_until_accepted(browser.answer_by_mouse, trial)
+            browser.wait_for_screen(self.driver, "confidence")
+            browser.answer_by_mouse(self.driver, 2)
+        browser.wait_for_screen(self.driver, "form")
+        browser.fill_in_by_mouse(self.driver, "real", 4)
+        browser.fill_in_by_mouse(self.driver, "clear", 0.75)
+        browser.send_form_by_mouse(self.driver)
+        self.finish()
+        self.assertEqual(self.session.responses(), ["bare", "bare", "bare", "ringing"])
+        self.assertEqual(self.session.rows(
+            "SELECT confidence FROM response WHERE confidence IS NOT NULL"), [(3,), (3,)])
+        answers = dict(self.session.rows("SELECT item, answer FROM form_answer"))
+        self.assertAlmostEqual(float(answers.pop("clear")), 0.75, delta=0.02)
+        self.assertEqual(answers, {"age": None, "hand": "right", "real": "4", "remarks": None})
+
+    def check_screen(self, name):
+        browser.check_no_sideways_scrolling(self.driver)
+        browser.check_axe(self.driver, ("serious", "critical"))
+        self.shoot(name)
+
     def test_the_operator_pauses_corrects_and_ends(self):
-        self.start("paper/discrimination.yaml")
+        self.start("protocols/paper/discrimination.yaml")
         self.watch()
         browser.wait_for_state(self.operator, "exploring")
         browser.check_axe(self.operator, ("serious", "critical"))
@@ -151,7 +193,7 @@ class WholeSession(unittest.TestCase):
                          [("feels sick",)])
 
     def test_a_page_that_vanishes_comes_back_to_the_same_question(self):
-        self.start("paper/discrimination.yaml")
+        self.start("protocols/paper/discrimination.yaml")
         self.next_trial(1)
         self.driver.get("about:blank")
         browser.open_participant(self.driver, self.session.participant)
@@ -160,7 +202,7 @@ class WholeSession(unittest.TestCase):
         self.next_trial(2)
         self.session.kill()
         browser.wait_until(self.driver, "the banner", lambda: browser.current_screen(self.driver)["banner"])
-        self.session = Session("paper/discrimination.yaml", "--resume", directory=self.session.directory)
+        self.session = Session("protocols/paper/discrimination.yaml", "--resume", directory=self.session.directory)
         self.addCleanup(self.session.close)
         browser.open_participant(self.driver, self.session.participant)
         self.next_trial(2)

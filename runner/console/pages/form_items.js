@@ -18,7 +18,7 @@ function radios(body, valueOf) {
 
 const likert = (item) => radios(steps({ count: item.steps, low: item.low, high: item.high }), Number);
 
-function choice(item) {
+function singleChoice(item) {
   const group = newGroupName();
   const cards = item.options.map((label, index) => radioCard({ group, value: index, label }));
   return radios(el("div", { className: "options" }, ...cards), (index) => item.options[Number(index)]);
@@ -73,7 +73,7 @@ function text(item, id) {
   return { body: input, value: () => (input.value.trim() === "" ? null : input.value) };
 }
 
-const makers = { likert, scale, number, choice, text };
+const makers = { likert, scale, number, single_choice: singleChoice, text };
 const areLabelled = new Set(["number", "text"]);
 
 function titleOf(item, id) {

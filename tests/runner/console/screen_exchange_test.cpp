@@ -52,6 +52,22 @@ TEST_CASE("a screen takes what can be done with it and nothing else", "[runner][
                       {ScreenAction::go_on, 0}));
 }
 
+TEST_CASE("a form is taken when all that it requires is answered, and nothing else is",
+          "[runner][console][forms]") {
+  const Screen form{.kind = ScreenKind::form, .form = protocols::nasa_tlx()};
+  ScreenInput input{ScreenAction::form, 0, {}};
+  for (const protocols::FormItem& item : form.form->items) {
+    CHECK_FALSE(accepts(form, input));
+    input.answers.emplace(item.name, "0.5");
+  }
+  CHECK(accepts(form, input));
+  input.answers["effort"] = "1.5";
+  CHECK_FALSE(accepts(form, input));
+  input.answers["effort"] = "1";
+  input.answers["another"] = "1";
+  CHECK_FALSE(accepts(form, input));
+}
+
 TEST_CASE("what is no input is refused, whatever it is", "[runner][console]") {
   std::int64_t screen = 0;
   CHECK(parse_input(R"({"screen":7,"action":"answer","value":1})", screen).value == 1);
@@ -62,7 +78,9 @@ TEST_CASE("what is no input is refused, whatever it is", "[runner][console]") {
         R"({"screen":7,"action":"answer","value":-1})",
         R"({"screen":7,"action":"answer","value":1.5})",
         R"({"screen":7,"action":"answer","value":"1"})",
-        R"({"screen":7,"action":["answer"],"value":1})"}) {
+        R"({"screen":7,"action":["answer"],"value":1})", R"({"screen":7,"action":"form"})",
+        R"({"screen":7,"action":"form","value":{"a":null}})",
+        R"({"screen":7,"action":"form","value":{"a":{"b":1}}})"}) {
     CAPTURE(text);
     CHECK_THROWS_AS(parse_input(text, screen), core::InvalidInput);
   }

@@ -1,0 +1,81 @@
+#include "protocols/form.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <charconv>
+#include <optional>
+namespace tapstudy::protocols {
+namespace {
+constexpr std::size_t max_text = 5000;
+
+std::optional<double> number_in(const std::string& text) {
+  double number = 0.0;
+  const char* const end = text.data() + text.size();
+  const auto [stopped, error] = std::from_chars(text.data(), end, number);
+  return error == std::errc{} && stopped == end ? std::optional{number} : std::nullopt;
+}
+
+std::string unless_within(const std::string& text, double low, double high, bool is_whole) {
+  const auto number = number_in(text);
+  const bool is_allowed = number && *number >= low && *number <= high &&
+                          (!is_whole || *number == static_cast<double>(static_cast<int>(*number)));
+  return is_allowed ? ""
+                    : fmt::format("please answer with a {}number from {:.6g} to {:.6g}",
+                                  is_whole ? "whole " : "", low, high);
+}
+
+FormItem tlx_scale(const char* name, const char* question, const char* low, const char* high) {
+  FormItem item;
+  item.name = name;
+  item.kind = ItemKind::scale;
+  item.question = question;
+  item.low = low;
+  item.high = high;
+  return item;
+}
+}  // namespace
+
+std::string wrong_with(const FormItem& item, const std::string& answer) {
+  if (answer.empty()) {
+    return item.is_required ? "please answer this question" : "";
+  }
+  switch (item.kind) {
+    case ItemKind::likert:
+      return unless_within(answer, 1.0, item.steps, true);
+    case ItemKind::scale:
+      return unless_within(answer, 0.0, 1.0, false);
+    case ItemKind::number:
+      return unless_within(answer, item.min, item.max, false);
+    case ItemKind::single_choice:
+      return std::ranges::find(item.options, answer) != item.options.end()
+                 ? ""
+                 : fmt::format("please answer with one of: {}", fmt::join(item.options, ", "));
+    case ItemKind::text:
+      break;
+  }
+  return answer.size() <= max_text ? "" : fmt::format("at most {} characters", max_text);
+}
+
+const Form& nasa_tlx() {
+  static const Form form{
+      "nasa_tlx",
+      "Task load",
+      "Please mark on each line how the task was for you.",
+      {tlx_scale("mental_demand", "How mentally demanding was the task?", "Very low", "Very high"),
+       tlx_scale("physical_demand", "How physically demanding was the task?", "Very low",
+                 "Very high"),
+       tlx_scale("temporal_demand", "How hurried or rushed was the pace of the task?", "Very low",
+                 "Very high"),
+       tlx_scale("performance",
+                 "How successful were you in accomplishing what you were asked to do?", "Perfect",
+                 "Failure"),
+       tlx_scale("effort", "How hard did you have to work to accomplish your level of performance?",
+                 "Very low", "Very high"),
+       tlx_scale("frustration",
+                 "How insecure, discouraged, irritated, stressed, and annoyed were you?",
+                 "Very low", "Very high")}};
+  return form;
+}
+}  // namespace tapstudy::protocols

@@ -1,0 +1,40 @@
+#pragma once
+#include <string>
+#include <string_view>
+#include <vector>
+namespace tapstudy::protocols {
+//   likert  one of so many steps, from 1
+//   scale   a mark on a line, from 0 (low) to 1 (high): a visual analogue scale
+//   number  from min to max
+//   single_choice  one of the options
+//   text    anything
+enum class ItemKind { likert, scale, number, single_choice, text };
+
+struct FormItem {
+  std::string name;
+  ItemKind kind{ItemKind::text};
+  std::string question;
+  bool is_required{true};
+  int steps{7};     // likert
+  std::string low;  // likert, scale: what the ends mean
+  std::string high;
+  double min{};  // number
+  double max{};
+  std::vector<std::string> options;  // single_choice
+};
+
+// A questionnaire: asked before the first trial, after a block, or at the end of a session.
+struct Form {
+  std::string name;
+  std::string title;
+  std::string text;  // paragraphs before the first question; may be empty
+  std::vector<FormItem> items;
+};
+
+// What is wrong with an answer, and what is allowed; empty: nothing. Numbers are written as in C.
+std::string wrong_with(const FormItem& item, const std::string& answer);
+
+// The task load index of NASA, six scales without weights ("raw TLX"; Hart and Staveland 1988, Hart
+// 2006): its wording is that of the agency's own form, a work of the United States government.
+const Form& nasa_tlx();
+}  // namespace tapstudy::protocols

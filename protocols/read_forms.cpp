@@ -1,0 +1,90 @@
+// Questionnaires.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "protocols/read_sections.hpp"
+namespace tapstudy::protocols {
+namespace {
+using Presence = MapReader::Presence;
+
+FormItem read_item(MapReader& reader) {
+  constexpr double any = 1e12;
+  FormItem item;
+  item.name = reader.name("name");
+  item.kind = reader.one_of<ItemKind>("kind", {{"likert", ItemKind::likert},
+                                               {"scale", ItemKind::scale},
+                                               {"number", ItemKind::number},
+                                               {"single_choice", ItemKind::single_choice},
+                                               {"text", ItemKind::text}});
+  item.question = reader.text("question");
+  item.is_required = reader.yes_or_no("required", true);
+  if (item.kind == ItemKind::likert) {
+    item.steps = reader.integer("steps", 2, 11, item.steps);
+  }
+  if (item.kind == ItemKind::likert || item.kind == ItemKind::scale) {
+    item.low = reader.text("low");
+    item.high = reader.text("high");
+  }
+  if (item.kind == ItemKind::number) {
+    item.min = reader.number("min", {-any, any});
+    item.max = reader.number("max", {-any, any});
+    if (item.max <= item.min) {
+      reader.reject("max", "is not above min");
+    }
+  }
+  if (item.kind == ItemKind::single_choice) {
+    item.options = reader.texts("options");
+    if (item.options.size() < 2) {
+      reader.reject("options", "a choice has at least two options");
+    }
+  }
+  return item;
+}
+
+Form read_form(const std::string& name, MapReader& reader) {
+  Form form;
+  if (reader.has("shipped")) {
+    reader.word("shipped", "form", {nasa_tlx().name});
+    form = nasa_tlx();
+  } else {
+    form.title = reader.text("title");
+    form.text = reader.paragraphs("text", "");
+    reader.list("items", Presence::required, [&](MapReader& inner) {
+      const FormItem item = read_item(inner);
+      if (std::ranges::find(form.items, item.name, &FormItem::name) != form.items.end()) {
+        inner.reject("name", fmt::format("'{}' is the name of an earlier item", item.name));
+      }
+      form.items.push_back(item);
+    });
+  }
+  form.name = name;
+  return form;
+}
+}  // namespace
+
+void read_forms(MapReader& top, Protocol& protocol) {
+  top.each("forms", Presence::optional, [&](const std::string& name, MapReader& reader) {
+    protocol.forms.emplace(name, read_form(name, reader));
+  });
+  protocol.forms_before = read_form_names(top, "forms_before", protocol);
+  protocol.forms_after = read_form_names(top, "forms_after", protocol);
+}
+
+std::vector<std::string> read_form_names(MapReader& reader, const std::string& key,
+                                         const Protocol& protocol) {
+  return reader.words(key, "form", keys_of(protocol.forms), std::vector<std::string>{});
+}
+
+void read_display(MapReader& top, Protocol& protocol) {
+  top.map("display", Presence::optional, [&](MapReader& reader) {
+    protocol.display.shows_plate = reader.yes_or_no("plate", protocol.display.shows_plate);
+    protocol.display.shows_tapping_points =
+        reader.yes_or_no("tapping_points", protocol.display.shows_tapping_points);
+    protocol.display.shows_fixations =
+        reader.yes_or_no("fixations", protocol.display.shows_fixations);
+    protocol.display.is_operator_blind =
+        reader.yes_or_no("blind_operator", protocol.display.is_operator_blind);
+  });
+}
+}  // namespace tapstudy::protocols

@@ -1,0 +1,76 @@
+// Questionnaires at the terminal, an item at a time.
+#include <fmt/format.h>
+
+#include <charconv>
+
+#include "runner/participants/console_participant.hpp"
+#include "runner/terminal/say.hpp"
+#include "runner/terminal/stop_signal.hpp"
+namespace tapstudy::runner {
+namespace {
+using protocols::ItemKind;
+
+std::string what_to_type(const protocols::FormItem& item) {
+  switch (item.kind) {
+    case ItemKind::likert:
+      return fmt::format("1 ({}) to {} ({})", item.low, item.steps, item.high);
+    case ItemKind::scale:
+      return fmt::format("from 0 ({}) to 1 ({})", item.low, item.high);
+    case ItemKind::number:
+      return fmt::format("a number from {:.6g} to {:.6g}", item.min, item.max);
+    case ItemKind::single_choice:
+      return "the number of your answer";
+    case ItemKind::text:
+      break;
+  }
+  return "a line of text";
+}
+
+// Options are numbered at the terminal.
+std::string as_stored(const protocols::FormItem& item, const std::string& typed) {
+  std::size_t number = 0;
+  const char* const end = typed.data() + typed.size();
+  const auto [stopped, error] = std::from_chars(typed.data(), end, number);
+  const bool is_option = item.kind == ItemKind::single_choice && error == std::errc{} &&
+                         stopped == end && number >= 1 && number <= item.options.size();
+  return is_option ? item.options[number - 1] : typed;
+}
+}  // namespace
+
+std::string ConsoleParticipant::answer_to(const protocols::FormItem& item) {
+  say("\n{}\n", item.question);
+  for (std::size_t i = 0; i < item.options.size(); ++i) {
+    say("  {}  {}\n", i + 1, item.options[i]);
+  }
+  while (true) {
+    say("  {}{}: ", what_to_type(item), item.is_required ? "" : "; Enter leaves it out");
+    const auto line = next_of_participant([] { return true; });
+    if (!line || asks_to_quit(*line)) {
+      ask_to_stop();
+      stop_if_asked();
+      return "";
+    }
+    const std::string answer = as_stored(item, *line);
+    const std::string wrong = wrong_with(item, answer);
+    if (wrong.empty()) {
+      return answer;
+    }
+    say("  {}\n", wrong);
+  }
+}
+
+Participant::FormAnswers ConsoleParticipant::fill_in(const protocols::Form& form) {
+  if (input_.forget_typed_ahead()) {
+    ask_to_stop();
+    stop_if_asked();
+  }
+  say("\n{}\n{}\n", form.title, form.text);
+  FormAnswers answers;
+  for (const protocols::FormItem& item : form.items) {
+    if (std::string answer = answer_to(item); !answer.empty()) {
+      answers.emplace(item.name, std::move(answer));
+    }
+  }
+  return answers;
+}
+}  // namespace tapstudy::runner

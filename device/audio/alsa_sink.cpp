@@ -17,7 +17,6 @@ namespace tapstudy::device {
 namespace {
 constexpr std::chrono::milliseconds max_wait{100};
 
-// NOLINTNEXTLINE(cert-dcl50-cpp): the type that the library asks for
 void say_nothing(const char*, int, const char*, int, const char*, ...) {}
 
 struct Free {

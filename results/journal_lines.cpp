@@ -119,9 +119,9 @@ void add_line(const Json& line, JournalContent& content) {
   } else if (kind == "answer") {
     content.entries.answers.push_back(answer_from(line));
   } else if (kind == "correction") {
-    content.entries.corrections.push_back({line.at("session_id"), line.at("number"),
-                                           line.at("response"),
-                                           optional_of<bool>(line.at("is_correct"))});
+    content.entries.corrections.push_back(
+        {line.at("session_id"), line.at("number"), line.at("response"),
+         optional_of<bool>(line.at("is_correct")), line.at("ordinal")});
   } else if (kind == "form_answer") {
     content.entries.form_answers.push_back({line.at("session_id"), line.at("t_s"), line.at("form"),
                                             line.at("asked"), line.at("item"),
@@ -219,6 +219,7 @@ std::string to_line(const CorrectionRow& correction) {
   return dumped({{"kind", "correction"},
                  {"session_id", correction.session_id},
                  {"number", correction.number},
+                 {"ordinal", correction.ordinal},
                  {"response", correction.response},
                  {"is_correct", or_null(correction.is_correct)}});
 }

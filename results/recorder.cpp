@@ -50,35 +50,41 @@ void Recorder::queue(Write write) {
 std::future<SaveOutcome> Recorder::save(std::shared_ptr<const TrialRecord> record) {
   auto promise = std::make_shared<std::promise<SaveOutcome>>();
   queue(
-      promised(promise, [this, record = std::move(record)] { return store_.add_trial(*record); }));
+      {promised(promise, [this, record = std::move(record)] { return store_.add_trial(*record); }),
+       true});
   return promise->get_future();
 }
 
 std::future<void> Recorder::note(std::vector<SessionEventRow> events) {
   auto promise = std::make_shared<std::promise<void>>();
   queue(
-      promised(promise, [this, events = std::move(events)] { store_.add_session_events(events); }));
+      {promised(promise, [this, events = std::move(events)] { store_.add_session_events(events); }),
+       false});
   return promise->get_future();
 }
 
 std::future<void> Recorder::note(OperatorActionRow action) {
   auto promise = std::make_shared<std::promise<void>>();
-  queue(promised(promise,
-                 [this, action = std::move(action)] { store_.add_operator_action(action); }));
+  queue({promised(promise,
+                  [this, action = std::move(action)] { store_.add_operator_action(action); }),
+         false});
   return promise->get_future();
 }
 
 std::future<void> Recorder::save_form(std::vector<FormAnswerRow> answers) {
   auto promise = std::make_shared<std::promise<void>>();
-  queue(promised(promise, [this, answers = std::move(answers)] { store_.add_form(answers); }));
+  queue({promised(promise, [this, answers = std::move(answers)] { store_.add_form(answers); }),
+         false});
   return promise->get_future();
 }
 
 std::future<void> Recorder::correct(CorrectionRow correction, OperatorActionRow action) {
   auto promise = std::make_shared<std::promise<void>>();
-  queue(promised(promise, [this, correction = std::move(correction), action = std::move(action)] {
-    store_.add_correction(correction, action);
-  }));
+  queue({promised(promise,
+                  [this, correction = std::move(correction), action = std::move(action)] {
+                    store_.add_correction(correction, action);
+                  }),
+         false});
   return promise->get_future();
 }
 
@@ -97,7 +103,7 @@ void Recorder::drain_followed() noexcept {
     if (followed_ != nullptr) {
       followed_->drain();
     }
-  } catch (...) {  // delivered with what is written next
+  } catch (...) {  // delivered with the trial
     drain_failure_ = std::current_exception();
     followed_ = nullptr;
   }
@@ -112,7 +118,7 @@ void Recorder::run(const std::stop_token& stop) {
       const Write write = std::move(pending_.front());
       pending_.pop_front();
       lock.unlock();
-      write(std::exchange(drain_failure_, nullptr));
+      write.act(write.is_trial ? std::exchange(drain_failure_, nullptr) : nullptr);
       lock.lock();
     }
   }

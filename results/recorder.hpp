@@ -32,13 +32,16 @@ class Recorder {
   std::future<void> correct(CorrectionRow correction, OperatorActionRow action);
 
   // Drains the collector every few milliseconds, until leave() returns. If draining fails, the loop
-  // continues, dropped samples are counted, and what is written next fails with the cause.
+  // continues, dropped samples are counted, and saving the trial fails with the cause.
   void follow(TraceCollector& collector);
   void leave();
 
  private:
   void run(const std::stop_token& stop);
-  using Write = std::function<void(std::exception_ptr drain_failure)>;
+  struct Write {
+    std::function<void(std::exception_ptr drain_failure)> act;
+    bool is_trial{};  // what could not be drained is missing in it
+  };
   void queue(Write write);
   void drain_followed() noexcept;
 
@@ -47,7 +50,7 @@ class Recorder {
   std::condition_variable_any arrived_;
   std::deque<Write> pending_;
   TraceCollector* followed_{nullptr};
-  std::exception_ptr drain_failure_;  // passed to the next write
+  std::exception_ptr drain_failure_;  // passed to the next trial's write
   std::jthread thread_;
 };
 }  // namespace tapstudy::results

@@ -91,6 +91,7 @@ struct CorrectionRow {
   int number{};  // of the trial
   std::string response;
   std::optional<bool> is_correct;
+  int ordinal{};  // of the trial's corrections, from 1; the store counts
 };
 struct EventRow {
   double t_s{};  // from the first tick of the trial

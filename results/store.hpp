@@ -48,8 +48,8 @@ class Store {
     int order_index;
   };
   // Of an existing participant, or the next free one of the mode. The order is the first that no
-  // other participant of the mode has, who has finished or is in a session: those who stopped or
-  // were excluded use none up.
+  // other participant of the mode has: those who were excluded, or stopped before their first
+  // answer, use none up.
   // Throws InvalidInput if the participant is there already in another mode.
   Place place_of(const std::string& participant_id, Mode mode);
   bool has_sessions(const std::string& participant_id);
@@ -103,7 +103,10 @@ class Store {
   void add_to_journal(const TrialRecord& record);
   void journal(JournalEntries entries, std::int64_t session_id);
   void insert_action(const OperatorActionRow& action);
-  void insert_correction(const CorrectionRow& correction);
+  int insert_correction(const CorrectionRow& correction);  // which of the trial's, from 1
+  void add_and_journal(JournalEntries entries, std::int64_t session_id,
+                       const std::function<void(JournalEntries&)>& insert);
+  void check_has_not_moved();
   int next_participant_index(Mode mode);
   int free_order_index(Mode mode);
   std::vector<JournalledAnswer> answers_for_journal();
@@ -124,5 +127,7 @@ class Store {
   Database database_;
   std::optional<Journal> journal_;
   std::optional<std::array<std::int64_t, 3>> unconfirmed_;  // a trial that is committed, no more
+  // Likewise: as they were given, and as they were inserted.
+  std::optional<std::pair<std::vector<std::string>, JournalEntries>> unjournalled_;
 };
 }  // namespace tapstudy::results

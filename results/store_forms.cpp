@@ -16,12 +16,12 @@ void Store::add_form(const std::vector<FormAnswerRow>& answers) {
   if (answers.empty()) {
     return;
   }
-  Transaction all{database_};
-  for (const FormAnswerRow& answer : answers) {
-    insert_form_answer(answer);
-  }
-  all.commit();
-  journal({.form_answers = answers}, answers.front().session_id);
+  add_and_journal({.form_answers = answers}, answers.front().session_id,
+                  [&](JournalEntries& /*entries*/) {
+                    for (const FormAnswerRow& answer : answers) {
+                      insert_form_answer(answer);
+                    }
+                  });
 }
 
 std::set<std::pair<std::string, std::string>> Store::filled_forms(

@@ -22,15 +22,30 @@ void Store::insert_action(const OperatorActionRow& action) {
       .finish();
 }
 
+// Of rows that are in the database, but not yet in the journal, only the latter is made up for.
+void Store::add_and_journal(JournalEntries entries, std::int64_t session_id,
+                            const std::function<void(JournalEntries&)>& insert) {
+  const std::vector<std::string> what = to_lines(entries);
+  if (!unjournalled_ || unjournalled_->first != what) {
+    Transaction all{database_};
+    insert(entries);
+    all.commit();
+    unjournalled_ = {what, std::move(entries)};
+  }
+  if (journal_) {
+    check_has_not_moved();
+  }
+  journal(unjournalled_->second, session_id);
+  unjournalled_.reset();
+}
+
 void Store::add_operator_action(const OperatorActionRow& action) {
-  Transaction all{database_};
-  insert_action(action);
-  all.commit();
-  journal({.actions = {action}}, action.session_id);
+  add_and_journal({.actions = {action}}, action.session_id,
+                  [&](JournalEntries& /*entries*/) { insert_action(action); });
 }
 
 // The times are those of the answer that the participant gave.
-void Store::insert_correction(const CorrectionRow& correction) {
+int Store::insert_correction(const CorrectionRow& correction) {
   Statement{database_,
             "INSERT INTO response (trial_id, response, is_correct, response_time_s, "
             "time_from_first_contact_s, confidence, supersedes, given_by) "
@@ -48,14 +63,19 @@ void Store::insert_correction(const CorrectionRow& correction) {
     throw StoreError{fmt::format("{}: trial {} has no answer that could be corrected",
                                  database_.file(), correction.number)};
   }
+  Statement count{database_,
+                  "SELECT count(supersedes) FROM response JOIN trial USING (trial_id) "
+                  "WHERE session_id = ? AND number = ?"};
+  count.bind(correction.session_id).bind(correction.number).step();
+  return static_cast<int>(count.integer(0));
 }
 
 void Store::add_correction(const CorrectionRow& correction, const OperatorActionRow& action) {
-  Transaction all{database_};
-  insert_correction(correction);
-  insert_action(action);
-  all.commit();
-  journal({.corrections = {correction}, .actions = {action}}, correction.session_id);
+  add_and_journal({.corrections = {correction}, .actions = {action}}, correction.session_id,
+                  [&](JournalEntries& entries) {
+                    entries.corrections.front().ordinal = insert_correction(correction);
+                    insert_action(action);
+                  });
 }
 
 std::map<std::string, std::string> Store::excluded_participants() {
@@ -81,12 +101,14 @@ JournalEntries Store::entries_for_journal() {
 
 std::vector<CorrectionRow> Store::corrections_for_journal() {
   Statement row{database_,
-                "SELECT session_id, number, response, is_correct FROM response "
+                "SELECT session_id, number, response, is_correct, "
+                "row_number() OVER (PARTITION BY trial_id ORDER BY response_id) FROM response "
                 "JOIN trial USING (trial_id) WHERE supersedes IS NOT NULL ORDER BY response_id"};
   std::vector<CorrectionRow> corrections;
   while (row.step()) {
     corrections.push_back({row.integer(0), static_cast<int>(row.integer(1)), row.text(2),
-                           row.is_null(3) ? std::nullopt : std::optional{row.integer(3) != 0}});
+                           row.is_null(3) ? std::nullopt : std::optional{row.integer(3) != 0},
+                           static_cast<int>(row.integer(4))});
   }
   return corrections;
 }

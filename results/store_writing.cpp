@@ -37,14 +37,18 @@ int Store::next_participant_index(Mode mode) {
 int Store::free_order_index(Mode mode) {
   const std::map<std::string, std::string> excluded = excluded_participants();
   Statement row{database_,
-                "SELECT participant_id, order_index, coalesce((SELECT state FROM session_event "
-                "JOIN session USING (session_id) WHERE session.participant_id = "
-                "participant.participant_id ORDER BY session_event.rowid DESC LIMIT 1), '') "
+                "SELECT participant_id, order_index, "
+                "  EXISTS (SELECT 1 FROM trial JOIN session USING (session_id) "
+                "    WHERE session.participant_id = participant.participant_id "
+                "    AND status = 'answered') OR "
+                "  coalesce((SELECT state FROM session_event JOIN session USING (session_id) "
+                "    WHERE session.participant_id = participant.participant_id "
+                "    ORDER BY session_event.rowid DESC LIMIT 1), '') <> 'stopped' "
                 "FROM participant WHERE mode = ?"};
   row.bind(to_text(mode));
   std::set<int> used;
   while (row.step()) {
-    if (!excluded.contains(row.text(0)) && row.text(2) != "stopped") {
+    if (!excluded.contains(row.text(0)) && row.integer(2) != 0) {
       used.insert(static_cast<int>(row.integer(1)));
     }
   }
@@ -132,8 +136,7 @@ void Store::write_anew() {
   }
 }
 
-// Read back by whoever opens the file of that name.
-void Store::check_is_in_place(const TrialRow& trial) {
+void Store::check_has_not_moved() {
   const fs::path file{database_.file()};
   std::error_code error;
   if (database_.has_moved()) {
@@ -148,6 +151,11 @@ void Store::check_is_in_place(const TrialRow& trial) {
         "{}: is no longer where it was (put it back: all answers are in the file that was moved)",
         database_.file())};
   }
+}
+
+// Read back by whoever opens the file of that name.
+void Store::check_is_in_place(const TrialRow& trial) {
+  check_has_not_moved();
   Database by_name{database_.file(), Database::Access::read};
   Statement row{by_name, "SELECT 1 FROM trial WHERE session_id = ? AND number = ? AND attempt = ?"};
   row.bind(trial.session_id).bind(trial.number).bind(trial.attempt);

@@ -15,6 +15,12 @@ struct PlannedHypothesis {
 // The choice that counts of a participant who chose several times: the most frequent (of equals the
 // earliest), or the first.
 enum class Vote { majority, first };
+// A participant's place in the study, from 0: among the participants, and among the balanced
+// orders.
+struct Place {
+  int participant_index{};
+  int order_index{};
+};
 struct BlockDesign {
   std::string name;
   std::string task;
@@ -25,7 +31,8 @@ struct BlockDesign {
   std::vector<PlannedHypothesis> hypotheses;
   // The stimuli (places in the list above) that a participant's trials of this block would have had
   // in another draw of its order; empty where the order is not random.
-  std::function<std::vector<int>(int order_index, std::uint64_t draw)> redraw;
+  using Redraw = std::function<std::vector<int>(const Place& place, std::uint64_t draw)>;
+  Redraw redraw;
   int first_trial{1};  // the number of its first trial
   // Where the participants' answers follow from an assumption of the simulation: which. Nothing is
   // tested then.

@@ -57,7 +57,7 @@ void check_correctness(const BlockDesign& design, const AnswerRow& answer) {
 
 // A participant's answers of a block, with the places of their trials in its order.
 struct Person {
-  int order_index{};
+  Place place;
   Answers answers;
   std::vector<std::size_t> places;
 };
@@ -73,7 +73,7 @@ std::vector<Person> people_of(const BlockDesign& design, const std::vector<Answe
   for (const AnswerRow& answer : answers) {
     const auto [person, is_new] = place_of_person.emplace(answer.participant_id, people.size());
     if (is_new) {
-      people.push_back({answer.order_index, {}, {}});
+      people.push_back({{answer.participant_index, answer.order_index}, {}, {}});
     }
     Person& of = people[person->second];
     of.answers.stimuli.push_back(code(answer.stimulus));
@@ -88,7 +88,7 @@ PermutationResult accuracy_test(const BlockDesign& design, const std::vector<Ans
   std::vector<Answers> answers;
   std::ranges::transform(people, std::back_inserter(answers), &Person::answers);
   const Redraw redraw = [&](std::size_t person, std::uint64_t draw) {
-    const std::vector<int> order = design.redraw(people[person].order_index, draw);
+    const std::vector<int> order = design.redraw(people[person].place, draw);
     std::vector<int> stimuli;
     for (const std::size_t place : people[person].places) {
       stimuli.push_back(order.at(place));

@@ -156,8 +156,8 @@ bool ConsoleServer::is_from_here(mg_connection* connection) const {
   for (const std::string& name : {address_.host, std::string{"localhost"}}) {
     is_known = is_known || host == fmt::format("{}:{}", name, address_.port);
   }
-  return is_known && (origin.empty() || origin == "http://" + host) &&
-         site != "cross-site" && site != "same-site";
+  return is_known && (origin.empty() || origin == "http://" + host) && site != "cross-site" &&
+         site != "same-site";
 }
 
 int ConsoleServer::serve(mg_connection* connection) {

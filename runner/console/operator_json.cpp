@@ -4,6 +4,8 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.hpp"
+#include "device/device.hpp"
+#include "runner/console/parse_json.hpp"
 namespace tapstudy::runner {
 namespace {
 using Json = nlohmann::ordered_json;
@@ -87,11 +89,14 @@ std::string state_json(const SessionInView& session, const DeskView& desk,
       {"is_paused", desk.is_paused},
       {"participant_page", session.has_participant_page},
       {"device", session.device},
-      {"force_is_off", !desk.trial.has_value()},
+      {"force_is_off",
+       desk.force == ForceState::unknown ? Json{} : Json(desk.force == ForceState::off)},
       {"ticks", {{"total", totals.ticks}, {"late", totals.late}}},
       {"masking", nullptr},
       {"warnings", Json::array()}};
-  for (const std::string& warning : {session.last_fault, desk.held_by}) {
+  const std::string force =
+      desk.force == ForceState::unknown ? std::string{device::force_may_be_on} : std::string{};
+  for (const std::string& warning : {force, session.last_fault, desk.held_by}) {
     if (!warning.empty()) {
       json["warnings"].push_back(warning);
     }
@@ -120,7 +125,7 @@ std::string refusal_json(const std::string& why) {
 
 std::string command_in(const std::string& text) {
   try {
-    return Json::parse(text).at("command").get<std::string>();
+    return parse_json(text).at("command").get<std::string>();
   } catch (const Json::exception&) {
     throw core::InvalidInput{"is no command"};
   }

@@ -1,7 +1,6 @@
 #include "runner/console/operator_terminal.hpp"
 
 #include "core/error.hpp"
-#include "results/store_error.hpp"
 #include "runner/terminal/say.hpp"
 #include "runner/terminal/stop_signal.hpp"
 namespace tapstudy::runner {
@@ -29,7 +28,7 @@ void OperatorTerminal::obey(const std::string& line) {
     say("{}: stored\n", name(command.action));
   } catch (const core::InvalidInput& error) {
     say("{}\n", error.what());
-  } catch (const results::StoreError& error) {
+  } catch (const std::exception& error) {  // none may leave a thread
     say("not stored: {}\n", error.what());
   }
 }

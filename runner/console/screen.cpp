@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/error.hpp"
+#include "runner/console/parse_json.hpp"
 namespace tapstudy::runner {
 namespace {
 using Json = nlohmann::ordered_json;
@@ -130,7 +131,7 @@ ScreenInput parse_input(const std::string& text, std::int64_t& screen) {
        {"confidence", ScreenAction::confidence},
        {"form", ScreenAction::form}}};
   try {
-    const Json json = Json::parse(text);
+    const Json json = parse_json(text);
     const std::string action = json.at("action");
     const auto found = std::ranges::find(actions, action, &decltype(actions)::value_type::first);
     if (found == actions.end()) {

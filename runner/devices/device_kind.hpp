@@ -7,13 +7,13 @@
 #include "protocols/protocol.hpp"
 #include "protocols/rig_device.hpp"
 #include "runner/devices/session_device.hpp"
-#include "runner/terminal/line_input.hpp"
 namespace tapstudy::runner {
 // The context in which a device is opened.
 struct DeviceRequest {
   const protocols::Protocol& protocol;
   const protocols::Rig& rig;
-  LineInput& operator_input;
+  // Asks the operator to do something; false if the session is to stop instead.
+  std::function<bool(const std::string& task)> ask_operator;
 };
 
 // A kind of device: its section of the rig (protocols::RigDevice), its detection, and how it is

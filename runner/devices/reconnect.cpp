@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include "runner/terminal/operator_prompt.hpp"
 namespace tapstudy::runner {
 std::unique_ptr<SessionDevice> reconnect(const std::string& what_happened,
                                          const DeviceRequest& request,
@@ -13,15 +12,15 @@ std::unique_ptr<SessionDevice> reconnect(const std::string& what_happened,
   }
   const DeviceKind& kind = kind_of(request.rig);
   std::string task = fmt::format(
-      "\n{}.\nType quit to stop here; or check the device, its power and cable, and to continue",
+      "\n{}.\nType quit to stop here; or check the device, its power and cable, and to continue,",
       what_happened);
-  while (asked_and_done(request.operator_input, task)) {
+  while (request.ask_operator(task)) {
     if (kind.is_there()) {
       broken
           .reset();  // only one can hold the device, and its guardian may have repeated zero force
       return kind.open(request);
     }
-    task = "It is not there yet. To try again";
+    task = "It is not there yet. To try again,";
   }
   throw gives_up;
 }

@@ -15,7 +15,6 @@
 #include "protocols/yaml/yaml_reader.hpp"
 #include "runner/devices/shipped_devices.hpp"
 #include "runner/terminal/exit_code.hpp"
-#include "runner/terminal/operator_prompt.hpp"
 namespace tapstudy::runner {
 namespace {
 using protocols::MapReader;
@@ -69,7 +68,7 @@ device::BoardSettings board_settings(const protocols::Rig& rig) {
 class SpidarDevice final : public SessionDevice {
  public:
   SpidarDevice(const device::UsbListing& listing, const DeviceRequest& request)
-      : input_{request.operator_input},
+      : ask_operator_{request.ask_operator},
         open_{listing, board_settings(request.rig)},
         spidar_{
             open_.pipe, *open_.board,
@@ -112,13 +111,13 @@ class SpidarDevice final : public SessionDevice {
   }
   bool is_without_voltage() const { return is_amplifier_sensed_ && !spidar_.has_motor_voltage(); }
   void home() {
-    if (!asked_and_done(input_, "\nHold the grip in the middle of the frame, not turned, and")) {
+    if (!ask_operator_("\nHold the grip in the middle of the frame, not turned, and")) {
       throw Stopped{"stopped before the grip was in the middle"};
     }
     check(spidar_.home());
   }
 
-  LineInput& input_;
+  std::function<bool(const std::string& task)> ask_operator_;
   device::OpenBoard open_;
   device::SpidarG6 spidar_;
   bool is_amplifier_sensed_;

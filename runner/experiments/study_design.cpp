@@ -18,14 +18,13 @@ std::vector<analysis::Item> items(const protocols::Protocol& protocol,
 }
 
 // All participants of one draw share its counterbalancing.
-std::function<std::vector<int>(int, std::uint64_t)> redraw_of(const protocols::Block& block,
-                                                              std::size_t block_index) {
-  return [block, block_index](int order_index, std::uint64_t draw) {
-    const std::uint64_t seed = core::derived_seed(draw, core::Purpose::participant,
-                                                  static_cast<std::uint64_t>(order_index));
+analysis::BlockDesign::Redraw redraw_of(const protocols::Block& block, std::size_t block_index) {
+  return [block, block_index](const analysis::Place& place, std::uint64_t draw) {
+    const std::uint64_t seed = core::derived_seed(
+        draw, core::Purpose::participant, static_cast<std::uint64_t>(place.participant_index));
     std::vector<int> stimuli;
     for (const protocols::PlannedTrial& trial :
-         block.task->trials(block, {seed, order_index, block_index, draw})) {
+         block.task->trials(block, {seed, place.order_index, block_index, draw})) {
       const auto found = std::ranges::find(block.stimuli, trial.stimuli.front());
       stimuli.push_back(static_cast<int>(found - block.stimuli.begin()));
     }

@@ -18,6 +18,9 @@ struct AnswerInView {
   std::string response;  // as the task stores it
 };
 
+// unknown: the device did not confirm zero force.
+enum class ForceState { off, on, unknown };
+
 // What the operator wants to become of the running trial.
 enum class TrialWish { repeat, skip };
 
@@ -29,6 +32,7 @@ class Operator {
   virtual void trial_begins(const TrialInView& /*trial*/) {}
   virtual void alternative_is_felt(std::size_t /*alternative*/) {}
   virtual void trial_is_over() {}
+  virtual void force_is(ForceState /*force*/) {}
   virtual void answer_is_stored(const AnswerInView& /*answer*/) {}
 
   virtual bool is_paused() const { return false; }

@@ -152,7 +152,7 @@ bool OperatorDesk::waits_for_operator(const std::string& why) {
 
 DeskView OperatorDesk::view() const {
   const std::lock_guard lock{mutex_};
-  DeskView view{trial_, current_, last_answer_, {}, is_paused_, held_by_, {}};
+  DeskView view{trial_, current_, last_answer_, {}, force_, is_paused_, held_by_, {}};
   for (const Logged& logged : log_) {
     view.log.push_back({logged.row, is_over(logged.stored) && has_succeeded(logged.stored)});
   }
@@ -185,6 +185,11 @@ void OperatorDesk::trial_is_over() {
 void OperatorDesk::answer_is_stored(const AnswerInView& answer) {
   const std::lock_guard lock{mutex_};
   last_answer_ = answer;
+}
+
+void OperatorDesk::force_is(ForceState force) {
+  const std::lock_guard lock{mutex_};
+  force_ = force;
 }
 
 bool OperatorDesk::is_paused() const {

@@ -21,6 +21,7 @@ struct DeskView {
   std::size_t current{};             // its alternative that is felt
   std::optional<AnswerInView> last_answer;
   std::vector<Entry> log;
+  ForceState force{ForceState::off};
   bool is_paused{};
   std::string held_by;  // why the operator is needed; empty: not
   std::vector<OperatorAction> possible;
@@ -48,6 +49,7 @@ class OperatorDesk final : public Operator {
   void trial_begins(const TrialInView& trial) override;
   void alternative_is_felt(std::size_t alternative) override;
   void trial_is_over() override;
+  void force_is(ForceState force) override;
   void answer_is_stored(const AnswerInView& answer) override;
   bool is_paused() const override;
   std::optional<TrialWish> wish() const override;
@@ -75,6 +77,7 @@ class OperatorDesk final : public Operator {
   std::optional<TrialWish> wish_;
   std::optional<std::size_t> switch_to_;
   std::string end_reason_;
+  ForceState force_{ForceState::off};
   bool is_paused_{false};
   std::string held_by_;
   bool is_excluded_{false};

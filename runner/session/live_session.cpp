@@ -18,6 +18,7 @@
 #include "runner/session/session_row.hpp"
 #include "runner/terminal/logging.hpp"
 #include "runner/terminal/no_flow_control.hpp"
+#include "runner/terminal/operator_prompt.hpp"
 #include "runner/terminal/session_lock.hpp"
 #include "runner/terminal/stop_signal.hpp"
 #include "runner/trial_loop/masked_trial_loop.hpp"
@@ -67,7 +68,9 @@ LiveOutcome run_live_session(const LiveSession& live) {
   if (live.rig.has_hardware) {
     inhibitor.emplace();
   }
-  const DeviceRequest device_request{live.protocol, live.rig, input};
+  AskOperator ask_operator = [&](const std::string& task) { return asked_and_done(input, task); };
+  const DeviceRequest device_request{live.protocol, live.rig,
+                                     [&](const std::string& task) { return ask_operator(task); }};
   std::unique_ptr<SessionDevice> device = kind_of(live.rig).open(device_request);
   Markers markers{live.rig.markers};
   std::unique_ptr<device::PcmSink> card = open_masking_card(live.protocol, live.rig);
@@ -79,7 +82,8 @@ LiveOutcome run_live_session(const LiveSession& live) {
       store);
   device->begin_session(session.row.seed);
   const auto masking = masking_player(std::move(card), live.protocol, live.rig, session.row.seed);
-  LiveTrials{{live, settings, models, device_request, masking.get(), markers, store, session},
+  LiveTrials{{live, settings, models, device_request, input, ask_operator, masking.get(), markers,
+              store, session},
              std::move(device)}
       .run();
   const std::size_t given_up =

@@ -44,6 +44,11 @@ std::unique_ptr<Console> console_of(const LiveTrials::Parts& parts, OperatorDesk
       Console::Session{parts.live.protocol, parts.session.row, desk, std::move(move_hand)});
   loop.watch(
       [seen_by = console.get()](const core::TraceSample& sample) { seen_by->watch(sample); });
+  // the terminal's lines are commands then, and the operator may be at a page
+  parts.ask_operator = [&desk](const std::string& task) {
+    say("{} type resume.\n", task);
+    return desk.waits_for_operator(task);
+  };
   introduce(*console);
   return console;
 }
@@ -64,7 +69,7 @@ LiveTrials::LiveTrials(const Parts& parts, std::unique_ptr<SessionDevice> device
       live_loop_{device_->device(), parts.settings, parts.live.rig.realtime, recorder_},
       masked_loop_{masked(live_loop_, parts)},
       desk_{{parts.live.protocol, parts.session.row.id, [this] { return now_s(); }}, recorder_},
-      at_terminal_{parts.device_request.operator_input, [this] { device_->get_ready(); },
+      at_terminal_{parts.input, [this] { device_->get_ready(); },
                    [this](const std::string& command) { return obeyed(desk_, command); }},
       console_{console_of(parts, desk_, live_loop_, [this] { device_->get_ready(); })},
       states_{parts.session.row.id, [this] { return now_s(); },
@@ -87,18 +92,13 @@ TrialLoop& LiveTrials::trial_loop() {
   return masked_loop_ ? static_cast<TrialLoop&>(*masked_loop_) : live_loop_;
 }
 
-// What is typed at the terminal is the operator's while the participant is at a page, and the
-// answer to a question about the device between two runs.
-std::optional<Interruption> LiveTrials::run_engine() {
+void LiveTrials::run() {
   std::optional<OperatorTerminal> terminal;
   if (console_) {
-    terminal.emplace(parts_.device_request.operator_input, desk_);
+    terminal.emplace(parts_.input, desk_);
   }
-  return engine_.run(parts_.session.row.id, parts_.session.schedule, parts_.session.done);
-}
-
-void LiveTrials::run() {
-  while (const auto interruption = run_engine()) {
+  while (const auto interruption =
+             engine_.run(parts_.session.row.id, parts_.session.schedule, parts_.session.done)) {
     device_ = reconnect(to_text(*interruption), parts_.device_request, std::move(device_));
     device_->begin_session(parts_.session.row.seed);
     live_loop_.use(device_->device());

@@ -17,6 +17,8 @@
 #include "runner/trial_loop/live_trial_loop.hpp"
 #include "runner/trial_loop/masked_trial_loop.hpp"
 namespace tapstudy::runner {
+using AskOperator = std::function<bool(const std::string& task)>;
+
 // The trials of a live session, with everybody and everything that takes part in them: the
 // participant at the terminal or at a page, the operator, the device, masking noise, markers.
 class LiveTrials {
@@ -26,6 +28,8 @@ class LiveTrials {
     const device::LoopSettings& settings;
     ModelLibrary& models;
     const DeviceRequest& device_request;
+    LineInput& input;              // of the terminal
+    AskOperator& ask_operator;     // of device_request: changed where there are pages
     device::AudioPlayer* masking;  // nullptr: no noise
     Markers& markers;
     results::Store& store;
@@ -38,7 +42,6 @@ class LiveTrials {
  private:
   double now_s() const;  // from the session's begin
   TrialLoop& trial_loop();
-  std::optional<Interruption> run_engine();
 
   Parts parts_;
   std::unique_ptr<SessionDevice> device_;

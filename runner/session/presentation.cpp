@@ -43,6 +43,7 @@ void ask(const TrialInView& view, Exploration& exploration, const SessionParts& 
 Presentation present(const TrialInView& trial, const SessionParts& parts) {
   TrialStimuli stimuli = build_trial_stimuli(parts.protocol, trial.trial.stimuli, parts.models);
   parts.states.enter(SessionState::ready, trial.trial.number);
+  parts.by.force_is(ForceState::on);  // a device may pull while it gets ready
   parts.participant.get_ready(trial.prompt);
   Presentation presentation;
   parts.states.enter(SessionState::exploring, trial.trial.number);
@@ -55,6 +56,7 @@ Presentation present(const TrialInView& trial, const SessionParts& parts) {
     }
   });
   parts.by.trial_is_over();
+  parts.by.force_is(parts.trial_loop.is_force_off() ? ForceState::off : ForceState::unknown);
   if (presentation.result.loop.stop == device::StopOutcome::unconfirmed) {
     warn(device::force_may_be_on);  // before anything else can fail
   }

@@ -62,7 +62,37 @@ TEST_CASE("the last word on a participant's exclusion holds", "[results][store]"
   CHECK(store.excluded_participants().empty());
 }
 
-TEST_CASE("who stopped or was excluded uses no balanced order up, who is in a session does",
+TEST_CASE("a correction that is made again is another one, in the journal too",
+          "[results][store]") {
+  const testing::TempDirectory directory;
+  auto [store, row] = begun_study(directory.path());
+  store.add_trial(small_study::trial(row.id, 1, "a"));
+  for (const char* const response : {"b", "a", "b"}) {
+    store.add_correction({row.id, 1, response, true}, action(row.id, "correct", response));
+  }
+  const JournalEntries journalled = read_journal(directory.path()).entries;
+  REQUIRE(journalled.corrections.size() == 3);
+  CHECK(journalled.corrections.back().response == "b");
+  CHECK(to_lines(journalled).size() >= to_lines({.corrections = journalled.corrections}).size());
+  CHECK(to_lines({.corrections = journalled.corrections}) ==
+        to_lines({.corrections = store.entries_for_journal().corrections}));
+}
+
+TEST_CASE("what the journal could not take is made up for, not doubled", "[results][store]") {
+  const testing::TempDirectory directory;
+  auto [store, row] = begun_study(directory.path());
+  const std::string journal = directory / "answers.journal";
+  std::filesystem::remove(journal);
+  std::filesystem::create_directory(journal);  // so that it cannot be opened
+  const std::vector<FormAnswerRow> form{{row.id, 1.0, "about", "main", "hand", "left"}};
+  CHECK_THROWS_AS(store.add_form(form), StoreError);
+  std::filesystem::remove(journal);
+  store.add_form(form);
+  CHECK(store.entries_for_journal().form_answers.size() == 1);
+  CHECK(read_journal(directory.path()).entries.form_answers.size() == 1);
+}
+
+TEST_CASE("who stopped unheard or was excluded uses no balanced order up, who answered does",
           "[results][store]") {
   const testing::TempDirectory directory;
   Store store = Store::open_or_create(directory.path(), small_study::study);
@@ -70,14 +100,17 @@ TEST_CASE("who stopped or was excluded uses no balanced order up, who is in a se
   const SessionRow ended = add_participant(store, "P02");
   const SessionRow active = add_participant(store, "P03");
   const SessionRow excluded = add_participant(store, "P04");
+  const SessionRow resumable = add_participant(store, "P04b");
   CHECK(excluded.order_index == 3);
+  store.add_trial(small_study::trial(resumable.id, 1, "a"));
   store.add_session_events({{stopped.id, 1.0, "stopped", {}, {}},
                             {ended.id, 1.0, "ended", {}, {}},
+                            {resumable.id, 1.0, "stopped", {}, {}},
                             {excluded.id, 1.0, "ended", {}, {}}});
   store.add_operator_action(action(excluded.id, "exclude", "asleep"));
   CHECK(add_participant(store, "P05").order_index == stopped.order_index);
   CHECK(add_participant(store, "P06").order_index == excluded.order_index);
-  CHECK(add_participant(store, "P07").order_index == 4);
+  CHECK(add_participant(store, "P07").order_index == 5);
   CHECK(store.place_of("P01", Mode::real).order_index == stopped.order_index);  // if resumed
   CHECK(store.place_of("Q01", Mode::pilot).order_index == 0);
 }

@@ -209,7 +209,7 @@ TEST_CASE("a summary counts by participant, block and task", "[analysis][summary
         {a, b},
         {a, b},
         {{"h", "better than chance", ""}},
-        [](int /*participant*/, std::uint64_t draw) {
+        [](const analysis::Place& /*place*/, std::uint64_t draw) {
           return draw % 2 == 0 ? std::vector<int>{0, 1} : std::vector<int>{1, 0};
         },
         1,

@@ -73,7 +73,8 @@ TEST_CASE(
     const auto result = analysis::permutation_test(
         people,
         [&](std::size_t person, std::uint64_t draw) {
-          return design.blocks[0].redraw(static_cast<int>(person), draw);
+          const int place = static_cast<int>(person);
+          return design.blocks[0].redraw({place, place}, draw);
         },
         draws, static_cast<std::uint64_t>(study));
     significant += result.p <= 0.05 ? 1 : 0;

@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <string>
 #include <type_traits>
+#include <utility>
 namespace tapstudy::core {
 // Values as bytes for another process of this same program: neither portable nor for files.
 class PackedBytes {

@@ -132,6 +132,16 @@ struct TrialRow {
   double duration_s{};
 };
 
+// What was not as planned in a participant's trials, practice aside.
+struct DeviationRow {
+  std::string participant_id;
+  Mode mode{};
+  int corrected{};           // answers, by the operator
+  int corrected_to_right{};  // of these, that were wrong
+  int skipped{};
+  int timed_out{};
+};
+
 struct UnansweredTrial {
   int number{};
   std::string block;

@@ -77,6 +77,8 @@ class Store {
   std::vector<UnansweredTrial> unanswered_trials(const std::string& participant_id);
   // Form and where it was asked, of all that the participant has answered.
   std::set<std::pair<std::string, std::string>> filled_forms(const std::string& participant_id);
+  // Of participants of whom there is something to say.
+  std::vector<DeviationRow> deviations();
   // By id: why.
   std::map<std::string, std::string> excluded_participants();
   // Of all participants and modes, including practice: the caller filters. Sorted by mode,

@@ -78,6 +78,30 @@ void Store::add_correction(const CorrectionRow& correction, const OperatorAction
                   });
 }
 
+std::vector<DeviationRow> Store::deviations() {
+  Statement row{database_,
+                "SELECT participant_id, mode, count(corrected), "
+                "  coalesce(sum(corrected AND is_correct AND NOT was_correct), 0), "
+                "  sum(status = 'skipped'), sum(status = 'timed_out') FROM ("
+                "  SELECT session_id, status, is_practice, "
+                "    nullif(current_response.supersedes IS NOT NULL, 0) AS corrected, "
+                "    current_response.is_correct AS is_correct, first.is_correct AS was_correct "
+                "  FROM trial LEFT JOIN current_response USING (trial_id) "
+                "  LEFT JOIN response AS first ON first.trial_id = trial.trial_id "
+                "    AND first.supersedes IS NULL) "
+                "JOIN session USING (session_id) JOIN participant USING (participant_id) "
+                "WHERE NOT is_practice GROUP BY participant_id "
+                "HAVING count(corrected) > 0 OR sum(status IN ('skipped', 'timed_out')) > 0 "
+                "ORDER BY mode, participant_index"};
+  std::vector<DeviationRow> deviations;
+  while (row.step()) {
+    deviations.push_back({row.text(0), mode_from(row.text(1)), static_cast<int>(row.integer(2)),
+                          static_cast<int>(row.integer(3)), static_cast<int>(row.integer(4)),
+                          static_cast<int>(row.integer(5))});
+  }
+  return deviations;
+}
+
 std::map<std::string, std::string> Store::excluded_participants() {
   Statement row{database_,
                 "SELECT participant_id, action, detail FROM operator_action "

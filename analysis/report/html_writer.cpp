@@ -23,6 +23,10 @@ void write_html(std::ostream& out, const Summary& summary) {
     core::print(out, "<p>Excluded by the operator: {}.</p>\n",
                 escaped(fmt::format("{}", fmt::join(summary.excluded, "; "))));
   }
+  if (!summary.deviations.empty()) {
+    core::print(out, "<p>Not as planned: {}.</p>\n",
+                escaped(fmt::format("{}", fmt::join(summary.deviations, "; "))));
+  }
   for (const auto& block : summary.blocks) {
     if (!block->block.empty()) {
       core::print(out, "<h2>{}</h2>\n<p>{}</p>\n", escaped(block->block), escaped(block->question));

@@ -11,6 +11,7 @@ void write_json(std::ostream& out, const Summary& summary) {
             {"participants", summary.participants}};
   json["unfinished"] = summary.unfinished;
   json["excluded"] = summary.excluded;
+  json["deviations"] = summary.deviations;
   json["blocks"] = Json::array();
   for (const auto& block : summary.blocks) {
     json["blocks"].push_back(block->as_json());

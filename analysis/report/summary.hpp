@@ -23,6 +23,7 @@ struct Summary {
   std::string modes;  // "simulated", "real", "pilot", or "counts" if only a table was given
   std::vector<std::string> unfinished;  // sessions, with what was answered of what was planned
   std::vector<std::string> excluded;    // participants, with the operator's reason
+  std::vector<std::string> deviations;  // participants, with what was not as planned
   int participants{};
   std::vector<std::shared_ptr<const BlockSummary>> blocks;
   std::optional<LoopQuality> loop;

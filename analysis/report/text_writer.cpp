@@ -14,6 +14,9 @@ void write_text(std::ostream& out, const Summary& summary) {
   for (const std::string& participant : summary.excluded) {
     core::print(out, "excluded by the operator: {}\n", participant);
   }
+  for (const std::string& participant : summary.deviations) {
+    core::print(out, "not as planned: {}\n", participant);
+  }
   for (const auto& block : summary.blocks) {
     core::print(out, "\n");
     if (!block->block.empty()) {

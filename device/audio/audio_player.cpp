@@ -101,6 +101,7 @@ void AudioPlayer::run() {
 // Until it is faded out and all but silence has left the buffer.
 void AudioPlayer::play() {
   Pace pace{*sink_};
+  ramp_.restart();  // a card that failed at its end has cut the last fade short
   std::size_t silent_frames = 0;
   while (silent_frames <= sink_->buffer_frames()) {
     const Heard is_wanted = wanted();

@@ -10,6 +10,7 @@ class Ramp {
  public:
   Ramp(double duration_s, double rate_hz) : frames_{std::lround(duration_s * rate_hz)} {}
   void apply(std::span<float> samples, Heard wanted) noexcept;
+  void restart() noexcept { way_frames_ = 0; }
   bool is_silent() const noexcept { return way_frames_ == 0; }
 
  private:

@@ -93,6 +93,44 @@ std::vector<std::string> unfinished(results::Store& store, const protocols::Prot
   return found;
 }
 
+using Excluded = std::map<std::string, std::string>;  // by id: why
+std::vector<std::string> excluded_of(const Excluded& excluded,
+                                     const std::vector<results::SessionRow>& sessions, Mode mode) {
+  std::vector<std::string> found;
+  for (const auto& [participant, reason] : excluded) {
+    const auto session =
+        std::ranges::find(sessions, participant, &results::SessionRow::participant_id);
+    if (session != sessions.end() && session->mode == mode) {
+      found.push_back(fmt::format("{}: {}", participant, reason));
+    }
+  }
+  return found;
+}
+
+// "P03: 2 answers corrected by the operator (1 of them from wrong to right), 1 trial skipped".
+std::vector<std::string> deviations_of(results::Store& store, const Excluded& excluded, Mode mode) {
+  std::vector<std::string> found;
+  for (const results::DeviationRow& row : store.deviations()) {
+    if (row.mode != mode || excluded.contains(row.participant_id)) {
+      continue;
+    }
+    std::vector<std::string> parts;
+    if (row.corrected > 0) {
+      parts.push_back(
+          fmt::format("answers corrected by the operator: {} ({} of them from wrong to right)",
+                      row.corrected, row.corrected_to_right));
+    }
+    if (row.skipped > 0) {
+      parts.push_back(fmt::format("trials skipped: {}", row.skipped));
+    }
+    if (row.timed_out > 0) {
+      parts.push_back(fmt::format("presentations that timed out: {}", row.timed_out));
+    }
+    found.push_back(fmt::format("{}: {}", row.participant_id, fmt::join(parts, ", ")));
+  }
+  return found;
+}
+
 // From the store alone: the files named by the protocol may no longer exist.
 protocols::Protocol stored_protocol(const results::StudyRow& study) {
   return protocols::parse_protocol(
@@ -139,9 +177,8 @@ Summary summary_of_study(const ReportOptions& options) {
   Summary summary = analysis::summarise(design_of(protocol, mode), answers, visits);
   summary.provenance = provenance(study, sessions, mode);
   summary.unfinished = unfinished(store, protocol, sessions, mode);
-  for (const auto& [participant, reason] : excluded) {
-    summary.excluded.push_back(fmt::format("{}: {}", participant, reason));
-  }
+  summary.excluded = excluded_of(excluded, sessions, mode);
+  summary.deviations = deviations_of(store, excluded, mode);
   return summary;
 }
 

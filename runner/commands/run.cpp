@@ -81,7 +81,7 @@ void run(const RunOptions& options) {
 }  // namespace
 
 void add_run(CommandParser& line) {
-  Command command = line.add("run", "One participant's session at the terminal");
+  Command command = line.add("run", "One participant's session, at the terminal or a page");
   const auto options = std::make_shared<RunOptions>();
   command.argument("protocol", options->protocol, "Study (YAML)");
   command.option("--participant", options->participant, "Participant's id", Need::required);

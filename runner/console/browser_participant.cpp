@@ -79,8 +79,14 @@ std::optional<std::size_t> BrowserParticipant::perform(const TrialPrompt& prompt
   constexpr double poll_s = 0.01;
   std::size_t current = exploration.current();
   std::int64_t number = show_trial(prompt, current);
+  seen_at_ = std::chrono::steady_clock::now();
   while (exploration.is_running() && !stop_was_asked()) {
-    const auto input = screens_.take(number);
+    pause_if_left();
+    auto input = screens_.take(number);
+    const bool is_switched = exploration.current() != current;  // by the operator
+    if (!input && is_switched) {
+      input = screens_.close();
+    }
     if (input && input->action == ScreenAction::answer) {
       notice_.reset();
       return input->value;
@@ -88,13 +94,28 @@ std::optional<std::size_t> BrowserParticipant::perform(const TrialPrompt& prompt
     if (input) {
       exploration.switch_to(input->value);
     }
-    if (input || exploration.current() != current) {  // switched here, or by the operator
+    if (input || is_switched) {
+      notice_.reset();
       current = exploration.current();
       number = show_trial(prompt, current);
     }
     exploration.pass_time(poll_s);
   }
-  return std::nullopt;
+  const auto accepted = screens_.close();
+  return accepted && accepted->action == ScreenAction::answer ? std::optional{accepted->value}
+                                                              : std::nullopt;
+}
+
+// Force is not left on for somebody who may have gone.
+void BrowserParticipant::pause_if_left() {
+  constexpr std::chrono::seconds patience{3};
+  const auto now = std::chrono::steady_clock::now();
+  if (screens_.is_watched(now)) {
+    seen_at_ = now;
+  } else if (now - seen_at_ > patience) {
+    seen_at_ = now;
+    surroundings_.pause("the participant's page is closed or does not answer");
+  }
 }
 
 std::optional<int> BrowserParticipant::confidence(const protocols::Confidence& scale) {
@@ -127,6 +148,10 @@ bool BrowserParticipant::saves_again(const std::string& cause) {
 
 void BrowserParticipant::repeats(const TrialPrompt& /*prompt*/) {
   tell(Message::presented_again);
+}
+
+void BrowserParticipant::interrupted() {
+  show({.kind = ScreenKind::message, .message = Message::operator_is_needed});
 }
 
 void BrowserParticipant::skipped(const TrialPrompt& /*prompt*/) {

@@ -1,4 +1,5 @@
 #pragma once
+#include <chrono>
 #include <functional>
 #include <optional>
 
@@ -14,6 +15,7 @@ class BrowserParticipant final : public Participant {
     std::function<std::optional<int>(std::size_t alternative)> scene;
     // Tells the operator; whether to try again.
     std::function<bool(const std::string& cause)> ask_operator;
+    std::function<void(const std::string& why)> pause;  // as the operator does
   };
   BrowserParticipant(ScreenExchange& screens, Surroundings surroundings)
       : screens_{screens}, surroundings_{std::move(surroundings)} {}
@@ -30,6 +32,7 @@ class BrowserParticipant final : public Participant {
   void timed_out(const TrialPrompt& prompt, bool is_presented_again) override;
   bool saves_again(const std::string& cause) override;
   void repeats(const TrialPrompt& prompt) override;
+  void interrupted() override;
   void skipped(const TrialPrompt& prompt) override;
   void saved(const TrialPrompt& prompt) override;
 
@@ -39,10 +42,12 @@ class BrowserParticipant final : public Participant {
   // Until it is answered; throws Stopped if the session is to stop.
   ScreenInput answer_to(Screen screen);
   void tell(Message message);
+  void pause_if_left();
 
   ScreenExchange& screens_;
   Surroundings surroundings_;
   std::optional<Progress> progress_;
   std::optional<TooEarly> notice_;
+  std::chrono::steady_clock::time_point seen_at_;
 };
 }  // namespace tapstudy::runner

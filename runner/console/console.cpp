@@ -23,13 +23,14 @@ Console::~Console() {
 BrowserParticipant::Surroundings Console::surroundings(const Session& session) {
   OperatorDesk& desk = session.desk;
   return {session.move_hand,
-          [this, &desk](std::size_t alternative) -> std::optional<int> {
-            const auto trial = desk.view().trial;
-            return trial && shows_plate_
-                       ? std::optional{scenes_.number_of(trial->trial.stimuli.at(alternative))}
-                       : std::nullopt;
+          [this, &desk, &protocol = session.protocol](std::size_t alternative) {
+            const auto view = desk.view().trial;
+            return view && shows_plate_ ? scenes_.number_of(view->trial.stimuli.at(alternative),
+                                                            protocol.block(view->trial.block))
+                                        : std::nullopt;
           },
-          [&desk](const std::string& cause) { return desk.waits_for_operator(cause); }};
+          [&desk](const std::string& cause) { return desk.waits_for_operator(cause); },
+          [&desk](const std::string& why) { desk.pause(why); }};
 }
 
 ConsoleApi::Session Console::in_view(const ConsoleRequest& request, const Session& session) {

@@ -46,13 +46,20 @@ Reply ConsoleApi::post_input(Role role, const std::string& body) {
       const ScreenInput input = parse_input(body, screen);
       return outcome(screens_.post(screen, input));
     }
-    desk_.post(parse_operator_command(command_in(body))).get();
+    desk_.post(parse_operator_command(command_in(body))).stored.get();
     return outcome("");
   } catch (const core::InvalidInput& error) {
     return outcome(error.what());
   } catch (const results::StoreError& error) {
     return outcome(fmt::format("not stored: {}", error.what()));
   }
+}
+
+Reply ConsoleApi::post_alive(Role role) {
+  if (role == Role::participant) {
+    screens_.page_is_alive(std::chrono::steady_clock::now());
+  }
+  return outcome("");
 }
 
 void ConsoleApi::page_opened(Role role) {

@@ -56,6 +56,7 @@ class ConsoleApi {
   // `path` is what follows the token: "", "style.css", "scene/0".
   Reply get(Role role, const std::string& path) const;
   Reply post_input(Role role, const std::string& body);
+  Reply post_alive(Role role);
   // Server-sent events of what has changed since; empty if nothing has.
   std::string events(Role role, SentToPage& sent) const;
   void page_opened(Role role);

@@ -17,7 +17,7 @@ constexpr int max_streams = 8;         // of each role
 constexpr const char* threads = "24";  // one for each open stream, the rest for requests
 constexpr long long max_body_bytes = 65536;
 constexpr std::chrono::milliseconds frame{16};
-constexpr std::chrono::seconds sign_of_life{3};
+constexpr std::chrono::seconds keep_alive_interval{3};
 
 std::string random_token() {
   std::array<unsigned char, 16> bytes{};
@@ -87,19 +87,37 @@ std::optional<std::string> body_of(mg_connection* connection) {
   return body;
 }
 
+class OpenPage {
+ public:
+  OpenPage(ConsoleApi& api, Role role) : api_{api}, role_{role} { api_.page_opened(role_); }
+  ~OpenPage() { api_.page_closed(role_); }
+  OpenPage(const OpenPage&) = delete;
+  OpenPage& operator=(const OpenPage&) = delete;
+  OpenPage(OpenPage&&) = delete;
+  OpenPage& operator=(OpenPage&&) = delete;
+
+ private:
+  ConsoleApi& api_;
+  Role role_;
+};
+
 // The haptic loop and the recorder come first, also where no real-time priority was granted.
-void be_modest(const mg_context* /*context*/, int /*kind*/) {
+void lower_priority(const mg_context* /*context*/, int /*kind*/) {
   constexpr int nice = 10;
   setpriority(PRIO_PROCESS, 0, nice);
 }
 void* begin_thread(const mg_context* context, int kind) {
-  be_modest(context, kind);
+  lower_priority(context, kind);
   return nullptr;
 }
 }  // namespace
 
 ConsoleServer::ConsoleServer(ServerAddress address, ConsoleApi& api)
     : address_{std::move(address)}, api_{api} {
+  if (address_.host == "0.0.0.0" || address_.host == "::" || address_.host == "[::]") {
+    throw core::InvalidInput{
+        "--listen: name one address of this machine; pages are served under no other"};
+  }
   for (std::string& token : tokens_) {
     token = random_token();
   }
@@ -181,7 +199,11 @@ int ConsoleServer::serve(mg_connection* connection) {
     if (method == "GET") {
       return send(connection, api_.get(role, rest));
     }
-    if (method == "POST" && rest == "input" && header(connection, "X-Tapstudy") == "1") {
+    const bool may_post = method == "POST" && header(connection, "X-Tapstudy") == "1";
+    if (may_post && rest == "alive") {
+      return send(connection, api_.post_alive(role));
+    }
+    if (may_post && rest == "input") {
       const auto body = body_of(connection);
       return send(connection, body ? api_.post_input(role, *body) : refusal(413));
     }
@@ -195,7 +217,7 @@ int ConsoleServer::serve(mg_connection* connection) {
 void ConsoleServer::stream(mg_connection* connection, Role role) {
   std::atomic<int>& opened = streams_.at(static_cast<std::size_t>(role));
   const int number = ++opened;
-  api_.page_opened(role);
+  const OpenPage open_page{api_, role};
   bool is_there =
       send_all(connection, fmt::format("HTTP/1.1 200 OK\r\n{}Content-Type: text/event-stream\r\n"
                                        "Connection: close\r\n\r\nretry: 500\n\n",
@@ -205,7 +227,7 @@ void ConsoleServer::stream(mg_connection* connection, Role role) {
   while (is_there && !is_closing_ && number > opened - max_streams) {
     std::string events = api_.events(role, sent);
     const auto now = std::chrono::steady_clock::now();
-    if (events.empty() && now - last > sign_of_life) {
+    if (events.empty() && now - last > keep_alive_interval) {
       events = ": \n\n";
     }
     if (!events.empty()) {
@@ -214,6 +236,5 @@ void ConsoleServer::stream(mg_connection* connection, Role role) {
     }
     std::this_thread::sleep_for(frame);
   }
-  api_.page_closed(role);
 }
 }  // namespace tapstudy::runner

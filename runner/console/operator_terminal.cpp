@@ -23,9 +23,9 @@ void OperatorTerminal::run(const std::stop_token& stop) {
 
 void OperatorTerminal::obey(const std::string& line) {
   try {
-    const OperatorCommand command = parse_operator_command(line);
-    desk_.post(command).get();
-    say("{}: stored\n", name(command.action));
+    const OperatorDesk::Posted posted = desk_.post(parse_operator_command(line));
+    posted.stored.get();
+    say("stored: {}\n", posted.said);
   } catch (const core::InvalidInput& error) {
     say("{}\n", error.what());
   } catch (const std::exception& error) {  // none may leave a thread

@@ -63,6 +63,7 @@ Scenes::Scenes(const protocols::Protocol& protocol) : protocol_{protocol} {
     Json json = std::visit([](const auto& shape) { return shape_of(shape); }, plate->shape);
     json["tapping_points_m"] =
         protocol.display.shows_tapping_points ? points_of(protocol, *plate) : Json::array();
+    const std::string shape = json.dump();
     json["fixations"] = Json::array();
     for (const core::Fixation& fixation : plate->fixations) {
       if (const Json shown = json_of(fixation);
@@ -70,11 +71,21 @@ Scenes::Scenes(const protocols::Protocol& protocol) : protocol_{protocol} {
         json["fixations"].push_back(shown);
       }
     }
-    all_.push_back({plate.get(), protocol.placement.scaled(plate->lateral_ratio), json.dump()});
+    all_.push_back(
+        {plate.get(), protocol.placement.scaled(plate->lateral_ratio), json.dump(), shape});
   }
 }
 
-int Scenes::number_of(const std::string& stimulus) const {
+std::optional<int> Scenes::number_of(const std::string& stimulus,
+                                     const protocols::Block& block) const {
+  const int number = place_of(stimulus);
+  const bool tells_apart = std::ranges::any_of(block.stimuli, [&](const std::string& other) {
+    return at(place_of(other)).shape != at(number).shape;
+  });
+  return tells_apart ? std::nullopt : std::optional{number};
+}
+
+int Scenes::place_of(const std::string& stimulus) const {
   const auto found =
       std::ranges::find(all_, protocol_.stimulus(stimulus).plate.get(), &Scene::plate);
   return static_cast<int>(found - all_.begin());

@@ -1,4 +1,5 @@
 #pragma once
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,7 +12,8 @@ namespace tapstudy::runner {
 class Scenes {
  public:
   explicit Scenes(const protocols::Protocol& protocol);
-  int number_of(const std::string& stimulus) const;
+  // nullopt where the block's plates look different: the picture would tell which one it is.
+  std::optional<int> number_of(const std::string& stimulus, const protocols::Block& block) const;
   int count() const { return static_cast<int>(all_.size()); }
   const std::string& json(int number) const { return at(number).json; }
   double surface_along_normal_m() const;  // device frame
@@ -22,7 +24,9 @@ class Scenes {
     const protocols::Plate* plate;
     core::Placement placement;
     std::string json;
+    std::string shape;  // the same without fixations, which are drawn only where the study says so
   };
+  int place_of(const std::string& stimulus) const;
   const Scene& at(int number) const { return all_.at(static_cast<std::size_t>(number)); }
   const protocols::Protocol& protocol_;
   std::vector<Scene> all_;

@@ -5,6 +5,7 @@ std::int64_t ScreenExchange::show(const Screen& screen) {
   screen_ = screen;
   input_.reset();
   is_taken_ = false;
+  is_closed_ = false;
   return ++number_;
 }
 
@@ -15,6 +16,14 @@ std::optional<ScreenInput> ScreenExchange::take(std::int64_t number) {
   }
   is_taken_ = true;
   return input_;
+}
+
+std::optional<ScreenInput> ScreenExchange::close() {
+  const std::lock_guard lock{mutex_};
+  is_closed_ = true;
+  const bool is_pending = input_ && !is_taken_;
+  is_taken_ = true;
+  return is_pending ? input_ : std::nullopt;
 }
 
 ScreenExchange::Shown ScreenExchange::shown() const {
@@ -29,7 +38,7 @@ std::int64_t ScreenExchange::number() const {
 
 std::string ScreenExchange::post(std::int64_t number, const ScreenInput& input) {
   const std::lock_guard lock{mutex_};
-  if (number != number_) {
+  if (number != number_ || (is_closed_ && !input_)) {
     return "the screen has changed";
   }
   if (!accepts(screen_, input)) {
@@ -40,6 +49,17 @@ std::string ScreenExchange::post(std::int64_t number, const ScreenInput& input) 
   }
   input_ = input;
   return "";
+}
+
+void ScreenExchange::page_is_alive(std::chrono::steady_clock::time_point now) {
+  const std::lock_guard lock{mutex_};
+  alive_at_ = now;
+}
+
+bool ScreenExchange::is_watched(std::chrono::steady_clock::time_point now) const {
+  constexpr std::chrono::seconds longest_silence{5};
+  const std::lock_guard lock{mutex_};
+  return open_pages_ > 0 && (!alive_at_ || now - *alive_at_ < longest_silence);
 }
 
 void ScreenExchange::page_opened() {

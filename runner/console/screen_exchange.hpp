@@ -1,4 +1,5 @@
 #pragma once
+#include <chrono>
 #include <cstdint>
 #include <mutex>
 #include <optional>
@@ -17,6 +18,8 @@ class ScreenExchange {
   // The session's thread. Returns the screen's number.
   std::int64_t show(const Screen& screen);
   std::optional<ScreenInput> take(std::int64_t number);
+  // Takes no more input for the screen that is shown; what was accepted already is returned.
+  std::optional<ScreenInput> close();
 
   // Any thread.
   struct Shown {
@@ -28,6 +31,9 @@ class ScreenExchange {
   std::int64_t number() const;
   // Empty: accepted; otherwise why not. The same input again, of the same screen, is accepted.
   std::string post(std::int64_t number, const ScreenInput& input);
+  // A page that says so now and then is gone once it is silent, though its connection is open.
+  void page_is_alive(std::chrono::steady_clock::time_point now);
+  bool is_watched(std::chrono::steady_clock::time_point now) const;
   void page_opened();
   void page_closed();
   int open_pages() const;
@@ -40,6 +46,8 @@ class ScreenExchange {
   std::int64_t number_{0};
   std::optional<ScreenInput> input_;
   bool is_taken_{false};
+  bool is_closed_{false};
   int open_pages_{0};
+  std::optional<std::chrono::steady_clock::time_point> alive_at_;
 };
 }  // namespace tapstudy::runner

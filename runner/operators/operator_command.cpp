@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <vector>
 
 #include "core/error.hpp"
@@ -31,6 +32,22 @@ std::string trimmed(const std::string& text) {
   const auto last = text.find_last_not_of(" \t\r\n");
   return first == std::string::npos ? std::string{} : text.substr(first, last - first + 1);
 }
+
+// "@4" at the beginning, taken away.
+std::optional<int> taken_trial(std::string& text) {
+  int number = 0;
+  const char* const begin = text.data() + 1;
+  const char* const end = text.data() + text.size();
+  if (!text.starts_with('@')) {
+    return std::nullopt;
+  }
+  const auto [stopped, error] = std::from_chars(begin, end, number);
+  if (error != std::errc{} || (stopped != end && *stopped != ' ')) {
+    return std::nullopt;
+  }
+  text = trimmed(std::string{stopped, end});
+  return number;
+}
 }  // namespace
 
 std::span<const ActionInfo> operator_actions() {
@@ -52,6 +69,7 @@ OperatorCommand parse_operator_command(const std::string& line) {
         fmt::format("'{}' is no command (one of: {})", word, fmt::join(names, ", "))};
   }
   std::string text = trimmed(command.substr(word.size()));
+  const std::optional<int> trial = taken_trial(text);
   if (text.empty() && found->text == ActionText::required) {
     throw core::InvalidInput{fmt::format("{} {}", found->name, found->help)};
   }
@@ -61,6 +79,6 @@ OperatorCommand parse_operator_command(const std::string& line) {
   if (text.size() > max_text) {
     throw core::InvalidInput{fmt::format("at most {} characters", max_text)};
   }
-  return {found->action, std::move(text)};
+  return {found->action, std::move(text), trial};
 }
 }  // namespace tapstudy::runner

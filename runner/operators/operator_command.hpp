@@ -1,4 +1,5 @@
 #pragma once
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -29,7 +30,9 @@ std::string_view name(OperatorAction action);
 struct OperatorCommand {
   OperatorAction action{};
   std::string text{};
+  std::optional<int> trial{};  // that is meant; refused if it is over
 };
-// "note the participant coughed". Throws InvalidInput naming what is allowed.
+// "note the participant coughed", or with the trial that is meant, "skip @4 the string broke".
+// Throws InvalidInput naming what is allowed.
 OperatorCommand parse_operator_command(const std::string& line);
 }  // namespace tapstudy::runner

@@ -49,9 +49,9 @@ bool OperatorDesk::is_possible(OperatorAction action) const {
     case OperatorAction::correct:
       return last_answer_.has_value();
     case OperatorAction::exclude:
-      return !is_excluded_;
+      return !is_excluded();
     case OperatorAction::include:
-      return is_excluded_;
+      return is_excluded();
     case OperatorAction::note:
     case OperatorAction::end:
       return true;
@@ -63,9 +63,26 @@ void OperatorDesk::check_is_possible(const OperatorCommand& command) const {
   if (!is_possible(command.action)) {
     throw core::InvalidInput{fmt::format("{} is not possible now", name(command.action))};
   }
+  const std::optional<int> trial = trial_of(command.action);
+  if (command.trial && command.trial != trial) {
+    throw core::InvalidInput{fmt::format("trial {} is over", *command.trial)};
+  }
   if (command.action == OperatorAction::switch_to) {
     number_up_to(trial_->prompt.alternative_labels.size(), command.text);
   }
+}
+
+// As far as it is stored.
+bool OperatorDesk::is_excluded() const {
+  bool is = session_.is_excluded;
+  for (const Logged& logged : log_) {
+    const bool is_about_it = logged.row.action == name(OperatorAction::exclude) ||
+                             logged.row.action == name(OperatorAction::include);
+    if (is_about_it && is_over(logged.stored) && has_succeeded(logged.stored)) {
+      is = logged.row.action == name(OperatorAction::exclude);
+    }
+  }
+  return is;
 }
 
 std::optional<int> OperatorDesk::trial_of(OperatorAction action) const {
@@ -89,7 +106,7 @@ results::CorrectionRow OperatorDesk::correction(const std::string& option,
 }
 
 // What the engine asks about.
-void OperatorDesk::heed(const OperatorCommand& command) {
+void OperatorDesk::apply(const OperatorCommand& command) {
   switch (command.action) {
     case OperatorAction::pause:
     case OperatorAction::resume:
@@ -110,15 +127,13 @@ void OperatorDesk::heed(const OperatorCommand& command) {
       break;
     case OperatorAction::exclude:
     case OperatorAction::include:
-      is_excluded_ = command.action == OperatorAction::exclude;
-      break;
     case OperatorAction::correct:
     case OperatorAction::note:
       break;
   }
 }
 
-std::shared_future<void> OperatorDesk::post(const OperatorCommand& command) {
+OperatorDesk::Posted OperatorDesk::post(const OperatorCommand& command) {
   const std::lock_guard lock{mutex_};
   check_is_possible(command);
   results::OperatorActionRow row{session_.id, session_.now_s(), std::string{name(command.action)},
@@ -126,14 +141,23 @@ std::shared_future<void> OperatorDesk::post(const OperatorCommand& command) {
   std::shared_future<void> stored;
   if (command.action == OperatorAction::correct) {
     results::CorrectionRow corrected = correction(command.text, row.detail);
-    last_answer_->response = corrected.response;
     stored = recorder_.correct(std::move(corrected), row).share();
   } else {
     stored = recorder_.note(row).share();
   }
-  heed(command);
+  apply(command);
+  std::string said =
+      fmt::format("{}{}{}", row.action, row.number ? fmt::format(", trial {}", *row.number) : "",
+                  row.detail.empty() ? "" : ": " + row.detail);
   log_.push_back({std::move(row), stored});
-  return stored;
+  return {std::move(said), stored};
+}
+
+void OperatorDesk::pause(const std::string& why) {
+  try {
+    post({OperatorAction::pause, why});
+  } catch (const core::InvalidInput&) {  // NOLINT(bugprone-empty-catch): it is paused
+  }
 }
 
 bool OperatorDesk::waits_for_operator(const std::string& why) {
@@ -154,7 +178,12 @@ DeskView OperatorDesk::view() const {
   const std::lock_guard lock{mutex_};
   DeskView view{trial_, current_, last_answer_, {}, force_, is_paused_, held_by_, {}};
   for (const Logged& logged : log_) {
-    view.log.push_back({logged.row, is_over(logged.stored) && has_succeeded(logged.stored)});
+    const bool is_stored = is_over(logged.stored) && has_succeeded(logged.stored);
+    view.log.push_back({logged.row, is_stored});
+    if (is_stored && logged.row.action == name(OperatorAction::correct) && view.last_answer &&
+        logged.row.number == view.last_answer->trial.number) {
+      view.last_answer->response = logged.row.detail;
+    }
   }
   for (const ActionInfo& info : operator_actions()) {
     if (is_possible(info.action)) {

@@ -34,6 +34,7 @@ class OperatorDesk final : public Operator {
   struct Session {
     const protocols::Protocol& protocol;
     std::int64_t id;
+    bool is_excluded;               // the participant, by an earlier session
     std::function<double()> now_s;  // as of its events
   };
   OperatorDesk(Session session, results::Recorder& recorder)
@@ -41,7 +42,13 @@ class OperatorDesk final : public Operator {
 
   // Any thread. Ready once the action is stored, or carries the StoreError. Throws InvalidInput if
   // it is impossible now: nothing is stored then.
-  std::shared_future<void> post(const OperatorCommand& command);
+  struct Posted {
+    std::string said;  // what is done, with its trial
+    std::shared_future<void> stored;
+  };
+  Posted post(const OperatorCommand& command);
+  // As the operator does, on the program's own account; nothing if paused already.
+  void pause(const std::string& why);
   // Tells why, and waits until the operator resumes; false if the session is to stop.
   bool waits_for_operator(const std::string& why);
   DeskView view() const;
@@ -60,7 +67,8 @@ class OperatorDesk final : public Operator {
   bool is_possible(OperatorAction action) const;
   void check_is_possible(const OperatorCommand& command) const;
   std::optional<int> trial_of(OperatorAction action) const;
-  void heed(const OperatorCommand& command);
+  bool is_excluded() const;
+  void apply(const OperatorCommand& command);
   results::CorrectionRow correction(const std::string& option, std::string& detail) const;
 
   Session session_;
@@ -80,6 +88,5 @@ class OperatorDesk final : public Operator {
   ForceState force_{ForceState::off};
   bool is_paused_{false};
   std::string held_by_;
-  bool is_excluded_{false};
 };
 }  // namespace tapstudy::runner

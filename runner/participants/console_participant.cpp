@@ -232,7 +232,7 @@ bool ConsoleParticipant::saves_again(const std::string& cause) {
   if (input_.forget_typed_ahead()) {
     return false;
   }
-  const auto line = input_.next([] { return !stop_was_asked(); });
+  const auto line = next_of_participant([] { return true; });
   return line && line->empty();
 }
 

@@ -53,6 +53,8 @@ class Participant {
   virtual std::optional<int> confidence(const protocols::Confidence& /*scale*/) { return {}; }
   // Which answer was right.
   virtual void feedback(bool /*is_correct*/, const std::string& /*right_label*/) {}
+  // Called where the device has failed, before the operator sees to it.
+  virtual void interrupted() {}
   // Called where the operator ended the trial without an answer.
   virtual void skipped(const TrialPrompt& /*prompt*/) {}
   // Called where the answer came too early: why. perform is called again.

@@ -26,12 +26,14 @@ void introduce(const Console& console) {
 // At once, so that the trial's supervisor does not wait for the disk.
 std::string obeyed(OperatorDesk& desk, const std::string& command) {
   try {
-    const OperatorCommand parsed = parse_operator_command(command);
-    desk.post(parsed);
-    return fmt::format("{}: accepted", name(parsed.action));
+    return desk.post(parse_operator_command(command)).said;
   } catch (const core::InvalidInput& error) {
     return error.what();
   }
+}
+
+bool is_excluded(const LiveTrials::Parts& parts) {
+  return parts.store.excluded_participants().contains(parts.session.row.participant_id);
 }
 
 std::unique_ptr<Console> console_of(const LiveTrials::Parts& parts, OperatorDesk& desk,
@@ -68,7 +70,9 @@ LiveTrials::LiveTrials(const Parts& parts, std::unique_ptr<SessionDevice> device
       recorder_{parts.store},
       live_loop_{device_->device(), parts.settings, parts.live.rig.realtime, recorder_},
       masked_loop_{masked(live_loop_, parts)},
-      desk_{{parts.live.protocol, parts.session.row.id, [this] { return now_s(); }}, recorder_},
+      desk_{{parts.live.protocol, parts.session.row.id, is_excluded(parts),
+             [this] { return now_s(); }},
+            recorder_},
       at_terminal_{parts.input, [this] { device_->get_ready(); },
                    [this](const std::string& command) { return obeyed(desk_, command); }},
       console_{console_of(parts, desk_, live_loop_, [this] { device_->get_ready(); })},

@@ -1,4 +1,5 @@
 #pragma once
+#include <optional>
 #include <utility>
 
 #include "runner/operators/operator.hpp"
@@ -19,8 +20,17 @@ class OperatedExploration final : public Exploration {
     if (std::exchange(told_, inner_.current()) != inner_.current()) {
       operator_.alternative_is_felt(told_);
     }
-    return inner_.is_running() && !operator_.wants_trial_over();
+    if (!ended_by_operator_ && operator_.wants_trial_over()) {
+      ended_by_operator_ = EndedByOperator{operator_.wish(), operator_.is_paused()};
+    }
+    return inner_.is_running() && !ended_by_operator_;
   }
+  // A wish is taken as it was when it ended the exploration, whatever the operator wants since.
+  struct EndedByOperator {
+    std::optional<TrialWish> wish;
+    bool is_paused{};
+  };
+  const std::optional<EndedByOperator>& ended_by_operator() const { return ended_by_operator_; }
   bool is_rendering() const override { return inner_.is_rendering(); }
   double time_s() const override { return inner_.time_s(); }
   int contacts(std::size_t alternative) const override { return inner_.contacts(alternative); }
@@ -29,5 +39,6 @@ class OperatedExploration final : public Exploration {
   Exploration& inner_;
   Operator& operator_;
   mutable std::size_t told_{0};
+  mutable std::optional<EndedByOperator> ended_by_operator_;
 };
 }  // namespace tapstudy::runner

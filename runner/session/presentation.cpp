@@ -1,5 +1,8 @@
 #include "runner/session/presentation.hpp"
 
+#include <algorithm>
+#include <limits>
+
 #include "runner/session/explore_limits.hpp"
 #include "runner/session/operated_exploration.hpp"
 #include "runner/stimuli/trial_stimuli.hpp"
@@ -14,8 +17,13 @@ void ask(const TrialInView& view, Exploration& exploration, const SessionParts& 
   const protocols::PlannedTrial& trial = view.trial;
   OperatedExploration operated{exploration, parts.by};
   LimitedExploration limited{operated, view.prompt.explore};
+  // an answer that was accepted in time may be handed over a little later
+  constexpr double handover_s = 0.05;
+  const double latest_s =
+      view.prompt.explore.max_seconds.value_or(std::numeric_limits<double>::infinity()) +
+      handover_s;
   while (const auto option = parts.participant.perform(view.prompt, limited)) {
-    if (limited.is_over()) {
+    if (limited.time_s() > latest_s) {
       break;
     }
     const std::optional<TooEarly> why = too_early(view.prompt, *option, limited);
@@ -23,7 +31,7 @@ void ask(const TrialInView& view, Exploration& exploration, const SessionParts& 
     if (!why && is_rendering) {
       presentation.answer =
           Answer{trial.task->response(trial, parts.protocol.block(trial.block), *option),
-                 limited.time_s()};
+                 std::min(limited.time_s(), latest_s - handover_s)};
       return;
     }
     if (!is_rendering) {
@@ -34,8 +42,10 @@ void ask(const TrialInView& view, Exploration& exploration, const SessionParts& 
   }
   if (exploration.is_running() && !stop_was_asked()) {
     presentation.is_timed_out = limited.is_over();
-    presentation.wish = parts.by.wish();
-    presentation.is_paused = parts.by.is_paused();
+    if (const auto& ended = operated.ended_by_operator()) {
+      presentation.wish = ended->wish;
+      presentation.is_paused = ended->is_paused;
+    }
   }
 }
 }  // namespace

@@ -235,6 +235,10 @@ TrialEngine::Outcome TrialEngine::run_trial(std::int64_t session_id, const Plann
   store(session_id, trial, std::move(presentation), ending);
   switch (ending) {
     case Ending::faulted:
+      if (answer) {
+        parts_.by.answer_is_stored({trial, prompt.options, answer->response});
+      }
+      parts_.participant.interrupted();
       return {.interruption = Interruption{trial.number, fault, answer.has_value(),
                                            parts_.trial_loop.is_force_off()}};
     case Ending::timed_out: {

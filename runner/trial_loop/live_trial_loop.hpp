@@ -14,7 +14,7 @@ class LiveTrialLoop final : public TrialLoop {
         settings_{std::move(settings)},
         realtime_{realtime},
         recorder_{recorder} {}
-  // Called with each tick, milliseconds later, by the recorder's thread.
+  // Called with each tick, milliseconds later, by whoever drains the ring.
   void watch(results::TraceCollector::Watch watch) { watch_ = std::move(watch); }
   // From the next trial on.
   void use(device::Device& device) { device_ = &device; }

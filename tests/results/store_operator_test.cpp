@@ -53,6 +53,26 @@ TEST_CASE("a correction supersedes an answer, which stays in the store", "[resul
   CHECK(entries.actions.size() == 2);  // none of the one refused
 }
 
+TEST_CASE("what was not as planned is counted for each participant", "[results][store]") {
+  const testing::TempDirectory directory;
+  auto [store, row] = begun_study(directory.path());
+  store.add_trial(small_study::trial(row.id, 1, "b"));  // a was right
+  store.add_trial(small_study::trial(row.id, 2, "a"));
+  auto skipped = small_study::trial(row.id, 3, "a");
+  skipped.response.reset();
+  skipped.trial.status = "skipped";
+  store.add_trial(skipped);
+  for (const char* const response : {"c", "a"}) {
+    store.add_correction({row.id, 1, response, response == std::string{"a"}},
+                         action(row.id, "correct", response));
+  }
+  REQUIRE(store.deviations().size() == 1);
+  CHECK(store.deviations().front().corrected == 1);  // one answer, twice
+  CHECK(store.deviations().front().corrected_to_right == 1);
+  CHECK(store.deviations().front().skipped == 1);
+  CHECK(store.deviations().front().timed_out == 0);
+}
+
 TEST_CASE("the last word on a participant's exclusion holds", "[results][store]") {
   const testing::TempDirectory directory;
   auto [store, row] = begun_study(directory.path());

@@ -44,6 +44,19 @@ export function listen(handlers, isOver, whenLost = () => {}) {
   open();
 }
 
+const aliveMs = 1000;
+
+// Tells the program that somebody may be looking: it takes the force away if nobody does.
+export function sayAlive(isOver) {
+  const timer = setInterval(() => {
+    if (isOver()) {
+      clearInterval(timer);
+      return;
+    }
+    fetch("alive", { method: "POST", headers: { "X-Tapstudy": "1" } }).catch(() => {});
+  }, aliveMs);
+}
+
 // {accepted, why}; throws if the program cannot be reached.
 export async function post(input) {
   const response = await fetch("input", {

@@ -9,16 +9,20 @@ const elsewhere = new Set(["note", "switch", "correct"]);
 const dangerous = new Set(["end", "exclude"]);
 // Stopping the hand must not wait for words.
 const immediate = new Set(["pause", "resume"]);
+// The trial that was shown when the button was pressed, not one that has begun since.
+const ofTrial = new Set(["repeat", "skip"]);
 
 export class Actions {
   #possible = new Map();
   #isSending = false;
+  #trial;
 
   isPossible(name) {
     return !this.#isSending && this.#possible.get(name) === true;
   }
 
-  show({ actions, language }) {
+  show({ actions, language, trial }) {
+    this.#trial = trial?.number;
     this.#possible = new Map((actions ?? []).map(({ name, is_possible: is }) => [name, is]));
     const listed = (actions ?? []).filter(({ name }) => !elsewhere.has(name));
     const content = [language, listed];
@@ -71,7 +75,8 @@ export class Actions {
       await this.send(name, what);
       return;
     }
-    askReason({ name, title: what, isRequired, send: (reason) => this.send(`${name} ${reason}`.trim(), what) });
+    const words = ofTrial.has(name) && this.#trial !== undefined ? `${name} @${this.#trial}` : name;
+    askReason({ name, title: what, isRequired, send: (reason) => this.send(`${words} ${reason}`.trim(), what) });
   }
 
   #noteFields() {

@@ -14,10 +14,10 @@ function trialLine({ trial, progress }) {
   return parts.join(" · ");
 }
 
-function alternativeRow({ label, stimulus }, index, current, actions) {
+function alternativeRow({ label, stimulus }, index, { current, number }, actions) {
   const name = [label, stimulus].filter(Boolean).join(": ");
   const isCurrent = index === current;
-  const button = el("button", { type: "button", onclick: () => actions.send(`switch ${index + 1}`, word("action_switch")) },
+  const button = el("button", { type: "button", onclick: () => actions.send(`switch @${number} ${index + 1}`, word("action_switch")) },
     word("switch_to", { label }));
   button.dataset.action = "switch";
   button.dataset.isDone = String(isCurrent);
@@ -41,16 +41,16 @@ export function showTrial(state, actions) {
         ...(trial.options?.length ? row(word("options"), trial.options.join(" · ")) : [])),
       ...(alternatives.length
         ? [el("h3", {}, word("alternatives")),
-          el("ul", { className: "plain" }, ...alternatives.map((one, index) => alternativeRow(one, index, trial.current, actions)))]
+          el("ul", { className: "plain" }, ...alternatives.map((one, index) => alternativeRow(one, index, trial, actions)))]
         : []),
     ];
   });
 }
 
-function correction(options, actions) {
+function correction({ number, options }, actions) {
   const select = el("select", { id: "correct-to" },
     ...options.map((label, index) => el("option", { value: String(index + 1) }, `${index + 1} ${label}`)));
-  const button = el("button", { type: "button", onclick: () => actions.send(`correct ${select.value}`, word("action_correct")) },
+  const button = el("button", { type: "button", onclick: () => actions.send(`correct @${number} ${select.value}`, word("action_correct")) },
     word("correct_do"));
   button.dataset.action = "correct";
   return [el("label", { htmlFor: "correct-to" }, word("correct_to")), el("div", { className: "row" }, select, button)];
@@ -65,7 +65,7 @@ export function showLastAnswer(state, actions) {
     const response = answer.response ?? word("response_hidden");
     return [
       el("p", { className: "last-line" }, word("last_line", { number: answer.number, response })),
-      ...(hasCorrection && answer.options?.length ? correction(answer.options, actions) : []),
+      ...(hasCorrection && answer.options?.length ? correction(answer, actions) : []),
     ];
   });
 }

@@ -1,6 +1,6 @@
 // The participant's page: shows one screen at a time and sends what the participant does.
 
-import { listen, post } from "./connection.js";
+import { listen, post, sayAlive } from "./connection.js";
 import { byId, setText } from "./dom.js";
 import { Outbox } from "./outbox.js";
 import { formScreen } from "./screen_form.js";
@@ -137,6 +137,7 @@ async function start() {
   view = new View(byId("view"), isPlanWanted);
   byId("panel").addEventListener("click", stopWhatCameTooEarly, true);
   document.addEventListener("keydown", pressed);
+  sayAlive(() => screen?.kind === "ended");
   listen({ screen: showScreen, hand: (hand) => view.moveHand(hand) }, () => screen?.kind === "ended");
 }
 

@@ -20,6 +20,9 @@ TEST_CASE("an operator's command is a word and what belongs to it", "[runner][op
     CHECK_THROWS_AS(parse_operator_command(wrong), core::InvalidInput);
   }
   CHECK_THROWS_AS(parse_operator_command("note " + std::string(3000, 'x')), core::InvalidInput);
+  CHECK(parse_operator_command("skip @4 the string broke").trial == 4);
+  CHECK(parse_operator_command("skip @4 the string broke").text == "the string broke");
+  CHECK(parse_operator_command("note @home").text == "@home");
 }
 
 namespace {
@@ -56,18 +59,23 @@ class Scripted final : public Participant {
                                      Exploration& exploration) override {
     const std::string command = next_ < commands_.size() ? commands_[next_] : "";
     ++next_;
-    if (!command.empty()) {
-      desk->post(parse_operator_command(command)).get();
+    try {
+      if (!command.empty()) {
+        desk->post(parse_operator_command(command)).stored.get();
+      }
+    } catch (const core::InvalidInput& error) {
+      refusals.emplace_back(error.what());
     }
     return exploration.is_running() ? std::optional<std::size_t>{0} : std::nullopt;
   }
   void wait_while(const std::function<bool()>& is_paused) override {
     ++pauses;
     CHECK(is_paused());
-    desk->post({OperatorAction::resume}).get();
+    desk->post({OperatorAction::resume}).stored.get();
     CHECK_FALSE(is_paused());
   }
   int pauses{0};
+  std::vector<std::string> refusals;
 
  private:
   std::vector<std::string> commands_;
@@ -81,7 +89,7 @@ struct Attended {
     results::Recorder recorder{store};
     const auto now_s = [] { return 2.5; };
     SessionStates states{session.id, now_s};
-    OperatorDesk desk{{protocol, session.id, now_s}, recorder};
+    OperatorDesk desk{{protocol, session.id, false, now_s}, recorder};
     participant.desk = &desk;
     TrialEngine engine{{protocol, models, loop, participant, desk, states}, recorder};
     CHECK_FALSE(engine.run(session.id, schedule, done));
@@ -142,6 +150,14 @@ TEST_CASE("the operator switches what is rendered; each action is a row with tri
         Texts{"switch21 2.5"});
 }
 
+TEST_CASE("a command that means a trial that is over is refused", "[runner][operator]") {
+  Attended stale{{"skip @2"}};
+  CHECK(stale.participant.refusals == Texts{"trial 2 is over"});
+  CHECK(stale.texts("SELECT status FROM trial WHERE number = 1") == Texts{"answered"});
+  Attended meant{{"skip @1"}};
+  CHECK(meant.texts("SELECT status FROM trial WHERE number = 1") == Texts{"skipped"});
+}
+
 TEST_CASE("what cannot be done now is refused and not stored", "[runner][operator]") {
   const testing::TempDirectory directory;
   const auto protocol = protocols::parse_protocol(
@@ -153,13 +169,13 @@ TEST_CASE("what cannot be done now is refused and not stored", "[runner][operato
   store.add_session(session);
   {
     results::Recorder recorder{store};
-    OperatorDesk desk{{protocol, session.id, [] { return 0.0; }}, recorder};
+    OperatorDesk desk{{protocol, session.id, false, [] { return 0.0; }}, recorder};
     for (const char* const command :
          {"resume", "repeat", "skip", "switch 1", "correct 1", "include"}) {
       CAPTURE(command);
       CHECK_THROWS_AS(desk.post(parse_operator_command(command)), core::InvalidInput);
     }
-    desk.post({OperatorAction::note, "quiet"}).get();
+    desk.post({OperatorAction::note, "quiet"}).stored.get();
     CHECK(desk.view().log.size() == 1);
     CHECK(desk.view().log.front().is_stored);
   }

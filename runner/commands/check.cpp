@@ -152,6 +152,24 @@ void print_design(const protocols::Protocol& protocol, int participants) {
   fmt::print("\n  {} participants, {:.0f} min of tapping each\n", participants, total_s / 60.0);
 }
 
+void print_forms(const protocols::Protocol& protocol) {
+  if (protocol.forms.empty()) {
+    return;
+  }
+  fmt::print("\nquestionnaires\n");
+  const auto print = [&](const std::vector<std::string>& names, const std::string& when) {
+    for (const std::string& name : names) {
+      const protocols::Form& form = protocol.forms.at(name);
+      fmt::print("  {}: {} questions, {}\n", name, form.items.size(), when);
+    }
+  };
+  print(protocol.forms_before, "before the first trial");
+  for (const protocols::Block& block : protocol.blocks) {
+    print(block.forms_after, fmt::format("after {}", block.name));
+  }
+  print(protocol.forms_after, "at the end");
+}
+
 void run_check(const CheckOptions& options) {
   const protocols::Protocol protocol = protocols::read_protocol(options.protocol);
   if (options.participants < 1 || options.participants > 10000) {
@@ -169,6 +187,7 @@ void run_check(const CheckOptions& options) {
   if (protocol.masking) {
     fmt::print("\nmasking\n  {}\n", described(*protocol.masking));
   }
+  print_forms(protocol);
   print_models(protocol);
   print_contact(protocol, delay_ticks);
   const int index = options.participants - 1;

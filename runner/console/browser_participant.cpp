@@ -55,9 +55,7 @@ void BrowserParticipant::wait_while(const std::function<bool()>& is_paused) {
 }
 
 // Nothing is rendered before somebody can see what is asked.
-void BrowserParticipant::get_ready(const TrialPrompt& prompt) {
-  progress_ = Progress{prompt.number - 1, prompt.total, prompt.is_practice};
-  notice_.reset();
+void BrowserParticipant::arrive() {
   if (screens_.open_pages() == 0) {
     show({.kind = ScreenKind::wait});
   }
@@ -65,6 +63,11 @@ void BrowserParticipant::get_ready(const TrialPrompt& prompt) {
     stop_if_asked();
     std::this_thread::sleep_for(poll_interval);
   }
+}
+
+void BrowserParticipant::get_ready(const TrialPrompt& prompt) {
+  progress_ = Progress{prompt.number - 1, prompt.total, prompt.is_practice};
+  notice_.reset();
   surroundings_.move_hand();
 }
 

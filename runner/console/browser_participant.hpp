@@ -24,6 +24,7 @@ class BrowserParticipant final : public Participant {
   bool fills_in_forms() const override { return true; }
   FormAnswers fill_in(const protocols::Form& form) override;
   void wait_while(const std::function<bool()>& is_paused) override;
+  void arrive() override;
   void get_ready(const TrialPrompt& prompt) override;
   std::optional<std::size_t> perform(const TrialPrompt& prompt, Exploration& exploration) override;
   std::optional<int> confidence(const protocols::Confidence& scale) override;

@@ -3,6 +3,8 @@
 #include <chrono>
 #include <thread>
 
+#include "runner/terminal/say.hpp"
+
 namespace tapstudy::runner {
 Console::Console(const ConsoleRequest& request, const Session& session)
     : shows_plate_{session.protocol.display.shows_plate},
@@ -29,7 +31,12 @@ BrowserParticipant::Surroundings Console::surroundings(const Session& session) {
                                                             protocol.block(view->trial.block))
                                         : std::nullopt;
           },
-          [&desk](const std::string& cause) { return desk.waits_for_operator(cause); },
+          [&desk](const std::string& cause) {
+            return desk.waits_for_operator(cause, [&] {
+              say("\n{}\n  The trial is not stored yet, but kept. To try again, type resume.\n",
+                  cause);
+            });
+          },
           [&desk](const std::string& why) { desk.pause(why); }};
 }
 

@@ -14,7 +14,7 @@
 namespace tapstudy::runner {
 namespace {
 constexpr int max_streams = 8;         // of each role
-constexpr const char* threads = "24";  // one for each open stream, the rest for requests
+constexpr const char* threads = "64";  // one for each open stream, the rest for requests
 constexpr long long max_body_bytes = 65536;
 constexpr std::chrono::milliseconds frame{16};
 constexpr std::chrono::seconds keep_alive_interval{3};
@@ -110,24 +110,15 @@ void* begin_thread(const mg_context* context, int kind) {
   lower_priority(context, kind);
   return nullptr;
 }
-}  // namespace
-
-ConsoleServer::ConsoleServer(ServerAddress address, ConsoleApi& api)
-    : address_{std::move(address)}, api_{api} {
-  if (address_.host == "0.0.0.0" || address_.host == "::" || address_.host == "[::]") {
-    throw core::InvalidInput{
-        "--listen: name one address of this machine; pages are served under no other"};
-  }
-  for (std::string& token : tokens_) {
-    token = random_token();
-  }
-  const std::string listening = fmt::format("{}:{}", address_.host, address_.port);
+// Throws InvalidInput if it cannot be listened to.
+mg_context* listening_at(const ServerAddress& address, void* user) {
+  const std::string listening = fmt::format("{}:{}", address.host, address.port);
   std::vector<const char*> options{"listening_ports",
                                    listening.c_str(),
                                    "num_threads",
                                    threads,
                                    "request_timeout_ms",
-                                   "5000",
+                                   "2000",
                                    "max_request_size",
                                    "16384",
                                    "enable_directory_listing",
@@ -136,14 +127,33 @@ ConsoleServer::ConsoleServer(ServerAddress address, ConsoleApi& api)
   mg_callbacks callbacks{};
   callbacks.init_thread = begin_thread;
   callbacks.log_message = [](const mg_connection*, const char*) { return 1; };
-  context_ = mg_start(&callbacks, this, options.data());
-  mg_server_port port{};
-  if (context_ == nullptr || mg_get_server_ports(context_, 1, &port) != 1) {
-    mg_stop(context_);
+  mg_context* const context = mg_start(&callbacks, user, options.data());
+  if (context == nullptr) {
     throw core::InvalidInput{fmt::format(
         "--console: {} cannot be listened to (is the port in use, is the address this machine's?)",
         listening)};
   }
+  return context;
+}
+}  // namespace
+
+void check_can_listen(const ServerAddress& address) {
+  if (address.host == "0.0.0.0" || address.host == "::" || address.host == "[::]") {
+    throw core::InvalidInput{
+        "--listen: name one address of this machine; pages are served under no other"};
+  }
+  mg_context* const trial = listening_at(address, nullptr);
+  mg_stop(trial);
+}
+
+ConsoleServer::ConsoleServer(ServerAddress address, ConsoleApi& api)
+    : address_{std::move(address)}, api_{api} {
+  for (std::string& token : tokens_) {
+    token = random_token();
+  }
+  context_ = listening_at(address_, this);
+  mg_server_port port{};
+  mg_get_server_ports(context_, 1, &port);
   address_.port = port.port;
   mg_set_request_handler(context_, "/", &ConsoleServer::handle, this);
 }
@@ -158,10 +168,32 @@ std::string ConsoleServer::url(Role role) const {
 }
 
 int ConsoleServer::handle(mg_connection* connection, void* self) {
+  auto* const server = static_cast<ConsoleServer*>(self);
   try {
-    return static_cast<ConsoleServer*>(self)->serve(connection);
+    server->slow_down_a_flood();
+    return server->serve(connection);
   } catch (const std::exception&) {  // none may leave a callback of C
     return send(connection, refusal(500));
+  }
+}
+
+// More than pages ever ask would take the processor from the loop.
+void ConsoleServer::slow_down_a_flood() {
+  constexpr std::chrono::milliseconds window{100};
+  constexpr int most_in_window = 60;
+  constexpr std::chrono::milliseconds delay{100};
+  bool is_flood = false;
+  {
+    const std::lock_guard lock{flood_mutex_};
+    const auto now = std::chrono::steady_clock::now();
+    if (now > window_ends_) {
+      window_ends_ = now + window;
+      requests_in_window_ = 0;
+    }
+    is_flood = ++requests_in_window_ > most_in_window;
+  }
+  if (is_flood) {
+    std::this_thread::sleep_for(delay);
   }
 }
 

@@ -1,7 +1,9 @@
 #pragma once
 #include <array>
 #include <atomic>
+#include <chrono>
 #include <memory>
+#include <mutex>
 #include <string>
 
 #include "runner/console/console_api.hpp"
@@ -12,6 +14,9 @@ struct ServerAddress {
   std::string host{"127.0.0.1"};  // an address of this machine
   int port{0};                    // 0: any that is free
 };
+
+// Throws InvalidInput if the address cannot be listened to now.
+void check_can_listen(const ServerAddress& address);
 
 // Serves the pages of one session by HTTP. A page's address holds a random token; without it, or
 // with a foreign Host or Origin header, nothing is served. Its threads never touch the haptic loop.
@@ -30,6 +35,7 @@ class ConsoleServer {
   static int handle(mg_connection* connection, void* self);
   int serve(mg_connection* connection);
   bool is_from_here(mg_connection* connection) const;
+  void slow_down_a_flood();
   void stream(mg_connection* connection, Role role);
   std::string token(Role role) const { return tokens_.at(static_cast<std::size_t>(role)); }
 
@@ -37,6 +43,9 @@ class ConsoleServer {
   ConsoleApi& api_;
   std::array<std::string, roles.size()> tokens_;
   std::atomic<bool> is_closing_{false};
+  std::mutex flood_mutex_;
+  std::chrono::steady_clock::time_point window_ends_;
+  int requests_in_window_{0};
   std::array<std::atomic<int>, roles.size()> streams_{};  // ever opened
   mg_context* context_{nullptr};
 };

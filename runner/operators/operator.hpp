@@ -31,7 +31,8 @@ class Operator {
   virtual ~Operator() = default;
   virtual void trial_begins(const TrialInView& /*trial*/) {}
   virtual void alternative_is_felt(std::size_t /*alternative*/) {}
-  virtual void trial_is_over() {}
+  // carried_out: the wish that ended it, if one did.
+  virtual void trial_is_over(std::optional<TrialWish> /*carried_out*/) {}
   virtual void force_is(ForceState /*force*/) {}
   virtual void answer_is_stored(const AnswerInView& /*answer*/) {}
 

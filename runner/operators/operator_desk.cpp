@@ -160,13 +160,14 @@ void OperatorDesk::pause(const std::string& why) {
   }
 }
 
-bool OperatorDesk::waits_for_operator(const std::string& why) {
+bool OperatorDesk::waits_for_operator(const std::string& why, const std::function<void()>& tell) {
   const auto hold = [&](const std::string& held_by) {
     const std::lock_guard lock{mutex_};
     held_by_ = held_by;
     is_paused_ = !held_by.empty();
   };
   hold(why);
+  tell();
   while (is_paused() && !stop_was_asked()) {
     std::this_thread::sleep_for(std::chrono::milliseconds{20});
   }
@@ -204,8 +205,18 @@ void OperatorDesk::alternative_is_felt(std::size_t alternative) {
   current_ = alternative;
 }
 
-void OperatorDesk::trial_is_over() {
+// The answer may have come in the moment before.
+void OperatorDesk::trial_is_over(std::optional<TrialWish> carried_out) {
   const std::lock_guard lock{mutex_};
+  if (wish_ && !carried_out) {
+    const OperatorAction action =
+        *wish_ == TrialWish::skip ? OperatorAction::skip : OperatorAction::repeat;
+    results::OperatorActionRow row{
+        session_.id, session_.now_s(), std::string{name(OperatorAction::note)},
+        trial_->trial.number, fmt::format("{}: not carried out, the trial was over", name(action))};
+    const std::shared_future<void> stored = recorder_.note(row).share();
+    log_.push_back({std::move(row), stored});
+  }
   trial_.reset();
   wish_.reset();
   switch_to_.reset();

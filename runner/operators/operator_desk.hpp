@@ -49,13 +49,14 @@ class OperatorDesk final : public Operator {
   Posted post(const OperatorCommand& command);
   // As the operator does, on the program's own account; nothing if paused already.
   void pause(const std::string& why);
-  // Tells why, and waits until the operator resumes; false if the session is to stop.
-  bool waits_for_operator(const std::string& why);
+  // Waits until the operator resumes; false if the session is to stop. `tell` is called once that
+  // is possible.
+  bool waits_for_operator(const std::string& why, const std::function<void()>& tell);
   DeskView view() const;
 
   void trial_begins(const TrialInView& trial) override;
   void alternative_is_felt(std::size_t alternative) override;
-  void trial_is_over() override;
+  void trial_is_over(std::optional<TrialWish> carried_out) override;
   void force_is(ForceState force) override;
   void answer_is_stored(const AnswerInView& answer) override;
   bool is_paused() const override;

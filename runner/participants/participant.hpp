@@ -44,6 +44,8 @@ class Participant {
   virtual FormAnswers fill_in(const protocols::Form& /*form*/) { return {}; }
   // The operator's pause, until is_paused is false.
   virtual void wait_while(const std::function<bool()>& /*is_paused*/) {}
+  // Returns once somebody is there to answer.
+  virtual void arrive() {}
   // Before the trial's loop starts.
   virtual void get_ready(const TrialPrompt& /*prompt*/) {}
   // Explores and answers: the index of an option, or nullopt if the trial could not be finished.

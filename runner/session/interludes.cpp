@@ -31,6 +31,7 @@ void Interludes::before(const protocols::PlannedTrial& trial) {
   }
   if (block.breaks && since_rest_ == block.breaks->every_trials) {
     since_rest_ = 0;
+    parts_.wait_while_paused();
     parts_.states.enter(SessionState::resting);
     parts_.participant.rest(block.breaks->min_seconds);
   }
@@ -48,6 +49,7 @@ void Interludes::after_last_trial() {
 
 void Interludes::read(const std::string& text, const std::string& whose) {
   if (!text.empty()) {
+    parts_.wait_while_paused();
     parts_.states.enter(SessionState::instructions, {}, whose);
     parts_.participant.read(text);
   }
@@ -59,6 +61,7 @@ void Interludes::ask(const std::vector<std::string>& forms, const std::string& a
       continue;
     }
     const protocols::Form& form = parts_.protocol.forms.at(name);
+    parts_.wait_while_paused();
     parts_.states.enter(SessionState::form, {}, name);
     const Participant::FormAnswers answers = parts_.participant.fill_in(form);
     std::vector<results::FormAnswerRow> rows;

@@ -24,6 +24,7 @@ class Interludes {
     SessionStates& states;
     // Returns once the answers are stored; session and time are filled in.
     std::function<void(std::vector<results::FormAnswerRow>)> save_form;
+    std::function<void()> wait_while_paused;
   };
   // filled: those answered in an earlier session.
   Interludes(Parts parts, FilledForms filled)

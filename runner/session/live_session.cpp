@@ -29,6 +29,9 @@ void check(const LiveSession& live) {
   check_has_blocks(live.protocol);
   check_participant_id(live.request.participant_id);
   check_fits(live.protocol, live.rig);
+  if (live.console) {
+    check_can_listen(live.console->address);
+  }
   if (live.request.resume == Resume::yes) {
     results::Store::open_existing(live.directory);  // or there is nothing to resume
   }

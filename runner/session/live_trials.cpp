@@ -48,8 +48,7 @@ std::unique_ptr<Console> console_of(const LiveTrials::Parts& parts, OperatorDesk
       [seen_by = console.get()](const core::TraceSample& sample) { seen_by->watch(sample); });
   // the terminal's lines are commands then, and the operator may be at a page
   parts.ask_operator = [&desk](const std::string& task) {
-    say("{} type resume.\n", task);
-    return desk.waits_for_operator(task);
+    return desk.waits_for_operator(task, [&] { say("{} type resume.\n", task); });
   };
   introduce(*console);
   return console;

@@ -65,7 +65,7 @@ Presentation present(const TrialInView& trial, const SessionParts& parts) {
       presentation.failure = std::current_exception();
     }
   });
-  parts.by.trial_is_over();
+  parts.by.trial_is_over(presentation.wish);
   parts.by.force_is(parts.trial_loop.is_force_off() ? ForceState::off : ForceState::unknown);
   if (presentation.result.loop.stop == device::StopOutcome::unconfirmed) {
     warn(device::force_may_be_on);  // before anything else can fail

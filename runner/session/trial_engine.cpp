@@ -102,6 +102,7 @@ TrialEngine::Outcome TrialEngine::run_until_it_counts(std::int64_t session_id,
                                                       const PlannedTrial& trial, int total) {
   Outcome outcome;
   do {
+    parts_.participant.arrive();
     wait_while_paused();
     outcome = run_trial(session_id, trial, total);
   } while (outcome.is_repeated);

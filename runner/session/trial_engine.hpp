@@ -37,7 +37,8 @@ class TrialEngine {
               const FilledForms& filled_forms = {})
       : parts_{parts},
         interludes_{{parts.protocol, parts.participant, parts.states,
-                     [this](std::vector<results::FormAnswerRow> rows) { save(std::move(rows)); }},
+                     [this](std::vector<results::FormAnswerRow> rows) { save(std::move(rows)); },
+                     [this] { wait_while_paused(); }},
                     filled_forms},
         recorder_{recorder} {}
 

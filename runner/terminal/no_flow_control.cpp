@@ -3,9 +3,16 @@
 #include <termios.h>
 #include <unistd.h>
 namespace tapstudy::runner {
+namespace {
+// A program in the background that changed the terminal would be stopped for it.
+bool is_ours(int descriptor) {
+  return isatty(descriptor) != 0 && tcgetpgrp(descriptor) == getpgrp();
+}
+}  // namespace
+
 NoFlowControl::NoFlowControl(int descriptor) : descriptor_{descriptor} {
   termios modes{};
-  if (isatty(descriptor_) == 0 || tcgetattr(descriptor_, &modes) != 0) {
+  if (!is_ours(descriptor_) || tcgetattr(descriptor_, &modes) != 0) {
     return;
   }
   input_modes_ = modes.c_iflag;
@@ -15,7 +22,7 @@ NoFlowControl::NoFlowControl(int descriptor) : descriptor_{descriptor} {
 
 NoFlowControl::~NoFlowControl() {
   termios modes{};
-  if (input_modes_ && tcgetattr(descriptor_, &modes) == 0) {
+  if (input_modes_ && is_ours(descriptor_) && tcgetattr(descriptor_, &modes) == 0) {
     modes.c_iflag = *input_modes_;
     tcsetattr(descriptor_, TCSANOW, &modes);
   }

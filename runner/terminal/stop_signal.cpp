@@ -19,6 +19,11 @@ void note(int /*signal*/) {
 void listen_for_stop() {
   for (const int signal : std::array{SIGINT, SIGTERM, SIGHUP, SIGQUIT}) {
     struct sigaction action {};
+    sigaction(signal, nullptr, &action);
+    if (signal == SIGHUP && action.sa_handler == SIG_IGN) {
+      continue;  // nohup
+    }
+    action = {};
     action.sa_handler = note;
     action.sa_flags = static_cast<int>(SA_RESETHAND);
     sigaction(signal, &action, nullptr);

@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 #include <cstdlib>
 
+#include "support/patient_spidar_study.hpp"
 #include "support/processes.hpp"
 #include "support/sanitized.hpp"
 #include "support/texts.hpp"
@@ -21,6 +22,23 @@ TEST_CASE("the pages' server serves nobody else, and a flood of requests stops n
           "[end_to_end][pages]") {
   pass("server_test.py");
 }
+
+TEST_CASE("what was confirmed on a screen is stored once, however often the program is killed",
+          "[end_to_end][pages]") {
+  setenv("TAPSTUDY_KILLS", "12", 0);  // more of them by hand
+  pass("kill_test.py");
+}
+
+#if !TAPSTUDY_SANITIZED  // the mocked kernel is not theirs
+TEST_CASE("a SPIDAR is homed by the operator's command while the participant is at a page",
+          "[end_to_end][pages]") {
+  const testing::TempDirectory directory;
+  testing::write_patient_spidar_study(directory);
+  setenv("TAPSTUDY_SPIDAR_STUDY", directory.path().c_str(), 1);
+  setenv("TAPSTUDY_LAB", TAPSTUDY_LAB, 1);
+  pass("spidar_page_test.py");
+}
+#endif
 
 #if !TAPSTUDY_SANITIZED  // what is drawn and clicked does not depend on it
 TEST_CASE("the paper's three studies are answered in a browser, by mouse and by keyboard",

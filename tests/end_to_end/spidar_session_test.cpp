@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "support/patient_spidar_study.hpp"
 #include "support/processes.hpp"
 #include "support/sanitized.hpp"
 #include "support/texts.hpp"
@@ -16,34 +17,9 @@ using Catch::Matchers::Contains;
 
 #if !TAPSTUDY_SANITIZED  // two libraries cannot both be the first to be loaded
 namespace {
-std::string changed(const std::string& name,
-                    const std::vector<std::pair<std::string, std::string>>& changes) {
-  std::string text = testing::contents(testing::shipped(name));
-  for (const auto& [from, to] : changes) {
-    text = testing::replaced(text, from, to);
-  }
-  return text;
-}
-
-// A study slow enough for the mocked kernel, and a rig that is patient with it.
 class Laboratory {
  public:
-  Laboratory() {
-    testing::write(directory_ / "study.yaml",
-                   changed("paper/discrimination.yaml",
-                           {{"rate_hz: 1000", "rate_hz: 500"},
-                            {"band_limit_hz: 300", "band_limit_hz: 200"},
-                            {"penalty_stiffness_n_per_m: 3000", "penalty_stiffness_n_per_m: 1000"},
-                            {"repetitions: 2", "repetitions: 1"}}));
-    testing::write(directory_ / "spidar_calibration.yaml",
-                   testing::contents(testing::source("tests/data/spidar_calibration.yaml")));
-    testing::write(directory_ / "rig.yaml",
-                   changed("rigs/spidar_g6.yaml", {{"force_rise_s: 0.5", "force_rise_s: 0.1"},
-                                                   {"fifo_priority: 80", "fifo_priority: 0"},
-                                                   {"max_late_ticks_in_a_row: 20",
-                                                    "max_late_ticks_in_a_row: 0, max_stall_s: 0.1"},
-                                                   {"max_reply_s: 0.003}", "max_reply_s: 0.1}"}}));
-  }
+  Laboratory() { testing::write_patient_spidar_study(directory_); }
   testing::ProgramResult operator()(const std::vector<std::string>& options,
                                     const std::vector<std::string>& arguments) {
     std::vector<std::string> line{"/usr/bin/env", "LD_PRELOAD=libumockdev-preload.so.0",

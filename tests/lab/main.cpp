@@ -33,6 +33,7 @@ using lab::MockedBoard;
 
 namespace {
 constexpr int exchanges_a_trial = 500;
+constexpr int exchanges_to_home = 300;
 constexpr int exchanges_a_tap = 200;
 constexpr unsigned max_run_s = 90;
 
@@ -176,6 +177,11 @@ class Lab {
       }
       boards_.back()->set_heir(guardian());  // the device may have been opened anew
       type("\n");
+    } else if (unanswered_.ends_with("type resume.\n")) {  // a session with pages
+      boards_.back()->set_heir(guardian());
+      is_tapping_ = false;
+      type("resume\n");
+      taps_from_exchange_ = exchange_ + exchanges_to_home;
     } else if (unanswered_.ends_with("> ")) {
       if (!is_tapping_.exchange(true)) {
         trial_began_ = exchange_.load();
@@ -219,6 +225,9 @@ class Lab {
   // The plate's face lies in the middle; up is +y in the frame of the maker.
   void after_exchange(int board, int exchange) {
     exchange_ = exchange;
+    if (exchange == taps_from_exchange_) {
+      is_tapping_ = true;
+    }
     if (exchange == 1) {
       boards_.at(static_cast<std::size_t>(board))->set_heir(guardian());
     }
@@ -263,6 +272,7 @@ class Lab {
   std::string unanswered_;
   std::atomic<bool> is_tapping_{false};
   std::atomic<int> exchange_{0};
+  std::atomic<int> taps_from_exchange_{-1};
   int trial_began_{0};
   std::mt19937 dice_{5};
   std::thread stopped_;

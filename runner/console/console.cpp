@@ -37,7 +37,10 @@ BrowserParticipant::Surroundings Console::surroundings(const Session& session) {
                   cause);
             });
           },
-          [&desk](const std::string& why) { desk.pause(why); }};
+          [&desk](const std::string& why) {
+            desk.pause(why);
+            say("\npaused: {}. To go on, type resume.\n", why);
+          }};
 }
 
 ConsoleApi::Session Console::in_view(const ConsoleRequest& request, const Session& session) {

@@ -6,7 +6,8 @@ namespace tapstudy::runner {
 namespace {
 // A program in the background that changed the terminal would be stopped for it.
 bool is_ours(int descriptor) {
-  return isatty(descriptor) != 0 && tcgetpgrp(descriptor) == getpgrp();
+  const pid_t foreground = tcgetpgrp(descriptor);  // -1: a terminal that controls nobody here
+  return isatty(descriptor) != 0 && (foreground < 0 || foreground == getpgrp());
 }
 }  // namespace
 

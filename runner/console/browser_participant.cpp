@@ -66,7 +66,7 @@ void BrowserParticipant::arrive() {
 }
 
 void BrowserParticipant::get_ready(const TrialPrompt& prompt) {
-  progress_ = Progress{prompt.number - 1, prompt.total, prompt.is_practice};
+  progress_ = TrialProgress{prompt.number - 1, prompt.total, prompt.is_practice};
   notice_.reset();
   surroundings_.move_hand();
 }
@@ -162,6 +162,6 @@ void BrowserParticipant::skipped(const TrialPrompt& /*prompt*/) {
 }
 
 void BrowserParticipant::saved(const TrialPrompt& prompt) {
-  progress_ = Progress{prompt.number, prompt.total, prompt.is_practice};
+  progress_ = TrialProgress{prompt.number, prompt.total, prompt.is_practice};
 }
 }  // namespace tapstudy::runner

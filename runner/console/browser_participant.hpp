@@ -47,7 +47,7 @@ class BrowserParticipant final : public Participant {
 
   ScreenExchange& screens_;
   Surroundings surroundings_;
-  std::optional<Progress> progress_;
+  std::optional<TrialProgress> progress_;
   std::optional<TooEarly> notice_;
   std::chrono::steady_clock::time_point seen_at_;
 };

@@ -65,7 +65,7 @@ Json json_of(const protocols::Form& form) {
   }
   return {{"title", form.title}, {"text", form.text}, {"items", items}};
 }
-Json json_of(const Progress& progress) {
+Json json_of(const TrialProgress& progress) {
   return {
       {"done", progress.done}, {"total", progress.total}, {"is_practice", progress.is_practice}};
 }

@@ -37,7 +37,7 @@ struct FeedbackScreen {
   bool is_correct{};
   std::string right;
 };
-struct Progress {
+struct TrialProgress {
   int done{};
   int total{};
   bool is_practice{};
@@ -49,7 +49,7 @@ struct Screen {
   std::string text{};
   Message message{Message::none};
   double min_seconds{};  // of a rest
-  std::optional<Progress> progress{};
+  std::optional<TrialProgress> progress{};
   std::optional<TrialScreen> trial{};
   std::optional<protocols::Confidence> confidence{};
   std::optional<FeedbackScreen> feedback{};

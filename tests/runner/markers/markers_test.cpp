@@ -11,7 +11,9 @@
 #include <catch2/catch.hpp>
 #include <chrono>
 #include <csignal>
+#include <cstdint>
 #include <cstdlib>
+#include <cstring>
 #include <tuple>
 
 #include "core/error.hpp"
@@ -30,6 +32,14 @@ const SessionEventRow change{1, 12.25, "faulted", 3, "the device did not reply"}
 const SessionEventRow between{1, 13.5, "resting", std::nullopt, ""};
 const std::string line = "12.250000\tfaulted\t3\tthe device did not reply\n";
 
+// liblo aligns arguments to 4 bytes, less than their union asks for.
+template <class Value>
+Value value_of(const void* argument) {
+  Value value{};
+  std::memcpy(&value, argument, sizeof value);
+  return value;
+}
+
 // liblo's own server, on a free port.
 class Receiver {
  public:
@@ -41,8 +51,10 @@ class Receiver {
         [](const char* path, const char* types, lo_arg** arguments, int count, lo_message,
            void* to) {
           REQUIRE(count == 3);
-          static_cast<std::vector<Received>*>(to)->emplace_back(path, types, arguments[0]->d,
-                                                                arguments[1]->i, &arguments[2]->s);
+          const void* const text = arguments[2];
+          static_cast<std::vector<Received>*>(to)->emplace_back(
+              path, types, value_of<double>(arguments[0]), value_of<std::int32_t>(arguments[1]),
+              static_cast<const char*>(text));
           return 0;
         },
         &received);

@@ -218,30 +218,34 @@ int ConsoleServer::serve(mg_connection* connection) {
     return send(connection, refusal(403));
   }
   const std::string given = path.substr(1, end - 1);
-  const std::string rest = path.substr(end + 1);
-  const std::string method = request->request_method;
   for (const Role role : roles) {
-    if (!is_same(given, token(role))) {
-      continue;
+    if (is_same(given, token(role))) {
+      return serve(connection, role, path.substr(end + 1));
     }
-    if (method == "GET" && rest == "events") {
-      stream(connection, role);
-      return 200;
-    }
-    if (method == "GET") {
-      return send(connection, api_.get(role, rest));
-    }
-    const bool may_post = method == "POST" && header(connection, "X-Tapstudy") == "1";
-    if (may_post && rest == "alive") {
-      return send(connection, api_.post_alive(role));
-    }
-    if (may_post && rest == "input") {
-      const auto body = body_of(connection);
-      return send(connection, body ? api_.post_input(role, *body) : refusal(413));
-    }
-    return send(connection, refusal(405));
   }
   return send(connection, refusal(403));
+}
+
+int ConsoleServer::serve(mg_connection* connection, Role role, const std::string& path) {
+  const std::string method = mg_get_request_info(connection)->request_method;
+  if (method == "GET" && path == "events") {
+    stream(connection, role);
+    return 200;
+  }
+  if (method == "GET") {
+    return send(connection, api_.get(role, path));
+  }
+  if (method != "POST" || header(connection, "X-Tapstudy") != "1") {
+    return send(connection, refusal(405));
+  }
+  if (path == "alive") {
+    return send(connection, api_.post_alive(role));
+  }
+  if (path == "input") {
+    const auto body = body_of(connection);
+    return send(connection, body ? api_.post_input(role, *body) : refusal(413));
+  }
+  return send(connection, refusal(405));
 }
 
 // Until the page has gone, newer ones have taken its place, or it is so slow that its connection is

@@ -34,6 +34,7 @@ class ConsoleServer {
  private:
   static int handle(mg_connection* connection, void* self);
   int serve(mg_connection* connection);
+  int serve(mg_connection* connection, Role role, const std::string& path);
   bool is_from_here(mg_connection* connection) const;
   void slow_down_a_flood();
   void stream(mg_connection* connection, Role role);

@@ -37,14 +37,13 @@ int Store::next_participant_index(Mode mode) {
 int Store::free_order_index(Mode mode) {
   const std::map<std::string, std::string> excluded = excluded_participants();
   Statement row{database_,
-                "SELECT participant_id, order_index, "
-                "  EXISTS (SELECT 1 FROM trial JOIN session USING (session_id) "
-                "    WHERE session.participant_id = participant.participant_id "
-                "    AND status = 'answered') OR "
-                "  coalesce((SELECT state FROM session_event JOIN session USING (session_id) "
-                "    WHERE session.participant_id = participant.participant_id "
-                "    ORDER BY session_event.rowid DESC LIMIT 1), '') <> 'stopped' "
-                "FROM participant WHERE mode = ?"};
+                "WITH answered AS (SELECT DISTINCT participant_id FROM trial "
+                "    JOIN session USING (session_id) WHERE status = 'answered'), "
+                "  latest AS (SELECT participant_id, state, max(session_event.rowid) "
+                "    FROM session_event JOIN session USING (session_id) GROUP BY participant_id) "
+                "SELECT participant_id, order_index, participant_id IN answered "
+                "  OR coalesce(state, '') <> 'stopped' "
+                "FROM participant LEFT JOIN latest USING (participant_id) WHERE mode = ?"};
   row.bind(to_text(mode));
   std::set<int> used;
   while (row.step()) {

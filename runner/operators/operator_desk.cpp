@@ -161,17 +161,17 @@ void OperatorDesk::pause(const std::string& why) {
 }
 
 bool OperatorDesk::waits_for_operator(const std::string& why, const std::function<void()>& tell) {
-  const auto hold = [&](const std::string& held_by) {
+  const auto held_by = [&](const std::string& cause) {
     const std::lock_guard lock{mutex_};
-    held_by_ = held_by;
-    is_paused_ = !held_by.empty();
+    held_by_ = cause;
+    is_paused_ = is_paused_ || !cause.empty();  // a pause since the resume stays one
   };
-  hold(why);
+  held_by(why);
   tell();
   while (is_paused() && !stop_was_asked()) {
     std::this_thread::sleep_for(std::chrono::milliseconds{20});
   }
-  hold("");
+  held_by("");
   return !stop_was_asked();
 }
 

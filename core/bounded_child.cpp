@@ -17,6 +17,7 @@
 #include <stdexcept>
 
 #include "core/error.hpp"
+#include "core/write_all.hpp"
 namespace tapstudy::core {
 namespace {
 enum class Ended : char { result = 'r', model_error = 'm', invalid_input = 'i', other = 'o' };
@@ -63,18 +64,6 @@ std::string outcome_of(const ChildJob& job, const std::string& input) {
   } catch (const std::exception& error) {
     return tagged(Ended::other, error.what());
   }
-}
-
-bool write_all(int descriptor, const std::string& bytes) {
-  std::size_t written = 0;
-  while (written < bytes.size()) {
-    const ssize_t count = write(descriptor, bytes.data() + written, bytes.size() - written);
-    if (count < 0) {
-      return false;
-    }
-    written += static_cast<std::size_t>(count);
-  }
-  return true;
 }
 
 std::string all_from(int descriptor) {

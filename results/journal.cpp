@@ -13,6 +13,7 @@
 #include <iterator>
 
 #include "core/sha256.hpp"
+#include "core/write_all.hpp"
 #include "results/journal_lines.hpp"
 #include "results/store_error.hpp"
 namespace tapstudy::results {
@@ -44,16 +45,8 @@ class LockedFile {
   int descriptor_;
 };
 
-bool write_all(int descriptor, const std::string& text) {
-  std::size_t written = 0;
-  while (written < text.size()) {
-    const ssize_t count = write(descriptor, text.data() + written, text.size() - written);
-    if (count < 0 && errno != EINTR) {
-      return false;
-    }
-    written += count > 0 ? static_cast<std::size_t>(count) : 0;
-  }
-  return fsync(descriptor) == 0;
+bool is_on_disk(int descriptor, const std::string& text) {
+  return core::write_all(descriptor, text) && fsync(descriptor) == 0;
 }
 }  // namespace
 
@@ -111,7 +104,7 @@ void Journal::complete(const std::function<StudyRow()>& study,
   for (const std::string& body : bodies) {
     text += chained(body);
   }
-  if (!text.empty() && !write_all(file.descriptor(), text)) {
+  if (!text.empty() && !is_on_disk(file.descriptor(), text)) {
     const StoreError error = failure(file_, "writing failed");
     chain_ = chain_before;
     static_cast<void>(!ftruncate(file.descriptor(), read_bytes_));  // else cut off when read next

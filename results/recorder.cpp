@@ -2,7 +2,6 @@
 
 #include <chrono>
 #include <exception>
-#include <type_traits>
 #include <utility>
 namespace tapstudy::results {
 namespace {
@@ -17,75 +16,47 @@ Recorder::~Recorder() {
   arrived_.notify_all();
 }
 
-namespace {
 // Any exception goes to whoever waits for what was written.
-template <class Result, class Act>
-auto promised(std::shared_ptr<std::promise<Result>> promise, Act act) {
-  return [promise = std::move(promise), act = std::move(act)](std::exception_ptr drain_failure) {
-    try {
-      if (drain_failure) {
-        std::rethrow_exception(drain_failure);
-      }
-      if constexpr (std::is_void_v<Result>) {
-        act();
-        promise->set_value();
-      } else {
-        promise->set_value(act());
-      }
-    } catch (...) {
-      promise->set_exception(std::current_exception());
-    }
-  };
-}
-}  // namespace
-
-void Recorder::queue(Write write) {
+template <class Act>
+auto Recorder::queue(Act act, HasTrace has_trace) -> std::future<decltype(act())> {
+  auto task = std::make_shared<std::packaged_task<decltype(act())(std::exception_ptr)>>(
+      [act = std::move(act)](const std::exception_ptr& drain_failure) {
+        if (drain_failure) {
+          std::rethrow_exception(drain_failure);
+        }
+        return act();
+      });
   {
     const std::lock_guard lock{mutex_};
-    pending_.push_back(std::move(write));
+    pending_.push_back(
+        {[task](std::exception_ptr drain_failure) { (*task)(std::move(drain_failure)); },
+         has_trace});
   }
   arrived_.notify_all();
+  return task->get_future();
 }
 
 std::future<SaveOutcome> Recorder::save(std::shared_ptr<const TrialRecord> record) {
-  auto promise = std::make_shared<std::promise<SaveOutcome>>();
-  queue(
-      {promised(promise, [this, record = std::move(record)] { return store_.add_trial(*record); }),
-       true});
-  return promise->get_future();
+  return queue([this, record = std::move(record)] { return store_.add_trial(*record); },
+               HasTrace::yes);
 }
 
 std::future<void> Recorder::note(std::vector<SessionEventRow> events) {
-  auto promise = std::make_shared<std::promise<void>>();
-  queue(
-      {promised(promise, [this, events = std::move(events)] { store_.add_session_events(events); }),
-       false});
-  return promise->get_future();
+  return queue([this, events = std::move(events)] { store_.add_session_events(events); });
 }
 
 std::future<void> Recorder::note(OperatorActionRow action) {
-  auto promise = std::make_shared<std::promise<void>>();
-  queue({promised(promise,
-                  [this, action = std::move(action)] { store_.add_operator_action(action); }),
-         false});
-  return promise->get_future();
+  return queue([this, action = std::move(action)] { store_.add_operator_action(action); });
 }
 
 std::future<void> Recorder::save_form(std::vector<FormAnswerRow> answers) {
-  auto promise = std::make_shared<std::promise<void>>();
-  queue({promised(promise, [this, answers = std::move(answers)] { store_.add_form(answers); }),
-         false});
-  return promise->get_future();
+  return queue([this, answers = std::move(answers)] { store_.add_form(answers); });
 }
 
 std::future<void> Recorder::correct(CorrectionRow correction, OperatorActionRow action) {
-  auto promise = std::make_shared<std::promise<void>>();
-  queue({promised(promise,
-                  [this, correction = std::move(correction), action = std::move(action)] {
-                    store_.add_correction(correction, action);
-                  }),
-         false});
-  return promise->get_future();
+  return queue([this, correction = std::move(correction), action = std::move(action)] {
+    store_.add_correction(correction, action);
+  });
 }
 
 void Recorder::follow(TraceCollector& collector) {
@@ -118,7 +89,8 @@ void Recorder::run(const std::stop_token& stop) {
       const Write write = std::move(pending_.front());
       pending_.pop_front();
       lock.unlock();
-      write.act(write.is_trial ? std::exchange(drain_failure_, nullptr) : nullptr);
+      write.act(write.has_trace == HasTrace::yes ? std::exchange(drain_failure_, nullptr)
+                                                 : nullptr);
       lock.lock();
     }
   }

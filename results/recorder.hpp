@@ -38,11 +38,13 @@ class Recorder {
 
  private:
   void run(const std::stop_token& stop);
+  enum class HasTrace { no, yes };  // what could not be drained is missing in it
   struct Write {
     std::function<void(std::exception_ptr drain_failure)> act;
-    bool is_trial{};  // what could not be drained is missing in it
+    HasTrace has_trace{};
   };
-  void queue(Write write);
+  template <class Act>
+  auto queue(Act act, HasTrace has_trace = HasTrace::no) -> std::future<decltype(act())>;
   void drain_followed() noexcept;
 
   Store& store_;

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <charconv>
 #include <memory>
 
 #include "core/error.hpp"
@@ -9,6 +8,7 @@
 #include "runner/commands/seed.hpp"
 #include "runner/devices/rigs.hpp"
 #include "runner/session/live_session.hpp"
+#include "runner/terminal/whole_number.hpp"
 namespace tapstudy::runner {
 namespace {
 struct RunOptions {
@@ -25,14 +25,13 @@ struct RunOptions {
   bool pilot{false};
 };
 
-int whole_number(const std::string& text, int low, int high, const char* option) {
-  int number = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (error != std::errc{} || end != text.data() + text.size() || number < low || number > high) {
+int number_for(const char* option, const std::string& text, int low, int high) {
+  const std::optional<int> number = whole_number(text, low, high);
+  if (!number) {
     throw core::InvalidInput{
         fmt::format("{}: '{}' is not a number from {} to {}", option, text, low, high)};
   }
-  return number;
+  return *number;
 }
 
 std::optional<ConsoleRequest> console_of(const RunOptions& options) {
@@ -44,7 +43,7 @@ std::optional<ConsoleRequest> console_of(const RunOptions& options) {
   }
   constexpr int max_port = 65535;
   ConsoleRequest request;
-  request.address.port = whole_number(options.console, 0, max_port, "--console");
+  request.address.port = number_for("--console", options.console, 0, max_port);
   request.language = options.language;
   if (!options.listen.empty()) {
     request.address.host = options.listen;
@@ -62,7 +61,7 @@ SessionRequest request_of(const RunOptions& options) {
   }
   if (!options.row.empty()) {
     constexpr int max_row = 1'000'000;
-    request.order_index = whole_number(options.row, 1, max_row, "--row") - 1;
+    request.order_index = number_for("--row", options.row, 1, max_row) - 1;
   }
   return request;
 }

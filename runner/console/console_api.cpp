@@ -2,12 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
-
 #include "core/error.hpp"
 #include "results/store_error.hpp"
 #include "runner/console/operator_json.hpp"
 #include "runner/console/pages.hpp"
+#include "runner/terminal/whole_number.hpp"
 namespace tapstudy::runner {
 namespace {
 Reply not_found() {
@@ -27,12 +26,8 @@ std::string event(const char* name, const std::string& data) {
 Reply ConsoleApi::get(Role role, const std::string& path) const {
   constexpr std::string_view scene = "scene/";
   if (path.starts_with(scene)) {
-    int number = -1;
-    const char* const end = path.data() + path.size();
-    const auto [stopped, error] = std::from_chars(path.data() + scene.size(), end, number);
-    const bool is_known =
-        error == std::errc{} && stopped == end && number >= 0 && number < scenes_.count();
-    return is_known ? Reply{200, "application/json", scenes_.json(number)} : not_found();
+    const auto number = whole_number(path.substr(scene.size()), 0, scenes_.count() - 1);
+    return number ? Reply{200, "application/json", scenes_.json(*number)} : not_found();
   }
   const char* const own = role == Role::participant ? "participant.html" : "operator.html";
   const Page* const page = find_page(path.empty() ? own : path);

@@ -3,22 +3,21 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <chrono>
 #include <thread>
 
 #include "core/error.hpp"
 #include "runner/terminal/stop_signal.hpp"
+#include "runner/terminal/whole_number.hpp"
 namespace tapstudy::runner {
 namespace {
 // From 1, as people count. Throws InvalidInput if there are fewer.
 std::size_t number_up_to(std::size_t most, const std::string& text) {
-  std::size_t number{};
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (error != std::errc{} || end != text.data() + text.size() || number < 1 || number > most) {
+  const std::optional<int> number = whole_number(text, 1, static_cast<int>(most));
+  if (!number) {
     throw core::InvalidInput{fmt::format("'{}' is not a number from 1 to {}", text, most)};
   }
-  return number - 1;
+  return static_cast<std::size_t>(*number - 1);
 }
 
 bool is_over(const std::shared_future<void>& future) {

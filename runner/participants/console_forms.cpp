@@ -1,11 +1,10 @@
 // Questionnaires at the terminal, an item at a time.
 #include <fmt/format.h>
 
-#include <charconv>
-
 #include "runner/participants/console_participant.hpp"
 #include "runner/terminal/say.hpp"
 #include "runner/terminal/stop_signal.hpp"
+#include "runner/terminal/whole_number.hpp"
 namespace tapstudy::runner {
 namespace {
 using protocols::ItemKind;
@@ -28,12 +27,9 @@ std::string what_to_type(const protocols::FormItem& item) {
 
 // Options are numbered at the terminal.
 std::string as_stored(const protocols::FormItem& item, const std::string& typed) {
-  std::size_t number = 0;
-  const char* const end = typed.data() + typed.size();
-  const auto [stopped, error] = std::from_chars(typed.data(), end, number);
-  const bool is_option = item.kind == ItemKind::single_choice && error == std::errc{} &&
-                         stopped == end && number >= 1 && number <= item.options.size();
-  return is_option ? item.options[number - 1] : typed;
+  const auto number = whole_number(typed, 1, static_cast<int>(item.options.size()));
+  const bool is_option = item.kind == ItemKind::single_choice && number;
+  return is_option ? item.options[static_cast<std::size_t>(*number - 1)] : typed;
 }
 }  // namespace
 

@@ -5,12 +5,12 @@
 
 #include <algorithm>
 #include <cctype>
-#include <charconv>
 #include <chrono>
 #include <thread>
 
 #include "runner/terminal/say.hpp"
 #include "runner/terminal/stop_signal.hpp"
+#include "runner/terminal/whole_number.hpp"
 namespace tapstudy::runner {
 namespace {
 std::string upper_case_without_spaces(const std::string& line) {
@@ -24,11 +24,8 @@ std::string upper_case_without_spaces(const std::string& line) {
 }
 
 std::optional<std::size_t> number_in(const std::string& word, std::size_t most) {
-  std::size_t number{};
-  const char* const end = word.data() + word.size();
-  const auto [stopped, error] = std::from_chars(word.data(), end, number);
-  const bool is_allowed = error == std::errc{} && stopped == end && number >= 1 && number <= most;
-  return is_allowed ? std::optional{number - 1} : std::nullopt;
+  const auto number = whole_number(word, 1, static_cast<int>(most));
+  return number ? std::optional{static_cast<std::size_t>(*number - 1)} : std::nullopt;
 }
 
 std::optional<std::size_t> index_of(const std::string& label,

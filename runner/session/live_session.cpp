@@ -21,7 +21,6 @@
 #include "runner/terminal/operator_prompt.hpp"
 #include "runner/terminal/session_lock.hpp"
 #include "runner/terminal/stop_signal.hpp"
-#include "runner/trial_loop/masked_trial_loop.hpp"
 namespace tapstudy::runner {
 namespace {
 // All checks possible before the device and the store are opened.

@@ -128,7 +128,7 @@ SimulatedTime simulate(const SimulatedStudy& study, const protocols::Protocol& p
     TrialEngine engine{{protocol, models, trial_loop, participant, nobody, states}, recorder};
     running = &engine;
     std::set<int> done;
-    if (const auto interruption = engine.run(session.id, session.schedule, done)) {
+    if (const auto interruption = engine.run(session.schedule, done)) {
       throw device::DeviceError{to_text(*interruption)};
     }
     ticks += engine.ticks();

@@ -100,8 +100,7 @@ void LiveTrials::run() {
   if (console_) {
     terminal.emplace(parts_.input, desk_);
   }
-  while (const auto interruption =
-             engine_.run(parts_.session.row.id, parts_.session.schedule, parts_.session.done)) {
+  while (const auto interruption = engine_.run(parts_.session.schedule, parts_.session.done)) {
     device_ = reconnect(to_text(*interruption), parts_.device_request, std::move(device_));
     device_->begin_session(parts_.session.row.seed);
     live_loop_.use(device_->device());

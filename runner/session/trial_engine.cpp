@@ -33,11 +33,10 @@ std::string to_text(const Interruption& interruption) {
       interruption.is_answered ? "the answer is stored" : "the trial is stored as interrupted");
 }
 
-std::optional<Interruption> TrialEngine::run(std::int64_t session_id,
-                                             const protocols::Schedule& schedule,
+std::optional<Interruption> TrialEngine::run(const protocols::Schedule& schedule,
                                              std::set<int>& done_trials) {
   try {
-    const auto interruption = run_all(session_id, schedule, done_trials);
+    const auto interruption = run_all(schedule, done_trials);
     if (!interruption) {
       interludes_.after_last_trial();
       parts_.states.enter(SessionState::ended);
@@ -60,8 +59,7 @@ void TrialEngine::note_events() {
   }
 }
 
-std::optional<Interruption> TrialEngine::run_all(std::int64_t session_id,
-                                                 const protocols::Schedule& schedule,
+std::optional<Interruption> TrialEngine::run_all(const protocols::Schedule& schedule,
                                                  std::set<int>& done_trials) {
   std::deque<PlannedTrial> waiting;
   std::ranges::copy_if(schedule, std::back_inserter(waiting), [&](const PlannedTrial& trial) {
@@ -72,8 +70,7 @@ std::optional<Interruption> TrialEngine::run_all(std::int64_t session_id,
     const PlannedTrial trial = waiting.front();
     waiting.pop_front();
     interludes_.before(trial);
-    const Outcome outcome =
-        run_until_it_counts(session_id, trial, static_cast<int>(schedule.size()));
+    const Outcome outcome = run_until_it_counts(trial, static_cast<int>(schedule.size()));
     if (outcome.is_requeued) {
       const auto next_block = std::ranges::find_if(
           waiting, [&](const PlannedTrial& other) { return other.block != trial.block; });
@@ -98,13 +95,12 @@ TrialPrompt TrialEngine::prompt_of(const PlannedTrial& trial, int total) const {
           block.explore,     trial.task->alternative_labels(trial)};
 }
 
-TrialEngine::Outcome TrialEngine::run_until_it_counts(std::int64_t session_id,
-                                                      const PlannedTrial& trial, int total) {
+TrialEngine::Outcome TrialEngine::run_until_it_counts(const PlannedTrial& trial, int total) {
   Outcome outcome;
   do {
     parts_.participant.arrive();
     wait_while_paused();
-    outcome = run_trial(session_id, trial, total);
+    outcome = run_trial(trial, total);
   } while (outcome.is_repeated);
   return outcome;
 }
@@ -204,14 +200,13 @@ TrialEngine::Ending TrialEngine::ending_of(const Presentation& presentation,
   return presentation.is_timed_out ? Ending::timed_out : Ending::interrupted;
 }
 
-void TrialEngine::store(std::int64_t session_id, const PlannedTrial& trial,
-                        Presentation presentation, Ending ending) {
+void TrialEngine::store(const PlannedTrial& trial, Presentation presentation, Ending ending) {
   const core::TickFault fault = presentation.result.loop.stopped_by;
   if (const auto state = state_of(ending)) {
     parts_.states.enter(*state, trial.number, core::to_text(fault));
   }
   auto record = std::make_shared<results::TrialRecord>(
-      trial_record(session_id, trial, ++attempts_[trial.number],
+      trial_record(parts_.states.session_id(), trial, ++attempts_[trial.number],
                    status_of(ending, presentation.answer.has_value()), presentation.answer,
                    std::move(presentation.result)));
   record->session_events = parts_.states.take_events();
@@ -221,8 +216,7 @@ void TrialEngine::store(std::int64_t session_id, const PlannedTrial& trial,
   }
 }
 
-TrialEngine::Outcome TrialEngine::run_trial(std::int64_t session_id, const PlannedTrial& trial,
-                                            int total) {
+TrialEngine::Outcome TrialEngine::run_trial(const PlannedTrial& trial, int total) {
   const TrialPrompt prompt = prompt_of(trial, total);
   const protocols::Block& block = parts_.protocol.block(trial.block);
   Presentation presentation = present({trial, prompt, attempts_[trial.number] + 1}, parts_);
@@ -233,7 +227,7 @@ TrialEngine::Outcome TrialEngine::run_trial(std::int64_t session_id, const Plann
   }
   const std::optional<Answer> answer = presentation.answer;
   const core::TickFault fault = presentation.result.loop.stopped_by;
-  store(session_id, trial, std::move(presentation), ending);
+  store(trial, std::move(presentation), ending);
   switch (ending) {
     case Ending::faulted:
       if (answer) {

@@ -46,8 +46,7 @@ class TrialEngine {
   // again, it repeats that one. A trial that took too long comes again at the end of its block, if
   // the block says so. Throws Stopped if the participant or the operator stops, StoreError
   // if a trial cannot be stored; the trial in progress is stored as interrupted, if possible.
-  std::optional<Interruption> run(std::int64_t session_id, const protocols::Schedule& schedule,
-                                  std::set<int>& done_trials);
+  std::optional<Interruption> run(const protocols::Schedule& schedule, std::set<int>& done_trials);
   std::int64_t ticks() const noexcept { return ticks_; }  // rendered so far
 
  private:
@@ -56,7 +55,7 @@ class TrialEngine {
     bool is_repeated{};  // its answer does not count
     bool is_requeued{};
   };
-  std::optional<Interruption> run_all(std::int64_t session_id, const protocols::Schedule& schedule,
+  std::optional<Interruption> run_all(const protocols::Schedule& schedule,
                                       std::set<int>& done_trials);
   void note_events();
   void ask_confidence(const protocols::Block& block, int trial, Answer& answer);
@@ -65,11 +64,9 @@ class TrialEngine {
   void wait_while_paused();
   using Ending = TrialEnding;
   Ending ending_of(const Presentation& presentation, const protocols::PlannedTrial& trial);
-  void store(std::int64_t session_id, const protocols::PlannedTrial& trial,
-             Presentation presentation, Ending ending);
-  Outcome run_trial(std::int64_t session_id, const protocols::PlannedTrial& trial, int total);
-  Outcome run_until_it_counts(std::int64_t session_id, const protocols::PlannedTrial& trial,
-                              int total);
+  void store(const protocols::PlannedTrial& trial, Presentation presentation, Ending ending);
+  Outcome run_trial(const protocols::PlannedTrial& trial, int total);
+  Outcome run_until_it_counts(const protocols::PlannedTrial& trial, int total);
   void save(const std::shared_ptr<const results::TrialRecord>& record);
   void save(std::vector<results::FormAnswerRow> answers);
   // Until it succeeds, or the operator gives up: then throws StoreError.

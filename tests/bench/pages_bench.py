@@ -2,12 +2,8 @@
 """pages_bench.py TAPSTUDY: how late the loop of a session with pages wakes without any load and in a
 flood: 8 threads that ask for three.module.js as fast as they can, 40 streams of which 30 are never
 read. Sessions in pairs, in turns: medians over the trials, and of the ratios of the pairs."""
-import http.client
-import json
 import os
-import re
 import signal
-import socket
 import statistics
 import subprocess
 import sys
@@ -16,42 +12,18 @@ import time
 from pathlib import Path
 from urllib.parse import urlparse
 
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "pages"))
+from page_client import NETWORK, ask, next_trial_screen, open_stream, post
+
 PAIRS = 5
 SECONDS_PER_TRIAL = 2
 FLOODS, STREAMS, UNREAD = 8, 40, 30
-NETWORK = (OSError, http.client.HTTPException)
-
-
-def ask(url, method, path, body=None):
-    """How many bytes came."""
-    connection = http.client.HTTPConnection(url.hostname, url.port, timeout=10)
-    try:
-        connection.request(method, url.path + path, body, {"X-Tapstudy": "1"})
-        return len(connection.getresponse().read())
-    finally:
-        connection.close()
-
-
-def stream(url, buffer_bytes=None):
-    connection = socket.socket()
-    connection.settimeout(10)
-    if buffer_bytes:
-        connection.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, buffer_bytes)
-    try:
-        connection.connect((url.hostname, url.port))
-        connection.sendall(f"GET {url.path}events HTTP/1.1\r\nHost: {url.netloc}\r\n\r\n".encode())
-        return connection
-    except OSError:
-        connection.close()
-        raise
-
-
 # ---- the load, a program of its own: it must not take the participant's Python
 
 def ask_on(url, served):
     while True:
         try:
-            served.append(ask(url, "GET", "three.module.js"))
+            served.append(len(ask(url, "GET", "three.module.js")[1]))
         except NETWORK:
             time.sleep(0.001)
 
@@ -59,7 +31,7 @@ def ask_on(url, served):
 def read_on(url):
     while True:
         try:
-            with stream(url) as connection:
+            with open_stream(url) as connection:
                 while connection.recv(65536):
                     pass
         except OSError:
@@ -70,7 +42,7 @@ def never_read(url):
     """Opened again once it was closed by the other side: sending then fails."""
     while True:
         try:
-            with stream(url, buffer_bytes=1024) as connection:
+            with open_stream(url, buffer_bytes=1024) as connection:
                 while True:
                     time.sleep(0.5)
                     connection.sendall(b"\r\n")
@@ -91,29 +63,17 @@ def load(url):
 
 # ---- the participant
 
-def trial_on_show(url):
-    """Number of its screen; the stream may be cut off in the flood."""
-    with stream(url) as connection:
-        text = b""
-        while not (found := re.search(rb'"number":(\d+),"language":"\w+","kind":"trial"', text)):
-            part = connection.recv(65536)
-            if not part:
-                raise OSError("the stream ended")
-            text += part
-    return int(found.group(1))
-
-
 def take_part(session):
     """Answers each trial after so long."""
     url = urlparse(session.participant)
     last = None
     while session.process.poll() is None:
         try:
-            screen = trial_on_show(url)
+            screen = next_trial_screen(url)
             if screen != last:
                 time.sleep(SECONDS_PER_TRIAL)
             last = screen
-            ask(url, "POST", "input", json.dumps({"screen": screen, "action": "answer", "value": 0}))
+            post(url, {"screen": screen, "action": "answer", "value": 0})
         except NETWORK:
             time.sleep(0.02)
 
@@ -150,9 +110,8 @@ def main():
     if sys.argv[1] == "--load":
         load(urlparse(sys.argv[2]))
     os.environ["TAPSTUDY_PROGRAM"] = os.path.abspath(sys.argv[1])
-    sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "pages"))
-    from program import Session
-    compare(lambda: Session("paper/discrimination.yaml"))
+    from program import Session  # which takes its program from the environment
+    compare(lambda: Session("protocols/paper/discrimination.yaml"))
 
 
 main()

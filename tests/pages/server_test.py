@@ -1,14 +1,13 @@
 """The pages' server against whoever is not meant, and against too much of everything."""
 import http.client
 import json
-import re
-import socket
 import sys
 import threading
 import time
 import unittest
 from urllib.parse import urlparse
 
+from page_client import NETWORK, next_trial_screen, open_stream, post
 from program import Session
 
 
@@ -82,24 +81,16 @@ class ServerTest(unittest.TestCase):
         self.assertEqual(self.post(self.of_operator, {"command": "note " + "x" * 3000})[0], 409)
         self.assertEqual(self.post(self.of_operator, {"command": "note \u0000\u202e<script>"})[0], 200)
 
-    def stream(self):
-        """An open stream of events; nobody reads it."""
-        connection = socket.create_connection((self.at.hostname, self.at.port), timeout=10)
-        connection.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 1024)
-        connection.sendall(f"GET {self.at.path}events HTTP/1.1\r\nHost: {self.at.netloc}\r\n\r\n".encode())
-        self.addCleanup(connection.close)
-        return connection
-
     def test_the_session_goes_on_with_a_flood_and_pages_that_do_not_read(self):
         for _ in range(40):
-            self.stream()
+            self.addCleanup(open_stream(self.at, buffer_bytes=1024).close)
         is_over = threading.Event()
 
         def flood():
             while not is_over.is_set():
                 try:
                     self.ask(self.at.path + "three.module.js")
-                except (OSError, http.client.HTTPException):
+                except NETWORK:
                     pass
         floods = [threading.Thread(target=flood) for _ in range(8)]
         for one in floods:
@@ -113,23 +104,12 @@ class ServerTest(unittest.TestCase):
         self.assertEqual(self.session.wait(), 0, self.session.said())
         self.assertEqual(len(self.session.responses()), 8)
 
-    def screen_now(self):
-        connection = self.stream()
-        received = b""
-        while not (found := re.search(rb'"number":(\d+),"language"', received)):
-            part = connection.recv(1024)
-            if not part:
-                raise OSError("the stream ended")
-            received += part
-        connection.close()
-        return int(found.group(1))
-
     def answer_all(self):
         end = time.monotonic() + 60
         while self.session.process.poll() is None and time.monotonic() < end:
             try:
-                self.post(self.at, {"screen": self.screen_now(), "action": "answer", "value": 0})
-            except (OSError, http.client.HTTPException):
+                post(self.at, {"screen": next_trial_screen(self.at), "action": "answer", "value": 0})
+            except NETWORK:
                 pass  # closed in the flood, or the session is over
             time.sleep(0.2)
 

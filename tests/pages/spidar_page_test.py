@@ -1,9 +1,5 @@
 """A session at a page with a SPIDAR (a mocked board): the operator homes it by a command."""
-import http.client
-import json
 import os
-import re
-import socket
 import subprocess
 import sys
 import tempfile
@@ -12,6 +8,7 @@ import unittest
 from pathlib import Path
 from urllib.parse import urlparse
 
+from page_client import NETWORK, next_trial_screen, open_stream, post
 from program import PROGRAM, Session
 
 LAB = os.environ["TAPSTUDY_LAB"]
@@ -34,14 +31,6 @@ class SpidarSession(Session):
 
 
 class SpidarPageTest(unittest.TestCase):
-    def post(self, url, message):
-        connection = http.client.HTTPConnection(url.hostname, url.port, timeout=10)
-        try:
-            connection.request("POST", url.path + "input", json.dumps(message), {"X-Tapstudy": "1"})
-            return connection.getresponse().status
-        finally:
-            connection.close()
-
     def test_the_operator_homes_it_and_the_page_answers(self):
         """Again where the mocked kernel gives up, which a kernel does not: see the session's tests."""
         for _ in range(4):
@@ -57,18 +46,12 @@ class SpidarPageTest(unittest.TestCase):
         session = SpidarSession()
         self.addCleanup(session.close)
         page = urlparse(session.participant)
-        stream = socket.create_connection((page.hostname, page.port), timeout=10)
-        self.addCleanup(stream.close)
-        stream.sendall(f"GET {page.path}events HTTP/1.1\r\nHost: {page.netloc}\r\n\r\n".encode())
-        received = b""
+        self.addCleanup(open_stream(page).close)  # somebody is there all the time
         end = time.monotonic() + 60
         while session.process.poll() is None and time.monotonic() < end:
             try:
-                received = (received + stream.recv(65536))[-20000:]
-                screens = re.findall(rb'"number":(\d+),"language":"en","kind":"(\w+)"', received)
-                if screens and screens[-1][1] == b"trial":
-                    self.post(page, {"screen": int(screens[-1][0]), "action": "answer", "value": 0})
-            except (OSError, http.client.HTTPException):
+                post(page, {"screen": next_trial_screen(page), "action": "answer", "value": 0})
+            except NETWORK:
                 time.sleep(0.05)  # the program is ending
         return session
 

@@ -92,7 +92,7 @@ struct Attended {
     OperatorDesk desk{{protocol, session.id, false, now_s}, recorder};
     participant.desk = &desk;
     TrialEngine engine{{protocol, models, loop, participant, desk, states}, recorder};
-    CHECK_FALSE(engine.run(session.id, schedule, done));
+    CHECK_FALSE(engine.run(schedule, done));
     if (after) {
       after(desk);
     }

@@ -75,7 +75,7 @@ struct Study {
     runner::SessionStates states{session.id, [] { return 0.0; }};
     runner::Operator nobody;
     runner::TrialEngine engine{{protocol, models, loop, participant, nobody, states}, recorder};
-    CHECK_FALSE(engine.run(session.id, schedule, done));
+    CHECK_FALSE(engine.run(schedule, done));
     CHECK(done.size() == schedule.size());
   }
 
@@ -171,7 +171,7 @@ struct HastySession {
       runner::SessionStates states{session.id, [] { return 0.0; }};
       runner::Operator nobody;
       runner::TrialEngine engine{{protocol, models, loop, participant, nobody, states}, recorder};
-      CHECK_FALSE(engine.run(session.id, protocols::make_schedule(protocol, 1, 0), done));
+      CHECK_FALSE(engine.run(protocols::make_schedule(protocol, 1, 0), done));
     }
     answers = store.answers();
     for (const results::UnansweredTrial& trial : store.unanswered_trials("P01")) {

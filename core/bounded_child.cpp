@@ -21,7 +21,8 @@
 namespace tapstudy::core {
 namespace {
 enum class Ended : char { result = 'r', model_error = 'm', invalid_input = 'i', other = 'o' };
-constexpr std::array deadly{SIGSEGV, SIGABRT, SIGBUS, SIGFPE, SIGILL, SIGXCPU, SIGALRM, SIGPIPE};
+constexpr std::array default_signals{SIGSEGV, SIGABRT, SIGBUS,  SIGFPE,
+                                     SIGILL,  SIGXCPU, SIGALRM, SIGPIPE};
 constexpr const char* child_name = "tapstudy-child";
 const ChildJob* all_jobs = nullptr;
 bool is_served = false;
@@ -109,7 +110,7 @@ int start(const ChildJob& job, const ChildLimits& limits, int input, int output,
   sigset_t signals{};
   sigemptyset(&signals);
   posix_spawnattr_setsigmask(&attributes, &signals);
-  for (const int signal : deadly) {
+  for (const int signal : default_signals) {
     sigaddset(&signals, signal);
   }
   posix_spawnattr_setsigdefault(&attributes, &signals);

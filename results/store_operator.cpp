@@ -4,7 +4,7 @@
 #include "results/store.hpp"
 #include "results/store_error.hpp"
 namespace tapstudy::results {
-void Store::journal(JournalEntries entries, std::int64_t session_id) {
+void Store::journal(const JournalEntries& entries, std::int64_t session_id) {
   if (journal_) {
     journal_->complete([this] { return study(); }, {session_of(session_id)}, entries);
   }

@@ -68,13 +68,13 @@ void BrowserParticipant::arrive() {
 void BrowserParticipant::get_ready(const TrialPrompt& prompt) {
   progress_ = TrialProgress{prompt.number - 1, prompt.total, prompt.is_practice};
   notice_.reset();
-  surroundings_.move_hand();
+  context_.move_hand();
 }
 
 std::int64_t BrowserParticipant::show_trial(const TrialPrompt& prompt, std::size_t current) {
   return show({.kind = ScreenKind::trial,
                .trial = TrialScreen{prompt, current, notice_},
-               .scene = surroundings_.scene(current)});
+               .scene = context_.scene(current)});
 }
 
 std::optional<std::size_t> BrowserParticipant::perform(const TrialPrompt& prompt,
@@ -117,7 +117,7 @@ void BrowserParticipant::pause_if_left() {
     seen_at_ = now;
   } else if (now - seen_at_ > patience) {
     seen_at_ = now;
-    surroundings_.pause("the participant's page is closed or does not answer");
+    context_.pause("the participant's page is closed or does not answer");
   }
 }
 
@@ -146,7 +146,7 @@ void BrowserParticipant::timed_out(const TrialPrompt& /*prompt*/, bool is_presen
 
 bool BrowserParticipant::saves_again(const std::string& cause) {
   show({.kind = ScreenKind::message, .message = Message::operator_is_needed});
-  return surroundings_.ask_operator(cause);
+  return context_.ask_operator(cause);
 }
 
 void BrowserParticipant::repeats(const TrialPrompt& /*prompt*/) {

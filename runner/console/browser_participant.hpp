@@ -9,7 +9,7 @@ namespace tapstudy::runner {
 // A person at the participant's page.
 class BrowserParticipant final : public Participant {
  public:
-  struct Surroundings {
+  struct Context {
     std::function<void()> move_hand;  // as a ConsoleParticipant's
     // What is drawn while an alternative of the trial that is shown can be felt.
     std::function<std::optional<int>(std::size_t alternative)> scene;
@@ -17,8 +17,8 @@ class BrowserParticipant final : public Participant {
     std::function<bool(const std::string& cause)> ask_operator;
     std::function<void(const std::string& why)> pause;  // as the operator does
   };
-  BrowserParticipant(ScreenExchange& screens, Surroundings surroundings)
-      : screens_{screens}, surroundings_{std::move(surroundings)} {}
+  BrowserParticipant(ScreenExchange& screens, Context context)
+      : screens_{screens}, context_{std::move(context)} {}
   void read(const std::string& instructions) override;
   void rest(double min_seconds) override;
   bool fills_in_forms() const override { return true; }
@@ -46,7 +46,7 @@ class BrowserParticipant final : public Participant {
   void pause_if_left();
 
   ScreenExchange& screens_;
-  Surroundings surroundings_;
+  Context context_;
   std::optional<TrialProgress> progress_;
   std::optional<TooEarly> notice_;
   std::chrono::steady_clock::time_point seen_at_;

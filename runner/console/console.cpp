@@ -10,7 +10,7 @@ Console::Console(const ConsoleRequest& request, const Session& session)
     : shows_plate_{session.protocol.display.shows_plate},
       scenes_{session.protocol},
       screens_{request.language, session.protocol.title},
-      participant_{screens_, surroundings(session)},
+      participant_{screens_, context(session)},
       api_{in_view(request, session), screens_, session.desk, live_, scenes_},
       server_{request.address, api_} {}
 
@@ -22,7 +22,7 @@ Console::~Console() {
   }
 }
 
-BrowserParticipant::Surroundings Console::surroundings(const Session& session) {
+BrowserParticipant::Context Console::context(const Session& session) {
   OperatorDesk& desk = session.desk;
   return {session.move_hand,
           [this, &desk, &protocol = session.protocol](std::size_t alternative) {

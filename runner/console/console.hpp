@@ -38,7 +38,7 @@ class Console {
 
  private:
   ConsoleApi::Session in_view(const ConsoleRequest& request, const Session& session);
-  BrowserParticipant::Surroundings surroundings(const Session& session);
+  BrowserParticipant::Context context(const Session& session);
 
   std::mutex mutex_;
   std::string state_{"begun"};

@@ -102,14 +102,12 @@ class OpenPage {
 };
 
 // The haptic loop and the recorder come first, also where no real-time priority was granted.
-void lower_priority(const mg_context* /*context*/, int /*kind*/) {
+void* begin_thread_at_low_priority(const mg_context* /*context*/, int /*kind*/) {
   constexpr int nice = 10;
   setpriority(PRIO_PROCESS, 0, nice);
-}
-void* begin_thread(const mg_context* context, int kind) {
-  lower_priority(context, kind);
   return nullptr;
 }
+
 // Throws InvalidInput if it cannot be listened to.
 mg_context* listening_at(const ServerAddress& address, void* user) {
   const std::string listening = fmt::format("{}:{}", address.host, address.port);
@@ -125,7 +123,7 @@ mg_context* listening_at(const ServerAddress& address, void* user) {
                                    "no",
                                    nullptr};
   mg_callbacks callbacks{};
-  callbacks.init_thread = begin_thread;
+  callbacks.init_thread = begin_thread_at_low_priority;
   callbacks.log_message = [](const mg_connection*, const char*) { return 1; };
   mg_context* const context = mg_start(&callbacks, user, options.data());
   if (context == nullptr) {

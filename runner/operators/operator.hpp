@@ -21,8 +21,8 @@ struct AnswerInView {
 // unknown: the device did not confirm zero force.
 enum class ForceState { off, on, unknown };
 
-// What the operator wants to become of the running trial.
-enum class TrialWish { repeat, skip };
+// What the operator asks for the running trial.
+enum class TrialRequest { repeat, skip };
 
 // The person who runs a session, as the trial engine sees them. This one wants nothing: nobody runs
 // a simulated study.
@@ -30,17 +30,17 @@ class Operator {
  public:
   virtual ~Operator() = default;
   virtual void trial_begins(const TrialInView& /*trial*/) {}
-  virtual void alternative_is_felt(std::size_t /*alternative*/) {}
-  // carried_out: the wish that ended it, if one did.
-  virtual void trial_is_over(std::optional<TrialWish> /*carried_out*/) {}
+  virtual void alternative_is_selected(std::size_t /*alternative*/) {}
+  // carried_out: the request that ended it, if one did.
+  virtual void trial_is_over(std::optional<TrialRequest> /*carried_out*/) {}
   virtual void force_is(ForceState /*force*/) {}
   virtual void answer_is_stored(const AnswerInView& /*answer*/) {}
 
   virtual bool is_paused() const { return false; }
-  virtual std::optional<TrialWish> wish() const { return {}; }     // for the running trial
-  virtual std::optional<std::size_t> take_switch() { return {}; }  // to which alternative
-  virtual std::string end_reason() const { return {}; }            // if the operator ended it
+  virtual std::optional<TrialRequest> request() const { return {}; }  // for the running trial
+  virtual std::optional<std::size_t> take_switch() { return {}; }     // to which alternative
+  virtual std::string end_reason() const { return {}; }               // if the operator ended it
 
-  bool wants_trial_over() const { return is_paused() || wish().has_value(); }
+  bool wants_trial_over() const { return is_paused() || request().has_value(); }
 };
 }  // namespace tapstudy::runner

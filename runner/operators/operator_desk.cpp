@@ -42,7 +42,7 @@ bool OperatorDesk::is_possible(OperatorAction action) const {
       return is_paused_;
     case OperatorAction::repeat:
     case OperatorAction::skip:
-      return trial_ && !is_paused_ && !wish_;
+      return trial_ && !is_paused_ && !request_;
     case OperatorAction::switch_to:
       return trial_ && trial_->prompt.alternative_labels.size() > 1;
     case OperatorAction::correct:
@@ -112,10 +112,10 @@ void OperatorDesk::apply(const OperatorCommand& command) {
       is_paused_ = command.action == OperatorAction::pause;
       break;
     case OperatorAction::repeat:
-      wish_ = TrialWish::repeat;
+      request_ = TrialRequest::repeat;
       break;
     case OperatorAction::skip:
-      wish_ = TrialWish::skip;
+      request_ = TrialRequest::skip;
       break;
     case OperatorAction::switch_to:
       switch_to_ = number_up_to(trial_->prompt.alternative_labels.size(), command.text);
@@ -199,17 +199,17 @@ void OperatorDesk::trial_begins(const TrialInView& trial) {
   current_ = 0;
 }
 
-void OperatorDesk::alternative_is_felt(std::size_t alternative) {
+void OperatorDesk::alternative_is_selected(std::size_t alternative) {
   const std::lock_guard lock{mutex_};
   current_ = alternative;
 }
 
 // The answer may have come in the moment before.
-void OperatorDesk::trial_is_over(std::optional<TrialWish> carried_out) {
+void OperatorDesk::trial_is_over(std::optional<TrialRequest> carried_out) {
   const std::lock_guard lock{mutex_};
-  if (wish_ && !carried_out) {
+  if (request_ && !carried_out) {
     const OperatorAction action =
-        *wish_ == TrialWish::skip ? OperatorAction::skip : OperatorAction::repeat;
+        *request_ == TrialRequest::skip ? OperatorAction::skip : OperatorAction::repeat;
     results::OperatorActionRow row{
         session_.id, session_.now_s(), std::string{name(OperatorAction::note)},
         trial_->trial.number, fmt::format("{}: not carried out, the trial was over", name(action))};
@@ -217,7 +217,7 @@ void OperatorDesk::trial_is_over(std::optional<TrialWish> carried_out) {
     log_.push_back({std::move(row), stored});
   }
   trial_.reset();
-  wish_.reset();
+  request_.reset();
   switch_to_.reset();
 }
 
@@ -236,9 +236,9 @@ bool OperatorDesk::is_paused() const {
   return is_paused_;
 }
 
-std::optional<TrialWish> OperatorDesk::wish() const {
+std::optional<TrialRequest> OperatorDesk::request() const {
   const std::lock_guard lock{mutex_};
-  return wish_;
+  return request_;
 }
 
 std::optional<std::size_t> OperatorDesk::take_switch() {

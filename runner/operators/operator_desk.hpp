@@ -55,12 +55,12 @@ class OperatorDesk final : public Operator {
   DeskView view() const;
 
   void trial_begins(const TrialInView& trial) override;
-  void alternative_is_felt(std::size_t alternative) override;
-  void trial_is_over(std::optional<TrialWish> carried_out) override;
+  void alternative_is_selected(std::size_t alternative) override;
+  void trial_is_over(std::optional<TrialRequest> carried_out) override;
   void force_is(ForceState force) override;
   void answer_is_stored(const AnswerInView& answer) override;
   bool is_paused() const override;
-  std::optional<TrialWish> wish() const override;
+  std::optional<TrialRequest> request() const override;
   std::optional<std::size_t> take_switch() override;
   std::string end_reason() const override;
 
@@ -83,7 +83,7 @@ class OperatorDesk final : public Operator {
   std::optional<TrialInView> trial_;
   std::size_t current_{0};
   std::optional<AnswerInView> last_answer_;
-  std::optional<TrialWish> wish_;
+  std::optional<TrialRequest> request_;
   std::optional<std::size_t> switch_to_;
   std::string end_reason_;
   ForceState force_{ForceState::off};

@@ -18,16 +18,16 @@ class OperatedExploration final : public Exploration {
       inner_.switch_to(*alternative);
     }
     if (std::exchange(told_, inner_.current()) != inner_.current()) {
-      operator_.alternative_is_felt(told_);
+      operator_.alternative_is_selected(told_);
     }
     if (!ended_by_operator_ && operator_.wants_trial_over()) {
-      ended_by_operator_ = EndedByOperator{operator_.wish(), operator_.is_paused()};
+      ended_by_operator_ = EndedByOperator{operator_.request(), operator_.is_paused()};
     }
     return inner_.is_running() && !ended_by_operator_;
   }
-  // A wish is taken as it was when it ended the exploration, whatever the operator wants since.
+  // A request is taken as it was when it ended the exploration, whatever the operator wants since.
   struct EndedByOperator {
-    std::optional<TrialWish> wish;
+    std::optional<TrialRequest> request;
     bool is_paused{};
   };
   const std::optional<EndedByOperator>& ended_by_operator() const { return ended_by_operator_; }

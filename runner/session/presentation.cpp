@@ -10,8 +10,8 @@
 #include "runner/terminal/stop_signal.hpp"
 namespace tapstudy::runner {
 namespace {
-// Until an answer that may be given, the end of the block's time, a wish of the operator, a stop or
-// a fault.
+// Until an answer that may be given, the end of the block's time, a request of the operator, a stop
+// or a fault.
 void ask(const TrialInView& view, Exploration& exploration, const SessionParts& parts,
          Presentation& presentation) {
   const protocols::PlannedTrial& trial = view.trial;
@@ -43,7 +43,7 @@ void ask(const TrialInView& view, Exploration& exploration, const SessionParts& 
   if (exploration.is_running() && !stop_was_asked()) {
     presentation.is_timed_out = limited.is_over();
     if (const auto& ended = operated.ended_by_operator()) {
-      presentation.wish = ended->wish;
+      presentation.request = ended->request;
       presentation.is_paused = ended->is_paused;
     }
   }
@@ -65,7 +65,7 @@ Presentation present(const TrialInView& trial, const SessionParts& parts) {
       presentation.failure = std::current_exception();
     }
   });
-  parts.by.trial_is_over(presentation.wish);
+  parts.by.trial_is_over(presentation.request);
   parts.by.force_is(parts.trial_loop.is_force_off() ? ForceState::off : ForceState::unknown);
   if (presentation.result.loop.stop == device::StopOutcome::unconfirmed) {
     warn(device::force_may_be_on);  // before anything else can fail

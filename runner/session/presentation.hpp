@@ -16,9 +16,9 @@ struct Presentation {
   std::optional<Answer> answer{};
   bool is_answered_in_a_stall{};
   bool is_timed_out{};
-  std::optional<TrialWish> wish{};  // of the operator, that ended it
-  bool is_paused{};                 // likewise
-  std::exception_ptr failure{};     // thrown again once the trial is stored
+  std::optional<TrialRequest> request{};  // of the operator, that ended it
+  bool is_paused{};                       // likewise
+  std::exception_ptr failure{};           // thrown again once the trial is stored
 };
 
 // What a session is made of: who takes part, and what they work with.

@@ -19,7 +19,7 @@ enum class SessionState {
   saved,
   repeated,   // stored, but presented again
   timed_out,  // likewise, or given up
-  skipped,    // stored without an answer: the operator's wish
+  skipped,    // stored without an answer: at the operator's request
   paused,     // by the operator; a running trial is stored and presented again
   feedback,
   faulted,

@@ -182,8 +182,8 @@ TrialEngine::Ending TrialEngine::ending_of(const Presentation& presentation,
   if (presentation.result.loop.stopped_by != core::TickFault::none) {
     return Ending::faulted;
   }
-  if (presentation.wish) {
-    return *presentation.wish == TrialWish::skip ? Ending::skipped : Ending::repeated;
+  if (presentation.request) {
+    return *presentation.request == TrialRequest::skip ? Ending::skipped : Ending::repeated;
   }
   if (presentation.is_paused) {
     return Ending::paused;

@@ -1,4 +1,4 @@
-// What a session does when its surroundings fail: nothing that was confirmed is lost.
+// What a session does when its context fail: nothing that was confirmed is lost.
 #include <fmt/format.h>
 
 #include <catch2/catch.hpp>

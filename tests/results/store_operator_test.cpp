@@ -87,13 +87,15 @@ TEST_CASE("a correction that is made again is another one, in the journal too",
   const testing::TempDirectory directory;
   auto [store, row] = begun_study(directory.path());
   store.add_trial(small_study::trial(row.id, 1, "a"));
+  double t_s = 1.0;  // no two actions are of one time
   for (const char* const response : {"b", "a", "b"}) {
-    store.add_correction({row.id, 1, response, true}, action(row.id, "correct", response));
+    store.add_correction({row.id, 1, response, true},
+                         {row.id, t_s++, "correct", std::nullopt, response});
   }
   const JournalEntries journalled = read_journal(directory.path()).entries;
   REQUIRE(journalled.corrections.size() == 3);
   CHECK(journalled.corrections.back().response == "b");
-  CHECK(to_lines(journalled).size() >= to_lines({.corrections = journalled.corrections}).size());
+  CHECK(to_lines(journalled).size() == 1 + 3 + 3);  // the answer, corrections and actions
   CHECK(to_lines({.corrections = journalled.corrections}) ==
         to_lines({.corrections = store.entries_for_journal().corrections}));
 }
@@ -112,7 +114,7 @@ TEST_CASE("what the journal could not take is made up for, not doubled", "[resul
   CHECK(read_journal(directory.path()).entries.form_answers.size() == 1);
 }
 
-TEST_CASE("who stopped unheard or was excluded uses no balanced order up, who answered does",
+TEST_CASE("who stopped before an answer or was excluded uses no balanced order up, others do",
           "[results][store]") {
   const testing::TempDirectory directory;
   Store store = Store::open_or_create(directory.path(), small_study::study);

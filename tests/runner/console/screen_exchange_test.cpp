@@ -35,6 +35,35 @@ TEST_CASE("an answer belongs to one screen, is taken once, and may be sent again
   CHECK_FALSE(screens.take(next));
 }
 
+TEST_CASE("a closed screen hands over what it has accepted and accepts nothing more",
+          "[runner][console]") {
+  ScreenExchange screens{"en", "a study"};
+  const auto answered = screens.show(trial_screen());
+  CHECK(screens.post(answered, second).empty());
+  CHECK(screens.close() == second);
+  CHECK_FALSE(screens.close());
+  CHECK(screens.post(answered, second).empty());  // said again by the network
+  const auto unanswered = screens.show(trial_screen());
+  CHECK_FALSE(screens.close());
+  CHECK_FALSE(screens.post(unanswered, second).empty());
+}
+
+TEST_CASE("a page that says it is alive is gone once it is silent", "[runner][console]") {
+  using std::chrono::seconds;
+  ScreenExchange screens{"en", "a study"};
+  const std::chrono::steady_clock::time_point begin{};
+  CHECK_FALSE(screens.is_watched(begin));
+  screens.page_opened();
+  CHECK(screens.is_watched(begin + seconds{60}));  // one that never says so
+  screens.page_is_alive(begin);
+  CHECK(screens.is_watched(begin + seconds{4}));
+  CHECK_FALSE(screens.is_watched(begin + seconds{6}));
+  screens.page_is_alive(begin + seconds{6});
+  CHECK(screens.is_watched(begin + seconds{6}));
+  screens.page_closed();
+  CHECK_FALSE(screens.is_watched(begin + seconds{6}));
+}
+
 TEST_CASE("a screen takes what can be done with it and nothing else", "[runner][console]") {
   const Screen trial = trial_screen();
   CHECK(accepts(trial, second));

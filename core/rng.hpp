@@ -61,7 +61,8 @@ enum class Purpose : std::uint64_t {
   participant,
   counterbalancing,
   person,
-  masking
+  masking,
+  catch_trials
 };
 
 // The seed of one stream of a study. Mixes by the finaliser of SplitMix64 (Steele et al. 2014).

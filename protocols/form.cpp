@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <iterator>
 #include <optional>
 namespace tapstudy::protocols {
 namespace {
@@ -15,6 +16,12 @@ std::optional<double> number_in(const std::string& text) {
   const char* const end = text.data() + text.size();
   const auto [stopped, error] = std::from_chars(text.data(), end, number);
   return error == std::errc{} && stopped == end ? std::optional{number} : std::nullopt;
+}
+
+std::vector<std::string> names_of(const std::vector<Option>& options) {
+  std::vector<std::string> names;
+  std::ranges::transform(options, std::back_inserter(names), &Option::name);
+  return names;
 }
 
 std::string unless_within(const std::string& text, double low, double high, bool is_whole) {
@@ -49,9 +56,10 @@ std::string wrong_with(const FormItem& item, const std::string& answer) {
     case ItemKind::number:
       return unless_within(answer, item.min, item.max, false);
     case ItemKind::single_choice:
-      return std::ranges::find(item.options, answer) != item.options.end()
+      return std::ranges::find(item.options, answer, &Option::name) != item.options.end()
                  ? ""
-                 : fmt::format("please answer with one of: {}", fmt::join(item.options, ", "));
+                 : fmt::format("please answer with one of: {}",
+                               fmt::join(names_of(item.options), ", "));
     case ItemKind::text:
       break;
   }

@@ -10,6 +10,12 @@ namespace tapstudy::protocols {
 //   text    anything
 enum class ItemKind { likert, scale, number, single_choice, text };
 
+// An allowed answer: its name in the data and the label shown to participants.
+struct Option {
+  std::string name;
+  std::string label;
+};
+
 struct FormItem {
   std::string name;
   ItemKind kind{ItemKind::text};
@@ -20,7 +26,7 @@ struct FormItem {
   std::string high;
   double min{};  // number
   double max{};
-  std::vector<std::string> options;  // single_choice
+  std::vector<Option> options;  // single_choice
 };
 
 // A questionnaire: asked before the first trial, after a block, or at the end of a session.

@@ -15,6 +15,7 @@
 #include "protocols/form.hpp"
 #include "protocols/surface/surface_source.hpp"
 #include "protocols/tasks/task.hpp"
+#include "protocols/yaml/translations.hpp"
 namespace tapstudy::protocols {
 // A study as specified by its YAML file. Maps are sorted by name; lists keep the order of the file.
 
@@ -85,12 +86,39 @@ struct ExploreLimits {
   AtLimit at_limit{AtLimit::requeue};
 };
 
+// Trials with a stimulus that nobody should mistake, at random places among a block's: they show
+// who did not attend, and count for nothing else.
+struct CatchTrials {
+  int count{};                                  // in the block
+  std::map<std::string, std::string> expected;  // by stimulus: its right answer
+};
+
+// A practice block ends once so many of the last answers were right; its repetitions are the most
+// there can be. Who never gets there goes on to the study, or does not.
+struct PracticeCriterion {
+  int correct{};
+  int of_last{};
+  bool must_be_met{false};
+};
+
+// What a block's stimuli are to the participant: rendered by the device, or the plates themselves,
+// which the operator mounts.
+enum class Presented { virtual_plates, real_plates };
+
 struct Block {
   std::string name;
   const Task* task{};
   std::string question;
   std::vector<std::string> stimuli;
-  std::vector<std::string> responses;  // names of stimuli that can be answered, if not the above
+  // What can be answered, if not one of the above: names of stimuli, or levels of response_factor.
+  std::vector<std::string> responses;
+  std::string response_factor;                         // empty: stimuli are answered
+  std::map<std::string, std::string> response_labels;  // by level, where it is not the label itself
+  std::map<std::string, std::string> right_response;   // by stimulus; empty: none is right
+  Presented presented{Presented::virtual_plates};
+  std::optional<CatchTrials> catch_trials;
+  std::optional<PracticeCriterion> criterion;
+  bool allows_correction{false};  // of the last answer, by the participant
   int repetitions{1};
   Order order{Order::shuffle};
   OrderConstraints constraints;
@@ -162,6 +190,7 @@ struct Display {
 
 struct Protocol {
   std::string text;                     // the file, whole
+  Translations translations;            // of what participants read
   std::vector<SurfaceSource> surfaces;  // the files that its plates name, whole
   std::string title;
   std::string notes;

@@ -6,6 +6,7 @@
 #include "core/error.hpp"
 #include "protocols/ordering.hpp"
 #include "protocols/read_sections.hpp"
+#include "protocols/schedule.hpp"
 namespace tapstudy::protocols {
 namespace {
 using Presence = MapReader::Presence;
@@ -56,12 +57,12 @@ ExploreLimits read_explore(MapReader& block) {
 
 // What a participant reads and is asked besides the trials' question.
 void read_asides(MapReader& reader, Block& block) {
-  block.instructions = reader.paragraphs("instructions", "");
+  block.instructions = reader.translated_paragraphs("instructions", "");
   reader.map("confidence", Presence::optional, [&](MapReader& inner) {
     Confidence confidence;
     confidence.steps = inner.integer("steps", 2, 7, confidence.steps);
-    confidence.low = inner.text("low", confidence.low);
-    confidence.high = inner.text("high", confidence.high);
+    confidence.low = inner.translated("low", confidence.low);
+    confidence.high = inner.translated("high", confidence.high);
     block.confidence = confidence;
   });
   reader.map("breaks", Presence::optional, [&](MapReader& inner) {
@@ -101,12 +102,76 @@ void check_constraints(MapReader& reader, const Block& block) {
   }
 }
 
+void read_practice(MapReader& reader, Block& block) {
+  block.is_practice = reader.yes_or_no("practice", false);
+  reader.map("criterion", Presence::optional, [&](MapReader& inner) {
+    PracticeCriterion criterion;
+    criterion.of_last = inner.integer("of_last", 1, 1000);
+    criterion.correct = inner.integer("correct", 1, 1000);
+    criterion.must_be_met =
+        inner.one_of<bool>("otherwise", {{"go_on", false}, {"end", true}}, "go_on");
+    if (criterion.correct > criterion.of_last) {
+      inner.reject("correct", fmt::format("of {} answers no {} can be right", criterion.of_last,
+                                          criterion.correct));
+    }
+    block.criterion = criterion;
+  });
+  if (block.criterion && !block.is_practice) {
+    reader.reject("criterion", "is for practice: it ends a block by how well it is answered");
+  }
+}
+
+void check_criterion(MapReader& reader, const Block& block) {
+  if (!block.criterion) {
+    return;
+  }
+  if (!block.task->has_correct_answer()) {
+    reader.reject("criterion", fmt::format("no answer is right in a {} block", block.task->name()));
+  }
+  if (planned_trials(block) < block.criterion->of_last) {
+    reader.reject("criterion", fmt::format("the block has {} trials, fewer than of_last",
+                                           planned_trials(block)));
+  }
+}
+
+// A body can be mounted only as it is, and how often it is touched is not measured.
+void read_presented(MapReader& reader, const Protocol& protocol, Block& block) {
+  block.presented = reader.one_of<Presented>(
+      "presented", {{"virtual", Presented::virtual_plates}, {"real", Presented::real_plates}},
+      "virtual");
+  if (block.presented == Presented::virtual_plates) {
+    return;
+  }
+  if (block.task != nullptr && !block.task->can_present_real_plates()) {
+    reader.reject("presented", fmt::format("a {} block has several alternatives at hand; real "
+                                           "plates are mounted one at a time",
+                                           block.task->name()));
+  }
+  if (reader.has("explore") && block.explore.min_contacts > 0) {
+    reader.reject("explore", "min_contacts is 0 with real plates: their contacts are not measured");
+  }
+  block.explore.min_contacts = 0;
+  std::map<std::pair<const Plate*, const Material*>, std::string> stimulus_of;
+  for (const std::string& name : block.stimuli) {
+    const auto stimulus = std::ranges::find(protocol.stimuli, name, &Stimulus::name);
+    if (stimulus == protocol.stimuli.end()) {
+      continue;  // rejected already
+    }
+    const auto [known, is_new] =
+        stimulus_of.emplace(std::pair{stimulus->plate.get(), stimulus->material.get()}, name);
+    if (!is_new) {
+      reader.reject("stimuli",
+                    fmt::format("'{}' and '{}' are the same real plate", known->second, name));
+    }
+  }
+}
+
 // The keys that blocks of every task have; the task reads its own.
 Block read_block(MapReader& reader, const Protocol& protocol) {
   Block block;
   block.name = reader.name("name");
   block.task = find_task(reader.word("task", "task", task_names()));
-  block.question = reader.text("question");
+  block.question = reader.translated("question");
   block.stimuli = reader.words("stimuli", "stimulus", stimulus_names(protocol));
   block.repetitions = reader.integer("repetitions", 1, 1000, 1);
   block.order =
@@ -116,12 +181,14 @@ Block read_block(MapReader& reader, const Protocol& protocol) {
                             {"shuffle_within_repetition", Order::shuffle_within_repetition},
                             {"williams", Order::williams}},
                            "shuffle");
-  block.is_practice = reader.yes_or_no("practice", false);
+  read_practice(reader, block);
   if (block.task != nullptr && block.task->uses_order()) {
     block.constraints = read_constraints(reader);
   }
   block.explore = read_explore(reader);
   read_asides(reader, block);
+  read_presented(reader, protocol, block);
+  block.allows_correction = reader.yes_or_no("correction", false);
   block.forms_after = read_form_names(reader, "forms_after", protocol);
   block.max_late_impact_repeats = reader.integer("max_late_impact_repeats", 0, 10, 0);
   if (block.task != nullptr) {
@@ -142,6 +209,7 @@ Block read_block(MapReader& reader, const Protocol& protocol) {
 void check_block(MapReader& reader, const Block& block, const Protocol& protocol) {
   if (block.task != nullptr && !block.stimuli.empty()) {
     check_constraints(reader, block);
+    check_criterion(reader, block);
   }
   if (std::ranges::find(protocol.blocks, block.name, &Block::name) != protocol.blocks.end()) {
     reader.reject("name", fmt::format("'{}' is the name of an earlier block", block.name));

@@ -85,7 +85,7 @@ void read_stimuli(MapReader& top, Protocol& protocol) {
   top.each("stimuli", Presence::required, [&](const std::string& name, MapReader& reader) {
     Stimulus stimulus;
     stimulus.name = name;
-    stimulus.label = reader.text("label", name);
+    stimulus.label = reader.translated("label", name);
     stimulus.plate =
         named(protocol.plates, reader.word("plate", "plate", keys_of(protocol.plates)));
     stimulus.material =

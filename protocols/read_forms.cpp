@@ -17,14 +17,14 @@ FormItem read_item(MapReader& reader) {
                                                {"number", ItemKind::number},
                                                {"single_choice", ItemKind::single_choice},
                                                {"text", ItemKind::text}});
-  item.question = reader.text("question");
+  item.question = reader.translated("question");
   item.is_required = reader.yes_or_no("required", true);
   if (item.kind == ItemKind::likert) {
     item.steps = reader.integer("steps", 2, 11, item.steps);
   }
   if (item.kind == ItemKind::likert || item.kind == ItemKind::scale) {
-    item.low = reader.text("low");
-    item.high = reader.text("high");
+    item.low = reader.translated("low");
+    item.high = reader.translated("high");
   }
   if (item.kind == ItemKind::number) {
     item.min = reader.number("min", {-any, any});
@@ -34,7 +34,9 @@ FormItem read_item(MapReader& reader) {
     }
   }
   if (item.kind == ItemKind::single_choice) {
-    item.options = reader.texts("options");
+    for (const auto& [option, label] : reader.translated_list("options")) {
+      item.options.push_back({option, label});
+    }
     if (item.options.size() < 2) {
       reader.reject("options", "a choice has at least two options");
     }
@@ -48,8 +50,8 @@ Form read_form(const std::string& name, MapReader& reader) {
     reader.word("shipped", "form", {nasa_tlx().name});
     form = nasa_tlx();
   } else {
-    form.title = reader.text("title");
-    form.text = reader.paragraphs("text", "");
+    form.title = reader.translated("title");
+    form.text = reader.translated_paragraphs("text", "");
     reader.list("items", Presence::required, [&](MapReader& inner) {
       const FormItem item = read_item(inner);
       if (std::ranges::find(form.items, item.name, &FormItem::name) != form.items.end()) {

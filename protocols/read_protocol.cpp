@@ -19,15 +19,15 @@ ReadFile beside(const std::string& file) {
   };
 }
 
-Protocol parse(const std::string& text, const std::string& file, const ReadFile& read_file,
-               Problems& problems) {
-  MapReader top = MapReader::whole_file(text, file, problems);
+Protocol parse(const StudyText& study, const ReadFile& read_file, Problems& problems) {
   Protocol protocol;
-  protocol.text = text;
+  protocol.text = study.text;
+  protocol.translations.language = study.language;
+  MapReader top = MapReader::whole_file(study.text, study.file, problems, &protocol.translations);
   top.word("format", "format", {"tapstudy/1"});
   protocol.title = top.text("title");
   protocol.notes = top.paragraphs("notes", "");
-  protocol.instructions = top.paragraphs("instructions", "");
+  protocol.instructions = top.translated_paragraphs("instructions", "");
   read_rendering(top, protocol);
   read_placement(top, MapReader::Presence::required,
                  [&](const core::Placement& placement) { protocol.placement = placement; });
@@ -47,24 +47,23 @@ Protocol parse(const std::string& text, const std::string& file, const ReadFile&
 }  // namespace
 
 Protocol parse_protocol(const std::string& text, const std::string& file) {
-  return parse_protocol(text, file, beside(file));
+  return parse_protocol({text, file}, beside(file));
 }
 
-Protocol parse_protocol(const std::string& text, const std::string& file,
-                        const ReadFile& read_file) {
-  Problems problems{file};
-  Protocol protocol = parse(text, file, read_file, problems);
+Protocol parse_protocol(const StudyText& study, const ReadFile& read_file) {
+  Problems problems{study.file};
+  Protocol protocol = parse(study, read_file, problems);
   problems.throw_if_any();
   return protocol;
 }
 
-Protocol read_protocol(const std::string& file) {
-  return parse_protocol(contents_of(file), file);
+Protocol read_protocol(const std::string& file, const std::string& language) {
+  return parse_protocol({contents_of(file), file, language}, beside(file));
 }
 
 std::set<std::string> keys_asked_for(const std::string& text, const std::string& file) {
   Problems problems{file};
-  parse(text, file, beside(file), problems);
+  parse({text, file}, beside(file), problems);
   return problems.asked();
 }
 }  // namespace tapstudy::protocols

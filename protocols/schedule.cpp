@@ -3,12 +3,24 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 namespace tapstudy::protocols {
+int planned_trials(const Block& block) {
+  return block.repetitions * static_cast<int>(block.task->trials_per_repetition(block)) +
+         (block.catch_trials ? block.catch_trials->count : 0);
+}
+
+Draw draw_of(std::uint64_t counterbalancing_seed, std::size_t block_index,
+             std::uint64_t participant_seed, int order_index) {
+  return {participant_seed, order_index, block_index, counterbalancing_seed,
+          core::derived_seed(counterbalancing_seed, core::Purpose::catch_trials,
+                             static_cast<std::uint64_t>(order_index))};
+}
+
 Schedule make_schedule(const Protocol& protocol, std::uint64_t participant_seed, int order_index) {
   Schedule schedule;
   for (std::size_t i = 0; i < protocol.blocks.size(); ++i) {
     const Block& block = protocol.blocks[i];
-    for (PlannedTrial& trial : block.task->trials(
-             block, {participant_seed, order_index, i, protocol.counterbalancing_seed})) {
+    const Draw draw = draw_of(protocol.counterbalancing_seed, i, participant_seed, order_index);
+    for (PlannedTrial& trial : block.task->trials(block, draw)) {
       trial.number = static_cast<int>(schedule.size()) + 1;
       schedule.push_back(std::move(trial));
     }
@@ -19,8 +31,9 @@ Schedule make_schedule(const Protocol& protocol, std::uint64_t participant_seed,
 std::string described(const Schedule& schedule) {
   std::string lines;
   for (const PlannedTrial& trial : schedule) {
-    lines += fmt::format("{} {} {} {}{}\n", trial.number, trial.block, trial.repetition,
-                         fmt::join(trial.stimuli, ","), trial.is_practice ? " practice" : "");
+    lines += fmt::format("{} {} {} {}{}{}\n", trial.number, trial.block, trial.repetition,
+                         fmt::join(trial.stimuli, ","), trial.is_practice ? " practice" : "",
+                         trial.is_catch ? " catch" : "");
   }
   return lines;
 }

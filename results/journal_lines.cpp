@@ -15,7 +15,7 @@
 namespace tapstudy::results {
 namespace {
 using Json = nlohmann::ordered_json;
-constexpr const char* format = "tapstudy-journal/3";
+constexpr const char* format = "tapstudy-journal/4";
 constexpr std::string_view chain_key = ",\"chain\":\"";
 
 // What is no UTF-8 becomes a replacement character: the journal is text.
@@ -81,6 +81,7 @@ SessionRow session_from(const Json& line) {
   session.mode = mode_from(line.at("mode"));
   session.seed = line.at("seed");
   session.planned_order = line.at("planned_order");
+  session.language = line.at("language");
   session.resumes = optional_of<std::int64_t>(line.at("resumes"));
   session.rate_hz = line.at("rate_hz");
   session.rig_text = line.at("rig_text");
@@ -96,9 +97,10 @@ SessionRow session_from(const Json& line) {
 
 JournalledAnswer answer_from(const Json& line) {
   JournalledAnswer answer;
-  answer.trial = {line.at("session_id"), line.at("number"), line.at("attempt"),
-                  line.at("block"),      line.at("task"),   line.at("is_practice"),
-                  line.at("repetition"), "answered",        line.at("duration_s")};
+  answer.trial = {
+      line.at("session_id"), line.at("number"),      line.at("attempt"),         line.at("block"),
+      line.at("task"),       line.at("is_practice"), line.at("repetition"),      "answered",
+      line.at("duration_s"), line.at("is_catch"),    line.at("is_of_real_plate")};
   for (const Json& alternative : line.at("alternatives")) {
     answer.alternatives.push_back({static_cast<int>(answer.alternatives.size()),
                                    alternative.at("label"), alternative.at("stimulus")});
@@ -119,9 +121,10 @@ void add_line(const Json& line, JournalContent& content) {
   } else if (kind == "answer") {
     content.entries.answers.push_back(answer_from(line));
   } else if (kind == "correction") {
-    content.entries.corrections.push_back(
-        {line.at("session_id"), line.at("number"), line.at("response"),
-         optional_of<bool>(line.at("is_correct")), line.at("ordinal")});
+    content.entries.corrections.push_back({line.at("session_id"), line.at("number"),
+                                           line.at("response"),
+                                           optional_of<bool>(line.at("is_correct")),
+                                           given_by_from(line.at("given_by")), line.at("ordinal")});
   } else if (kind == "form_answer") {
     content.entries.form_answers.push_back({line.at("session_id"), line.at("t_s"), line.at("form"),
                                             line.at("asked"), line.at("item"),
@@ -188,6 +191,7 @@ std::string to_line(const SessionRow& session) {
                  {"git_hash", session.git_hash},
                  {"compiler", session.compiler},
                  {"planned_order", session.planned_order},
+                 {"language", session.language},
                  {"rig_text", session.rig_text},
                  {"doctor", session.doctor}});
 }
@@ -205,6 +209,8 @@ std::string to_line(const JournalledAnswer& answer) {
                  {"block", answer.trial.block},
                  {"task", answer.trial.task},
                  {"is_practice", answer.trial.is_practice},
+                 {"is_catch", answer.trial.is_catch},
+                 {"is_of_real_plate", answer.trial.is_of_real_plate},
                  {"repetition", answer.trial.repetition},
                  {"duration_s", answer.trial.duration_s},
                  {"alternatives", alternatives},
@@ -220,6 +226,7 @@ std::string to_line(const CorrectionRow& correction) {
                  {"session_id", correction.session_id},
                  {"number", correction.number},
                  {"ordinal", correction.ordinal},
+                 {"given_by", to_text(correction.given_by)},
                  {"response", correction.response},
                  {"is_correct", or_null(correction.is_correct)}});
 }

@@ -14,6 +14,19 @@ std::string to_text(Mode mode) {
   return "";
 }
 
+std::string to_text(GivenBy given_by) {
+  return given_by == GivenBy::participant ? "participant" : "operator";
+}
+
+GivenBy given_by_from(const std::string& text) {
+  for (const GivenBy given_by : {GivenBy::participant, GivenBy::operator_of_session}) {
+    if (to_text(given_by) == text) {
+      return given_by;
+    }
+  }
+  throw StoreError{"response.given_by: '" + text + "' is none of participant, operator"};
+}
+
 Mode mode_from(const std::string& text) {
   for (const Mode mode : {Mode::real, Mode::pilot, Mode::simulated}) {
     if (to_text(mode) == text) {

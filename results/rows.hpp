@@ -36,6 +36,7 @@ struct SessionRow {
   Mode mode{Mode::real};
   std::uint64_t seed{};
   std::string planned_order;              // one line a trial
+  std::string language;                   // of what the participant read
   std::optional<std::int64_t> resumes{};  // the session it continues
   double rate_hz{};
   std::string rig_text;
@@ -85,12 +86,17 @@ struct OperatorActionRow {
   std::optional<int> number;  // of the trial that it concerns
   std::string detail;
 };
+enum class GivenBy { participant, operator_of_session };
+std::string to_text(GivenBy given_by);
+GivenBy given_by_from(const std::string& text);
+
 // Takes the place of a stored answer; that one stays in the store.
 struct CorrectionRow {
   std::int64_t session_id{};
   int number{};  // of the trial
   std::string response;
   std::optional<bool> is_correct;
+  GivenBy given_by{GivenBy::operator_of_session};
   int ordinal{};  // of the trial's corrections, from 1; the store counts
 };
 struct EventRow {
@@ -130,16 +136,20 @@ struct TrialRow {
   // skipped by the operator
   std::string status;
   double duration_s{};
+  bool is_catch{};          // there to see who attends
+  bool is_of_real_plate{};  // not rendered: a plate that was mounted
 };
 
 // What was not as planned in a participant's trials, practice aside.
 struct DeviationRow {
   std::string participant_id;
   Mode mode{};
-  int corrected{};           // answers, by the operator
+  int corrected{};           // answers, by the operator or the participant
   int corrected_to_right{};  // of these, that were wrong
   int skipped{};
   int timed_out{};
+  int catch_trials{};  // answered
+  int missed_catch_trials{};
 };
 
 struct UnansweredTrial {
@@ -168,6 +178,7 @@ struct AnswerRow {
   std::string block;
   std::string task;
   bool is_practice{};
+  bool is_catch{};
   int number{};
   std::string stimulus;  // that was presented; empty if there were several to choose from
   std::string response;

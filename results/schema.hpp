@@ -2,7 +2,7 @@
 namespace tapstudy::results {
 // PRAGMA application_id of a study's database ("taps") and PRAGMA user_version of its schema.
 inline constexpr int application_id = 0x74617073;
-inline constexpr int schema_version = 8;
+inline constexpr int schema_version = 9;
 
 inline constexpr const char* schema_sql = R"sql(
 CREATE TABLE study (
@@ -31,6 +31,7 @@ CREATE TABLE session (
   participant_id TEXT NOT NULL REFERENCES participant,
   seed TEXT NOT NULL,               -- unsigned 64 bit, decimal
   planned_order TEXT NOT NULL,
+  language TEXT NOT NULL,           -- of what the participant read
   resumes INTEGER REFERENCES session,
   rate_hz REAL NOT NULL,
   rig_text TEXT NOT NULL,
@@ -50,6 +51,8 @@ CREATE TABLE trial (
   block TEXT NOT NULL,
   task TEXT NOT NULL,
   is_practice INTEGER NOT NULL,
+  is_catch INTEGER NOT NULL,        -- there to see who attends
+  presented TEXT NOT NULL CHECK (presented IN ('virtual', 'real')),  -- rendered, or a real plate
   repetition INTEGER NOT NULL,
   status TEXT NOT NULL CHECK (status IN ('answered', 'interrupted', 'repeated',
     'timed_out', 'skipped')),

@@ -50,10 +50,11 @@ int Store::insert_correction(const CorrectionRow& correction) {
             "INSERT INTO response (trial_id, response, is_correct, response_time_s, "
             "time_from_first_contact_s, confidence, supersedes, given_by) "
             "SELECT trial_id, ?, ?, response_time_s, time_from_first_contact_s, confidence, "
-            "response_id, 'operator' FROM current_response JOIN trial USING (trial_id) "
+            "response_id, ? FROM current_response JOIN trial USING (trial_id) "
             "WHERE session_id = ? AND number = ? AND status = 'answered'"}
       .bind(correction.response)
       .bind(correction.is_correct)
+      .bind(to_text(correction.given_by))
       .bind(correction.session_id)
       .bind(correction.number)
       .finish();
@@ -82,8 +83,10 @@ std::vector<DeviationRow> Store::deviations() {
   Statement row{database_,
                 "SELECT participant_id, mode, count(corrected), "
                 "  coalesce(sum(corrected AND is_correct AND NOT was_correct), 0), "
-                "  sum(status = 'skipped'), sum(status = 'timed_out') FROM ("
-                "  SELECT session_id, status, is_practice, "
+                "  sum(status = 'skipped'), sum(status = 'timed_out'), "
+                "  sum(is_catch AND is_correct IS NOT NULL), "
+                "  coalesce(sum(is_catch AND NOT is_correct), 0) FROM ("
+                "  SELECT session_id, status, is_practice, is_catch, "
                 "    nullif(current_response.supersedes IS NOT NULL, 0) AS corrected, "
                 "    current_response.is_correct AS is_correct, first.is_correct AS was_correct "
                 "  FROM trial LEFT JOIN current_response USING (trial_id) "
@@ -92,12 +95,14 @@ std::vector<DeviationRow> Store::deviations() {
                 "JOIN session USING (session_id) JOIN participant USING (participant_id) "
                 "WHERE NOT is_practice GROUP BY participant_id "
                 "HAVING count(corrected) > 0 OR sum(status IN ('skipped', 'timed_out')) > 0 "
+                "  OR sum(is_catch AND NOT is_correct) > 0 "
                 "ORDER BY mode, participant_index"};
   std::vector<DeviationRow> deviations;
   while (row.step()) {
     deviations.push_back({row.text(0), mode_from(row.text(1)), static_cast<int>(row.integer(2)),
                           static_cast<int>(row.integer(3)), static_cast<int>(row.integer(4)),
-                          static_cast<int>(row.integer(5))});
+                          static_cast<int>(row.integer(5)), static_cast<int>(row.integer(6)),
+                          static_cast<int>(row.integer(7))});
   }
   return deviations;
 }
@@ -125,14 +130,14 @@ JournalEntries Store::entries_for_journal() {
 
 std::vector<CorrectionRow> Store::corrections_for_journal() {
   Statement row{database_,
-                "SELECT session_id, number, response, is_correct, "
+                "SELECT session_id, number, response, is_correct, given_by, "
                 "row_number() OVER (PARTITION BY trial_id ORDER BY response_id) FROM response "
                 "JOIN trial USING (trial_id) WHERE supersedes IS NOT NULL ORDER BY response_id"};
   std::vector<CorrectionRow> corrections;
   while (row.step()) {
     corrections.push_back({row.integer(0), static_cast<int>(row.integer(1)), row.text(2),
                            row.is_null(3) ? std::nullopt : std::optional{row.integer(3) != 0},
-                           static_cast<int>(row.integer(4))});
+                           given_by_from(row.text(4)), static_cast<int>(row.integer(5))});
   }
   return corrections;
 }

@@ -18,7 +18,7 @@ std::uint64_t seed_from(const std::string& text) {
 
 constexpr const char* session_columns =
     "session_id, participant_id, participant_index, order_index, mode, seed, planned_order, "
-    "resumes, rate_hz, "
+    "language, resumes, rate_hz, "
     "rig_text, device, scheduler, doctor, program_version, git_hash, compiler, started_utc";
 
 SessionRow session_from(Statement& row) {
@@ -30,16 +30,17 @@ SessionRow session_from(Statement& row) {
   session.mode = mode_from(row.text(4));
   session.seed = seed_from(row.text(5));
   session.planned_order = row.text(6);
-  session.resumes = row.integer(7) != 0 ? std::optional{row.integer(7)} : std::nullopt;
-  session.rate_hz = row.real(8);
-  session.rig_text = row.text(9);
-  session.device = row.text(10);
-  session.scheduler = row.text(11);
-  session.doctor = row.text(12);
-  session.program_version = row.text(13);
-  session.git_hash = row.text(14);
-  session.compiler = row.text(15);
-  session.started_utc = row.text(16);
+  session.language = row.text(7);
+  session.resumes = row.integer(8) != 0 ? std::optional{row.integer(8)} : std::nullopt;
+  session.rate_hz = row.real(9);
+  session.rig_text = row.text(10);
+  session.device = row.text(11);
+  session.scheduler = row.text(12);
+  session.doctor = row.text(13);
+  session.program_version = row.text(14);
+  session.git_hash = row.text(15);
+  session.compiler = row.text(16);
+  session.started_utc = row.text(17);
   return session;
 }
 }  // namespace
@@ -70,7 +71,8 @@ std::vector<JournalledAnswer> Store::answers_for_journal() {
   Statement row{database_,
                 "SELECT trial_id, session_id, number, attempt, block, task, is_practice, "
                 "repetition, status, duration_s, response, is_correct, response_time_s, "
-                "time_from_first_contact_s, confidence FROM trial JOIN response USING (trial_id) "
+                "time_from_first_contact_s, confidence, is_catch, presented = 'real' "
+                "FROM trial JOIN response USING (trial_id) "
                 "WHERE status = 'answered' AND supersedes IS NULL ORDER BY trial_id"};
   std::vector<JournalledAnswer> answers;
   while (row.step()) {
@@ -83,7 +85,9 @@ std::vector<JournalledAnswer> Store::answers_for_journal() {
                     row.integer(6) != 0,
                     static_cast<int>(row.integer(7)),
                     row.text(8),
-                    row.real(9)};
+                    row.real(9),
+                    row.integer(15) != 0,
+                    row.integer(16) != 0};
     answer.response = {
         row.text(10), row.is_null(11) ? std::nullopt : std::optional{row.integer(11) != 0},
         row.real(12), row.is_null(13) ? std::nullopt : std::optional{row.real(13)},
@@ -147,7 +151,7 @@ std::vector<UnansweredTrial> Store::unanswered_trials(const std::string& partici
 std::vector<AnswerRow> Store::answers() {
   Statement row{database_,
                 "SELECT participant_id, participant_index, order_index, mode, block, task, "
-                "  is_practice, number, "
+                "  is_practice, is_catch, number, "
                 "  CASE WHEN EXISTS (SELECT 1 FROM alternative AS second "
                 "    WHERE second.trial_id = trial.trial_id AND second.position = 1) THEN '' "
                 "  ELSE (SELECT stimulus FROM alternative "
@@ -163,13 +167,26 @@ std::vector<AnswerRow> Store::answers() {
                 "WHERE status = 'answered' ORDER BY mode, participant_index, number"};
   std::vector<AnswerRow> answers;
   while (row.step()) {
-    answers.push_back({row.text(0), static_cast<int>(row.integer(1)),
-                       static_cast<int>(row.integer(2)), mode_from(row.text(3)), row.text(4),
-                       row.text(5), row.integer(6) != 0, static_cast<int>(row.integer(7)),
-                       row.text(8), row.text(9),
-                       row.is_null(10) ? std::nullopt : std::optional{row.integer(10) != 0},
-                       row.real(11), row.integer(12), row.integer(13), row.integer(14),
-                       row.integer(15), row.integer(16), row.integer(17), row.integer(18)});
+    answers.push_back({row.text(0),
+                       static_cast<int>(row.integer(1)),
+                       static_cast<int>(row.integer(2)),
+                       mode_from(row.text(3)),
+                       row.text(4),
+                       row.text(5),
+                       row.integer(6) != 0,
+                       row.integer(7) != 0,
+                       static_cast<int>(row.integer(8)),
+                       row.text(9),
+                       row.text(10),
+                       row.is_null(11) ? std::nullopt : std::optional{row.integer(11) != 0},
+                       row.real(12),
+                       row.integer(13),
+                       row.integer(14),
+                       row.integer(15),
+                       row.integer(16),
+                       row.integer(17),
+                       row.integer(18),
+                       row.integer(19)});
   }
   return answers;
 }

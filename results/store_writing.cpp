@@ -81,12 +81,13 @@ void Store::add_session(SessionRow& session) {
       .finish();
   Statement{
       database_,
-      "INSERT INTO session (participant_id, seed, planned_order, resumes, rate_hz, "
+      "INSERT INTO session (participant_id, seed, planned_order, language, resumes, rate_hz, "
       "rig_text, device, scheduler, doctor, program_version, git_hash, compiler, started_utc) "
-      "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)"}
+      "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)"}
       .bind(session.participant_id)
       .bind(std::to_string(session.seed))
       .bind(session.planned_order)
+      .bind(session.language)
       .bind(session.resumes)
       .bind(session.rate_hz)
       .bind(session.rig_text)
@@ -178,13 +179,16 @@ void Store::insert_trial(const TrialRecord& record) {
   }
   Statement{database_,
             "INSERT INTO trial (session_id, number, attempt, block, task, is_practice, "
-            "repetition, status, duration_s) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)"}
+            "is_catch, presented, repetition, status, duration_s) "
+            "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)"}
       .bind(trial.session_id)
       .bind(trial.number)
       .bind(trial.attempt)
       .bind(trial.block)
       .bind(trial.task)
       .bind(trial.is_practice)
+      .bind(trial.is_catch)
+      .bind(std::string{trial.is_of_real_plate ? "real" : "virtual"})
       .bind(trial.repetition)
       .bind(trial.status)
       .bind(trial.duration_s)

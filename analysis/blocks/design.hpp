@@ -27,7 +27,7 @@ struct BlockDesign {
   std::string question;
   std::string statistic;  // that summarises it: a row of report/statistic.cpp
   std::vector<Item> stimuli;
-  std::vector<Item> responses;  // where they are not the stimuli
+  std::vector<Item> responses;
   std::vector<PlannedHypothesis> hypotheses;
   // The stimuli (places in the list above) that a participant's trials of this block would have had
   // in another draw of its order; empty where the order is not random.

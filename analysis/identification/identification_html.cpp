@@ -30,7 +30,7 @@ void write_matrix(std::ostream& out, const ConfusionMatrix& matrix) {
     core::print(out, "<tr><th scope=row>{}</th>", escaped(matrix.stimuli[i].label));
     for (std::size_t j = 0; j < matrix.responses.size(); ++j) {
       const Proportion cell{matrix.counts[i][j], matrix.row_total(i)};
-      const bool is_correct = matrix.stimuli[i].name == matrix.responses[j].name;
+      const bool is_correct = matrix.stimuli[i].is_answered_by(matrix.responses[j].name);
       core::print(out, R"(<td class="{}" style="{}"><b>{}</b><span>{}</span></td>)",
                   is_correct ? "correct" : "", cell_style(cell.trials == 0 ? 0.0 : cell.value()),
                   cell.successes, percent(cell));

@@ -25,6 +25,11 @@ int draws_for(std::size_t answers) {
 
 std::vector<FactorResult> factor_results(const ConfusionMatrix& matrix) {
   std::vector<FactorResult> found;
+  if (std::ranges::any_of(matrix.stimuli, [](const Item& stimulus) {
+        return !stimulus.is_answered_by(stimulus.name);
+      })) {
+    return found;  // a factor's levels were asked for: there is no more in an answer
+  }
   const std::vector<std::string> factors = factors_of(matrix);
   for (const std::string& factor : factors) {
     found.push_back(
@@ -46,7 +51,9 @@ void check_correctness(const BlockDesign& design, const AnswerRow& answer) {
         fmt::format("block '{}': the answer of {} to trial {} is neither right nor wrong",
                     design.name, answer.participant_id, answer.number)};
   }
-  if (*answer.is_correct != (answer.response == answer.stimulus)) {
+  const auto presented = std::ranges::find(design.stimuli, answer.stimulus, &Item::name);
+  if (presented != design.stimuli.end() &&
+      *answer.is_correct != presented->is_answered_by(answer.response)) {
     throw core::InvalidInput{fmt::format(
         "block '{}': the answer of {} to trial {} is stored as {}, which a confusion matrix of "
         "'{}' answered '{}' contradicts",
@@ -62,22 +69,33 @@ struct Person {
   std::vector<std::size_t> places;
 };
 
-// Responses that are no stimulus are equal to none.
+// Which of the answers is right for a stimulus; one that cannot be answered has a code of its own.
+int right_answer(const BlockDesign& design, std::size_t stimulus) {
+  const auto right = std::ranges::find_if(design.responses, [&](const Item& response) {
+    return design.stimuli[stimulus].is_answered_by(response.name);
+  });
+  const auto codes = design.responses.size();
+  return static_cast<int>(right != design.responses.end()
+                              ? static_cast<std::size_t>(right - design.responses.begin())
+                              : codes + stimulus);
+}
+
+int code_of(const std::vector<Item>& items, const std::string& name) {
+  return static_cast<int>(std::ranges::find(items, name, &Item::name) - items.begin());
+}
+
 std::vector<Person> people_of(const BlockDesign& design, const std::vector<AnswerRow>& answers) {
   std::vector<Person> people;
   std::map<std::string, std::size_t> place_of_person;
-  const auto code = [&](const std::string& name) {
-    const auto found = std::ranges::find(design.stimuli, name, &Item::name);
-    return static_cast<int>(found - design.stimuli.begin());
-  };
   for (const AnswerRow& answer : answers) {
     const auto [person, is_new] = place_of_person.emplace(answer.participant_id, people.size());
     if (is_new) {
       people.push_back({{answer.participant_index, answer.order_index}, {}, {}});
     }
     Person& of = people[person->second];
-    of.answers.stimuli.push_back(code(answer.stimulus));
-    of.answers.responses.push_back(code(answer.response));
+    of.answers.stimuli.push_back(
+        right_answer(design, static_cast<std::size_t>(code_of(design.stimuli, answer.stimulus))));
+    of.answers.responses.push_back(code_of(design.responses, answer.response));
     of.places.push_back(static_cast<std::size_t>(answer.number - design.first_trial));
   }
   return people;
@@ -91,7 +109,7 @@ PermutationResult accuracy_test(const BlockDesign& design, const std::vector<Ans
     const std::vector<int> order = design.redraw(people[person].place, draw);
     std::vector<int> stimuli;
     for (const std::size_t place : people[person].places) {
-      stimuli.push_back(order.at(place));
+      stimuli.push_back(right_answer(design, static_cast<std::size_t>(order.at(place))));
     }
     return stimuli;
   };

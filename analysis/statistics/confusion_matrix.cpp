@@ -72,7 +72,9 @@ std::int64_t ConfusionMatrix::total() const {
 Proportion overall_accuracy(const ConfusionMatrix& matrix) {
   return counted(
       matrix,
-      [](const Item& stimulus, const Item& response) { return stimulus.name == response.name; },
+      [](const Item& stimulus, const Item& response) {
+        return stimulus.is_answered_by(response.name);
+      },
       always);
 }
 

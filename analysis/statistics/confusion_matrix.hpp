@@ -11,6 +11,10 @@ struct Item {
   std::string name;
   std::string label;
   std::map<std::string, std::string> factors;
+  std::string right{};  // of a stimulus: the response that is right, if not its own name
+  bool is_answered_by(const std::string& response) const {
+    return response == (right.empty() ? name : right);
+  }
 };
 
 // counts[i][j]: how often stimulus i was answered with response j.
@@ -27,7 +31,7 @@ struct ConfusionMatrix {
   double chance() const { return 1.0 / static_cast<double>(responses.size()); }
 };
 
-// Proportion of answers that name the presented stimulus.
+// Proportion of answers that are right for the presented stimulus.
 Proportion overall_accuracy(const ConfusionMatrix& matrix);
 // Proportion of answers whose level of the factor is that of the stimulus.
 Proportion factor_accuracy(const ConfusionMatrix& matrix, const std::string& factor);

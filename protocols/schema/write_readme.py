@@ -132,6 +132,8 @@ def range_of(schema):
         if "properties" in schema:
             return "mapping"
         return "mapping of names" + (", at least 1" if schema.get("minProperties") else "")
+    if isinstance(kind, list) and "object" in kind:
+        return "text, or one for each language"
     if isinstance(kind, list):
         return "a name"
     if kind == "string":

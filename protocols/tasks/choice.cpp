@@ -11,6 +11,7 @@ class Choice final : public Task {
   bool needs_reference() const override { return true; }
   bool has_correct_answer() const override { return false; }
   bool uses_order() const override { return false; }
+  bool can_present_real_plates() const override { return false; }
   bool is_random(const Block& /*block*/) const override { return true; }
   int counted_answers(const Block& /*block*/) const override { return 1; }  // a vote
   std::string_view success() const override { return "choose the expected one"; }
@@ -55,7 +56,7 @@ class Choice final : public Task {
     }
     return labels;
   }
-  std::optional<bool> is_correct(const PlannedTrial& /*trial*/,
+  std::optional<bool> is_correct(const PlannedTrial& /*trial*/, const Block& /*block*/,
                                  const std::string& /*response*/) const override {
     return std::nullopt;
   }
@@ -68,10 +69,10 @@ class Choice final : public Task {
     return taps.visits * static_cast<int>(block.stimuli.size());
   }
   // Every alternative a few times, in a new random order each time.
-  std::size_t simulated_answer(const std::vector<Option>& options, const Simulation& simulation,
+  std::size_t simulated_answer(const Block& block, const Simulation& simulation,
                                SimulatedTouch& touch) const override {
     std::vector<std::size_t> order;
-    for (std::size_t i = 0; i < options.size(); ++i) {
+    for (std::size_t i = 0; i < block.stimuli.size(); ++i) {
       order.push_back(i);
     }
     for (int visit = 0; visit < simulation.taps.visits; ++visit) {

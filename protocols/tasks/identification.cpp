@@ -2,20 +2,83 @@
 
 #include <algorithm>
 #include <map>
+#include <ranges>
 
+#include "protocols/catch_trials.hpp"
 #include "protocols/ordering.hpp"
 #include "protocols/protocol.hpp"
 #include "protocols/read_sections.hpp"
 #include "protocols/tasks/shipped_tasks.hpp"
 namespace tapstudy::protocols {
 namespace {
+// Its levels among these stimuli, in their order.
+std::vector<std::string> levels_of(const std::string& factor, const Protocol& protocol,
+                                   const std::vector<std::string>& stimuli) {
+  std::vector<std::string> levels;
+  for (const Stimulus& stimulus : protocol.stimuli) {
+    const auto level = stimulus.factors.find(factor);
+    if (level != stimulus.factors.end() &&
+        std::ranges::find(stimuli, stimulus.name) != stimuli.end() &&
+        std::ranges::find(levels, level->second) == levels.end()) {
+      levels.push_back(level->second);
+    }
+  }
+  return levels;
+}
+
+void read_responses(MapReader& reader, const Protocol& protocol, Block& block) {
+  if (!reader.has("response_factor")) {
+    block.responses =
+        reader.words("responses", "stimulus", stimulus_names(protocol), block.stimuli);
+    return;
+  }
+  const std::vector<std::string> factors = protocol.stimuli.empty()
+                                               ? std::vector<std::string>{}
+                                               : keys_of(protocol.stimuli.front().factors);
+  block.response_factor = reader.word("response_factor", "factor", factors);
+  block.responses = reader.words(
+      "responses", "level", levels_of(block.response_factor, protocol, stimulus_names(protocol)),
+      levels_of(block.response_factor, protocol, block.stimuli));
+  reader.each_translated("response_labels", MapReader::Presence::optional,
+                         [&](const std::string& level, const std::string& label) {
+                           if (std::ranges::find(block.responses, level) == block.responses.end()) {
+                             reader.reject("response_labels",
+                                           fmt::format("'{}' cannot be answered", level));
+                           }
+                           block.response_labels[level] = label;
+                         });
+}
+
+// Of those that were not rejected already.
+std::map<std::string, std::string> right_responses(const Protocol& protocol, const Block& block) {
+  std::map<std::string, std::string> right;
+  for (const Stimulus& stimulus : protocol.stimuli) {
+    if (std::ranges::find(block.stimuli, stimulus.name) == block.stimuli.end()) {
+      continue;
+    }
+    const auto level = stimulus.factors.find(block.response_factor);
+    right[stimulus.name] = block.response_factor.empty()     ? stimulus.name
+                           : level == stimulus.factors.end() ? std::string{}
+                                                             : level->second;
+  }
+  return right;
+}
+
+std::string label_of(const std::string& response, const Block& block, const Protocol& protocol) {
+  if (block.response_factor.empty()) {
+    return protocol.stimulus(response).label;
+  }
+  const auto label = block.response_labels.find(response);
+  return label == block.response_labels.end() ? response : label->second;
+}
+
 // Two answers that read alike cannot be told apart by who gives them.
 void check_labels_differ(MapReader& reader, const Protocol& protocol, const Block& block) {
   std::map<std::string, std::string> name_of_label;
   for (const std::string& response : block.responses) {
     const auto stimulus = std::ranges::find(protocol.stimuli, response, &Stimulus::name);
     if (stimulus == protocol.stimuli.end()) {
-      continue;  // rejected already
+      continue;  // a level, or rejected already
     }
     const auto [known, is_new] = name_of_label.emplace(stimulus->label, response);
     if (!is_new) {
@@ -33,6 +96,7 @@ class Identification final : public Task {
   bool needs_reference() const override { return false; }
   bool has_correct_answer() const override { return true; }
   bool uses_order() const override { return true; }
+  bool can_present_real_plates() const override { return true; }
   bool is_random(const Block& block) const override { return block.order != Order::listed; }
   int counted_answers(const Block& block) const override {
     return block.repetitions * static_cast<int>(block.stimuli.size());
@@ -40,18 +104,19 @@ class Identification final : public Task {
   std::string_view success() const override { return "be right"; }
 
   void read(MapReader& reader, const Protocol& protocol, Block& block) const override {
-    block.responses =
-        reader.words("responses", "stimulus", stimulus_names(protocol), block.stimuli);
+    read_responses(reader, protocol, block);
     check_labels_differ(reader, protocol, block);
+    block.right_response = right_responses(protocol, block);
     if (block.responses.size() < 2) {
       reader.reject("responses", "an identification needs at least two possible answers");
     }
-    for (const std::string& stimulus : block.stimuli) {
-      if (std::ranges::find(block.responses, stimulus) == block.responses.end()) {
-        reader.reject("responses",
-                      fmt::format("'{}' is presented but cannot be answered", stimulus));
+    for (const auto& [stimulus, right] : block.right_response) {
+      if (std::ranges::find(block.responses, right) == block.responses.end()) {
+        reader.reject("responses", fmt::format("'{}' is presented, but '{}' cannot be answered",
+                                               stimulus, right));
       }
     }
+    block.catch_trials = read_catch_trials(reader, protocol, block);
   }
 
   std::vector<PlannedTrial> trials(const Block& block, const Draw& draw) const override {
@@ -62,7 +127,7 @@ class Identification final : public Task {
          ordered_stimuli(block, rng, {draw.order_index, draw.counterbalancing_seed})) {
       all.push_back({0, block.name, this, block.is_practice, next.repetition, {next.stimulus}});
     }
-    return all;
+    return with_catch_trials(std::move(all), block, draw);
   }
   std::size_t trials_per_repetition(const Block& block) const override {
     return block.stimuli.size();
@@ -71,7 +136,7 @@ class Identification final : public Task {
   std::vector<Option> options(const Block& block, const Protocol& protocol) const override {
     std::vector<Option> all;
     for (const std::string& response : block.responses) {
-      all.push_back({response, protocol.stimulus(response).label});
+      all.push_back({response, label_of(response, block, protocol)});
     }
     return all;
   }
@@ -82,24 +147,28 @@ class Identification final : public Task {
   std::vector<std::string> alternative_labels(const PlannedTrial& /*trial*/) const override {
     return {};
   }
-  std::optional<bool> is_correct(const PlannedTrial& trial,
+  std::optional<bool> is_correct(const PlannedTrial& trial, const Block& block,
                                  const std::string& response) const override {
-    return response == trial.stimuli.front();
+    const auto& right = trial.is_catch ? block.catch_trials->expected : block.right_response;
+    return response == right.at(trial.stimuli.front());
   }
 
+  // Asked for a factor, all that was presented is remembered: its levels are no plates.
   std::vector<std::string> remembered_stimuli(const Block& block,
                                               const Simulation& /*simulation*/) const override {
-    return block.responses;
+    return block.response_factor.empty() ? block.responses : block.stimuli;
   }
   int visits(const Block& /*block*/, const SimulatedTapSettings& /*taps*/) const override {
     return 1;
   }
-  std::size_t simulated_answer(const std::vector<Option>& options, const Simulation& /*simulation*/,
+  std::size_t simulated_answer(const Block& block, const Simulation& simulation,
                                SimulatedTouch& touch) const override {
     touch.visit(0);
-    std::vector<std::string> stimuli;
-    std::ranges::transform(options, std::back_inserter(stimuli), &Option::name);
-    return touch.most_similar_stimulus(stimuli);
+    const std::vector<std::string> stimuli = remembered_stimuli(block, simulation);
+    const std::string& felt = stimuli.at(touch.most_similar_stimulus(stimuli));
+    const auto answer = std::ranges::find(
+        block.responses, block.response_factor.empty() ? felt : block.right_response.at(felt));
+    return static_cast<std::size_t>(answer - block.responses.begin());
   }
 };
 }  // namespace

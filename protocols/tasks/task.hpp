@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/rng.hpp"
+#include "protocols/form.hpp"
 namespace tapstudy::protocols {
 class MapReader;
 class Task;
@@ -25,6 +26,7 @@ struct PlannedTrial {
   int repetition{};  // from 1
   // What can be rendered in the trial, in the order of its alternatives.
   std::vector<std::string> stimuli;
+  bool is_catch{false};
 };
 
 // Participant and block for which an order is drawn.
@@ -33,12 +35,8 @@ struct Draw {
   int order_index{};  // which of the balanced orders, from 0
   std::size_t block_index{};
   std::uint64_t counterbalancing_seed{};  // of the study
-};
-
-// An allowed answer: its name in the data and the label shown to participants.
-struct Option {
-  std::string name;
-  std::string label;
+  // Of the places of catch trials, which stay where they are in every other draw of the order.
+  std::uint64_t catch_seed{};
 };
 
 // The actions of a simulated participant in a trial. The rendered stimulus is never disclosed.
@@ -72,6 +70,8 @@ class Task {
   virtual bool has_correct_answer() const = 0;
   // Whether the block's order, Williams's among others, decides what is presented when.
   virtual bool uses_order() const = 0;
+  // Whether a trial can be of real plates, which are mounted one at a time.
+  virtual bool can_present_real_plates() const = 0;
   // Whether what is presented when depends on the seeds.
   virtual bool is_random(const Block& block) const = 0;
 
@@ -86,7 +86,7 @@ class Task {
                                std::size_t option) const = 0;
   virtual std::vector<std::string> alternative_labels(const PlannedTrial& trial) const = 0;
   // nullopt if the task has no correct answer.
-  virtual std::optional<bool> is_correct(const PlannedTrial& trial,
+  virtual std::optional<bool> is_correct(const PlannedTrial& trial, const Block& block,
                                          const std::string& response) const = 0;
   // Of one participant's answers to a block, how many are counted as independent ones.
   virtual int counted_answers(const Block& block) const = 0;
@@ -98,8 +98,7 @@ class Task {
   virtual std::vector<std::string> remembered_stimuli(const Block& block,
                                                       const Simulation& simulation) const = 0;
   virtual int visits(const Block& block, const SimulatedTapSettings& taps) const = 0;
-  virtual std::size_t simulated_answer(const std::vector<Option>& options,
-                                       const Simulation& simulation,
+  virtual std::size_t simulated_answer(const Block& block, const Simulation& simulation,
                                        SimulatedTouch& touch) const = 0;
 };
 

@@ -10,34 +10,13 @@
 namespace tapstudy::protocols {
 void MapReader::read_inner(const YAML::Node& node, const std::string& path,
                            const std::string& pattern, const ReadMap& read) {
-  MapReader inner{node, path, pattern, *problems_};
+  MapReader inner{node, path, pattern, *problems_, translations_};
   if (!node.IsMap()) {
     inner.reject(fmt::format("{} is not a mapping", kind_of(node)));
     return;
   }
   read(inner);
   inner.finish();
-}
-
-std::vector<std::string> MapReader::texts(const std::string& key) {
-  std::vector<std::string> all;
-  const auto node = find(key, true);
-  if (node && (!node->IsSequence() || node->size() == 0)) {
-    reject_at(*node, path_of(key), "is not a list of texts");
-    return all;
-  }
-  for (std::size_t i = 0; node && i < node->size(); ++i) {
-    const YAML::Node item = (*node)[i];
-    const std::string path = fmt::format("{}[{}]", path_of(key), i);
-    if (!item.IsScalar() || item.Scalar().empty() || has_control_characters(item.Scalar())) {
-      reject_at(item, path, fmt::format("{} is not one line of text", kind_of(item)));
-    } else if (std::ranges::find(all, item.Scalar()) != all.end()) {
-      reject_at(item, path, fmt::format("'{}' is listed twice", item.Scalar()));
-    } else {
-      all.push_back(item.Scalar());
-    }
-  }
-  return all;
 }
 
 void MapReader::map(const std::string& key, Presence presence, const ReadMap& read) {

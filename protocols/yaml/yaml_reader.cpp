@@ -32,16 +32,17 @@ std::string Range::words() const {
 }
 
 MapReader::MapReader(const YAML::Node& node, std::string path, std::string pattern,
-                     Problems& problems)
+                     Problems& problems, Translations* translations)
     : node_{std::make_unique<YAML::Node>(node)},
       path_{std::move(path)},
       pattern_{std::move(pattern)},
-      problems_{&problems} {}
+      problems_{&problems},
+      translations_{translations} {}
 MapReader::~MapReader() = default;
 MapReader::MapReader(MapReader&& other) noexcept = default;
 
 MapReader MapReader::whole_file(const std::string& text, const std::string& file,
-                                Problems& problems) {
+                                Problems& problems, Translations* translations) {
   if (!utf8::is_valid(text.begin(), text.end())) {
     throw core::InvalidInput{fmt::format("{}:1:1: not UTF-8 text", file)};
   }
@@ -49,7 +50,7 @@ MapReader MapReader::whole_file(const std::string& text, const std::string& file
     if (holds_two_documents(text)) {
       throw core::InvalidInput{fmt::format("{}: holds more than one YAML document", file)};
     }
-    MapReader reader{YAML::Load(text), "", "", problems};
+    MapReader reader{YAML::Load(text), "", "", problems, translations};
     if (!reader.node_->IsMap()) {
       throw core::InvalidInput{fmt::format("{}:1:1: not a mapping of keys to values", file)};
     }
@@ -159,31 +160,6 @@ bool MapReader::yes_or_no(const std::string& key, std::optional<bool> otherwise)
     reject_at(*node, path_of(key), fmt::format("{} is neither true nor false", kind_of(*node)));
   }
   return value;
-}
-
-std::string MapReader::text(const std::string& key, const std::optional<std::string>& otherwise) {
-  const auto node = find(key, !otherwise);
-  if (!node) {
-    return otherwise.value_or("");
-  }
-  if (!node->IsScalar() || node->Scalar().empty() || has_control_characters(node->Scalar())) {
-    reject_at(*node, path_of(key), fmt::format("{} is not one line of text", kind_of(*node)));
-    return "";
-  }
-  return node->Scalar();
-}
-
-std::string MapReader::paragraphs(const std::string& key,
-                                  const std::optional<std::string>& otherwise) {
-  const auto node = find(key, !otherwise);
-  if (!node) {
-    return otherwise.value_or("");
-  }
-  if (!node->IsScalar()) {
-    reject_at(*node, path_of(key), fmt::format("{} is not text", kind_of(*node)));
-    return "";
-  }
-  return node->Scalar();
 }
 
 bool MapReader::check_name(const YAML::Node& node, const std::string& path) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "protocols/yaml/problems.hpp"
+#include "protocols/yaml/translations.hpp"
 namespace YAML {  // NOLINT(readability-identifier-naming): the library's own name
 class Node;
 }
@@ -33,13 +34,15 @@ bool is_name(const std::string& text);
 class MapReader {
  public:
   // The whole file. Throws InvalidInput if it cannot be read or is not YAML.
-  static MapReader whole_file(const std::string& text, const std::string& file, Problems& problems);
+  static MapReader whole_file(const std::string& text, const std::string& file, Problems& problems,
+                              Translations* translations = nullptr);
   ~MapReader();
   MapReader(MapReader&& other) noexcept;
   MapReader(const MapReader& other) = delete;
   MapReader& operator=(const MapReader& other) = delete;
   MapReader& operator=(MapReader&& other) = delete;
 
+  enum class Presence { required, optional };
   bool has(const std::string& key) const;
   double number(const std::string& key, const Range& range, std::optional<double> otherwise = {});
   int integer(const std::string& key, int low, int high, std::optional<int> otherwise = {});
@@ -47,8 +50,15 @@ class MapReader {
   // Any text on one line; paragraphs may have several.
   std::string text(const std::string& key, const std::optional<std::string>& otherwise = {});
   std::string paragraphs(const std::string& key, const std::optional<std::string>& otherwise = {});
-  // A list of texts, each once.
-  std::vector<std::string> texts(const std::string& key);
+  // The same of what participants read: a text, or one for each language.
+  std::string translated(const std::string& key, const std::optional<std::string>& otherwise = {});
+  std::string translated_paragraphs(const std::string& key,
+                                    const std::optional<std::string>& otherwise = {});
+  // A list of such texts, each once: its name in the data, which is the first text, and its label.
+  std::vector<std::pair<std::string, std::string>> translated_list(const std::string& key);
+  // A mapping from free names to such texts.
+  void each_translated(const std::string& key, Presence presence,
+                       const std::function<void(const std::string&, const std::string&)>& take);
   // A name that is valid in data, tables and file names: see is_name.
   std::string name(const std::string& key);
   // `size` numbers in brackets.
@@ -79,7 +89,6 @@ class MapReader {
   }
   using ReadMap = std::function<void(MapReader&)>;
   using ReadNamed = std::function<void(const std::string& name, MapReader&)>;
-  enum class Presence { required, optional };
   void map(const std::string& key, Presence presence, const ReadMap& read);
   // A mapping from free names to mappings / to two numbers / to text; a list of mappings.
   void each(const std::string& key, Presence presence, const ReadNamed& read);
@@ -98,7 +107,15 @@ class MapReader {
   void finish();
 
  private:
-  MapReader(const YAML::Node& node, std::string path, std::string pattern, Problems& problems);
+  enum class Lines { one, several };
+  MapReader(const YAML::Node& node, std::string path, std::string pattern, Problems& problems,
+            Translations* translations);
+  std::string text_at(const YAML::Node& node, const std::string& path, Lines lines);
+  // By language; a text that is one for all languages has none.
+  std::vector<std::pair<std::string, std::string>> languages_at(const YAML::Node& node,
+                                                                const std::string& path,
+                                                                Lines lines);
+  std::string translation_at(const YAML::Node& node, const std::string& path, Lines lines);
   // The value under the key, or nothing after noting that it is missing.
   std::optional<YAML::Node> find(const std::string& key, bool required);
   std::string path_of(const std::string& key) const;
@@ -119,5 +136,6 @@ class MapReader {
   bool has_free_names_{false};
   std::vector<std::string> known_;
   Problems* problems_;
+  Translations* translations_;  // nullptr: one language is all that is read
 };
 }  // namespace tapstudy::protocols

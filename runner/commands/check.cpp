@@ -1,7 +1,9 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <memory>
+#include <set>
 
 #include "analysis/statistics/proportion.hpp"
 #include "core/error.hpp"
@@ -114,10 +116,6 @@ void warn_of_balance(const protocols::Block& block, int participants) {
   }
 }
 
-int trials_of(const protocols::Block& block) {
-  return block.repetitions * static_cast<int>(block.task->trials_per_repetition(block));
-}
-
 void print_power(const protocols::Protocol& protocol, const protocols::Block& block,
                  int participants) {
   const std::size_t options = block.task->options(block, protocol).size();
@@ -140,12 +138,13 @@ void print_design(const protocols::Protocol& protocol, int participants) {
   fmt::print("{}\n\n", protocol.title);
   double total_s = 0.0;
   for (const protocols::Block& block : protocol.blocks) {
-    const int trials = trials_of(block);
+    const int trials = planned_trials(block);
     const double seconds = trials * simulated_trial_s(protocol, block);
     total_s += seconds;
-    fmt::print("  {}{}: {}, {} stimuli, {} trials a participant, about {:.0f} s of tapping\n",
-               block.name, block.is_practice ? " (practice)" : "", block.task->name(),
-               block.stimuli.size(), trials, seconds);
+    fmt::print("  {}{}{}: {}, {} stimuli, {} trials a participant, about {:.0f} s of tapping\n",
+               block.name, block.is_practice ? " (practice)" : "",
+               block.presented == protocols::Presented::real_plates ? " (real plates)" : "",
+               block.task->name(), block.stimuli.size(), trials, seconds);
     warn_of_balance(block, participants);
     print_power(protocol, block, participants);
   }
@@ -170,6 +169,27 @@ void print_forms(const protocols::Protocol& protocol) {
   print(protocol.forms_after, "at the end");
 }
 
+void print_languages(const protocols::Protocol& protocol) {
+  std::set<std::string> all;
+  std::size_t in_one = 0;
+  for (const auto& [path, languages] : protocol.translations.given) {
+    all.insert(languages.begin(), languages.end());
+    in_one += languages.empty() ? 1 : 0;
+  }
+  if (all.empty()) {
+    return;
+  }
+  fmt::print("\nlanguages\n");
+  for (const std::string& language : all) {
+    const auto missing = texts_without(language, protocol.translations);
+    fmt::print("  {}: {}\n", language,
+               missing.empty() ? "complete" : fmt::format("lacks {}", fmt::join(missing, ", ")));
+  }
+  if (in_one > 0) {
+    fmt::print("  {} texts are given once for all of them\n", in_one);
+  }
+}
+
 void run_check(const CheckOptions& options) {
   const protocols::Protocol protocol = protocols::read_protocol(options.protocol);
   if (options.participants < 1 || options.participants > 10000) {
@@ -188,6 +208,7 @@ void run_check(const CheckOptions& options) {
     fmt::print("\nmasking\n  {}\n", described(*protocol.masking));
   }
   print_forms(protocol);
+  print_languages(protocol);
   print_models(protocol);
   print_contact(protocol, delay_ticks);
   const int index = options.participants - 1;

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <memory>
 
@@ -6,8 +7,10 @@
 #include "protocols/read_protocol.hpp"
 #include "runner/commands/commands.hpp"
 #include "runner/commands/seed.hpp"
+#include "runner/console/pages.hpp"
 #include "runner/devices/rigs.hpp"
 #include "runner/session/live_session.hpp"
+#include "runner/terminal/logging.hpp"
 #include "runner/terminal/whole_number.hpp"
 namespace tapstudy::runner {
 namespace {
@@ -55,6 +58,7 @@ SessionRequest request_of(const RunOptions& options) {
   SessionRequest request;
   request.participant_id = options.participant;
   request.mode = options.pilot ? results::Mode::pilot : results::Mode::real;
+  request.language = options.language;
   request.resume = options.resume ? Resume::yes : Resume::no;
   if (!options.seed.empty()) {
     request.seed = seed_from(options.seed, "--seed");
@@ -66,8 +70,24 @@ SessionRequest request_of(const RunOptions& options) {
   return request;
 }
 
+void warn_of_language(const protocols::Protocol& protocol, const RunOptions& options) {
+  if (!protocols::is_language(options.language)) {
+    throw core::InvalidInput{fmt::format(
+        "--language: '{}' is not a language (two small letters, such as en)", options.language)};
+  }
+  const auto missing = protocols::texts_without(options.language, protocol.translations);
+  if (!missing.empty()) {
+    warn(fmt::format("{} texts of the study are not given in '{}': {}", missing.size(),
+                     options.language, fmt::join(missing, ", ")));
+  }
+  if (!options.console.empty() && !pages_speak(options.language)) {
+    warn(fmt::format("the pages' own words are not given in '{}': English", options.language));
+  }
+}
+
 void run(const RunOptions& options) {
-  const protocols::Protocol protocol = protocols::read_protocol(options.protocol);
+  const protocols::Protocol protocol = protocols::read_protocol(options.protocol, options.language);
+  warn_of_language(protocol, options);
   const protocols::Rig rig = options.rig.empty() ? simulated_rig() : read_rig(options.rig);
   const LiveOutcome outcome = run_live_session({protocol, options.protocol, rig, options.directory,
                                                 request_of(options), console_of(options)});
@@ -94,7 +114,8 @@ void add_run(CommandParser& line) {
       "Serve a page each for participant and operator, at this port or a free one");
   command.option("--listen", options->listen,
                  "Address of this machine to serve the pages at; else only to itself");
-  command.one_of("--language", options->language, {"en", "ja", "de"}, "Of the pages' own words");
+  command.option_with_default("--language", options->language,
+                              "Of what the participant reads: en, ja, …");
   command.flag("--resume", options->resume, "Resume the participant's last session");
   command.flag("--pilot", options->pilot, "Mark as a pilot, kept out of reports");
   command.on_run([options] { run(*options); });

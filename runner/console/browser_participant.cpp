@@ -2,7 +2,9 @@
 
 #include <chrono>
 #include <thread>
+#include <utility>
 
+#include "results/store_error.hpp"
 #include "runner/terminal/stop_signal.hpp"
 namespace tapstudy::runner {
 namespace {
@@ -66,14 +68,15 @@ void BrowserParticipant::arrive() {
 }
 
 void BrowserParticipant::get_ready(const TrialPrompt& prompt) {
-  progress_ = TrialProgress{prompt.number - 1, prompt.total, prompt.is_practice};
+  progress_ = TrialProgress{prompt.number - 1, prompt.total, prompt.block->is_practice};
   notice_.reset();
+  correction_state_ = CorrectionState::none;
   context_.move_hand();
 }
 
 std::int64_t BrowserParticipant::show_trial(const TrialPrompt& prompt, std::size_t current) {
   return show({.kind = ScreenKind::trial,
-               .trial = TrialScreen{prompt, current, notice_},
+               .trial = TrialScreen{prompt, current, notice_, correction_state_},
                .scene = context_.scene(current)});
 }
 
@@ -94,10 +97,12 @@ std::optional<std::size_t> BrowserParticipant::perform(const TrialPrompt& prompt
       notice_.reset();
       return input->value;
     }
-    if (input) {
+    if (input && input->action == ScreenAction::correct) {
+      correction_ = prompt.previous->correct(input->value);
+    } else if (input) {
       exploration.switch_to(input->value);
     }
-    if (input || is_switched) {
+    if (input || is_switched || follow_correction()) {
       notice_.reset();
       current = exploration.current();
       number = show_trial(prompt, current);
@@ -107,6 +112,20 @@ std::optional<std::size_t> BrowserParticipant::perform(const TrialPrompt& prompt
   const auto accepted = screens_.close();
   return accepted && accepted->action == ScreenAction::answer ? std::optional{accepted->value}
                                                               : std::nullopt;
+}
+
+bool BrowserParticipant::follow_correction() {
+  if (!correction_.valid() ||
+      correction_.wait_for(std::chrono::seconds{0}) != std::future_status::ready) {
+    return false;
+  }
+  correction_state_ = CorrectionState::stored;
+  try {
+    std::exchange(correction_, {}).get();
+  } catch (const results::StoreError&) {
+    correction_state_ = CorrectionState::failed;
+  }
+  return true;
 }
 
 // Force is not left on for somebody who may have gone.
@@ -153,6 +172,10 @@ void BrowserParticipant::repeats(const TrialPrompt& /*prompt*/) {
   tell(Message::presented_again);
 }
 
+void BrowserParticipant::plate_is_changed() {
+  show({.kind = ScreenKind::message, .message = Message::plate_is_mounted});
+}
+
 void BrowserParticipant::interrupted() {
   show({.kind = ScreenKind::message, .message = Message::operator_is_needed});
 }
@@ -162,6 +185,6 @@ void BrowserParticipant::skipped(const TrialPrompt& /*prompt*/) {
 }
 
 void BrowserParticipant::saved(const TrialPrompt& prompt) {
-  progress_ = TrialProgress{prompt.number, prompt.total, prompt.is_practice};
+  progress_ = TrialProgress{prompt.number, prompt.total, prompt.block->is_practice};
 }
 }  // namespace tapstudy::runner

@@ -33,6 +33,7 @@ class BrowserParticipant final : public Participant {
   void timed_out(const TrialPrompt& prompt, bool is_presented_again) override;
   bool saves_again(const std::string& cause) override;
   void repeats(const TrialPrompt& prompt) override;
+  void plate_is_changed() override;
   void interrupted() override;
   void skipped(const TrialPrompt& prompt) override;
   void saved(const TrialPrompt& prompt) override;
@@ -44,11 +45,15 @@ class BrowserParticipant final : public Participant {
   ScreenInput answer_to(Screen screen);
   void tell(Message message);
   void pause_if_left();
+  // Whether there is something new to show of it.
+  bool follow_correction();
 
   ScreenExchange& screens_;
   Context context_;
   std::optional<TrialProgress> progress_;
   std::optional<TooEarly> notice_;
+  std::shared_future<void> correction_;  // that is being stored
+  CorrectionState correction_state_{CorrectionState::none};
   std::chrono::steady_clock::time_point seen_at_;
 };
 }  // namespace tapstudy::runner

@@ -32,10 +32,14 @@ Json json_of(const TrialInView& view, std::size_t current, bool is_blind) {
     }
     alternatives.push_back(alternative);
   }
-  return {{"number", view.trial.number},      {"attempt", view.attempt},
-          {"block", view.trial.block},        {"is_practice", view.trial.is_practice},
-          {"question", view.prompt.question}, {"options", labels_of(view.prompt.options)},
-          {"alternatives", alternatives},     {"current", current}};
+  return {{"number", view.trial.number},
+          {"attempt", view.attempt},
+          {"block", view.trial.block},
+          {"is_practice", view.trial.is_practice},
+          {"question", view.prompt.block->question},
+          {"options", labels_of(view.prompt.options)},
+          {"alternatives", alternatives},
+          {"current", current}};
 }
 
 Json json_of(const AnswerInView& answer, bool is_blind) {

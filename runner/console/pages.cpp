@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <string>
 #include <utility>
 #include <vector>
 namespace tapstudy::runner {
@@ -36,5 +37,10 @@ const Page* find_page(std::string_view name) {
   }();
   const auto found = std::ranges::find(pages, name, &Page::name);
   return found == pages.end() ? nullptr : &*found;
+}
+
+bool pages_speak(std::string_view language) {
+  const std::string_view words = find_page("messages.json")->content;
+  return words.find("\"" + std::string{language} + "\": {") != std::string_view::npos;
 }
 }  // namespace tapstudy::runner

@@ -9,4 +9,6 @@ struct Page {
 };
 // nullptr if there is none of that name.
 const Page* find_page(std::string_view name);
+// Whether the pages' own words are given in it (two letters).
+bool pages_speak(std::string_view language);
 }  // namespace tapstudy::runner

@@ -18,8 +18,13 @@ const char* name(ScreenKind kind) {
 }
 
 const char* name(Message message) {
-  constexpr std::array names{
-      "", "presented_again", "skipped", "time_is_over", "comes_again", "operator_is_needed"};
+  constexpr std::array names{"",
+                             "presented_again",
+                             "skipped",
+                             "time_is_over",
+                             "comes_again",
+                             "operator_is_needed",
+                             "plate_is_mounted"};
   return names.at(static_cast<std::size_t>(message));
 }
 
@@ -31,14 +36,21 @@ Json json_of(const TooEarly& notice) {
           {"seconds", notice.min_seconds}};
 }
 
-Json json_of(const TrialScreen& trial) {
-  Json options = Json::array();
-  for (const protocols::Option& option : trial.prompt.options) {
-    options.push_back(option.label);
+Json labels_of(const std::vector<protocols::Option>& options) {
+  Json labels = Json::array();
+  for (const protocols::Option& option : options) {
+    labels.push_back(option.label);
   }
+  return labels;
+}
+
+Json json_of(const TrialScreen& trial) {
+  constexpr std::array corrections{"", "stored", "failed"};
   return {{"number", trial.prompt.number},
-          {"question", trial.prompt.question},
-          {"options", options},
+          {"question", trial.prompt.block->question},
+          {"options", labels_of(trial.prompt.options)},
+          {"previous", trial.prompt.previous ? labels_of(trial.prompt.previous->options) : Json{}},
+          {"correction", corrections.at(static_cast<std::size_t>(trial.correction))},
           {"alternatives", trial.prompt.alternative_labels},
           {"current", trial.current},
           {"notice", trial.notice ? json_of(*trial.notice) : Json{}}};
@@ -50,13 +62,20 @@ Json json_of(const protocols::Confidence& scale) {
 Json json_of(const FeedbackScreen& feedback) {
   return {{"is_correct", feedback.is_correct}, {"right", feedback.right}};
 }
+Json options_of(const std::vector<protocols::Option>& options) {
+  Json all = Json::array();
+  for (const protocols::Option& option : options) {
+    all.push_back({{"name", option.name}, {"label", option.label}});
+  }
+  return all;
+}
 Json json_of(const protocols::FormItem& item) {
   constexpr std::array kinds{"likert", "scale", "number", "single_choice", "text"};
   return {{"name", item.name},         {"kind", kinds.at(static_cast<std::size_t>(item.kind))},
           {"question", item.question}, {"is_required", item.is_required},
           {"steps", item.steps},       {"low", item.low},
           {"high", item.high},         {"min", item.min},
-          {"max", item.max},           {"options", item.options}};
+          {"max", item.max},           {"options", options_of(item.options)}};
 }
 Json json_of(const protocols::Form& form) {
   Json items = Json::array();
@@ -101,7 +120,8 @@ Participant::FormAnswers form_answers(const Json& json) {
 
 // A message that only says what happened is read and dismissed.
 bool can_be_dismissed(const Screen& screen) {
-  return screen.kind == ScreenKind::message && screen.message != Message::operator_is_needed;
+  return screen.kind == ScreenKind::message && screen.message != Message::operator_is_needed &&
+         screen.message != Message::plate_is_mounted;
 }
 }  // namespace
 
@@ -114,6 +134,9 @@ bool accepts(const Screen& screen, const ScreenInput& input) {
       return screen.trial && input.value < screen.trial->prompt.alternative_labels.size();
     case ScreenAction::answer:
       return screen.trial && input.value < screen.trial->prompt.options.size();
+    case ScreenAction::correct:
+      return screen.trial && screen.trial->prompt.previous &&
+             input.value < screen.trial->prompt.previous->options.size();
     case ScreenAction::confidence:
       return screen.confidence && input.value >= 1 &&
              input.value <= static_cast<std::size_t>(screen.confidence->steps);
@@ -124,10 +147,11 @@ bool accepts(const Screen& screen, const ScreenInput& input) {
 }
 
 ScreenInput parse_input(const std::string& text, std::int64_t& screen) {
-  static const std::array<std::pair<std::string, ScreenAction>, 5> actions{
+  static const std::array<std::pair<std::string, ScreenAction>, 6> actions{
       {{"go_on", ScreenAction::go_on},
        {"switch", ScreenAction::switch_to},
        {"answer", ScreenAction::answer},
+       {"correct", ScreenAction::correct},
        {"confidence", ScreenAction::confidence},
        {"form", ScreenAction::form}}};
   try {

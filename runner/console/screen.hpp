@@ -25,13 +25,17 @@ enum class Message {
   skipped,
   time_is_over,
   comes_again,
-  operator_is_needed
+  operator_is_needed,
+  plate_is_mounted
 };
+// What became of the participant's correction of the last answer.
+enum class CorrectionState { none, stored, failed };
 
 struct TrialScreen {
   TrialPrompt prompt;
   std::size_t current{};  // the alternative that is rendered
   std::optional<TooEarly> notice;
+  CorrectionState correction{CorrectionState::none};
 };
 struct FeedbackScreen {
   bool is_correct{};
@@ -58,7 +62,7 @@ struct Screen {
 };
 
 // What the participant does with it.
-enum class ScreenAction { go_on, switch_to, answer, confidence, form };
+enum class ScreenAction { go_on, switch_to, answer, correct, confidence, form };
 struct ScreenInput {
   ScreenAction action{};
   std::size_t value{};

@@ -20,8 +20,11 @@
 #include "runner/participants/simulated_participant.hpp"
 #include "runner/session/session_row.hpp"
 #include "runner/session/trial_engine.hpp"
+#include "runner/terminal/exit_code.hpp"
+#include "runner/terminal/logging.hpp"
 #include "runner/terminal/progress.hpp"
 #include "runner/terminal/stop_signal.hpp"
+#include "runner/trial_loop/simulated_reality.hpp"
 #include "runner/trial_loop/virtual_trial_loop.hpp"
 namespace tapstudy::runner {
 namespace {
@@ -61,6 +64,18 @@ std::vector<PlannedSession> add_sessions(const SimulatedStudy& study,
     sessions.push_back(std::move(session));
   }
   return sessions;
+}
+
+// Who does not get through practice leaves, as a person would.
+void take_part(TrialEngine& engine, const protocols::Schedule& schedule) {
+  std::set<int> done;
+  try {
+    if (const auto interruption = engine.run(schedule, done)) {
+      throw device::DeviceError{to_text(*interruption)};
+    }
+  } catch (const PracticeMissed& missed) {
+    warn(missed.what());
+  }
 }
 
 // Workers take the next session until none is left or one of them has failed.
@@ -119,18 +134,17 @@ SimulatedTime simulate(const SimulatedStudy& study, const protocols::Protocol& p
   Workers::share(sessions, [&](const PlannedSession& session) {
     SimulatedParticipant participant{protocol, settings, models, session.seed};
     VirtualTrialLoop trial_loop{participant.hand(), settings};
+    SimulatedReality reality{protocol, models, participant.hand(), settings};
     const TrialEngine* running = nullptr;
     SessionStates states{session.id, [&] {
                            const std::int64_t tapped = running == nullptr ? 0 : running->ticks();
                            return static_cast<double>(tapped) / protocol.rate_hz;
                          }};
     Operator nobody;
-    TrialEngine engine{{protocol, models, trial_loop, participant, nobody, states}, recorder};
+    TrialEngine engine{{protocol, models, trial_loop, reality, participant, nobody, states},
+                       recorder};
     running = &engine;
-    std::set<int> done;
-    if (const auto interruption = engine.run(session.schedule, done)) {
-      throw device::DeviceError{to_text(*interruption)};
-    }
+    take_part(engine, session.schedule);
     ticks += engine.ticks();
     trials += static_cast<int>(session.schedule.size());
   });

@@ -5,31 +5,61 @@
 #include <algorithm>
 
 #include "core/rng.hpp"
+#include "protocols/schedule.hpp"
 namespace tapstudy::runner {
 namespace {
-std::vector<analysis::Item> items(const protocols::Protocol& protocol,
-                                  const std::vector<std::string>& names) {
-  std::vector<analysis::Item> found;
-  for (const std::string& name : names) {
+std::vector<analysis::Item> presented_items(const protocols::Protocol& protocol,
+                                            const protocols::Block& block) {
+  std::vector<analysis::Item> items;
+  for (const std::string& name : block.stimuli) {
     const protocols::Stimulus& stimulus = protocol.stimulus(name);
-    found.push_back({stimulus.name, stimulus.label, stimulus.factors});
+    const auto right = block.right_response.find(name);
+    items.push_back({stimulus.name, stimulus.label, stimulus.factors,
+                     right == block.right_response.end() ? std::string{} : right->second});
   }
-  return found;
+  return items;
 }
 
-// All participants of one draw share its counterbalancing.
-analysis::BlockDesign::Redraw redraw_of(const protocols::Block& block, std::size_t block_index) {
-  return [block, block_index](const analysis::Place& place, std::uint64_t draw) {
+// An answer that names a level says nothing about other factors.
+std::vector<analysis::Item> answered_items(const protocols::Protocol& protocol,
+                                           const protocols::Block& block) {
+  std::vector<analysis::Item> items;
+  for (const std::string& name : block.responses) {
+    if (block.response_factor.empty()) {
+      const protocols::Stimulus& stimulus = protocol.stimulus(name);
+      items.push_back({stimulus.name, stimulus.label, stimulus.factors});
+    } else {
+      items.push_back({name, name, {{block.response_factor, name}}});
+    }
+  }
+  return items;
+}
+
+constexpr int not_counted = -1;
+
+// All participants of one draw share its counterbalancing. Catch trials stay in their places.
+analysis::BlockDesign::Redraw redraw_of(const protocols::Protocol& protocol,
+                                        std::size_t block_index) {
+  const protocols::Block& block = protocol.blocks[block_index];
+  const std::uint64_t study_seed = protocol.counterbalancing_seed;
+  return [block, block_index, study_seed](const analysis::Place& place, std::uint64_t draw) {
     const std::uint64_t seed = core::derived_seed(
         draw, core::Purpose::participant, static_cast<std::uint64_t>(place.participant_index));
+    protocols::Draw redrawn = protocols::draw_of(study_seed, block_index, seed, place.order_index);
+    redrawn.counterbalancing_seed = draw;
     std::vector<int> stimuli;
-    for (const protocols::PlannedTrial& trial :
-         block.task->trials(block, {seed, place.order_index, block_index, draw})) {
+    for (const protocols::PlannedTrial& trial : block.task->trials(block, redrawn)) {
       const auto found = std::ranges::find(block.stimuli, trial.stimuli.front());
-      stimuli.push_back(static_cast<int>(found - block.stimuli.begin()));
+      stimuli.push_back(trial.is_catch ? not_counted
+                                       : static_cast<int>(found - block.stimuli.begin()));
     }
     return stimuli;
   };
+}
+
+std::string question_of(const protocols::Block& block) {
+  return block.presented == protocols::Presented::real_plates ? block.question + " (real plates)"
+                                                              : block.question;
 }
 
 analysis::Vote vote_of(const protocols::Block& block) {
@@ -51,23 +81,23 @@ analysis::StudyDesign design_of(const protocols::Protocol& protocol, results::Mo
   for (std::size_t i = 0; i < protocol.blocks.size(); ++i) {
     const protocols::Block& block = protocol.blocks[i];
     const int begins_at = first_trial;
-    first_trial += block.repetitions * static_cast<int>(block.task->trials_per_repetition(block));
+    first_trial += planned_trials(block);
     if (block.is_practice) {
       continue;
     }
     analysis::BlockDesign part{block.name,
                                std::string{block.task->name()},
-                               block.question,
+                               question_of(block),
                                std::string{block.task->statistic()},
-                               items(protocol, block.stimuli),
-                               items(protocol, block.responses),
+                               presented_items(protocol, block),
+                               answered_items(protocol, block),
                                {},
                                {},
                                begins_at,
                                {},
                                vote_of(block)};
     if (block.task->is_random(block)) {
-      part.redraw = redraw_of(block, i);
+      part.redraw = redraw_of(protocol, i);
     }
     if (mode == results::Mode::simulated && block.task->needs_reference()) {
       part.premise = premise_of(protocol);

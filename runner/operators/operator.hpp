@@ -1,8 +1,10 @@
 #pragma once
+#include <future>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "core/error.hpp"
 #include "protocols/protocol.hpp"
 #include "protocols/schedule.hpp"
 #include "runner/participants/participant.hpp"
@@ -35,6 +37,12 @@ class Operator {
   virtual void trial_is_over(std::optional<TrialRequest> /*carried_out*/) {}
   virtual void force_is(ForceState /*force*/) {}
   virtual void answer_is_stored(const AnswerInView& /*answer*/) {}
+
+  // The participant corrects the last answer. Ready once that is stored, or carries the StoreError;
+  // throws InvalidInput if there is nothing to correct.
+  virtual std::shared_future<void> participant_corrects(std::size_t /*option*/) {
+    throw core::InvalidInput{"there is nobody to correct an answer"};
+  }
 
   virtual bool is_paused() const { return false; }
   virtual std::optional<TrialRequest> request() const { return {}; }  // for the running trial

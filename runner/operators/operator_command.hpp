@@ -3,6 +3,8 @@
 #include <span>
 #include <string>
 #include <string_view>
+
+#include "results/rows.hpp"
 namespace tapstudy::runner {
 // What an operator can do during a session. The names are typed, and stored.
 enum class OperatorAction {
@@ -31,6 +33,7 @@ struct OperatorCommand {
   OperatorAction action{};
   std::string text{};
   std::optional<int> trial{};  // that is meant; refused if it is over
+  results::GivenBy by{results::GivenBy::operator_of_session};
 };
 // "note the participant coughed", or with the trial that is meant, "skip @4 the string broke".
 // Throws InvalidInput naming what is allowed.

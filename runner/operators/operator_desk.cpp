@@ -91,7 +91,7 @@ std::optional<int> OperatorDesk::trial_of(OperatorAction action) const {
   return trial_ ? std::optional{trial_->trial.number} : std::nullopt;
 }
 
-results::CorrectionRow OperatorDesk::correction(const std::string& option,
+results::CorrectionRow OperatorDesk::correction(const std::string& option, results::GivenBy by,
                                                 std::string& detail) const {
   const protocols::PlannedTrial& trial = last_answer_->trial;
   const std::size_t index = number_up_to(last_answer_->options.size(), option);
@@ -99,7 +99,9 @@ results::CorrectionRow OperatorDesk::correction(const std::string& option,
   row.session_id = session_.id;
   row.number = trial.number;
   row.response = trial.task->response(trial, session_.protocol.block(trial.block), index);
-  row.is_correct = trial.task->is_correct(trial, row.response);
+  row.is_correct =
+      trial.task->is_correct(trial, session_.protocol.block(trial.block), row.response);
+  row.given_by = by;
   detail = row.response;
   return row;
 }
@@ -139,7 +141,7 @@ OperatorDesk::Posted OperatorDesk::post(const OperatorCommand& command) {
                                  trial_of(command.action), command.text};
   std::shared_future<void> stored;
   if (command.action == OperatorAction::correct) {
-    results::CorrectionRow corrected = correction(command.text, row.detail);
+    results::CorrectionRow corrected = correction(command.text, command.by, row.detail);
     stored = recorder_.correct(std::move(corrected), row).share();
   } else {
     stored = recorder_.note(row).share();
@@ -224,6 +226,14 @@ void OperatorDesk::trial_is_over(std::optional<TrialRequest> carried_out) {
 void OperatorDesk::answer_is_stored(const AnswerInView& answer) {
   const std::lock_guard lock{mutex_};
   last_answer_ = answer;
+}
+
+std::shared_future<void> OperatorDesk::participant_corrects(std::size_t option) {
+  return post({OperatorAction::correct,
+               std::to_string(option + 1),
+               {},
+               results::GivenBy::participant})
+      .stored;
 }
 
 void OperatorDesk::force_is(ForceState force) {

@@ -59,6 +59,7 @@ class OperatorDesk final : public Operator {
   void trial_is_over(std::optional<TrialRequest> carried_out) override;
   void force_is(ForceState force) override;
   void answer_is_stored(const AnswerInView& answer) override;
+  std::shared_future<void> participant_corrects(std::size_t option) override;
   bool is_paused() const override;
   std::optional<TrialRequest> request() const override;
   std::optional<std::size_t> take_switch() override;
@@ -70,7 +71,8 @@ class OperatorDesk final : public Operator {
   std::optional<int> trial_of(OperatorAction action) const;
   bool is_excluded() const;
   void apply(const OperatorCommand& command);
-  results::CorrectionRow correction(const std::string& option, std::string& detail) const;
+  results::CorrectionRow correction(const std::string& option, results::GivenBy by,
+                                    std::string& detail) const;
 
   Session session_;
   results::Recorder& recorder_;

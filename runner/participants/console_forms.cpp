@@ -29,14 +29,14 @@ std::string what_to_type(const protocols::FormItem& item) {
 std::string as_stored(const protocols::FormItem& item, const std::string& typed) {
   const auto number = whole_number(typed, 1, static_cast<int>(item.options.size()));
   const bool is_option = item.kind == ItemKind::single_choice && number;
-  return is_option ? item.options[static_cast<std::size_t>(*number - 1)] : typed;
+  return is_option ? item.options[static_cast<std::size_t>(*number - 1)].name : typed;
 }
 }  // namespace
 
 std::string ConsoleParticipant::answer_to(const protocols::FormItem& item) {
   say("\n{}\n", item.question);
   for (std::size_t i = 0; i < item.options.size(); ++i) {
-    say("  {}  {}\n", i + 1, item.options[i]);
+    say("  {}  {}\n", i + 1, item.options[i].label);
   }
   while (true) {
     say("  {}{}: ", what_to_type(item), item.is_required ? "" : "; Enter leaves it out");

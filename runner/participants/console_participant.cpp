@@ -8,6 +8,7 @@
 #include <chrono>
 #include <thread>
 
+#include "results/store_error.hpp"
 #include "runner/terminal/say.hpp"
 #include "runner/terminal/stop_signal.hpp"
 #include "runner/terminal/whole_number.hpp"
@@ -128,7 +129,10 @@ void ConsoleParticipant::get_ready(const TrialPrompt& prompt) {
     ask_to_stop();
   }
   say("\nTrial {} of {}{}. {}\n", prompt.number, prompt.total,
-      prompt.is_practice ? " (practice)" : "", prompt.question);
+      prompt.block->is_practice ? " (practice)" : "", prompt.block->question);
+  if (prompt.previous) {
+    say("  (correct and the number of an answer: what your last answer should have been)\n");
+  }
   if (prompt.alternative_labels.empty()) {
     for (std::size_t i = 0; i < prompt.options.size(); ++i) {
       say("  {}  {}\n", i + 1, prompt.options[i].label);
@@ -139,13 +143,44 @@ void ConsoleParticipant::get_ready(const TrialPrompt& prompt) {
       prompt.alternative_labels.front());
 }
 
-std::optional<std::string> ConsoleParticipant::next_line(const Exploration& exploration) {
-  say("> ");
-  const auto line = next_of_participant([&] { return exploration.is_running(); });
-  if (!line) {
-    return std::nullopt;
+std::optional<std::string> ConsoleParticipant::next_line(const TrialPrompt& prompt,
+                                                         Exploration& exploration) {
+  while (true) {
+    say("> ");
+    const auto line = next_of_participant([&] { return exploration.is_running(); });
+    if (!line || asks_to_quit(*line)) {
+      return std::nullopt;
+    }
+    const std::string word = upper_case_without_spaces(*line);
+    if (!corrects(word, prompt, exploration)) {
+      return word;
+    }
   }
-  return asks_to_quit(*line) ? std::nullopt : std::optional{upper_case_without_spaces(*line)};
+}
+
+bool ConsoleParticipant::corrects(const std::string& word, const TrialPrompt& prompt,
+                                  Exploration& exploration) const {
+  constexpr std::string_view command{"CORRECT"};
+  if (!prompt.previous || !word.starts_with(command)) {
+    return false;
+  }
+  const auto option = number_in(word.substr(command.size()), prompt.previous->options.size());
+  if (!option) {
+    say("  please type correct and a number from 1 to {}\n", prompt.previous->options.size());
+    return true;
+  }
+  const std::shared_future<void> stored = prompt.previous->correct(*option);
+  while (stored.wait_for(std::chrono::seconds{0}) != std::future_status::ready &&
+         exploration.is_running()) {
+    exploration.pass_time(0.01);
+  }
+  try {
+    stored.get();
+    say("  your last answer is now {}\n", prompt.previous->options[*option].label);
+  } catch (const results::StoreError& error) {
+    say("  your last answer is not corrected: {}\n", error.what());
+  }
+  return true;
 }
 
 std::optional<std::size_t> ConsoleParticipant::perform(const TrialPrompt& prompt,
@@ -158,13 +193,13 @@ void ConsoleParticipant::let_script_wait(const TrialPrompt& prompt, std::size_t 
                                          Exploration& exploration) const {
   constexpr double step_s = 0.005;
   constexpr double patience_s = 60.0;
-  const double until_s = exploration.time_s() + patience_s + prompt.explore.min_seconds;
+  const double until_s = exploration.time_s() + patience_s + prompt.block->explore.min_seconds;
   while (!input_.is_terminal() && exploration.is_running() && !stop_was_asked() &&
-         (exploration.contacts(alternative) < prompt.explore.min_contacts ||
-          exploration.time_s() < prompt.explore.min_seconds)) {
+         (exploration.contacts(alternative) < prompt.block->explore.min_contacts ||
+          exploration.time_s() < prompt.block->explore.min_seconds)) {
     if (exploration.time_s() > until_s) {
       say("  the plate was tapped {} of {} times in {:.0f} s: nobody is there\n",
-          exploration.contacts(alternative), prompt.explore.min_contacts, patience_s);
+          exploration.contacts(alternative), prompt.block->explore.min_contacts, patience_s);
       ask_to_stop();
     }
     exploration.pass_time(step_s);
@@ -173,7 +208,7 @@ void ConsoleParticipant::let_script_wait(const TrialPrompt& prompt, std::size_t 
 
 std::optional<std::size_t> ConsoleParticipant::number_of_answer(const TrialPrompt& prompt,
                                                                 Exploration& exploration) {
-  while (const auto word = next_line(exploration)) {
+  while (const auto word = next_line(prompt, exploration)) {
     if (const auto option = number_in(*word, prompt.options.size())) {
       let_script_wait(prompt, 0, exploration);
       return option;
@@ -186,7 +221,7 @@ std::optional<std::size_t> ConsoleParticipant::number_of_answer(const TrialPromp
 std::optional<std::size_t> ConsoleParticipant::chosen_alternative(const TrialPrompt& prompt,
                                                                   Exploration& exploration) {
   const std::vector<std::string>& labels = prompt.alternative_labels;
-  while (const auto word = next_line(exploration)) {
+  while (const auto word = next_line(prompt, exploration)) {
     const bool is_choice = word->starts_with('=');
     const auto alternative = index_of(is_choice ? word->substr(1) : *word, labels);
     if (alternative && is_choice) {

@@ -38,7 +38,9 @@ class ConsoleParticipant final : public Participant {
   // A script cannot be asked to tap first: its next line waits until the plate was touched.
   void let_script_wait(const TrialPrompt& prompt, std::size_t alternative,
                        Exploration& exploration) const;
-  std::optional<std::string> next_line(const Exploration& exploration);
+  std::optional<std::string> next_line(const TrialPrompt& prompt, Exploration& exploration);
+  // "correct 2": whether the word was that.
+  bool corrects(const std::string& word, const TrialPrompt& prompt, Exploration& exploration) const;
   std::optional<std::size_t> number_of_answer(const TrialPrompt& prompt, Exploration& exploration);
   std::optional<std::size_t> chosen_alternative(const TrialPrompt& prompt,
                                                 Exploration& exploration);

@@ -1,5 +1,6 @@
 #pragma once
 #include <functional>
+#include <future>
 #include <map>
 #include <optional>
 #include <string>
@@ -12,13 +13,17 @@ namespace tapstudy::runner {
 struct TrialPrompt {
   int number{};
   int total{};
-  bool is_practice{};
-  const protocols::Task* task{};
-  std::string question;
+  const protocols::Block* block{};
   std::vector<protocols::Option> options;  // the allowed answers
-  protocols::ExploreLimits explore;
   std::vector<std::string>
       alternative_labels;  // to switch among; empty: there is nothing to switch
+  // The participant's last answer, where it may still be corrected.
+  struct Previous {
+    std::vector<protocols::Option> options;
+    // Ready once the correction is stored, or carries the StoreError.
+    std::function<std::shared_future<void>(std::size_t option)> correct;
+  };
+  std::optional<Previous> previous{};
 };
 
 // Why an answer would be too early.
@@ -55,6 +60,8 @@ class Participant {
   virtual std::optional<int> confidence(const protocols::Confidence& /*scale*/) { return {}; }
   // Which answer was right.
   virtual void feedback(bool /*is_correct*/, const std::string& /*right_label*/) {}
+  // Called before a real plate is mounted.
+  virtual void plate_is_changed() {}
   // Called where the device has failed, before the operator sees to it.
   virtual void interrupted() {}
   // Called where the operator ended the trial without an answer.

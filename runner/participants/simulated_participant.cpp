@@ -8,6 +8,7 @@
 #include "core/error.hpp"
 #include "runner/participants/tap_drawing.hpp"
 #include "runner/stimuli/trial_stimuli.hpp"
+#include "runner/trial_loop/simulated_reality.hpp"
 #include "runner/trial_loop/virtual_trial_loop.hpp"
 namespace tapstudy::runner {
 namespace {
@@ -24,21 +25,6 @@ std::vector<std::string> remembered_stimuli(const protocols::Protocol& protocol)
     }
   }
   return names;
-}
-
-// The real counterparts of the stimuli: without a technique of their own, vibrating at their true
-// natural frequencies.
-protocols::Protocol made_real(protocols::Protocol protocol) {
-  protocol.rendering.integrator = core::Integrator::exact;
-  const core::Technique* const reality = protocol.simulation.observer.reality;
-  if (const auto missing = reality->missing(protocol.rendering); !missing.empty()) {
-    throw core::InvalidInput{
-        fmt::format("simulation.observer.reality: '{}' needs {}", reality->name, missing)};
-  }
-  for (protocols::Stimulus& stimulus : protocol.stimuli) {
-    stimulus.technique = reality;
-  }
-  return protocol;
 }
 
 // What this participant is like, among others.
@@ -95,7 +81,7 @@ SimulatedParticipant::SimulatedParticipant(const protocols::Protocol& protocol,
 }
 
 void SimulatedParticipant::remember_real_stimuli(ModelLibrary& models) {
-  const protocols::Protocol reality = made_real(protocol_);
+  const protocols::Protocol reality = with_real_plates(protocol_);
   VirtualTrialLoop world{hand_, settings_, Keep::nothing};
   using Body = std::pair<const core::Plate*, const core::Material*>;
   std::map<Body, std::vector<FeltTap>> felt;
@@ -144,6 +130,6 @@ std::optional<std::size_t> SimulatedParticipant::perform(const TrialPrompt& prom
                                                          Exploration& exploration) {
   const std::size_t alternatives = std::max<std::size_t>(1, prompt.alternative_labels.size());
   Touch touch{*this, alternatives, exploration};
-  return prompt.task->simulated_answer(prompt.options, person_, touch);
+  return prompt.block->task->simulated_answer(*prompt.block, person_, touch);
 }
 }  // namespace tapstudy::runner

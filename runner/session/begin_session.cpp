@@ -38,11 +38,14 @@ void resume(const results::SessionRow& earlier, const protocols::Protocol& proto
         "one; resume with the version that began the session"};
   }
   session.row.resumes = earlier.id;
-  session.filled_forms = store.filled_forms(earlier.participant_id);
+  session.earlier = {store.filled_forms(earlier.participant_id),
+                     PracticeRecord{answers_of(earlier.participant_id, store)}};
   const std::vector<int> answered = store.answered_trials(earlier.participant_id);
   session.done = {answered.begin(), answered.end()};
-  const std::vector<int> given_up = given_up_trials(protocol, earlier.participant_id, store);
-  session.done.insert(given_up.begin(), given_up.end());
+  for (const auto& trials : {given_up_trials(protocol, earlier.participant_id, store),
+                             unneeded_trials(protocol, earlier.participant_id, store)}) {
+    session.done.insert(trials.begin(), trials.end());
+  }
 }
 }  // namespace
 
@@ -67,6 +70,7 @@ BegunSession begin_session(const SessionRequest& request, const protocols::Proto
     plan.participant_index = place.participant_index;
     plan.order_index =
         earlier ? place.order_index : request.order_index.value_or(place.order_index);
+    plan.language = request.language;
     plan.seed = earlier ? earlier->seed : request.seed ? *request.seed : drawn_seed();
     session.schedule = make_schedule(protocol, plan.seed, plan.order_index);
     session.row = session_row(plan, protocol, rig, session.schedule);

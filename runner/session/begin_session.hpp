@@ -8,7 +8,7 @@
 #include "protocols/rig.hpp"
 #include "protocols/schedule.hpp"
 #include "results/store.hpp"
-#include "runner/session/interludes.hpp"
+#include "runner/session/earlier_answers.hpp"
 #include "runner/session/preflight.hpp"
 namespace tapstudy::runner {
 enum class Resume { no, yes };
@@ -20,13 +20,14 @@ struct SessionRequest {
   Resume resume{Resume::no};
   std::optional<std::uint64_t> seed;  // of a new session; drawn if unset
   std::optional<int> order_index;     // of a new participant; the first free one if unset
+  std::string language{"en"};         // of what the participant reads
 };
 
 struct BegunSession {
   results::SessionRow row;  // stored
   protocols::Schedule schedule;
   std::set<int> done;  // numbers of trials that are answered already
-  FilledForms filled_forms{};
+  EarlierAnswers earlier{};
 };
 
 // Starts a new session, or resumes the participant's last one with its trial order; seed and order

@@ -8,8 +8,8 @@ std::vector<std::string> untouched(const TrialPrompt& prompt, std::size_t answer
                                    const Exploration& exploration) {
   std::vector<std::string> labels;
   for (std::size_t i = 0; i < prompt.alternative_labels.size(); ++i) {
-    const bool is_asked_for = prompt.explore.must_visit_all || i == answer;
-    if (is_asked_for && exploration.contacts(i) < prompt.explore.min_contacts) {
+    const bool is_asked_for = prompt.block->explore.must_visit_all || i == answer;
+    if (is_asked_for && exploration.contacts(i) < prompt.block->explore.min_contacts) {
       labels.push_back(prompt.alternative_labels[i]);
     }
   }
@@ -20,7 +20,7 @@ std::vector<std::string> untouched(const TrialPrompt& prompt, std::size_t answer
 std::optional<TooEarly> too_early(const TrialPrompt& prompt, std::size_t answer,
                                   const Exploration& exploration) {
   using Reason = TooEarly::Reason;
-  const protocols::ExploreLimits& limits = prompt.explore;
+  const protocols::ExploreLimits& limits = prompt.block->explore;
   if (prompt.alternative_labels.empty()) {
     if (exploration.contacts(0) < limits.min_contacts) {
       return TooEarly{Reason::plate_untouched, limits.min_contacts};

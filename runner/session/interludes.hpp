@@ -1,19 +1,16 @@
 #pragma once
 #include <functional>
 #include <optional>
-#include <set>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "protocols/protocol.hpp"
 #include "protocols/schedule.hpp"
 #include "results/rows.hpp"
 #include "runner/participants/participant.hpp"
+#include "runner/session/earlier_answers.hpp"
 #include "runner/session/session_states.hpp"
 namespace tapstudy::runner {
-using FilledForms = std::set<std::pair<std::string, std::string>>;  // form, where it was asked
-
 // What comes between the trials of a session: instructions, rests after every so many trials, and
 // questionnaires.
 class Interludes {

@@ -88,8 +88,9 @@ LiveOutcome run_live_session(const LiveSession& live) {
               store, session},
              std::move(device)}
       .run();
-  const std::size_t given_up =
-      given_up_trials(live.protocol, session.row.participant_id, store).size();
-  return {session.schedule.size() - given_up, given_up};
+  const std::string& id = session.row.participant_id;
+  const std::size_t given_up = given_up_trials(live.protocol, id, store).size();
+  const std::size_t unneeded = unneeded_trials(live.protocol, id, store).size();
+  return {session.schedule.size() - given_up - unneeded, given_up};
 }
 }  // namespace tapstudy::runner

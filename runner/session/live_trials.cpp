@@ -61,6 +61,10 @@ std::optional<MaskedTrialLoop> masked(TrialLoop& loop, const LiveTrials::Parts& 
   return std::make_optional<MaskedTrialLoop>(
       loop, *parts.masking, played_noise(parts.live.protocol, parts.live.rig).level_db_fs);
 }
+
+TrialLoop& loop_of(TrialLoop& bare, std::optional<MaskedTrialLoop>& masked) {
+  return masked ? *masked : bare;
+}
 }  // namespace
 
 LiveTrials::LiveTrials(const Parts& parts, std::unique_ptr<SessionDevice> device)
@@ -82,17 +86,17 @@ LiveTrials::LiveTrials(const Parts& parts, std::unique_ptr<SessionDevice> device
                   console_->note_state(change);
                 }
               }},
-      engine_{{parts.live.protocol, parts.models, trial_loop(),
+      masked_idle_loop_{masked(idle_loop_, parts)},
+      real_plates_{parts.live.protocol,
+                   [this](const std::string& task) { return parts_.ask_operator(task); },
+                   loop_of(idle_loop_, masked_idle_loop_)},
+      engine_{{parts.live.protocol, parts.models, loop_of(live_loop_, masked_loop_), real_plates_,
                console_ ? console_->participant() : at_terminal_, desk_, states_},
               recorder_,
-              parts.session.filled_forms} {}
+              parts.session.earlier} {}
 
 double LiveTrials::now_s() const {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begun_).count();
-}
-
-TrialLoop& LiveTrials::trial_loop() {
-  return masked_loop_ ? static_cast<TrialLoop&>(*masked_loop_) : live_loop_;
 }
 
 void LiveTrials::run() {

@@ -16,6 +16,7 @@
 #include "runner/session/trial_engine.hpp"
 #include "runner/trial_loop/live_trial_loop.hpp"
 #include "runner/trial_loop/masked_trial_loop.hpp"
+#include "runner/trial_loop/mounted_plates.hpp"
 namespace tapstudy::runner {
 using AskOperator = std::function<bool(const std::string& task)>;
 
@@ -41,7 +42,6 @@ class LiveTrials {
 
  private:
   double now_s() const;  // from the session's begin
-  TrialLoop& trial_loop();
 
   Parts parts_;
   std::unique_ptr<SessionDevice> device_;
@@ -53,6 +53,9 @@ class LiveTrials {
   ConsoleParticipant at_terminal_;
   std::unique_ptr<Console> console_;  // null: at the terminal
   SessionStates states_;
+  IdleTrialLoop idle_loop_;
+  std::optional<MaskedTrialLoop> masked_idle_loop_;
+  MountedPlates real_plates_;
   TrialEngine engine_;
 };
 }  // namespace tapstudy::runner

@@ -16,11 +16,11 @@ void ask(const TrialInView& view, Exploration& exploration, const SessionParts& 
          Presentation& presentation) {
   const protocols::PlannedTrial& trial = view.trial;
   OperatedExploration operated{exploration, parts.by};
-  LimitedExploration limited{operated, view.prompt.explore};
+  LimitedExploration limited{operated, view.prompt.block->explore};
   // an answer that was accepted in time may be handed over a little later
   constexpr double handover_s = 0.05;
   const double latest_s =
-      view.prompt.explore.max_seconds.value_or(std::numeric_limits<double>::infinity()) +
+      view.prompt.block->explore.max_seconds.value_or(std::numeric_limits<double>::infinity()) +
       handover_s;
   while (const auto option = parts.participant.perform(view.prompt, limited)) {
     if (limited.time_s() > latest_s) {
@@ -48,17 +48,30 @@ void ask(const TrialInView& view, Exploration& exploration, const SessionParts& 
     }
   }
 }
+
+TrialStimuli stimuli_of(const protocols::PlannedTrial& trial, bool is_of_real_plate,
+                        const SessionParts& parts) {
+  if (is_of_real_plate) {
+    parts.participant.plate_is_changed();
+    return parts.real_plates.mount(trial.stimuli.front());
+  }
+  return build_trial_stimuli(parts.protocol, trial.stimuli, parts.models);
+}
 }  // namespace
 
 Presentation present(const TrialInView& trial, const SessionParts& parts) {
-  TrialStimuli stimuli = build_trial_stimuli(parts.protocol, trial.trial.stimuli, parts.models);
+  const bool is_of_real_plate = trial.prompt.block->presented == protocols::Presented::real_plates;
   parts.states.enter(SessionState::ready, trial.trial.number);
-  parts.by.force_is(ForceState::on);  // a device may pull while it gets ready
+  TrialStimuli stimuli = stimuli_of(trial.trial, is_of_real_plate, parts);
+  TrialLoop& loop = is_of_real_plate ? parts.real_plates.loop() : parts.trial_loop;
+  if (!is_of_real_plate) {
+    parts.by.force_is(ForceState::on);  // a device may pull while it gets ready
+  }
   parts.participant.get_ready(trial.prompt);
   Presentation presentation;
   parts.states.enter(SessionState::exploring, trial.trial.number);
   parts.by.trial_begins(trial);
-  presentation.result = parts.trial_loop.run(stimuli.alternatives, [&](Exploration& exploration) {
+  presentation.result = loop.run(stimuli.alternatives, [&](Exploration& exploration) {
     try {
       ask(trial, exploration, parts, presentation);
     } catch (...) {
@@ -66,7 +79,7 @@ Presentation present(const TrialInView& trial, const SessionParts& parts) {
     }
   });
   parts.by.trial_is_over(presentation.request);
-  parts.by.force_is(parts.trial_loop.is_force_off() ? ForceState::off : ForceState::unknown);
+  parts.by.force_is(loop.is_force_off() ? ForceState::off : ForceState::unknown);
   if (presentation.result.loop.stop == device::StopOutcome::unconfirmed) {
     warn(device::force_may_be_on);  // before anything else can fail
   }

@@ -8,6 +8,7 @@
 #include "runner/session/session_states.hpp"
 #include "runner/session/trial_record.hpp"
 #include "runner/stimuli/model_library.hpp"
+#include "runner/trial_loop/real_plates.hpp"
 #include "runner/trial_loop/trial_loop.hpp"
 namespace tapstudy::runner {
 // What came of presenting a trial once.
@@ -26,6 +27,7 @@ struct SessionParts {
   const protocols::Protocol& protocol;
   ModelLibrary& models;
   TrialLoop& trial_loop;
+  RealPlates& real_plates;
   Participant& participant;
   Operator& by;
   SessionStates& states;

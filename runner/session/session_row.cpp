@@ -32,6 +32,7 @@ results::SessionRow session_row(const SessionPlan& plan, const protocols::Protoc
   session.mode = plan.mode;
   session.seed = plan.seed;
   session.planned_order = protocols::described(schedule);
+  session.language = plan.language;
   session.rate_hz = protocol.rate_hz;
   session.rig_text = rig.text;
   session.device = plan.device;

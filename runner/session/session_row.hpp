@@ -18,8 +18,9 @@ struct SessionPlan {
   results::Mode mode{};
   std::uint64_t seed{};
   std::string device;
-  std::string scheduler;  // real-time facilities granted
-  std::string doctor;     // diagnosis of the machine, JSON
+  std::string scheduler;   // real-time facilities granted
+  std::string doctor;      // diagnosis of the machine, JSON
+  std::string language{};  // of what the participant reads
 };
 results::SessionRow session_row(const SessionPlan& plan, const protocols::Protocol& protocol,
                                 const protocols::Rig& rig, const protocols::Schedule& schedule);

@@ -17,8 +17,8 @@ struct Row {
 
 // Between two trials anything may come that is not part of one.
 const std::vector<SessionState>& between_trials() {
-  static const std::vector<SessionState> states{instructions, resting, form, ready,
-                                                paused,       stopped, ended};
+  static const std::vector<SessionState> states{instructions, resting,   form,    ready,
+                                                paused,       practised, stopped, ended};
   return states;
 }
 std::vector<SessionState> between_trials_or(SessionState one, SessionState other) {
@@ -27,8 +27,8 @@ std::vector<SessionState> between_trials_or(SessionState one, SessionState other
   return states;
 }
 
-const std::array<Row, 16>& table() {
-  static const std::array<Row, 16> rows{
+const std::array<Row, 17>& table() {
+  static const std::array<Row, 17> rows{
       {{begun, "begun", between_trials()},
        {instructions, "instructions", between_trials()},
        {resting, "resting", between_trials()},
@@ -44,6 +44,7 @@ const std::array<Row, 16>& table() {
        {skipped, "skipped", between_trials()},
        {paused, "paused", between_trials()},
        {feedback, "feedback", between_trials()},
+       {practised, "practised", between_trials()},
        {faulted, "faulted", between_trials()},
        {stopped, "stopped", {}},
        {ended, "ended", {}}}};

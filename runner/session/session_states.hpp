@@ -22,6 +22,7 @@ enum class SessionState {
   skipped,    // stored without an answer: at the operator's request
   paused,     // by the operator; a running trial is stored and presented again
   feedback,
+  practised,  // a practice block is over, its criterion met or not
   faulted,
   stopped,
   ended

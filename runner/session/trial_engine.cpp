@@ -69,6 +69,11 @@ std::optional<Interruption> TrialEngine::run_all(const protocols::Schedule& sche
     stop_if_asked();
     const PlannedTrial trial = waiting.front();
     waiting.pop_front();
+    if (practice_.is_over(trial)) {
+      done_trials.insert(trial.number);
+      continue;
+    }
+    practice_.check(trial);
     interludes_.before(trial);
     const Outcome outcome = run_until_it_counts(trial, static_cast<int>(schedule.size()));
     if (outcome.is_requeued) {
@@ -89,10 +94,21 @@ std::optional<Interruption> TrialEngine::run_all(const protocols::Schedule& sche
 
 TrialPrompt TrialEngine::prompt_of(const PlannedTrial& trial, int total) const {
   const protocols::Block& block = parts_.protocol.block(trial.block);
-  return {trial.number,      total,
-          trial.is_practice, trial.task,
-          block.question,    trial.task->options(block, parts_.protocol),
-          block.explore,     trial.task->alternative_labels(trial)};
+  return {trial.number,
+          total,
+          &block,
+          trial.task->options(block, parts_.protocol),
+          trial.task->alternative_labels(trial),
+          correctable()};
+}
+
+std::optional<TrialPrompt::Previous> TrialEngine::correctable() const {
+  if (!last_answer_ || !parts_.protocol.block(last_answer_->trial.block).allows_correction) {
+    return std::nullopt;
+  }
+  return TrialPrompt::Previous{last_answer_->options, [this](std::size_t option) {
+                                 return parts_.by.participant_corrects(option);
+                               }};
 }
 
 TrialEngine::Outcome TrialEngine::run_until_it_counts(const PlannedTrial& trial, int total) {
@@ -166,7 +182,7 @@ void TrialEngine::give_feedback(const PlannedTrial& trial, const TrialPrompt& pr
                                 const std::string& response) {
   const protocols::Block& block = parts_.protocol.block(trial.block);
   const auto is_right = [&](const std::string& other) {
-    return trial.task->is_correct(trial, other).value_or(false);
+    return trial.task->is_correct(trial, block, other).value_or(false);
   };
   for (std::size_t i = 0; i < prompt.options.size(); ++i) {
     if (is_right(trial.task->response(trial, block, i))) {
@@ -206,9 +222,9 @@ void TrialEngine::store(const PlannedTrial& trial, Presentation presentation, En
     parts_.states.enter(*state, trial.number, core::to_text(fault));
   }
   auto record = std::make_shared<results::TrialRecord>(
-      trial_record(parts_.states.session_id(), trial, ++attempts_[trial.number],
-                   status_of(ending, presentation.answer.has_value()), presentation.answer,
-                   std::move(presentation.result)));
+      trial_record(parts_.states.session_id(), trial, parts_.protocol.block(trial.block),
+                   ++attempts_[trial.number], status_of(ending, presentation.answer.has_value()),
+                   presentation.answer, std::move(presentation.result)));
   record->session_events = parts_.states.take_events();
   save(record);
   if (presentation.failure) {
@@ -256,11 +272,13 @@ TrialEngine::Outcome TrialEngine::run_trial(const PlannedTrial& trial, int total
     case Ending::answered:
       break;
   }
-  parts_.by.answer_is_stored({trial, prompt.options, answer->response});
+  last_answer_ = AnswerInView{trial, prompt.options, answer->response};
+  parts_.by.answer_is_stored(*last_answer_);
   parts_.participant.saved(prompt);
   if (block.gives_feedback) {
     give_feedback(trial, prompt, answer->response);
   }
+  practice_.add(trial, answer->response);
   return {};
 }
 }  // namespace tapstudy::runner

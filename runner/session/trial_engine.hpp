@@ -12,6 +12,7 @@
 #include "results/recorder.hpp"
 #include "runner/participants/participant.hpp"
 #include "runner/session/interludes.hpp"
+#include "runner/session/practice.hpp"
 #include "runner/session/presentation.hpp"
 #include "runner/session/session_states.hpp"
 #include "runner/session/trial_ending.hpp"
@@ -32,14 +33,14 @@ std::string to_text(const Interruption& interruption);
 // the participant explores, and stores the complete trial.
 class TrialEngine {
  public:
-  // filled_forms: those that an earlier session has the answers to.
   TrialEngine(const SessionParts& parts, results::Recorder& recorder,
-              const FilledForms& filled_forms = {})
+              const EarlierAnswers& earlier = {})
       : parts_{parts},
         interludes_{{parts.protocol, parts.participant, parts.states,
                      [this](std::vector<results::FormAnswerRow> rows) { save(std::move(rows)); },
                      [this] { wait_while_paused(); }},
-                    filled_forms},
+                    earlier.filled_forms},
+        practice_{parts.protocol, parts.states, earlier.practice},
         recorder_{recorder} {}
 
   // Runs the trials not in `done`, adding each, until all are done or a fault ends one; called
@@ -72,10 +73,13 @@ class TrialEngine {
   // Until it succeeds, or the operator gives up: then throws StoreError.
   void retry(const std::function<void()>& write);
   TrialPrompt prompt_of(const protocols::PlannedTrial& trial, int total) const;
+  std::optional<TrialPrompt::Previous> correctable() const;
 
   SessionParts parts_;
   Interludes interludes_;
+  Practice practice_;
   results::Recorder& recorder_;
+  std::optional<AnswerInView> last_answer_;
   std::map<int, int> attempts_;  // by the trial's number
   std::map<int, int> repeats_after_late_impacts_;
   std::int64_t ticks_{0};

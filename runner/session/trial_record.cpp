@@ -8,9 +8,11 @@ std::optional<double> first_contact_s(const std::vector<results::EventRow>& even
   return contact == events.end() ? std::nullopt : std::optional{contact->t_s};
 }
 
-results::ResponseRow response_row(const protocols::PlannedTrial& trial, const Answer& answer,
+results::ResponseRow response_row(const protocols::PlannedTrial& trial,
+                                  const protocols::Block& block, const Answer& answer,
                                   const std::vector<results::EventRow>& events) {
-  results::ResponseRow response{answer.response, trial.task->is_correct(trial, answer.response),
+  results::ResponseRow response{answer.response,
+                                trial.task->is_correct(trial, block, answer.response),
                                 answer.response_time_s, std::nullopt, answer.confidence};
   if (const auto contact_s = first_contact_s(events)) {
     response.time_from_first_contact_s = answer.response_time_s - *contact_s;
@@ -20,7 +22,7 @@ results::ResponseRow response_row(const protocols::PlannedTrial& trial, const An
 }  // namespace
 
 results::TrialRecord trial_record(std::int64_t session_id, const protocols::PlannedTrial& trial,
-                                  int attempt, std::string status,
+                                  const protocols::Block& block, int attempt, std::string status,
                                   const std::optional<Answer>& answer, TrialResult result) {
   results::TrialRecord record;
   record.trial = {session_id,
@@ -31,14 +33,16 @@ results::TrialRecord trial_record(std::int64_t session_id, const protocols::Plan
                   trial.is_practice,
                   trial.repetition,
                   std::move(status),
-                  result.trace.duration_s};
+                  result.trace.duration_s,
+                  trial.is_catch,
+                  block.presented == protocols::Presented::real_plates};
   const std::vector<std::string> labels = trial.task->alternative_labels(trial);
   for (std::size_t i = 0; i < trial.stimuli.size(); ++i) {
     record.alternatives.push_back(
         {static_cast<int>(i), labels.empty() ? std::string{} : labels[i], trial.stimuli[i]});
   }
   if (answer) {
-    record.response = response_row(trial, *answer, result.trace.events);
+    record.response = response_row(trial, block, *answer, result.trace.events);
   }
   record.statistics = {result.trace.ticks,
                        result.loop.late,

@@ -12,6 +12,6 @@ struct Answer {
 };
 // A trial as the store takes it; its status is a TrialRow's.
 results::TrialRecord trial_record(std::int64_t session_id, const protocols::PlannedTrial& trial,
-                                  int attempt, std::string status,
+                                  const protocols::Block& block, int attempt, std::string status,
                                   const std::optional<Answer>& answer, TrialResult result);
 }  // namespace tapstudy::runner

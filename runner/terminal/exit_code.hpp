@@ -16,4 +16,10 @@ class Stopped : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
+
+// A participant did not get through practice, without which the protocol lets nobody go on.
+class PracticeMissed : public Stopped {
+ public:
+  using Stopped::Stopped;
+};
 }  // namespace tapstudy::runner

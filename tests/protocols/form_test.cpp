@@ -10,7 +10,7 @@ FormItem item(ItemKind kind) {
   one.steps = 5;
   one.min = 18;
   one.max = 99;
-  one.options = {"left", "right"};
+  one.options = {{"left", "links"}, {"right", "rechts"}};
   return one;
 }
 bool takes(const FormItem& one, const std::string& answer) {

@@ -37,6 +37,34 @@ TEST_CASE("every plate is presented as often as the protocol says", "[protocols]
   }
 }
 
+TEST_CASE("catch trials lie anywhere but first, and stay there in every other draw of the order",
+          "[protocols][schedule]") {
+  protocols::Protocol protocol = paper("discrimination.yaml");
+  protocol.blocks[0].catch_trials = protocols::CatchTrials{2, {{"mdf_two", "mdf_two"}}};
+  CHECK(planned_trials(protocol.blocks[0]) == 10);
+  const auto places = [&](std::uint64_t seed, int order_index) {
+    const auto schedule = make_schedule(protocol, seed, order_index);
+    std::pair<int, int> found{-1, -1};
+    for (std::size_t i = 0; i < schedule.size(); ++i) {
+      if (schedule[i].is_catch) {
+        (found.first < 0 ? found.first : found.second) = static_cast<int>(i);
+      }
+    }
+    return found;
+  };
+  std::map<std::pair<int, int>, int> seen;
+  constexpr int participants = 7200;
+  for (int i = 0; i < participants; ++i) {
+    ++seen[places(1, i)];
+  }
+  CHECK(places(1, 3) == places(2, 3));
+  CHECK(seen.size() == 36);  // pairs of nine places
+  for (const auto& [pair, count] : seen) {
+    CHECK(pair.first > 0);
+    CHECK(count == Approx(participants / 36.0).margin(4.5 * std::sqrt(participants / 36.0)));
+  }
+}
+
 TEST_CASE("the same seed gives the same order, another seed another", "[protocols][schedule]") {
   const protocols::Protocol protocol = paper("discrimination.yaml");
   const auto order = [&](std::uint64_t seed) {

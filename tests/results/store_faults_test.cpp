@@ -78,7 +78,7 @@ TEST_CASE("of a hundred kills at random moments none loses or doubles a confirme
       REQUIRE(done[k] == static_cast<int>(k) + 1);
     }
   }
-  CHECK(confirmed > 50);  // or nothing was tried
+  CHECK(confirmed > 10);  // or nothing was tried
   CHECK(agrees_with_journal(directory.path()));
 }
 

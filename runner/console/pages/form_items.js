@@ -20,8 +20,8 @@ const likert = (item) => radios(steps({ count: item.steps, low: item.low, high: 
 
 function singleChoice(item) {
   const group = newGroupName();
-  const cards = item.options.map((label, index) => radioCard({ group, value: index, label }));
-  return radios(el("div", { className: "options" }, ...cards), (index) => item.options[Number(index)]);
+  const cards = item.options.map(({ label }, index) => radioCard({ group, value: index, label }));
+  return radios(el("div", { className: "options" }, ...cards), (index) => item.options[Number(index)].name);
 }
 
 // A visual analogue scale: without a mark until it is touched.

@@ -45,10 +45,10 @@ function setBusy(isBusy) {
 
 const send = (action, value) => outbox.send({ screen: screen.number, action, value });
 
-// Switching neither waits for an answer nor blocks one. A press that crossed a new screen of the
-// same trial is sent once more.
-async function feel(alternative) {
-  const input = () => ({ screen: screen.number, action: "switch", value: alternative });
+// What is neither an answer nor waits for one. A press that crossed a new screen of the same trial
+// is sent once more.
+async function actBeside(action, value, failed) {
+  const input = () => ({ screen: screen.number, action, value });
   const before = shown;
   try {
     const first = input();
@@ -56,9 +56,11 @@ async function feel(alternative) {
     if (!verdict.accepted && shown === before && screen.number !== first.screen) verdict = await post(input());
     if (!verdict.accepted && shown === before) say(word("not_accepted", { why: verdict.why ?? "" }));
   } catch {
-    say(word("not_switched"));
+    say(word(failed));
   }
 }
+const feel = (alternative) => actBeside("switch", alternative, "not_switched");
+const correct = (option) => actBeside("correct", option, "correction_failed");
 
 function identity({ kind, number, trial, form }) {
   if (kind === "trial") return JSON.stringify([kind, trial.number, trial.question, trial.options, trial.alternatives]);
@@ -82,7 +84,7 @@ function settle() {
 
 function mount(key) {
   shown?.leave?.();
-  shown = (makers[screen.kind] ?? textScreen)(screen, { send, feel, say });
+  shown = (makers[screen.kind] ?? textScreen)(screen, { send, feel, correct, say });
   shown.key = key;
   byId("screen").replaceChildren(shown.element);
   window.scrollTo(0, 0);

@@ -43,7 +43,17 @@ function showCurrent(element, current) {
   });
 }
 
-export function trialScreen({ trial }, { send, feel, say }) {
+// The last answer, as long as it may be corrected.
+function lastAnswer(labels, correct) {
+  const buttons = labels.map((label, index) =>
+    el("button", { type: "button", onclick: () => correct(index) }, label));
+  return el("details", { className: "previous" },
+    el("summary", {}, word("correct_last")),
+    el("p", { className: "hint" }, word("correct_last_hint")),
+    el("div", { className: "options" }, ...buttons));
+}
+
+export function trialScreen({ trial }, { send, feel, correct, say }) {
   const labels = trial.alternatives ?? [];
   let current = trial.current;
   const feelOther = (index) => { if (index !== current) feel(index); };
@@ -56,6 +66,7 @@ export function trialScreen({ trial }, { send, feel, say }) {
     say,
     send: (value) => send("answer", Number(value)),
   });
+  if (trial.previous) asked.element.append(lastAnswer(trial.previous, correct));
   showCurrent(asked.element, current);
 
   function press(key) {
@@ -66,6 +77,9 @@ export function trialScreen({ trial }, { send, feel, say }) {
   }
   function update(screen) {
     current = screen.trial.current;
+    if (!screen.trial.correction) return showCurrent(asked.element, current);
+    asked.element.querySelector(".previous")?.removeAttribute("open");
+    say(word(`correction_${screen.trial.correction}`));
     showCurrent(asked.element, current);
   }
   return { ...asked, press, update };

@@ -7,6 +7,7 @@
 #include "results/recorder.hpp"
 #include "runner/session/session_row.hpp"
 #include "runner/session/trial_engine.hpp"
+#include "support/no_real_plates.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;
 using namespace tapstudy::runner;
@@ -91,7 +92,8 @@ struct Attended {
     SessionStates states{session.id, now_s};
     OperatorDesk desk{{protocol, session.id, false, now_s}, recorder};
     participant.desk = &desk;
-    TrialEngine engine{{protocol, models, loop, participant, desk, states}, recorder};
+    testing::NoRealPlates no_plates;
+    TrialEngine engine{{protocol, models, loop, no_plates, participant, desk, states}, recorder};
     CHECK_FALSE(engine.run(schedule, done));
     if (after) {
       after(desk);

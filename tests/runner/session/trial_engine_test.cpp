@@ -8,6 +8,7 @@
 #include "protocols/read_protocol.hpp"
 #include "results/store.hpp"
 #include "runner/session/session_row.hpp"
+#include "support/no_real_plates.hpp"
 #include "support/processes.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;
@@ -74,7 +75,9 @@ struct Study {
     results::Recorder recorder{store};
     runner::SessionStates states{session.id, [] { return 0.0; }};
     runner::Operator nobody;
-    runner::TrialEngine engine{{protocol, models, loop, participant, nobody, states}, recorder};
+    testing::NoRealPlates no_plates;
+    runner::TrialEngine engine{{protocol, models, loop, no_plates, participant, nobody, states},
+                               recorder};
     CHECK_FALSE(engine.run(schedule, done));
     CHECK(done.size() == schedule.size());
   }
@@ -170,7 +173,9 @@ struct HastySession {
       runner::ModelLibrary models;
       runner::SessionStates states{session.id, [] { return 0.0; }};
       runner::Operator nobody;
-      runner::TrialEngine engine{{protocol, models, loop, participant, nobody, states}, recorder};
+      testing::NoRealPlates no_plates;
+      runner::TrialEngine engine{{protocol, models, loop, no_plates, participant, nobody, states},
+                                 recorder};
       CHECK_FALSE(engine.run(protocols::make_schedule(protocol, 1, 0), done));
     }
     answers = store.answers();

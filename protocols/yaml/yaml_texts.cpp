@@ -1,0 +1,140 @@
+// Texts, in one language or in several.
+#include <fmt/format.h>
+#include <yaml-cpp/yaml.h>
+
+#include <algorithm>
+
+#include "protocols/yaml/yaml_reader.hpp"
+#include "protocols/yaml/yaml_words.hpp"
+namespace tapstudy::protocols {
+bool is_language(const std::string& text) {
+  const auto is_small_letter = [](char c) { return c >= 'a' && c <= 'z'; };
+  return text.size() == 2 && std::ranges::all_of(text, is_small_letter);
+}
+
+std::vector<std::string> texts_without(const std::string& language,
+                                       const Translations& translations) {
+  std::vector<std::string> paths;
+  for (const auto& [path, languages] : translations.given) {
+    if (!languages.empty() && std::ranges::find(languages, language) == languages.end()) {
+      paths.push_back(path);
+    }
+  }
+  return paths;
+}
+
+std::string MapReader::text_at(const YAML::Node& node, const std::string& path, Lines lines) {
+  if (lines == Lines::several && node.IsScalar()) {
+    return node.Scalar();
+  }
+  if (!node.IsScalar() || node.Scalar().empty() || has_control_characters(node.Scalar())) {
+    reject_at(node, path,
+              fmt::format("{} is not {}", kind_of(node),
+                          lines == Lines::one ? "one line of text" : "text"));
+    return "";
+  }
+  return node.Scalar();
+}
+
+std::string MapReader::text(const std::string& key, const std::optional<std::string>& otherwise) {
+  const auto node = find(key, !otherwise);
+  return node ? text_at(*node, path_of(key), Lines::one) : otherwise.value_or("");
+}
+
+std::string MapReader::paragraphs(const std::string& key,
+                                  const std::optional<std::string>& otherwise) {
+  const auto node = find(key, !otherwise);
+  return node ? text_at(*node, path_of(key), Lines::several) : otherwise.value_or("");
+}
+
+std::vector<std::pair<std::string, std::string>> MapReader::languages_at(const YAML::Node& node,
+                                                                         const std::string& path,
+                                                                         Lines lines) {
+  if (!node.IsMap()) {
+    return {{"", text_at(node, path, lines)}};
+  }
+  std::vector<std::pair<std::string, std::string>> texts;
+  for (const auto& entry : node) {
+    const std::string language = entry.first.IsScalar() ? entry.first.Scalar() : "";
+    if (!is_language(language)) {
+      reject_at(entry.first, path,
+                fmt::format("{} is not a language (two small letters, such as en)",
+                            kind_of(entry.first)));
+    } else if (std::ranges::find(texts, language, &decltype(texts)::value_type::first) !=
+               texts.end()) {
+      reject_at(entry.first, path, fmt::format("'{}' is there twice", language));
+    } else {
+      texts.emplace_back(language, text_at(entry.second, path + "." + language, lines));
+    }
+  }
+  if (texts.empty()) {
+    reject_at(node, path, "has a text in no language");
+    texts.emplace_back("", "");
+  }
+  return texts;
+}
+
+std::string MapReader::translation_at(const YAML::Node& node, const std::string& path,
+                                      Lines lines) {
+  const auto texts = languages_at(node, path, lines);
+  if (translations_ == nullptr) {
+    return texts.front().second;
+  }
+  std::vector<std::string>& given = translations_->given[path];
+  for (const auto& [language, text] : texts) {
+    if (!language.empty()) {
+      given.push_back(language);
+    }
+  }
+  const auto wanted =
+      std::ranges::find(texts, translations_->language, &decltype(texts)::value_type::first);
+  return (wanted == texts.end() ? texts.front() : *wanted).second;
+}
+
+std::string MapReader::translated(const std::string& key,
+                                  const std::optional<std::string>& otherwise) {
+  const auto node = find(key, !otherwise);
+  return node ? translation_at(*node, path_of(key), Lines::one) : otherwise.value_or("");
+}
+
+std::string MapReader::translated_paragraphs(const std::string& key,
+                                             const std::optional<std::string>& otherwise) {
+  const auto node = find(key, !otherwise);
+  return node ? translation_at(*node, path_of(key), Lines::several) : otherwise.value_or("");
+}
+
+std::vector<std::pair<std::string, std::string>> MapReader::translated_list(
+    const std::string& key) {
+  std::vector<std::pair<std::string, std::string>> all;
+  const auto node = find(key, true);
+  if (node && (!node->IsSequence() || node->size() == 0)) {
+    reject_at(*node, path_of(key), "is not a list of texts");
+    return all;
+  }
+  for (std::size_t i = 0; node && i < node->size(); ++i) {
+    const YAML::Node item = (*node)[i];
+    const std::string path = fmt::format("{}[{}]", path_of(key), i);
+    const std::string name = languages_at(item, path, Lines::one).front().second;
+    if (std::ranges::find(all, name, &decltype(all)::value_type::first) != all.end()) {
+      reject_at(item, path, fmt::format("'{}' is listed twice", name));
+    } else {
+      all.emplace_back(name, translation_at(item, path, Lines::one));
+    }
+  }
+  return all;
+}
+
+void MapReader::each_translated(
+    const std::string& key, Presence presence,
+    const std::function<void(const std::string&, const std::string&)>& take) {
+  map(key, presence, [&](MapReader& texts) {
+    texts.has_free_names_ = true;
+    for (const auto& entry : *texts.node_) {
+      if (texts.check_name(entry.first, path_of(key))) {
+        const std::string name = entry.first.Scalar();
+        take(name, texts.translated(name));
+      }
+    }
+  });
+}
+}  // namespace tapstudy::protocols

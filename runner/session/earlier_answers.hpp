@@ -1,0 +1,15 @@
+#pragma once
+#include <set>
+#include <string>
+#include <utility>
+
+#include "runner/session/practice_record.hpp"
+namespace tapstudy::runner {
+using FilledForms = std::set<std::pair<std::string, std::string>>;  // form, where it was asked
+
+// What a participant has answered in earlier sessions that a new one depends on.
+struct EarlierAnswers {
+  FilledForms filled_forms{};
+  PracticeRecord practice{};
+};
+}  // namespace tapstudy::runner

@@ -1,0 +1,25 @@
+#pragma once
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "protocols/protocol.hpp"
+#include "results/rows.hpp"
+namespace tapstudy::runner {
+// How well a participant has answered the practice blocks that have a criterion.
+class PracticeRecord {
+ public:
+  PracticeRecord() = default;
+  // Of earlier sessions: the participant's answers, of whatever blocks.
+  explicit PracticeRecord(std::vector<results::AnswerRow> answers);
+  void add(const std::string& block, bool is_correct) { answers_[block].push_back(is_correct); }
+  // Whether the block's criterion was met at any time; false if it has none.
+  bool is_met(const protocols::Block& block) const;
+  // "7 of the last 8 right".
+  std::string latest(const protocols::Block& block) const;
+
+ private:
+  std::map<std::string, std::vector<bool>> answers_;  // in the order given
+};
+}  // namespace tapstudy::runner

@@ -1,0 +1,121 @@
+// Practice to a criterion, real plates, a factor that is asked for, catch trials, corrections.
+#include <catch2/catch.hpp>
+
+#include "support/processes.hpp"
+#include "support/texts.hpp"
+using namespace tapstudy;
+using Catch::Matchers::Contains;
+using testing::TempDirectory;
+
+namespace {
+const std::string study = testing::source("tests/data/material_study.yaml");
+
+testing::ProgramResult session(const TempDirectory& directory, const std::string& input,
+                               const std::vector<std::string>& more = {}) {
+  std::vector<std::string> line{"run", study, "--participant", "P01", "--out", directory / "study"};
+  line.insert(line.end(), more.begin(), more.end());
+  return testing::tapstudy(line, input);
+}
+std::string sql(const TempDirectory& directory, const std::string& query) {
+  return testing::run_program({"/usr/bin/sqlite3", (directory / "study") + "/study.db", query})
+      .standard_output;
+}
+const std::string practised = "2\n2\n2\n2\n1\n";  // right is every second, then two in a row
+const std::string controlled = "\n1\n\n2\n";      // each plate is mounted first
+}  // namespace
+
+TEST_CASE("practice ends with the answer that meets its criterion", "[end_to_end][threads]") {
+  const TempDirectory directory;
+  session(directory, "1\n2\n");
+  CHECK(sql(directory, "SELECT count(*) FROM trial WHERE is_practice AND status = 'answered'") ==
+        "2\n");
+  CHECK(sql(directory, "SELECT detail FROM session_event WHERE state = 'practised'") ==
+        "practice: met, 2 of the last 2 right\n");
+  CHECK(sql(directory, "SELECT max(number) FROM session_event") == "7\n");  // the next block
+  session(directory, "\n1\n", {"--resume"});
+  CHECK(sql(directory, "SELECT count(*) FROM trial WHERE is_practice AND status = 'answered'") ==
+        "2\n");  // in a later session too
+}
+
+TEST_CASE("a simulated participant who misses a criterion that had to be met leaves the study",
+          "[end_to_end]") {
+  const TempDirectory directory;
+  const std::string hard = directory / "hard.yaml";
+  testing::write(hard, testing::replaced(testing::contents(study), "correct: 2, of_last: 2",
+                                         "correct: 6, of_last: 6"));
+  const auto result = testing::tapstudy(
+      {"simulate", hard, "--participants", "8", "--seed", "3", "--out", directory / "study"});
+  REQUIRE(result.exit_code == 0);
+  CHECK(sql(directory, "SELECT count(DISTINCT session_id) FROM trial WHERE is_practice") == "8\n");
+  // who stays has answered all six right, and nobody else
+  CHECK(sql(directory,
+            "SELECT count(*) FROM (SELECT session_id FROM trial "
+            "JOIN current_response USING (trial_id) GROUP BY session_id "
+            "HAVING (sum(is_practice AND is_correct) = 6) <> (max(is_practice = 0) = 1))") ==
+        "0\n");
+}
+
+TEST_CASE("a session ends where a criterion that had to be met was not", "[end_to_end][threads]") {
+  const TempDirectory directory;
+  const auto result = session(directory, "2\n1\n2\n1\n2\n1\n");
+  CHECK(result.exit_code == 130);
+  CHECK_THAT(result.standard_error, Contains("practice: not met, 0 of the last 2 right"));
+  CHECK(session(directory, "", {"--resume"}).exit_code == 130);
+  CHECK(sql(directory, "SELECT count(*) FROM trial WHERE NOT is_practice") == "0\n");
+}
+
+TEST_CASE("the whole study is stored: real plates as real, catch trials as such, corrections",
+          "[end_to_end][threads]") {
+  const TempDirectory directory;
+  const auto result =
+      session(directory, practised + controlled + "1\n1\ncorrect 2\ncorrect 9\n1\n2\n2\n",
+              {"--language", "de"});
+  INFO(result.standard_error);
+  REQUIRE(result.exit_code == 0);
+  CHECK_THAT(result.standard_error, Contains("Welche Platte ist es?") && Contains("Holzfaser"));
+  CHECK_THAT(result.standard_error, Contains("mount the real plate 'soft_small'"));
+  CHECK_THAT(result.standard_output, Contains("all 12 trials"));  // one practice trial not needed
+  CHECK(sql(directory,
+            "SELECT block, presented, count(*) FROM trial GROUP BY block, presented "
+            "ORDER BY min(number)") == "practice|virtual|5\ncontrol|real|2\nmaterial|virtual|5\n");
+  CHECK(sql(directory,
+            "SELECT sum(ticks) FROM tick_statistics JOIN trial USING (trial_id) "
+            "WHERE presented = 'real'") == "0\n");
+  CHECK(sql(directory, "SELECT count(*) FROM trial WHERE is_catch AND block = 'material'") ==
+        "1\n");
+  CHECK(sql(directory,
+            "SELECT number, response, given_by FROM current_response "
+            "JOIN trial USING (trial_id) WHERE supersedes IS NOT NULL") ==
+        "10|acrylic|participant\n");
+  CHECK(sql(directory, "SELECT language FROM session") == "de\n");
+  const auto journal = testing::contents((directory / "study") + "/answers.journal");
+  CHECK_THAT(journal, Contains("\"is_of_real_plate\":true") && Contains("\"is_catch\":true") &&
+                          Contains("\"given_by\":\"participant\""));
+}
+
+TEST_CASE("a factor that is asked for is reported as a matrix of stimuli by levels",
+          "[end_to_end]") {
+  const TempDirectory directory;
+  const std::string easy = directory / "easy.yaml";
+  testing::write(easy,
+                 testing::replaced(testing::contents(study), "otherwise: end", "otherwise: go_on"));
+  REQUIRE(testing::tapstudy({"simulate", easy, "--participants", "2", "--seed", "1", "--out",
+                             directory / "study"})
+              .exit_code == 0);
+  const auto report = testing::tapstudy({"report", directory / "study"});
+  INFO(report.standard_output + report.standard_error);
+  REQUIRE(report.exit_code == 0);
+  const auto table = testing::contents((directory / "study") + "/material_confusion.csv");
+  CHECK_THAT(table, Contains(",mdf,acrylic\n") && Contains("soft_held"));
+  // four ordinary trials of each of two participants; the catch trial is in no result
+  CHECK(sql(directory,
+            "SELECT sum(is_correct) FROM current_response JOIN trial USING (trial_id) "
+            "WHERE block = 'material' AND NOT is_catch AND response = CASE WHEN "
+            "(SELECT stimulus FROM alternative AS a WHERE a.trial_id = trial.trial_id) "
+            "LIKE 'soft%' THEN 'mdf' ELSE 'acrylic' END") ==
+        sql(directory,
+            "SELECT sum(is_correct) FROM current_response JOIN trial USING (trial_id) "
+            "WHERE block = 'material' AND NOT is_catch"));
+  CHECK_THAT(report.standard_output,
+             Contains("/8 = ") && Contains("chance 50 %") && Contains("real plates"));
+}

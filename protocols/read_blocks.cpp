@@ -37,10 +37,17 @@ std::vector<std::string> task_names() {
   return names;
 }
 
-ExploreLimits read_explore(MapReader& block) {
+// How often a real plate is touched is not measured.
+ExploreLimits read_explore(MapReader& block, Presented presented) {
   ExploreLimits limits;
+  if (presented == Presented::real_plates) {
+    limits.min_contacts = 0;
+  }
   block.map("explore", Presence::optional, [&](MapReader& reader) {
     limits.min_contacts = reader.integer("min_contacts", 0, 1000, limits.min_contacts);
+    if (presented == Presented::real_plates && limits.min_contacts > 0) {
+      reader.reject("min_contacts", "is 0 with real plates: their contacts are not measured");
+    }
     limits.must_visit_all = reader.yes_or_no("visit_all", limits.must_visit_all);
     limits.min_seconds = reader.number("min_seconds", {0.0, 3600.0}, limits.min_seconds);
     if (reader.has("max_seconds")) {
@@ -134,11 +141,8 @@ void check_criterion(MapReader& reader, const Block& block) {
   }
 }
 
-// A body can be mounted only as it is, and how often it is touched is not measured.
-void read_presented(MapReader& reader, const Protocol& protocol, Block& block) {
-  block.presented = reader.one_of<Presented>(
-      "presented", {{"virtual", Presented::virtual_plates}, {"real", Presented::real_plates}},
-      "virtual");
+// A body can be mounted only as it is.
+void check_presented(MapReader& reader, const Protocol& protocol, const Block& block) {
   if (block.presented == Presented::virtual_plates) {
     return;
   }
@@ -147,10 +151,6 @@ void read_presented(MapReader& reader, const Protocol& protocol, Block& block) {
                                            "plates are mounted one at a time",
                                            block.task->name()));
   }
-  if (reader.has("explore") && block.explore.min_contacts > 0) {
-    reader.reject("explore", "min_contacts is 0 with real plates: their contacts are not measured");
-  }
-  block.explore.min_contacts = 0;
   std::map<std::pair<const Plate*, const Material*>, std::string> stimulus_of;
   for (const std::string& name : block.stimuli) {
     const auto stimulus = std::ranges::find(protocol.stimuli, name, &Stimulus::name);
@@ -185,9 +185,12 @@ Block read_block(MapReader& reader, const Protocol& protocol) {
   if (block.task != nullptr && block.task->uses_order()) {
     block.constraints = read_constraints(reader);
   }
-  block.explore = read_explore(reader);
+  block.presented = reader.one_of<Presented>(
+      "presented", {{"virtual", Presented::virtual_plates}, {"real", Presented::real_plates}},
+      "virtual");
+  block.explore = read_explore(reader, block.presented);
   read_asides(reader, block);
-  read_presented(reader, protocol, block);
+  check_presented(reader, protocol, block);
   block.allows_correction = reader.yes_or_no("correction", false);
   block.forms_after = read_form_names(reader, "forms_after", protocol);
   block.max_late_impact_repeats = reader.integer("max_late_impact_repeats", 0, 10, 0);

@@ -192,6 +192,34 @@ class WholeSession(unittest.TestCase):
         self.assertEqual(self.session.rows("SELECT detail FROM session_event WHERE state = 'stopped'"),
                          [("feels sick",)])
 
+    def test_real_plates_are_mounted_and_the_last_answer_is_corrected(self):
+        self.start("tests/data/material_study.yaml", "--language", "de", width=375, height=800)
+        for index in (0, 1):
+            self.next_trial(index + 1)
+            self.answer_until_accepted(browser.answer_by_mouse, index)
+        for index in (0, 1):
+            browser.wait_for_screen(self.driver, "message")
+            browser.wait_until(self.driver, "the plate is asked for",
+                               lambda: self.session.said().count("mount the real plate") == index + 1)
+            self.session.type("resume")
+            self.next_trial(7 + index)
+            self.assertTrue(browser.find(self.driver, "#view").get_attribute("hidden"))
+            browser.answer_by_mouse(self.driver, index)
+        self.next_trial(9)
+        self.assertFalse(browser.find_all(self.driver, ".previous"))  # of a block that allows none
+        self.answer_until_accepted(browser.answer_by_mouse, 0)
+        self.next_trial(10)
+        browser.find(self.driver, ".previous summary").click()
+        self.check_screen("correction")
+        browser.find_all(self.driver, ".previous button")[1].click()
+        browser.wait_for_status(self.driver, "Ihre letzte Antwort ist berichtigt")
+        self.assertEqual(self.session.responses(),
+                         ["soft_small", "hard_small", "soft_small", "hard_small", "acrylic"])
+        for number in range(10, 14):
+            self.next_trial(number)
+            self.answer_until_accepted(browser.answer_by_mouse, 0)
+        self.finish()
+
     def test_a_page_that_vanishes_comes_back_to_the_same_question(self):
         self.start("protocols/paper/discrimination.yaml")
         self.next_trial(1)

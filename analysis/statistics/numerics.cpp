@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <boost/math/quadrature/gauss_kronrod.hpp>
 #include <boost/math/tools/toms748_solve.hpp>
 
@@ -14,7 +15,9 @@ double integral(const RealFunction& function, double low, double high) {
                                                                        max_depth, tolerance);
 }
 
-double root(const RealFunction& function, double low, double high) {
+double root(const RealFunction& function, double one_end, double other_end) {
+  const double low = std::min(one_end, other_end);
+  const double high = std::max(one_end, other_end);
   const double at_low = function(low);
   const double at_high = function(high);
   if (at_low == 0.0 || at_high == 0.0) {

@@ -152,6 +152,8 @@ TEST_CASE("no threshold is made up where the answers have none", "[analysis][psy
   CHECK(outcome_of(yes_no, {{1.0, {0, 9}}, {2.0, {4, 9}}, {3.0, {9, 9}}}) == step);
   CHECK(outcome_of(yes_no, {{1.0, {12, 20}}, {2.0, {14, 20}}, {3.0, {16, 20}}}) == threshold_below);
   CHECK(outcome_of(yes_no, {{1.0, {2, 20}}, {2.0, {3, 20}}, {3.0, {5, 20}}}) == threshold_above);
+  // below the guess rate at first, but increasing: guesses alone explain it worse
+  CHECK(outcome_of(choice, {{1.0, {5, 20}}, {2.0, {5, 20}}, {3.0, {13, 20}}}) != no_increase);
   CHECK(outcome_of(yes_no, yes_no_levels) == fitted);
   CHECK(outcome_of(choice, choice_levels) == fitted);
 }
@@ -177,7 +179,8 @@ TEST_CASE("a fit refuses counts and values that are not possible", "[analysis][p
     CHECK_THROWS_AS(analysis::fit_psychometric(of, levels), core::InvalidInput);
   };
   refuses(model, {});
-  refuses(model, {{1.0, {3, 5}}, {1.0, {4, 5}}});
+  CHECK_THROWS_WITH(analysis::fit_psychometric(model, {{1.0, {3, 5}}, {1.0, {4, 5}}}),
+                    Catch::Contains("two different values above 0 or more, not 1"));
   refuses(model, {{0.0, {3, 5}}, {1.0, {4, 5}}});  // one value has a logarithm
   refuses(model, {{1.0, {3, 5}}, {2.0, {0, 0}}});
   refuses(model, {{1.0, {6, 5}}, {2.0, {4, 5}}});

@@ -29,29 +29,20 @@ void check(const MagnitudeEstimate& one) {
   }
 }
 
-Means means_of(const std::vector<std::pair<double, double>>& points) {
+Means log_means(const Estimates& estimates) {
   std::map<double, std::vector<double>> by_value;
-  for (const auto& [x, y] : points) {
-    by_value[x].push_back(y);
+  for (const MagnitudeEstimate& one : estimates) {
+    check(one);
+    by_value[std::log10(one.value)].push_back(std::log10(one.estimate));
+  }
+  if (by_value.size() < 2) {
+    throw core::InvalidInput{fmt::format(
+        "an exponent takes estimates of two values or more from each participant, not {}",
+        by_value.size())};
   }
   Means means;
   for (const auto& [x, y] : by_value) {
     means[x] = mean_and_spread(y).mean;
-  }
-  return means;
-}
-
-Means log_means(const Estimates& estimates) {
-  std::vector<std::pair<double, double>> points;
-  for (const MagnitudeEstimate& one : estimates) {
-    check(one);
-    points.emplace_back(std::log10(one.value), std::log10(one.estimate));
-  }
-  Means means = means_of(points);
-  if (means.size() < 2) {
-    throw core::InvalidInput{fmt::format(
-        "an exponent takes estimates of two values or more from each participant, not {}",
-        means.size())};
   }
   return means;
 }
@@ -88,20 +79,20 @@ Line regression(const Means& means) {
   return {slope, mean_y - slope * mean_x, yy > 0.0 ? xy * slope / yy : 1.0};
 }
 
-// All participants' means by value, each shifted to the common mean.
-Means equalised(const std::vector<Means>& participants) {
-  std::vector<double> own_means;
+// Each value's log10 estimates by all participants, shifted to the participants' common mean.
+std::map<double, std::vector<double>> equalised(const std::vector<Means>& participants) {
+  double common = 0.0;
   for (const Means& means : participants) {
-    own_means.push_back(mean_of(means));
+    common += mean_of(means) / static_cast<double>(participants.size());
   }
-  const double common = mean_and_spread(own_means).mean;
-  std::vector<std::pair<double, double>> points;
-  for (std::size_t i = 0; i < participants.size(); ++i) {
-    for (const auto& [x, y] : participants[i]) {
-      points.emplace_back(x, y - own_means[i] + common);
+  std::map<double, std::vector<double>> by_value;
+  for (const Means& means : participants) {
+    const double shift = common - mean_of(means);
+    for (const auto& [x, y] : means) {
+      by_value[x].push_back(y + shift);
     }
   }
-  return means_of(points);
+  return by_value;
 }
 }  // namespace
 
@@ -117,14 +108,17 @@ PowerLaw power_law(const std::vector<Estimates>& participants) {
     check_same_values(means.front(), means.back());
     law.participant_exponents.push_back(regression(means.back()).slope);
   }
-  const Means all = equalised(means);
+  Means all;
+  for (const auto& [x, y] : equalised(means)) {
+    const MeanAndSpread spread = mean_and_spread(y);
+    all[x] = spread.mean;
+    law.means.push_back(
+        {std::pow(10.0, x), std::pow(10.0, spread.mean), spread.standard_deviation});
+  }
   const Line line = regression(all);
   law.exponent = line.slope;
   law.log_constant = line.intercept;
   law.r_squared = line.r_squared;
-  for (const auto& [x, y] : all) {
-    law.geometric_means.push_back({std::pow(10.0, x), std::pow(10.0, y)});
-  }
   const MeanAndSpread exponents = mean_and_spread(law.participant_exponents);
   const auto n = static_cast<double>(participants.size());
   const double half_width =

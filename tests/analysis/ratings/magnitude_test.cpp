@@ -29,7 +29,7 @@ TEST_CASE("a participant's modulus does not change the exponent", "[analysis][ra
   CHECK(law.log_constant == Approx(1.0).epsilon(1e-12));  // the geometric mean of 1 and 100 is 10
   CHECK(law.exponent_interval.low == Approx(0.8).epsilon(1e-9));
   CHECK(law.exponent_interval.high == Approx(0.8).epsilon(1e-9));
-  CHECK(law.geometric_means.front().estimate == Approx(10.0).epsilon(1e-12));
+  CHECK(law.means.front().geometric_mean == Approx(10.0).epsilon(1e-12));
 }
 
 TEST_CASE(
@@ -51,9 +51,10 @@ TEST_CASE(
                          testing::r_vector(all) + R"(), nrow = 5)
 g <- lm(rowMeans(y) ~ x); b <- apply(y, 2, function(one) coef(lm(one ~ x))[[2]])
 out(coef(g)[[2]], coef(g)[[1]], summary(g)$r.squared, t.test(b)$conf.int, b)
+out(10^rowMeans(y), apply(sweep(y, 2, colMeans(y)), 1, sd))
 )");
   const auto law = analysis::power_law(participants);
-  REQUIRE(expected.size() == 9);
+  REQUIRE(expected.size() == 19);
   CHECK(law.exponent == Approx(expected[0]).epsilon(1e-10));
   CHECK(law.log_constant == Approx(expected[1]).epsilon(1e-10));
   CHECK(law.r_squared == Approx(expected[2]).epsilon(1e-10));
@@ -61,6 +62,11 @@ out(coef(g)[[2]], coef(g)[[1]], summary(g)$r.squared, t.test(b)$conf.int, b)
   CHECK(law.exponent_interval.high == Approx(expected[4]).epsilon(1e-10));
   for (std::size_t i = 0; i < 4; ++i) {
     CHECK(law.participant_exponents[i] == Approx(expected[5 + i]).epsilon(1e-10));
+  }
+  for (std::size_t i = 0; i < 5; ++i) {
+    CHECK(law.means[i].value == Approx(values[i]).epsilon(1e-12));
+    CHECK(law.means[i].geometric_mean == Approx(expected[9 + i]).epsilon(1e-10));
+    CHECK(law.means[i].log_standard_deviation == Approx(expected[14 + i]).epsilon(1e-10));
   }
 }
 

@@ -102,7 +102,8 @@ TEST_CASE(
   }
   const std::vector<double> coarse{1, -2, 0, 3, 3, -1, 2, 4, 0, 5, -3};
   const std::vector<double> below(many.begin(), many.begin() + 49);
-  for (const auto& differences : {many, coarse, below}) {
+  const std::vector<double> with_zero{1.5, -2.5, 0.0, 3.5, 4.5, -0.5, 5.5};
+  for (const auto& differences : {many, coarse, with_zero, below}) {
     const std::vector<double> expected =
         testing::r_numbers("w <- suppressWarnings(wilcox.test(" + testing::r_vector(differences) +
                            ")); out(w$statistic, w$p.value)");

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <ranges>
 
 #include "analysis/statistics/distributions.hpp"
 #include "analysis/statistics/quantiles.hpp"
@@ -48,7 +47,7 @@ Means log_means(const Estimates& estimates) {
 }
 
 void check_same_values(const Means& first, const Means& other) {
-  if (!std::ranges::equal(std::views::keys(first), std::views::keys(other))) {
+  if (!std::ranges::equal(first, other, {}, &Means::value_type::first, &Means::value_type::first)) {
     throw core::InvalidInput{"an exponent takes participants who all judged the same values"};
   }
 }

@@ -7,7 +7,7 @@ std::vector<double> mid_ranks(const std::vector<double>& values) {
   std::ranges::sort(sorted);
   std::vector<double> ranks;
   for (const double value : values) {
-    const auto [first, last] = std::ranges::equal_range(sorted, value);
+    const auto [first, last] = std::equal_range(sorted.begin(), sorted.end(), value);
     const auto below = static_cast<double>(first - sorted.begin());
     ranks.push_back(below + 0.5 * (static_cast<double>(last - first) + 1.0));
   }

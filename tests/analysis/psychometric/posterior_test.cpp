@@ -11,6 +11,7 @@
 #include "analysis/psychometric/beta_binomial.hpp"
 #include "analysis/psychometric/example_levels.hpp"
 #include "analysis/psychometric/inference.hpp"
+#include "analysis/psychometric/posterior_grid.hpp"
 #include "core/error.hpp"
 #include "support/processes.hpp"
 using namespace tapstudy;
@@ -60,6 +61,26 @@ for eta in (0.01, 0.2, 0.7):
   }
   CHECK(analysis::beta_binomial_log_likelihood({7, 10}, 0.6, 0.0) ==
         Approx(7.0 * std::log(0.6) + 3.0 * std::log(0.4)).epsilon(1e-12));
+}
+
+TEST_CASE("priors are even within the levels' range and half as high midway to where they end",
+          "[analysis][psychometric]") {
+  const analysis::AxisRange range{10.0, 18.0, 1.0};
+  const double half = std::log(0.5);
+  for (const double inside : {10.0, 13.0, 18.0}) {
+    CHECK(analysis::log_prior_of_position(inside, range) == 0.0);
+  }
+  CHECK(analysis::log_prior_of_position(8.0, range) == Approx(half));
+  CHECK(analysis::log_prior_of_position(20.0, range) == Approx(half));
+  CHECK(std::isinf(analysis::log_prior_of_position(6.0, range)));
+  CHECK(std::isinf(analysis::log_prior_of_position(22.5, range)));
+  for (const double inside : {2.0, 5.0, 8.0}) {
+    CHECK(analysis::log_prior_of_width(inside, range) == 0.0);
+  }
+  CHECK(analysis::log_prior_of_width(1.5, range) == Approx(half));
+  CHECK(analysis::log_prior_of_width(16.0, range) == Approx(half));
+  CHECK(std::isinf(analysis::log_prior_of_width(0.9, range)));
+  CHECK(std::isinf(analysis::log_prior_of_width(24.0, range)));
 }
 
 TEST_CASE("a posterior is the one that SciPy sums over a fixed grid", "[analysis][psychometric]") {

@@ -1,0 +1,104 @@
+#include "analysis/detection/rates.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "analysis/detection/decision_model.hpp"
+#include "analysis/statistics/distributions.hpp"
+#include "analysis/statistics/numerics.hpp"
+#include "core/error.hpp"
+namespace tapstudy::analysis {
+namespace {
+using std::numbers::sqrt2;
+constexpr double max_d_prime = 20.0;
+
+void check_rate(double rate) {
+  if (!(rate > 0.0 && rate < 1.0)) {
+    throw core::InvalidInput{fmt::format("a rate is between 0 and 1 and neither, not {}", rate)};
+  }
+}
+
+double z_variance(const Proportion& answers) {
+  const double rate = log_linear_rate(answers);
+  const double density = normal_density(normal_quantile(rate));
+  return rate * (1.0 - rate) / (static_cast<double>(answers.trials + 1) * density * density);
+}
+
+Interval around(double centre, double standard_error) {
+  const double half_width = normal_quantile(0.975) * standard_error;
+  return {centre - half_width, centre + half_width};
+}
+
+RatesSensitivity by_unbiased_proportion(DecisionModel model, double hit_rate,
+                                        double false_alarm_rate) {
+  check_rate(hit_rate);
+  check_rate(false_alarm_rate);
+  const double unbiased =
+      normal_cdf(0.5 * (normal_quantile(hit_rate) - normal_quantile(false_alarm_rate)));
+  return {d_prime_of({model, 2}, unbiased), hit_rate <= false_alarm_rate};
+}
+}  // namespace
+
+double log_linear_rate(const Proportion& answers) {
+  if (answers.trials <= 0 || answers.successes < 0 || answers.successes > answers.trials) {
+    throw core::InvalidInput{
+        fmt::format("{} answers in {} trials are not possible", answers.successes, answers.trials)};
+  }
+  return (static_cast<double>(answers.successes) + 0.5) /
+         (static_cast<double>(answers.trials) + 1.0);
+}
+
+YesNoSensitivity yes_no_sensitivity(const Proportion& hits, const Proportion& false_alarms) {
+  const double hit_z = normal_quantile(log_linear_rate(hits));
+  const double false_alarm_z = normal_quantile(log_linear_rate(false_alarms));
+  const double spread = std::sqrt(z_variance(hits) + z_variance(false_alarms));
+  YesNoSensitivity result;
+  result.d_prime = hit_z - false_alarm_z;
+  result.d_prime_interval = around(result.d_prime, spread);
+  result.criterion = -0.5 * (hit_z + false_alarm_z);
+  result.criterion_interval = around(result.criterion, 0.5 * spread);
+  result.is_below_chance = result.d_prime < 0.0;
+  return result;
+}
+
+double same_different_hit_rate(double d_prime, double false_alarm_rate) {
+  check_rate(false_alarm_rate);
+  if (!(d_prime >= 0.0)) {
+    throw core::InvalidInput{fmt::format("d' is at least 0, not {}", d_prime)};
+  }
+  const double limit = normal_quantile(0.5 * false_alarm_rate);  // -k / sqrt 2
+  return normal_cdf(limit + d_prime / sqrt2) + normal_cdf(limit - d_prime / sqrt2);
+}
+
+RatesSensitivity same_different_differencing(double hit_rate, double false_alarm_rate) {
+  check_rate(hit_rate);
+  check_rate(false_alarm_rate);
+  if (hit_rate <= false_alarm_rate) {
+    return {0.0, true};
+  }
+  const auto excess = [&](double d_prime) {
+    return same_different_hit_rate(d_prime, false_alarm_rate) - hit_rate;
+  };
+  if (excess(max_d_prime) <= 0.0) {
+    return {std::numeric_limits<double>::infinity(), false};
+  }
+  return {root(excess, 0.0, max_d_prime), false};
+}
+
+RatesSensitivity same_different_independent(double hit_rate, double false_alarm_rate) {
+  return by_unbiased_proportion(DecisionModel::same_different_independent_observation, hit_rate,
+                                false_alarm_rate);
+}
+
+RatesSensitivity abx_differencing_by_rates(double hit_rate, double false_alarm_rate) {
+  return by_unbiased_proportion(DecisionModel::abx_differencing, hit_rate, false_alarm_rate);
+}
+
+RatesSensitivity abx_independent_by_rates(double hit_rate, double false_alarm_rate) {
+  return by_unbiased_proportion(DecisionModel::abx_independent_observation, hit_rate,
+                                false_alarm_rate);
+}
+}  // namespace tapstudy::analysis

@@ -1,0 +1,84 @@
+#include "analysis/psychometric/binomial_likelihood.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+namespace tapstudy::analysis {
+namespace {
+constexpr double relative_step = 1e-5;
+constexpr double smallest_p = 1e-15;  // keeps the weights of the information finite
+
+double times_log(std::int64_t count, double p) {
+  return count == 0 ? 0.0 : static_cast<double>(count) * std::log(p);
+}
+}  // namespace
+
+double binomial_log_likelihood(const Proportion& answers, double p) {
+  return times_log(answers.successes, p) + times_log(answers.trials - answers.successes, 1.0 - p);
+}
+
+BinomialLikelihood::BinomialLikelihood(core::PsychometricShape shape, std::vector<Level> levels)
+    : shape_{shape},
+      levels_{std::move(levels)},
+      step_{relative_step * axis_range(levels_, shape).smallest_gap} {}
+
+double BinomialLikelihood::shape_value(double x, double threshold, double log_slope) const {
+  return core::shape_value(shape_, x, from_axis(shape_, threshold), std::exp(log_slope));
+}
+
+std::vector<double> BinomialLikelihood::shape_values(const PsychometricVector& at) const {
+  std::vector<double> values;
+  for (const Level& level : levels_) {
+    values.push_back(shape_value(level.value, at[threshold_at], at[log_slope_at]));
+  }
+  return values;
+}
+
+std::vector<double> BinomialLikelihood::proportions(const PsychometricVector& at) const {
+  std::vector<double> values = shape_values(at);
+  for (double& value : values) {
+    value = at[guess_at] + (1.0 - at[guess_at] - at[lapse_at]) * value;
+  }
+  return values;
+}
+
+double BinomialLikelihood::value(const PsychometricVector& at) const {
+  const std::vector<double> p = proportions(at);
+  double sum = 0.0;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    sum += binomial_log_likelihood(levels_[i].answers, p[i]);
+  }
+  return sum;
+}
+
+BinomialLikelihood::Slopes BinomialLikelihood::slopes(const PsychometricVector& at) const {
+  Slopes result{PsychometricVector::Zero(), Eigen::Matrix4d::Zero()};
+  const double gain = 1.0 - at[guess_at] - at[lapse_at];
+  for (const Level& level : levels_) {
+    const auto shape_at = [&](double along_axis, double along_slope) {
+      return shape_value(level.value, at[threshold_at] + along_axis,
+                         at[log_slope_at] + along_slope);
+    };
+    const double shape = shape_at(0.0, 0.0);
+    const PsychometricVector gradient{
+        gain * (shape_at(step_, 0.0) - shape_at(-step_, 0.0)) / (2.0 * step_),
+        gain * (shape_at(0.0, relative_step) - shape_at(0.0, -relative_step)) /
+            (2.0 * relative_step),
+        1.0 - shape, -shape};
+    const double p = std::clamp(at[guess_at] + gain * shape, smallest_p, 1.0 - smallest_p);
+    const auto n = static_cast<double>(level.answers.trials);
+    const auto k = static_cast<double>(level.answers.successes);
+    result.score += (k - n * p) / (p * (1.0 - p)) * gradient;
+    result.information += n / (p * (1.0 - p)) * gradient * gradient.transpose();
+  }
+  return result;
+}
+
+double BinomialLikelihood::deviance(const PsychometricVector& at) const {
+  double saturated = 0.0;
+  for (const Level& level : levels_) {
+    saturated += binomial_log_likelihood(level.answers, level.answers.value());
+  }
+  return std::max(0.0, 2.0 * (saturated - value(at)));
+}
+}  // namespace tapstudy::analysis

@@ -1,0 +1,59 @@
+#pragma once
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "analysis/psychometric/bounded_scoring.hpp"
+namespace tapstudy::analysis {
+// What is fitted. A rate with low = high is fixed, others are free within [low, high].
+struct PsychometricModel {
+  core::PsychometricShape shape{};
+  Interval guess{0.0, 0.0};  // 1/m for a choice among m
+  Interval lapse{0.0, 0.1};  // Wichmann & Hill 2001a bound it by 0.06
+};
+
+enum class FitOutcome {
+  fitted,
+  all_successes,    // at every level
+  no_successes,     // at any level
+  no_increase,      // a constant proportion is as likely as any increasing function
+  step,             // a step between or at levels is as likely: the slope has no upper limit
+  threshold_below,  // the threshold lies below the lowest level
+  threshold_above   // above the highest
+};
+// What an outcome means, as a clause: "the answers do not increase with the value".
+std::string_view explanation(FitOutcome outcome);
+
+struct PsychometricCurve {
+  double threshold{};
+  double slope{};
+  double guess{};
+  double lapse{};
+  // By the expected information; of the threshold's position on the shape's axis (log10 on a
+  // logarithmic one), and of the slope. Rates at a bound count as known. NaN if not determined.
+  double threshold_standard_error{};
+  double slope_standard_error{};
+};
+
+struct PsychometricFit {
+  FitOutcome outcome{};
+  std::optional<PsychometricCurve> curve;  // if fitted: none is made up for other outcomes
+  Maximum maximum;                         // where the search ended, whatever the outcome
+  double deviance{};
+  int levels{};
+  int free_parameters{};
+};
+
+// Maximum likelihood of binomial answers (Wichmann & Hill 2001a; threshold, slope and free rates).
+// With guess = lapse = 0 it is a generalised linear model with the logit, probit or complementary
+// log-log link. Throws InvalidInput as checked_levels does, and for rates that are not 0 <= low <=
+// high with guess.high + lapse.high < 1.
+PsychometricFit fit_psychometric(const PsychometricModel& model, const std::vector<Level>& levels);
+
+// The box that fit_psychometric searches: thresholds up to three times the levels' range beyond
+// them, slopes from nearly constant to a step within the smallest gap.
+PsychometricBox search_box(const PsychometricModel& model, const std::vector<Level>& levels);
+// The greatest likelihood in the box, from a grid of starts and from any given.
+Maximum greatest(const BinomialLikelihood& likelihood, const PsychometricBox& box,
+                 const std::vector<PsychometricVector>& further_starts = {});
+}  // namespace tapstudy::analysis

@@ -1,0 +1,152 @@
+#include "analysis/psychometric/inference.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "analysis/statistics/distributions.hpp"
+#include "analysis/statistics/numerics.hpp"
+#include "analysis/statistics/quantiles.hpp"
+#include "core/error.hpp"
+#include "core/rng.hpp"
+namespace tapstudy::analysis {
+namespace {
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+void check_confidence(double confidence) {
+  if (!(confidence > 0.0 && confidence < 1.0)) {
+    throw core::InvalidInput{fmt::format("a confidence is between 0 and 1, not {}", confidence)};
+  }
+}
+
+PsychometricFit fit_with_threshold(const PsychometricModel& model,
+                                   const std::vector<Level>& levels) {
+  PsychometricFit fit = fit_psychometric(model, levels);
+  if (!fit.curve) {
+    throw core::InvalidInput{
+        fmt::format("there is no interval without a threshold: {}", explanation(fit.outcome))};
+  }
+  return fit;
+}
+
+// One end of an interval of one parameter, searched from the maximum outwards.
+class Profile {
+ public:
+  Profile(const BinomialLikelihood& likelihood, const PsychometricBox& box, const Maximum& maximum,
+          double drop)
+      : likelihood_{likelihood}, box_{box}, maximum_{maximum}, drop_{drop} {}
+
+  double end(Eigen::Index place, double first_step, double no_end) const {
+    const auto excess = [&](double value) { return drop_at(place, value) - drop_; };
+    const double limit = first_step > 0.0 ? box_.high[place] : box_.low[place];
+    double inside = maximum_.at[place];
+    double step = first_step;
+    while (inside != limit) {
+      const double outside =
+          first_step > 0.0 ? std::min(limit, inside + step) : std::max(limit, inside + step);
+      if (excess(outside) > 0.0) {
+        return root(excess, inside, outside);
+      }
+      inside = outside;
+      step *= 2.0;
+    }
+    return no_end;
+  }
+
+ private:
+  double drop_at(Eigen::Index place, double value) const {
+    PsychometricBox held = box_;
+    held.low[place] = held.high[place] = value;
+    PsychometricVector start = maximum_.at;
+    start[place] = value;
+    return maximum_.log_likelihood - greatest(likelihood_, held, {start}).log_likelihood;
+  }
+
+  const BinomialLikelihood& likelihood_;
+  const PsychometricBox& box_;
+  const Maximum& maximum_;
+  double drop_;
+};
+
+std::vector<Level> drawn_anew(const std::vector<Level>& levels, const std::vector<double>& p,
+                              core::Rng& rng) {
+  std::vector<Level> drawn = levels;
+  for (std::size_t i = 0; i < drawn.size(); ++i) {
+    drawn[i].answers.successes = 0;
+    for (std::int64_t trial = 0; trial < drawn[i].answers.trials; ++trial) {
+      drawn[i].answers.successes += rng.uniform() < p[i] ? 1 : 0;
+    }
+  }
+  return drawn;
+}
+
+// Fits of answers drawn anew from the maximum, one after the other.
+template <typename Visit>
+void each_draw(const PsychometricModel& model, const std::vector<Level>& levels,
+               const PsychometricFit& fit, int draws, std::uint64_t seed, Visit visit) {
+  if (draws < 1) {
+    throw core::InvalidInput{fmt::format("a bootstrap takes 1 draw or more, not {}", draws)};
+  }
+  const std::vector<Level> checked = checked_levels(levels, model.shape);
+  const BinomialLikelihood likelihood{model.shape, checked};
+  const std::vector<double> p = likelihood.proportions(fit.maximum.at);
+  core::Rng rng{seed};
+  for (int draw = 0; draw < draws; ++draw) {
+    visit(fit_psychometric(model, drawn_anew(checked, p, rng)));
+  }
+}
+
+Interval percentiles(const std::vector<double>& values, double confidence) {
+  return {quantile(values, 0.5 * (1.0 - confidence)), quantile(values, 0.5 * (1.0 + confidence))};
+}
+}  // namespace
+
+PsychometricIntervals profile_intervals(const PsychometricModel& model,
+                                        const std::vector<Level>& levels, double confidence) {
+  check_confidence(confidence);
+  const PsychometricFit fit = fit_with_threshold(model, levels);
+  const BinomialLikelihood likelihood{model.shape, checked_levels(levels, model.shape)};
+  const PsychometricBox box = search_box(model, likelihood.levels());
+  const Profile profile{likelihood, box, fit.maximum, 0.5 * chi_squared_quantile(confidence, 1.0)};
+  const double step = 0.1 * axis_range(likelihood.levels(), model.shape).length();
+  return {{from_axis(model.shape, profile.end(threshold_at, -step, -infinity)),
+           from_axis(model.shape, profile.end(threshold_at, step, infinity))},
+          {std::exp(profile.end(log_slope_at, -0.1, -infinity)),
+           std::exp(profile.end(log_slope_at, 0.1, infinity))}};
+}
+
+GoodnessOfFit deviance_test(const PsychometricModel& model, const std::vector<Level>& levels,
+                            int draws, std::uint64_t seed) {
+  const PsychometricFit fit = fit_psychometric(model, levels);
+  int as_bad = 0;
+  each_draw(model, levels, fit, draws, seed, [&](const PsychometricFit& drawn) {
+    // answers that fit exactly differ by rounding
+    as_bad += drawn.deviance >= fit.deviance - 1e-9 ? 1 : 0;
+  });
+  return {fit.deviance, (1.0 + as_bad) / (draws + 1.0), draws};
+}
+
+BootstrapIntervals bootstrap_intervals(const PsychometricModel& model,
+                                       const std::vector<Level>& levels, int draws,
+                                       std::uint64_t seed, double confidence) {
+  check_confidence(confidence);
+  const PsychometricFit fit = fit_with_threshold(model, levels);
+  std::vector<double> thresholds;
+  std::vector<double> slopes;
+  each_draw(model, levels, fit, draws, seed, [&](const PsychometricFit& drawn) {
+    if (drawn.curve) {
+      thresholds.push_back(drawn.curve->threshold);
+      slopes.push_back(drawn.curve->slope);
+    }
+  });
+  const int found = static_cast<int>(thresholds.size());
+  if (2 * found < draws) {
+    throw core::InvalidInput{
+        fmt::format("only {} of {} draws have a threshold: too few for an interval", found, draws)};
+  }
+  return {
+      {percentiles(thresholds, confidence), percentiles(slopes, confidence)}, draws, draws - found};
+}
+}  // namespace tapstudy::analysis

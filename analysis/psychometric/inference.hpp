@@ -1,0 +1,42 @@
+#pragma once
+#include <cstdint>
+
+#include "analysis/psychometric/fit.hpp"
+namespace tapstudy::analysis {
+// Intervals by profile likelihood (Venzon & Moolgavkar 1988): the values whose likelihood,
+// maximised over all other parameters, is below the greatest by no more than half the quantile of
+// chi-squared with one degree of freedom. An end that the search box does not hold is infinite (0
+// for slopes and for thresholds on a logarithmic axis).
+struct PsychometricIntervals {
+  Interval threshold;
+  Interval slope;
+};
+// Throws InvalidInput as fit_psychometric does, where no threshold was found (outcome not fitted),
+// and for a confidence outside (0, 1).
+PsychometricIntervals profile_intervals(const PsychometricModel& model,
+                                        const std::vector<Level>& levels, double confidence = 0.95);
+
+struct GoodnessOfFit {
+  double deviance{};
+  double p{};  // (1 + draws with at least this deviance) / (draws + 1): small if the fit is bad
+  int draws{};
+};
+// The deviance against its distribution under the fitted function, by drawing answers anew and
+// fitting them (parametric bootstrap; Wichmann & Hill 2001a), because chi-squared is a poor
+// approximation for few trials a level. The same seed gives the same p. Throws InvalidInput as
+// fit_psychometric does and for draws < 1.
+GoodnessOfFit deviance_test(const PsychometricModel& model, const std::vector<Level>& levels,
+                            int draws, std::uint64_t seed);
+
+// Percentile intervals over answers drawn anew from the fitted function (Wichmann & Hill 2001b).
+struct BootstrapIntervals {
+  PsychometricIntervals intervals;
+  int draws{};
+  int without_threshold{};  // draws whose fit had another outcome than fitted, left out
+};
+// Throws InvalidInput as profile_intervals does, for draws < 1, and if fewer than half the draws
+// have a threshold.
+BootstrapIntervals bootstrap_intervals(const PsychometricModel& model,
+                                       const std::vector<Level>& levels, int draws,
+                                       std::uint64_t seed, double confidence = 0.95);
+}  // namespace tapstudy::analysis

@@ -1,0 +1,112 @@
+#include "analysis/ratings/signed_rank.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "analysis/ratings/ranks.hpp"
+#include "analysis/statistics/distributions.hpp"
+#include "core/error.hpp"
+namespace tapstudy::analysis {
+namespace {
+// P(V <= v) for V the sum of a random subset of 1..n.
+double exact_cdf(int n, double v) {
+  const auto most = static_cast<std::size_t>(n * (n + 1) / 2);
+  std::vector<double> p(most + 1, 0.0);
+  p[0] = 1.0;
+  for (std::size_t rank = 1; rank <= static_cast<std::size_t>(n); ++rank) {
+    for (std::size_t sum = most + 1; sum-- > 0;) {
+      p[sum] = 0.5 * (p[sum] + (sum >= rank ? p[sum - rank] : 0.0));
+    }
+  }
+  const auto last = static_cast<std::ptrdiff_t>(std::llround(v));
+  return std::accumulate(p.begin(), p.begin() + last + 1, 0.0);
+}
+
+double exact_p(int n, double v) {
+  const double mirrored = 0.5 * n * (n + 1) - v;
+  return std::min(1.0, 2.0 * exact_cdf(n, std::min(v, mirrored)));
+}
+
+double normal_p(int n, double v, double ties) {
+  const double excess = v - 0.25 * n * (n + 1);
+  const double variance = n * (n + 1.0) * (2.0 * n + 1.0) / 24.0 - ties / 48.0;
+  const double correction = excess == 0.0 ? 0.0 : std::copysign(0.5, excess);
+  return std::min(1.0, normal_two_sided_p((excess - correction) / std::sqrt(variance)));
+}
+}  // namespace
+
+SignedRankTest signed_rank_test(const std::vector<double>& differences) {
+  std::vector<double> sizes;
+  std::vector<bool> is_positive;
+  for (const double one : differences) {
+    if (!std::isfinite(one)) {
+      throw core::InvalidInput{fmt::format("a difference is a finite number, not {}", one)};
+    }
+    if (one != 0.0) {
+      sizes.push_back(std::abs(one));
+      is_positive.push_back(one > 0.0);
+    }
+  }
+  if (differences.empty()) {
+    throw core::InvalidInput{"a signed rank test takes one difference or more"};
+  }
+  SignedRankTest test;
+  test.pairs = static_cast<int>(sizes.size());
+  const std::vector<double> ranks = mid_ranks(sizes);
+  for (std::size_t i = 0; i < ranks.size(); ++i) {
+    test.positive_ranks += is_positive[i] ? ranks[i] : 0.0;
+  }
+  constexpr int fewest_for_normal = 50;
+  const double ties = tie_sum(sizes);
+  test.is_exact =
+      sizes.size() == differences.size() && ties == 0.0 && test.pairs < fewest_for_normal;
+  if (test.pairs == 0) {
+    test.p = 1.0;
+  } else {
+    test.p = test.is_exact ? exact_p(test.pairs, test.positive_ranks)
+                           : normal_p(test.pairs, test.positive_ranks, ties);
+  }
+  return test;
+}
+
+std::vector<double> holm_adjusted(const std::vector<double>& p) {
+  std::vector<std::size_t> order(p.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, {}, [&](std::size_t i) { return p[i]; });
+  std::vector<double> adjusted(p.size());
+  double greatest = 0.0;
+  for (std::size_t place = 0; place < order.size(); ++place) {
+    const double one = p[order[place]];
+    if (!(one >= 0.0 && one <= 1.0)) {
+      throw core::InvalidInput{fmt::format("a p value is between 0 and 1, not {}", one)};
+    }
+    greatest = std::max(greatest, std::min(1.0, static_cast<double>(p.size() - place) * one));
+    adjusted[order[place]] = greatest;
+  }
+  return adjusted;
+}
+
+std::vector<PairwiseTest> pairwise_signed_rank(const RatingTable& ratings) {
+  check_ratings(ratings);
+  std::vector<PairwiseTest> tests;
+  std::vector<double> p;
+  for (std::size_t i = 0; i < ratings.front().size(); ++i) {
+    for (std::size_t j = i + 1; j < ratings.front().size(); ++j) {
+      std::vector<double> differences;
+      for (const std::vector<double>& row : ratings) {
+        differences.push_back(row[i] - row[j]);
+      }
+      tests.push_back({i, j, signed_rank_test(differences), 0.0});
+      p.push_back(tests.back().test.p);
+    }
+  }
+  const std::vector<double> adjusted = holm_adjusted(p);
+  for (std::size_t i = 0; i < tests.size(); ++i) {
+    tests[i].adjusted_p = adjusted[i];
+  }
+  return tests;
+}
+}  // namespace tapstudy::analysis

@@ -1,0 +1,16 @@
+#pragma once
+// Distribution functions, by Boost.Math. Every function throws core::InvalidInput for a probability
+// outside [0, 1] and degrees of freedom that are not above 0.
+namespace tapstudy::analysis {
+double normal_density(double z);
+double normal_cdf(double z);
+// -infinity at 0, infinity at 1
+double normal_quantile(double probability);
+// P(X >= x); 1 for x <= 0
+double chi_squared_p(double x, double degrees_of_freedom);
+double chi_squared_quantile(double probability, double degrees_of_freedom);
+// probability in (0, 1)
+double t_quantile(double probability, double degrees_of_freedom);
+// The two-sided probability of a statistic at least as far from 0.
+double normal_two_sided_p(double z);
+}  // namespace tapstudy::analysis

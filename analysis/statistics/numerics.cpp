@@ -1,0 +1,36 @@
+#include "analysis/statistics/numerics.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <boost/math/quadrature/gauss_kronrod.hpp>
+#include <boost/math/tools/toms748_solve.hpp>
+
+#include "core/error.hpp"
+namespace tapstudy::analysis {
+double integral(const RealFunction& function, double low, double high) {
+  constexpr unsigned max_depth = 12;
+  constexpr double tolerance = 1e-10;
+  return boost::math::quadrature::gauss_kronrod<double, 31>::integrate(function, low, high,
+                                                                       max_depth, tolerance);
+}
+
+double root(const RealFunction& function, double one_end, double other_end) {
+  const double low = std::min(one_end, other_end);
+  const double high = std::max(one_end, other_end);
+  const double at_low = function(low);
+  const double at_high = function(high);
+  if (at_low == 0.0 || at_high == 0.0) {
+    return at_low == 0.0 ? low : high;
+  }
+  if (!(at_low * at_high < 0.0)) {
+    throw core::InvalidInput{fmt::format("no change of sign between {} and {}", low, high)};
+  }
+  constexpr int significant_bits = 46;
+  std::uintmax_t iterations = 200;
+  const auto [left, right] = boost::math::tools::toms748_solve(
+      function, low, high, at_low, at_high,
+      boost::math::tools::eps_tolerance<double>{significant_bits}, iterations);
+  return 0.5 * (left + right);
+}
+}  // namespace tapstudy::analysis

@@ -1,0 +1,13 @@
+#pragma once
+#include <functional>
+namespace tapstudy::analysis {
+using RealFunction = std::function<double(double)>;
+
+// The integral over [low, high], both finite, by adaptive Gauss-Kronrod quadrature (Boost.Math, 31
+// points), to about ten digits for smooth functions.
+double integral(const RealFunction& function, double low, double high);
+
+// The root between two ends, at which function must differ in sign or vanish; to fourteen digits
+// (Alefeld et al. 1995, algorithm 748, by Boost.Math). Throws InvalidInput if it does not.
+double root(const RealFunction& function, double one_end, double other_end);
+}  // namespace tapstudy::analysis

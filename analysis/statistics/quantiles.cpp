@@ -1,0 +1,45 @@
+#include "analysis/statistics/quantiles.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.hpp"
+namespace tapstudy::analysis {
+double quantile(std::vector<double> values, double probability) {
+  if (values.empty() || std::ranges::any_of(values, [](double x) { return std::isnan(x); })) {
+    throw core::InvalidInput{"a quantile takes one value or more, and every value is a number"};
+  }
+  if (!(probability >= 0.0 && probability <= 1.0)) {
+    throw core::InvalidInput{fmt::format("a probability is between 0 and 1, not {}", probability)};
+  }
+  std::ranges::sort(values);
+  const double place = probability * static_cast<double>(values.size() - 1);
+  const auto below = static_cast<std::size_t>(place);
+  const std::size_t above = std::min(below + 1, values.size() - 1);
+  const double along = place - static_cast<double>(below);
+  return along == 0.0 ? values[below] : values[below] + along * (values[above] - values[below]);
+}
+
+Quartiles quartiles(const std::vector<double>& values) {
+  return {quantile(values, 0.25), quantile(values, 0.5), quantile(values, 0.75)};
+}
+
+MeanAndSpread mean_and_spread(const std::vector<double>& values) {
+  if (values.empty()) {
+    throw core::InvalidInput{"a mean takes one value or more"};
+  }
+  const auto n = static_cast<double>(values.size());
+  MeanAndSpread result;
+  for (const double value : values) {
+    result.mean += value / n;
+  }
+  double squares = 0.0;
+  for (const double value : values) {
+    squares += (value - result.mean) * (value - result.mean);
+  }
+  result.standard_deviation = std::sqrt(squares / (n - 1.0));
+  return result;
+}
+}  // namespace tapstudy::analysis

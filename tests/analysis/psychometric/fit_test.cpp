@@ -1,0 +1,192 @@
+// Psychometric functions by maximum likelihood, against R's glm, psyphy's links and R's optim.
+#include "analysis/psychometric/fit.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "analysis/psychometric/example_levels.hpp"
+#include "core/error.hpp"
+using namespace tapstudy;
+using analysis::FitOutcome;
+using analysis::Level;
+using analysis::PsychometricModel;
+using core::PsychometricShape;
+using testing::choice_levels;
+using testing::yes_no_levels;
+
+namespace {
+FitOutcome outcome_of(const PsychometricModel& model, const std::vector<Level>& levels) {
+  const auto fit = analysis::fit_psychometric(model, levels);
+  CHECK(fit.curve.has_value() == (fit.outcome == FitOutcome::fitted));
+  return fit.outcome;
+}
+}  // namespace
+
+TEST_CASE("without guesses and lapses a psychometric function is R's generalised linear model",
+          "[analysis][psychometric]") {
+  const std::vector<double> expected = testing::r_numbers(testing::r_levels(yes_no_levels) + R"(
+control <- glm.control(epsilon = 1e-14, maxit = 100)
+tell <- function(u, link, to_slope, to_value) {
+  g <- glm(cbind(k, n - k) ~ u, family = binomial(link), control = control)
+  a <- coef(g)[[1]]; b <- coef(g)[[2]]; V <- vcov(g); d <- c(-1 / b, a / b^2)
+  out(to_value(-a / b), b * to_slope, sqrt(d %*% V %*% d), sqrt(V[2, 2]) * to_slope, deviance(g))
+}
+tell(x, 'logit', 1, identity)
+tell(x, 'probit', 1, identity)
+tell(log10(x), 'logit', 1, function(t) 10^t)
+tell(log10(x), 'probit', 1, function(t) 10^t)
+tell(log10(x), 'cloglog', 1 / log(10), function(t) 10^t)
+tell(x, 'cloglog', 1 / log(10), identity)
+)");
+  REQUIRE(expected.size() == 30);
+  std::size_t next = 0;
+  using enum PsychometricShape;
+  for (const auto shape :
+       {logistic, cumulative_gaussian, log_logistic, log_gaussian, weibull, gumbel}) {
+    INFO(core::row_of(shape).name);
+    const auto fit = analysis::fit_psychometric({shape, {0.0, 0.0}, {0.0, 0.0}}, yes_no_levels);
+    REQUIRE(fit.curve);
+    CHECK(fit.curve->threshold == Approx(expected[next++]).epsilon(1e-6));
+    CHECK(fit.curve->slope == Approx(expected[next++]).epsilon(1e-6));
+    CHECK(fit.curve->threshold_standard_error == Approx(expected[next++]).epsilon(1e-5));
+    CHECK(fit.curve->slope_standard_error == Approx(expected[next++]).epsilon(1e-5));
+    CHECK(fit.deviance == Approx(expected[next++]).epsilon(1e-8));
+    CHECK(fit.free_parameters == 2);
+  }
+}
+
+TEST_CASE("in a choice among m a psychometric function is a glm with psyphy's links",
+          "[analysis][psychometric]") {
+  const std::vector<double> expected = testing::r_numbers(testing::r_levels(choice_levels) + R"(
+suppressMessages(library(psyphy))
+control <- glm.control(epsilon = 1e-14, maxit = 200)
+tell <- function(u, link, to_slope, to_value) {
+  g <- glm(cbind(k, n - k) ~ u, family = binomial(link), control = control)
+  out(to_value(-coef(g)[[1]] / coef(g)[[2]]), coef(g)[[2]] * to_slope, deviance(g))
+}
+tell(x, mafc.logit(2), 1, identity)
+tell(x, mafc.probit(2), 1, identity)
+tell(log(x), mafc.weib(2), 1, exp)
+tell(x, mafc.logit(4), 1, identity)
+)");
+  REQUIRE(expected.size() == 12);
+  std::size_t next = 0;
+  using enum PsychometricShape;
+  for (const auto& [shape, guess] :
+       {std::pair{logistic, 0.5}, {cumulative_gaussian, 0.5}, {weibull, 0.5}, {logistic, 0.25}}) {
+    INFO(core::row_of(shape).name << " from " << guess);
+    const auto fit = analysis::fit_psychometric({shape, {guess, guess}, {0.0, 0.0}}, choice_levels);
+    const bool is_inside = expected[next] >= 0.5;  // the lowest level
+    CHECK((fit.outcome == FitOutcome::fitted) == is_inside);
+    CHECK(analysis::from_axis(shape, fit.maximum.at[analysis::threshold_at]) ==
+          Approx(expected[next++]).epsilon(1e-5));
+    CHECK(std::exp(fit.maximum.at[analysis::log_slope_at]) ==
+          Approx(expected[next++]).epsilon(1e-5));
+    CHECK(fit.deviance == Approx(expected[next++]).epsilon(1e-8));
+  }
+}
+
+TEST_CASE("with free rates no start of R's optim finds a greater likelihood",
+          "[analysis][psychometric]") {
+  const std::vector<Level> levels{{1.0, {4, 60}},  {2.0, {7, 60}},  {3.0, {21, 60}},
+                                  {4.0, {44, 60}}, {5.0, {55, 60}}, {6.0, {56, 60}},
+                                  {8.0, {58, 60}}};
+  const std::vector<double> expected = testing::r_numbers(testing::r_levels(levels) + R"(
+minus <- function(q, guess) {
+  if (guess) g <- q[4] else g <- 0
+  p <- g + (1 - g - q[3]) * plogis(exp(q[2]) * (x - q[1]))
+  -sum(dbinom(k, n, p, log = TRUE)) + sum(lchoose(n, k))
+}
+best <- function(guess) {
+  fits <- lapply(list(c(3, 0, .02, .02), c(4, .5, .05, .05), c(3.5, 1, .01, .01)), function(q)
+    optim(q, minus, guess = guess, method = 'L-BFGS-B', lower = c(1, -1, 1e-6, 1e-6),
+          upper = c(8, 2, 0.1, 0.1), control = list(factr = 10, maxit = 1000)))
+  b <- fits[[which.min(sapply(fits, `[[`, 'value'))]]
+  out(-b$value, b$par[1], exp(b$par[2]), b$par[3], if (guess) b$par[4] else 0)
+}
+best(FALSE); best(TRUE)
+)");
+  REQUIRE(expected.size() == 10);
+  std::size_t next = 0;
+  for (const double max_guess : {0.0, 0.1}) {
+    const auto fit = analysis::fit_psychometric(
+        {PsychometricShape::logistic, {0.0, max_guess}, {0.0, 0.1}}, levels);
+    REQUIRE(fit.curve);
+    CHECK(fit.maximum.log_likelihood >= expected[next] - 1e-7);
+    CHECK(fit.maximum.log_likelihood == Approx(expected[next++]).margin(1e-4));
+    CHECK(fit.curve->threshold == Approx(expected[next++]).epsilon(1e-3));
+    CHECK(fit.curve->slope == Approx(expected[next++]).epsilon(3e-3));
+    CHECK(fit.curve->lapse == Approx(expected[next++]).margin(1e-3));
+    CHECK(fit.curve->guess == Approx(expected[next++]).margin(1e-3));
+    CHECK(fit.free_parameters == (max_guess > 0.0 ? 4 : 3));
+  }
+}
+
+TEST_CASE("answers in proportions that a function gives are fitted by that function",
+          "[analysis][psychometric]") {
+  for (const auto& row : core::psychometric_shapes()) {
+    INFO(row.name);
+    std::vector<Level> levels;
+    for (const double x : {0.4, 0.7, 1.0, 1.4, 1.8, 2.3}) {
+      const double p = core::proportion(row.shape, x, 1.1, 2.5, 0.5, 0.03);
+      levels.push_back({x, {std::llround(1e9 * p), 1'000'000'000}});
+    }
+    const auto fit = analysis::fit_psychometric({row.shape, {0.5, 0.5}, {0.0, 0.1}}, levels);
+    REQUIRE(fit.curve);
+    CHECK(fit.curve->threshold == Approx(1.1).epsilon(1e-4));
+    CHECK(fit.curve->slope == Approx(2.5).epsilon(1e-3));
+    CHECK(fit.curve->lapse == Approx(0.03).margin(1e-4));
+  }
+}
+
+TEST_CASE("no threshold is made up where the answers have none", "[analysis][psychometric]") {
+  const PsychometricModel yes_no{PsychometricShape::logistic, {0.0, 0.0}, {0.0, 0.1}};
+  const PsychometricModel choice{PsychometricShape::weibull, {0.5, 0.5}, {0.0, 0.1}};
+  using enum FitOutcome;
+  CHECK(outcome_of(yes_no, {{1.0, {9, 9}}, {2.0, {9, 9}}}) == all_successes);
+  CHECK(outcome_of(yes_no, {{1.0, {0, 9}}, {2.0, {0, 9}}}) == no_successes);
+  CHECK(outcome_of(yes_no, {{1.0, {5, 9}}, {2.0, {5, 9}}, {3.0, {5, 9}}}) == no_increase);
+  CHECK(outcome_of(yes_no, {{1.0, {8, 9}}, {2.0, {5, 9}}, {3.0, {1, 9}}}) == no_increase);
+  CHECK(outcome_of(choice, {{1.0, {8, 20}}, {2.0, {9, 20}}, {3.0, {7, 20}}}) == no_increase);
+  CHECK(outcome_of(yes_no, {{1.0, {0, 9}}, {2.0, {0, 9}}, {3.0, {9, 9}}}) == step);
+  CHECK(outcome_of(yes_no, {{1.0, {0, 9}}, {2.0, {4, 9}}, {3.0, {9, 9}}}) == step);
+  CHECK(outcome_of(yes_no, {{1.0, {12, 20}}, {2.0, {14, 20}}, {3.0, {16, 20}}}) == threshold_below);
+  CHECK(outcome_of(yes_no, {{1.0, {2, 20}}, {2.0, {3, 20}}, {3.0, {5, 20}}}) == threshold_above);
+  // below the guess rate at first, but increasing: guesses alone explain it worse
+  CHECK(outcome_of(choice, {{1.0, {5, 20}}, {2.0, {5, 20}}, {3.0, {13, 20}}}) != no_increase);
+  CHECK(outcome_of(yes_no, yes_no_levels) == fitted);
+  CHECK(outcome_of(choice, choice_levels) == fitted);
+}
+
+TEST_CASE("levels of one value count together, and none without trials",
+          "[analysis][psychometric]") {
+  const PsychometricModel model{PsychometricShape::logistic, {0.0, 0.0}, {0.0, 0.0}};
+  std::vector<Level> split{{3.0, {0, 0}}};
+  for (const Level& level : yes_no_levels) {
+    const std::int64_t first = level.answers.successes / 2;
+    split.push_back({level.value, {first, 20}});
+    split.insert(split.begin(), {level.value, {level.answers.successes - first, 20}});
+  }
+  const auto fit = analysis::fit_psychometric(model, split);
+  CHECK(fit.levels == 6);
+  CHECK(fit.deviance ==
+        Approx(analysis::fit_psychometric(model, yes_no_levels).deviance).epsilon(1e-12));
+}
+
+TEST_CASE("a fit refuses counts and values that are not possible", "[analysis][psychometric]") {
+  const PsychometricModel model{PsychometricShape::weibull, {0.5, 0.5}, {0.0, 0.1}};
+  const auto refuses = [](const PsychometricModel& of, const std::vector<Level>& levels) {
+    CHECK_THROWS_AS(analysis::fit_psychometric(of, levels), core::InvalidInput);
+  };
+  refuses(model, {});
+  CHECK_THROWS_WITH(analysis::fit_psychometric(model, {{1.0, {3, 5}}, {1.0, {4, 5}}}),
+                    Catch::Contains("two different values above 0 or more, not 1"));
+  refuses(model, {{0.0, {3, 5}}, {1.0, {4, 5}}});  // one value has a logarithm
+  refuses(model, {{1.0, {3, 5}}, {2.0, {0, 0}}});
+  refuses(model, {{1.0, {6, 5}}, {2.0, {4, 5}}});
+  refuses(model, {{1.0, {-1, 5}}, {2.0, {4, 5}}});
+  refuses(model, {{-1.0, {3, 5}}, {2.0, {4, 5}}});
+  refuses(model, {{std::nan(""), {3, 5}}, {2.0, {4, 5}}});
+  refuses({PsychometricShape::weibull, {0.5, 0.4}, {0.0, 0.1}}, choice_levels);
+  refuses({PsychometricShape::weibull, {0.0, 0.95}, {0.0, 0.1}}, choice_levels);
+}

@@ -1,0 +1,131 @@
+// Tests of ratings and ranks, against R's friedman.test, wilcox.test, p.adjust and quantile.
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "analysis/ratings/friedman.hpp"
+#include "analysis/ratings/ranks.hpp"
+#include "analysis/ratings/signed_rank.hpp"
+#include "core/error.hpp"
+#include "core/rng.hpp"
+#include "support/r_program.hpp"
+using namespace tapstudy;
+using analysis::RatingTable;
+
+namespace {
+const RatingTable tied{{3, 5, 5, 7}, {2, 2, 4, 6}, {4, 5, 3, 5}, {1, 3, 3, 3},
+                       {5, 6, 6, 7}, {2, 4, 3, 6}, {3, 3, 5, 4}};
+const RatingTable untied{{3.1, 5.4, 5.2, 7.9},  {2.0, 2.5, 4.4, 6.6}, {4.7, 5.1, 3.3, 5.9},
+                         {1.2, 3.8, 3.5, 3.05}, {5.6, 6.1, 6.8, 7.7}, {2.7, 4.1, 3.2, 6.25},
+                         {3.4, 3.0, 5.5, 4.65}};
+
+// m, by rows.
+std::string r_table(const RatingTable& ratings) {
+  std::vector<double> values;
+  for (const auto& row : ratings) {
+    values.insert(values.end(), row.begin(), row.end());
+  }
+  return "m <- matrix(" + testing::r_vector(values) +
+         fmt::format(", ncol = {}, byrow = TRUE)\n", ratings.front().size());
+}
+}  // namespace
+
+TEST_CASE("Friedman's test, mean ranks and quartiles are R's", "[analysis][ratings]") {
+  for (const RatingTable& ratings : {tied, untied}) {
+    const std::vector<double> expected = testing::r_numbers(r_table(ratings) + R"(
+f <- friedman.test(m); out(f$statistic, f$parameter, f$p.value)
+out(colMeans(t(apply(m, 1, rank))), apply(m, 2, quantile, c(0.25, 0.5, 0.75)))
+)");
+    REQUIRE(expected.size() == 3 + 4 + 12);
+    const auto ours = analysis::friedman_test(ratings);
+    CHECK(ours.chi_squared == Approx(expected[0]).epsilon(1e-12));
+    CHECK(ours.degrees_of_freedom == expected[1]);
+    CHECK(ours.p == Approx(expected[2]).epsilon(1e-10));
+    const auto quartiles = analysis::condition_quartiles(ratings);
+    for (std::size_t j = 0; j < 4; ++j) {
+      CHECK(ours.mean_ranks[j] == Approx(expected[3 + j]).epsilon(1e-12));
+      CHECK(quartiles[j].low == Approx(expected[7 + 3 * j]).epsilon(1e-12));
+      CHECK(quartiles[j].median == Approx(expected[8 + 3 * j]).epsilon(1e-12));
+      CHECK(quartiles[j].high == Approx(expected[9 + 3 * j]).epsilon(1e-12));
+    }
+  }
+}
+
+TEST_CASE("Kendall's W is 1 of judges who agree and the squared deviations of rank sums else",
+          "[analysis][ratings]") {
+  CHECK(analysis::friedman_test({{1, 2, 3}, {4, 6, 9}, {1, 5, 8}}).kendalls_w ==
+        Approx(1.0).epsilon(1e-12));
+  CHECK(analysis::friedman_test({{1, 2, 3}, {3, 2, 1}}).kendalls_w == Approx(0.0).margin(1e-12));
+  // W = 12 S / (m^2 (n^3 - n)), Kendall & Babington Smith 1939: rank sums 4, 6, 8 of 3 judges
+  CHECK(analysis::friedman_test({{1, 2, 3}, {1, 3, 2}, {2, 1, 3}}).kendalls_w ==
+        Approx(12.0 * 8.0 / (9.0 * 24.0)).epsilon(1e-12));
+}
+
+TEST_CASE("first places count the lowest value, shared ones for each", "[analysis][ratings]") {
+  const auto summary = analysis::ranking_summary({{1, 2, 3}, {2, 1, 3}, {1, 1, 2}});
+  CHECK(summary.first_places == std::vector<int>{2, 2, 0});
+  CHECK(summary.mean_ranks[0] == Approx(4.5 / 3.0));
+  CHECK(summary.mean_ranks[2] == Approx(3.0));
+  CHECK(analysis::mid_ranks({5, 1, 5, 9}) == std::vector<double>{2.5, 1.0, 2.5, 4.0});
+}
+
+TEST_CASE("signed rank tests of pairs and Holm's adjustment are R's", "[analysis][ratings]") {
+  for (const RatingTable& ratings : {tied, untied}) {
+    const std::vector<double> expected = testing::r_numbers(r_table(ratings) + R"(
+p <- c()
+for (i in 1:3) for (j in (i + 1):4) {
+  w <- suppressWarnings(wilcox.test(m[, i], m[, j], paired = TRUE))
+  out(w$statistic); p <- c(p, w$p.value)
+}
+out(p, p.adjust(p, 'holm'))
+)");
+    REQUIRE(expected.size() == 18);
+    const auto ours = analysis::pairwise_signed_rank(ratings);
+    REQUIRE(ours.size() == 6);
+    for (std::size_t pair = 0; pair < 6; ++pair) {
+      INFO(ours[pair].first << " and " << ours[pair].second);
+      CHECK(ours[pair].test.positive_ranks == expected[pair]);
+      CHECK(ours[pair].test.p == Approx(expected[6 + pair]).epsilon(1e-10));
+      CHECK(ours[pair].adjusted_p == Approx(expected[12 + pair]).epsilon(1e-10));
+    }
+    CHECK(ours.front().first == 0);
+    CHECK(ours.back().second == 3);
+  }
+}
+
+TEST_CASE(
+    "from fifty differences on, and with ties and zeros, the signed rank test is R's normal one",
+    "[analysis][ratings]") {
+  core::Rng rng{4};
+  std::vector<double> many(60);
+  for (double& one : many) {
+    one = rng.normal() + 0.2;
+  }
+  const std::vector<double> coarse{1, -2, 0, 3, 3, -1, 2, 4, 0, 5, -3};
+  const std::vector<double> below(many.begin(), many.begin() + 49);
+  const std::vector<double> with_zero{1.5, -2.5, 0.0, 3.5, 4.5, -0.5, 5.5};
+  for (const auto& differences : {many, coarse, with_zero, below}) {
+    const std::vector<double> expected =
+        testing::r_numbers("w <- suppressWarnings(wilcox.test(" + testing::r_vector(differences) +
+                           ")); out(w$statistic, w$p.value)");
+    const auto ours = analysis::signed_rank_test(differences);
+    CHECK(ours.positive_ranks == expected.at(0));
+    CHECK(ours.p == Approx(expected.at(1)).epsilon(1e-9));
+    CHECK(ours.is_exact == (differences.size() == 49));
+  }
+  CHECK(analysis::signed_rank_test(coarse).pairs == 9);
+  CHECK(analysis::signed_rank_test({0.0, 0.0}).p == 1.0);
+}
+
+TEST_CASE("ratings that cannot be compared are refused", "[analysis][ratings]") {
+  CHECK_THROWS_AS(analysis::friedman_test({}), core::InvalidInput);
+  CHECK_THROWS_AS(analysis::friedman_test({{1, 2}}), core::InvalidInput);
+  CHECK_THROWS_AS(analysis::friedman_test({{1}, {2}}), core::InvalidInput);
+  CHECK_THROWS_AS(analysis::friedman_test({{1, 2}, {2}}), core::InvalidInput);
+  CHECK_THROWS_AS(analysis::friedman_test({{1, 2}, {2, std::nan("")}}), core::InvalidInput);
+  CHECK_THROWS_WITH(analysis::friedman_test({{1, 1}, {2, 2}}), Catch::Contains("the same"));
+  CHECK_THROWS_AS(analysis::signed_rank_test({}), core::InvalidInput);
+  CHECK_THROWS_AS(analysis::signed_rank_test({1.0, INFINITY}), core::InvalidInput);
+  CHECK_THROWS_AS(analysis::holm_adjusted({0.5, 1.5}), core::InvalidInput);
+  CHECK_THROWS_AS(analysis::quantile({}, 0.5), core::InvalidInput);
+  CHECK_THROWS_AS(analysis::quantile({1.0}, 1.5), core::InvalidInput);
+}

@@ -1,0 +1,32 @@
+#pragma once
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <catch2/catch.hpp>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "support/processes.hpp"
+namespace tapstudy::testing {
+// A vector of R's.
+template <typename Values>
+std::string r_vector(const Values& values) {
+  return fmt::format("c({})", fmt::join(values, ","));
+}
+
+// The numbers that a script of R prints by `out(...)`, in order, as doubles whole to the last
+// digit.
+inline std::vector<double> r_numbers(const std::string& script) {
+  const std::string out = "out <- function(...) cat(sprintf('%.17g\\n', c(...)), sep = '')\n";
+  const ProgramResult run = run_program({"/usr/bin/Rscript", "--vanilla", "-e", out + script});
+  INFO(run.standard_error);
+  REQUIRE(run.exit_code == 0);
+  std::istringstream lines{run.standard_output};
+  std::vector<double> numbers;
+  for (std::string line; std::getline(lines, line);) {
+    numbers.push_back(std::stod(line));  // also Inf and NaN
+  }
+  return numbers;
+}
+}  // namespace tapstudy::testing

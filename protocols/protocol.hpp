@@ -12,6 +12,7 @@
 #include "core/settings/masking_noise.hpp"
 #include "core/settings/render_settings.hpp"
 #include "core/techniques/technique.hpp"
+#include "protocols/axes/axis_range.hpp"
 #include "protocols/form.hpp"
 #include "protocols/surface/surface_source.hpp"
 #include "protocols/tasks/task.hpp"
@@ -31,8 +32,8 @@ struct Plate : core::Plate {
   std::string stated_at;
 };
 
-// A stimulus: a plate of a material, rendered by a technique. Plates and materials are shared
-// between stimuli.
+// A stimulus: a plate of a material, rendered by a technique; with `vary` a family of them, of
+// which presented_stimulus.hpp makes the members. Plates and materials are shared between stimuli.
 struct Stimulus {
   std::string name;
   std::string label;  // what participants read
@@ -40,6 +41,7 @@ struct Stimulus {
   std::shared_ptr<const Material> material;
   const core::Technique* technique{};
   std::map<std::string, std::string> factors;  // factor → level, for reports
+  std::vector<AxisRange> vary{};               // each axis once
 };
 
 // How the trials of a block follow one another.

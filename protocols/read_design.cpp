@@ -98,6 +98,7 @@ void read_stimuli(MapReader& top, Protocol& protocol) {
                      });
     check_factors(reader, stimulus, protocol);
     check_technique(reader, stimulus, protocol);
+    stimulus.vary = read_vary(reader, stimulus, protocol);
     protocol.stimuli.push_back(stimulus);
   });
 }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "protocols/allowed.hpp"
 #include "protocols/read_sections.hpp"
 namespace tapstudy::protocols {
 namespace {
@@ -12,8 +13,8 @@ using Presence = MapReader::Presence;
 core::Damping read_fit(MapReader& damping) {
   core::FittedDamping fitted;
   damping.list("measured", Presence::required, [&](MapReader& point) {
-    fitted.points.push_back(
-        {point.number("frequency_hz", Range::positive(1e5)), point.number("ratio", {0.0, 100.0})});
+    fitted.points.push_back({point.number("frequency_hz", Range::positive(1e5)),
+                             point.number("ratio", allowed::damping_ratio)});
   });
   const auto lies_elsewhere = [&](const core::FittedDamping::Point& point) {
     return point.frequency_hz != fitted.points.front().frequency_hz;
@@ -26,37 +27,38 @@ core::Damping read_fit(MapReader& damping) {
 
 core::Damping read_damping(MapReader& damping) {
   if (damping.has("modal_ratios")) {
-    core::ModalDamping modal{damping.number_list("modal_ratios", {0.0, 100.0})};
+    core::ModalDamping modal{damping.number_list("modal_ratios", allowed::damping_ratio)};
     if (damping.has("further_ratio")) {
-      modal.further_ratio = damping.number("further_ratio", {0.0, 100.0});
+      modal.further_ratio = damping.number("further_ratio", allowed::damping_ratio);
     }
     return modal;
   }
   if (damping.has("ratio")) {
-    return core::ConstantDamping{damping.number("ratio", {0.0, 100.0})};
+    return core::ConstantDamping{damping.number("ratio", allowed::damping_ratio)};
   }
   if (damping.has("measured")) {
     return read_fit(damping);
   }
   if (damping.has("first_ratio") || damping.has("last_ratio")) {
-    return core::TwoRatioDamping{damping.number("first_ratio", {0.0, 100.0}),
-                                 damping.number("last_ratio", {0.0, 100.0})};
+    return core::TwoRatioDamping{damping.number("first_ratio", allowed::damping_ratio),
+                                 damping.number("last_ratio", allowed::damping_ratio)};
   }
-  return core::RayleighDamping{damping.number("alpha_per_s", {0.0, 1e6}),
-                               damping.number("beta_s", {0.0, 1e3})};
+  return core::RayleighDamping{damping.number("alpha_per_s", allowed::alpha_per_s),
+                               damping.number("beta_s", allowed::beta_s)};
 }
 
 core::Material read_material(MapReader& reader) {
   core::Material material;
-  material.youngs_modulus_pa = reader.number("youngs_modulus_pa", Range::positive(1e13));
-  constexpr double softest_pa = 1e3;  // of any foam
+  material.youngs_modulus_pa =
+      reader.number("youngs_modulus_pa", Range::positive(allowed::youngs_modulus_pa.high));
+  constexpr double softest_pa = allowed::youngs_modulus_pa.low;
   if (material.youngs_modulus_pa > 0.0 && material.youngs_modulus_pa < softest_pa) {
     reader.reject("youngs_modulus_pa",
                   fmt::format("{} Pa is softer than any solid (did you mean {}e9?)",
                               material.youngs_modulus_pa, material.youngs_modulus_pa));
   }
-  material.density_kg_per_m3 = reader.number("density_kg_per_m3", Range::positive(1e5));
-  material.poissons_ratio = reader.number("poissons_ratio", {-1.0, 0.5, false, false});
+  material.density_kg_per_m3 = reader.number("density_kg_per_m3", allowed::density_kg_per_m3);
+  material.poissons_ratio = reader.number("poissons_ratio", allowed::poissons_ratio);
   reader.map("damping", Presence::required,
              [&](MapReader& damping) { material.damping = read_damping(damping); });
   return material;
@@ -64,9 +66,10 @@ core::Material read_material(MapReader& reader) {
 
 void read_sinusoid(MapReader& rendering, core::SinusoidShape& sinusoid) {
   rendering.map("sinusoid", Presence::optional, [&](MapReader& reader) {
-    sinusoid.amplitude_n_s_per_m = reader.number("amplitude_n_s_per_m", {0.0, 1000.0});
-    sinusoid.decay_per_s = reader.number("decay_per_s", Range::positive(1e6), 600.0);
-    sinusoid.frequency_hz = reader.number("frequency_hz", Range::positive(1e4), 250.0);
+    sinusoid.amplitude_n_s_per_m =
+        reader.number("amplitude_n_s_per_m", allowed::sinusoid_amplitude_n_s_per_m);
+    sinusoid.decay_per_s = reader.number("decay_per_s", allowed::sinusoid_decay_per_s, 600.0);
+    sinusoid.frequency_hz = reader.number("frequency_hz", allowed::sinusoid_frequency_hz, 250.0);
   });
 }
 }  // namespace
@@ -88,7 +91,7 @@ void read_rendering(MapReader& top, Protocol& protocol) {
     }
     settings.dt_s = 1.0 / protocol.rate_hz;
     settings.penalty_stiffness_n_per_m =
-        rendering.number("penalty_stiffness_n_per_m", Range::positive(1e6));
+        rendering.number("penalty_stiffness_n_per_m", allowed::penalty_stiffness_n_per_m);
     settings.release_height_m = rendering.number("release_height_m", {0.0, 0.1}, 5e-4);
     settings.integrator = rendering.one_of<core::Integrator>(
         "integrator", {{"exact", core::Integrator::exact}, {"newmark", core::Integrator::newmark}},

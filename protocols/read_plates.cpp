@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/error.hpp"
+#include "protocols/allowed.hpp"
 #include "protocols/read_sections.hpp"
 #include "protocols/surface/check_surface.hpp"
 #include "protocols/surface/surface_file.hpp"
@@ -178,7 +179,7 @@ void read_plates(MapReader& top, Protocol& protocol, const ReadFile& read_file) 
     Plate plate;
     plate.stated_at = reader.stated_at();
     const bool is_box = !reader.has("surface");
-    plate.shape = is_box ? core::Shape{core::Box{reader.numbers("size_m", 3, {1e-4, 10.0})}}
+    plate.shape = is_box ? core::Shape{core::Box{reader.numbers("size_m", 3, allowed::edge_m)}}
                          : read_surface_shape(reader, read_file, protocol);
     reader.map("mesh", Presence::optional, [&](MapReader& mesh) { plate.mesh = read_mesh(mesh); });
     reader.list("fixations", Presence::required, [&](MapReader& fixation) {

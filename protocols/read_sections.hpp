@@ -15,6 +15,9 @@ void read_points(MapReader& top, Protocol& protocol);
 // read_file: the bytes of a surface, by the name that the study gives it.
 void read_plates(MapReader& top, Protocol& protocol, const ReadFile& read_file);
 void read_stimuli(MapReader& top, Protocol& protocol);
+// The axes of a stimulus whose other keys are read.
+std::vector<AxisRange> read_vary(MapReader& stimulus_reader, const Stimulus& stimulus,
+                                 const Protocol& protocol);
 void read_forms(MapReader& top, Protocol& protocol);
 std::vector<std::string> read_form_names(MapReader& reader, const std::string& key,
                                          const Protocol& protocol);

@@ -25,6 +25,7 @@ struct RenderSettings {
   double penalty_stiffness_n_per_m{3000.0};  // k of eq. 1
   double release_height_m{5e-4};             // hysteresis: re-arms impacts above this
   double lateral_ratio{1.0};                 // of the plate's lateral scale to the placement's
+  double vibration_gain{1.0};                // factor on the plate's vibration force, eq. 17
   Integrator integrator{Integrator::exact};
   Finger finger;
   SinusoidShape sinusoid;

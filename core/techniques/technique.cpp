@@ -20,6 +20,10 @@ bool Technique::needs_model() const {
   return std::ranges::any_of(parts, &ForcePart::needs_model);
 }
 
+bool Technique::has(const ForcePart& part) const {
+  return std::ranges::find(parts, &part) != parts.end();
+}
+
 std::string_view Technique::missing(const RenderSettings& settings) const {
   for (const ForcePart* const part : parts) {
     if (const std::string_view lacking = part->missing(settings); !lacking.empty()) {

@@ -13,6 +13,7 @@ struct Technique {
   std::vector<const ForcePart*> parts;
 
   bool needs_model() const;
+  bool has(const ForcePart& part) const;
   // The missing setting: see ForcePart.
   std::string_view missing(const RenderSettings& settings) const;
 };

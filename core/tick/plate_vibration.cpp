@@ -3,6 +3,7 @@ namespace tapstudy::core {
 PlateVibration::PlateVibration(const VibratingPlate& plate, const RenderSettings& settings)
     : plate_{&plate},
       finger_{settings.finger},
+      gain_{settings.vibration_gain},
       state_{plate.model, settings.integrator, settings.dt_s} {}
 
 void PlateVibration::touch(const Contact& contact) noexcept {
@@ -14,7 +15,7 @@ void PlateVibration::impact(double speed_m_s) noexcept {
 }
 
 void PlateVibration::add_to(ForceParts& parts) const noexcept {
-  parts.vibration_n += finger_.stiffness_n_per_m * state_.displacement_m() +
-                       finger_.damping_n_s_per_m * state_.velocity_m_s();  // eq. 17
+  parts.vibration_n += gain_ * (finger_.stiffness_n_per_m * state_.displacement_m() +
+                                finger_.damping_n_s_per_m * state_.velocity_m_s());  // eq. 17
 }
 }  // namespace tapstudy::core

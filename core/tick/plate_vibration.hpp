@@ -23,6 +23,7 @@ class PlateVibration final : public AddedForce {
  private:
   const VibratingPlate* plate_;
   Finger finger_;
+  double gain_;
   ModalState state_;
 };
 }  // namespace tapstudy::core

@@ -31,8 +31,12 @@ struct Stage {
 };
 
 Stage stage_of(const protocols::Protocol& protocol, const protocols::Stimulus& stimulus) {
-  Stage stage{
-      plate_spec(protocol, stimulus), protocol.rendering, protocol.simulation.hand, {}, {}, true};
+  Stage stage{plate_spec(protocol, stimulus_with(protocol, stimulus)),
+              protocol.rendering,
+              protocol.simulation.hand,
+              {},
+              {},
+              true};
   stage.plate.mesh.accuracy.reset();
   stage.plate.mesh.size.max_tet_volume_m3 =
       std::abs(core::volume_m3(stage.plate.shape)) / tets_at_most;

@@ -39,7 +39,9 @@ Eigen::MatrixXd shape_at(const core::ModalModel& model, const core::SurfacePoint
 
 Workbench::Workbench(const protocols::Protocol& protocol, const protocols::Stimulus& stimulus,
                      core::ProgressHook progress)
-    : protocol_{protocol}, spec_{plate_spec(protocol, stimulus)}, progress_{std::move(progress)} {
+    : protocol_{protocol},
+      spec_{plate_spec(protocol, stimulus_with(protocol, stimulus))},
+      progress_{std::move(progress)} {
   const core::TopHeight top{spec_.shape};
   for (const auto& [name, at_m] : stimulus.plate->tapping_points_m) {
     if (const auto z_m = top.at_m(at_m)) {

@@ -13,6 +13,7 @@
 #include "protocols/read_protocol.hpp"
 #include "protocols/schedule.hpp"
 #include "runner/commands/commands.hpp"
+#include "runner/commands/families.hpp"
 #include "runner/commands/seed.hpp"
 #include "runner/devices/device_kind.hpp"
 #include "runner/devices/masking_noise.hpp"
@@ -37,7 +38,8 @@ void warn_of_overdamped_modes(const protocols::Protocol& protocol, ModelLibrary&
   }
   for (const protocols::Stimulus& stimulus : protocol.stimuli) {
     if (stimulus.technique->needs_model() &&
-        (models.plate_of(protocol, stimulus)->model.damping_ratio > 1.0).any()) {
+        (models.plate_of(protocol, stimulus_with(protocol, stimulus))->model.damping_ratio > 1.0)
+            .any()) {
       fmt::print(
           "  warning: {} has overdamped modes, which Newmark may let alternate at half the rate "
           "(integrator: exact does not)\n",
@@ -46,17 +48,17 @@ void warn_of_overdamped_modes(const protocols::Protocol& protocol, ModelLibrary&
   }
 }
 
-void print_models(const protocols::Protocol& protocol) {
+void print_models(const protocols::Protocol& protocol, ModelLibrary& models) {
   fmt::print("\nmodels\n");
-  ModelLibrary models;
   for (const protocols::Stimulus& stimulus : protocol.stimuli) {
     if (!stimulus.technique->needs_model()) {
       continue;
     }
     const int solved_before = models.bodies_solved();
     const int used_before = models.bodies_used();
-    const auto body = models.body_of(protocol, stimulus);
-    const auto plate = models.plate_of(protocol, stimulus);
+    const protocols::PresentedStimulus own = stimulus_with(protocol, stimulus);
+    const auto body = models.body_of(protocol, own);
+    const auto plate = models.plate_of(protocol, own);
     const core::ModelReport& report = body->report;
     const std::string cost =
         models.bodies_solved() > solved_before ? fmt::format("{:.3f} s", report.cost.total_s())
@@ -75,7 +77,7 @@ void print_models(const protocols::Protocol& protocol) {
 
 // The bound of a device that acts later than it is told is lower.
 void print_contact(const protocols::Protocol& protocol, int delay_ticks) {
-  const double asked = protocol.rendering.penalty_stiffness_n_per_m;
+  const double asked = largest_penalty_n_per_m(protocol);
   core::HandBody hand = protocol.simulation.hand;
   const auto limit_of = [&](int delay) {
     return device::largest_stable_penalty_n_per_m(hand, protocol.rendering.dt_s, delay);
@@ -209,7 +211,9 @@ void run_check(const CheckOptions& options) {
   }
   print_forms(protocol);
   print_languages(protocol);
-  print_models(protocol);
+  ModelLibrary models;
+  print_models(protocol, models);
+  print_families(protocol, models);
   print_contact(protocol, delay_ticks);
   const int index = options.participants - 1;
   const std::uint64_t seed =

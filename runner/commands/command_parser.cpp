@@ -67,6 +67,11 @@ void Command::option_with_or_without_value(const std::string& name, std::string&
       ->expected(0, 1);
 }
 
+void Command::repeatable(const std::string& name, std::vector<std::string>& values,
+                         const std::string& help) {
+  app_->add_option(name, values, help)->allow_extra_args(false);
+}
+
 void Command::option_with_default(const std::string& name, std::string& value,
                                   const std::string& help) {
   app_->add_option(name, value, help)->capture_default_str();

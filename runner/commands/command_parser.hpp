@@ -22,6 +22,9 @@ class Command {
   // "--name" alone sets `alone`, "--name VALUE" the value.
   void option_with_or_without_value(const std::string& name, std::string& value,
                                     const std::string& alone, const std::string& help);
+  // An option that may be given several times, with one value each.
+  void repeatable(const std::string& name, std::vector<std::string>& values,
+                  const std::string& help);
   // Help shows the default.
   void option_with_default(const std::string& name, std::string& value, const std::string& help);
   void option_with_default(const std::string& name, int& value, const std::string& help);

@@ -10,6 +10,7 @@
 #include "core/model/vtu_file.hpp"
 #include "core/output_file.hpp"
 #include "protocols/read_protocol.hpp"
+#include "runner/commands/axis_settings.hpp"
 #include "runner/commands/commands.hpp"
 #include "runner/stimuli/at_its_line.hpp"
 #include "runner/stimuli/model_library.hpp"
@@ -23,6 +24,7 @@ struct ModesOptions {
   std::string mesh_out;
   std::string vtu;
   std::string figure;
+  std::vector<std::string> settings;
 };
 
 double peak_memory_bytes() {
@@ -32,9 +34,12 @@ double peak_memory_bytes() {
   return 1024.0 * static_cast<double>(usage.ru_maxrss);
 }
 
-void print_json(const ModesOptions& options, const core::PlateModel& plate) {
+void print_json(const protocols::PresentedStimulus& stimulus, const core::PlateModel& plate) {
   const core::ModelReport& report = plate.body.modes.report;
-  nlohmann::ordered_json json{{"schema_version", 1}, {"stimulus", options.stimulus}};
+  nlohmann::ordered_json json{{"schema_version", 1}, {"stimulus", stimulus.name}};
+  if (!stimulus.values.empty()) {
+    json["values"] = stimulus.values;
+  }
   json["frequencies_hz"] =
       std::vector<double>(plate.modal.frequency_hz.begin(), plate.modal.frequency_hz.end());
   json["damping_ratios"] =
@@ -77,16 +82,19 @@ void print_refinement(const core::ModelReport& report) {
   }
 }
 
-void print_table(const ModesOptions& options, const protocols::Protocol& protocol,
+void print_table(const protocols::PresentedStimulus& stimulus, const protocols::Protocol& protocol,
                  const core::PlateModel& plate) {
   const core::ModelReport& report = plate.body.modes.report;
   fmt::print(
       "{}: {} nodes, {} {} tetrahedra, {} free degrees of freedom\n"
       "  {:.3f} s (mesh {:.3f}, assemble {:.3f}, factor {:.3f}, iterate {:.3f}), {:.0f} MB at "
       "most\n\n",
-      options.stimulus, report.nodes, report.tets, report.order == 2 ? "quadratic" : "linear",
+      stimulus.name, report.nodes, report.tets, report.order == 2 ? "quadratic" : "linear",
       report.dofs, report.cost.total_s(), report.cost.mesh_s, report.cost.assemble_s,
       report.cost.factor_s, report.cost.iterate_s, 1e-6 * peak_memory_bytes());
+  for (const auto& [name, value] : stimulus.values) {
+    fmt::print("  {} {}\n", name, value);
+  }
   print_refinement(report);
   fmt::print("  mode  frequency_hz  damping_ratio\n");
   for (Eigen::Index i = 0; i < plate.modal.frequency_hz.size(); ++i) {
@@ -129,7 +137,8 @@ void draw_modes(const ModesOptions& options, const core::Shape& shape, core::Mod
 
 void run_modes(const ModesOptions& options) {
   const protocols::Protocol protocol = protocols::read_protocol(options.protocol);
-  const protocols::Stimulus& stimulus = protocol.stimulus(options.stimulus);
+  const protocols::PresentedStimulus stimulus =
+      member_set_to(options.settings, protocol, protocol.stimulus(options.stimulus));
   const core::PlateSpec spec = plate_spec(protocol, stimulus);
   for (const std::string& file : outputs(options)) {
     core::check_is_new(file);
@@ -148,9 +157,9 @@ void run_modes(const ModesOptions& options) {
     draw_modes(options, spec.shape, plate.modal);
   }
   if (options.wants_json) {
-    print_json(options, plate);
+    print_json(stimulus, plate);
   } else {
-    print_table(options, protocol, plate);
+    print_table(stimulus, protocol, plate);
   }
 }
 }  // namespace
@@ -160,6 +169,7 @@ void add_modes(CommandParser& line) {
   const auto options = std::make_shared<ModesOptions>();
   command.argument("protocol", options->protocol, "Study (YAML)");
   command.option("--stimulus", options->stimulus, "Which stimulus", Need::required);
+  command.repeatable("--set", options->settings, set_help);
   command.flag("--json", options->wants_json, "Output as JSON");
   command.option("--mesh-out", options->mesh_out, "Write the mesh as PREFIX.node, PREFIX.ele");
   command.file("--vtu", options->vtu, ".vtu", "Write body and mode shapes for ParaView (.vtu)");

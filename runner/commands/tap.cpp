@@ -14,6 +14,7 @@
 #include "core/placement.hpp"
 #include "core/print.hpp"
 #include "protocols/read_protocol.hpp"
+#include "runner/commands/axis_settings.hpp"
 #include "runner/commands/commands.hpp"
 #include "runner/devices/rigs.hpp"
 #include "runner/experiments/scripted_tap.hpp"
@@ -31,6 +32,7 @@ struct TapOptions {
   std::string csv;
   std::string panels;
   std::string frames;
+  std::vector<std::string> settings;
 };
 
 double seconds_of(const TraceSample& sample) {
@@ -62,9 +64,13 @@ double largest(const std::vector<TraceSample>& trace, const Value& value) {
   return most;
 }
 
-void print_summary(const TapOptions& options, const std::vector<TraceSample>& trace) {
+void print_summary(const TapOptions& options, const ScriptedTap& tap,
+                   const std::vector<TraceSample>& trace) {
   const auto impact = std::ranges::find(trace, true, &TraceSample::impact);
   fmt::print("{} at {}\n", options.stimulus, options.at);
+  for (const auto& [name, value] : tap.stimulus.values) {
+    fmt::print("  {} {}\n", name, value);
+  }
   if (impact != trace.end()) {
     fmt::print("  impact         {:.3f} s, {:.4f} m/s\n", seconds_of(*impact),
                -core::along_normal(impact->velocity_m_s));
@@ -142,7 +148,8 @@ void draw_panels(const TapOptions& options, const protocols::Protocol& protocol)
         continue;
       }
       for (const auto& [point, at_m] : plate->tapping_points_m) {
-        const ScriptedTap tap{stimulus.name, at_m, options.speed_m_s, options.seconds};
+        const ScriptedTap tap{stimulus_with(protocol, stimulus), at_m, options.speed_m_s,
+                              options.seconds};
         figure.panels.push_back(panel_of(fmt::format("{}, {}", stimulus.label, point),
                                          trace_of(tap, protocol, rig, models)));
       }
@@ -158,8 +165,8 @@ void draw_panels(const TapOptions& options, const protocols::Protocol& protocol)
 
 // The paper's Figure 3.
 void draw_frames(const TapOptions& options, const protocols::Protocol& protocol,
-                 const Eigen::Vector2d& at_m, ModelLibrary& models) {
-  const protocols::Stimulus& stimulus = protocol.stimulus(options.stimulus);
+                 const ScriptedTap& tap, ModelLibrary& models) {
+  const protocols::PresentedStimulus& stimulus = tap.stimulus;
   const auto* const box = std::get_if<core::Box>(&stimulus.plate->shape);
   if (box == nullptr || !stimulus.technique->needs_model()) {
     throw core::InvalidInput{"--frames: draws plates that vibrate only"};
@@ -168,12 +175,15 @@ void draw_frames(const TapOptions& options, const protocols::Protocol& protocol,
   const std::string title =
       fmt::format("{} struck at {}, {} m/s", options.stimulus, options.at, options.speed_m_s);
   analysis::draw_svg(
-      analysis::map_of_strike(*plate, *box, protocol.rendering, {at_m, options.speed_m_s}, title),
+      analysis::map_of_strike(*plate, *box, stimulus.rendering, {tap.at_m, tap.speed_m_s}, title),
       options.frames);
 }
 
 void run_tap(const TapOptions& options) {
   const protocols::Protocol protocol = protocol_with_technique(options);
+  if (!options.settings.empty() && !options.panels.empty()) {
+    throw core::InvalidInput{"--set is of one stimulus (--stimulus), --panels draws all of them"};
+  }
   if (!options.panels.empty()) {
     draw_panels(options, protocol);
     return;
@@ -187,15 +197,16 @@ void run_tap(const TapOptions& options) {
     }
   }
   ModelLibrary models;
-  const ScriptedTap tap{options.stimulus,
-                        point_on_plate(options.at, *protocol.stimulus(options.stimulus).plate),
-                        options.speed_m_s, options.seconds};
+  const protocols::PresentedStimulus stimulus =
+      member_set_to(options.settings, protocol, protocol.stimulus(options.stimulus));
+  const ScriptedTap tap{stimulus, point_on_plate(options.at, *stimulus.plate), options.speed_m_s,
+                        options.seconds};
   const auto trace = trace_of(tap, protocol, simulated_rig(), models);
   if (!options.frames.empty()) {
-    draw_frames(options, protocol, tap.at_m, models);
+    draw_frames(options, protocol, tap, models);
   }
   if (options.csv.empty()) {
-    print_summary(options, trace);
+    print_summary(options, tap, trace);
     return;
   }
   if (options.csv == "-") {
@@ -203,7 +214,7 @@ void run_tap(const TapOptions& options) {
     return;
   }
   core::write_new_file(options.csv, [&](std::ostream& out) { write_csv(out, trace); });
-  print_summary(options, trace);
+  print_summary(options, tap, trace);
 }
 }  // namespace
 
@@ -218,6 +229,7 @@ void add_tap(CommandParser& line) {
       "--technique", options->technique,
       fmt::format("{} instead of the stimulus's own", fmt::join(core::technique_names(), ", ")));
   command.number("--seconds", options->seconds, "How long the finger stays");
+  command.repeatable("--set", options->settings, set_help);
   command.option("--csv", options->csv, "Write every tick to this new file (- for stdout)");
   command.option("--panels", options->panels,
                  "Draw all stimuli at all tapping points into this directory (SVG)");

@@ -35,7 +35,7 @@ void run_trade(const TradeOptions& options) {
     make_room(options.out);
   }
   Progress progress{fmt::format("measuring '{}'", options.stimulus)};
-  const Trade trade = at_its_line(stimulus, [&] {
+  const Trade trade = at_its_line(protocols::stimulus_with(protocol, stimulus), [&] {
     return measure_trade(protocol, stimulus, options.tolerance,
                          options.is_quick ? Effort::quick : Effort::full, progress.hook());
   });

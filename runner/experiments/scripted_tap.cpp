@@ -67,14 +67,14 @@ std::optional<double> number(const std::string& text) {
 
 std::vector<core::TraceSample> trace_of(const ScriptedTap& tap, const protocols::Protocol& protocol,
                                         const protocols::Rig& rig, ModelLibrary& models) {
-  const protocols::Stimulus& stimulus = protocol.stimulus(tap.stimulus);
+  const protocols::Plate& plate = *tap.stimulus.plate;
   check(tap);
-  const double z_m = height_m(tap, stimulus.plate->shape);
+  const double z_m = height_m(tap, plate.shape);
   const device::LoopSettings settings = loop_settings(protocol, rig);
   device::SimulatedHand hand{protocol.simulation.hand, protocol.rendering.dt_s,
                              device::SimulatedHand::Memory::none};
   device::PlannedTap planned;
-  planned.point_m = settings.placement.scaled(stimulus.plate->lateral_ratio)
+  planned.point_m = settings.placement.scaled(plate.lateral_ratio)
                         .point_to_device({tap.at_m.x(), tap.at_m.y(), z_m});
   planned.speed_m_s = tap.speed_m_s;
   planned.hover_m = hover_m;
@@ -82,7 +82,7 @@ std::vector<core::TraceSample> trace_of(const ScriptedTap& tap, const protocols:
   planned.press_m = protocol.simulation.taps.press_m;
   planned.dwell_s = tap.seconds;
   hand.follow({planned});
-  TrialStimuli stimuli = build_trial_stimuli(protocol, {tap.stimulus}, models);
+  TrialStimuli stimuli = build_trial_stimuli(protocol, std::vector{tap.stimulus}, models);
   return samples_of(hand, stimuli.alternatives, settings, hover_m / tap.speed_m_s + tap.seconds);
 }
 

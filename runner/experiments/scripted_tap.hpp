@@ -3,13 +3,13 @@
 #include <vector>
 
 #include "core/haptic_state.hpp"
-#include "protocols/protocol.hpp"
+#include "protocols/axes/presented_stimulus.hpp"
 #include "protocols/rig.hpp"
 #include "runner/stimuli/model_library.hpp"
 namespace tapstudy::runner {
 // One tap by the simulated hand with exactly this impact speed, and its trace.
 struct ScriptedTap {
-  std::string stimulus;
+  protocols::PresentedStimulus stimulus;
   Eigen::Vector2d at_m{Eigen::Vector2d::Zero()};  // plate frame
   double speed_m_s{0.3};
   double seconds{0.5};

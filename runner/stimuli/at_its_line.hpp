@@ -2,15 +2,14 @@
 #include <fmt/format.h>
 
 #include "core/error.hpp"
-#include "protocols/protocol.hpp"
+#include "protocols/axes/presented_stimulus.hpp"
 namespace tapstudy::runner {
-// Builds something of a stimulus's model. A ModelError names the protocol's line at fault and the
-// stimulus.
+// Builds something of a stimulus's model. A ModelError names the protocol's line at fault, the
+// stimulus and the values at which it is presented.
 template <class Build>
-auto at_its_line(const protocols::Stimulus& stimulus, const Build& build) {
+auto at_its_line(const protocols::PresentedStimulus& stimulus, const Build& build) {
   const auto told = [&](const std::string& stated_at, const core::ModelError& error) {
-    return core::ModelError{
-        fmt::format("{}: stimulus '{}': {}", stated_at, stimulus.name, error.what())};
+    return core::ModelError{fmt::format("{}: {}: {}", stated_at, stimulus.title(), error.what())};
   };
   try {
     return build();

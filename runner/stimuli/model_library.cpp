@@ -8,6 +8,7 @@
 #include "core/error.hpp"
 #include "runner/build_info.hpp"
 #include "runner/stimuli/at_its_line.hpp"
+#include "runner/stimuli/family.hpp"
 #include "runner/terminal/logging.hpp"
 #include "runner/terminal/progress.hpp"
 namespace tapstudy::runner {
@@ -40,9 +41,10 @@ std::string first_frequency(core::PlateSpec spec) {
   return fmt::format("more than {:.4g} Hz (is youngs_modulus_pa right?)", spec.band_limit_hz);
 }
 
-// A body without a mode in the band would be felt as one that does not vibrate at all.
-void check_has_mode(const core::ModalModel& model, const core::PlateSpec& spec) {
-  if (model.frequency_hz.size() > 0) {
+}  // namespace
+
+void check_has_mode(Eigen::Index modes_in_band, const core::PlateSpec& spec) {
+  if (modes_in_band > 0) {
     return;
   }
   throw core::ModelError{fmt::format(
@@ -50,25 +52,27 @@ void check_has_mode(const core::ModalModel& model, const core::PlateSpec& spec) 
       "{}",
       spec.band_limit_hz, first_frequency(spec))};
 }
-}  // namespace
 
 core::ModelCache models_of_this_user() {
   return {cache_directory(), fmt::format("{} {}", program_version(), git_hash())};
 }
 
 core::PlateSpec plate_spec(const protocols::Protocol& protocol,
-                           const protocols::Stimulus& stimulus) {
+                           const protocols::PresentedStimulus& stimulus) {
   return {*stimulus.plate, *stimulus.material, protocol.band_limit_hz};
 }
 
-core::BodySpec body_spec(const protocols::Protocol& protocol, const protocols::Stimulus& stimulus) {
+core::BodySpec body_spec(const protocols::Protocol& protocol,
+                         const protocols::PresentedStimulus& stimulus) {
   core::BodySpec body = core::body_of(plate_spec(protocol, stimulus));
+  const auto may_share = [&](const protocols::Stimulus& other) {
+    return other.technique->needs_model() && other.plate == stimulus.own_plate &&
+           std::ranges::count(poissons_ratios(protocol, other), body.poissons_ratio) > 0;
+  };
   for (const protocols::Stimulus& other : protocol.stimuli) {
-    if (other.technique->needs_model() && other.plate == stimulus.plate &&
-        other.material->poissons_ratio == body.poissons_ratio) {
+    if (may_share(other)) {
       body.band_limit_rad_per_m =
-          std::max(body.band_limit_rad_per_m,
-                   core::kappa_rad_per_m(protocol.band_limit_hz, *other.material));
+          std::max(body.band_limit_rad_per_m, largest_kappa_rad_per_m(protocol, other));
     }
   }
   return body;
@@ -81,7 +85,7 @@ core::VibratingPlate vibrating_plate(const core::Shape& shape, core::ModalModel 
 }
 
 ModelLibrary::Body ModelLibrary::body(const protocols::Protocol& protocol,
-                                      const protocols::Stimulus& stimulus) {
+                                      const protocols::PresentedStimulus& stimulus) {
   core::check_material(*stimulus.material);
   const core::BodySpec spec = body_spec(protocol, stimulus);
   const std::string key = core::content_key(spec);
@@ -103,27 +107,47 @@ ModelLibrary::Body ModelLibrary::body(const protocols::Protocol& protocol,
 }
 
 ModelLibrary::Body ModelLibrary::body_of(const protocols::Protocol& protocol,
-                                         const protocols::Stimulus& stimulus) {
+                                         const protocols::PresentedStimulus& stimulus) {
   const std::lock_guard lock{mutex_};
   return at_its_line(stimulus, [&] { return body(protocol, stimulus); });
 }
 
+ModelLibrary::Plate ModelLibrary::make_plate(const protocols::Protocol& protocol,
+                                             const protocols::PresentedStimulus& stimulus) {
+  return at_its_line(stimulus, [&] {
+    const core::PlateSpec spec = plate_spec(protocol, stimulus);
+    core::ModalModel model =
+        core::model_of(*body(protocol, stimulus), spec.material, spec.band_limit_hz);
+    check_has_mode(model.frequency_hz.size(), spec);
+    return std::make_shared<const core::VibratingPlate>(
+        vibrating_plate(spec.shape, std::move(model)));
+  });
+}
+
 ModelLibrary::Plate ModelLibrary::plate_of(const protocols::Protocol& protocol,
-                                           const protocols::Stimulus& stimulus) {
+                                           const protocols::PresentedStimulus& stimulus) {
   const std::lock_guard lock{mutex_};
-  const core::PlateSpec spec = plate_spec(protocol, stimulus);
-  Plate& plate = plates_[fmt::format("{} {} {:a}", core::content_key(body_spec(protocol, stimulus)),
-                                     core::content_key(spec.material), spec.band_limit_hz)];
+  if (!stimulus.changed.empty()) {
+    return make_plate(protocol, stimulus);
+  }
+  Plate& plate =
+      plates_[fmt::format("{} {} {:a}", core::content_key(body_spec(protocol, stimulus)),
+                          core::content_key(*stimulus.material), protocol.band_limit_hz)];
   if (!plate) {
-    plate = at_its_line(stimulus, [&] {
-      core::ModalModel model =
-          core::model_of(*body(protocol, stimulus), spec.material, spec.band_limit_hz);
-      check_has_mode(model, spec);
-      return std::make_shared<const core::VibratingPlate>(
-          vibrating_plate(spec.shape, std::move(model)));
-    });
+    plate = make_plate(protocol, stimulus);
   }
   return plate;
+}
+
+std::vector<ModelLibrary::Body> ModelLibrary::bodies_of(const protocols::Protocol& protocol,
+                                                        const protocols::Stimulus& stimulus) {
+  std::vector<Body> bodies;
+  const protocols::AxisValues softest = band_ends(protocol, stimulus).most;
+  for (protocols::AxisValues values : protocols::table_of_models(protocol, stimulus)) {
+    values.insert(softest.begin(), softest.end());  // what is solved for, should it fail
+    bodies.push_back(body_of(protocol, stimulus_with(protocol, stimulus, values)));
+  }
+  return bodies;
 }
 
 core::TouchedShape touched_shape(const core::Shape& shape) {
@@ -135,9 +159,15 @@ core::TouchedShape touched_shape(const core::Shape& shape) {
 
 void ModelLibrary::build_all(const protocols::Protocol& protocol) {
   for (const protocols::Stimulus& stimulus : protocol.stimuli) {
-    if (stimulus.technique->needs_model()) {
-      plate_of(protocol, stimulus);
+    if (!stimulus.technique->needs_model()) {
+      continue;
     }
+    const auto tables = protocols::table_of_models(protocol, stimulus);
+    const std::vector<Body> bodies = bodies_of(protocol, stimulus);
+    for (std::size_t i = 0; i < tables.size(); ++i) {
+      check_members(protocol, stimulus, tables[i], *bodies[i]);
+    }
+    plate_of(protocol, stimulus_with(protocol, stimulus));
   }
 }
 }  // namespace tapstudy::runner

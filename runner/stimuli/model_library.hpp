@@ -8,15 +8,20 @@
 #include "core/model/plate_model.hpp"
 #include "core/tick/tap_renderer.hpp"
 #include "core/tick/vibrating_plate.hpp"
-#include "protocols/protocol.hpp"
+#include "protocols/axes/presented_stimulus.hpp"
 namespace tapstudy::runner {
 // The model specification of a stimulus's plate.
 core::PlateSpec plate_spec(const protocols::Protocol& protocol,
-                           const protocols::Stimulus& stimulus);
+                           const protocols::PresentedStimulus& stimulus);
 
 // The unit-material body from which all vibrating stimuli with the same plate and Poisson's ratio
-// are scaled: solved up to the highest band limit that any of them needs.
-core::BodySpec body_spec(const protocols::Protocol& protocol, const protocols::Stimulus& stimulus);
+// are scaled, with all their members: solved up to the highest band limit that any of them needs.
+core::BodySpec body_spec(const protocols::Protocol& protocol,
+                         const protocols::PresentedStimulus& stimulus);
+
+// A body without a mode in the band would be felt as one that does not vibrate at all. Throws
+// ModelError with the first frequency above it.
+void check_has_mode(Eigen::Index modes_in_band, const core::PlateSpec& spec);
 
 // The collision geometry of a non-vibrating body.
 core::TouchedShape touched_shape(const core::Shape& shape);
@@ -37,17 +42,25 @@ class ModelLibrary {
   explicit ModelLibrary(core::ModelCache cache = models_of_this_user())
       : cache_{std::move(cache)} {}
 
-  // Throws InvalidInput or ModelError, naming the stimulus.
-  Plate plate_of(const protocols::Protocol& protocol, const protocols::Stimulus& stimulus);
-  Body body_of(const protocols::Protocol& protocol, const protocols::Stimulus& stimulus);
-  // Builds all models that the protocol needs, so that errors are reported first.
+  // Throws InvalidInput or ModelError, naming the stimulus and its values. After build_all neither
+  // meshes nor solves. Only plates of stimuli at their own values are kept: of a family as many may
+  // be presented as there are trials.
+  Plate plate_of(const protocols::Protocol& protocol, const protocols::PresentedStimulus& stimulus);
+  Body body_of(const protocols::Protocol& protocol, const protocols::PresentedStimulus& stimulus);
+  // The bodies of all members of a vibrating stimulus, each for its values of the tabled axes.
+  std::vector<Body> bodies_of(const protocols::Protocol& protocol,
+                              const protocols::Stimulus& stimulus);
+  // Builds all models that the protocol needs, and checks that every member of its families can be
+  // built of them, so that errors are reported first.
   void build_all(const protocols::Protocol& protocol);
 
   int bodies_solved() const { return solved_; }  // not found in memory or on disk
   int bodies_used() const { return static_cast<int>(bodies_.size()); }
 
  private:
-  Body body(const protocols::Protocol& protocol, const protocols::Stimulus& stimulus);
+  Body body(const protocols::Protocol& protocol, const protocols::PresentedStimulus& stimulus);
+  Plate make_plate(const protocols::Protocol& protocol,
+                   const protocols::PresentedStimulus& stimulus);
 
   std::mutex mutex_;
   core::ModelCache cache_;

@@ -12,6 +12,11 @@ struct TrialStimuli {
   std::vector<core::TapRenderer> alternatives;
 };
 
+// Of stimuli as they are presented; after ModelLibrary::build_all without meshing or solving.
+TrialStimuli build_trial_stimuli(const protocols::Protocol& protocol,
+                                 const std::vector<protocols::PresentedStimulus>& stimuli,
+                                 ModelLibrary& models);
+// Of these, at their own values.
 TrialStimuli build_trial_stimuli(const protocols::Protocol& protocol,
                                  const std::vector<std::string>& stimuli, ModelLibrary& models);
 }  // namespace tapstudy::runner

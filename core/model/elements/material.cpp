@@ -39,7 +39,37 @@ std::string key_of(const ModalDamping& damping) {
   }
   return key;
 }
+
+void scale(RayleighDamping& damping, double factor) {
+  damping.alpha_per_s *= factor;
+  damping.beta_s *= factor;
+}
+void scale(TwoRatioDamping& damping, double factor) {
+  damping.first_ratio *= factor;
+  damping.last_ratio *= factor;
+}
+void scale(FittedDamping& damping, double factor) {
+  for (FittedDamping::Point& point : damping.points) {
+    point.ratio *= factor;
+  }
+}
+void scale(ModalDamping& damping, double factor) {
+  for (double& ratio : damping.ratios) {
+    ratio *= factor;
+  }
+  if (damping.further_ratio) {
+    *damping.further_ratio *= factor;
+  }
+}
+void scale(ConstantDamping& damping, double factor) {
+  damping.ratio *= factor;
+}
 }  // namespace
+
+Damping scaled(Damping damping, double factor) {
+  std::visit([&](auto& one) { scale(one, factor); }, damping);
+  return damping;
+}
 
 std::string content_key(const Material& material) {
   return fmt::format(

@@ -36,6 +36,10 @@ struct ConstantDamping {
 using Damping =
     std::variant<RayleighDamping, TwoRatioDamping, FittedDamping, ModalDamping, ConstantDamping>;
 
+// The damping of which every mode has `factor` times the ratio: coefficients and ratios are
+// multiplied by it, because eq. 12 and 13 are linear in them. factor >= 0.
+Damping scaled(Damping damping, double factor);
+
 // Homogeneous, isotropic, linearly elastic.
 struct Material {
   double youngs_modulus_pa{};  // > 0

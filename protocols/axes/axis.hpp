@@ -1,0 +1,39 @@
+#pragma once
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/techniques/force_part.hpp"
+#include "protocols/yaml/yaml_reader.hpp"
+namespace tapstudy::protocols {
+struct PresentedStimulus;  // protocols/axes/presented_stimulus.hpp
+
+// scaled   every value can be presented: settings, or a solved body scaled exactly to a material
+//          (omega ~ sqrt(E / rho), M-orthonormal shapes ~ 1 / sqrt(rho))
+// tabled   each value needs a body of its own, solved before the session: only listed values can be
+//          presented
+enum class AxisKind { scaled, tabled };
+
+// A property along which a stimulus may vary: one row of axis_table.cpp. Nothing else knows an
+// axis by its name.
+struct Axis {
+  std::string_view name;  // in protocols, on the command line and in data; ends in its unit
+  std::string_view unit;  // SI; empty for a ratio
+  AxisKind kind{};
+  const core::ForcePart* used_by{};  // the techniques that have it use this axis; null: all do
+  bool is_of_boxes{};                // other shapes cannot vary so
+  // What the stimulus allows: what the study's own key allows, or less.
+  Range (*allowed)(const PresentedStimulus& stimulus){};
+  double (*value)(const PresentedStimulus& stimulus){};
+  // Plates and materials are shared: it exchanges them for changed copies.
+  void (*set)(PresentedStimulus& stimulus, double value){};
+};
+
+const std::vector<Axis>& axes();
+// nullptr if there is none of that name.
+const Axis* find_axis(std::string_view name);
+std::vector<std::string> axis_names();
+
+// Why this stimulus does not use the axis, in words; empty if it does.
+std::string refusal(const Axis& axis, const PresentedStimulus& stimulus);
+}  // namespace tapstudy::protocols

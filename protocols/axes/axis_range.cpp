@@ -1,0 +1,76 @@
+#include "protocols/axes/axis_range.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "core/error.hpp"
+namespace tapstudy::protocols {
+namespace {
+constexpr double rounding = 1e-9;  // of a value computed through logarithms, relative
+
+// 0.06 instead of 0.060000000000000005, as a study would state it.
+double written_short(double value) {
+  return std::stod(fmt::format("{:.12g}", value));
+}
+
+double distance(double a, double b, Spacing spacing) {
+  return spacing == Spacing::log ? std::abs(std::log(a / b)) : std::abs(a - b);
+}
+
+std::string with_unit(const std::string& words, std::string_view unit) {
+  return unit.empty() ? words : fmt::format("{} {}", words, unit);
+}
+}  // namespace
+
+double between(double from, double to, Spacing spacing, double share) {
+  return spacing == Spacing::log ? from * std::pow(to / from, share) : from + share * (to - from);
+}
+
+double AxisRange::at(double share) const {
+  return between(from, to, spacing, share);
+}
+
+double AxisRange::presented(double asked) const {
+  const double slack = rounding * std::max(std::abs(from), std::abs(to));
+  if (!(asked >= from - slack && asked <= to + slack)) {
+    throw core::InvalidInput{
+        fmt::format("{}: {} is not allowed ({})", axis->name, asked,
+                    with_unit(fmt::format("from {} to {}", from, to), axis->unit))};
+  }
+  const double inside = std::clamp(asked, from, to);
+  if (axis->kind == AxisKind::scaled) {
+    return inside;
+  }
+  return *std::ranges::min_element(table, {},
+                                   [&](double value) { return distance(value, inside, spacing); });
+}
+
+std::string AxisRange::described() const {
+  const std::string values = axis->kind == AxisKind::tabled
+                                 ? fmt::format("{} {}", axis->name, fmt::join(table, ", "))
+                                 : fmt::format("{} from {} to {}", axis->name, from, to);
+  return with_unit(values, axis->unit);
+}
+
+std::vector<double> spaced(double from, double to, int count, Spacing spacing) {
+  std::vector<double> values;
+  for (int i = 0; i + 1 < count; ++i) {
+    values.push_back(
+        written_short(between(from, to, spacing, static_cast<double>(i) / (count - 1))));
+  }
+  values.push_back(to);
+  return values;
+}
+
+std::string described(const AxisValues& values) {
+  std::vector<std::string> words;
+  for (const auto& [name, value] : values) {
+    words.push_back(fmt::format("{} = {:.6g}", name, value));
+  }
+  return fmt::format("{}", fmt::join(words, ", "));
+}
+}  // namespace tapstudy::protocols

@@ -1,0 +1,198 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <memory>
+#include <utility>
+
+#include "protocols/allowed.hpp"
+#include "protocols/axes/axis.hpp"
+#include "protocols/axes/presented_stimulus.hpp"
+namespace tapstudy::protocols {
+namespace {
+constexpr double max_factor = 100.0;  // of damping and gain
+
+template <class Change>
+void change_material(PresentedStimulus& stimulus, const Change& change) {
+  Material material = *stimulus.material;
+  change(material);
+  stimulus.material = std::make_shared<const Material>(std::move(material));
+}
+
+template <class Change>
+void change_plate(PresentedStimulus& stimulus, const Change& change) {
+  Plate plate = *stimulus.plate;
+  change(plate);
+  stimulus.plate = std::make_shared<const Plate>(std::move(plate));
+}
+
+template <const Range& range>
+Range constant(const PresentedStimulus& /*stimulus*/) {
+  return range;
+}
+
+// The largest coefficient or ratio, as a share of what its key allows.
+double share_used(const core::RayleighDamping& damping) {
+  return std::max(damping.alpha_per_s / allowed::alpha_per_s.high,
+                  damping.beta_s / allowed::beta_s.high);
+}
+double share_used(const core::TwoRatioDamping& damping) {
+  return std::max(damping.first_ratio, damping.last_ratio) / allowed::damping_ratio.high;
+}
+double share_used(const core::FittedDamping& damping) {
+  double largest = 0.0;
+  for (const core::FittedDamping::Point& point : damping.points) {
+    largest = std::max(largest, point.ratio);
+  }
+  return largest / allowed::damping_ratio.high;
+}
+double share_used(const core::ModalDamping& damping) {
+  double largest = damping.further_ratio.value_or(0.0);
+  for (const double ratio : damping.ratios) {
+    largest = std::max(largest, ratio);
+  }
+  return largest / allowed::damping_ratio.high;
+}
+double share_used(const core::ConstantDamping& damping) {
+  return damping.ratio / allowed::damping_ratio.high;
+}
+// Scaled damping stays within what its keys allow.
+Range damping_factors(const PresentedStimulus& stimulus) {
+  const double share = std::visit([](const auto& damping) { return share_used(damping); },
+                                  stimulus.material->damping);
+  return {0.0, max_factor * share > 1.0 ? 1.0 / share : max_factor};
+}
+Range gains(const PresentedStimulus& /*stimulus*/) {
+  return {0.0, max_factor};
+}
+// Above half of the rate a sinusoid would alias.
+Range frequencies_hz(const PresentedStimulus& stimulus) {
+  Range range = allowed::sinusoid_frequency_hz;
+  const double half_rate_hz = 0.5 / stimulus.rendering.dt_s;
+  if (half_rate_hz <= range.high) {
+    range.high = half_rate_hz;
+    range.high_included = false;
+  }
+  return range;
+}
+
+const core::Box& box_of(const PresentedStimulus& stimulus) {
+  return std::get<core::Box>(stimulus.plate->shape);
+}
+
+// Sideways everything moves with the edges but radii, such as of a screw's head: fixations and
+// tapping points. On the device the plate stays as large as it is and is tapped at the same places:
+// participants must not tell plates apart by these.
+void set_lateral_size(PresentedStimulus& stimulus, double size_m) {
+  change_plate(stimulus, [&](Plate& plate) {
+    auto& box = std::get<core::Box>(plate.shape);
+    const double factor = size_m / box.size_m.x();
+    box.size_m.x() = size_m;
+    box.size_m.y() *= factor;
+    for (core::Fixation& fixation : plate.fixations) {
+      for (core::Vec3* const place : {&fixation.at_m, &fixation.low_m, &fixation.high_m}) {
+        place->head<2>() *= factor;
+      }
+    }
+    for (auto& [name, at_m] : plate.tapping_points_m) {
+      at_m *= factor;
+    }
+    plate.lateral_ratio /= factor;
+  });
+  stimulus.rendering.lateral_ratio = stimulus.plate->lateral_ratio;
+}
+// Such that the other edge stays within what its key allows.
+Range lateral_sizes_m(const PresentedStimulus& stimulus) {
+  const core::Vec3& size_m = box_of(stimulus).size_m;
+  const double aspect = size_m.x() / size_m.y();
+  const Range& edge = allowed::edge_m;
+  return {edge.low * std::max(1.0, aspect), edge.high * std::min(1.0, aspect)};
+}
+}  // namespace
+
+const std::vector<Axis>& axes() {
+  using P = PresentedStimulus;
+  static const std::vector<Axis> table{
+      {"youngs_modulus_pa", "Pa", AxisKind::scaled, &core::plate_vibration, false,
+       constant<allowed::youngs_modulus_pa>,
+       [](const P& stimulus) { return stimulus.material->youngs_modulus_pa; },
+       [](P& stimulus, double value) {
+         change_material(stimulus, [&](Material& m) { m.youngs_modulus_pa = value; });
+       }},
+      {"density_kg_per_m3", "kg/m³", AxisKind::scaled, &core::plate_vibration, false,
+       constant<allowed::density_kg_per_m3>,
+       [](const P& stimulus) { return stimulus.material->density_kg_per_m3; },
+       [](P& stimulus, double value) {
+         change_material(stimulus, [&](Material& m) { m.density_kg_per_m3 = value; });
+       }},
+      {"damping_scale", "", AxisKind::scaled, &core::plate_vibration, false, damping_factors,
+       [](const P& /*stimulus*/) { return 1.0; },
+       [](P& stimulus, double value) {
+         change_material(stimulus,
+                         [&](Material& m) { m.damping = core::scaled(m.damping, value); });
+       }},
+      {"vibration_gain", "", AxisKind::scaled, &core::plate_vibration, false, gains,
+       [](const P& stimulus) { return stimulus.rendering.vibration_gain; },
+       [](P& stimulus, double value) { stimulus.rendering.vibration_gain = value; }},
+      {"sinusoid_amplitude_n_s_per_m", "N s/m", AxisKind::scaled, &core::decaying_sinusoid, false,
+       constant<allowed::sinusoid_amplitude_n_s_per_m>,
+       [](const P& stimulus) { return stimulus.rendering.sinusoid.amplitude_n_s_per_m; },
+       [](P& stimulus, double value) { stimulus.rendering.sinusoid.amplitude_n_s_per_m = value; }},
+      {"sinusoid_decay_per_s", "1/s", AxisKind::scaled, &core::decaying_sinusoid, false,
+       constant<allowed::sinusoid_decay_per_s>,
+       [](const P& stimulus) { return stimulus.rendering.sinusoid.decay_per_s; },
+       [](P& stimulus, double value) { stimulus.rendering.sinusoid.decay_per_s = value; }},
+      {"sinusoid_frequency_hz", "Hz", AxisKind::scaled, &core::decaying_sinusoid, false,
+       frequencies_hz, [](const P& stimulus) { return stimulus.rendering.sinusoid.frequency_hz; },
+       [](P& stimulus, double value) { stimulus.rendering.sinusoid.frequency_hz = value; }},
+      {"penalty_stiffness_n_per_m", "N/m", AxisKind::scaled, nullptr, false,
+       constant<allowed::penalty_stiffness_n_per_m>,
+       [](const P& stimulus) { return stimulus.rendering.penalty_stiffness_n_per_m; },
+       [](P& stimulus, double value) { stimulus.rendering.penalty_stiffness_n_per_m = value; }},
+      {"poissons_ratio", "", AxisKind::tabled, &core::plate_vibration, false,
+       constant<allowed::poissons_ratio>,
+       [](const P& stimulus) { return stimulus.material->poissons_ratio; },
+       [](P& stimulus, double value) {
+         change_material(stimulus, [&](Material& m) { m.poissons_ratio = value; });
+       }},
+      {"thickness_m", "m", AxisKind::tabled, &core::plate_vibration, true,
+       constant<allowed::edge_m>, [](const P& stimulus) { return box_of(stimulus).size_m.z(); },
+       [](P& stimulus, double value) {
+         change_plate(stimulus,
+                      [&](Plate& plate) { std::get<core::Box>(plate.shape).size_m.z() = value; });
+       }},
+      {"lateral_size_m", "m", AxisKind::tabled, &core::plate_vibration, true, lateral_sizes_m,
+       [](const P& stimulus) { return box_of(stimulus).size_m.x(); }, set_lateral_size},
+  };
+  return table;
+}
+
+const Axis* find_axis(std::string_view name) {
+  const auto found = std::ranges::find(axes(), name, &Axis::name);
+  return found == axes().end() ? nullptr : &*found;
+}
+
+std::vector<std::string> axis_names() {
+  std::vector<std::string> names;
+  std::ranges::transform(axes(), std::back_inserter(names),
+                         [](const Axis& axis) { return std::string{axis.name}; });
+  return names;
+}
+
+std::string refusal(const Axis& axis, const PresentedStimulus& stimulus) {
+  if (axis.used_by != nullptr && !stimulus.technique->has(*axis.used_by)) {
+    std::vector<std::string_view> users;
+    for (const core::Technique& technique : core::techniques()) {
+      if (technique.has(*axis.used_by)) {
+        users.push_back(technique.name);
+      }
+    }
+    return fmt::format("technique '{}' does not use it ({} do)", stimulus.technique->name,
+                       fmt::join(users, ", "));
+  }
+  if (axis.is_of_boxes && !std::holds_alternative<core::Box>(stimulus.plate->shape)) {
+    return "only a plate given by size_m has it, not one with a surface from a file";
+  }
+  return {};
+}
+}  // namespace tapstudy::protocols

@@ -1,0 +1,128 @@
+// The axes along which a stimulus varies.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "protocols/axes/presented_stimulus.hpp"
+#include "protocols/read_sections.hpp"
+namespace tapstudy::protocols {
+namespace {
+using Presence = MapReader::Presence;
+constexpr int max_count = 1000;
+
+void read_ends(MapReader& reader, const Range& allowed, AxisRange& range) {
+  range.from = reader.number("from", allowed);
+  range.to = reader.number("to", allowed);
+  if (!(range.from < range.to)) {
+    reader.reject("from", fmt::format("{} is not below to, {}", range.from, range.to));
+  }
+}
+
+void check_listed(MapReader& reader, const std::vector<double>& ascending) {
+  if (const auto twice = std::ranges::adjacent_find(ascending); twice != ascending.end()) {
+    reader.reject("values", fmt::format("{} is listed twice", *twice));
+  }
+}
+
+void read_table(MapReader& reader, const Range& allowed, AxisRange& range) {
+  if (reader.has("values")) {
+    range.table = reader.number_list("values", allowed);
+    std::ranges::sort(range.table);
+    check_listed(reader, range.table);
+    range.from = range.table.empty() ? 0.0 : range.table.front();
+    range.to = range.table.empty() ? 0.0 : range.table.back();
+  } else {
+    read_ends(reader, allowed, range);
+    const int count = reader.integer("count", 2, max_count);
+    range.table = spaced(range.from, range.to, count, range.spacing);
+  }
+}
+
+AxisRange read_range(MapReader& reader, const Axis& axis, const Range& allowed) {
+  AxisRange range;
+  range.axis = &axis;
+  range.spacing = reader.one_of<Spacing>(
+      "spacing", {{"linear", Spacing::linear}, {"log", Spacing::log}}, "linear");
+  if (axis.kind == AxisKind::tabled) {
+    read_table(reader, allowed, range);
+  } else {
+    read_ends(reader, allowed, range);
+  }
+  if (range.spacing == Spacing::log && range.from <= 0.0) {
+    reader.reject("spacing", fmt::format("log needs values above 0, not {}", range.from));
+  }
+  return range;
+}
+
+// Where a name was rejected, something in its place, so that reading can continue.
+Stimulus whole(Stimulus stimulus) {
+  if (!stimulus.plate) {
+    Plate plate;
+    plate.shape = core::Box{core::Vec3::Ones()};
+    stimulus.plate = std::make_shared<const Plate>(std::move(plate));
+  }
+  if (!stimulus.material) {
+    stimulus.material = std::make_shared<const Material>();
+  }
+  return stimulus;
+}
+
+// The stimulus's own values are presented too.
+void check_models(MapReader& vary, const std::vector<AxisRange>& ranges,
+                  const PresentedStimulus& own) {
+  std::size_t models = 1;
+  std::vector<std::string> counts;
+  for (const AxisRange& range : ranges) {
+    if (range.axis->kind == AxisKind::tabled) {
+      const bool has_own =
+          std::ranges::find(range.table, range.axis->value(own)) != range.table.end();
+      models *= range.table.size() + (has_own ? 0 : 1);
+      counts.push_back(fmt::format("{} of {}{}", range.table.size(), range.axis->name,
+                                   has_own ? "" : " and the stimulus's own"));
+    }
+  }
+  if (models > max_models_of_a_stimulus) {
+    vary.reject(fmt::format("asks for {} models: {} (at most {} for one stimulus)", models,
+                            fmt::join(counts, ", times "), max_models_of_a_stimulus));
+  }
+}
+
+Range any_number() {
+  return {std::numeric_limits<double>::lowest(), std::numeric_limits<double>::max()};
+}
+// A refused axis is read all the same, so that its keys are not reported as unknown.
+void read_axis(MapReader& reader, const Axis& axis, const PresentedStimulus& own,
+               std::vector<AxisRange>& ranges) {
+  // whether it is used is not known where the technique was rejected
+  const std::string why = own.technique == nullptr ? std::string{} : refusal(axis, own);
+  const AxisRange range = read_range(reader, axis, why.empty() ? axis.allowed(own) : any_number());
+  if (why.empty()) {
+    ranges.push_back(range);
+  } else {
+    reader.reject(why);
+  }
+}
+}  // namespace
+
+std::vector<AxisRange> read_vary(MapReader& stimulus_reader, const Stimulus& stimulus,
+                                 const Protocol& protocol) {
+  std::vector<AxisRange> ranges;
+  const PresentedStimulus own = stimulus_with(protocol, whole(stimulus));
+  stimulus_reader.map("vary", Presence::optional, [&](MapReader& vary) {
+    bool is_named = false;
+    for (const Axis& axis : axes()) {
+      is_named = is_named || vary.has(std::string{axis.name});
+      vary.map(std::string{axis.name}, Presence::optional,
+               [&](MapReader& reader) { read_axis(reader, axis, own, ranges); });
+    }
+    if (!is_named) {
+      vary.reject(fmt::format("names no axis (one of: {})", fmt::join(axis_names(), ", ")));
+    }
+    check_models(vary, ranges, own);
+  });
+  return ranges;
+}
+}  // namespace tapstudy::protocols

@@ -1,0 +1,73 @@
+#include "runner/commands/families.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "core/model/stopwatch.hpp"
+#include "runner/stimuli/family.hpp"
+namespace tapstudy::runner {
+namespace {
+double megabytes(const core::BodyModes& body) {
+  const auto bytes = [](const auto& matrix) {
+    return 1e-6 * static_cast<double>(sizeof(*matrix.data())) * static_cast<double>(matrix.size());
+  };
+  return bytes(body.shape) + bytes(body.touch_nodes_m) + bytes(body.touch_surface);
+}
+
+void print_cost(const protocols::Protocol& protocol, const protocols::Stimulus& stimulus,
+                ModelLibrary& models) {
+  const BandEnds ends = band_ends(protocol, stimulus);
+  double solved_s = 0.0;
+  double held_mb = 0.0;
+  const auto bodies = models.bodies_of(protocol, stimulus);
+  for (const ModelLibrary::Body& body : bodies) {
+    solved_s += body->report.cost.total_s();
+    held_mb += megabytes(*body);
+  }
+  core::Stopwatch watch;
+  const auto most = models.plate_of(protocol, stimulus_with(protocol, stimulus, ends.most));
+  const double member_s = watch.elapsed_s();
+  const auto fewest = models.plate_of(protocol, stimulus_with(protocol, stimulus, ends.fewest));
+  fmt::print("    {} model{}, solved in {:.3f} s, {:.1f} MB; a member takes {:.1f} ms more\n",
+             bodies.size(), bodies.size() == 1 ? "" : "s", solved_s, held_mb, 1e3 * member_s);
+  fmt::print("    {} to {} modes below {} Hz at its own values of table axes\n",
+             fewest->model.frequency_hz.size(), most->model.frequency_hz.size(),
+             protocol.band_limit_hz);
+}
+}  // namespace
+
+void print_families(const protocols::Protocol& protocol, ModelLibrary& models) {
+  models.build_all(protocol);
+  bool is_first = true;
+  for (const protocols::Stimulus& stimulus : protocol.stimuli) {
+    if (stimulus.vary.empty()) {
+      continue;
+    }
+    fmt::print("{}", is_first ? "\nfamilies\n" : "");
+    is_first = false;
+    std::vector<std::string> axes;
+    std::ranges::transform(stimulus.vary, std::back_inserter(axes),
+                           &protocols::AxisRange::described);
+    fmt::print("  {}: {}\n", stimulus.name, fmt::join(axes, "; "));
+    if (stimulus.technique->needs_model()) {
+      print_cost(protocol, stimulus, models);
+    } else {
+      fmt::print("    no model: settings alone\n");
+    }
+  }
+}
+
+double largest_penalty_n_per_m(const protocols::Protocol& protocol) {
+  double largest = protocol.rendering.penalty_stiffness_n_per_m;
+  for (const protocols::Stimulus& stimulus : protocol.stimuli) {
+    for (const protocols::AxisRange& range : stimulus.vary) {
+      const auto member =
+          stimulus_with(protocol, stimulus, {{std::string{range.axis->name}, range.to}});
+      largest = std::max(largest, member.rendering.penalty_stiffness_n_per_m);
+    }
+  }
+  return largest;
+}
+}  // namespace tapstudy::runner

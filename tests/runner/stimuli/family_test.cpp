@@ -1,0 +1,222 @@
+// Members of a family against the stimulus that a study states directly.
+#include "runner/stimuli/family.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "core/error.hpp"
+#include "runner/devices/rigs.hpp"
+#include "runner/experiments/scripted_tap.hpp"
+#include "runner/stimuli/model_library.hpp"
+#include "support/varied_study.hpp"
+using namespace tapstudy;
+using Catch::Matchers::Contains;
+using protocols::AxisValues;
+
+namespace {
+struct Edit {
+  std::string from;
+  std::string to;
+};
+
+struct Presented {
+  protocols::PresentedStimulus stimulus;
+  core::ModalModel model;
+  std::vector<core::TraceSample> traces;  // of a tap at each tapping point, one after another
+};
+
+Presented presented(const protocols::Protocol& protocol, const AxisValues& asked) {
+  runner::ModelLibrary models{core::ModelCache{"", ""}};
+  models.build_all(protocol);
+  const int solved = models.bodies_solved();
+  Presented seen{stimulus_at(protocol, protocol.stimuli.front(), asked), {}, {}};
+  seen.model = models.plate_of(protocol, seen.stimulus)->model;
+  for (const char* point : {"P", "Q"}) {
+    const runner::ScriptedTap tap{seen.stimulus,
+                                  runner::point_on_plate(point, *seen.stimulus.plate), 0.3, 0.2};
+    const auto trace = runner::trace_of(tap, protocol, runner::simulated_rig(), models);
+    seen.traces.insert(seen.traces.end(), trace.begin(), trace.end());
+  }
+  CHECK(models.bodies_solved() == solved);  // a member is neither meshed nor solved
+  return seen;
+}
+
+Presented directly(std::vector<Edit> edits) {
+  std::string text = testing::varied_study_text;
+  for (const auto& [from, to] : edits) {
+    text = testing::replaced(text, from, to);
+  }
+  return presented(protocols::parse_protocol(text, "study.yaml"), {});
+}
+
+// Of the largest of either, at any tick.
+double largest_difference(const Presented& a, const Presented& b,
+                          double (*value)(const core::TraceSample&)) {
+  double difference = 0.0;
+  double largest = 0.0;
+  REQUIRE(a.traces.size() == b.traces.size());
+  for (std::size_t i = 0; i < a.traces.size(); ++i) {
+    difference = std::max(difference, std::abs(value(a.traces[i]) - value(b.traces[i])));
+    largest = std::max(largest, std::abs(value(a.traces[i])));
+  }
+  REQUIRE(largest > 0.0);
+  return difference / largest;
+}
+
+void check_equal(const Presented& member, const Presented& direct) {
+  REQUIRE(member.model.frequency_hz.size() == direct.model.frequency_hz.size());
+  REQUIRE(member.model.frequency_hz.size() > 0);
+  CHECK((member.model.frequency_hz / direct.model.frequency_hz - 1.0).abs().maxCoeff() < 1e-10);
+  CHECK((member.model.damping_ratio / direct.model.damping_ratio - 1.0).abs().maxCoeff() < 1e-9);
+  constexpr double solver = 1e-6;
+  CHECK(largest_difference(member, direct,
+                           [](const core::TraceSample& s) { return s.vibration_n; }) < solver);
+  CHECK(largest_difference(member, direct,
+                           [](const core::TraceSample& s) { return s.sinusoid_n; }) < 1e-12);
+  CHECK(largest_difference(member, direct, [](const core::TraceSample& s) { return s.penalty_n; }) <
+        solver);
+}
+
+struct Case {
+  std::vector<std::string> axes;
+  AxisValues values;
+  std::vector<Edit> edits;  // of the study that states the member itself
+};
+}  // namespace
+
+TEST_CASE("a member is the stimulus that a study would state with its values",
+          "[runner][stimuli][axes]") {
+  const std::vector<std::string> elastic{"youngs_modulus_pa: {from: 0.5e9, to: 5e9, spacing: log}",
+                                         "density_kg_per_m3: {from: 600, to: 4000, spacing: log}"};
+  const Case one = GENERATE_COPY(values<Case>({
+      {elastic, {{"youngs_modulus_pa", 0.5e9}}, {{"pa: 3.2e9", "pa: 0.5e9"}}},
+      {elastic, {{"youngs_modulus_pa", 5e9}}, {{"pa: 3.2e9", "pa: 5e9"}}},
+      {elastic, {{"density_kg_per_m3", 2500.0}}, {{"m3: 1180", "m3: 2500"}}},
+      {elastic,
+       {{"youngs_modulus_pa", 0.5e9}, {"density_kg_per_m3", 4000.0}},
+       {{"pa: 3.2e9", "pa: 0.5e9"}, {"m3: 1180", "m3: 4000"}}},
+      {{"damping_scale: {from: 0.5, to: 3}"},
+       {{"damping_scale", 2.5}},
+       {{"alpha_per_s: 60, beta_s: 8.0e-5", "alpha_per_s: 150, beta_s: 2.0e-4"}}},
+      {{"penalty_stiffness_n_per_m: {from: 500, to: 4000}"},
+       {{"penalty_stiffness_n_per_m", 700.0}},
+       {{"penalty_stiffness_n_per_m: 2000", "penalty_stiffness_n_per_m: 700"}}},
+      {{"sinusoid_amplitude_n_s_per_m: {from: 0, to: 9}"},
+       {{"sinusoid_amplitude_n_s_per_m", 7.0}},
+       {{"amplitude_n_s_per_m: 3", "amplitude_n_s_per_m: 7"}}},
+      {{"sinusoid_decay_per_s: {from: 10, to: 900}"},
+       {{"sinusoid_decay_per_s", 70.0}},
+       {{"decay_per_s: 600", "decay_per_s: 70"}}},
+      {{"sinusoid_frequency_hz: {from: 10, to: 400}"},
+       {{"sinusoid_frequency_hz", 70.0}},
+       {{"frequency_hz: 250", "frequency_hz: 70"}}},
+      {{"poissons_ratio: {values: [0.1, 0.45]}", elastic[0]},
+       {{"poissons_ratio", 0.4}, {"youngs_modulus_pa", 2e9}},
+       {{"ratio: 0.35", "ratio: 0.45"}, {"pa: 3.2e9", "pa: 2e9"}}},
+      {{"thickness_m: {values: [0.015, 0.04]}", elastic[0]},
+       {{"thickness_m", 0.019}, {"youngs_modulus_pa", 0.5e9}},
+       {{"0.4, 0.02]", "0.4, 0.015]"}, {"pa: 3.2e9", "pa: 0.5e9"}}},
+      {{"lateral_size_m: {from: 0.6, to: 1.8, count: 3}"},
+       {{"lateral_size_m", 1.3}},
+       {{"size_m: [0.6, 0.4", "lateral_scale: 0.05\n    size_m: [1.2, 0.8"},
+        {"at_m: [-0.25, -0.15]", "at_m: [-0.5, -0.3]"},
+        {"low_m: [0.2, -0.2,", "low_m: [0.4, -0.4,"},
+        {"high_m: [0.3, -0.1,", "high_m: [0.6, -0.2,"}}},
+  }));
+  INFO(protocols::described(one.values));
+  check_equal(presented(testing::varied_study(one.axes), one.values), directly(one.edits));
+}
+
+TEST_CASE("damping stated in any way is computed for the member's own modes",
+          "[runner][stimuli][axes]") {
+  const auto [own, doubled] = GENERATE(values<std::pair<std::string, std::string>>({
+      {"{first_ratio: 0.05, last_ratio: 0.06}", "{first_ratio: 0.1, last_ratio: 0.12}"},
+      {"{measured: [{frequency_hz: 50, ratio: 0.05}, {frequency_hz: 200, ratio: 0.06}]}",
+       "{measured: [{frequency_hz: 50, ratio: 0.1}, {frequency_hz: 200, ratio: 0.12}]}"},
+      {"{modal_ratios: [0.02, 0.03], further_ratio: 0.01}",
+       "{modal_ratios: [0.04, 0.06], further_ratio: 0.02}"},
+      {"{ratio: 0.02}", "{ratio: 0.04}"},
+  }));
+  INFO(own);
+  const std::string stated = "{alpha_per_s: 60, beta_s: 8.0e-5}";
+  const std::string family = testing::replaced(
+      testing::varied_study_text_with({"youngs_modulus_pa: {from: 0.5e9, to: 3e9, spacing: log}",
+                                       "damping_scale: {from: 1, to: 2}"}),
+      stated, own);
+  const Presented member = presented(protocols::parse_protocol(family, "study.yaml"),
+                                     {{"youngs_modulus_pa", 0.7e9}, {"damping_scale", 2.0}});
+  check_equal(member, directly({{"pa: 3.2e9", "pa: 0.7e9"}, {stated, doubled}}));
+}
+
+TEST_CASE("natural frequencies go as the root of Young's modulus over density",
+          "[runner][stimuli][axes]") {
+  const auto protocol = testing::varied_study(
+      {"youngs_modulus_pa: {from: 0.5e9, to: 3.2e9}", "density_kg_per_m3: {from: 1180, to: 4720}"});
+  const Presented own = presented(protocol, {});
+  const Presented softer = presented(protocol, {{"youngs_modulus_pa", 0.8e9}});
+  const Presented denser = presented(protocol, {{"density_kg_per_m3", 4720.0}});
+  const Eigen::Index modes = own.model.frequency_hz.size();
+  CHECK(softer.model.frequency_hz.size() > modes);  // more of them lie in the band
+  for (const Presented* half : {&softer, &denser}) {
+    CHECK((half->model.frequency_hz.head(modes) / own.model.frequency_hz - 0.5).abs().maxCoeff() <
+          1e-14);
+  }
+  CHECK((denser.model.shape.leftCols(modes) - 0.5 * own.model.shape).norm() <
+        1e-14 * own.model.shape.norm());
+}
+
+TEST_CASE("the vibration's gain multiplies the vibration, and nothing else",
+          "[runner][stimuli][axes]") {
+  const auto protocol = testing::varied_study({"vibration_gain: {from: 0, to: 2}"});
+  const Presented own = presented(protocol, {});
+  for (const double gain : {0.0, 0.5, 2.0}) {
+    const Presented member = presented(protocol, {{"vibration_gain", gain}});
+    REQUIRE(member.traces.size() == own.traces.size());
+    // until the finger, pushed differently, has moved differently
+    const auto impact = std::ranges::find(own.traces, true, &core::TraceSample::impact);
+    REQUIRE(impact != own.traces.end());
+    const auto i = static_cast<std::size_t>(impact - own.traces.begin());
+    CHECK(own.traces[i].vibration_n != 0.0);
+    CHECK(member.traces[i].vibration_n == Approx(gain * own.traces[i].vibration_n).epsilon(1e-12));
+    CHECK(member.traces[i].penalty_n == own.traces[i].penalty_n);
+  }
+}
+
+TEST_CASE("a member that cannot be built is named with its values before the session",
+          "[runner][stimuli][axes]") {
+  const auto refused = [](const std::vector<std::string>& axes, const std::vector<Edit>& edits,
+                          const std::string& what, const std::string& values) {
+    std::string text = testing::varied_study_text_with(axes);
+    for (const auto& [from, to] : edits) {
+      text = testing::replaced(text, from, to);
+    }
+    runner::ModelLibrary models{core::ModelCache{"", ""}};
+    const auto protocol = protocols::parse_protocol(text, "study.yaml");
+    CHECK_THROWS_AS(models.build_all(protocol), core::ModelError);
+    CHECK_THROWS_WITH(models.build_all(protocol), Contains("study.yaml:") && Contains(what) &&
+                                                      Contains("stimulus 'a' at " + values));
+  };
+  refused({"youngs_modulus_pa: {from: 1e9, to: 1e13}"}, {}, "no mode lies below band_limit_hz",
+          "youngs_modulus_pa = 1e+13");
+  refused({"thickness_m: {values: [0.01, 0.02]}"},
+          {{"{region: disc, at_m: [-0.25, -0.15], radius_m: 0.02, face: both}",
+            "{region: ball, at_m: [-0.3, -0.2, -0.02], radius_m: 0.005}"}},
+          "touches no node", "thickness_m = 0.01");
+  // own modes: listed; a softer plate has more
+  refused({"youngs_modulus_pa: {from: 0.5e9, to: 4e9}"},
+          {{"{alpha_per_s: 60, beta_s: 8.0e-5}", "{modal_ratios: [0.1, 0.1, 0.1]}"}},
+          "materials.acrylic.damping: ", "youngs_modulus_pa = 5e+08");
+  refused({"youngs_modulus_pa: {from: 1e3, to: 4e9}"}, {}, "below the band limit",
+          "youngs_modulus_pa = 1000");
+}
+
+TEST_CASE("stimuli that share a plate share the body of their softest member",
+          "[runner][stimuli][axes]") {
+  const std::string text =
+      testing::varied_study_text_with({"youngs_modulus_pa: {from: 1e9, to: 5e9}"}) +
+      "  b: {plate: screwed, material: acrylic, technique: fem}\n";
+  const auto protocol = protocols::parse_protocol(text, "study.yaml");
+  runner::ModelLibrary models{core::ModelCache{"", ""}};
+  models.build_all(protocol);
+  CHECK(models.bodies_solved() == 1);
+}

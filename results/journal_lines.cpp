@@ -103,7 +103,8 @@ JournalledAnswer answer_from(const Json& line) {
       line.at("duration_s"), line.at("is_catch"),    line.at("is_of_real_plate")};
   for (const Json& alternative : line.at("alternatives")) {
     answer.alternatives.push_back({static_cast<int>(answer.alternatives.size()),
-                                   alternative.at("label"), alternative.at("stimulus")});
+                                   alternative.at("label"), alternative.at("stimulus"),
+                                   alternative.at("axis_values"), alternative.at("is_comparison")});
   }
   answer.response = {line.at("response"), optional_of<bool>(line.at("is_correct")),
                      line.at("response_time_s"),
@@ -200,7 +201,10 @@ namespace {
 std::string to_line(const JournalledAnswer& answer) {
   Json alternatives = Json::array();
   for (const AlternativeRow& alternative : answer.alternatives) {
-    alternatives.push_back({{"label", alternative.label}, {"stimulus", alternative.stimulus}});
+    alternatives.push_back({{"label", alternative.label},
+                            {"stimulus", alternative.stimulus},
+                            {"axis_values", alternative.axis_values},
+                            {"is_comparison", alternative.is_comparison}});
   }
   return dumped({{"kind", "answer"},
                  {"session_id", answer.trial.session_id},

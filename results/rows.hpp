@@ -1,6 +1,7 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -49,10 +50,14 @@ struct SessionRow {
   std::string started_utc;
 };
 
+// Values of a stimulus on the axes along which it varies, by axis.
+using AxisValues = std::map<std::string, double>;
 struct AlternativeRow {
   int position{};     // from 0
   std::string label;  // blind label shown to the participant; empty if only one
   std::string stimulus;
+  AxisValues axis_values{};  // as presented; empty if it does not vary
+  bool is_comparison{};      // not the standard that it is compared with
 };
 struct ResponseRow {
   std::string response;                             // as the task stores it: a stimulus's name
@@ -191,6 +196,7 @@ struct AnswerRow {
   std::int64_t impacts{};
   std::int64_t late_impacts{};  // of these; up to 5 ms after a late tick
   std::int64_t trial_id{};      // ascends with time: a trial that was put off is answered later
+  std::vector<AlternativeRow> alternatives{};  // by position, where they are asked for
 };
 
 // How long and how often each alternative was felt, where there were several.

@@ -64,7 +64,15 @@ CREATE TABLE alternative (
   position INTEGER NOT NULL,
   label TEXT NOT NULL,
   stimulus TEXT NOT NULL,
+  is_comparison INTEGER NOT NULL,   -- not the standard that it is compared with
   PRIMARY KEY (trial_id, position)
+) STRICT;
+CREATE TABLE axis_value (           -- as presented, of stimuli that vary
+  trial_id INTEGER NOT NULL REFERENCES trial,
+  position INTEGER NOT NULL,        -- of the alternative
+  axis TEXT NOT NULL,
+  value REAL NOT NULL,              -- in the unit that ends the axis's name
+  PRIMARY KEY (trial_id, position, axis)
 ) STRICT;
 CREATE TABLE response (
   response_id INTEGER PRIMARY KEY,

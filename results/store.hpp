@@ -86,6 +86,7 @@ class Store {
   // within a mode.
   std::vector<AnswerRow> answers();
   std::vector<VisitRow> visits();
+  std::vector<AlternativeRow> alternatives_of(std::int64_t trial_id);  // by position
   std::vector<SessionRow> sessions();
   JournalEntries entries_for_journal();
   std::vector<std::int64_t> trials();  // the ids of all, whatever became of them
@@ -117,7 +118,6 @@ class Store {
   void insert_form_answer(const FormAnswerRow& answer);
   std::vector<OperatorActionRow> actions_for_journal();
   SessionRow session_of(std::int64_t session_id);
-  std::vector<AlternativeRow> alternatives_of(std::int64_t trial_id);
   StudyRow study_without_surfaces();
   std::vector<SurfaceRow> surfaces();
   void add_surfaces(const StudyRow& study);

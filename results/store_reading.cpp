@@ -100,12 +100,19 @@ std::vector<JournalledAnswer> Store::answers_for_journal() {
 
 std::vector<AlternativeRow> Store::alternatives_of(std::int64_t trial_id) {
   Statement row{database_,
-                "SELECT position, label, stimulus FROM alternative WHERE trial_id = ? "
-                "ORDER BY position"};
+                "SELECT position, label, stimulus, is_comparison FROM alternative "
+                "WHERE trial_id = ? ORDER BY position"};
   row.bind(trial_id);
   std::vector<AlternativeRow> alternatives;
   while (row.step()) {
-    alternatives.push_back({static_cast<int>(row.integer(0)), row.text(1), row.text(2)});
+    alternatives.push_back(
+        {static_cast<int>(row.integer(0)), row.text(1), row.text(2), {}, row.integer(3) != 0});
+  }
+  Statement value{database_, "SELECT position, axis, value FROM axis_value WHERE trial_id = ?"};
+  value.bind(trial_id);
+  while (value.step()) {
+    alternatives.at(static_cast<std::size_t>(value.integer(0))).axis_values[value.text(1)] =
+        value.real(2);
   }
   return alternatives;
 }

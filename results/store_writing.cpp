@@ -228,12 +228,21 @@ void Store::check_not_answered(const TrialRow& trial) {
 
 void Store::add_details(std::int64_t trial_id, const TrialRecord& record) {
   for (const AlternativeRow& alternative : record.alternatives) {
-    Statement{database_, "INSERT INTO alternative VALUES (?, ?, ?, ?)"}
+    Statement{database_, "INSERT INTO alternative VALUES (?, ?, ?, ?, ?)"}
         .bind(trial_id)
         .bind(alternative.position)
         .bind(alternative.label)
         .bind(alternative.stimulus)
+        .bind(alternative.is_comparison)
         .finish();
+    for (const auto& [axis, value] : alternative.axis_values) {
+      Statement{database_, "INSERT INTO axis_value VALUES (?, ?, ?, ?)"}
+          .bind(trial_id)
+          .bind(alternative.position)
+          .bind(axis)
+          .bind(value)
+          .finish();
+    }
   }
   if (record.response) {
     Statement{database_,

@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,12 @@ struct Place {
   int participant_index{};
   int order_index{};
 };
+// A value that a procedure or a list varies from trial to trial.
+struct VariedAxis {
+  std::string name;  // ends in its unit
+  bool is_log{};     // steps along it are ratios
+  double standard{};  // what the comparison is compared with
+};
 struct BlockDesign {
   std::string name;
   std::string task;
@@ -38,6 +45,13 @@ struct BlockDesign {
   // tested then.
   std::string premise;
   Vote vote{Vote::majority};
+  // Tasks that discriminate a comparison from a standard.
+  std::optional<VariedAxis> axis{};
+  std::string decision_model{};   // of d': m_afc, same_different, abx, odd_one_out; empty: none
+  int alternatives{};             // presented in a trial
+  double guess_rate{};            // of right answers
+  // Ratings: from 1 to this.
+  int steps{};
 };
 struct StudyDesign {
   std::string title;

@@ -1,6 +1,7 @@
 // Scales from paired comparisons, against the R packages BradleyTerry2 and stats.
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <vector>
 
 #include "analysis/paired/bradley_terry.hpp"
 #include "analysis/paired/thurstone.hpp"
@@ -10,12 +11,25 @@ using namespace tapstudy;
 using analysis::PairedCounts;
 
 namespace {
+const Eigen::MatrixXi no_ties;
+
+PairedCounts counts_of(const Eigen::MatrixXi& wins, const Eigen::MatrixXi& ties = no_ties) {
+  PairedCounts counts;
+  counts.wins = wins;
+  counts.ties = ties;
+  return counts;
+}
+
+Eigen::MatrixXi square(const std::vector<int>& rows) {
+  const auto items = static_cast<Eigen::Index>(std::lround(std::sqrt(rows.size())));
+  return Eigen::Map<const Eigen::MatrixXi>{rows.data(), items, items}.transpose();
+}
+
 // items 3 and 4 were never compared
-const PairedCounts without_ties{
-    (Eigen::MatrixXi(4, 4) << 0, 7, 9, 14, 5, 0, 8, 11, 3, 4, 0, 0, 2, 1, 0, 0).finished(), {}};
-const PairedCounts with_ties{
-    without_ties.wins,
-    (Eigen::MatrixXi(4, 4) << 0, 3, 1, 0, 3, 0, 4, 2, 1, 4, 0, 5, 0, 2, 5, 0).finished()};
+const PairedCounts without_ties =
+    counts_of(square({0, 7, 9, 14, 5, 0, 8, 11, 3, 4, 0, 0, 2, 1, 0, 0}));
+const PairedCounts with_ties =
+    counts_of(without_ties.wins, square({0, 3, 1, 0, 3, 0, 4, 2, 1, 4, 0, 5, 0, 2, 5, 0}));
 
 // Rows i < j of R: the items from 1, preferences for each, ties.
 std::string r_pairs(const PairedCounts& counts) {
@@ -110,7 +124,7 @@ out(coef(g), sqrt(diag(vcov(g))))
 
 TEST_CASE("two items are as far apart as the logit or probit of their preferences",
           "[analysis][paired]") {
-  const PairedCounts counts{(Eigen::MatrixXi(2, 2) << 0, 30, 10, 0).finished(), {}};
+  const PairedCounts counts = counts_of(square({0, 30, 10, 0}));
   const auto logit = analysis::difference(analysis::bradley_terry(counts).scale, 0, 1);
   CHECK(logit.value == Approx(std::log(3.0)).epsilon(1e-10));
   CHECK(logit.standard_error == Approx(std::sqrt(1.0 / 30.0 + 1.0 / 10.0)).epsilon(1e-10));
@@ -120,14 +134,13 @@ TEST_CASE("two items are as far apart as the logit or probit of their preference
 
 TEST_CASE("items that comparisons do not connect are refused by their places",
           "[analysis][paired]") {
-  PairedCounts counts{
-      (Eigen::MatrixXi(4, 4) << 0, 3, 2, 2, 1, 0, 2, 0, 0, 0, 0, 3, 0, 0, 1, 0).finished(),
-      Eigen::MatrixXi::Zero(4, 4)};
+  PairedCounts counts{square({0, 3, 2, 2, 1, 0, 2, 0, 0, 0, 0, 3, 0, 0, 1, 0}),
+                      Eigen::MatrixXi::Zero(4, 4)};
   const auto refusal =
       Catch::Contains("of items 3, 4, none was ever preferred to any of items 1, 2");
   CHECK_THROWS_WITH(analysis::bradley_terry(counts), refusal);
   CHECK_THROWS_WITH(analysis::thurstone_case_v(counts), refusal);
-  const PairedCounts reversed{counts.wins.reverse(), {}};
+  const PairedCounts reversed = counts_of(counts.wins.reverse());
   CHECK_THROWS_WITH(analysis::bradley_terry(reversed),
                     Catch::Contains("of items 1, 2, none was ever preferred to any of items 3, 4"));
   counts.ties(1, 3) = counts.ties(3, 1) = 1;  // half a preference of 4 to 2
@@ -137,17 +150,17 @@ TEST_CASE("items that comparisons do not connect are refused by their places",
 
 TEST_CASE("paired counts of other shapes and pairs of one item are refused", "[analysis][paired]") {
   const auto refuses = [](const Eigen::MatrixXi& wins, const Eigen::MatrixXi& ties) {
-    CHECK_THROWS_AS(analysis::bradley_terry({wins, ties}), core::InvalidInput);
-    CHECK_THROWS_AS(analysis::thurstone_case_v({wins, ties}), core::InvalidInput);
+    CHECK_THROWS_AS(analysis::bradley_terry(counts_of(wins, ties)), core::InvalidInput);
+    CHECK_THROWS_AS(analysis::thurstone_case_v(counts_of(wins, ties)), core::InvalidInput);
   };
-  const Eigen::MatrixXi fine = (Eigen::MatrixXi(2, 2) << 0, 3, 2, 0).finished();
-  refuses(Eigen::MatrixXi::Zero(1, 1), {});
-  refuses(Eigen::MatrixXi::Ones(2, 3), {});
-  refuses(Eigen::MatrixXi::Ones(2, 2), {});
-  refuses(-fine, {});
-  refuses(fine, (Eigen::MatrixXi(2, 2) << 0, 3, 2, 0).finished());
+  const Eigen::MatrixXi fine = square({0, 3, 2, 0});
+  refuses(Eigen::MatrixXi::Zero(1, 1), no_ties);
+  refuses(Eigen::MatrixXi::Ones(2, 3), no_ties);
+  refuses(Eigen::MatrixXi::Ones(2, 2), no_ties);
+  refuses(-fine, no_ties);
+  refuses(fine, square({0, 3, 2, 0}));
   refuses(fine, Eigen::MatrixXi::Zero(3, 3));
-  const auto scale = analysis::bradley_terry({fine, {}}).scale;
+  const auto scale = analysis::bradley_terry(counts_of(fine)).scale;
   CHECK_THROWS_AS(analysis::difference(scale, 0, 0), core::InvalidInput);
   CHECK_THROWS_AS(analysis::difference(scale, 0, 2), core::InvalidInput);
 }

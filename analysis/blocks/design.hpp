@@ -22,11 +22,17 @@ struct Place {
   int participant_index{};
   int order_index{};
 };
-// A value that a procedure or a list varies from trial to trial.
+// The axis along which a comparison differs from its standard. Levels, which psychometric functions
+// are of, are how far it does: a difference in the axis's unit, or a fraction of the standard.
 struct VariedAxis {
-  std::string name;  // ends in its unit
-  bool is_log{};     // steps along it are ratios
-  double standard{};  // what the comparison is compared with
+  std::string name;   // ends in its unit
+  double standard{};  // not 0 where levels are fractions
+  bool is_fraction{true};
+  bool is_below{};  // comparisons lie below the standard; levels are positive either way
+  double level_of(double value) const {
+    const double difference = is_below ? standard - value : value - standard;
+    return is_fraction ? difference / standard : difference;
+  }
 };
 struct BlockDesign {
   std::string name;
@@ -47,9 +53,9 @@ struct BlockDesign {
   Vote vote{Vote::majority};
   // Tasks that discriminate a comparison from a standard.
   std::optional<VariedAxis> axis{};
-  std::string decision_model{};   // of d': m_afc, same_different, abx, odd_one_out; empty: none
-  int alternatives{};             // presented in a trial
-  double guess_rate{};            // of right answers
+  std::string decision_model{};  // of d': a row of detection/decision_model.hpp; empty: none
+  int alternatives{};            // presented in a trial
+  double guess_rate{};           // of right answers
   // Ratings: from 1 to this.
   int steps{};
 };

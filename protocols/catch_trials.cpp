@@ -44,7 +44,7 @@ std::vector<PlannedTrial> with_catch_trials(std::vector<PlannedTrial> trials, co
   for (int i = 0; i < block.catch_trials->count; ++i) {
     PlannedTrial trial = trials.front();
     trial.repetition = i + 1;
-    trial.stimuli = {stimuli[static_cast<std::size_t>(i) % stimuli.size()]};
+    trial.alternatives = {{stimuli[static_cast<std::size_t>(i) % stimuli.size()]}};
     trial.is_catch = true;
     const auto place = 1 + rng.below(static_cast<std::uint32_t>(trials.size()));
     trials.insert(trials.begin() + place, trial);

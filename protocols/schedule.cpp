@@ -28,12 +28,28 @@ Schedule make_schedule(const Protocol& protocol, std::uint64_t participant_seed,
   return schedule;
 }
 
+namespace {
+// "family at E = 2, family *": what a procedure will choose has a star.
+std::vector<std::string> described(const std::vector<Alternative>& alternatives) {
+  std::vector<std::string> words;
+  for (const Alternative& alternative : alternatives) {
+    words.push_back(alternative.stimulus);
+    if (!alternative.values.empty()) {
+      words.back() += " at " + protocols::described(alternative.values);
+    } else if (alternative.is_comparison) {
+      words.back() += " *";
+    }
+  }
+  return words;
+}
+}  // namespace
+
 std::string described(const Schedule& schedule) {
   std::string lines;
   for (const PlannedTrial& trial : schedule) {
     lines += fmt::format("{} {} {} {}{}{}\n", trial.number, trial.block, trial.repetition,
-                         fmt::join(trial.stimuli, ","), trial.is_practice ? " practice" : "",
-                         trial.is_catch ? " catch" : "");
+                         fmt::join(described(trial.alternatives), ","),
+                         trial.is_practice ? " practice" : "", trial.is_catch ? " catch" : "");
   }
   return lines;
 }

@@ -30,7 +30,10 @@ class Choice final : public Task {
         core::derived_seed(draw.participant_seed, core::Purpose::labels, draw.block_index)};
     std::vector<PlannedTrial> all;
     for (int repetition = 1; repetition <= block.repetitions; ++repetition) {
-      std::vector<std::string> alternatives = block.stimuli;
+      std::vector<Alternative> alternatives;
+      for (const std::string& stimulus : block.stimuli) {
+        alternatives.push_back({stimulus});
+      }
       rng.shuffle(alternatives);
       all.push_back({0, block.name, this, block.is_practice, repetition, alternatives});
     }
@@ -47,11 +50,11 @@ class Choice final : public Task {
   }
   std::string response(const PlannedTrial& trial, const Block& /*block*/,
                        std::size_t option) const override {
-    return trial.stimuli.at(option);
+    return trial.alternatives.at(option).stimulus;
   }
   std::vector<std::string> alternative_labels(const PlannedTrial& trial) const override {
     std::vector<std::string> labels;
-    for (std::size_t i = 0; i < trial.stimuli.size(); ++i) {
+    for (std::size_t i = 0; i < trial.alternatives.size(); ++i) {
       labels.push_back(blind_label(i));
     }
     return labels;

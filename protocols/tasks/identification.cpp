@@ -125,7 +125,7 @@ class Identification final : public Task {
     std::vector<PlannedTrial> all;
     for (const OrderedStimulus& next :
          ordered_stimuli(block, rng, {draw.order_index, draw.counterbalancing_seed})) {
-      all.push_back({0, block.name, this, block.is_practice, next.repetition, {next.stimulus}});
+      all.push_back({0, block.name, this, block.is_practice, next.repetition, {{next.stimulus}}});
     }
     return with_catch_trials(std::move(all), block, draw);
   }
@@ -150,7 +150,7 @@ class Identification final : public Task {
   std::optional<bool> is_correct(const PlannedTrial& trial, const Block& block,
                                  const std::string& response) const override {
     const auto& right = trial.is_catch ? block.catch_trials->expected : block.right_response;
-    return response == right.at(trial.stimuli.front());
+    return response == right.at(trial.alternatives.front().stimulus);
   }
 
   // Asked for a factor, all that was presented is remembered: its levels are no plates.

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/rng.hpp"
+#include "protocols/axes/axis_range.hpp"
 #include "protocols/form.hpp"
 namespace tapstudy::protocols {
 class MapReader;
@@ -18,14 +19,20 @@ struct Simulation;
 // Claims that a hypothesis can make about a block.
 enum class Claim { accuracy_above_chance, chosen_above_chance };
 
+// One of the things that can be felt in a trial.
+struct Alternative {
+  std::string stimulus;
+  AxisValues values{};        // by axis; of axes without one the stimulus's own
+  bool is_comparison{false};  // not the standard; where a procedure varies it, values are set later
+};
+
 struct PlannedTrial {
   int number{};  // from 1, in the order presented
   std::string block;
   const Task* task{};
   bool is_practice{false};
   int repetition{};  // from 1
-  // What can be rendered in the trial, in the order of its alternatives.
-  std::vector<std::string> stimuli;
+  std::vector<Alternative> alternatives;
   bool is_catch{false};
 };
 

@@ -30,7 +30,7 @@ BrowserParticipant::Context Console::context(const Session& session) {
         const auto view = desk.view().trial;
         const bool is_rendered =
             view && view->prompt.block->presented == protocols::Presented::virtual_plates;
-        return is_rendered && shows_plate_ ? scenes_.number_of(view->trial.stimuli.at(alternative),
+        return is_rendered && shows_plate_ ? scenes_.number_of(view->trial.alternatives.at(alternative).stimulus,
                                                                protocol.block(view->trial.block))
                                            : std::nullopt;
       },

@@ -25,10 +25,10 @@ Json labels_of(const std::vector<protocols::Option>& options) {
 Json json_of(const TrialInView& view, std::size_t current, bool is_blind) {
   Json alternatives = Json::array();
   const auto& labels = view.prompt.alternative_labels;
-  for (std::size_t i = 0; i < view.trial.stimuli.size(); ++i) {
+  for (std::size_t i = 0; i < view.trial.alternatives.size(); ++i) {
     Json alternative{{"label", labels.empty() ? "" : labels[i]}};
     if (!is_blind) {
-      alternative["stimulus"] = view.trial.stimuli[i];
+      alternative["stimulus"] = view.trial.alternatives[i].stimulus;
     }
     alternatives.push_back(alternative);
   }

@@ -49,7 +49,7 @@ analysis::BlockDesign::Redraw redraw_of(const protocols::Protocol& protocol,
     redrawn.counterbalancing_seed = draw;
     std::vector<int> stimuli;
     for (const protocols::PlannedTrial& trial : block.task->trials(block, redrawn)) {
-      const auto found = std::ranges::find(block.stimuli, trial.stimuli.front());
+      const auto found = std::ranges::find(block.stimuli, trial.alternatives.front().stimulus);
       stimuli.push_back(trial.is_catch ? not_counted
                                        : static_cast<int>(found - block.stimuli.begin()));
     }

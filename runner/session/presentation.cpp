@@ -53,9 +53,14 @@ TrialStimuli stimuli_of(const protocols::PlannedTrial& trial, bool is_of_real_pl
                         const SessionParts& parts) {
   if (is_of_real_plate) {
     parts.participant.plate_is_changed();
-    return parts.real_plates.mount(trial.stimuli.front());
+    return parts.real_plates.mount(trial.alternatives.front().stimulus);
   }
-  return build_trial_stimuli(parts.protocol, trial.stimuli, parts.models);
+  std::vector<protocols::PresentedStimulus> presented;
+  for (const protocols::Alternative& alternative : trial.alternatives) {
+    presented.push_back(protocols::stimulus_at(
+        parts.protocol, parts.protocol.stimulus(alternative.stimulus), alternative.values));
+  }
+  return build_trial_stimuli(parts.protocol, presented, parts.models);
 }
 }  // namespace
 

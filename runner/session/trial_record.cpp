@@ -37,9 +37,11 @@ results::TrialRecord trial_record(std::int64_t session_id, const protocols::Plan
                   trial.is_catch,
                   block.presented == protocols::Presented::real_plates};
   const std::vector<std::string> labels = trial.task->alternative_labels(trial);
-  for (std::size_t i = 0; i < trial.stimuli.size(); ++i) {
-    record.alternatives.push_back(
-        {static_cast<int>(i), labels.empty() ? std::string{} : labels[i], trial.stimuli[i]});
+  for (std::size_t i = 0; i < trial.alternatives.size(); ++i) {
+    const protocols::Alternative& alternative = trial.alternatives[i];
+    record.alternatives.push_back({static_cast<int>(i), labels.empty() ? std::string{} : labels[i],
+                                   alternative.stimulus, alternative.values,
+                                   alternative.is_comparison});
   }
   if (answer) {
     record.response = response_row(trial, block, *answer, result.trace.events);

@@ -28,8 +28,8 @@ TEST_CASE("every plate is presented as often as the protocol says", "[protocols]
     std::map<std::string, int> count;
     std::set<std::pair<std::string, int>> repetitions;
     for (const protocols::PlannedTrial& trial : make_schedule(protocol, seed, 3)) {
-      ++count[trial.stimuli.front()];
-      repetitions.insert({trial.stimuli.front(), trial.repetition});
+      ++count[trial.alternatives.front().stimulus];
+      repetitions.insert({trial.alternatives.front().stimulus, trial.repetition});
     }
     CHECK(count == std::map<std::string, int>{
                        {"acrylic_two", 2}, {"mdf_two", 2}, {"acrylic_three", 2}, {"mdf_three", 2}});
@@ -81,7 +81,7 @@ TEST_CASE("every place is equally likely for every plate", "[protocols][schedule
   for (std::uint64_t seed = 0; seed < schedules; ++seed) {
     const auto schedule = make_schedule(protocol, seed, 0);
     for (std::size_t place = 0; place < schedule.size(); ++place) {
-      ++seen[{place, schedule[place].stimuli.front()}];
+      ++seen[{place, schedule[place].alternatives.front().stimulus}];
     }
   }
   for (const auto& [place, count] : seen) {
@@ -95,7 +95,7 @@ TEST_CASE("within a repetition every plate comes once", "[protocols][schedule]")
   const auto schedule = make_schedule(protocol, 9, 0);
   std::set<std::string> first_half;
   for (std::size_t i = 0; i < 4; ++i) {
-    first_half.insert(schedule[i].stimuli.front());
+    first_half.insert(schedule[i].alternatives.front().stimulus);
     CHECK(schedule[i].repetition == 1);
   }
   CHECK(first_half.size() == 4);
@@ -188,9 +188,14 @@ TEST_CASE("blind labels are drawn anew for each trial: none has a history",
   for (std::uint64_t seed = 0; seed < participants; ++seed) {
     const auto schedule = make_schedule(protocol, seed, 0);
     REQUIRE(schedule.size() == 4);
-    mappings.insert(schedule[0].stimuli);
+    std::vector<std::string> mapping;
+    for (const protocols::Alternative& alternative : schedule[0].alternatives) {
+      mapping.push_back(alternative.stimulus);
+    }
+    mappings.insert(mapping);
     for (std::size_t i = 1; i < 4; ++i) {
-      same_as_before += schedule[i].stimuli[0] == schedule[i - 1].stimuli[0] ? 1 : 0;
+      same_as_before +=
+          schedule[i].alternatives[0].stimulus == schedule[i - 1].alternatives[0].stimulus ? 1 : 0;
     }
   }
   // one time in three, within four standard deviations

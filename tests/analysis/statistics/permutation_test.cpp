@@ -35,7 +35,7 @@ std::vector<results::AnswerRow> guesses(const protocols::Protocol& protocol, std
       answer.order_index = participant;
       answer.block = trial.block;
       answer.number = trial.number;
-      answer.stimulus = trial.stimuli.front();
+      answer.stimulus = trial.alternatives.front().stimulus;
       answer.response = left.back();
       answer.is_correct = answer.response == answer.stimulus;
       left.pop_back();

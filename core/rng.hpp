@@ -61,7 +61,9 @@ enum class Purpose : std::uint64_t {
   participant,
   counterbalancing,
   person,
-  masking
+  masking,
+  procedure,
+  interleaving
 };
 
 // The seed of one stream of a study. Mixes by the finaliser of SplitMix64 (Steele et al. 2014).

@@ -62,7 +62,9 @@ enum class Purpose : std::uint64_t {
   counterbalancing,
   person,
   masking,
-  catch_trials
+  catch_trials,
+  procedure,
+  interleaving
 };
 
 // The seed of one stream of a study. Mixes by the finaliser of SplitMix64 (Steele et al. 2014).

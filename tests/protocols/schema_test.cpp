@@ -10,6 +10,7 @@
 #include "protocols/spidar_calibration.hpp"
 #include "runner/devices/rigs.hpp"
 #include "support/processes.hpp"
+#include "support/schema_keys.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;
 
@@ -18,27 +19,6 @@ struct Change {
   const char* from;
   const char* to;
 };
-
-void collect(const nlohmann::json& schema, const std::string& path, std::set<std::string>& keys) {
-  if (schema.contains("properties")) {
-    for (const auto& [key, inner] : schema["properties"].items()) {
-      const std::string own = path.empty() ? key : path + "." + key;
-      keys.insert(own);
-      collect(inner, own, keys);
-    }
-  }
-  if (schema.contains("additionalProperties") && schema["additionalProperties"].is_object()) {
-    // names of mappings are free and not themselves keys; names of values are
-    const nlohmann::json& value = schema["additionalProperties"];
-    if (!value.contains("properties")) {
-      keys.insert(path + ".*");
-    }
-    collect(value, path + ".*", keys);
-  }
-  if (schema.contains("items") && schema["items"].contains("properties")) {
-    collect(schema["items"], path + "[]", keys);
-  }
-}
 
 // Surface files are looked for beside it.
 std::string every_key_file() {
@@ -59,9 +39,7 @@ std::string schema_file(const std::string& schema) {
 }
 
 std::set<std::string> keys_in(const std::string& schema) {
-  std::set<std::string> keys;
-  collect(nlohmann::json::parse(testing::contents(schema_file(schema))), "", keys);
-  return keys;
+  return testing::schema_keys(nlohmann::json::parse(testing::contents(schema_file(schema))));
 }
 
 // By the jsonschema library of Python, which knows nothing of our reader.

@@ -1,4 +1,5 @@
-"""Exit code 0 if the YAML file fits the JSON schema, 1 if not."""
+"""validate.py SCHEMA FILE...: says of each YAML file whether it fits the JSON schema; exit code 0 if all
+do, 1 if not."""
 import json
 import sys
 
@@ -16,11 +17,14 @@ Loader.add_implicit_resolver(
     list("-+0123456789."),
 )
 
-with open(sys.argv[1]) as schema_file, open(sys.argv[2]) as yaml_file:
-    schema = json.load(schema_file)
-    document = yaml.load(yaml_file, Loader)
-try:
-    jsonschema.validate(document, schema, cls=jsonschema.Draft202012Validator)
-except jsonschema.ValidationError as error:
-    print(error.message, file=sys.stderr)
-    sys.exit(1)
+with open(sys.argv[1]) as schema_file:
+    validator = jsonschema.Draft202012Validator(json.load(schema_file))
+validator.check_schema(validator.schema)
+all_fit = True
+for name in sys.argv[2:]:
+    with open(name) as yaml_file:
+        errors = [error.message for error in validator.iter_errors(yaml.load(yaml_file, Loader))]
+    print("fits" if not errors else "differs")
+    print(*errors, sep="\n", file=sys.stderr)
+    all_fit = all_fit and not errors
+sys.exit(not all_fit)

@@ -1,0 +1,108 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+namespace tapstudy::protocols {
+class MapReader;
+
+// A change of direction of a staircase: at which trial (from 1) and at which value it turned.
+struct Reversal {
+  std::size_t trial{};
+  double value{};
+};
+// The smallest value of the grid up to which the distribution holds at least this probability.
+struct Quantile {
+  double probability{};
+  double value{};
+};
+// Marginal posterior of one parameter; the mode is that of the joint posterior (Watson 2017).
+struct ParameterPosterior {
+  std::string name;
+  double mean{};
+  double mode{};
+  double standard_deviation{};
+  std::vector<Quantile> quantiles;  // 0.025, 0.25, 0.5, 0.75, 0.975
+};
+struct TrackSummary {
+  std::size_t trials{};  // observed
+  bool is_finished{};
+  // Staircase: mean of the last reversals, once there are enough. QUEST+: posterior mean of the
+  // first parameter, the threshold. Constant stimuli: none.
+  std::optional<double> estimate;
+  // Proportion correct at which a staircase settles.
+  std::optional<double> target;
+  std::vector<Reversal> reversals;
+  std::size_t trials_at_limit{};  // of a staircase, at its min or max
+  std::vector<ParameterPosterior> parameters;
+};
+
+// A running procedure. It depends on its settings, its seed and what was observed, in order, and on
+// nothing else: a session is resumed by observing its answers again. Not for several threads.
+//
+// Requested and presented values may differ, because only some stimuli can be built:
+// - A staircase steps from the value that it requested. From the presented one, a step smaller than
+//   half the distance of buildable values would be rounded away each time. Reversals and estimate
+//   are requested values, which is off by at most half that distance.
+// - QUEST+ updates by the likelihood of the value that was presented, on its grid or not: the
+// answer
+//   was given to that one.
+// - Constant stimuli only count.
+class Track {
+ public:
+  Track(std::size_t axes, std::size_t outcomes) : axes_{axes}, outcomes_{outcomes} {}
+  virtual ~Track() = default;
+
+  // The value on each axis of the next stimulus; nullopt: finished.
+  std::optional<std::vector<double>> next() const;
+  virtual bool is_finished() const = 0;
+  // presented: a finite value on each axis. outcome: 0 incorrect ("no"), 1 correct ("yes"); or one
+  // of several, from 0. Throws InvalidInput for any other, after the end, and where the outcome has
+  // probability 0 whatever the parameters; the track is then as it was.
+  void observe(const std::vector<double>& presented, std::size_t outcome);
+  std::size_t trials() const { return trials_; }
+  virtual TrackSummary summary() const = 0;
+
+ private:
+  // Asked for only while it is not finished.
+  virtual std::vector<double> request() const = 0;
+  // All checked; trials() does not count it yet.
+  virtual void take(const std::vector<double>& presented, std::size_t outcome) = 0;
+
+  std::size_t axes_;
+  std::size_t outcomes_;
+  std::size_t trials_{0};
+};
+
+// What was read of a procedure; starts any number of tracks.
+class TrackSettings {
+ public:
+  virtual ~TrackSettings() = default;
+  virtual std::size_t axes() const = 0;      // of a stimulus
+  virtual std::size_t outcomes() const = 0;  // of a trial
+  virtual std::size_t max_trials() const = 0;
+  virtual std::unique_ptr<Track> start(std::uint64_t seed) const = 0;
+};
+
+// A psychophysical procedure: which stimulus value comes next. To add one: a file beside this with
+// its class, a row in procedure_table.cpp, a schema in protocols/schema/procedures/; nothing else
+// refers to a procedure by name.
+class Procedure {
+ public:
+  virtual ~Procedure() = default;
+  virtual std::string_view name() const = 0;
+  // Its own keys; problems go to the reader. nullptr: no track could be started with these, and the
+  // problem was noted.
+  virtual std::shared_ptr<const TrackSettings> read(MapReader& reader) const = 0;
+};
+
+// All there are. nullptr if there is none of that name.
+const std::vector<const Procedure*>& procedures();
+const Procedure* find_procedure(std::string_view name);
+
+// A mapping with one key, the procedure's name, to the procedure's own keys. nullptr as above.
+std::shared_ptr<const TrackSettings> read_procedure(MapReader& reader);
+}  // namespace tapstudy::protocols

@@ -1,0 +1,169 @@
+// What a protocol says of QUEST+ and of the psi method.
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "core/error.hpp"
+#include "protocols/procedures/psychometric_model.hpp"
+#include "protocols/procedures/quest_plus_track.hpp"
+#include "protocols/procedures/read_grid.hpp"
+#include "protocols/procedures/read_prior.hpp"
+#include "protocols/procedures/shipped_procedures.hpp"
+namespace tapstudy::protocols {
+namespace {
+using Presence = MapReader::Presence;
+constexpr int max_quest_trials = 1000;
+// What can be wrong with grids before they make a design.
+class DesignReader {
+ public:
+  DesignReader(MapReader& reader, const core::PsychometricShapeRow& shape)
+      : reader_{&reader}, shape_{&shape} {
+    design_.model = psychometric_model(shape.shape);
+  }
+
+  void read_stimulus() {
+    reader_->map("stimulus", Presence::required, [&](MapReader& own) { read_axis(own); });
+    if (!design_.axes.empty() && shape_->is_logarithmic && design_.axes[0].front() < 0.0) {
+      refuse("stimulus", fmt::format("has values below 0, where {} is not defined", shape_->name));
+    }
+  }
+  void read_parameter(const std::string& name, const Range& range) {
+    reader_->map(name, Presence::required,
+                 [&](MapReader& own) { add_parameter(own, name, range); });
+  }
+  void read_fixed(const std::string& name, const Range& range) {
+    design_.parameters.push_back({name, {reader_->number(name, range)}, {1.0}, false});
+  }
+  void read_further_axes() {
+    reader_->list("further_axes", Presence::optional, [&](MapReader& own) {
+      const std::string name = fmt::format("effect_{}", design_.axes.size() + 1);
+      read_axis(own);
+      own.map("effect", Presence::required, [&](MapReader& effect) {
+        add_parameter(effect, name, {-largest_value, largest_value});
+      });
+    });
+  }
+  void check_rates() {
+    if (is_complete() && highest(2) + highest(3) >= 1.0) {
+      refuse("lapse", "and guess reach 1 together: nothing would be left to the stimulus");
+    }
+  }
+  Range threshold_range() const {
+    return shape_->is_logarithmic ? Range::positive(largest_value)
+                                  : Range{-largest_value, largest_value};
+  }
+
+  std::shared_ptr<const TrackSettings> built(const QuestPlusStop& stop) {
+    if (!is_complete()) {
+      return nullptr;
+    }
+    try {
+      return std::make_shared<const QuestPlusSettings>(design_, stop);
+    } catch (const core::InvalidInput& error) {
+      reader_->reject(error.what());
+      return nullptr;
+    }
+  }
+
+ private:
+  void refuse(const std::string& key, const std::string& what) {
+    reader_->reject(key, what);
+    is_refused_ = true;
+  }
+  // Axes and parameters that were refused are missing.
+  bool is_complete() const {
+    return !is_refused_ && !design_.axes.empty() &&
+           design_.parameters.size() == 4 + design_.axes.size() - 1;
+  }
+  double highest(std::size_t parameter) const {
+    return design_.parameters[parameter].values.back();
+  }
+
+  void read_axis(MapReader& own) {
+    const auto values = read_grid(own);
+    is_refused_ = is_refused_ || !values;
+    design_.axes.push_back(values.value_or(std::vector<double>{0.0}));
+  }
+
+  void add_parameter(MapReader& own, const std::string& name, const Range& range) {
+    const auto values = read_grid(own);
+    const bool is_nuisance = own.yes_or_no("nuisance", false);
+    const std::vector<double> weights = read_prior(own, values.value_or(std::vector<double>{}));
+    if (!values || weights.empty()) {
+      is_refused_ = true;
+      return;
+    }
+    if (!range.contains(values->front()) || !range.contains(values->back())) {
+      own.reject(fmt::format("has values from {} to {}, each must be {}", values->front(),
+                             values->back(), range.words()));
+      is_refused_ = true;
+    }
+    design_.parameters.push_back({name, *values, weights, is_nuisance});
+  }
+
+  MapReader* reader_;
+  const core::PsychometricShapeRow* shape_;
+  QuestPlusDesign design_;
+  bool is_refused_{false};
+};
+
+const core::PsychometricShapeRow& read_function(MapReader& reader) {
+  const auto* const row = core::find_psychometric_shape(
+      reader.word("function", "psychometric function", core::psychometric_shape_names()));
+  return row == nullptr ? core::psychometric_shapes().front() : *row;
+}
+
+QuestPlusStop read_stop(MapReader& top, bool may_be_narrow) {
+  QuestPlusStop stop;
+  top.map("stop", Presence::required, [&](MapReader& reader) {
+    stop.trials = static_cast<std::size_t>(reader.integer("trials", 1, max_quest_trials));
+    if (may_be_narrow && reader.has("threshold_sd")) {
+      stop.standard_deviation = reader.number("threshold_sd", Range::positive(largest_value));
+    }
+  });
+  return stop;
+}
+
+const Range rate{0.0, 1.0, true, false};
+
+class QuestPlus final : public Procedure {
+ public:
+  std::string_view name() const override { return "quest_plus"; }
+  std::shared_ptr<const TrackSettings> read(MapReader& reader) const override {
+    DesignReader design{reader, read_function(reader)};
+    design.read_stimulus();
+    design.read_parameter("threshold", design.threshold_range());
+    design.read_parameter("slope", Range::positive(largest_value));
+    design.read_parameter("guess", rate);
+    design.read_parameter("lapse", rate);
+    design.read_further_axes();
+    design.check_rates();
+    return design.built(read_stop(reader, true));
+  }
+};
+
+class Psi final : public Procedure {
+ public:
+  std::string_view name() const override { return "psi"; }
+  std::shared_ptr<const TrackSettings> read(MapReader& reader) const override {
+    DesignReader design{reader, read_function(reader)};
+    design.read_stimulus();
+    design.read_parameter("threshold", design.threshold_range());
+    design.read_parameter("slope", Range::positive(largest_value));
+    design.read_fixed("guess", rate);
+    design.read_fixed("lapse", rate);
+    design.check_rates();
+    return design.built(read_stop(reader, false));
+  }
+};
+}  // namespace
+
+const Procedure& quest_plus() {
+  static const QuestPlus procedure;
+  return procedure;
+}
+const Procedure& psi() {
+  static const Psi procedure;
+  return procedure;
+}
+}  // namespace tapstudy::protocols

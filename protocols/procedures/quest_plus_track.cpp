@@ -1,0 +1,54 @@
+#include "protocols/procedures/quest_plus_track.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "core/error.hpp"
+#include "protocols/procedures/posterior.hpp"
+namespace tapstudy::protocols {
+QuestPlusTrack::QuestPlusTrack(std::shared_ptr<const LikelihoodTable> table,
+                               const QuestPlusStop& stop)
+    : Track{table->design().axes.size(), table->design().outcomes},
+      table_{std::move(table)},
+      stop_{stop},
+      posterior_{table_->prior()} {}
+
+TrackSummary QuestPlusTrack::summary() const {
+  TrackSummary summary;
+  summary.trials = trials();
+  summary.is_finished = is_finished();
+  summary.parameters = marginals(*table_, posterior_);
+  summary.estimate = summary.parameters.front().mean;
+  return summary;
+}
+
+std::vector<double> QuestPlusTrack::request() const {
+  if (!next_) {
+    next_ = table_->stimulus(most_informative(expected_entropies(*table_, posterior_)));
+  }
+  return *next_;
+}
+
+void QuestPlusTrack::take(const std::vector<double>& presented, std::size_t outcome) {
+  posterior_ = updated(posterior_, table_->likelihoods_at(presented, outcome));
+  is_narrow_ = stop_.standard_deviation &&
+               standard_deviation(*table_, posterior_, 0) <= *stop_.standard_deviation;
+  next_.reset();
+}
+
+QuestPlusSettings::QuestPlusSettings(QuestPlusDesign design, const QuestPlusStop& stop)
+    : table_{std::make_shared<const LikelihoodTable>(std::move(design))}, stop_{stop} {
+  const double prior_deviation = standard_deviation(*table_, table_->prior(), 0);
+  if (stop_.standard_deviation && prior_deviation <= *stop_.standard_deviation) {
+    throw core::InvalidInput{fmt::format(
+        "the prior's standard deviation of {}, {:.4g}, is not above that at which to "
+        "stop, {:.4g}",
+        table_->design().parameters.front().name, prior_deviation, *stop_.standard_deviation)};
+  }
+}
+
+std::unique_ptr<Track> QuestPlusSettings::start(std::uint64_t /*seed*/) const {
+  return std::make_unique<QuestPlusTrack>(table_, stop_);
+}
+}  // namespace tapstudy::protocols

@@ -1,0 +1,48 @@
+#pragma once
+#include "protocols/procedures/likelihood_table.hpp"
+#include "protocols/procedures/procedure.hpp"
+namespace tapstudy::protocols {
+struct QuestPlusStop {
+  std::size_t trials{};
+  // Once the posterior standard deviation of the first parameter is at most this.
+  std::optional<double> standard_deviation;
+};
+
+// QUEST+ (Watson 2017) of any model: any number of axes, parameters and outcomes.
+class QuestPlusTrack final : public Track {
+ public:
+  QuestPlusTrack(std::shared_ptr<const LikelihoodTable> table, const QuestPlusStop& stop);
+  bool is_finished() const override { return trials() >= stop_.trials || is_narrow_; }
+  TrackSummary summary() const override;
+  // Probability of each combination of parameters, in the order of the table.
+  const std::vector<double>& posterior() const { return posterior_; }
+
+ private:
+  std::vector<double> request() const override;
+  void take(const std::vector<double>& presented, std::size_t outcome) override;
+
+  std::shared_ptr<const LikelihoodTable> table_;
+  QuestPlusStop stop_;
+  std::vector<double> posterior_;
+  bool is_narrow_{false};
+  // Computed once for each trial, and only where it is asked for: a replay does not.
+  mutable std::optional<std::vector<double>> next_;
+};
+
+class QuestPlusSettings final : public TrackSettings {
+ public:
+  // Throws InvalidInput as LikelihoodTable does, and where the prior is narrow enough to stop.
+  QuestPlusSettings(QuestPlusDesign design, const QuestPlusStop& stop);
+
+  std::size_t axes() const override { return table_->design().axes.size(); }
+  std::size_t outcomes() const override { return table_->design().outcomes; }
+  std::size_t max_trials() const override { return stop_.trials; }
+  // A QuestPlusTrack. Nothing in it is random.
+  std::unique_ptr<Track> start(std::uint64_t seed) const override;
+  const LikelihoodTable& table() const { return *table_; }
+
+ private:
+  std::shared_ptr<const LikelihoodTable> table_;
+  QuestPlusStop stop_;
+};
+}  // namespace tapstudy::protocols

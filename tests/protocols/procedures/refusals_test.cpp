@@ -1,0 +1,192 @@
+// Settings with which no procedure could do its work, by line and key.
+#include <fmt/format.h>
+
+#include <catch2/catch.hpp>
+
+#include "core/error.hpp"
+#include "protocols/procedures/likelihood_table.hpp"
+#include "support/procedures.hpp"
+#include "support/texts.hpp"
+using namespace tapstudy;
+
+namespace {
+const std::string constant = R"(
+constant:
+  values: [1, 2, 3]
+  repetitions: 10
+)";
+const std::string spaced = R"(
+constant:
+  min: 1
+  max: 3
+  count: 3
+  repetitions: 10
+)";
+const std::string staircase = R"(
+staircase:
+  rule: transformed
+  n_down: 2
+  steps: linear
+  start: 5
+  min: 1
+  max: 10
+  first_step: 2
+  min_step: 0.5
+  stop: {reversals: 8}
+  estimate_reversals: 6
+)";
+const std::string quest_plus = R"(
+quest_plus:
+  function: weibull
+  stimulus: {min: 0.1, max: 10, count: 21, spacing: log}
+  threshold: {min: 0.5, max: 5, count: 11, prior: normal, mean: 2, sd: 1}
+  slope: {values: [2, 4]}
+  guess: {values: [0.5]}
+  lapse: {values: [0.02]}
+  further_axes:
+    - {values: [0, 1], effect: {values: [-0.1, 0.1], prior: listed, weights: [1, 1]}}
+  stop: {trials: 40}
+)";
+const std::string psi = R"(
+psi:
+  function: logistic
+  stimulus: {min: -3, max: 3, count: 21}
+  threshold: {min: -2, max: 2, count: 11}
+  slope: {values: [2, 4]}
+  guess: 0.5
+  lapse: 0.02
+  stop: {trials: 40}
+)";
+
+std::string message_of(const std::string& yaml) {
+  try {
+    testing::procedure_of(yaml);
+  } catch (const core::InvalidInput& error) {
+    return error.what();
+  }
+  return "";
+}
+
+struct Change {
+  const std::string* base;
+  const char* from;
+  const char* to;
+  int line;
+  const char* message;  // its key, and some of its words
+};
+}  // namespace
+
+TEST_CASE("settings of procedures that make no sense are refused by line and key",
+          "[protocols][procedures]") {
+  for (const std::string* base : {&constant, &spaced, &staircase, &quest_plus, &psi}) {
+    REQUIRE(message_of(*base).empty());
+  }
+  const auto [base, from, to, line, message] = GENERATE(values<Change>({
+      {&constant, "[1, 2, 3]", "[1, 3, 2]", 3, "constant.values: are not in increasing order"},
+      {&constant, "[1, 2, 3]", "[]", 3, "constant.values: "},
+      {&constant, "[1, 2, 3]", "[1, 2, 3]\n  max: 3", 4, "constant.max: is not for values"},
+      {&constant, "10", "0", 4, "constant.repetitions: "},
+      {&constant, "10", "10\n  order: listed", 5, "constant.order: "},
+      {&constant, "constant", "constants", 2, "constants: is not a known key"},
+      {&spaced, "max: 3", "max: 1", 4, "constant.max: is not above min"},
+      {&spaced, "count: 3", "count: 1", 5, "constant.count: "},
+      {&spaced, "min: 1", "min: 0\n  spacing: log", 3, "constant.min: is not above 0"},
+      {&spaced, "min: 1\n  max: 3\n  count: 3", "min: 1\n  max: 1.0000000000000002\n  count: 100",
+       5, "constant.count: is too high"},
+      {&spaced, "count: 3\n  repetitions: 10", "count: 1000\n  repetitions: 101", 6,
+       "constant.repetitions: make too many trials"},
+      {&staircase, "first_step: 2", "first_step: 0", 9, "staircase.first_step: 0 is not allowed"},
+      {&staircase, "first_step: 2", "first_step: 10", 9, "staircase.first_step: leads from"},
+      {&staircase, "min_step: 0.5", "min_step: 3", 10, "staircase.min_step: is above first_step"},
+      {&staircase, "min_step: 0.5", "min_step: 1e-20", 10, "staircase.min_step: is lost in"},
+      {&staircase, "max: 10", "max: 1", 8, "staircase.max: is not above min"},
+      {&staircase, "start: 5", "start: 11", 6, "staircase.start: is not between"},
+      {&staircase, "start: 5", "start: 1", 6, "staircase.start: is the limit already"},
+      {&staircase, "start: 5", "start: 10\n  after_correct: increase", 6,
+       "staircase.start: is the limit already"},
+      {&staircase, "steps: linear", "steps: factor", 10, "staircase.min_step: is not above 1"},
+      {&staircase, "steps: linear\n  start: 5\n  min: 1", "steps: db\n  start: 5\n  min: 0", 7,
+       "staircase.min: is not above 0"},
+      {&staircase, "min_step: 0.5", "min_step: 0.5\n  n_up: 0", 11, "staircase.n_up: "},
+      {&staircase, "n_down: 2", "n_down: 0", 4, "staircase.n_down: "},
+      {&staircase, "n_down: 2", "target: 0.75", 4, "staircase.target: is for rule: weighted"},
+      {&staircase, "rule: transformed", "rule: weighted", 4,
+       "staircase.n_down: is for rule: transformed"},
+      {&staircase, "rule: transformed\n  n_down: 2", "rule: weighted\n  target: 1", 4,
+       "staircase.target: 1 is not allowed"},
+      {&staircase, "{reversals: 8}", "{}", 11, "staircase.stop: has neither"},
+      {&staircase, "{reversals: 8}", "{reversals: 4}", 12, "staircase.estimate_reversals: is more"},
+      {&staircase, "{reversals: 8}", "{trials: 4}", 12, "staircase.estimate_reversals: is more"},
+      {&staircase, "estimate_reversals: 6", "estimate_reversals: 5", 12,
+       "staircase.estimate_reversals: is odd"},
+      {&quest_plus, "weibull", "probit", 3, "quest_plus.function: 'probit' is not a known"},
+      {&quest_plus, "min: 0.1, max: 10, count: 21, spacing: log", "values: [-1, 1]", 4,
+       "quest_plus.stimulus: has values below 0"},
+      {&quest_plus, "min: 0.5, max: 5, count: 11", "values: [0, 1]", 5,
+       "quest_plus.threshold: has values from 0 to 1"},
+      {&quest_plus, "mean: 2, sd: 1", "mean: 2e4, sd: 1", 5,
+       "quest_plus.threshold.prior: excludes every value"},
+      {&quest_plus, "mean: 2, sd: 1", "mean: 2, sd: 0", 5, "quest_plus.threshold.sd: "},
+      {&quest_plus, "prior: normal, mean: 2", "prior: log_normal, mean: 0", 5,
+       "quest_plus.threshold.prior: is log_normal"},
+      {&quest_plus, "prior: normal, mean: 2, sd: 1", "prior: uniform, mean: 2", 5,
+       "quest_plus.threshold.mean: is for prior"},
+      {&quest_plus, "prior: normal", "prior: normal, weights: [1]", 5,
+       "quest_plus.threshold.weights: is for prior"},
+      {&quest_plus, "weights: [1, 1]", "weights: [0, 0]", 10,
+       "quest_plus.further_axes[0].effect.weights: are all 0"},
+      {&quest_plus, "weights: [1, 1]", "weights: [1]", 10,
+       "quest_plus.further_axes[0].effect.weights: are 1, values are 2"},
+      {&quest_plus, "weights: [1, 1]", "weights: [-1, 1]", 10,
+       "quest_plus.further_axes[0].effect.weights[0]: -1 is not allowed"},
+      {&quest_plus, "slope: {values: [2, 4]}", "slope: {values: [0, 4]}", 6,
+       "quest_plus.slope: has values from 0 to 4"},
+      {&quest_plus, "lapse: {values: [0.02]}", "lapse: {values: [0.02, 0.5]}", 8,
+       "quest_plus.lapse: and guess reach 1"},
+      {&quest_plus, "lapse: {values: [0.02]}", "lapse: {values: [0.02, 1]}", 8,
+       "quest_plus.lapse: has values from 0.02 to 1"},
+      {&quest_plus, "count: 21, spacing: log}\n  threshold: {min: 0.5, max: 5, count: 11",
+       "count: 500}\n  threshold: {min: 0.5, max: 5, count: 1000", 3,
+       "quest_plus: the grids make 8000000 likelihoods"},
+      {&quest_plus, "trials: 40", "trials: 0", 11, "quest_plus.stop.trials: "},
+      {&quest_plus, "trials: 40", "trials: 40, threshold_sd: 2", 3,
+       "quest_plus: the prior's standard deviation of threshold"},
+      {&psi, "guess: 0.5", "guess: 1", 7, "psi.guess: 1 is not allowed"},
+      {&psi, "guess: 0.5", "guess: {values: [0.5]}", 7, "psi.guess: a mapping is not a number"},
+      {&psi, "trials: 40", "trials: 40, threshold_sd: 1", 9,
+       "psi.stop.threshold_sd: is not a known"},
+      {&psi, "min: -2, max: 2, count: 11}\n  slope: {values: [2, 4]}",
+       "values: [1]}\n  slope: {values: [2]}", 3, "psi: there is nothing to estimate"},
+      {&psi, "[2, 4]}\n  guess: 0.5\n  lapse: 0.02", "[1e4]}\n  guess: 0\n  lapse: 0", 3,
+       "psi: an answer could exclude every combination"},
+  }));
+  INFO(from << " -> " << to);
+  const std::string found = message_of(testing::replaced(*base, from, to));
+  CHECK_THAT(found, Catch::Contains(fmt::format("p.yaml:{}:", line)) && Catch::Contains(message));
+}
+
+TEST_CASE("a table refuses models and priors that are none", "[protocols][procedures]") {
+  using protocols::LikelihoodTable;
+  protocols::QuestPlusDesign good;
+  good.axes = {{0.0, 1.0}};
+  good.parameters = {{"p", {0.2, 0.8}, {1.0, 1.0}}};
+  good.model = [](auto /*stimulus*/, auto parameters, auto probabilities) {
+    probabilities[0] = 1.0 - parameters[0];
+    probabilities[1] = parameters[0];
+  };
+  REQUIRE_NOTHROW(LikelihoodTable{good});
+  const auto refused = [&](const std::function<void(protocols::QuestPlusDesign&)>& change) {
+    protocols::QuestPlusDesign bad = good;
+    change(bad);
+    CHECK_THROWS_AS(LikelihoodTable{bad}, core::InvalidInput);
+  };
+  refused([](auto& bad) { bad.parameters[0].weights = {0.0, 0.0}; });
+  refused([](auto& bad) { bad.parameters[0].weights = {-1.0, 2.0}; });
+  refused([](auto& bad) { bad.parameters[0].weights = {1.0}; });
+  refused([](auto& bad) { bad.parameters[0].is_nuisance = true; });
+  refused([](auto& bad) { bad.axes.clear(); });
+  refused([](auto& bad) { bad.axes.push_back({}); });
+  refused([](auto& bad) { bad.outcomes = 1; });
+  refused([](auto& bad) { bad.model = [](auto, auto, auto each) { each[0] = each[1] = 0.6; }; });
+  refused([](auto& bad) { bad.parameters[0].values = {-0.5, 1.5}; });
+}

@@ -14,6 +14,7 @@
 #include "core/techniques/technique.hpp"
 #include "protocols/axes/axis_range.hpp"
 #include "protocols/form.hpp"
+#include "protocols/procedures/procedure.hpp"
 #include "protocols/surface/surface_source.hpp"
 #include "protocols/tasks/task.hpp"
 #include "protocols/yaml/translations.hpp"
@@ -107,6 +108,32 @@ struct PracticeCriterion {
 // which the operator mounts.
 enum class Presented { virtual_plates, real_plates };
 
+// A comparison that differs from its standard along an axis of their family, by a level that
+// procedures choose: a fraction of the standard, or a difference in the axis's unit.
+struct Comparison {
+  std::string axis;
+  double standard{};
+  bool is_fraction{true};
+  bool is_below{false};
+  bool is_standard_right{false};                             // what is asked for is the standard
+  std::vector<std::shared_ptr<const TrackSettings>> tracks;  // interleaved; at least one
+  double value_at(double level) const {
+    const double difference = is_fraction ? level * standard : level;
+    return is_below ? standard - difference : standard + difference;
+  }
+  double level_of(double value) const {
+    const double difference = is_below ? standard - value : value - standard;
+    return is_fraction ? difference / standard : difference;
+  }
+};
+
+// Steps from 1 on which a stimulus is rated.
+struct RatingScale {
+  int steps{7};
+  std::string low;
+  std::string high;
+};
+
 struct Block {
   std::string name;
   const Task* task{};
@@ -117,6 +144,9 @@ struct Block {
   std::string response_factor;                         // empty: stimuli are answered
   std::map<std::string, std::string> response_labels;  // by level, where it is not the label itself
   std::map<std::string, std::string> right_response;   // by stimulus; empty: none is right
+  std::optional<Comparison> comparison;
+  std::optional<RatingScale> rating;
+  int alternatives{};  // presented in a trial, where the task leaves a choice
   Presented presented{Presented::virtual_plates};
   std::optional<CatchTrials> catch_trials;
   std::optional<PracticeCriterion> criterion;

@@ -113,10 +113,11 @@ void read_hypotheses(MapReader& top, Protocol& protocol) {
     hypothesis.block = reader.word("block", "block", blocks);
     hypothesis.claim =
         reader.one_of<Claim>("claim", {{"accuracy_above_chance", Claim::accuracy_above_chance},
-                                       {"chosen_above_chance", Claim::chosen_above_chance}});
+                                       {"chosen_above_chance", Claim::chosen_above_chance},
+                                       {"rated_highest", Claim::rated_highest}});
     const auto block = std::ranges::find(protocol.blocks, hypothesis.block, &Block::name);
     const bool is_known = block != protocol.blocks.end() && block->task != nullptr;
-    if (hypothesis.claim == Claim::chosen_above_chance) {
+    if (hypothesis.claim != Claim::accuracy_above_chance) {
       hypothesis.stimulus = reader.word("stimulus", "stimulus of the block",
                                         is_known ? block->stimuli : stimulus_names(protocol));
     }

@@ -85,6 +85,8 @@ class Store {
   // participant index and trial number. Who a participant is, the id says; an index is unique only
   // within a mode.
   std::vector<AnswerRow> answers();
+  // The participant's, without corrections, in the order given.
+  std::vector<JournalledAnswer> answers_as_given(const std::string& participant_id);
   std::vector<VisitRow> visits();
   std::vector<AlternativeRow> alternatives_of(std::int64_t trial_id);  // by position
   std::vector<SessionRow> sessions();
@@ -113,6 +115,7 @@ class Store {
   int next_participant_index(Mode mode);
   int free_order_index(Mode mode);
   std::vector<JournalledAnswer> answers_for_journal();
+  std::vector<JournalledAnswer> journalled_answers(Statement& row);
   std::vector<CorrectionRow> corrections_for_journal();
   std::vector<FormAnswerRow> forms_for_journal();
   void insert_form_answer(const FormAnswerRow& answer);

@@ -67,13 +67,30 @@ SessionRow Store::session_of(std::int64_t session_id) {
   return session_from(row);
 }
 
+namespace {
+std::string journalled_answers_sql(const char* condition) {
+  return fmt::format(
+      "SELECT trial_id, session_id, number, attempt, block, task, is_practice, "
+      "repetition, status, duration_s, response, is_correct, response_time_s, "
+      "time_from_first_contact_s, confidence, is_catch, presented = 'real' "
+      "FROM trial JOIN response USING (trial_id) JOIN session USING (session_id) "
+      "WHERE status = 'answered' AND supersedes IS NULL {} ORDER BY trial_id",
+      condition);
+}
+}  // namespace
+
 std::vector<JournalledAnswer> Store::answers_for_journal() {
-  Statement row{database_,
-                "SELECT trial_id, session_id, number, attempt, block, task, is_practice, "
-                "repetition, status, duration_s, response, is_correct, response_time_s, "
-                "time_from_first_contact_s, confidence, is_catch, presented = 'real' "
-                "FROM trial JOIN response USING (trial_id) "
-                "WHERE status = 'answered' AND supersedes IS NULL ORDER BY trial_id"};
+  Statement row{database_, journalled_answers_sql("")};
+  return journalled_answers(row);
+}
+
+std::vector<JournalledAnswer> Store::answers_as_given(const std::string& participant_id) {
+  Statement row{database_, journalled_answers_sql("AND participant_id = ?")};
+  row.bind(participant_id);
+  return journalled_answers(row);
+}
+
+std::vector<JournalledAnswer> Store::journalled_answers(Statement& row) {
   std::vector<JournalledAnswer> answers;
   while (row.step()) {
     JournalledAnswer answer;

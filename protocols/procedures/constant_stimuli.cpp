@@ -36,6 +36,9 @@ class ConstantSettings final : public TrackSettings {
   std::size_t axes() const override { return 1; }
   std::size_t outcomes() const override { return 2; }
   std::size_t max_trials() const override { return values_.size() * repetitions_; }
+  std::vector<std::pair<double, double>> ranges() const override {
+    return {{values_.front(), values_.back()}};
+  }
 
   std::unique_ptr<Track> start(std::uint64_t seed) const override {
     core::Rng rng{core::derived_seed(seed, core::Purpose::procedure)};

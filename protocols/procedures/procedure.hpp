@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 namespace tapstudy::protocols {
 class MapReader;
@@ -84,6 +85,8 @@ class TrackSettings {
   virtual std::size_t axes() const = 0;      // of a stimulus
   virtual std::size_t outcomes() const = 0;  // of a trial
   virtual std::size_t max_trials() const = 0;
+  // On each axis the least and the greatest value that may be requested.
+  virtual std::vector<std::pair<double, double>> ranges() const = 0;
   virtual std::unique_ptr<Track> start(std::uint64_t seed) const = 0;
 };
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "core/error.hpp"
@@ -50,5 +51,14 @@ QuestPlusSettings::QuestPlusSettings(QuestPlusDesign design, const QuestPlusStop
 
 std::unique_ptr<Track> QuestPlusSettings::start(std::uint64_t /*seed*/) const {
   return std::make_unique<QuestPlusTrack>(table_, stop_);
+}
+
+std::vector<std::pair<double, double>> QuestPlusSettings::ranges() const {
+  std::vector<std::pair<double, double>> ranges;
+  for (const std::vector<double>& axis : table_->design().axes) {
+    const auto [low, high] = std::ranges::minmax(axis);
+    ranges.emplace_back(low, high);
+  }
+  return ranges;
 }
 }  // namespace tapstudy::protocols

@@ -19,6 +19,9 @@ class StaircaseStart final : public TrackSettings {
   std::size_t axes() const override { return 1; }
   std::size_t outcomes() const override { return 2; }
   std::size_t max_trials() const override { return settings_.max_trials; }
+  std::vector<std::pair<double, double>> ranges() const override {
+    return {{settings_.min, settings_.max}};
+  }
   // Nothing in it is random.
   std::unique_ptr<Track> start(std::uint64_t /*seed*/) const override {
     return start_staircase(settings_);

@@ -1,12 +1,13 @@
 #include "protocols/protocol.hpp"
 #include "protocols/tasks/shipped_tasks.hpp"
+#include "protocols/tasks/task_parts.hpp"
 #include "protocols/yaml/yaml_reader.hpp"
 namespace tapstudy::protocols {
 namespace {
 class Choice final : public Task {
  public:
   std::string_view name() const override { return "choice"; }
-  std::string_view statistic() const override { return "choices"; }
+  std::string_view statistic(const Block& /*block*/) const override { return "choices"; }
   Claim claim() const override { return Claim::chosen_above_chance; }
   bool needs_reference() const override { return true; }
   bool has_correct_answer() const override { return false; }
@@ -64,26 +65,16 @@ class Choice final : public Task {
     return std::nullopt;
   }
 
-  std::vector<std::string> remembered_stimuli(const Block& /*block*/,
-                                              const Simulation& simulation) const override {
-    return {simulation.observer.reference};
+  std::vector<Remembered> remembered(const Block& /*block*/,
+                                     const Simulation& simulation) const override {
+    return {{simulation.observer.reference, simulation.observer.reference}};
   }
   int visits(const Block& block, const SimulatedTapSettings& taps) const override {
     return taps.visits * static_cast<int>(block.stimuli.size());
   }
-  // Every alternative a few times, in a new random order each time.
   std::size_t simulated_answer(const Block& block, const Simulation& simulation,
                                SimulatedTouch& touch) const override {
-    std::vector<std::size_t> order;
-    for (std::size_t i = 0; i < block.stimuli.size(); ++i) {
-      order.push_back(i);
-    }
-    for (int visit = 0; visit < simulation.taps.visits; ++visit) {
-      touch.rng().shuffle(order);
-      for (const std::size_t alternative : order) {
-        touch.visit(alternative);
-      }
-    }
+    visit_all(block.stimuli.size(), simulation, touch);
     return touch.most_similar_alternative(simulation.observer.reference);
   }
 };

@@ -88,10 +88,14 @@ void check_labels_differ(MapReader& reader, const Protocol& protocol, const Bloc
   }
 }
 
+const std::vector<std::string>& known_stimuli(const Block& block) {
+  return block.response_factor.empty() ? block.responses : block.stimuli;
+}
+
 class Identification final : public Task {
  public:
   std::string_view name() const override { return "identification"; }
-  std::string_view statistic() const override { return "confusion"; }
+  std::string_view statistic(const Block& /*block*/) const override { return "confusion"; }
   Claim claim() const override { return Claim::accuracy_above_chance; }
   bool needs_reference() const override { return false; }
   bool has_correct_answer() const override { return true; }
@@ -154,17 +158,21 @@ class Identification final : public Task {
   }
 
   // Asked for a factor, all that was presented is remembered: its levels are no plates.
-  std::vector<std::string> remembered_stimuli(const Block& block,
-                                              const Simulation& /*simulation*/) const override {
-    return block.response_factor.empty() ? block.responses : block.stimuli;
+  std::vector<Remembered> remembered(const Block& block,
+                                     const Simulation& /*simulation*/) const override {
+    std::vector<Remembered> all;
+    for (const std::string& name : known_stimuli(block)) {
+      all.push_back({name, name});
+    }
+    return all;
   }
   int visits(const Block& /*block*/, const SimulatedTapSettings& /*taps*/) const override {
     return 1;
   }
-  std::size_t simulated_answer(const Block& block, const Simulation& simulation,
+  std::size_t simulated_answer(const Block& block, const Simulation& /*simulation*/,
                                SimulatedTouch& touch) const override {
     touch.visit(0);
-    const std::vector<std::string> stimuli = remembered_stimuli(block, simulation);
+    const std::vector<std::string>& stimuli = known_stimuli(block);
     const std::string& felt = stimuli.at(touch.most_similar_stimulus(stimuli));
     const auto answer = std::ranges::find(
         block.responses, block.response_factor.empty() ? felt : block.right_response.at(felt));

@@ -6,4 +6,14 @@ const Task& identification();
 // Several stimuli are switched between freely under blind labels; the answer is one of them (paper
 // sections 5.2.2, 5.2.3).
 const Task& choice();
+// Which of several is the comparison? m-alternative forced choice along an axis.
+const Task& comparison();
+const Task& same_different();
+// Which of three or four differs? Triangle and tetrad tests.
+const Task& odd_one_out();
+const Task& abx();
+// Which of two? All pairs of the stimuli.
+const Task& paired();
+// One stimulus, on a scale of steps.
+const Task& rating();
 }  // namespace tapstudy::protocols

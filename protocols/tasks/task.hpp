@@ -17,7 +17,7 @@ struct SimulatedTapSettings;
 struct Simulation;
 
 // Claims that a hypothesis can make about a block.
-enum class Claim { accuracy_above_chance, chosen_above_chance };
+enum class Claim { accuracy_above_chance, chosen_above_chance, rated_highest };
 
 // One of the things that can be felt in a trial.
 struct Alternative {
@@ -46,6 +46,15 @@ struct Draw {
   std::uint64_t catch_seed{};
 };
 
+// What a simulated participant knows from before the study: how a real plate feels, or a rendered
+// member of a family.
+struct Remembered {
+  std::string key;  // by which the participant thinks of it
+  std::string stimulus;
+  AxisValues values{};
+  bool is_real{true};
+};
+
 // The actions of a simulated participant in a trial. The rendered stimulus is never disclosed.
 class SimulatedTouch {
  public:
@@ -56,6 +65,13 @@ class SimulatedTouch {
   virtual std::size_t most_similar_stimulus(const std::vector<std::string>& stimuli) = 0;
   // Which of the alternatives is most like this remembered stimulus?
   virtual std::size_t most_similar_alternative(const std::string& stimulus) = 0;
+  // Where an alternative lies on the way from one remembered stimulus, 0, to another, 1.
+  virtual double position(std::size_t alternative, const std::string& from,
+                          const std::string& to) = 0;
+  // How far apart two alternatives are, and one from a remembered stimulus, as a mean square in
+  // units of the internal noise: about 1 for two of the same.
+  virtual double distance(std::size_t first, std::size_t second) = 0;
+  virtual double distance(std::size_t alternative, const std::string& stimulus) = 0;
   virtual core::Rng& rng() = 0;  // of the hand
 };
 
@@ -65,8 +81,8 @@ class SimulatedTouch {
 class Task {
  public:
   virtual ~Task() = default;
-  virtual std::string_view name() const = 0;       // in protocols and stores
-  virtual std::string_view statistic() const = 0;  // that summarises a block of it
+  virtual std::string_view name() const = 0;                         // in protocols and stores
+  virtual std::string_view statistic(const Block& block) const = 0;  // that summarises it
 
   // Its own keys of a block; problems go to the reader. The common keys are read already.
   virtual void read(MapReader& reader, const Protocol& protocol, Block& block) const = 0;
@@ -81,6 +97,8 @@ class Task {
   virtual bool can_present_real_plates() const = 0;
   // Whether what is presented when depends on the seeds.
   virtual bool is_random(const Block& block) const = 0;
+  // Whether answers are counted against a chance level; ratings are not.
+  virtual bool has_chance_level() const { return true; }
 
   // The block's trials, numbers left open.
   virtual std::vector<PlannedTrial> trials(const Block& block, const Draw& draw) const = 0;
@@ -93,6 +111,14 @@ class Task {
                                std::size_t option) const = 0;
   virtual std::vector<std::string> alternative_labels(const PlannedTrial& trial) const = 0;
   // nullopt if the task has no correct answer.
+  // What an answer tells the procedure that varies the comparison: one of its outcomes; nullopt if
+  // nothing, because no comparison was presented beside a standard.
+  virtual std::optional<std::size_t> outcome(const PlannedTrial& trial, const Block& block,
+                                             const std::string& response) const;
+  // Of right answers, by chance; 0 where none is right.
+  virtual double guess_rate(const Block& block, const Protocol& protocol) const;
+  // Of d', in analysis; empty: none.
+  virtual std::string_view decision_model() const { return {}; }
   virtual std::optional<bool> is_correct(const PlannedTrial& trial, const Block& block,
                                          const std::string& response) const = 0;
   // Of one participant's answers to a block, how many are counted as independent ones.
@@ -100,10 +126,10 @@ class Task {
   // "of 80 answers 27 must …"
   virtual std::string_view success() const = 0;
 
-  // For simulated participants: the stimuli whose real counterparts to remember, the number of
-  // visits per trial, and the decision rule, which returns the index of an option.
-  virtual std::vector<std::string> remembered_stimuli(const Block& block,
-                                                      const Simulation& simulation) const = 0;
+  // For simulated participants: what to remember, the number of visits per trial, and the decision
+  // rule, which returns the index of an option.
+  virtual std::vector<Remembered> remembered(const Block& block,
+                                             const Simulation& simulation) const = 0;
   virtual int visits(const Block& block, const SimulatedTapSettings& taps) const = 0;
   virtual std::size_t simulated_answer(const Block& block, const Simulation& simulation,
                                        SimulatedTouch& touch) const = 0;

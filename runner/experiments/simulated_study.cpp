@@ -141,8 +141,9 @@ SimulatedTime simulate(const SimulatedStudy& study, const protocols::Protocol& p
                            return static_cast<double>(tapped) / protocol.rate_hz;
                          }};
     Operator nobody;
-    TrialEngine engine{{protocol, models, trial_loop, reality, participant, nobody, states},
-                       recorder};
+    TrialEngine engine{
+        {protocol, models, trial_loop, reality, participant, nobody, states, session.seed},
+        recorder};
     running = &engine;
     take_part(engine, session.schedule);
     ticks += engine.ticks();

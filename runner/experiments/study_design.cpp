@@ -57,6 +57,19 @@ analysis::BlockDesign::Redraw redraw_of(const protocols::Protocol& protocol,
   };
 }
 
+void add_discrimination(const protocols::Block& block, const protocols::Protocol& protocol,
+                        analysis::BlockDesign& part) {
+  part.decision_model = block.task->decision_model();
+  part.guess_rate = block.task->guess_rate(block, protocol);
+  part.alternatives = block.alternatives > 0 ? block.alternatives : 2;
+  part.steps = block.rating ? block.rating->steps : 0;
+  if (block.comparison) {
+    const protocols::Comparison& comparison = *block.comparison;
+    part.axis = analysis::VariedAxis{comparison.axis, comparison.standard, comparison.is_fraction,
+                                     comparison.is_below};
+  }
+}
+
 std::string question_of(const protocols::Block& block) {
   return block.presented == protocols::Presented::real_plates ? block.question + " (real plates)"
                                                               : block.question;
@@ -88,7 +101,7 @@ analysis::StudyDesign design_of(const protocols::Protocol& protocol, results::Mo
     analysis::BlockDesign part{block.name,
                                std::string{block.task->name()},
                                question_of(block),
-                               std::string{block.task->statistic()},
+                               std::string{block.task->statistic(block)},
                                presented_items(protocol, block),
                                answered_items(protocol, block),
                                {},
@@ -96,6 +109,7 @@ analysis::StudyDesign design_of(const protocols::Protocol& protocol, results::Mo
                                begins_at,
                                {},
                                vote_of(block)};
+    add_discrimination(block, protocol, part);
     if (block.task->is_random(block)) {
       part.redraw = redraw_of(protocol, i);
     }

@@ -61,10 +61,7 @@ void SimulatedObserver::remember(const std::string& stimulus, std::span<const Fe
                     "takes (raise simulation.taps.dwell_s or press_m)",
                     stimulus)};
   }
-  std::vector<std::vector<FeltTap>> at_place(places_m_.size());
-  for (const FeltTap& tap : taps) {
-    at_place.at(place_of(tap)).push_back(tap);
-  }
+  const std::vector<std::vector<FeltTap>> at_place = by_place(taps);
   Memory& memory = memories_[stimulus];
   memory = {};
   for (const std::vector<FeltTap>& here : at_place) {
@@ -77,6 +74,78 @@ void SimulatedObserver::remember(const std::string& stimulus, std::span<const Fe
       memory.variance_db2.at(i) += deviation * deviation / static_cast<double>(taps.size());
     }
   }
+}
+
+std::vector<std::vector<FeltTap>> SimulatedObserver::by_place(std::span<const FeltTap> taps) const {
+  std::vector<std::vector<FeltTap>> at_place(places_m_.size());
+  for (const FeltTap& tap : taps) {
+    at_place.at(place_of(tap)).push_back(tap);
+  }
+  return at_place;
+}
+
+double SimulatedObserver::noise_variance_db2() const {
+  return person_.noise_db * person_.noise_db + min_difference_db * min_difference_db;
+}
+
+double SimulatedObserver::position(const Percept& percept, const std::string& from,
+                                   const std::string& to) const {
+  constexpr double undecided = 0.5;
+  if (percept.felt.empty()) {
+    return undecided;
+  }
+  const Memory& start = memories_.at(from);
+  const Memory& end = memories_.at(to);
+  const Features felt = difference(percept.felt, start);
+  double along = 0.0;
+  double length = 0.0;
+  for (std::size_t i = 0; i < felt.size(); ++i) {
+    double way = 0.0;
+    for (std::size_t place = 0; place < start.mean_db.size(); ++place) {
+      way += (end.mean_db[place].at(i) - start.mean_db[place].at(i)) /
+             static_cast<double>(start.mean_db.size());
+    }
+    const double weight = 1.0 / (noise_variance_db2() + start.variance_db2.at(i));
+    along += weight * way * (felt.at(i) + percept.noise.at(i));
+    length += weight * way * way;
+  }
+  // of two that feel alike, noise alone decides
+  return length > 0.0 ? along / length : percept.noise.front();
+}
+
+double SimulatedObserver::distance(const Percept& first, const Percept& second) const {
+  const auto here = by_place(first.felt);
+  const auto there = by_place(second.felt);
+  Features mean{};
+  double places = 0.0;
+  for (std::size_t place = 0; place < here.size(); ++place) {
+    if (here[place].empty() || there[place].empty()) {
+      continue;
+    }
+    ++places;
+    const Features one = mean_of(here[place]);
+    const Features other = mean_of(there[place]);
+    for (std::size_t i = 0; i < mean.size(); ++i) {
+      mean.at(i) += one.at(i) - other.at(i);
+    }
+  }
+  double sum = 0.0;
+  for (std::size_t i = 0; i < mean.size(); ++i) {
+    const double felt =
+        (places > 0.0 ? mean.at(i) / places : 0.0) + first.noise.at(i) - second.noise.at(i);
+    sum += felt * felt;
+  }
+  return sum / (2.0 * noise_variance_db2() * static_cast<double>(mean.size()));
+}
+
+double SimulatedObserver::distance(const Percept& percept, const std::string& stimulus) const {
+  const Features felt = difference(percept.felt, memories_.at(stimulus));
+  double sum = 0.0;
+  for (std::size_t i = 0; i < felt.size(); ++i) {
+    const double blurred = felt.at(i) + percept.noise.at(i);
+    sum += blurred * blurred;
+  }
+  return sum / (noise_variance_db2() * static_cast<double>(felt.size()));
 }
 
 Features SimulatedObserver::difference(std::span<const FeltTap> felt, const Memory& memory) const {

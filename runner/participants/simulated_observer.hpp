@@ -29,6 +29,19 @@ class SimulatedObserver {
   void remember(const std::string& stimulus, std::span<const FeltTap> taps);
   // Which of the remembered plates is this most like? A guess if nothing was felt.
   std::size_t most_similar(std::span<const FeltTap> felt, const std::vector<std::string>& stimuli);
+  // The noise of one percept: drawn once for each alternative of a trial.
+  Features noise();
+  struct Percept {
+    std::span<const FeltTap> felt;
+    Features noise;
+  };
+  // 0 at one remembered plate, 1 at another: the projection on the difference of the two, each
+  // feature weighted by its noise. 0.5 if nothing was felt.
+  double position(const Percept& percept, const std::string& from, const std::string& to) const;
+  // Mean square over the features, in units of the noise of such a difference; places that only one
+  // of two was tapped at say nothing.
+  double distance(const Percept& first, const Percept& second) const;
+  double distance(const Percept& percept, const std::string& stimulus) const;
   // Which of several felt alternatives is most like the remembered plate? One that was not felt is
   // excluded; if none was felt, a guess.
   std::size_t most_similar(const std::vector<std::vector<FeltTap>>& felt,
@@ -41,7 +54,8 @@ class SimulatedObserver {
   };
   std::size_t place_of(const FeltTap& tap) const;
   Features difference(std::span<const FeltTap> felt, const Memory& memory) const;
-  Features noise();
+  std::vector<std::vector<FeltTap>> by_place(std::span<const FeltTap> taps) const;
+  double noise_variance_db2() const;
   std::size_t index_of_least(std::vector<double> distances);  // biased; ties broken at random
   double bias_towards(std::size_t answer) const;
   double distance(const Features& difference, const Features& noise, const Memory& memory) const;

@@ -14,17 +14,17 @@ namespace tapstudy::runner {
 namespace {
 using core::Purpose;
 
-// The stimuli that must be memorised for this protocol's tasks, in the order of the protocol.
-std::vector<std::string> remembered_stimuli(const protocols::Protocol& protocol) {
-  std::vector<std::string> names;
+// What must be memorised for this protocol's tasks, in the order of the protocol.
+std::vector<protocols::Remembered> all_remembered(const protocols::Protocol& protocol) {
+  std::vector<protocols::Remembered> all;
   for (const protocols::Block& block : protocol.blocks) {
-    for (const std::string& name : block.task->remembered_stimuli(block, protocol.simulation)) {
-      if (std::ranges::find(names, name) == names.end()) {
-        names.push_back(name);
+    for (const protocols::Remembered& one : block.task->remembered(block, protocol.simulation)) {
+      if (std::ranges::find(all, one.key, &protocols::Remembered::key) == all.end()) {
+        all.push_back(one);
       }
     }
   }
-  return names;
+  return all;
 }
 
 // What this participant is like, among others.
@@ -57,12 +57,31 @@ class SimulatedParticipant::Touch final : public protocols::SimulatedTouch {
   std::size_t most_similar_alternative(const std::string& stimulus) override {
     return self_.observer_.most_similar(felt_, stimulus);
   }
+  double position(std::size_t alternative, const std::string& from,
+                  const std::string& to) override {
+    return self_.observer_.position(percept(alternative), from, to);
+  }
+  double distance(std::size_t first, std::size_t second) override {
+    return self_.observer_.distance(percept(first), percept(second));
+  }
+  double distance(std::size_t alternative, const std::string& stimulus) override {
+    return self_.observer_.distance(percept(alternative), stimulus);
+  }
   core::Rng& rng() override { return self_.hand_rng_; }
 
  private:
   SimulatedParticipant& self_;
   Exploration& exploration_;
+  // Noise is drawn with the first question: whoever asks for none leaves the stream as it was.
+  SimulatedObserver::Percept percept(std::size_t alternative) {
+    while (noise_.size() < felt_.size()) {
+      noise_.push_back(self_.observer_.noise());
+    }
+    return {felt_.at(alternative), noise_.at(alternative)};
+  }
+
   std::vector<std::vector<FeltTap>> felt_;
+  std::vector<Features> noise_;
 };
 
 SimulatedParticipant::SimulatedParticipant(const protocols::Protocol& protocol,
@@ -76,25 +95,36 @@ SimulatedParticipant::SimulatedParticipant(const protocols::Protocol& protocol,
       observer_{aims_m(protocol, settings.placement),
                 {person_.observer.noise_db, person_.people.bias, seed},
                 core::Rng{core::derived_seed(seed, Purpose::observer)}} {
-  remember_real_stimuli(models);
+  remember(models);
   hand_rng_ = core::Rng{core::derived_seed(seed, Purpose::hand)};
 }
 
-void SimulatedParticipant::remember_real_stimuli(ModelLibrary& models) {
+// A body that several stimuli share is tapped once.
+void SimulatedParticipant::remember(ModelLibrary& models) {
   const protocols::Protocol reality = with_real_plates(protocol_);
   VirtualTrialLoop world{hand_, settings_, Keep::nothing};
   using Body = std::pair<const core::Plate*, const core::Material*>;
   std::map<Body, std::vector<FeltTap>> felt;
-  for (const std::string& name : remembered_stimuli(protocol_)) {
-    const protocols::Stimulus& stimulus = protocol_.stimulus(name);
+  const auto felt_of = [&](const protocols::PresentedStimulus& stimulus) {
+    TrialStimuli stimuli = build_trial_stimuli(reality, {stimulus}, models);
+    std::vector<FeltTap> taps;
+    world.run(stimuli.alternatives, [&](Exploration& exploration) {
+      taps = tap(exploration, person_.observer.familiarisation_taps);
+    });
+    return taps;
+  };
+  for (const protocols::Remembered& one : all_remembered(protocol_)) {
+    const protocols::Protocol& as = one.is_real ? reality : protocol_;
+    const auto stimulus = protocols::stimulus_at(as, as.stimulus(one.stimulus), one.values);
     const Body body{stimulus.plate.get(), stimulus.material.get()};
-    if (!felt.contains(body)) {
-      TrialStimuli stimuli = build_trial_stimuli(reality, {name}, models);
-      world.run(stimuli.alternatives, [&](Exploration& exploration) {
-        felt[body] = tap(exploration, person_.observer.familiarisation_taps);
-      });
+    if (!one.is_real) {
+      observer_.remember(one.key, felt_of(stimulus));
+      continue;
     }
-    observer_.remember(name, felt.at(body));
+    if (!felt.contains(body)) {
+      felt[body] = felt_of(stimulus);
+    }
+    observer_.remember(one.key, felt.at(body));
   }
 }
 

@@ -28,7 +28,7 @@ class SimulatedParticipant final : public Participant {
  private:
   class Touch;
   std::vector<FeltTap> tap(Exploration& exploration, int count);
-  void remember_real_stimuli(ModelLibrary& models);
+  void remember(ModelLibrary& models);
 
   const protocols::Protocol& protocol_;
   protocols::Simulation person_;  // as drawn for this participant

@@ -39,7 +39,8 @@ void resume(const results::SessionRow& earlier, const protocols::Protocol& proto
   }
   session.row.resumes = earlier.id;
   session.earlier = {store.filled_forms(earlier.participant_id),
-                     PracticeRecord{answers_of(earlier.participant_id, store)}};
+                     PracticeRecord{answers_of(earlier.participant_id, store)},
+                     store.answers_as_given(earlier.participant_id)};
   const std::vector<int> answered = store.answered_trials(earlier.participant_id);
   session.done = {answered.begin(), answered.end()};
   for (const auto& trials : {given_up_trials(protocol, earlier.participant_id, store),

@@ -2,7 +2,9 @@
 #include <set>
 #include <string>
 #include <utility>
+#include <vector>
 
+#include "results/journal.hpp"
 #include "runner/session/practice_record.hpp"
 namespace tapstudy::runner {
 using FilledForms = std::set<std::pair<std::string, std::string>>;  // form, where it was asked
@@ -11,5 +13,6 @@ using FilledForms = std::set<std::pair<std::string, std::string>>;  // form, whe
 struct EarlierAnswers {
   FilledForms filled_forms{};
   PracticeRecord practice{};
+  std::vector<results::JournalledAnswer> as_given{};  // in that order
 };
 }  // namespace tapstudy::runner

@@ -1,8 +1,9 @@
 #include "runner/session/given_up_trials.hpp"
 
-#include <algorithm>
+#include <set>
 
 #include "protocols/schedule.hpp"
+#include "runner/session/adaptive_blocks.hpp"
 #include "runner/session/practice_record.hpp"
 namespace tapstudy::runner {
 std::vector<int> given_up_trials(const protocols::Protocol& protocol,
@@ -28,20 +29,24 @@ std::vector<results::AnswerRow> answers_of(const std::string& participant_id,
 
 std::vector<int> unneeded_trials(const protocols::Protocol& protocol,
                                  const std::string& participant_id, results::Store& store) {
-  const std::vector<results::AnswerRow> answers = answers_of(participant_id, store);
-  const PracticeRecord practice{answers};
+  const auto session = store.latest_session(participant_id);
+  if (!session) {
+    return {};
+  }
+  const protocols::Schedule schedule =
+      protocols::make_schedule(protocol, session->seed, session->order_index);
+  const PracticeRecord practice{answers_of(participant_id, store)};
+  const AdaptiveBlocks adaptive{protocol, session->seed, schedule,
+                                store.answers_as_given(participant_id)};
+  const std::vector<int> answered = store.answered_trials(participant_id);
+  std::set<int> done{answered.begin(), answered.end()};
   const std::vector<int> given_up = given_up_trials(protocol, participant_id, store);
+  done.insert(given_up.begin(), given_up.end());
   std::vector<int> unneeded;
-  int number = 0;
-  for (const protocols::Block& block : protocol.blocks) {
-    const bool is_met = practice.is_met(block);
-    for (int i = 0; i < planned_trials(block); ++i) {
-      ++number;
-      const bool is_answered =
-          std::ranges::find(answers, number, &results::AnswerRow::number) != answers.end();
-      if (is_met && !is_answered && std::ranges::find(given_up, number) == given_up.end()) {
-        unneeded.push_back(number);
-      }
+  for (const protocols::PlannedTrial& trial : schedule) {
+    const bool is_over = practice.is_met(protocol.block(trial.block)) || adaptive.is_over(trial);
+    if (is_over && !done.contains(trial.number)) {
+      unneeded.push_back(trial.number);
     }
   }
   return unneeded;

@@ -9,7 +9,8 @@ namespace tapstudy::runner {
 // out (at_limit: give_up).
 std::vector<int> given_up_trials(const protocols::Protocol& protocol,
                                  const std::string& participant_id, results::Store& store);
-// Those that were never presented, because their block's criterion was met before.
+// Those that were never presented, because their block's criterion was met before, or its
+// procedures were finished.
 std::vector<int> unneeded_trials(const protocols::Protocol& protocol,
                                  const std::string& participant_id, results::Store& store);
 // The participant's answers, of whatever blocks.

@@ -91,7 +91,8 @@ LiveTrials::LiveTrials(const Parts& parts, std::unique_ptr<SessionDevice> device
                    [this](const std::string& task) { return parts_.ask_operator(task); },
                    loop_of(idle_loop_, masked_idle_loop_)},
       engine_{{parts.live.protocol, parts.models, loop_of(live_loop_, masked_loop_), real_plates_,
-               console_ ? console_->participant() : at_terminal_, desk_, states_},
+               console_ ? console_->participant() : at_terminal_, desk_, states_,
+               parts.session.row.seed},
               recorder_,
               parts.session.earlier} {}
 

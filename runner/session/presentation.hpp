@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <exception>
 #include <optional>
 
@@ -31,6 +32,7 @@ struct SessionParts {
   Participant& participant;
   Operator& by;
   SessionStates& states;
+  std::uint64_t seed{};  // of the session
 };
 
 // Builds the trial's stimuli and renders them until the participant has given an answer that

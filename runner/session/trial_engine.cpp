@@ -61,6 +61,9 @@ void TrialEngine::note_events() {
 
 std::optional<Interruption> TrialEngine::run_all(const protocols::Schedule& schedule,
                                                  std::set<int>& done_trials) {
+  if (!adaptive_) {
+    adaptive_.emplace(parts_.protocol, parts_.seed, schedule, as_given_);
+  }
   std::deque<PlannedTrial> waiting;
   std::ranges::copy_if(schedule, std::back_inserter(waiting), [&](const PlannedTrial& trial) {
     return !done_trials.contains(trial.number);
@@ -69,7 +72,7 @@ std::optional<Interruption> TrialEngine::run_all(const protocols::Schedule& sche
     stop_if_asked();
     const PlannedTrial trial = waiting.front();
     waiting.pop_front();
-    if (practice_.is_over(trial)) {
+    if (practice_.is_over(trial) || adaptive_->is_over(trial)) {
       done_trials.insert(trial.number);
       continue;
     }
@@ -232,7 +235,8 @@ void TrialEngine::store(const PlannedTrial& trial, Presentation presentation, En
   }
 }
 
-TrialEngine::Outcome TrialEngine::run_trial(const PlannedTrial& trial, int total) {
+TrialEngine::Outcome TrialEngine::run_trial(const PlannedTrial& planned, int total) {
+  const PlannedTrial trial = adaptive_->with_values(planned);
   const TrialPrompt prompt = prompt_of(trial, total);
   const protocols::Block& block = parts_.protocol.block(trial.block);
   Presentation presentation = present({trial, prompt, attempts_[trial.number] + 1}, parts_);
@@ -244,6 +248,9 @@ TrialEngine::Outcome TrialEngine::run_trial(const PlannedTrial& trial, int total
   const std::optional<Answer> answer = presentation.answer;
   const core::TickFault fault = presentation.result.loop.stopped_by;
   store(trial, std::move(presentation), ending);
+  if (answer && (ending == Ending::answered || ending == Ending::faulted)) {
+    adaptive_->observe(trial, answer->response);
+  }
   switch (ending) {
     case Ending::faulted:
       if (answer) {

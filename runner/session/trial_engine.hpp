@@ -11,6 +11,7 @@
 #include "protocols/schedule.hpp"
 #include "results/recorder.hpp"
 #include "runner/participants/participant.hpp"
+#include "runner/session/adaptive_blocks.hpp"
 #include "runner/session/interludes.hpp"
 #include "runner/session/practice.hpp"
 #include "runner/session/presentation.hpp"
@@ -41,6 +42,7 @@ class TrialEngine {
                      [this] { wait_while_paused(); }},
                     earlier.filled_forms},
         practice_{parts.protocol, parts.states, earlier.practice},
+        as_given_{earlier.as_given},
         recorder_{recorder} {}
 
   // Runs the trials not in `done`, adding each, until all are done or a fault ends one; called
@@ -66,7 +68,7 @@ class TrialEngine {
   using Ending = TrialEnding;
   Ending ending_of(const Presentation& presentation, const protocols::PlannedTrial& trial);
   void store(const protocols::PlannedTrial& trial, Presentation presentation, Ending ending);
-  Outcome run_trial(const protocols::PlannedTrial& trial, int total);
+  Outcome run_trial(const protocols::PlannedTrial& planned, int total);
   Outcome run_until_it_counts(const protocols::PlannedTrial& trial, int total);
   void save(const std::shared_ptr<const results::TrialRecord>& record);
   void save(std::vector<results::FormAnswerRow> answers);
@@ -78,6 +80,8 @@ class TrialEngine {
   SessionParts parts_;
   Interludes interludes_;
   Practice practice_;
+  std::vector<results::JournalledAnswer> as_given_;  // in earlier sessions
+  std::optional<AdaptiveBlocks> adaptive_;
   results::Recorder& recorder_;
   std::optional<AnswerInView> last_answer_;
   std::map<int, int> attempts_;  // by the trial's number

@@ -1,0 +1,45 @@
+#include "protocols/tasks/discrimination_task.hpp"
+#include "protocols/tasks/shipped_tasks.hpp"
+namespace tapstudy::protocols {
+namespace {
+// A and B differ; X is one of them again: which? (Munson & Gardner 1950)
+class Abx final : public DiscriminationTask {
+ public:
+  std::string_view name() const override { return "abx"; }
+  std::string_view decision_model() const override { return "abx_differencing"; }
+  std::vector<Option> options(const Block& /*block*/, const Protocol& /*protocol*/) const override {
+    return blind_options(2);
+  }
+  std::vector<std::string> alternative_labels(const PlannedTrial& /*trial*/) const override {
+    return {blind_label(0), blind_label(1), "X"};
+  }
+  std::string response(const PlannedTrial& /*trial*/, const Block& /*block*/,
+                       std::size_t option) const override {
+    return blind_label(option);
+  }
+  std::optional<bool> is_correct(const PlannedTrial& trial, const Block& /*block*/,
+                                 const std::string& response) const override {
+    const Alternative& picked = trial.alternatives.at(response == blind_label(0) ? 0 : 1);
+    return picked.is_comparison == trial.alternatives.at(2).is_comparison;
+  }
+  std::size_t simulated_answer(const Block& /*block*/, const Simulation& simulation,
+                               SimulatedTouch& touch) const override {
+    visit_all(3, simulation, touch);
+    return touch.distance(std::size_t{0}, std::size_t{2}) <=
+                   touch.distance(std::size_t{1}, std::size_t{2})
+               ? 0
+               : 1;
+  }
+
+ protected:
+  std::vector<Layout> layouts(const Block& /*block*/) const override {
+    return {{false, true, false}, {false, true, true}, {true, false, false}, {true, false, true}};
+  }
+};
+}  // namespace
+
+const Task& abx() {
+  static const Abx task;
+  return task;
+}
+}  // namespace tapstudy::protocols

@@ -1,0 +1,85 @@
+#include <algorithm>
+
+#include "protocols/tasks/discrimination_task.hpp"
+#include "protocols/tasks/shipped_tasks.hpp"
+#include "protocols/yaml/yaml_reader.hpp"
+namespace tapstudy::protocols {
+namespace {
+constexpr const char* standard_key = "the standard";
+constexpr const char* comparison_key = "the greatest comparison";
+
+// m-alternative forced choice: one alternative differs from the others, which? Or, where the
+// standard is asked for, which of two is the standard?
+class ComparisonTask final : public DiscriminationTask {
+ public:
+  std::string_view name() const override { return "comparison"; }
+  std::string_view decision_model() const override { return "forced_choice"; }
+
+  void read(MapReader& reader, const Protocol& protocol, Block& block) const override {
+    DiscriminationTask::read(reader, protocol, block);
+    block.alternatives = reader.integer("alternatives", 2, 8, 2);
+    const bool is_standard_right =
+        reader.one_of<bool>("right", {{"comparison", false}, {"standard", true}}, "comparison");
+    if (block.comparison) {
+      block.comparison->is_standard_right = is_standard_right;
+    }
+    if (is_standard_right && block.alternatives > 2) {
+      reader.reject("right", "the standard is one of two alternatives only");
+    }
+  }
+  std::vector<Option> options(const Block& block, const Protocol& /*protocol*/) const override {
+    return blind_options(static_cast<std::size_t>(block.alternatives));
+  }
+  std::string response(const PlannedTrial& /*trial*/, const Block& /*block*/,
+                       std::size_t option) const override {
+    return blind_label(option);
+  }
+  std::optional<bool> is_correct(const PlannedTrial& trial, const Block& block,
+                                 const std::string& response) const override {
+    const auto labels = blind_labels(trial);
+    const auto place = std::ranges::find(labels, response) - labels.begin();
+    return trial.alternatives.at(static_cast<std::size_t>(place)).is_comparison !=
+           block.comparison->is_standard_right;
+  }
+
+  // Which way to look for is known from practice.
+  std::vector<Remembered> remembered(const Block& block,
+                                     const Simulation& /*simulation*/) const override {
+    const Comparison& comparison = *block.comparison;
+    const double most = comparison.value_at(comparison.tracks.front()->ranges().front().second);
+    const std::string& family = block.stimuli.front();
+    return {{block.name + standard_key, family, {{comparison.axis, comparison.standard}}, false},
+            {block.name + comparison_key, family, {{comparison.axis, most}}, false}};
+  }
+  std::size_t simulated_answer(const Block& block, const Simulation& simulation,
+                               SimulatedTouch& touch) const override {
+    const auto alternatives = static_cast<std::size_t>(block.alternatives);
+    visit_all(alternatives, simulation, touch);
+    std::vector<double> positions;
+    for (std::size_t i = 0; i < alternatives; ++i) {
+      positions.push_back(
+          touch.position(i, block.name + standard_key, block.name + comparison_key));
+    }
+    const auto picked = block.comparison->is_standard_right ? std::ranges::min_element(positions)
+                                                            : std::ranges::max_element(positions);
+    return static_cast<std::size_t>(picked - positions.begin());
+  }
+
+ protected:
+  bool needs_procedure() const override { return true; }
+  std::vector<Layout> layouts(const Block& block) const override {
+    const auto alternatives = static_cast<std::size_t>(block.alternatives);
+    std::vector<Layout> ways(alternatives, Layout(alternatives, false));
+    for (std::size_t place = 0; place < alternatives; ++place) {
+      ways[place][place] = true;
+    }
+    return ways;
+  }
+};
+}  // namespace
+
+const Task& comparison() {
+  static const ComparisonTask task;
+  return task;
+}
+}  // namespace tapstudy::protocols

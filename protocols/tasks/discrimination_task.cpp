@@ -1,0 +1,89 @@
+#include "protocols/tasks/discrimination_task.hpp"
+
+#include "protocols/read_sections.hpp"
+#include "protocols/tasks/read_comparison.hpp"
+namespace tapstudy::protocols {
+namespace {
+std::size_t observations(const Comparison& comparison) {
+  std::size_t count = 0;
+  for (const auto& track : comparison.tracks) {
+    count += track->max_trials();
+  }
+  return count;
+}
+}  // namespace
+
+void DiscriminationTask::read(MapReader& reader, const Protocol& protocol, Block& block) const {
+  if (reader.has("procedures") || needs_procedure()) {
+    block.comparison = read_comparison(reader, protocol, block);
+    if (reader.has("repetitions")) {
+      reader.reject("repetitions", "is what the procedures make it");
+    }
+  } else if (block.stimuli.size() < 2) {
+    reader.reject("stimuli",
+                  "one stimulus is compared with itself only along an axis: give "
+                  "procedures, or at least two stimuli");
+  }
+}
+
+std::size_t DiscriminationTask::trials_per_repetition(const Block& block) const {
+  if (block.comparison) {
+    return observations(*block.comparison) *
+           static_cast<std::size_t>(1 + empty_trials_per_observation());
+  }
+  return pairs_of(block.stimuli.size()).size() * layouts(block).size();
+}
+
+int DiscriminationTask::visits(const Block& block, const SimulatedTapSettings& taps) const {
+  return taps.visits * static_cast<int>(layouts(block).front().size());
+}
+
+// The comparison's value is chosen when its trial comes.
+std::vector<PlannedTrial> DiscriminationTask::of_family(const Block& block) const {
+  const Comparison& comparison = *block.comparison;
+  const std::string& family = block.stimuli.front();
+  const std::vector<Layout> ways = layouts(block);
+  std::vector<PlannedTrial> all;
+  for (std::size_t i = 0; i < trials_per_repetition(block); ++i) {
+    PlannedTrial trial{0, block.name, this, block.is_practice, 1, {}};
+    for (const bool is_comparison : ways[i % ways.size()]) {
+      trial.alternatives.push_back(
+          is_comparison ? Alternative{family, {}, true}
+                        : Alternative{family, {{comparison.axis, comparison.standard}}});
+    }
+    all.push_back(std::move(trial));
+  }
+  return all;
+}
+
+// Every pair in every way once in each repetition, in random order.
+std::vector<PlannedTrial> DiscriminationTask::of_pairs(const Block& block, core::Rng& rng) const {
+  std::vector<PlannedTrial> all;
+  for (int repetition = 1; repetition <= block.repetitions; ++repetition) {
+    std::vector<PlannedTrial> part;
+    for (const auto& [standard, comparison] : pairs_of(block.stimuli.size())) {
+      for (const Layout& way : layouts(block)) {
+        PlannedTrial trial{0, block.name, this, block.is_practice, repetition, {}};
+        for (const bool is_comparison : way) {
+          trial.alternatives.push_back(
+              {block.stimuli[is_comparison ? comparison : standard], {}, is_comparison});
+        }
+        part.push_back(std::move(trial));
+      }
+    }
+    rng.shuffle(part);
+    all.insert(all.end(), part.begin(), part.end());
+  }
+  return all;
+}
+
+std::vector<PlannedTrial> DiscriminationTask::trials(const Block& block, const Draw& draw) const {
+  core::Rng rng{core::derived_seed(draw.participant_seed, core::Purpose::labels, draw.block_index)};
+  if (!block.comparison) {
+    return of_pairs(block, rng);
+  }
+  std::vector<PlannedTrial> all = of_family(block);
+  rng.shuffle(all);
+  return all;
+}
+}  // namespace tapstudy::protocols

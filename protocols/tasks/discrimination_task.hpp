@@ -1,0 +1,47 @@
+#pragma once
+#include "protocols/tasks/task_parts.hpp"
+namespace tapstudy::protocols {
+// Alternatives under blind labels, each the standard or a comparison: the members of a family at
+// the standard's value and at one that procedures choose, or two different stimuli of the block.
+class DiscriminationTask : public Task {
+ public:
+  std::string_view statistic(const Block& block) const override {
+    return block.comparison ? "psychometric" : "discrimination";
+  }
+  Claim claim() const override { return Claim::accuracy_above_chance; }
+  bool needs_reference() const override { return false; }
+  bool has_correct_answer() const override { return true; }
+  bool uses_order() const override { return false; }
+  bool can_present_real_plates() const override { return false; }
+  bool is_random(const Block& /*block*/) const override { return true; }
+  int counted_answers(const Block& block) const override {
+    return block.repetitions * static_cast<int>(trials_per_repetition(block));
+  }
+  std::string_view success() const override { return "be right"; }
+
+  void read(MapReader& reader, const Protocol& protocol, Block& block) const override;
+  std::vector<PlannedTrial> trials(const Block& block, const Draw& draw) const override;
+  std::size_t trials_per_repetition(const Block& block) const override;
+  std::vector<std::string> alternative_labels(const PlannedTrial& trial) const override {
+    return blind_labels(trial);
+  }
+  std::vector<Remembered> remembered(const Block& /*block*/,
+                                     const Simulation& /*simulation*/) const override {
+    return {};
+  }
+  int visits(const Block& block, const SimulatedTapSettings& taps) const override;
+
+ protected:
+  // Whether each alternative is the comparison, for each way to present a trial. All ways are
+  // presented equally often.
+  using Layout = std::vector<bool>;
+  virtual std::vector<Layout> layouts(const Block& block) const = 0;
+  virtual bool needs_procedure() const { return false; }
+  // Trials in which no comparison stands beside a standard, for each that has both.
+  virtual int empty_trials_per_observation() const { return 0; }
+
+ private:
+  std::vector<PlannedTrial> of_family(const Block& block) const;
+  std::vector<PlannedTrial> of_pairs(const Block& block, core::Rng& rng) const;
+};
+}  // namespace tapstudy::protocols

@@ -1,0 +1,79 @@
+#include "protocols/tasks/shipped_tasks.hpp"
+#include "protocols/tasks/task_parts.hpp"
+#include "protocols/yaml/yaml_reader.hpp"
+namespace tapstudy::protocols {
+namespace {
+// Which of the two? All pairs of the stimuli, each in either order equally often.
+class Paired final : public Task {
+ public:
+  std::string_view name() const override { return "paired"; }
+  std::string_view statistic(const Block& /*block*/) const override { return "paired"; }
+  Claim claim() const override { return Claim::chosen_above_chance; }
+  bool needs_reference() const override { return true; }
+  bool has_correct_answer() const override { return false; }
+  bool uses_order() const override { return false; }
+  bool can_present_real_plates() const override { return false; }
+  bool is_random(const Block& /*block*/) const override { return true; }
+  int counted_answers(const Block& /*block*/) const override { return 1; }
+  std::string_view success() const override { return "prefer the expected one"; }
+
+  void read(MapReader& reader, const Protocol& /*protocol*/, Block& block) const override {
+    if (block.stimuli.size() < 2) {
+      reader.reject("stimuli", "pairs take at least two stimuli");
+    }
+  }
+  // A repetition presents each pair in both orders.
+  std::vector<PlannedTrial> trials(const Block& block, const Draw& draw) const override {
+    core::Rng rng{
+        core::derived_seed(draw.participant_seed, core::Purpose::labels, draw.block_index)};
+    std::vector<PlannedTrial> all;
+    for (int repetition = 1; repetition <= block.repetitions; ++repetition) {
+      std::vector<PlannedTrial> part;
+      for (const auto& [first, second] : pairs_of(block.stimuli.size())) {
+        const Alternative one{block.stimuli[first]};
+        const Alternative other{block.stimuli[second]};
+        part.push_back({0, block.name, this, block.is_practice, repetition, {one, other}});
+        part.push_back({0, block.name, this, block.is_practice, repetition, {other, one}});
+      }
+      rng.shuffle(part);
+      all.insert(all.end(), part.begin(), part.end());
+    }
+    return all;
+  }
+  std::size_t trials_per_repetition(const Block& block) const override {
+    return 2 * pairs_of(block.stimuli.size()).size();
+  }
+  std::vector<Option> options(const Block& /*block*/, const Protocol& /*protocol*/) const override {
+    return blind_options(2);
+  }
+  std::string response(const PlannedTrial& trial, const Block& /*block*/,
+                       std::size_t option) const override {
+    return trial.alternatives.at(option).stimulus;
+  }
+  std::vector<std::string> alternative_labels(const PlannedTrial& trial) const override {
+    return blind_labels(trial);
+  }
+  std::optional<bool> is_correct(const PlannedTrial& /*trial*/, const Block& /*block*/,
+                                 const std::string& /*response*/) const override {
+    return std::nullopt;
+  }
+  std::vector<Remembered> remembered(const Block& /*block*/,
+                                     const Simulation& simulation) const override {
+    return {{simulation.observer.reference, simulation.observer.reference}};
+  }
+  int visits(const Block& /*block*/, const SimulatedTapSettings& taps) const override {
+    return 2 * taps.visits;
+  }
+  std::size_t simulated_answer(const Block& /*block*/, const Simulation& simulation,
+                               SimulatedTouch& touch) const override {
+    visit_all(2, simulation, touch);
+    return touch.most_similar_alternative(simulation.observer.reference);
+  }
+};
+}  // namespace
+
+const Task& paired() {
+  static const Paired task;
+  return task;
+}
+}  // namespace tapstudy::protocols

@@ -1,0 +1,88 @@
+#include <algorithm>
+#include <cmath>
+
+#include "protocols/ordering.hpp"
+#include "protocols/tasks/shipped_tasks.hpp"
+#include "protocols/tasks/task_parts.hpp"
+#include "protocols/yaml/yaml_reader.hpp"
+namespace tapstudy::protocols {
+namespace {
+// How real (hard, pleasant ...) is it, from 1 to so many steps?
+class Rating final : public Task {
+ public:
+  std::string_view name() const override { return "rating"; }
+  std::string_view statistic(const Block& /*block*/) const override { return "ratings"; }
+  Claim claim() const override { return Claim::rated_highest; }
+  bool needs_reference() const override { return true; }
+  bool has_correct_answer() const override { return false; }
+  bool has_chance_level() const override { return false; }
+  bool uses_order() const override { return true; }
+  bool can_present_real_plates() const override { return true; }
+  bool is_random(const Block& block) const override { return block.order != Order::listed; }
+  int counted_answers(const Block& /*block*/) const override { return 1; }
+  std::string_view success() const override { return "be the highest"; }
+
+  void read(MapReader& reader, const Protocol& /*protocol*/, Block& block) const override {
+    RatingScale scale;
+    scale.steps = reader.integer("steps", 2, 11, scale.steps);
+    scale.low = reader.translated("low");
+    scale.high = reader.translated("high");
+    block.rating = scale;
+  }
+  std::vector<PlannedTrial> trials(const Block& block, const Draw& draw) const override {
+    core::Rng rng{
+        core::derived_seed(draw.participant_seed, core::Purpose::schedule, draw.block_index)};
+    std::vector<PlannedTrial> all;
+    for (const OrderedStimulus& next :
+         ordered_stimuli(block, rng, {draw.order_index, draw.counterbalancing_seed})) {
+      all.push_back({0, block.name, this, block.is_practice, next.repetition, {{next.stimulus}}});
+    }
+    return all;
+  }
+  std::size_t trials_per_repetition(const Block& block) const override {
+    return block.stimuli.size();
+  }
+  std::vector<Option> options(const Block& block, const Protocol& /*protocol*/) const override {
+    std::vector<Option> all;
+    for (int step = 1; step <= block.rating->steps; ++step) {
+      const std::string number = std::to_string(step);
+      all.push_back({number, number});
+    }
+    all.front().label += " " + block.rating->low;
+    all.back().label += " " + block.rating->high;
+    return all;
+  }
+  std::string response(const PlannedTrial& /*trial*/, const Block& /*block*/,
+                       std::size_t option) const override {
+    return std::to_string(option + 1);
+  }
+  std::vector<std::string> alternative_labels(const PlannedTrial& /*trial*/) const override {
+    return {};
+  }
+  std::optional<bool> is_correct(const PlannedTrial& /*trial*/, const Block& /*block*/,
+                                 const std::string& /*response*/) const override {
+    return std::nullopt;
+  }
+  std::vector<Remembered> remembered(const Block& /*block*/,
+                                     const Simulation& simulation) const override {
+    return {{simulation.observer.reference, simulation.observer.reference}};
+  }
+  int visits(const Block& /*block*/, const SimulatedTapSettings& /*taps*/) const override {
+    return 1;
+  }
+  // The nearer to the reference, the higher: a mean square of 1, its own noise, is the top.
+  std::size_t simulated_answer(const Block& block, const Simulation& simulation,
+                               SimulatedTouch& touch) const override {
+    touch.visit(0);
+    const double excess =
+        std::max(0.0, touch.distance(std::size_t{0}, simulation.observer.reference) - 1.0);
+    return static_cast<std::size_t>(std::lround((block.rating->steps - 1) * std::exp(-excess)));
+  }
+};
+}  // namespace
+
+const Task& rating() {
+  static const Rating task;
+  return task;
+}
+}  // namespace tapstudy::protocols

@@ -1,0 +1,102 @@
+#include "protocols/tasks/read_comparison.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/error.hpp"
+#include "protocols/axes/presented_stimulus.hpp"
+namespace tapstudy::protocols {
+namespace {
+constexpr double any = 1e15;
+
+const Stimulus* family_of(const Protocol& protocol, const Block& block) {
+  const auto found =
+      block.stimuli.size() == 1
+          ? std::ranges::find(protocol.stimuli, block.stimuli.front(), &Stimulus::name)
+          : protocol.stimuli.end();
+  return found == protocol.stimuli.end() || found->vary.empty() ? nullptr : &*found;
+}
+
+std::vector<std::string> axes_of(const Stimulus& family) {
+  std::vector<std::string> names;
+  for (const AxisRange& range : family.vary) {
+    names.emplace_back(range.axis->name);
+  }
+  return names;
+}
+
+// Whether it can be presented; a table must hold a standard itself.
+bool check_value(MapReader& reader, const std::string& key, const Protocol& protocol,
+                 const Stimulus& family, const std::string& axis, double value) {
+  try {
+    presented_values(protocol, family, {{axis, value}});
+    return true;
+  } catch (const core::InvalidInput& error) {
+    reader.reject(key, error.what());
+    return false;
+  }
+}
+
+void check_track(MapReader& reader, const Protocol& protocol, const Stimulus& family,
+                 const Comparison& comparison, const TrackSettings& track) {
+  if (track.axes() != 1 || track.outcomes() != 2) {
+    reader.reject("varies more than one axis or has other outcomes than right and wrong");
+    return;
+  }
+  const auto [low, high] = track.ranges().front();
+  if (low < 0.0) {
+    reader.reject(fmt::format("may ask for the level {}: levels are at least 0", low));
+    return;
+  }
+  for (const double level : {low, high}) {
+    const double value = comparison.value_at(level);
+    try {
+      presented_values(protocol, family, {{comparison.axis, value}});
+    } catch (const core::InvalidInput& error) {
+      reader.reject(fmt::format("may ask for the level {}, which is {} = {:.6g}: {}", level,
+                                comparison.axis, value, error.what()));
+      return;
+    }
+  }
+}
+}  // namespace
+
+std::optional<Comparison> read_comparison(MapReader& reader, const Protocol& protocol,
+                                          const Block& block) {
+  Comparison comparison;
+  const Stimulus* const family = family_of(protocol, block);
+  const std::vector<std::string> axes =
+      family == nullptr ? std::vector<std::string>{} : axes_of(*family);
+  const bool has_one_axis = axes.size() == 1;
+  if (family != nullptr) {
+    comparison.axis = reader.word("axis", "axis of the stimulus", axes,
+                                  has_one_axis ? std::optional{axes.front()} : std::nullopt);
+  }
+  const bool is_known = std::ranges::find(axes, comparison.axis) != axes.end();
+  const double own = is_known ? presented_values(protocol, *family, {}).at(comparison.axis) : 0.0;
+  comparison.standard = reader.number("standard", {-any, any}, own);
+  comparison.is_fraction =
+      reader.one_of<bool>("level", {{"fraction", true}, {"difference", false}}, "fraction");
+  comparison.is_below =
+      reader.one_of<bool>("comparison", {{"above", false}, {"below", true}}, "above");
+  const bool is_usable = is_known && check_value(reader, "standard", protocol, *family,
+                                                 comparison.axis, comparison.standard);
+  if (is_usable && comparison.is_fraction && comparison.standard <= 0.0) {
+    reader.reject("level", "fractions are of a standard above 0");
+  }
+  reader.list("procedures", MapReader::Presence::required, [&](MapReader& inner) {
+    const auto track = read_procedure(inner);
+    if (track != nullptr && is_usable) {
+      check_track(inner, protocol, *family, comparison, *track);
+    }
+    if (track != nullptr) {
+      comparison.tracks.push_back(track);
+    }
+  });
+  if (family == nullptr) {
+    reader.reject("stimuli", "procedures vary one stimulus, which must have `vary`");
+  }
+  return comparison.tracks.empty() ? std::nullopt : std::optional{comparison};
+}
+}  // namespace tapstudy::protocols

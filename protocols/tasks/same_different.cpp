@@ -1,0 +1,72 @@
+#include "protocols/tasks/discrimination_task.hpp"
+#include "protocols/tasks/shipped_tasks.hpp"
+#include "protocols/yaml/yaml_reader.hpp"
+namespace tapstudy::protocols {
+namespace {
+constexpr const char* same = "same";
+constexpr const char* different = "different";
+
+bool are_different(const PlannedTrial& trial) {
+  return trial.alternatives[0].is_comparison != trial.alternatives[1].is_comparison;
+}
+
+// Are the two the same? Half of the trials present the same twice.
+class SameDifferent final : public DiscriminationTask {
+ public:
+  std::string_view name() const override { return "same_different"; }
+  std::string_view decision_model() const override {
+    return "same_different_independent_observation";
+  }
+  std::vector<Option> options(const Block& block, const Protocol& /*protocol*/) const override {
+    const auto label = [&](const char* response) {
+      const auto found = block.response_labels.find(response);
+      return found == block.response_labels.end() ? std::string{response} : found->second;
+    };
+    return {{same, label(same)}, {different, label(different)}};
+  }
+  void read(MapReader& reader, const Protocol& protocol, Block& block) const override {
+    DiscriminationTask::read(reader, protocol, block);
+    reader.each_translated("response_labels", MapReader::Presence::optional,
+                           [&](const std::string& response, const std::string& label) {
+                             if (response != same && response != different) {
+                               reader.reject("response_labels",
+                                             "'" + response + "' is neither same nor different");
+                             }
+                             block.response_labels[response] = label;
+                           });
+  }
+  std::string response(const PlannedTrial& /*trial*/, const Block& /*block*/,
+                       std::size_t option) const override {
+    return option == 0 ? same : different;
+  }
+  std::optional<bool> is_correct(const PlannedTrial& trial, const Block& /*block*/,
+                                 const std::string& response) const override {
+    return are_different(trial) == (response == different);
+  }
+  // "different" is a yes; it says nothing of the level where there was none.
+  std::optional<std::size_t> outcome(const PlannedTrial& trial, const Block& block,
+                                     const std::string& response) const override {
+    return are_different(trial) ? DiscriminationTask::outcome(trial, block, response)
+                                : std::nullopt;
+  }
+  // Different if they are further apart than two of the same are in five of six cases.
+  std::size_t simulated_answer(const Block& /*block*/, const Simulation& simulation,
+                               SimulatedTouch& touch) const override {
+    constexpr double criterion = 1.28;  // mean and standard deviation of 26 squared features
+    visit_all(2, simulation, touch);
+    return touch.distance(std::size_t{0}, std::size_t{1}) > criterion ? 1 : 0;
+  }
+
+ protected:
+  std::vector<Layout> layouts(const Block& /*block*/) const override {
+    return {{false, false}, {false, true}, {true, true}, {true, false}};
+  }
+  int empty_trials_per_observation() const override { return 1; }
+};
+}  // namespace
+
+const Task& same_different() {
+  static const SameDifferent task;
+  return task;
+}
+}  // namespace tapstudy::protocols

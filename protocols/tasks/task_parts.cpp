@@ -1,0 +1,51 @@
+#include "protocols/tasks/task_parts.hpp"
+
+#include <numeric>
+namespace tapstudy::protocols {
+std::optional<std::size_t> Task::outcome(const PlannedTrial& trial, const Block& block,
+                                         const std::string& response) const {
+  const std::optional<bool> is_right = is_correct(trial, block, response);
+  return is_right ? std::optional<std::size_t>{*is_right ? 1 : 0} : std::nullopt;
+}
+
+double Task::guess_rate(const Block& block, const Protocol& protocol) const {
+  return has_correct_answer() ? 1.0 / static_cast<double>(options(block, protocol).size()) : 0.0;
+}
+
+void visit_all(std::size_t alternatives, const Simulation& simulation, SimulatedTouch& touch) {
+  std::vector<std::size_t> order(alternatives);
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  for (int visit = 0; visit < simulation.taps.visits; ++visit) {
+    touch.rng().shuffle(order);
+    for (const std::size_t alternative : order) {
+      touch.visit(alternative);
+    }
+  }
+}
+
+std::vector<std::string> blind_labels(const PlannedTrial& trial) {
+  std::vector<std::string> labels;
+  for (std::size_t i = 0; i < trial.alternatives.size(); ++i) {
+    labels.push_back(blind_label(i));
+  }
+  return labels;
+}
+
+std::vector<Option> blind_options(std::size_t count) {
+  std::vector<Option> options;
+  for (std::size_t i = 0; i < count; ++i) {
+    options.push_back({blind_label(i), blind_label(i)});
+  }
+  return options;
+}
+
+std::vector<std::pair<std::size_t, std::size_t>> pairs_of(std::size_t count) {
+  std::vector<std::pair<std::size_t, std::size_t>> pairs;
+  for (std::size_t first = 0; first < count; ++first) {
+    for (std::size_t second = first + 1; second < count; ++second) {
+      pairs.emplace_back(first, second);
+    }
+  }
+  return pairs;
+}
+}  // namespace tapstudy::protocols

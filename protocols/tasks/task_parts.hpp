@@ -1,0 +1,14 @@
+#pragma once
+#include "protocols/protocol.hpp"
+// What several tasks share.
+namespace tapstudy::protocols {
+// Every alternative a few times, in a new random order each time.
+void visit_all(std::size_t alternatives, const Simulation& simulation, SimulatedTouch& touch);
+
+// Blind labels of all alternatives of a trial; the names and labels of the first so many.
+std::vector<std::string> blind_labels(const PlannedTrial& trial);
+std::vector<Option> blind_options(std::size_t count);
+
+// Of `count` things taken two at a time, each with a smaller and a greater place.
+std::vector<std::pair<std::size_t, std::size_t>> pairs_of(std::size_t count);
+}  // namespace tapstudy::protocols

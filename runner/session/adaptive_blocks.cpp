@@ -1,0 +1,69 @@
+#include "runner/session/adaptive_blocks.hpp"
+
+#include <algorithm>
+
+#include "core/rng.hpp"
+#include "protocols/axes/presented_stimulus.hpp"
+namespace tapstudy::runner {
+using protocols::Alternative;
+using protocols::Block;
+using protocols::PlannedTrial;
+
+AdaptiveBlocks::AdaptiveBlocks(const protocols::Protocol& protocol, std::uint64_t seed,
+                               const protocols::Schedule& schedule,
+                               const std::vector<results::JournalledAnswer>& earlier)
+    : protocol_{protocol} {
+  for (std::size_t i = 0; i < protocol.blocks.size(); ++i) {
+    const Block& block = protocol.blocks[i];
+    if (block.comparison) {
+      tracks_.emplace(block.name, protocols::InterleavedTracks{
+                                      block.comparison->tracks,
+                                      core::derived_seed(seed, core::Purpose::interleaving, i)});
+    }
+  }
+  for (const results::JournalledAnswer& answer : earlier) {
+    PlannedTrial trial = schedule.at(static_cast<std::size_t>(answer.trial.number - 1));
+    for (std::size_t i = 0; i < trial.alternatives.size(); ++i) {
+      trial.alternatives[i].values = answer.alternatives.at(i).axis_values;
+    }
+    observe(trial, answer.response.response);
+  }
+}
+
+bool AdaptiveBlocks::is_over(const PlannedTrial& trial) const {
+  const auto tracks = tracks_.find(trial.block);
+  return tracks != tracks_.end() && !tracks->second.next();
+}
+
+PlannedTrial AdaptiveBlocks::with_values(PlannedTrial trial) const {
+  const auto tracks = tracks_.find(trial.block);
+  if (tracks == tracks_.end()) {
+    return trial;
+  }
+  const protocols::Comparison& comparison = *protocol_.block(trial.block).comparison;
+  const double asked = comparison.value_at(tracks->second.next()->values.front());
+  for (Alternative& alternative : trial.alternatives) {
+    if (alternative.is_comparison) {
+      const protocols::AxisValues presented = presented_values(
+          protocol_, protocol_.stimulus(alternative.stimulus), {{comparison.axis, asked}});
+      alternative.values = {{comparison.axis, presented.at(comparison.axis)}};
+    }
+  }
+  return trial;
+}
+
+void AdaptiveBlocks::observe(const PlannedTrial& presented, const std::string& response) {
+  const auto tracks = tracks_.find(presented.block);
+  if (tracks == tracks_.end()) {
+    return;
+  }
+  const Block& block = protocol_.block(presented.block);
+  const auto outcome = presented.task->outcome(presented, block, response);
+  const auto comparison =
+      std::ranges::find(presented.alternatives, true, &Alternative::is_comparison);
+  if (outcome && comparison != presented.alternatives.end()) {
+    const double level = block.comparison->level_of(comparison->values.at(block.comparison->axis));
+    tracks->second.observe({level}, *outcome);
+  }
+}
+}  // namespace tapstudy::runner

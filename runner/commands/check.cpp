@@ -136,6 +136,15 @@ void print_power(const protocols::Protocol& protocol, const protocols::Block& bl
   fmt::print("\n");
 }
 
+void print_procedures(const protocols::Comparison& comparison) {
+  for (const auto& track : comparison.tracks) {
+    const auto [low, high] = track->ranges().front();
+    fmt::print("    at most {} trials of {}: {} against {:.6g}, from {:.6g} to {:.6g}\n",
+               track->max_trials(), comparison.axis, comparison.is_below ? "below" : "above",
+               comparison.standard, comparison.value_at(low), comparison.value_at(high));
+  }
+}
+
 void print_design(const protocols::Protocol& protocol, int participants) {
   fmt::print("{}\n\n", protocol.title);
   double total_s = 0.0;
@@ -148,7 +157,11 @@ void print_design(const protocols::Protocol& protocol, int participants) {
                block.presented == protocols::Presented::real_plates ? " (real plates)" : "",
                block.task->name(), block.stimuli.size(), trials, seconds);
     warn_of_balance(block, participants);
-    print_power(protocol, block, participants);
+    if (block.comparison) {
+      print_procedures(*block.comparison);
+    } else if (block.task->has_chance_level()) {
+      print_power(protocol, block, participants);
+    }
   }
   fmt::print("\n  {} participants, {:.0f} min of tapping each\n", participants, total_s / 60.0);
 }

@@ -129,6 +129,11 @@ Summary summary_of_study(results::Store& store, Mode mode, const std::string& di
     throw core::InvalidInput{fmt::format("{}: no answers of {} participants to report", directory,
                                          results::to_text(mode))};
   }
+  for (results::AnswerRow& answer : answers) {
+    if (answer.stimulus.empty()) {
+      answer.alternatives = store.alternatives_of(answer.trial_id);
+    }
+  }
   const protocols::Protocol protocol = stored_protocol(study);
   std::vector<results::VisitRow> visits = store.visits();
   std::erase_if(visits, [&](const results::VisitRow& visit) {

@@ -24,6 +24,21 @@ std::string upper_case_without_spaces(const std::string& line) {
   return word;
 }
 
+bool options_name_alternatives(const TrialPrompt& prompt) {
+  return prompt.alternative_of(0).has_value();
+}
+
+// "= B".
+std::optional<std::size_t> option_after_equals(const std::string& word,
+                                               const std::vector<protocols::Option>& options) {
+  const auto option = word.starts_with('=')
+                          ? std::ranges::find(options, word.substr(1), &protocols::Option::label)
+                          : options.end();
+  return option == options.end()
+             ? std::nullopt
+             : std::optional{static_cast<std::size_t>(option - options.begin())};
+}
+
 std::optional<std::size_t> number_in(const std::string& word, std::size_t most) {
   const auto number = whole_number(word, 1, static_cast<int>(most));
   return number ? std::optional{static_cast<std::size_t>(*number - 1)} : std::nullopt;
@@ -133,14 +148,14 @@ void ConsoleParticipant::get_ready(const TrialPrompt& prompt) {
   if (prompt.previous) {
     say("  (correct and the number of an answer: what your last answer should have been)\n");
   }
-  if (prompt.alternative_labels.empty()) {
-    for (std::size_t i = 0; i < prompt.options.size(); ++i) {
-      say("  {}  {}\n", i + 1, prompt.options[i].label);
-    }
-    return;
+  const bool are_named = options_name_alternatives(prompt);
+  for (std::size_t i = 0; !are_named && i < prompt.options.size(); ++i) {
+    say("  {}  {}\n", i + 1, prompt.options[i].label);
   }
-  say("  {}: feel that one.   = {}: choose it.\n", fmt::join(prompt.alternative_labels, ", "),
-      prompt.alternative_labels.front());
+  if (!prompt.alternative_labels.empty()) {
+    say("  {}: feel that one.{}\n", fmt::join(prompt.alternative_labels, ", "),
+        are_named ? fmt::format("   = {}: choose it.", prompt.options.front().label) : "");
+  }
 }
 
 std::optional<std::string> ConsoleParticipant::next_line(const TrialPrompt& prompt,
@@ -221,20 +236,22 @@ std::optional<std::size_t> ConsoleParticipant::number_of_answer(const TrialPromp
 std::optional<std::size_t> ConsoleParticipant::chosen_alternative(const TrialPrompt& prompt,
                                                                   Exploration& exploration) {
   const std::vector<std::string>& labels = prompt.alternative_labels;
+  const bool are_named = options_name_alternatives(prompt);
   while (const auto word = next_line(prompt, exploration)) {
-    const bool is_choice = word->starts_with('=');
-    const auto alternative = index_of(is_choice ? word->substr(1) : *word, labels);
-    if (alternative && is_choice) {
-      return alternative;
+    const auto option = are_named ? option_after_equals(*word, prompt.options)
+                                  : number_in(*word, prompt.options.size());
+    if (option) {
+      return option;
     }
+    const auto alternative = index_of(*word, labels);
     if (alternative) {
       exploration.switch_to(*alternative);
       say("  now {} (takes effect once the finger is off the plate)\n", labels[*alternative]);
       let_script_wait(prompt, *alternative, exploration);
       continue;
     }
-    say("  please type {} to feel one, = and a label to choose it, or quit\n",
-        fmt::join(labels, ", "));
+    say("  please type {} to feel one, {}, or quit\n", fmt::join(labels, ", "),
+        are_named ? "= and a label to choose it" : "a number to answer");
   }
   return std::nullopt;
 }

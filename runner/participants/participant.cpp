@@ -2,7 +2,16 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+
+#include <algorithm>
 namespace tapstudy::runner {
+std::optional<std::size_t> TrialPrompt::alternative_of(std::size_t option) const {
+  const auto found = std::ranges::find(alternative_labels, options.at(option).label);
+  return found == alternative_labels.end()
+             ? std::nullopt
+             : std::optional{static_cast<std::size_t>(found - alternative_labels.begin())};
+}
+
 std::string to_text(const TooEarly& too_early) {
   const std::string times =
       too_early.min_contacts == 1 ? "" : fmt::format(" {} times", too_early.min_contacts);

@@ -17,6 +17,8 @@ struct TrialPrompt {
   std::vector<protocols::Option> options;  // the allowed answers
   std::vector<std::string>
       alternative_labels;  // to switch among; empty: there is nothing to switch
+  // The alternative that an option names; nullopt: it names none, "same" for one.
+  std::optional<std::size_t> alternative_of(std::size_t option) const;
   // The participant's last answer, where it may still be corrected.
   struct Previous {
     std::vector<protocols::Option> options;

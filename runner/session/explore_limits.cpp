@@ -6,9 +6,10 @@ namespace {
 // Labels of the alternatives that still have to be touched.
 std::vector<std::string> untouched(const TrialPrompt& prompt, std::size_t answer,
                                    const Exploration& exploration) {
+  const std::optional<std::size_t> answered = prompt.alternative_of(answer);
   std::vector<std::string> labels;
   for (std::size_t i = 0; i < prompt.alternative_labels.size(); ++i) {
-    const bool is_asked_for = prompt.block->explore.must_visit_all || i == answer;
+    const bool is_asked_for = prompt.block->explore.must_visit_all || i == answered;
     if (is_asked_for && exploration.contacts(i) < prompt.block->explore.min_contacts) {
       labels.push_back(prompt.alternative_labels[i]);
     }

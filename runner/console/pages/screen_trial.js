@@ -15,11 +15,13 @@ function optionCards(options) {
 const letterOf = (label, index) =>
   /^[a-z]$/i.test(label) ? label.toLowerCase() : String.fromCharCode("a".charCodeAt(0) + index);
 
-function alternativeCard({ label, index, group, feel }) {
+// option: what choosing it answers; negative: it cannot be chosen, only felt.
+function alternativeCard({ label, index, option, group, feel }) {
   const button = el("button", { type: "button", className: "feel", "aria-pressed": "false", onclick: () => feel(index) },
     el("span", {}, word("feel", { label })));
+  if (option < 0) return el("div", { className: "alternative only-felt" }, button);
   const choose = radioCard({
-    group, value: index, label: word("this_one"), key: index < 9 ? String(index + 1) : null,
+    group, value: option, label: word("this_one"), key: option < 9 ? String(option + 1) : null,
     spokenLabel: `${word("this_one")}: ${label}`,
   });
   return el("div", { className: "alternative" }, button, choose);
@@ -31,9 +33,10 @@ function hint(labels) {
     el("span", { className: "keys" }, word("feel_keys", { keys })));
 }
 
-function alternativeCards(labels, feel) {
+function alternativeCards(labels, options, feel) {
   const group = newGroupName();
-  const cards = labels.map((label, index) => alternativeCard({ label, index, group, feel }));
+  const cards = labels.map((label, index) =>
+    alternativeCard({ label, index, option: options.indexOf(label), group, feel }));
   return el("div", { className: "alternatives" }, ...cards);
 }
 
@@ -57,11 +60,12 @@ export function trialScreen({ trial }, { send, feel, correct, say }) {
   const labels = trial.alternatives ?? [];
   let current = trial.current;
   const feelOther = (index) => { if (index !== current) feel(index); };
+  const beside = labels.includes(trial.options[0]) ? [] : [optionCards(trial.options)];
   const asked = question({
     title: trial.question,
     className: "trial",
     body: labels.length > 0
-      ? [hint(labels), alternativeCards(labels, feelOther)]
+      ? [hint(labels), alternativeCards(labels, trial.options, feelOther), ...beside]
       : [optionCards(trial.options)],
     say,
     send: (value) => send("answer", Number(value)),

@@ -87,8 +87,9 @@ void LikelihoodTable::list_stimuli() {
 void LikelihoodTable::list_combinations() {
   std::vector<std::size_t> order(design_.parameters.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::ranges::stable_partition(
-      order, [&](std::size_t parameter) { return !design_.parameters[parameter].is_nuisance; });
+  std::stable_partition(order.begin(), order.end(), [&](std::size_t parameter) {
+    return !design_.parameters[parameter].is_nuisance;
+  });
   std::vector<std::size_t> sizes;
   for (const std::size_t parameter : order) {
     const ParameterGrid& grid = design_.parameters[parameter];

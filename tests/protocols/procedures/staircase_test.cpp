@@ -219,7 +219,7 @@ TEST_CASE("a staircase steps from what it requested, not from what could be buil
   const std::string yaml = small_steps("rule: transformed, n_down: 1");
   const auto exact = testing::procedure_of(yaml)->start(1);
   const auto rounded = testing::procedure_of(yaml)->start(1);
-  for (const std::size_t answer : {1, 1, 1, 0, 1}) {
+  for (const std::size_t answer : {1U, 1U, 1U, 0U, 1U}) {
     const double value = exact->next().value()[0];
     exact->observe({value}, answer);
     rounded->observe({std::round(value)}, answer);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <map>
 #include <set>
 #include <sstream>
@@ -122,7 +123,7 @@ TEST_CASE("values between min and max are equally far apart, or by equal factors
           "[protocols][procedures]") {
   for (const bool is_log : {false, true}) {
     const auto track =
-        testing::procedure_of(fmt::format("constant: {{min: 0.1, max: 10, count: 5, spacing: {}, "
+        testing::procedure_of(fmt::format("constant: {{min: 0.3, max: 7, count: 5, spacing: {}, "
                                           "repetitions: 1, order: shuffle}}",
                                           is_log ? "log" : "linear"))
             ->start(1);
@@ -132,12 +133,12 @@ TEST_CASE("values between min and max are equally far apart, or by equal factors
       return 0;
     });
     REQUIRE(values.size() == 5);
-    CHECK(*values.begin() == 0.1);
-    CHECK(*values.rbegin() == 10.0);
+    CHECK(*values.begin() == 0.3);
+    CHECK(*values.rbegin() == 7.0);  // 0.3 (7 / 0.3) is not 7
     for (auto next = std::next(values.begin()); next != values.end(); ++next) {
       const double before = *std::prev(next);
       CHECK((is_log ? *next / before : *next - before) ==
-            Approx(is_log ? std::sqrt(10.0) : 9.9 / 4.0).epsilon(1e-12));
+            Approx(is_log ? std::pow(7.0 / 0.3, 0.25) : 6.7 / 4.0).epsilon(1e-12));
     }
   }
 }

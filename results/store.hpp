@@ -128,6 +128,7 @@ class Store {
   bool is_empty();
   void create_or_check(const StudyRow& study);
   void check_not_answered(const TrialRow& trial);
+  void add_alternatives(std::int64_t trial_id, const std::vector<AlternativeRow>& alternatives);
   void add_details(std::int64_t trial_id, const TrialRecord& record);
   Database database_;
   std::optional<Journal> journal_;

@@ -226,8 +226,9 @@ void Store::check_not_answered(const TrialRow& trial) {
   }
 }
 
-void Store::add_details(std::int64_t trial_id, const TrialRecord& record) {
-  for (const AlternativeRow& alternative : record.alternatives) {
+void Store::add_alternatives(std::int64_t trial_id,
+                             const std::vector<AlternativeRow>& alternatives) {
+  for (const AlternativeRow& alternative : alternatives) {
     Statement{database_, "INSERT INTO alternative VALUES (?, ?, ?, ?, ?)"}
         .bind(trial_id)
         .bind(alternative.position)
@@ -244,6 +245,10 @@ void Store::add_details(std::int64_t trial_id, const TrialRecord& record) {
           .finish();
     }
   }
+}
+
+void Store::add_details(std::int64_t trial_id, const TrialRecord& record) {
+  add_alternatives(trial_id, record.alternatives);
   if (record.response) {
     Statement{database_,
               "INSERT INTO response (trial_id, response, is_correct, response_time_s, "

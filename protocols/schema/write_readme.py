@@ -12,6 +12,7 @@ import sys
 import textwrap
 
 sys.dont_write_bytecode = True
+import protocol_schema
 import rig_schema
 
 HERE = pathlib.Path(__file__).resolve().parent
@@ -319,7 +320,8 @@ def write_or_check(file, text, is_check):
 
 def main():
     is_check = sys.argv[1:] == ["--check"]
-    write_or_check(rig_schema.FILE, rig_schema.assembled(), is_check)
+    for parts in (rig_schema, protocol_schema):
+        write_or_check(parts.FILE, parts.assembled(), is_check)
     schemas = {name: json.loads((HERE / f"{name}.schema.json").read_text()) for name in EXAMPLES}
     missing = [f"{name}.schema.json: {gap}" for name in schemas for gap in gaps("", schemas[name])]
     if missing:

@@ -1,0 +1,172 @@
+// Discrimination tasks and the procedures that choose their stimuli, in whole sessions.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <map>
+#include <sstream>
+
+#include "support/processes.hpp"
+#include "support/texts.hpp"
+using namespace tapstudy;
+using Catch::Matchers::Contains;
+using testing::TempDirectory;
+
+namespace {
+std::string sql(const TempDirectory& directory, const std::string& query) {
+  return testing::run_program(
+             {"/usr/bin/sqlite3", "-separator", " ", (directory / "study") + "/study.db", query})
+      .standard_output;
+}
+
+testing::ProgramResult session(const TempDirectory& directory, const std::string& protocol,
+                               const std::string& input,
+                               const std::vector<std::string>& more = {}) {
+  std::vector<std::string> line{
+      "run", protocol, "--participant", "P01", "--out", directory / "study", "--seed", "5"};
+  line.insert(line.end(), more.begin(), more.end());
+  return testing::tapstudy(line, input);
+}
+
+std::string staircase_study(const TempDirectory& directory, const std::string& procedure) {
+  const std::string file = directory / "study.yaml";
+  testing::write(file, testing::replaced(
+                           testing::contents(testing::source("tests/data/same_alternatives.yaml")),
+                           "constant: {values: [0.0], repetitions: 240}", procedure));
+  return file;
+}
+const std::string staircase =
+    "staircase: {rule: transformed, n_down: 2, steps: linear, first_step: 0.4, min_step: 0.1, "
+    "start: 0.8, min: 0.0, max: 1.0, stop: {trials: 8}, estimate_reversals: 2}";
+const std::string psi =
+    "psi: {function: weibull, stimulus: {min: 0.05, max: 1.0, count: 12}, threshold: "
+    "{min: 0.05, max: 1.0, count: 12}, slope: {values: [1, 3]}, guess: 0.5, lapse: "
+    "0.02, stop: {trials: 8}}";
+// The comparison's values, in the order presented.
+std::string levels(const TempDirectory& directory) {
+  return sql(directory,
+             "SELECT round(value, 6) FROM axis_value JOIN alternative USING (trial_id, position) "
+             "JOIN trial USING (trial_id) WHERE is_comparison AND status = 'answered' "
+             "ORDER BY trial_id");
+}
+}  // namespace
+
+TEST_CASE("alternatives that are physically the same are told apart by chance in every task",
+          "[end_to_end][slow]") {
+  const TempDirectory directory;
+  REQUIRE(testing::tapstudy({"simulate", testing::source("tests/data/same_alternatives.yaml"),
+                             "--participants", "9", "--seed", "4", "--out", directory / "study"})
+              .exit_code == 0);
+  const std::map<std::string, double> chance{
+      {"comparison", 0.5}, {"same_different", 0.5}, {"odd_one_out", 1.0 / 3.0}, {"abx", 0.5}};
+  std::istringstream rows{
+      sql(directory,
+          "SELECT block, sum(is_correct), count(*) FROM current_response "
+          "JOIN trial USING (trial_id) WHERE block <> 'paired' GROUP BY block")};
+  std::string block;
+  int right = 0;
+  int answers = 0;
+  int blocks = 0;
+  while (rows >> block >> right >> answers) {
+    CAPTURE(block, right, answers);
+    ++blocks;
+    CHECK(answers >= 2000);
+    const double p = chance.at(block);
+    CHECK(right == Approx(answers * p).margin(4.0 * std::sqrt(answers * p * (1.0 - p))));
+  }
+  CHECK(blocks == 4);
+  const double first =
+      std::stod(sql(directory,
+                    "SELECT avg(response = stimulus) FROM current_response "
+                    "JOIN alternative USING (trial_id) JOIN trial USING (trial_id) "
+                    "WHERE block = 'paired' AND position = 0"));
+  CHECK(first == Approx(0.5).margin(4.0 * 0.5 / std::sqrt(9.0 * 240.0)));
+}
+
+TEST_CASE("a staircase in a session goes down after right answers and up after a wrong one",
+          "[end_to_end][threads]") {
+  const TempDirectory directory;
+  const std::string study = staircase_study(directory, staircase);
+  // always A: right where the comparison is A
+  std::string input;
+  for (int trial = 0; trial < 8; ++trial) {
+    input += "a\nb\n= a\n";
+  }
+  const auto result = session(directory, study, input);
+  INFO(result.standard_error);
+  std::istringstream rows{
+      sql(directory,
+          "SELECT is_correct, (SELECT round(value / 3 - 1, 6) FROM axis_value AS v "
+          "JOIN alternative AS a USING (trial_id, position) WHERE a.is_comparison "
+          "AND v.trial_id = trial.trial_id) FROM trial JOIN response USING (trial_id) "
+          "WHERE block = 'comparison' ORDER BY trial_id")};
+  double expected = 0.8;
+  double step = 0.4;
+  int row = 0;
+  int direction = 0;
+  int trials = 0;
+  bool is_right = false;
+  double level = 0.0;
+  while (rows >> is_right >> level) {
+    CAPTURE(trials);
+    CHECK(level == Approx(expected).margin(1e-6));
+    row = is_right ? row + 1 : 0;
+    const int turn = row == 2 ? -1 : is_right ? 0 : 1;
+    if (turn != 0) {
+      step = direction != 0 && turn != direction ? std::max(0.1, step / 2.0) : step;
+      direction = turn;
+      row = 0;
+      expected = std::clamp(expected + turn * step, 0.0, 1.0);
+    }
+    ++trials;
+  }
+  CHECK(trials == 8);
+}
+
+TEST_CASE("a session that is resumed in an adaptive track goes on with the same next stimulus",
+          "[end_to_end][threads]") {
+  const std::string procedure = GENERATE(false, true) ? psi : staircase;
+  const std::string answer = "a\nb\n= a\n";
+  const TempDirectory whole;
+  const TempDirectory parts;
+  const std::string study = staircase_study(whole, procedure);
+  std::string all;
+  for (int trial = 0; trial < 8; ++trial) {
+    all += answer;
+  }
+  INFO(session(whole, study, all).standard_error);
+  session(parts, study, answer + answer + answer);
+  session(parts, study, answer + answer, {"--resume"});
+  session(parts, study, answer + answer + answer, {"--resume"});
+  const std::string uninterrupted = levels(whole);
+  CHECK(std::ranges::count(uninterrupted, '\n') == 8);
+  CHECK(levels(parts) == uninterrupted);
+}
+
+TEST_CASE("what cannot be compared is refused at its line", "[end_to_end]") {
+  const auto [from, to, said] = GENERATE(table<std::string, std::string, std::string>({
+      {"values: [0.0]", "values: [0.0, 2.0]",
+       "may ask for the level 2, which is sinusoid_amplitude_n_s_per_m = 9"},
+      {"values: [0.0]", "values: [-0.5, 0.0]", "levels are at least 0"},
+      {"    stimuli: [family]\n", "    stimuli: [one]\n", "which must have `vary`"},
+      {"    stimuli: [family]\n", "    stimuli: [family]\n    standard: 2\n", "standard"},
+      {"    stimuli: [family]\n", "    stimuli: [family]\n    axis: thickness_m\n",
+       "is not a known axis of the stimulus"},
+      {"    stimuli: [family]\n", "    stimuli: [family]\n    repetitions: 2\n",
+       "is what the procedures make it"},
+      {"    procedures:\n      - constant: {values: [0.0], repetitions: 240}\n", "",
+       "procedures: is missing"},
+      {"task: abx, question: \"Which is X?\", stimuli: [one, other]",
+       "task: abx, question: \"Which is X?\", stimuli: [one]", "at least two stimuli"},
+  }));
+  const TempDirectory directory;
+  const std::string file = directory / "study.yaml";
+  testing::write(
+      file, testing::replaced(
+                testing::contents(testing::source("tests/data/same_alternatives.yaml")), from, to));
+  const auto result = testing::tapstudy({"check", file});
+  CAPTURE(to, result.standard_error);
+  CHECK(result.exit_code == 2);
+  CHECK_THAT(result.standard_error, Contains(said) && Contains("study.yaml:"));
+}

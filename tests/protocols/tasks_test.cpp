@@ -1,0 +1,89 @@
+// What discrimination tasks present, and which answers are right.
+#include <catch2/catch.hpp>
+#include <map>
+#include <set>
+
+#include "protocols/read_protocol.hpp"
+#include "protocols/schedule.hpp"
+#include "support/texts.hpp"
+using namespace tapstudy;
+
+namespace {
+protocols::Protocol every_task() {
+  return protocols::read_protocol(testing::source("tests/data/same_alternatives.yaml"));
+}
+std::string layout_of(const protocols::PlannedTrial& trial) {
+  std::string layout;
+  for (const protocols::Alternative& alternative : trial.alternatives) {
+    layout += alternative.is_comparison ? 'C' : 'S';
+  }
+  return layout;
+}
+}  // namespace
+
+TEST_CASE("each way to arrange standard and comparison is presented equally often",
+          "[protocols][tasks]") {
+  const protocols::Protocol protocol = every_task();
+  const std::map<std::string, std::set<std::string>> ways{
+      {"comparison", {"CS", "SC"}},
+      {"same_different", {"SS", "CC", "SC", "CS"}},
+      {"odd_one_out", {"CSS", "SCS", "SSC", "SCC", "CSC", "CCS"}},
+      {"abx", {"SCS", "SCC", "CSS", "CSC"}}};
+  std::map<std::string, std::map<std::string, int>> seen;
+  for (const protocols::PlannedTrial& trial : make_schedule(protocol, 7, 0)) {
+    ++seen[trial.block][layout_of(trial)];
+  }
+  for (const auto& [block, expected] : ways) {
+    CAPTURE(block);
+    CHECK(seen[block].size() == expected.size());
+    for (const auto& [layout, count] : seen[block]) {
+      CHECK(expected.contains(layout));
+      CHECK(count == 240 / static_cast<int>(expected.size()));
+    }
+  }
+}
+
+TEST_CASE("exactly one answer is right where one is, and it names what differs",
+          "[protocols][tasks]") {
+  const protocols::Protocol protocol = every_task();
+  const auto right_of = [&](const protocols::PlannedTrial& trial) {
+    const protocols::Block& block = protocol.block(trial.block);
+    std::vector<std::string> right;
+    for (std::size_t i = 0; i < trial.task->options(block, protocol).size(); ++i) {
+      const std::string response = trial.task->response(trial, block, i);
+      if (trial.task->is_correct(trial, block, response).value_or(false)) {
+        right.push_back(response);
+      }
+    }
+    return right;
+  };
+  const std::map<std::string, std::map<std::string, std::string>> expected{
+      {"comparison", {{"CS", "A"}, {"SC", "B"}}},
+      {"same_different",
+       {{"SS", "same"}, {"CC", "same"}, {"SC", "different"}, {"CS", "different"}}},
+      {"odd_one_out",
+       {{"CSS", "A"}, {"SCS", "B"}, {"SSC", "C"}, {"SCC", "A"}, {"CSC", "B"}, {"CCS", "C"}}},
+      {"abx", {{"SCS", "A"}, {"SCC", "B"}, {"CSS", "B"}, {"CSC", "A"}}}};
+  for (const protocols::PlannedTrial& trial : make_schedule(protocol, 3, 0)) {
+    CAPTURE(trial.block, layout_of(trial));
+    if (expected.contains(trial.block)) {
+      CHECK(right_of(trial) == std::vector{expected.at(trial.block).at(layout_of(trial))});
+    } else {
+      CHECK(right_of(trial).empty());
+    }
+  }
+}
+
+TEST_CASE("only trials that present a comparison beside a standard tell a procedure anything",
+          "[protocols][tasks]") {
+  const protocols::Protocol protocol = every_task();
+  for (const protocols::PlannedTrial& trial : make_schedule(protocol, 3, 0)) {
+    const protocols::Block& block = protocol.block(trial.block);
+    const std::string layout = layout_of(trial);
+    if (trial.block == "same_different") {
+      const auto outcome = trial.task->outcome(trial, block, "different");
+      CHECK(outcome ==
+            (layout == "SC" || layout == "CS" ? std::optional<std::size_t>{1} : std::nullopt));
+    }
+  }
+}

@@ -152,10 +152,13 @@ void print_design(const protocols::Protocol& protocol, int participants) {
     const int trials = planned_trials(block);
     const double seconds = trials * simulated_trial_s(protocol, block);
     total_s += seconds;
-    fmt::print("  {}{}{}: {}, {} stimuli, {} trials a participant, about {:.0f} s of tapping\n",
+    fmt::print("  {}{}{}: {}, {}, {}{} trials a participant, about {:.0f} s of tapping\n",
                block.name, block.is_practice ? " (practice)" : "",
                block.presented == protocols::Presented::real_plates ? " (real plates)" : "",
-               block.task->name(), block.stimuli.size(), trials, seconds);
+               block.task->name(),
+               block.stimuli.size() == 1 ? block.stimuli.front()
+                                         : fmt::format("{} stimuli", block.stimuli.size()),
+               block.comparison ? "at most " : "", trials, seconds);
     warn_of_balance(block, participants);
     if (block.comparison) {
       print_procedures(*block.comparison);

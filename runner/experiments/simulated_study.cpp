@@ -147,7 +147,7 @@ SimulatedTime simulate(const SimulatedStudy& study, const protocols::Protocol& p
     running = &engine;
     take_part(engine, session.schedule);
     ticks += engine.ticks();
-    trials += static_cast<int>(session.schedule.size());
+    trials += engine.trials();
   });
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
   return {trials, static_cast<double>(ticks) / protocol.rate_hz, wall.count()};

@@ -230,6 +230,7 @@ void TrialEngine::store(const PlannedTrial& trial, Presentation presentation, En
                    presentation.answer, std::move(presentation.result)));
   record->session_events = parts_.states.take_events();
   save(record);
+  ++trials_;
   if (presentation.failure) {
     std::rethrow_exception(presentation.failure);
   }

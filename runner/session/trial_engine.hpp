@@ -51,6 +51,7 @@ class TrialEngine {
   // if a trial cannot be stored; the trial in progress is stored as interrupted, if possible.
   std::optional<Interruption> run(const protocols::Schedule& schedule, std::set<int>& done_trials);
   std::int64_t ticks() const noexcept { return ticks_; }  // rendered so far
+  int trials() const noexcept { return trials_; }         // stored so far, however they ended
 
  private:
   struct Outcome {
@@ -87,6 +88,7 @@ class TrialEngine {
   std::map<int, int> attempts_;  // by the trial's number
   std::map<int, int> repeats_after_late_impacts_;
   std::int64_t ticks_{0};
+  int trials_{0};
   bool has_warned_{false};
 };
 }  // namespace tapstudy::runner

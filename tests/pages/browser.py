@@ -185,7 +185,7 @@ def feel_by_mouse(driver, index):
 
 
 def feel_by_keyboard(driver, index):
-    press(driver, "abcdefghi"[index])
+    press(driver, find_all(driver, ".feel")[index].text.split()[-1].lower())
     wait_until(driver, f"alternative {index} to be felt", lambda: current_screen(driver)["felt"] == index)
 
 

@@ -2,6 +2,7 @@
 import os
 import re
 import sys
+import time
 import unittest
 from pathlib import Path
 
@@ -219,6 +220,36 @@ class WholeSession(unittest.TestCase):
             self.next_trial(number)
             self.answer_until_accepted(browser.answer_by_mouse, 0)
         self.finish()
+
+    def test_every_task_is_answered_by_mouse_and_by_keyboard(self):
+        self.start("tests/data/every_task.yaml", width=375, height=800)
+        alternatives = {"comparison": 2, "same_different": 2, "odd_one_out": 3, "abx": 3, "paired": 2}
+        shown = set()
+        for number in range(1, 21):
+            screen = self.next_trial(number)
+            feels = browser.find_all(self.driver, ".feel")
+            by_keys = number % 2 == 0
+            for index in range(len(feels)):
+                (browser.feel_by_keyboard if by_keys else browser.feel_by_mouse)(self.driver, index)
+                self.touch_once()
+            if len(feels) not in shown or not feels:
+                self.check_screen(f"task_{number}")
+                shown.add(len(feels))
+            self.answer_until_accepted(browser.answer_by_keyboard if by_keys else browser.answer_by_mouse, 0)
+        self.finish()
+        counted = dict(self.session.rows(
+            "SELECT block, max(position) + 1 FROM alternative JOIN trial USING (trial_id) "
+            "WHERE task <> 'rating' GROUP BY block"))
+        self.assertEqual(counted, alternatives)
+        answers = dict(self.session.rows(
+            "SELECT block, group_concat(DISTINCT response) FROM response JOIN trial USING (trial_id) GROUP BY block"))
+        self.assertEqual(answers["same_different"], "same")
+        self.assertEqual(answers["abx"], "A")
+        self.assertEqual(answers["rating"], "1")
+
+    def touch_once(self):
+        """Time for the simulated hand to come down on what was switched to."""
+        time.sleep(1.2)
 
     def test_a_page_that_vanishes_comes_back_to_the_same_question(self):
         self.start("protocols/paper/discrimination.yaml")

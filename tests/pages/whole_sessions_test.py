@@ -2,7 +2,6 @@
 import os
 import re
 import sys
-import time
 import unittest
 from pathlib import Path
 
@@ -231,7 +230,6 @@ class WholeSession(unittest.TestCase):
             by_keys = number % 2 == 0
             for index in range(len(feels)):
                 (browser.feel_by_keyboard if by_keys else browser.feel_by_mouse)(self.driver, index)
-                self.touch_once()
             if len(feels) not in shown or not feels:
                 self.check_screen(f"task_{number}")
                 shown.add(len(feels))
@@ -246,10 +244,6 @@ class WholeSession(unittest.TestCase):
         self.assertEqual(answers["same_different"], "same")
         self.assertEqual(answers["abx"], "A")
         self.assertEqual(answers["rating"], "1")
-
-    def touch_once(self):
-        """Time for the simulated hand to come down on what was switched to."""
-        time.sleep(1.2)
 
     def test_a_page_that_vanishes_comes_back_to_the_same_question(self):
         self.start("protocols/paper/discrimination.yaml")

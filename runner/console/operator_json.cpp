@@ -28,7 +28,11 @@ Json json_of(const TrialInView& view, std::size_t current, bool is_blind) {
   for (std::size_t i = 0; i < view.trial.alternatives.size(); ++i) {
     Json alternative{{"label", labels.empty() ? "" : labels[i]}};
     if (!is_blind) {
-      alternative["stimulus"] = view.trial.alternatives[i].stimulus;
+      const protocols::Alternative& presented = view.trial.alternatives[i];
+      alternative["stimulus"] =
+          presented.values.empty()
+              ? presented.stimulus
+              : presented.stimulus + ", " + protocols::described(presented.values);
     }
     alternatives.push_back(alternative);
   }

@@ -1,6 +1,7 @@
 // Tests of ratings and ranks, against R's friedman.test, wilcox.test, p.adjust and quantile.
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <limits>
 
 #include "analysis/ratings/friedman.hpp"
 #include "analysis/ratings/ranks.hpp"
@@ -124,7 +125,8 @@ TEST_CASE("ratings that cannot be compared are refused", "[analysis][ratings]") 
   CHECK_THROWS_AS(analysis::friedman_test({{1, 2}, {2, std::nan("")}}), core::InvalidInput);
   CHECK_THROWS_WITH(analysis::friedman_test({{1, 1}, {2, 2}}), Catch::Contains("the same"));
   CHECK_THROWS_AS(analysis::signed_rank_test({}), core::InvalidInput);
-  CHECK_THROWS_AS(analysis::signed_rank_test({1.0, INFINITY}), core::InvalidInput);
+  CHECK_THROWS_AS(analysis::signed_rank_test({1.0, std::numeric_limits<double>::infinity()}),
+                  core::InvalidInput);
   CHECK_THROWS_AS(analysis::holm_adjusted({0.5, 1.5}), core::InvalidInput);
   CHECK_THROWS_AS(analysis::quantile({}, 0.5), core::InvalidInput);
   CHECK_THROWS_AS(analysis::quantile({1.0}, 1.5), core::InvalidInput);

@@ -13,6 +13,13 @@ table{border-collapse:collapse}caption{text-align:left;color:#567;font-size:.85r
 .accuracy th{font-weight:500;text-align:left;padding:.2rem 1rem .2rem 0}.accuracy td{padding:.2rem 1rem .2rem 0}
 .accuracy td{white-space:nowrap}.dot{width:200px;height:16px;overflow:visible}.dot .axis{stroke:#cdd6df}.dot .chance{stroke:#b0413e;stroke-dasharray:3 2}
 .dot .interval{stroke:#08519c;stroke-width:2}.dot circle{fill:#08519c}
+.scroll{overflow-x:auto}.scroll table{display:table}
+.data th,.data td{padding:.2rem 1rem .2rem 0;text-align:right;white-space:nowrap;font-weight:400}
+.data thead th{font-weight:500;vertical-align:bottom;white-space:normal;min-width:4rem}.data tr>:first-child{text-align:left}
+.charts{display:grid;grid-template-columns:repeat(auto-fill,minmax(min(100%,18rem),1fr));gap:1rem;margin-top:1rem}
+figure{margin:0}figcaption{font-size:.85rem;color:#567}.chart{width:100%;height:auto}.chart text{font-size:11px;fill:currentColor}
+.chart path{fill:none}.chart .frame{stroke:#8796a5}.chart .line{stroke:#567;stroke-width:1.5}.chart .chance{stroke:#b0413e;stroke-dasharray:3 2}
+.chart .interval{stroke:#08519c;stroke-width:3}.chart circle{fill:#08519c;stroke:#08519c;fill-opacity:.8}.chart circle.open{fill:#fff;fill-opacity:1}
 .note,.provenance{font-size:.85rem;color:#567}.provenance th{text-align:left;font-weight:500;padding-right:1rem;vertical-align:top}
 .provenance td{word-break:break-all}.notes{white-space:pre-line}
 @media (max-width:600px){table{display:block;overflow-x:auto}.dot{width:90px}

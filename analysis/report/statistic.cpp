@@ -4,11 +4,13 @@
 
 #include "analysis/choice/choice_summary.hpp"
 #include "analysis/identification/identification_summary.hpp"
+#include "analysis/thresholds/threshold_summary.hpp"
 #include "core/error.hpp"
 namespace tapstudy::analysis {
 const std::vector<Statistic>& statistics() {
   static const std::vector<Statistic> table{{"confusion", summarise_identification},
-                                            {"choices", summarise_choice}};
+                                            {"choices", summarise_choice},
+                                            {"psychometric", summarise_thresholds}};
   return table;
 }
 

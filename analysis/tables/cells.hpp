@@ -1,0 +1,54 @@
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "analysis/statistics/proportion.hpp"
+namespace tapstudy::analysis {
+// A value as programs read it; unset where there is none. Infinite numbers are "inf" and "-inf".
+using Value = std::variant<std::monostate, bool, std::int64_t, double, std::string>;
+
+// heading: as people read it; empty: the column is in JSON and CSV only.
+// keys: of its values in JSON and CSV (a value and its interval are three).
+struct Column {
+  std::string heading;
+  std::vector<std::string> keys;
+};
+
+// text: as people read it, in text and HTML. values: as many as the column has keys.
+struct Cell {
+  std::string text;
+  std::vector<Value> values;
+};
+
+struct ReportTable {
+  std::string name;  // its key in JSON, its file in CSV
+  std::string title;
+  std::vector<Column> columns;
+  std::vector<std::vector<Cell>> rows{};
+  bool is_for_programs{};  // in JSON and CSV only: people see a figure
+};
+
+// "0.123", with so many significant digits; "–" for NaN
+std::string rounded(double value, int significant_digits = 3);
+// "0.12 (0.1 to 0.15)"
+std::string with_interval(double value, const Interval& interval);
+
+Cell word(const std::string& text);
+Cell count(std::int64_t number);
+Cell flag(bool is_so);
+Cell number(double value, int significant_digits = 3);
+Cell number(const std::optional<double>& value);  // "–" if unset
+Cell share(double value);                         // "54 %"
+Cell probability(const std::optional<double>& p);
+Cell interval(double value, const Interval& interval);
+// Values: successes, trials, their ratio and its 95 % score interval.
+Cell proportion(const Proportion& proportion);
+Cell nothing(const Column& column, const std::string& text = "–");
+
+Column column(const std::string& heading, const std::string& key);
+Column interval_column(const std::string& heading, const std::string& key);
+Column proportion_column(const std::string& heading, const std::string& key);
+}  // namespace tapstudy::analysis

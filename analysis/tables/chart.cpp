@@ -1,0 +1,148 @@
+#include "analysis/tables/chart.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "analysis/blocks/html_parts.hpp"
+#include "analysis/tables/cells.hpp"
+namespace tapstudy::analysis {
+namespace {
+constexpr double width = 340.0;
+constexpr double height = 220.0;
+constexpr double left = 52.0;
+constexpr double right = 330.0;
+constexpr double top = 10.0;
+constexpr double bottom = 180.0;
+constexpr double largest_radius = 6.0;
+constexpr double smallest_radius = 2.0;
+constexpr std::array steps{1.0, 2.0, 5.0};
+
+double along(double value, const Interval& range, bool is_logarithmic) {
+  const double inside = std::clamp(value, range.low, range.high);
+  return is_logarithmic ? std::log(inside / range.low) / std::log(range.high / range.low)
+                        : (inside - range.low) / (range.high - range.low);
+}
+
+double place_x(const Chart& chart, double x) {
+  return left + (right - left) * along(x, chart.x_range, chart.is_x_logarithmic);
+}
+
+double place_y(const Chart& chart, double y) {
+  return bottom - (bottom - top) * along(y, chart.y_range, chart.is_y_logarithmic);
+}
+
+std::string axes(const Chart& chart) {
+  std::string svg =
+      fmt::format("<path class=frame d=\"M{0} {1}V{2}H{3}\"/>", left, top, bottom, right);
+  for (const double x : ticks(chart.x_range, chart.is_x_logarithmic)) {
+    svg += fmt::format("<text x={:.1f} y={} text-anchor=middle>{}</text>", place_x(chart, x),
+                       bottom + 14.0, rounded(x));
+  }
+  for (const double y : ticks(chart.y_range, chart.is_y_logarithmic)) {
+    svg += fmt::format("<text x={} y={:.1f} text-anchor=end>{}</text>", left - 5.0,
+                       place_y(chart, y) + 4.0, rounded(y));
+  }
+  return svg +
+         fmt::format("<text x={} y={} text-anchor=middle>{}</text>", 0.5 * (left + right),
+                     height - 8.0, escaped(chart.x_label)) +
+         fmt::format(
+             "<text transform=\"translate(12 {}) rotate(-90)\" text-anchor=middle>{}"
+             "</text>",
+             0.5 * (top + bottom), escaped(chart.y_label));
+}
+
+std::string joined(const Chart& chart) {
+  std::string svg;
+  for (std::size_t i = 0; i < chart.line.size(); ++i) {
+    svg += fmt::format("{}{:.1f} {:.1f}", i == 0 ? 'M' : 'L', place_x(chart, chart.line[i].x),
+                       place_y(chart, chart.line[i].y));
+  }
+  return svg.empty() ? "" : "<path class=line d=\"" + svg + "\"/>";
+}
+
+std::string mark(const Chart& chart, const ChartPoint& point) {
+  return fmt::format("<circle{} cx={:.1f} cy={:.1f} r={:.1f} />",
+                     point.is_open ? " class=open" : "", place_x(chart, point.x),
+                     place_y(chart, point.y),
+                     std::max(smallest_radius, largest_radius * std::sqrt(point.weight)));
+}
+
+std::vector<double> logarithmic_ticks(const Interval& range) {
+  std::vector<double> found;
+  for (double decade = std::pow(10.0, std::floor(std::log10(range.low))); decade <= range.high;
+       decade *= 10.0) {
+    for (const double step : steps) {
+      if (step * decade >= range.low && step * decade <= range.high) {
+        found.push_back(step * decade);
+      }
+    }
+  }
+  return found;
+}
+
+std::vector<double> linear_ticks(const Interval& range) {
+  const double least = (range.high - range.low) / 5.0;
+  const double decade = std::pow(10.0, std::floor(std::log10(least)));
+  double step = 10.0 * decade;
+  for (const double candidate : {5.0, 2.0, 1.0}) {
+    step = candidate * decade >= least ? candidate * decade : step;
+  }
+  std::vector<double> found;
+  for (double place = std::ceil(range.low / step); place * step <= range.high; place += 1.0) {
+    found.push_back(place * step);
+  }
+  return found;
+}
+}  // namespace
+
+std::vector<double> ticks(const Interval& range, bool is_logarithmic) {
+  constexpr std::size_t most = 6;
+  std::vector<double> found = is_logarithmic ? logarithmic_ticks(range) : linear_ticks(range);
+  if (found.size() <= most) {
+    return found;
+  }
+  std::vector<double> fewer;
+  const std::size_t stride = (found.size() + most - 1) / most;
+  for (std::size_t i = 0; i < found.size(); i += stride) {
+    fewer.push_back(found[i]);
+  }
+  return fewer;
+}
+
+Interval range_of(const std::vector<double>& values, bool is_logarithmic) {
+  if (values.empty()) {
+    return is_logarithmic ? Interval{1.0, 10.0} : Interval{0.0, 1.0};
+  }
+  const auto [low, high] = std::ranges::minmax(values);
+  if (is_logarithmic) {
+    const double margin = low == high ? 1.5 : std::pow(high / low, 0.05);
+    return {low / margin, high * margin};
+  }
+  const double margin = low == high ? std::max(0.5 * std::abs(low), 0.5) : 0.05 * (high - low);
+  return {low - margin, high + margin};
+}
+
+std::string inline_svg(const Chart& chart) {
+  std::string svg =
+      fmt::format("<figure><svg class=chart viewBox=\"0 0 {} {}\" role=img aria-label=\"{}\">",
+                  width, height, escaped(chart.alternative));
+  svg += axes(chart);
+  for (const double level : chart.levels) {
+    svg +=
+        fmt::format("<path class=chance d=\"M{} {:.1f}H{}\"/>", left, place_y(chart, level), right);
+  }
+  svg += joined(chart);
+  for (const Chart::Bar& bar : chart.bars) {
+    svg +=
+        fmt::format("<path class=interval d=\"M{:.1f} {:.1f}H{:.1f}\"/>", place_x(chart, bar.x.low),
+                    place_y(chart, bar.y), place_x(chart, bar.x.high));
+  }
+  for (const ChartPoint& point : chart.points) {
+    svg += mark(chart, point);
+  }
+  return svg + "</svg><figcaption>" + escaped(chart.caption) + "</figcaption></figure>\n";
+}
+}  // namespace tapstudy::analysis

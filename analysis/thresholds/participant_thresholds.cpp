@@ -1,0 +1,159 @@
+#include "analysis/thresholds/participant_thresholds.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "core/error.hpp"
+namespace tapstudy::analysis {
+namespace {
+using results::AnswerRow;
+constexpr double max_lapse = 0.1;
+constexpr int draws_of_fit = 200;
+constexpr std::uint64_t draws_seed = 1;
+// Levels of all participants together; the time of either grows with them.
+constexpr std::size_t max_levels_with_tests_of_fit = 100;
+constexpr std::size_t max_levels_with_posteriors = 60;
+
+// Values of one stimulus differ in their last digits, where they are products.
+double to_nine_digits(double level) {
+  if (level == 0.0 || !std::isfinite(level)) {
+    return level;
+  }
+  const double unit = std::pow(10.0, std::floor(std::log10(std::abs(level))) - 8.0);
+  return std::round(level / unit) * unit;
+}
+
+std::optional<double> level_of(const BlockDesign& design, const AnswerRow& answer) {
+  const auto comparison =
+      std::ranges::find_if(answer.alternatives, &results::AlternativeRow::is_comparison);
+  if (comparison == answer.alternatives.end()) {
+    return std::nullopt;
+  }
+  const auto value = comparison->axis_values.find(design.axis->name);
+  if (value == comparison->axis_values.end()) {
+    throw core::InvalidInput{
+        fmt::format("block '{}': the comparison of {} in trial {} has no value of '{}'",
+                    design.name, answer.participant_id, answer.number, design.axis->name)};
+  }
+  return to_nine_digits(design.axis->level_of(value->second));
+}
+
+void add(Proportion& counted, bool is_success) {
+  ++counted.trials;
+  counted.successes += is_success ? 1 : 0;
+}
+
+void add_answer(ParticipantThreshold& person, const BlockDesign& design, const AnswerRow& answer) {
+  if (!answer.is_correct) {
+    throw core::InvalidInput{
+        fmt::format("block '{}': the answer of {} to trial {} is neither right nor wrong",
+                    design.name, answer.participant_id, answer.number)};
+  }
+  const std::optional<double> level = level_of(design, answer);
+  if (!level) {
+    add(person.false_alarms, !*answer.is_correct);
+    return;
+  }
+  const int number = static_cast<int>(person.track.size()) + 1;
+  person.track.push_back({number, *level, *answer.is_correct});
+  add(person.correct, *answer.is_correct);
+  auto at = std::ranges::lower_bound(person.levels, *level, {}, &Level::value);
+  if (at == person.levels.end() || at->value != *level) {
+    at = person.levels.insert(at, {*level, {}});
+  }
+  add(at->answers, *answer.is_correct);
+}
+
+std::vector<ParticipantThreshold> people_of(const BlockDesign& design,
+                                            std::vector<AnswerRow> answers) {
+  std::ranges::stable_sort(answers, {}, &AnswerRow::trial_id);
+  std::map<std::string, ParticipantThreshold> people;
+  for (const AnswerRow& answer : answers) {
+    ParticipantThreshold& person = people[answer.participant_id];
+    person.participant_id = answer.participant_id;
+    add_answer(person, design, answer);
+  }
+  std::vector<ParticipantThreshold> sorted;
+  for (auto& [name, person] : people) {
+    sorted.push_back(std::move(person));
+  }
+  return sorted;
+}
+
+void estimate(ParticipantThreshold& person, const PsychometricModel& model, int draws) {
+  try {
+    const PsychometricFit fit = fit_psychometric(model, person.levels);
+    if (!fit.curve) {
+      person.no_threshold = explanation(fit.outcome);
+      return;
+    }
+    const PsychometricCurve& curve = *fit.curve;
+    person.estimate = {curve, profile_intervals(model, person.levels),
+                       core::proportion(model.shape, curve.threshold, curve.threshold, curve.slope,
+                                        curve.guess, curve.lapse),
+                       std::nullopt};
+    if (draws > 0) {
+      person.estimate->goodness = deviance_test(model, person.levels, draws, draws_seed);
+    }
+  } catch (const core::InvalidInput& error) {  // too few levels, or levels below 0
+    person.no_threshold = error.what();
+  }
+}
+
+void add_posterior(ParticipantThreshold& person, const PsychometricModel& model) {
+  try {
+    person.posterior = psychometric_posterior(model, person.levels).estimates;
+  } catch (const core::InvalidInput&) {  // the fit says why
+    person.posterior.reset();
+  }
+}
+
+std::vector<ParticipantEstimate> logarithms(const std::vector<ParticipantThreshold>& people) {
+  std::vector<ParticipantEstimate> estimates;
+  for (const ParticipantThreshold& person : people) {
+    if (person.estimate && std::isfinite(person.estimate->curve.threshold_standard_error) &&
+        person.estimate->curve.threshold_standard_error > 0.0) {
+      estimates.push_back({std::log10(person.estimate->curve.threshold),
+                           person.estimate->curve.threshold_standard_error});
+    }
+  }
+  return estimates;
+}
+}  // namespace
+
+PsychometricModel model_of(const BlockDesign& design) {
+  return {
+      core::PsychometricShape::weibull, {design.guess_rate, design.guess_rate}, {0.0, max_lapse}};
+}
+
+ThresholdResults participant_thresholds(const BlockDesign& design,
+                                        const std::vector<AnswerRow>& answers) {
+  if (!design.axis) {
+    throw core::InvalidInput{
+        fmt::format("block '{}': a threshold takes an axis to vary", design.name)};
+  }
+  ThresholdResults results;
+  results.participants = people_of(design, answers);
+  std::size_t levels = 0;
+  for (const ParticipantThreshold& person : results.participants) {
+    levels += person.levels.size();
+  }
+  results.draws = levels <= max_levels_with_tests_of_fit ? draws_of_fit : 0;
+  results.has_posteriors = levels <= max_levels_with_posteriors;
+  const PsychometricModel model = model_of(design);
+  for (ParticipantThreshold& person : results.participants) {
+    estimate(person, model, results.draws);
+    if (results.has_posteriors) {
+      add_posterior(person, model);
+    }
+  }
+  if (const auto estimates = logarithms(results.participants); estimates.size() > 1) {
+    results.pooled_log = pooled(estimates);
+    results.pooled_participants = static_cast<int>(estimates.size());
+  }
+  return results;
+}
+}  // namespace tapstudy::analysis

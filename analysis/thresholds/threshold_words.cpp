@@ -1,0 +1,57 @@
+#include <fmt/format.h>
+
+#include "analysis/thresholds/threshold_tables.hpp"
+namespace tapstudy::analysis {
+std::string level_words(const VariedAxis& axis) {
+  const std::string side = axis.is_below ? "below" : "above";
+  return axis.is_fraction
+             ? fmt::format("{} {} the standard of {:.4g}, as a fraction of it", axis.name, side,
+                           axis.standard)
+             : fmt::format("{} {} the standard of {:.4g}", axis.name, side, axis.standard);
+}
+
+std::vector<std::string> threshold_remarks(const BlockDesign& design,
+                                           const ThresholdResults& results) {
+  if (results.participants.empty()) {
+    return {"There are no answers."};
+  }
+  std::vector<std::string> remarks{
+      "Levels: " + level_words(*design.axis) + ".",
+      fmt::format("Thresholds: maximum likelihood of a Weibull function of the level, guess rate "
+                  "{:.3g} fixed, lapse rate from 0 to 0.1; intervals by profile likelihood. At the "
+                  "threshold the function without guesses and lapses is at 63 %.",
+                  design.guess_rate)};
+  for (const ParticipantThreshold& person : results.participants) {
+    if (!person.estimate) {
+      remarks.push_back(
+          fmt::format("{} has no threshold: {}.", person.participant_id, person.no_threshold));
+    }
+  }
+  if (results.pooled_log) {
+    remarks.push_back(
+        "Mean over participants: logarithms of the thresholds, weighted by their variance within "
+        "and between participants (DerSimonian & Laird 1986), interval by Hartung & Knapp 2001. "
+        "Answers of participants are not put together as if of one.");
+    const int without = static_cast<int>(results.participants.size()) - results.pooled_participants;
+    if (without > 0) {
+      remarks.push_back(fmt::format(
+          "It leaves out {} without a threshold and its error, which biases it.",
+          without == 1 ? "the participant" : fmt::format("the {} participants", without)));
+    }
+  } else {
+    remarks.emplace_back("No mean over participants: it takes two with a threshold.");
+  }
+  remarks.push_back(
+      results.draws > 0
+          ? fmt::format("Deviance test: {} parametric bootstrap draws; a small p says that the "
+                        "function does not fit.",
+                        results.draws)
+          : "Deviance tests are not made for so many levels.");
+  remarks.emplace_back(results.has_posteriors
+                           ? "Bayesian thresholds: beta-binomial answers and the priors of Schuett "
+                             "et al. 2016, which "
+                             "limit the slope where the answers alone do not."
+                           : "Bayesian thresholds are not computed for so many levels.");
+  return remarks;
+}
+}  // namespace tapstudy::analysis

@@ -1,0 +1,102 @@
+#include <catch2/catch.hpp>
+#include <limits>
+
+#include "analysis/blocks/text_parts.hpp"
+#include "analysis/statistics/csv_rows.hpp"
+#include "analysis/tables/tabular_summary.hpp"
+#include "support/formats.hpp"
+using namespace tapstudy;
+using namespace tapstudy::analysis;
+using Catch::Matchers::Contains;
+
+namespace {
+TabularSummary small_summary() {
+  TabularSummary summary{BlockDesign{}};
+  ReportTable table{
+      "heights",
+      "Heights",
+      {column("who", "who"), interval_column("height", "height"), column("", "reason")}};
+  table.rows.push_back({word("a, <b>"),
+                        interval(1.5, {1.0, std::numeric_limits<double>::infinity()}),
+                        word("tall")});
+  table.rows.push_back({word("c"), nothing(table.columns[1]), {"", {Value{}}}});
+  summary.parts.push_back(table);
+  summary.remarks.emplace_back("Of <two> people.");
+  return summary;
+}
+}  // namespace
+
+TEST_CASE("every format of a table has the same values", "[analysis][tables]") {
+  const testing::Formats formats = testing::formats_of(small_summary());
+  std::istringstream csv{formats.csv.at("heights.csv")};
+  const CsvText read = read_csv(csv, "heights.csv");
+  const std::vector<std::string> header{"who", "height", "height_low", "height_high", "reason"};
+  CHECK(read.rows[0].cells == header);
+  CHECK(read.rows[1].cells == std::vector<std::string>{"a, <b>", "1.5", "1", "inf", "tall"});
+  CHECK(read.rows[2].cells == std::vector<std::string>{"c", "", "", "", ""});
+  const auto& first = formats.json["heights"][0];
+  CHECK(first["who"] == "a, <b>");
+  CHECK(first["height"] == 1.5);
+  CHECK(first["height_high"] == "inf");
+  CHECK(formats.json["heights"][1]["height_low"].is_null());
+  CHECK_THAT(formats.text, Contains("a, <b>  1.5 (1 to ∞)"));
+  CHECK_THAT(formats.html, Contains("a, &lt;b&gt;</th><td>1.5 (1 to ∞)</td>"));
+  CHECK_THAT(formats.text, !Contains("tall"));
+  CHECK_THAT(formats.html, Contains("Of &lt;two&gt; people."));
+}
+
+TEST_CASE("a table too wide for a terminal is written entry by entry", "[analysis][tables]") {
+  TabularSummary summary{BlockDesign{}};
+  ReportTable table{"wide", "Wide", {}};
+  std::vector<Cell> row;
+  for (int i = 0; i < 12; ++i) {
+    table.columns.push_back(column("heading " + std::to_string(i), "key" + std::to_string(i)));
+    row.push_back(word("value " + std::to_string(i)));
+  }
+  table.rows.push_back(row);
+  summary.parts.push_back(table);
+  const std::string text = testing::formats_of(summary).text;
+  CHECK(testing::longest_line(text) <= 100);
+  CHECK_THAT(text, Contains("    heading 11: value 11\n"));
+}
+
+TEST_CASE("wrapped text keeps its words and fits", "[analysis][tables]") {
+  std::string text;
+  for (int i = 0; i < 60; ++i) {
+    text += (i == 0 ? "" : " ") + std::string(static_cast<std::size_t>(i % 9 + 1), 'x') + "–";
+  }
+  const std::string lines = wrapped(text, 4);
+  CHECK(testing::longest_line(lines) <= 100);
+  CHECK(testing::longest_line(lines) > 88);
+  std::istringstream before{text};
+  std::istringstream after{lines};
+  const std::vector<std::string> words{std::istream_iterator<std::string>{before}, {}};
+  const std::vector<std::string> kept{std::istream_iterator<std::string>{after}, {}};
+  CHECK(kept == words);
+}
+
+TEST_CASE("ticks are few, round and within their range", "[analysis][tables]") {
+  for (const Interval& range :
+       {Interval{0.0, 1.0}, Interval{-3.0, 17.0}, Interval{0.013, 0.42}, Interval{1e6, 9e9}}) {
+    for (const bool is_logarithmic : {false, true}) {
+      if (is_logarithmic && range.low <= 0.0) {
+        continue;
+      }
+      const std::vector<double> found = ticks(range, is_logarithmic);
+      CHECK(found.size() >= 2);
+      CHECK(found.size() <= 6);
+      CHECK(std::ranges::is_sorted(found));
+      CHECK(found.front() >= range.low);
+      CHECK(found.back() <= range.high);
+    }
+  }
+}
+
+TEST_CASE("a figure's marks lie where their values are", "[analysis][tables]") {
+  Chart chart{"c", "two <marks>", "x", "y", {0.0, 10.0}, {0.0, 1.0}};
+  chart.points = {{5.0, 0.5}, {20.0, 0.5}};
+  const std::string svg = inline_svg(chart);
+  CHECK_THAT(svg, Contains("aria-label=\"two &lt;marks&gt;\""));
+  CHECK_THAT(svg, Contains("cx=191.0 cy=95.0"));  // half way between 52 and 330, 10 and 180
+  CHECK_THAT(svg, Contains("cx=330.0 cy=95.0"));  // beyond the range: at its edge
+}

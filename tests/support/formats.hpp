@@ -1,0 +1,54 @@
+#pragma once
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+
+#include "analysis/blocks/block_summary.hpp"
+#include "analysis/report/statistic.hpp"
+namespace tapstudy::testing {
+// A summary in each of its formats.
+struct Formats {
+  std::string text;
+  std::string html;
+  nlohmann::ordered_json json;
+  std::map<std::string, std::string> csv;  // by file
+};
+
+inline Formats formats_of(const analysis::BlockSummary& summary) {
+  Formats formats;
+  std::ostringstream text;
+  summary.write_text(text);
+  formats.text = text.str();
+  std::ostringstream html;
+  summary.write_html(html);
+  formats.html = html.str();
+  formats.json = summary.as_json();
+  for (const analysis::CsvTable& table : summary.tables()) {
+    std::ostringstream csv;
+    table.write(csv);
+    formats.csv[table.name] = csv.str();
+  }
+  return formats;
+}
+
+// By the row of the report's table.
+inline Formats reported(const std::string& statistic, const analysis::BlockDesign& design,
+                        const std::vector<results::AnswerRow>& answers) {
+  return formats_of(*analysis::find_statistic(statistic).summarise(design, {answers, {}}));
+}
+
+// Characters of UTF-8 of the longest line.
+inline std::size_t longest_line(const std::string& text) {
+  std::istringstream lines{text};
+  std::size_t longest = 0;
+  for (std::string line; std::getline(lines, line);) {
+    const auto is_start = [](char c) { return (static_cast<unsigned char>(c) >> 6U) != 2U; };
+    longest = std::max(longest,
+                       static_cast<std::size_t>(std::count_if(line.begin(), line.end(), is_start)));
+  }
+  return longest;
+}
+}  // namespace tapstudy::testing

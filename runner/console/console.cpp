@@ -24,25 +24,26 @@ Console::~Console() {
 
 BrowserParticipant::Context Console::context(const Session& session) {
   OperatorDesk& desk = session.desk;
-  return {
-      session.move_hand,
-      [this, &desk, &protocol = session.protocol](std::size_t alternative) {
-        const auto view = desk.view().trial;
-        const bool is_rendered =
-            view && view->prompt.block->presented == protocols::Presented::virtual_plates;
-        return is_rendered && shows_plate_ ? scenes_.number_of(view->trial.alternatives.at(alternative).stimulus,
-                                                               protocol.block(view->trial.block))
-                                           : std::nullopt;
-      },
-      [&desk](const std::string& cause) {
-        return desk.waits_for_operator(cause, [&] {
-          say("\n{}\n  The trial is not stored yet, but kept. To try again, type resume.\n", cause);
-        });
-      },
-      [&desk](const std::string& why) {
-        desk.pause(why);
-        say("\npaused: {}. To go on, type resume.\n", why);
-      }};
+  return {session.move_hand,
+          [this, &desk, &protocol = session.protocol](std::size_t alternative) {
+            const auto view = desk.view().trial;
+            const bool is_rendered =
+                view && view->prompt.block->presented == protocols::Presented::virtual_plates;
+            return is_rendered && shows_plate_
+                       ? scenes_.number_of(view->trial.alternatives.at(alternative).stimulus,
+                                           protocol.block(view->trial.block))
+                       : std::nullopt;
+          },
+          [&desk](const std::string& cause) {
+            return desk.waits_for_operator(cause, [&] {
+              say("\n{}\n  The trial is not stored yet, but kept. To try again, type resume.\n",
+                  cause);
+            });
+          },
+          [&desk](const std::string& why) {
+            desk.pause(why);
+            say("\npaused: {}. To go on, type resume.\n", why);
+          }};
 }
 
 ConsoleApi::Session Console::in_view(const ConsoleRequest& request, const Session& session) {

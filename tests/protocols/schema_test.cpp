@@ -62,9 +62,8 @@ TEST_CASE("the schema has exactly the keys that the reader asks for", "[protocol
   REQUIRE_NOTHROW(protocols::parse_protocol(every_key(), every_key_file()));
   // what stands in a procedure is compared by itself (procedures/procedure_schema_test.cpp)
   const auto without_procedures = [](std::set<std::string> keys) {
-    std::erase_if(keys, [](const std::string& key) {
-      return key.starts_with("blocks[].procedures[].");
-    });
+    std::erase_if(keys,
+                  [](const std::string& key) { return key.starts_with("blocks[].procedures[]."); });
     return keys;
   };
   CHECK(without_procedures(keys_in("protocol")) ==
@@ -165,7 +164,8 @@ TEST_CASE("schema and reader accept the same protocols", "[protocols][schema][sl
       {"task: abx, ", "task: abx, steps: 5, "},
       {"task: paired, ", "task: paired, presented: real, "},
       {"task: paired, ", "task: paired, feedback: true, "},
-      {"steps: 5, low: not at all, high: {en: fully", "steps: 12, low: not at all, high: {en: fully"},
+      {"steps: 5, low: not at all, high: {en: fully",
+       "steps: 12, low: not at all, high: {en: fully"},
       {"{en: fully, ja: 完全に}", "{}"},
       {"{en: fully, ja: 完全に}", "{english: fully}"},
       {"steps: 5, low: not at all, high: {", "steps: 5, high: {"},

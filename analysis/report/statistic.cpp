@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "analysis/choice/choice_summary.hpp"
+#include "analysis/discrimination/discrimination_summary.hpp"
 #include "analysis/identification/identification_summary.hpp"
 #include "analysis/thresholds/threshold_summary.hpp"
 #include "core/error.hpp"
@@ -10,7 +11,8 @@ namespace tapstudy::analysis {
 const std::vector<Statistic>& statistics() {
   static const std::vector<Statistic> table{{"confusion", summarise_identification},
                                             {"choices", summarise_choice},
-                                            {"psychometric", summarise_thresholds}};
+                                            {"psychometric", summarise_thresholds},
+                                            {"discrimination", summarise_discrimination}};
   return table;
 }
 

@@ -5,6 +5,7 @@
 #include "analysis/choice/choice_summary.hpp"
 #include "analysis/discrimination/discrimination_summary.hpp"
 #include "analysis/identification/identification_summary.hpp"
+#include "analysis/preferences/preference_summary.hpp"
 #include "analysis/thresholds/threshold_summary.hpp"
 #include "core/error.hpp"
 namespace tapstudy::analysis {
@@ -12,7 +13,8 @@ const std::vector<Statistic>& statistics() {
   static const std::vector<Statistic> table{{"confusion", summarise_identification},
                                             {"choices", summarise_choice},
                                             {"psychometric", summarise_thresholds},
-                                            {"discrimination", summarise_discrimination}};
+                                            {"discrimination", summarise_discrimination},
+                                            {"paired", summarise_preferences}};
   return table;
 }
 

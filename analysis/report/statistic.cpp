@@ -6,15 +6,15 @@
 #include "analysis/discrimination/discrimination_summary.hpp"
 #include "analysis/identification/identification_summary.hpp"
 #include "analysis/preferences/preference_summary.hpp"
+#include "analysis/rated/rating_summary.hpp"
 #include "analysis/thresholds/threshold_summary.hpp"
 #include "core/error.hpp"
 namespace tapstudy::analysis {
 const std::vector<Statistic>& statistics() {
-  static const std::vector<Statistic> table{{"confusion", summarise_identification},
-                                            {"choices", summarise_choice},
-                                            {"psychometric", summarise_thresholds},
-                                            {"discrimination", summarise_discrimination},
-                                            {"paired", summarise_preferences}};
+  static const std::vector<Statistic> table{
+      {"confusion", summarise_identification}, {"choices", summarise_choice},
+      {"psychometric", summarise_thresholds},  {"discrimination", summarise_discrimination},
+      {"paired", summarise_preferences},       {"ratings", summarise_ratings}};
   return table;
 }
 

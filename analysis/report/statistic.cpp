@@ -3,14 +3,20 @@
 #include <algorithm>
 
 #include "analysis/choice/choice_summary.hpp"
+#include "analysis/discrimination/discrimination_summary.hpp"
 #include "analysis/identification/identification_summary.hpp"
+#include "analysis/magnitudes/magnitude_summary.hpp"
+#include "analysis/preferences/preference_summary.hpp"
+#include "analysis/rated/rating_summary.hpp"
 #include "analysis/thresholds/threshold_summary.hpp"
 #include "core/error.hpp"
 namespace tapstudy::analysis {
 const std::vector<Statistic>& statistics() {
-  static const std::vector<Statistic> table{{"confusion", summarise_identification},
-                                            {"choices", summarise_choice},
-                                            {"psychometric", summarise_thresholds}};
+  static const std::vector<Statistic> table{
+      {"confusion", summarise_identification}, {"choices", summarise_choice},
+      {"psychometric", summarise_thresholds},  {"discrimination", summarise_discrimination},
+      {"paired", summarise_preferences},       {"ratings", summarise_ratings},
+      {"magnitudes", summarise_magnitudes}};
   return table;
 }
 

@@ -11,6 +11,8 @@ double chi_squared_p(double x, double degrees_of_freedom);
 double chi_squared_quantile(double probability, double degrees_of_freedom);
 // probability in (0, 1)
 double t_quantile(double probability, double degrees_of_freedom);
+// P(T >= t) of Student's t
+double t_p_at_least(double t, double degrees_of_freedom);
 // The two-sided probability of a statistic at least as far from 0.
 double normal_two_sided_p(double z);
 }  // namespace tapstudy::analysis

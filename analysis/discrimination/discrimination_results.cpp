@@ -1,0 +1,169 @@
+#include "analysis/discrimination/discrimination_results.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "analysis/statistics/distributions.hpp"
+#include "analysis/statistics/quantiles.hpp"
+#include "core/error.hpp"
+namespace tapstudy::analysis {
+namespace {
+using results::AlternativeRow;
+using results::AnswerRow;
+
+struct Counts {
+  Proportion correct;
+  Proportion correct_of_different;
+  Proportion correct_of_same;
+};
+
+void add(Proportion& counted, bool is_success) {
+  ++counted.trials;
+  counted.successes += is_success ? 1 : 0;
+}
+
+bool is_of_different(const AnswerRow& answer) {
+  return std::ranges::any_of(answer.alternatives, [&](const AlternativeRow& alternative) {
+    const AlternativeRow& first = answer.alternatives.front();
+    return alternative.stimulus != first.stimulus || alternative.axis_values != first.axis_values;
+  });
+}
+
+std::string stimuli_of(const AnswerRow& answer) {
+  std::set<std::string> names;
+  for (const AlternativeRow& alternative : answer.alternatives) {
+    names.insert(alternative.stimulus);
+  }
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+// The number of alternatives in the model's sense: chance is 1 in so many.
+DecisionTask task_of(const BlockDesign& design, const DecisionModelRow& row) {
+  const DecisionTask task{row.model, static_cast<int>(std::lround(1.0 / design.guess_rate))};
+  constexpr double tolerance = 1e-6;
+  if (std::abs(chance(task) - design.guess_rate) > tolerance) {
+    throw core::InvalidInput{fmt::format("block '{}': {} has no guess rate of {}", design.name,
+                                         row.name, design.guess_rate)};
+  }
+  return task;
+}
+
+void check(const BlockDesign& design) {
+  if (!(design.guess_rate > 0.0 && design.guess_rate < 1.0)) {
+    throw core::InvalidInput{fmt::format("block '{}': a guess rate is between 0 and 1, not {}",
+                                         design.name, design.guess_rate)};
+  }
+  if (!design.decision_model.empty() && find_decision_model(design.decision_model) == nullptr) {
+    throw core::InvalidInput{fmt::format("block '{}': there is no decision model '{}'", design.name,
+                                         design.decision_model)};
+  }
+}
+
+void check(const BlockDesign& design, const AnswerRow& answer) {
+  if (!answer.is_correct) {
+    throw core::InvalidInput{
+        fmt::format("block '{}': the answer of {} to trial {} is neither right nor wrong",
+                    design.name, answer.participant_id, answer.number)};
+  }
+}
+
+std::optional<DifferentRates> rates_of(const Counts& counts) {
+  if (counts.correct_of_different.trials == 0 || counts.correct_of_same.trials == 0) {
+    return std::nullopt;
+  }
+  DifferentRates rates;
+  rates.hits = counts.correct_of_different;
+  rates.false_alarms = {counts.correct_of_same.trials - counts.correct_of_same.successes,
+                        counts.correct_of_same.trials};
+  const double hit_rate = log_linear_rate(rates.hits);
+  const double false_alarm_rate = log_linear_rate(rates.false_alarms);
+  rates.differencing = same_different_differencing(hit_rate, false_alarm_rate);
+  rates.independent = same_different_independent(hit_rate, false_alarm_rate);
+  rates.criterion = yes_no_sensitivity(rates.hits, rates.false_alarms);
+  return rates;
+}
+
+std::optional<MeanWithInterval> mean_d_prime(const std::vector<ParticipantDiscrimination>& people) {
+  std::vector<double> values;
+  for (const ParticipantDiscrimination& person : people) {
+    if (person.sensitivity && std::isfinite(person.sensitivity->d_prime)) {
+      values.push_back(person.sensitivity->d_prime);
+    }
+  }
+  if (values.size() < 2) {
+    return std::nullopt;
+  }
+  const auto n = static_cast<double>(values.size());
+  const MeanAndSpread spread = mean_and_spread(values);
+  const double half = t_quantile(0.975, n - 1.0) * spread.standard_deviation / std::sqrt(n);
+  return MeanWithInterval{
+      spread.mean, {spread.mean - half, spread.mean + half}, static_cast<int>(values.size())};
+}
+
+std::optional<AccuracyTest> accuracy_test(const std::vector<ParticipantDiscrimination>& people,
+                                          double by_chance) {
+  if (people.size() < 2) {
+    return std::nullopt;
+  }
+  std::vector<double> values;
+  std::ranges::transform(people, std::back_inserter(values),
+                         [](const auto& person) { return person.correct.value(); });
+  const MeanAndSpread spread = mean_and_spread(values);
+  constexpr double least_spread = 1e-12;  // equal proportions differ in their last digits
+  if (!(spread.standard_deviation > least_spread)) {
+    return std::nullopt;
+  }
+  const auto n = static_cast<double>(values.size());
+  const double t = (spread.mean - by_chance) / (spread.standard_deviation / std::sqrt(n));
+  return AccuracyTest{t, n - 1.0, t_p_at_least(t, n - 1.0)};
+}
+
+ParticipantDiscrimination participant_of(const BlockDesign& design, const std::string& name,
+                                         const Counts& counts, const DecisionModelRow* model) {
+  ParticipantDiscrimination person{name, counts.correct, {}, {}, rates_of(counts)};
+  if (design.premise.empty()) {
+    person.p = binomial_p_at_least(counts.correct, design.guess_rate);
+  }
+  if (model != nullptr) {
+    person.sensitivity = sensitivity(task_of(design, *model), counts.correct);
+  }
+  return person;
+}
+}  // namespace
+
+DiscriminationResults discrimination_results(const BlockDesign& design,
+                                             const std::vector<AnswerRow>& answers) {
+  check(design);
+  std::map<std::string, Counts> people;
+  std::map<std::string, Proportion> pairs;
+  DiscriminationResults results;
+  results.model = find_decision_model(design.decision_model);
+  for (const AnswerRow& answer : answers) {
+    check(design, answer);
+    Counts& counts = people[answer.participant_id];
+    add(counts.correct, *answer.is_correct);
+    add(results.correct, *answer.is_correct);
+    if (!answer.alternatives.empty()) {
+      add(is_of_different(answer) ? counts.correct_of_different : counts.correct_of_same,
+          *answer.is_correct);
+      add(pairs[stimuli_of(answer)], *answer.is_correct);
+    }
+  }
+  for (const auto& [name, counts] : people) {
+    results.participants.push_back(participant_of(design, name, counts, results.model));
+  }
+  for (const auto& [stimuli, correct] : pairs) {
+    results.pairs.push_back({stimuli, correct});
+  }
+  results.mean_d_prime = mean_d_prime(results.participants);
+  if (design.premise.empty()) {
+    results.test = accuracy_test(results.participants, design.guess_rate);
+  }
+  return results;
+}
+}  // namespace tapstudy::analysis

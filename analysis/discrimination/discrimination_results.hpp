@@ -1,0 +1,60 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "analysis/blocks/block_summary.hpp"
+#include "analysis/detection/decision_model.hpp"
+#include "analysis/detection/rates.hpp"
+namespace tapstudy::analysis {
+// Answers that are right or wrong, of trials whose alternatives differ or, in same-different, may
+// be alike.
+
+// "different" to alternatives that differ (hits) and to alternatives that are alike (false alarms).
+struct DifferentRates {
+  Proportion hits;
+  Proportion false_alarms;
+  RatesSensitivity differencing;  // both of rates with the log-linear correction
+  RatesSensitivity independent;
+  YesNoSensitivity criterion;  // its c: above 0, "same" is preferred
+};
+
+struct ParticipantDiscrimination {
+  std::string participant_id;
+  Proportion correct;
+  std::optional<double> p;  // exact binomial, one-sided; unset where nothing is tested
+  std::optional<Sensitivity> sensitivity;  // by the block's decision model, if it has one
+  std::optional<DifferentRates> rates;     // where there are trials of both kinds
+};
+
+struct MeanWithInterval {
+  double mean{};
+  Interval interval;  // 95 %, by t with n - 1 degrees of freedom
+  int participants{};
+};
+
+// One-sided t test of the participants' proportions correct against chance.
+struct AccuracyTest {
+  double t{};
+  double degrees_of_freedom{};
+  double p{};
+};
+
+struct DiscriminationResults {
+  std::vector<ParticipantDiscrimination> participants;  // by name
+  struct Pair {
+    std::string stimuli;  // names, joined
+    Proportion correct;
+  };
+  std::vector<Pair> pairs;                       // by name
+  Proportion correct;                            // of all answers
+  std::optional<MeanWithInterval> mean_d_prime;  // of two participants or more
+  std::optional<AccuracyTest> test;              // unset for fewer than two, or without spread
+  const DecisionModelRow* model{};               // nullptr: none
+};
+
+// Throws InvalidInput for answers that are neither right nor wrong, a guess rate that is not in (0,
+// 1), and a decision model that there is not or that does not have this guess rate.
+DiscriminationResults discrimination_results(const BlockDesign& design,
+                                             const std::vector<results::AnswerRow>& answers);
+}  // namespace tapstudy::analysis

@@ -1,0 +1,167 @@
+#include "analysis/discrimination/discrimination_summary.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "analysis/discrimination/discrimination_results.hpp"
+#include "analysis/tables/tabular_summary.hpp"
+namespace tapstudy::analysis {
+namespace {
+const Column& d_prime_column() {
+  static const Column of_d_prime = interval_column("d' (95 % CI)", "d_prime");
+  return of_d_prime;
+}
+
+std::string remark_on(const Sensitivity& sensitivity) {
+  if (sensitivity.is_perfect) {
+    return "all right: d' of half a wrong answer";
+  }
+  return sensitivity.is_below_chance ? "below chance: d' is 0" : "";
+}
+
+ReportTable participants_table(const DiscriminationResults& results) {
+  ReportTable table{
+      "participants",
+      "Participants",
+      {column("participant", "participant_id"), proportion_column("correct", "correct"),
+       column("above chance", "p"), d_prime_column(), column("", "d_prime_remark")}};
+  for (const ParticipantDiscrimination& person : results.participants) {
+    const auto& of = person.sensitivity;
+    table.rows.push_back({word(person.participant_id), proportion(person.correct),
+                          probability(person.p),
+                          of ? interval(of->d_prime, of->interval) : nothing(d_prime_column()),
+                          word(of ? remark_on(*of) : "")});
+  }
+  return table;
+}
+
+ReportTable all_table(const BlockDesign& design, const DiscriminationResults& results) {
+  ReportTable table{"all",
+                    "All participants",
+                    {proportion_column("correct", "correct"), column("chance", "chance"),
+                     column("participants with d'", "participants"),
+                     interval_column("mean of their d' (95 % CI)", "mean_d_prime")}};
+  if (results.correct.trials > 0) {
+    const auto& mean = results.mean_d_prime;
+    table.rows.push_back(
+        {proportion(results.correct), share(design.guess_rate),
+         count(mean ? mean->participants : 0),
+         mean ? interval(mean->mean, mean->interval) : nothing(table.columns.back())});
+  }
+  return table;
+}
+
+ReportTable pairs_table(const DiscriminationResults& results) {
+  ReportTable table{"stimuli",
+                    "Stimuli that were presented together",
+                    {column("stimuli", "stimuli"), proportion_column("correct", "correct")}};
+  for (const DiscriminationResults::Pair& pair : results.pairs) {
+    table.rows.push_back({word(pair.stimuli), proportion(pair.correct)});
+  }
+  return table;
+}
+
+ReportTable rates_table(const DiscriminationResults& results) {
+  ReportTable table{"rates",
+                    "Answers that there is a difference",
+                    {column("participant", "participant_id"),
+                     proportion_column("to different ones (hits)", "hits"),
+                     proportion_column("to same ones (false alarms)", "false_alarms")}};
+  for (const ParticipantDiscrimination& person : results.participants) {
+    if (person.rates) {
+      table.rows.push_back({word(person.participant_id), proportion(person.rates->hits),
+                            proportion(person.rates->false_alarms)});
+    }
+  }
+  return table;
+}
+
+ReportTable models_table(const DiscriminationResults& results) {
+  ReportTable table{
+      "sensitivity_by_rates",
+      "d' and bias by hits and false alarms",
+      {column("participant", "participant_id"), column("d' differencing", "d_prime_differencing"),
+       column("d' independent observations", "d_prime_independent"),
+       interval_column("bias c (95 % CI)", "criterion"), column("", "is_below_chance")}};
+  for (const ParticipantDiscrimination& person : results.participants) {
+    if (const auto& rates = person.rates) {
+      table.rows.push_back(
+          {word(person.participant_id), number(rates->differencing.d_prime),
+           number(rates->independent.d_prime),
+           interval(rates->criterion.criterion, rates->criterion.criterion_interval),
+           flag(rates->differencing.is_below_chance)});
+    }
+  }
+  return table;
+}
+
+std::vector<std::string> remarks_on(const BlockDesign& design,
+                                    const DiscriminationResults& results) {
+  if (results.participants.empty()) {
+    return {"There are no answers."};
+  }
+  std::vector<std::string> remarks{
+      fmt::format("Chance is {:.3g}. Each participant: exact binomial test, one-sided; Wilson "
+                  "interval.",
+                  design.guess_rate),
+      "The interval of all answers takes them as independent, as if of one participant; where "
+      "participants differ it is too narrow."};
+  if (!design.premise.empty()) {
+    remarks.push_back("Not tested: " + design.premise);
+  }
+  if (results.model != nullptr) {
+    remarks.push_back(fmt::format(
+        "d' by the decision model '{}' ({}), interval by that of the proportion; their mean with "
+        "an interval by t over participants.",
+        results.model->name, results.model->summary));
+  }
+  for (const ParticipantDiscrimination& person : results.participants) {
+    const std::string remark = person.sensitivity ? remark_on(*person.sensitivity) : "";
+    if (!remark.empty()) {
+      remarks.push_back(person.participant_id + ": " + remark + ".");
+    }
+  }
+  if (std::ranges::any_of(results.participants,
+                          [](const auto& person) { return person.rates.has_value(); })) {
+    remarks.emplace_back(
+        "By rates: k + 1/2 in n + 1 (Hautus 1995); d' is 0 where there are no more hits than false "
+        "alarms. Bias c above 0: \"same\" is preferred.");
+  }
+  return remarks;
+}
+
+HypothesisResult tested(const BlockDesign& design, const DiscriminationResults& results,
+                        const PlannedHypothesis& planned) {
+  HypothesisResult result{planned, "", results.correct, design.guess_rate, {}, 0.0};
+  if (!design.premise.empty()) {
+    result.test = design.premise;
+  } else if (results.correct.trials == 0) {
+    result.test = "there are no answers";
+  } else if (results.participants.size() < 2) {
+    result.test = "a test over participants takes two or more";
+  } else if (!results.test) {
+    result.test = "all participants have the same proportion correct: no spread to test against";
+  } else {
+    result.p = results.test->p;
+    result.test =
+        fmt::format("one-sided t test of {} participants' proportions correct, t({:.0f}) = {:.2f}",
+                    results.participants.size(), results.test->degrees_of_freedom, results.test->t);
+  }
+  return result;
+}
+}  // namespace
+
+std::shared_ptr<const BlockSummary> summarise_discrimination(const BlockDesign& design,
+                                                             const BlockRows& rows) {
+  const DiscriminationResults results = discrimination_results(design, rows.answers);
+  auto summary = std::make_shared<TabularSummary>(design);
+  summary->parts = {all_table(design, results), participants_table(results), pairs_table(results),
+                    rates_table(results), models_table(results)};
+  summary->remarks = remarks_on(design, results);
+  for (const PlannedHypothesis& planned : design.hypotheses) {
+    summary->hypotheses.push_back(tested(design, results, planned));
+  }
+  return summary;
+}
+}  // namespace tapstudy::analysis

@@ -1,0 +1,105 @@
+#include "analysis/magnitudes/magnitude_results.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <map>
+
+#include "core/error.hpp"
+namespace tapstudy::analysis {
+namespace {
+using results::AnswerRow;
+using Value = std::optional<double>;
+// Logarithms to base 10 of one stimulus's estimates, by value and participant.
+using Logarithms = std::map<Value, std::map<std::string, std::vector<double>>>;
+
+double number_of(const BlockDesign& design, const AnswerRow& answer) {
+  double number = 0.0;
+  const char* const end = answer.response.data() + answer.response.size();
+  const auto read = std::from_chars(answer.response.data(), end, number);
+  if (read.ec != std::errc{} || read.ptr != end || !(number > 0.0) || !std::isfinite(number)) {
+    throw core::InvalidInput{
+        fmt::format("block '{}', {} in trial {}: a magnitude is a number above "
+                    "0, not '{}'",
+                    design.name, answer.participant_id, answer.number, answer.response)};
+  }
+  return number;
+}
+
+Value value_of(const BlockDesign& design, const AnswerRow& answer) {
+  if (!design.axis || answer.alternatives.empty()) {
+    return std::nullopt;
+  }
+  const results::AxisValues& values = answer.alternatives.front().axis_values;
+  const auto found = values.find(design.axis->name);
+  return found == values.end() ? Value{} : Value{found->second};
+}
+
+double mean_of(const std::vector<double>& values) {
+  double sum = 0.0;
+  for (const double value : values) {
+    sum += value;
+  }
+  return sum / static_cast<double>(values.size());
+}
+
+MagnitudeOfValue mean_at(const Value& value,
+                         const std::map<std::string, std::vector<double>>& people) {
+  MagnitudeOfValue result{value, 0.0, static_cast<int>(people.size()), 0};
+  std::vector<double> means;
+  for (const auto& [name, logarithms] : people) {
+    means.push_back(mean_of(logarithms));
+    result.estimates += static_cast<int>(logarithms.size());
+  }
+  result.geometric_mean = std::pow(10.0, mean_of(means));
+  return result;
+}
+
+void add_power_law(StimulusMagnitudes& of, const Logarithms& logarithms) {
+  std::map<std::string, Estimates> people;
+  for (const auto& [value, of_people] : logarithms) {
+    if (!value) {
+      of.no_power_law = "its trials have no value on an axis";
+      return;
+    }
+    for (const auto& [name, estimates] : of_people) {
+      for (const double logarithm : estimates) {
+        people[name].push_back({*value, std::pow(10.0, logarithm)});
+      }
+    }
+  }
+  std::vector<Estimates> all;
+  for (const auto& [name, estimates] : people) {
+    of.participants.push_back(name);
+    all.push_back(estimates);
+  }
+  try {
+    of.power_law = power_law(all);
+  } catch (const core::InvalidInput& error) {  // too few, or participants with other values
+    of.no_power_law = error.what();
+  }
+}
+}  // namespace
+
+std::vector<StimulusMagnitudes> magnitude_results(const BlockDesign& design,
+                                                  const std::vector<AnswerRow>& answers) {
+  std::map<std::string, Logarithms> stimuli;
+  for (const AnswerRow& answer : answers) {
+    stimuli[answer.stimulus][value_of(design, answer)][answer.participant_id].push_back(
+        std::log10(number_of(design, answer)));
+  }
+  std::vector<StimulusMagnitudes> results;
+  for (const auto& [stimulus, logarithms] : stimuli) {
+    StimulusMagnitudes of;
+    of.stimulus = stimulus;
+    for (const auto& [value, people] : logarithms) {
+      of.values.push_back(mean_at(value, people));
+    }
+    add_power_law(of, logarithms);
+    results.push_back(of);
+  }
+  return results;
+}
+}  // namespace tapstudy::analysis

@@ -1,0 +1,29 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "analysis/blocks/block_summary.hpp"
+#include "analysis/ratings/magnitude.hpp"
+namespace tapstudy::analysis {
+// Numbers that participants gave for the magnitude of one presented stimulus a trial.
+struct MagnitudeOfValue {
+  std::optional<double> value;  // on the block's axis; unset where the stimulus has none
+  double geometric_mean{};      // over participants, of their geometric means
+  int participants{};
+  int estimates{};
+};
+
+struct StimulusMagnitudes {
+  std::string stimulus;
+  std::vector<MagnitudeOfValue> values;   // from low to high
+  std::vector<std::string> participants;  // by name; of whom the exponents are
+  std::optional<PowerLaw> power_law;
+  std::string no_power_law;  // why there is none; empty: there is
+};
+
+// Of each stimulus that was presented, by name. Throws InvalidInput for answers that are not
+// numbers above 0.
+std::vector<StimulusMagnitudes> magnitude_results(const BlockDesign& design,
+                                                  const std::vector<results::AnswerRow>& answers);
+}  // namespace tapstudy::analysis

@@ -1,0 +1,108 @@
+#include "analysis/preferences/preference_results.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+#include "analysis/paired/thurstone.hpp"
+#include "core/error.hpp"
+namespace tapstudy::analysis {
+namespace {
+using results::AnswerRow;
+
+Eigen::Index place_of(const BlockDesign& design, const std::string& name) {
+  return std::ranges::find(design.stimuli, name, &Item::name) - design.stimuli.begin();
+}
+
+struct Comparison {
+  Eigen::Index preferred{};
+  Eigen::Index other{};
+  bool is_first{};  // the preferred one stood at position 0
+};
+
+Comparison comparison_of(const BlockDesign& design, const AnswerRow& answer) {
+  const auto refuse = [&](const char* what) {
+    throw core::InvalidInput{fmt::format("block '{}', {} in trial {}: {}", design.name,
+                                         answer.participant_id, answer.number, what)};
+  };
+  if (answer.alternatives.size() != 2) {
+    refuse("a comparison takes two alternatives");
+  }
+  const std::string& first = answer.alternatives[0].stimulus;
+  const std::string& second = answer.alternatives[1].stimulus;
+  const auto items = static_cast<Eigen::Index>(design.stimuli.size());
+  if (first == second || place_of(design, first) == items || place_of(design, second) == items) {
+    refuse("a comparison takes two different stimuli of the block");
+  }
+  if (answer.response != first && answer.response != second) {
+    refuse("the answer is neither of the two stimuli");
+  }
+  const bool is_of_first = answer.response == first;
+  return {place_of(design, answer.response), place_of(design, is_of_first ? second : first),
+          is_of_first == (answer.alternatives[0].position < answer.alternatives[1].position)};
+}
+
+PairedCounts no_counts(const BlockDesign& design) {
+  const auto items = static_cast<Eigen::Index>(design.stimuli.size());
+  return {Eigen::MatrixXi::Zero(items, items), {}};
+}
+
+void judge_consistency(ParticipantPreferences& person) {
+  const Eigen::MatrixXi& wins = person.counts.wins;
+  Eigen::MatrixXi is_preferred = Eigen::MatrixXi::Zero(wins.rows(), wins.cols());
+  if (wins.rows() < 3) {
+    person.no_consistency = "circular triads take three stimuli";
+    return;
+  }
+  for (Eigen::Index i = 0; i < wins.rows(); ++i) {
+    for (Eigen::Index j = 0; j < wins.cols(); ++j) {
+      is_preferred(i, j) = wins(i, j) > wins(j, i) ? 1 : 0;
+      if (i != j && wins(i, j) == wins(j, i)) {
+        person.no_consistency = wins(i, j) == 0 ? "not every pair was compared"
+                                                : "a pair was preferred as often either way";
+      }
+    }
+  }
+  if (person.no_consistency.empty()) {
+    person.consistency = consistency(is_preferred);
+  }
+}
+
+void add_scales(PreferenceResults& results) {
+  try {
+    results.bradley_terry = bradley_terry(results.counts).scale;
+    results.thurstone = thurstone_case_v(results.counts);
+  } catch (const core::InvalidInput& error) {  // comparisons that do not connect the items
+    results.bradley_terry.reset();
+    results.no_scale = error.what();
+  }
+}
+}  // namespace
+
+Proportion preferred(const PairedCounts& counts, Eigen::Index item) {
+  const std::int64_t wins = counts.wins.row(item).sum();
+  return {wins, wins + counts.wins.col(item).sum()};
+}
+
+PreferenceResults preference_results(const BlockDesign& design,
+                                     const std::vector<AnswerRow>& answers) {
+  PreferenceResults results;
+  results.counts = no_counts(design);
+  std::map<std::string, PairedCounts> people;
+  for (const AnswerRow& answer : answers) {
+    const Comparison comparison = comparison_of(design, answer);
+    PairedCounts& own = people.try_emplace(answer.participant_id, no_counts(design)).first->second;
+    ++own.wins(comparison.preferred, comparison.other);
+    ++results.counts.wins(comparison.preferred, comparison.other);
+    ++results.first_position.trials;
+    results.first_position.successes += comparison.is_first ? 1 : 0;
+  }
+  for (const auto& [name, counts] : people) {
+    results.participants.push_back({name, counts, {}, ""});
+    judge_consistency(results.participants.back());
+  }
+  add_scales(results);
+  return results;
+}
+}  // namespace tapstudy::analysis

@@ -1,0 +1,35 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "analysis/blocks/block_summary.hpp"
+#include "analysis/paired/bradley_terry.hpp"
+#include "analysis/paired/circular_triads.hpp"
+namespace tapstudy::analysis {
+// Answers to pairs of a block's stimuli: which of the two is preferred.
+
+struct ParticipantPreferences {
+  std::string participant_id;
+  PairedCounts counts;                     // in the order of the block's stimuli
+  std::optional<Consistency> consistency;  // by the more frequent answer to each pair
+  std::string no_consistency;              // why there is none; empty: there is
+};
+
+struct PreferenceResults {
+  std::vector<ParticipantPreferences> participants;  // by name
+  PairedCounts counts;                               // of all
+  Proportion first_position;                         // preferred what stood at position 0
+  std::optional<PreferenceScale> bradley_terry;
+  std::optional<PreferenceScale> thurstone;
+  std::string no_scale;  // why there is none; empty: there is
+};
+
+// How often an item was preferred, of its comparisons.
+Proportion preferred(const PairedCounts& counts, Eigen::Index item);
+
+// Throws InvalidInput for trials without two different stimuli of the block, and answers that are
+// neither of them.
+PreferenceResults preference_results(const BlockDesign& design,
+                                     const std::vector<results::AnswerRow>& answers);
+}  // namespace tapstudy::analysis

@@ -1,0 +1,168 @@
+#include "analysis/preferences/preference_summary.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "analysis/preferences/preference_results.hpp"
+#include "analysis/statistics/sign_test.hpp"
+#include "analysis/tables/tabular_summary.hpp"
+#include "core/error.hpp"
+namespace tapstudy::analysis {
+namespace {
+ReportTable scale_table(const BlockDesign& design, const PreferenceResults& results) {
+  const Column bradley = interval_column("Bradley-Terry (95 % CI)", "bradley_terry");
+  const Column thurstone = interval_column("Thurstone V (95 % CI)", "thurstone");
+  ReportTable table{"scale",
+                    "Scales of the stimuli, mean 0",
+                    {column("stimulus", "stimulus"), proportion_column("preferred", "preferred"),
+                     bradley, thurstone}};
+  for (std::size_t i = 0; i < design.stimuli.size(); ++i) {
+    const auto item = static_cast<Eigen::Index>(i);
+    const bool has_scale = results.no_scale.empty();
+    table.rows.push_back(
+        {word(design.stimuli[i].name), proportion(preferred(results.counts, item)),
+         has_scale
+             ? interval(results.bradley_terry->values[item], results.bradley_terry->intervals[i])
+             : nothing(bradley),
+         has_scale ? interval(results.thurstone->values[item], results.thurstone->intervals[i])
+                   : nothing(thurstone)});
+  }
+  return table;
+}
+
+ReportTable wins_table(const BlockDesign& design, const PreferenceResults& results) {
+  ReportTable table{"preferences",
+                    "How often the row's stimulus was preferred to the column's",
+                    {column("preferred", "preferred")}};
+  for (const Item& other : design.stimuli) {
+    table.columns.push_back(column("to " + other.name, "to_" + other.name));
+  }
+  for (std::size_t i = 0; i < design.stimuli.size(); ++i) {
+    std::vector<Cell> row{word(design.stimuli[i].name)};
+    for (std::size_t j = 0; j < design.stimuli.size(); ++j) {
+      row.push_back(i == j ? nothing(table.columns[j + 1])
+                           : count(results.counts.wins(static_cast<Eigen::Index>(i),
+                                                       static_cast<Eigen::Index>(j))));
+    }
+    table.rows.push_back(row);
+  }
+  return table;
+}
+
+ReportTable consistency_table(const PreferenceResults& results) {
+  ReportTable table{
+      "consistency",
+      "Consistency of the participants",
+      {column("participant", "participant_id"), column("circular triads", "circular_triads"),
+       column("most possible", "most_possible"), column("zeta", "zeta"),
+       column("not computed because", "not_computed_because")}};
+  for (const ParticipantPreferences& person : results.participants) {
+    std::vector<Cell> row{word(person.participant_id)};
+    if (const auto& found = person.consistency) {
+      row.insert(row.end(), {count(found->circular_triads), count(found->most_possible),
+                             number(found->zeta), nothing(table.columns.back(), "")});
+    } else {
+      row.insert(row.end(), {nothing(table.columns[1]), nothing(table.columns[2]),
+                             nothing(table.columns[3]), word(person.no_consistency)});
+    }
+    table.rows.push_back(row);
+  }
+  return table;
+}
+
+ReportTable participants_table(const BlockDesign& design, const PreferenceResults& results) {
+  ReportTable table{"participants",
+                    "Preferences of each participant",
+                    {column("participant", "participant_id"), column("stimulus", "stimulus"),
+                     proportion_column("preferred", "preferred")}};
+  table.is_for_programs = true;
+  for (const ParticipantPreferences& person : results.participants) {
+    for (std::size_t i = 0; i < design.stimuli.size(); ++i) {
+      table.rows.push_back({word(person.participant_id), word(design.stimuli[i].name),
+                            proportion(preferred(person.counts, static_cast<Eigen::Index>(i)))});
+    }
+  }
+  return table;
+}
+
+ReportTable position_table(const PreferenceResults& results) {
+  ReportTable table{
+      "position", "First position", {proportion_column("preferred the first", "first_preferred")}};
+  if (results.first_position.trials > 0) {
+    table.rows.push_back({proportion(results.first_position)});
+  }
+  return table;
+}
+
+std::vector<std::string> remarks_on(const BlockDesign& design, const PreferenceResults& results) {
+  if (results.participants.empty()) {
+    return {"There are no answers."};
+  }
+  std::vector<std::string> remarks;
+  if (results.no_scale.empty()) {
+    remarks.emplace_back(
+        "Scales by maximum likelihood, intervals of plus or minus 1.96 standard errors; both take "
+        "all answers as independent. Bradley-Terry: logarithms of abilities; Thurstone: standard "
+        "deviations of a difference.");
+  } else {
+    std::string items;
+    for (std::size_t i = 0; i < design.stimuli.size(); ++i) {
+      items += fmt::format("{}{} {}", i == 0 ? "" : ", ", i + 1, design.stimuli[i].name);
+    }
+    remarks.push_back(fmt::format("No scale: {}. Items: {}.", results.no_scale, items));
+  }
+  remarks.emplace_back(
+      "Circular triads: A preferred to B, B to C, C to A; zeta is 1 without them, 0 with as many "
+      "as "
+      "there can be (Kendall & Babington Smith 1940). Without a bias the first position is "
+      "preferred in half of the trials.");
+  return remarks;
+}
+
+HypothesisResult tested(const BlockDesign& design, const PreferenceResults& results,
+                        const PlannedHypothesis& planned) {
+  constexpr double half = 0.5;
+  HypothesisResult result{planned, "", {}, half, {}, 0.0};
+  const auto found = std::ranges::find(design.stimuli, planned.stimulus, &Item::name);
+  if (found == design.stimuli.end()) {
+    throw core::InvalidInput{
+        fmt::format("block '{}': hypothesis '{}' names no stimulus of the "
+                    "block",
+                    design.name, planned.name)};
+  }
+  std::vector<double> differences;
+  for (const ParticipantPreferences& person : results.participants) {
+    const Proportion own = preferred(person.counts, found - design.stimuli.begin());
+    differences.push_back(static_cast<double>(2 * own.successes - own.trials));
+  }
+  const SignTest test = sign_test(differences);
+  result.observed = test.above;
+  if (!design.premise.empty()) {
+    result.test = design.premise;
+  } else if (test.above.trials == 0) {
+    result.test = "no participant preferred it more or less often than in half its comparisons";
+  } else {
+    result.p = test.p;
+    result.test =
+        "exact sign test, one-sided, of participants who preferred it in more than half of its "
+        "comparisons; those with half are left out";
+  }
+  return result;
+}
+}  // namespace
+
+std::shared_ptr<const BlockSummary> summarise_preferences(const BlockDesign& design,
+                                                          const BlockRows& rows) {
+  const PreferenceResults results = preference_results(design, rows.answers);
+  auto summary = std::make_shared<TabularSummary>(design);
+  summary->parts = {scale_table(design, results), wins_table(design, results),
+                    position_table(results), consistency_table(results),
+                    participants_table(design, results)};
+  summary->remarks = remarks_on(design, results);
+  for (const PlannedHypothesis& planned : design.hypotheses) {
+    summary->hypotheses.push_back(tested(design, results, planned));
+  }
+  return summary;
+}
+}  // namespace tapstudy::analysis

@@ -1,0 +1,101 @@
+#include "analysis/rated/rating_results.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <map>
+
+#include "core/error.hpp"
+namespace tapstudy::analysis {
+namespace {
+using results::AnswerRow;
+// Of each stimulus, by its place in the block.
+using RatingsByStimulus = std::vector<std::vector<double>>;
+
+int step_of(const BlockDesign& design, const AnswerRow& answer) {
+  int step = 0;
+  const char* const end = answer.response.data() + answer.response.size();
+  const auto read = std::from_chars(answer.response.data(), end, step);
+  if (read.ec != std::errc{} || read.ptr != end || step < 1 || step > design.steps) {
+    throw core::InvalidInput{fmt::format(
+        "block '{}', {} in trial {}: a rating is a whole number "
+        "from 1 to {}, not '{}'",
+        design.name, answer.participant_id, answer.number, design.steps, answer.response)};
+  }
+  return step;
+}
+
+std::size_t stimulus_of(const BlockDesign& design, const AnswerRow& answer) {
+  const auto found = std::ranges::find(design.stimuli, answer.stimulus, &Item::name);
+  if (found == design.stimuli.end()) {
+    throw core::InvalidInput{fmt::format("block '{}', {} in trial {}: there is no stimulus '{}'",
+                                         design.name, answer.participant_id, answer.number,
+                                         answer.stimulus)};
+  }
+  return static_cast<std::size_t>(found - design.stimuli.begin());
+}
+
+StimulusRatings described(const std::string& name, const std::vector<double>& ratings, int steps) {
+  StimulusRatings result{name, std::vector<int>(static_cast<std::size_t>(steps)), {}};
+  for (const double rating : ratings) {
+    ++result.counts.at(static_cast<std::size_t>(rating) - 1);
+  }
+  if (!ratings.empty()) {
+    result.quartiles = quartiles(ratings);
+  }
+  return result;
+}
+
+void add_medians(RatingResults& results, const std::string& name,
+                 const RatingsByStimulus& ratings) {
+  if (std::ranges::any_of(ratings, &std::vector<double>::empty)) {
+    results.left_out.push_back(name);
+    return;
+  }
+  results.participants.push_back(name);
+  results.medians.emplace_back();
+  for (const std::vector<double>& of_stimulus : ratings) {
+    results.medians.back().push_back(quantile(of_stimulus, 0.5));
+  }
+}
+
+void add_tests(RatingResults& results) {
+  try {
+    results.friedman = friedman_test(results.medians);
+    results.pairwise = pairwise_signed_rank(results.medians);
+  } catch (const core::InvalidInput& error) {  // too few participants or stimuli, or all alike
+    results.no_tests = error.what();
+  }
+}
+}  // namespace
+
+RatingResults rating_results(const BlockDesign& design, const std::vector<AnswerRow>& answers) {
+  if (design.steps < 2) {
+    throw core::InvalidInput{fmt::format("block '{}': a rating has two steps or more, not {}",
+                                         design.name, design.steps)};
+  }
+  const RatingsByStimulus none(design.stimuli.size());
+  RatingsByStimulus all = none;
+  std::map<std::string, RatingsByStimulus> people;
+  for (const AnswerRow& answer : answers) {
+    const std::size_t stimulus = stimulus_of(design, answer);
+    const int step = step_of(design, answer);
+    all[stimulus].push_back(step);
+    people.try_emplace(answer.participant_id, none).first->second[stimulus].push_back(step);
+  }
+  RatingResults results;
+  for (std::size_t i = 0; i < design.stimuli.size(); ++i) {
+    results.stimuli.push_back(described(design.stimuli[i].name, all[i], design.steps));
+  }
+  for (const auto& [name, ratings] : people) {
+    add_medians(results, name, ratings);
+  }
+  if (design.premise.empty()) {
+    add_tests(results);
+  } else {
+    results.no_tests = design.premise;
+  }
+  return results;
+}
+}  // namespace tapstudy::analysis

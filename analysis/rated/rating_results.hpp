@@ -1,0 +1,32 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "analysis/blocks/block_summary.hpp"
+#include "analysis/ratings/friedman.hpp"
+#include "analysis/ratings/signed_rank.hpp"
+#include "analysis/statistics/quantiles.hpp"
+namespace tapstudy::analysis {
+// Ratings from 1 to design.steps of one presented stimulus a trial.
+struct StimulusRatings {
+  std::string stimulus;
+  std::vector<int> counts;             // of each step, from 1
+  std::optional<Quartiles> quartiles;  // of all ratings; unset if there are none
+};
+
+struct RatingResults {
+  std::vector<StimulusRatings> stimuli;   // in the order of the block's
+  std::vector<std::string> participants;  // who rated every stimulus
+  std::vector<std::string> left_out;      // who did not
+  RatingTable medians;                    // of each participant's ratings of each stimulus
+  std::optional<FriedmanTest> friedman;   // of the medians
+  std::vector<PairwiseTest> pairwise;     // of the medians; empty where there is no Friedman test
+  std::string no_tests;                   // why there are none; empty: there are
+};
+
+// Throws InvalidInput for fewer than two steps, answers that are no step, and stimuli that the
+// block does not have.
+RatingResults rating_results(const BlockDesign& design,
+                             const std::vector<results::AnswerRow>& answers);
+}  // namespace tapstudy::analysis

@@ -1,0 +1,168 @@
+#include <catch2/catch.hpp>
+#include <random>
+
+#include "analysis/detection/decision_model.hpp"
+#include "analysis/detection/rates.hpp"
+#include "analysis/statistics/distributions.hpp"
+#include "core/error.hpp"
+#include "support/formats.hpp"
+#include "support/r_program.hpp"
+using namespace tapstudy;
+using namespace tapstudy::analysis;
+using Catch::Matchers::Contains;
+using testing::r_numbers;
+using testing::reported;
+
+namespace {
+constexpr const char* statistic = "discrimination";
+
+BlockDesign design_of(const std::string& model, int alternatives) {
+  BlockDesign design;
+  design.name = "block";
+  design.decision_model = model;
+  design.guess_rate = 1.0 / alternatives;
+  design.hypotheses = {{"h1", "Participants tell them apart.", ""}};
+  return design;
+}
+
+results::AnswerRow answer_of(const std::string& participant, bool is_different, bool is_correct) {
+  results::AnswerRow answer;
+  answer.participant_id = participant;
+  answer.is_correct = is_correct;
+  answer.alternatives = {{0, "A", "steel"}, {1, "B", is_different ? "wood" : "steel"}};
+  return answer;
+}
+
+// k right answers in n
+void add(std::vector<results::AnswerRow>& answers, const std::string& participant, int k, int n,
+         bool is_different = true) {
+  for (int i = 0; i < n; ++i) {
+    answers.push_back(answer_of(participant, is_different, i < k));
+  }
+}
+}  // namespace
+
+TEST_CASE("each participant is tested by the exact binomial test, all by a t test over them",
+          "[analysis][discrimination]") {
+  std::vector<results::AnswerRow> answers;
+  add(answers, "a", 18, 30);
+  add(answers, "b", 9, 30);
+  add(answers, "c", 22, 30);
+  const auto json = reported(statistic, design_of("oddity", 3), answers).json;
+  const auto r = r_numbers(
+      "out(binom.test(18, 30, 1/3, 'greater')$p.value);"
+      "out(t.test(c(18, 9, 22) / 30, mu = 1/3, alternative = 'greater')$p.value)");
+  CHECK(json["participants"][0]["p"].get<double>() == Approx(r[0]).epsilon(1e-9));
+  CHECK(json["hypotheses"][0]["p"].get<double>() == Approx(r[1]).epsilon(1e-9));
+  CHECK(json["all"][0]["correct"] == 49);
+  CHECK(json["all"][0]["correct_of"] == 90);
+}
+
+TEST_CASE("d' is that of the decision model, its mean has R's interval",
+          "[analysis][discrimination]") {
+  std::vector<results::AnswerRow> answers;
+  const std::vector<int> right{18, 25, 22};
+  std::vector<double> d_primes;
+  for (std::size_t i = 0; i < right.size(); ++i) {
+    add(answers, std::string(1, static_cast<char>('a' + i)), right[i], 30);
+    d_primes.push_back(sensitivity({DecisionModel::oddity, 3}, {right[i], 30}).d_prime);
+  }
+  const auto json = reported(statistic, design_of("oddity", 3), answers).json;
+  const Sensitivity first = sensitivity({DecisionModel::oddity, 3}, {18, 30});
+  CHECK(json["participants"][0]["d_prime"].get<double>() == Approx(first.d_prime));
+  CHECK(json["participants"][0]["d_prime_high"].get<double>() == Approx(first.interval.high));
+  const auto r =
+      r_numbers("x <- " + testing::r_vector(d_primes) + "; out(mean(x), t.test(x)$conf.int)");
+  CHECK(json["all"][0]["mean_d_prime"].get<double>() == Approx(r[0]).epsilon(1e-9));
+  CHECK(json["all"][0]["mean_d_prime_low"].get<double>() == Approx(r[1]).epsilon(1e-9));
+  CHECK(json["all"][0]["mean_d_prime_high"].get<double>() == Approx(r[2]).epsilon(1e-9));
+}
+
+TEST_CASE("the upper tail of Student's t is R's", "[analysis][discrimination]") {
+  for (const double t : {-2.5, 0.0, 1.3, 6.0}) {
+    const auto r = r_numbers(fmt::format("out(pt({}, 7, lower.tail = FALSE))", t));
+    CHECK(t_p_at_least(t, 7.0) == Approx(r[0]).epsilon(1e-10));
+  }
+}
+
+TEST_CASE(
+    "same-different: hits are right answers to different pairs, false alarms wrong ones to "
+    "same pairs",
+    "[analysis][discrimination]") {
+  std::vector<results::AnswerRow> answers;
+  add(answers, "a", 30, 40, true);
+  add(answers, "a", 28, 40, false);
+  const auto json =
+      reported(statistic, design_of("same_different_independent_observation", 2), answers).json;
+  CHECK(json["rates"][0]["hits"] == 30);
+  CHECK(json["rates"][0]["false_alarms"] == 12);
+  CHECK(json["rates"][0]["false_alarms_of"] == 40);
+  const double hit_rate = 30.5 / 41.0;
+  const double false_alarm_rate = 12.5 / 41.0;
+  const auto& row = json["sensitivity_by_rates"][0];
+  CHECK(row["d_prime_differencing"].get<double>() ==
+        Approx(same_different_differencing(hit_rate, false_alarm_rate).d_prime));
+  CHECK(row["d_prime_independent"].get<double>() ==
+        Approx(same_different_independent(hit_rate, false_alarm_rate).d_prime));
+  const auto r = r_numbers("out(-(qnorm(30.5 / 41) + qnorm(12.5 / 41)) / 2)");
+  CHECK(row["criterion"].get<double>() == Approx(r[0]).epsilon(1e-9));
+}
+
+TEST_CASE("the sensitivity of a simulated differencing observer lies near the one assumed",
+          "[analysis][discrimination]") {
+  std::mt19937_64 generator{5};
+  std::normal_distribution<double> noise;
+  std::vector<results::AnswerRow> answers;
+  for (int i = 0; i < 20000; ++i) {
+    const bool is_different = i % 2 == 0;
+    const double difference = noise(generator) - noise(generator) + (is_different ? 2.0 : 0.0);
+    answers.push_back(answer_of("a", is_different, is_different == (std::abs(difference) > 1.5)));
+  }
+  const auto json = reported(statistic, design_of("", 2), answers).json;
+  CHECK(json["sensitivity_by_rates"][0]["d_prime_differencing"].get<double>() ==
+        Approx(2.0).epsilon(0.05));
+  CHECK(json["participants"][0]["d_prime"].is_null());
+}
+
+TEST_CASE("alternatives that differ in a value only are different", "[analysis][discrimination]") {
+  std::vector<results::AnswerRow> answers;
+  add(answers, "a", 5, 8, false);
+  answers[0].alternatives[0].axis_values = {{"density_kg_m3", 1.0}};
+  answers[0].alternatives[1].axis_values = {{"density_kg_m3", 2.0}};
+  const auto json = reported(statistic, design_of("", 2), answers).json;
+  CHECK(json["rates"][0]["hits_of"] == 1);
+  CHECK(json["rates"][0]["false_alarms_of"] == 7);
+}
+
+TEST_CASE("a test that cannot be made says why", "[analysis][discrimination]") {
+  std::vector<results::AnswerRow> answers;
+  add(answers, "a", 5, 8);
+  BlockDesign design = design_of("oddity", 3);
+  CHECK_THAT(reported(statistic, design, answers).text, Contains("takes two or more"));
+  add(answers, "b", 5, 8);
+  CHECK_THAT(reported(statistic, design, answers).text, Contains("no spread"));
+  design.premise = "it is assumed";
+  const auto formats = reported(statistic, design, answers);
+  CHECK_THAT(formats.text, Contains("not tested: it is assumed"));
+  CHECK(formats.json["participants"][0]["p"].is_null());
+  CHECK_THAT(reported(statistic, design_of("oddity", 3), {}).text,
+             Contains("there are no answers"));
+}
+
+TEST_CASE("discrimination refuses what it cannot count and says what it assumes",
+          "[analysis][discrimination]") {
+  std::vector<results::AnswerRow> answers;
+  add(answers, "a", 8, 8);
+  add(answers, "b", 1, 8);
+  CHECK_THROWS_AS(reported(statistic, design_of("unknown", 2), answers), core::InvalidInput);
+  CHECK_THROWS_AS(reported(statistic, design_of("abx_differencing", 3), answers),
+                  core::InvalidInput);
+  const auto formats = reported(statistic, design_of("abx_differencing", 2), answers);
+  CHECK_THAT(formats.text, Contains("as independent"));
+  CHECK_THAT(formats.html, Contains("a: all right: d&#39; of") || Contains("a: all right: d' of"));
+  CHECK_THAT(formats.text, Contains("b: below chance: d' is 0."));
+  CHECK(formats.json["participants"][0]["d_prime_high"] == "inf");
+  CHECK(testing::longest_line(formats.text) <= 100);
+  answers[0].is_correct.reset();
+  CHECK_THROWS_AS(reported(statistic, design_of("", 2), answers), core::InvalidInput);
+}

@@ -1,0 +1,165 @@
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <random>
+
+#include "analysis/paired/bradley_terry.hpp"
+#include "analysis/paired/thurstone.hpp"
+#include "core/error.hpp"
+#include "support/formats.hpp"
+#include "support/r_program.hpp"
+using namespace tapstudy;
+using namespace tapstudy::analysis;
+using Catch::Matchers::Contains;
+using testing::r_numbers;
+using testing::reported;
+
+namespace {
+constexpr const char* statistic = "paired";
+const std::vector<std::string> names{"steel", "wood", "rubber", "glass"};
+
+BlockDesign design_of(std::size_t stimuli) {
+  BlockDesign design;
+  design.name = "pairs";
+  for (std::size_t i = 0; i < stimuli; ++i) {
+    design.stimuli.push_back({names[i], names[i], {}});
+  }
+  return design;
+}
+
+results::AnswerRow answer_of(const std::string& participant, const std::string& first,
+                             const std::string& second, bool is_first) {
+  results::AnswerRow answer;
+  answer.participant_id = participant;
+  answer.alternatives = {{0, "A", first}, {1, "B", second}};
+  answer.response = is_first ? first : second;
+  return answer;
+}
+
+// P(first) = 1 / (1 + exp(second - first)) of values 0.9, 0.3, -0.3, -0.9
+std::vector<results::AnswerRow> judges(int people, int repetitions, std::uint64_t seed) {
+  std::mt19937_64 generator{seed};
+  std::vector<results::AnswerRow> answers;
+  for (int person = 0; person < people; ++person) {
+    for (int repetition = 0; repetition < repetitions; ++repetition) {
+      for (std::size_t i = 0; i < names.size(); ++i) {
+        for (std::size_t j = 0; j < names.size(); ++j) {
+          if (i != j) {
+            const double distance = 0.6 * (static_cast<double>(i) - static_cast<double>(j));
+            const bool is_first =
+                std::bernoulli_distribution{1.0 / (1.0 + std::exp(distance))}(generator);
+            answers.push_back(
+                answer_of("p" + std::to_string(person), names[i], names[j], is_first));
+          }
+        }
+      }
+    }
+  }
+  return answers;
+}
+}  // namespace
+
+TEST_CASE("the report's scales are those of the counted preferences and hold the assumed values",
+          "[analysis][preferences]") {
+  const auto answers = judges(10, 10, 3);
+  PairedCounts counts{Eigen::MatrixXi::Zero(4, 4), {}};
+  const auto place = [](const std::string& name) {
+    return std::ranges::find(names, name) - names.begin();
+  };
+  for (const results::AnswerRow& answer : answers) {
+    const bool is_first = answer.response == answer.alternatives[0].stimulus;
+    ++counts.wins(place(answer.response), place(answer.alternatives[is_first ? 1 : 0].stimulus));
+  }
+  const auto json = reported(statistic, design_of(4), answers).json;
+  const BradleyTerry scale = bradley_terry(counts);
+  const PreferenceScale thurstone = thurstone_case_v(counts);
+  for (std::size_t i = 0; i < 4; ++i) {
+    const auto& row = json["scale"][i];
+    const auto item = static_cast<Eigen::Index>(i);
+    CHECK(row["bradley_terry"].get<double>() == Approx(scale.scale.values[item]));
+    CHECK(row["bradley_terry_low"].get<double>() == Approx(scale.scale.intervals[i].low));
+    CHECK(row["thurstone_high"].get<double>() == Approx(thurstone.intervals[i].high));
+    CHECK(row["bradley_terry"].get<double>() ==
+          Approx(0.9 - 0.6 * static_cast<double>(i)).margin(0.25));
+    CHECK(row["preferred"] == counts.wins.row(item).sum());
+    CHECK(row["preferred_of"] == 600);
+  }
+  CHECK(json["preferences"][1]["to_rubber"] == counts.wins(1, 2));
+  CHECK(json["preferences"][1]["to_wood"].is_null());
+}
+
+TEST_CASE("where comparisons do not connect the stimuli there is no scale, and the report says so",
+          "[analysis][preferences]") {
+  std::vector<results::AnswerRow> answers{answer_of("a", "steel", "wood", true),
+                                          answer_of("a", "wood", "rubber", true),
+                                          answer_of("a", "steel", "rubber", true)};
+  const auto formats = reported(statistic, design_of(3), answers);
+  CHECK(formats.json["scale"][0]["bradley_terry"].is_null());
+  CHECK(formats.json["scale"][0]["thurstone"].is_null());
+  CHECK_THAT(formats.text, Contains("No scale: comparisons do not connect the items"));
+  CHECK_THAT(formats.text, Contains("2 wood"));
+  CHECK(testing::longest_line(formats.text) <= 100);
+}
+
+TEST_CASE("a judge's circular triads are counted where every pair has one answer",
+          "[analysis][preferences]") {
+  std::vector<results::AnswerRow> circle{answer_of("a", "steel", "wood", true),
+                                         answer_of("a", "wood", "rubber", true),
+                                         answer_of("a", "rubber", "steel", true)};
+  auto json = reported(statistic, design_of(3), circle).json;
+  CHECK(json["consistency"][0]["circular_triads"] == 1);
+  CHECK(json["consistency"][0]["zeta"] == 0.0);
+  circle.pop_back();
+  json = reported(statistic, design_of(3), circle).json;
+  CHECK(json["consistency"][0]["zeta"].is_null());
+  CHECK(json["consistency"][0]["not_computed_because"] == "not every pair was compared");
+  circle.push_back(answer_of("a", "rubber", "steel", true));
+  circle.push_back(answer_of("a", "rubber", "steel", false));
+  json = reported(statistic, design_of(3), circle).json;
+  CHECK(json["consistency"][0]["not_computed_because"] ==
+        "a pair was preferred as often either way");
+}
+
+TEST_CASE(
+    "the share of the first position counts position 0, whichever alternative is listed first",
+    "[analysis][preferences]") {
+  std::vector<results::AnswerRow> answers{
+      answer_of("a", "steel", "wood", true), answer_of("a", "steel", "wood", true),
+      answer_of("a", "wood", "steel", true), answer_of("a", "steel", "wood", false)};
+  std::swap(answers[0].alternatives[0].position, answers[0].alternatives[1].position);
+  const auto json = reported(statistic, design_of(2), answers).json;
+  CHECK(json["position"][0]["first_preferred"] == 2);
+  CHECK(json["position"][0]["first_preferred_of"] == 4);
+}
+
+TEST_CASE("a claim of preference is tested by the participants' signs", "[analysis][preferences]") {
+  BlockDesign design = design_of(2);
+  design.hypotheses = {{"h", "Steel is preferred.", "steel"}};
+  std::vector<results::AnswerRow> answers;
+  for (int person = 0; person < 9; ++person) {
+    for (int i = 0; i < 4; ++i) {  // seven prefer steel, one wood, one neither
+      const bool is_steel = person < 7 ? i < 3 : (person == 7 ? i < 1 : i < 2);
+      answers.push_back(answer_of("p" + std::to_string(person), "steel", "wood", is_steel));
+    }
+  }
+  const auto json = reported(statistic, design, answers).json;
+  CHECK(json["hypotheses"][0]["observed"]["successes"] == 7);
+  CHECK(json["hypotheses"][0]["observed"]["trials"] == 8);
+  const auto r = r_numbers("out(binom.test(7, 8, 0.5, 'greater')$p.value)");
+  CHECK(json["hypotheses"][0]["p"].get<double>() == Approx(r[0]).epsilon(1e-9));
+  design.premise = "it is assumed";
+  CHECK(reported(statistic, design, answers).json["hypotheses"][0]["p"].is_null());
+  design.hypotheses = {{"h", "Gold is preferred.", "gold"}};
+  CHECK_THROWS_AS(reported(statistic, design, answers), core::InvalidInput);
+}
+
+TEST_CASE("comparisons take two stimuli of the block and one of them as the answer",
+          "[analysis][preferences]") {
+  CHECK_THROWS_AS(reported(statistic, design_of(2), {answer_of("a", "steel", "gold", true)}),
+                  core::InvalidInput);
+  CHECK_THROWS_AS(reported(statistic, design_of(2), {answer_of("a", "steel", "steel", true)}),
+                  core::InvalidInput);
+  auto neither = answer_of("a", "steel", "wood", true);
+  neither.response = "both";
+  CHECK_THROWS_AS(reported(statistic, design_of(2), {neither}), core::InvalidInput);
+  CHECK_THAT(reported(statistic, design_of(2), {}).text, Contains("There are no answers"));
+}

@@ -83,10 +83,11 @@ std::string methods(const Summary& summary) {
   std::string text = fmt::format("{} participant{} ({}). ", summary.participants,
                                  summary.participants == 1 ? "" : "s", summary.modes);
   text +=
-      "Intervals are 95 % score intervals (Wilson 1927); pooled over participants they treat "
-      "answers as independent. Accuracy is tested by drawing the orders of presentation again as "
-      "the study drew them, choices by the exact binomial and multinomial distributions, one vote "
-      "a participant. ";
+      "Intervals of proportions are 95 % score intervals (Wilson 1927); pooled over participants "
+      "they treat answers as independent. Accuracy of identification is tested by drawing the "
+      "orders of presentation again as the study drew them, choices by the exact binomial and "
+      "multinomial distributions, one vote a participant; other statistics state their methods "
+      "with their results. ";
   if (summary.loop) {
     text += fmt::format(
         "The haptic loop made {} ticks; {} were late, {} were skipped, and {} force samples were "

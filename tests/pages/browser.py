@@ -3,6 +3,7 @@
 Knows only the pages' URLs. AXE_CORE in the environment names axe.min.js. Every wait ends with an error that says what was on the page.
 """
 import os
+import re
 import time
 from pathlib import Path
 
@@ -185,7 +186,8 @@ def feel_by_mouse(driver, index):
 
 
 def feel_by_keyboard(driver, index):
-    press(driver, find_all(driver, ".feel")[index].text.split()[-1].lower())
+    label = re.search(r"\b[A-Z]\b", find_all(driver, "#screen .feel")[index].text).group()
+    press(driver, label.lower())
     wait_until(driver, f"alternative {index} to be felt", lambda: current_screen(driver)["felt"] == index)
 
 

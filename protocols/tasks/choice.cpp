@@ -1,20 +1,17 @@
 #include "protocols/protocol.hpp"
+#include "protocols/tasks/preference_task.hpp"
 #include "protocols/tasks/shipped_tasks.hpp"
-#include "protocols/tasks/task_parts.hpp"
 #include "protocols/yaml/yaml_reader.hpp"
 namespace tapstudy::protocols {
 namespace {
-class Choice final : public Task {
+class Choice final : public PreferenceTask {
  public:
   std::string_view name() const override { return "choice"; }
   std::string_view statistic(const Block& /*block*/) const override { return "choices"; }
   Claim claim() const override { return Claim::chosen_above_chance; }
-  bool needs_reference() const override { return true; }
-  bool has_correct_answer() const override { return false; }
   bool uses_order() const override { return false; }
   bool can_present_real_plates() const override { return false; }
   bool is_random(const Block& /*block*/) const override { return true; }
-  int counted_answers(const Block& /*block*/) const override { return 1; }  // a vote
   std::string_view success() const override { return "choose the expected one"; }
 
   void read(MapReader& reader, const Protocol& /*protocol*/, Block& block) const override {
@@ -60,15 +57,7 @@ class Choice final : public Task {
     }
     return labels;
   }
-  std::optional<bool> is_correct(const PlannedTrial& /*trial*/, const Block& /*block*/,
-                                 const std::string& /*response*/) const override {
-    return std::nullopt;
-  }
 
-  std::vector<Remembered> remembered(const Block& /*block*/,
-                                     const Simulation& simulation) const override {
-    return {{simulation.observer.reference, simulation.observer.reference}};
-  }
   int visits(const Block& block, const SimulatedTapSettings& taps) const override {
     return taps.visits * static_cast<int>(block.stimuli.size());
   }

@@ -1,20 +1,17 @@
+#include "protocols/tasks/preference_task.hpp"
 #include "protocols/tasks/shipped_tasks.hpp"
-#include "protocols/tasks/task_parts.hpp"
 #include "protocols/yaml/yaml_reader.hpp"
 namespace tapstudy::protocols {
 namespace {
 // Which of the two? All pairs of the stimuli, each in either order equally often.
-class Paired final : public Task {
+class Paired final : public PreferenceTask {
  public:
   std::string_view name() const override { return "paired"; }
   std::string_view statistic(const Block& /*block*/) const override { return "paired"; }
   Claim claim() const override { return Claim::chosen_above_chance; }
-  bool needs_reference() const override { return true; }
-  bool has_correct_answer() const override { return false; }
   bool uses_order() const override { return false; }
   bool can_present_real_plates() const override { return false; }
   bool is_random(const Block& /*block*/) const override { return true; }
-  int counted_answers(const Block& /*block*/) const override { return 1; }
   std::string_view success() const override { return "prefer the expected one"; }
 
   void read(MapReader& reader, const Protocol& /*protocol*/, Block& block) const override {
@@ -52,14 +49,6 @@ class Paired final : public Task {
   }
   std::vector<std::string> alternative_labels(const PlannedTrial& trial) const override {
     return blind_labels(trial);
-  }
-  std::optional<bool> is_correct(const PlannedTrial& /*trial*/, const Block& /*block*/,
-                                 const std::string& /*response*/) const override {
-    return std::nullopt;
-  }
-  std::vector<Remembered> remembered(const Block& /*block*/,
-                                     const Simulation& simulation) const override {
-    return {{simulation.observer.reference, simulation.observer.reference}};
   }
   int visits(const Block& /*block*/, const SimulatedTapSettings& taps) const override {
     return 2 * taps.visits;

@@ -2,24 +2,21 @@
 #include <cmath>
 
 #include "protocols/ordering.hpp"
+#include "protocols/tasks/preference_task.hpp"
 #include "protocols/tasks/shipped_tasks.hpp"
-#include "protocols/tasks/task_parts.hpp"
 #include "protocols/yaml/yaml_reader.hpp"
 namespace tapstudy::protocols {
 namespace {
 // How real (hard, pleasant ...) is it, from 1 to so many steps?
-class Rating final : public Task {
+class Rating final : public PreferenceTask {
  public:
   std::string_view name() const override { return "rating"; }
   std::string_view statistic(const Block& /*block*/) const override { return "ratings"; }
   Claim claim() const override { return Claim::rated_highest; }
-  bool needs_reference() const override { return true; }
-  bool has_correct_answer() const override { return false; }
   bool has_chance_level() const override { return false; }
   bool uses_order() const override { return true; }
   bool can_present_real_plates() const override { return true; }
   bool is_random(const Block& block) const override { return block.order != Order::listed; }
-  int counted_answers(const Block& /*block*/) const override { return 1; }
   std::string_view success() const override { return "be the highest"; }
 
   void read(MapReader& reader, const Protocol& /*protocol*/, Block& block) const override {
@@ -58,14 +55,6 @@ class Rating final : public Task {
   }
   std::vector<std::string> alternative_labels(const PlannedTrial& /*trial*/) const override {
     return {};
-  }
-  std::optional<bool> is_correct(const PlannedTrial& /*trial*/, const Block& /*block*/,
-                                 const std::string& /*response*/) const override {
-    return std::nullopt;
-  }
-  std::vector<Remembered> remembered(const Block& /*block*/,
-                                     const Simulation& simulation) const override {
-    return {{simulation.observer.reference, simulation.observer.reference}};
   }
   int visits(const Block& /*block*/, const SimulatedTapSettings& /*taps*/) const override {
     return 1;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <filesystem>
 #include <map>
 #include <sstream>
 
@@ -142,6 +143,25 @@ TEST_CASE("a session that is resumed in an adaptive track goes on with the same 
   const std::string uninterrupted = levels(whole);
   CHECK(std::ranges::count(uninterrupted, '\n') == 8);
   CHECK(levels(parts) == uninterrupted);
+}
+
+TEST_CASE("every shipped example is simulated and reported", "[end_to_end][slow]") {
+  int examples = 0;
+  for (const auto& entry : std::filesystem::directory_iterator{testing::shipped("examples")}) {
+    CAPTURE(entry.path().filename().string());
+    const TempDirectory directory;
+    ++examples;
+    const auto simulated = testing::tapstudy({"simulate", entry.path().string(), "--participants",
+                                              "3", "--seed", "2", "--out", directory / "study"});
+    INFO(simulated.standard_error);
+    REQUIRE(simulated.exit_code == 0);
+    CHECK(sql(directory, "PRAGMA foreign_key_check") == "");
+    const auto report = testing::tapstudy({"report", directory / "study"});
+    INFO(report.standard_error);
+    CHECK(report.exit_code == 0);
+    CHECK_THAT(report.standard_output, Contains("sim-01"));
+  }
+  CHECK(examples >= 4);
 }
 
 TEST_CASE("what cannot be compared is refused at its line", "[end_to_end]") {

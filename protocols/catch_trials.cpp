@@ -13,19 +13,28 @@ std::optional<CatchTrials> read_catch_trials(MapReader& reader, const Protocol& 
   reader.map("catch_trials", MapReader::Presence::optional, [&](MapReader& inner) {
     CatchTrials trials;
     trials.count = inner.integer("count", 1, 1000);
-    inner.each_text("expected", MapReader::Presence::required,
-                    [&](const std::string& stimulus, const std::string& answer) {
-                      const auto names = stimulus_names(protocol);
-                      if (std::ranges::find(names, stimulus) == names.end()) {
-                        inner.reject("expected", fmt::format("'{}' is no stimulus", stimulus));
-                      }
-                      if (std::ranges::find(block.responses, answer) == block.responses.end()) {
-                        inner.reject("expected",
-                                     fmt::format("'{}' cannot be answered (one of: {})", answer,
+    inner.each_text(
+        "expected", MapReader::Presence::required,
+        [&](const std::string& stimulus, const std::string& answer) {
+          const auto names = stimulus_names(protocol);
+          if (std::ranges::find(names, stimulus) == names.end()) {
+            inner.reject("expected", fmt::format("'{}' is no stimulus", stimulus));
+          }
+          if (std::ranges::find(block.responses, answer) == block.responses.end()) {
+            inner.reject("expected", fmt::format("'{}' cannot be answered (one of: {})", answer,
                                                  fmt::join(block.responses, ", ")));
-                      }
-                      trials.expected[stimulus] = answer;
-                    });
+          }
+          const auto right = block.right_response.find(stimulus);
+          if (right != block.right_response.end() && right->second != answer) {
+            inner.reject("expected", fmt::format("'{}' is presented in the block, where "
+                                                 "'{}' is right",
+                                                 stimulus, right->second));
+          }
+          trials.expected[stimulus] = answer;
+        });
+    if (trials.expected.empty()) {
+      inner.reject("expected", "names no stimulus");
+    }
     found = trials;
   });
   return found;
@@ -33,7 +42,7 @@ std::optional<CatchTrials> read_catch_trials(MapReader& reader, const Protocol& 
 
 std::vector<PlannedTrial> with_catch_trials(std::vector<PlannedTrial> trials, const Block& block,
                                             const Draw& draw) {
-  if (!block.catch_trials || trials.empty()) {
+  if (!block.catch_trials || block.catch_trials->expected.empty() || trials.empty()) {
     return trials;
   }
   core::Rng rng{core::derived_seed(draw.catch_seed, core::Purpose::catch_trials, draw.block_index)};

@@ -27,4 +27,16 @@ const Stimulus& Protocol::stimulus(const std::string& name) const {
 const Block& Protocol::block(const std::string& name) const {
   return named(blocks, name, "block");
 }
+
+std::vector<std::string> all_presented(const Block& block) {
+  std::vector<std::string> names = block.stimuli;
+  if (block.catch_trials) {
+    for (const auto& [name, answer] : block.catch_trials->expected) {
+      if (std::ranges::find(names, name) == names.end()) {
+        names.push_back(name);
+      }
+    }
+  }
+  return names;
+}
 }  // namespace tapstudy::protocols

@@ -165,6 +165,9 @@ struct Block {
   int max_late_impact_repeats{0};  // of a trial with an impact just after a late tick
 };
 
+// Its stimuli, and those of its catch trials.
+std::vector<std::string> all_presented(const Block& block);
+
 // A pre-registered hypothesis; reports treat only these as planned tests.
 struct Hypothesis {
   std::string name;

@@ -128,6 +128,18 @@ void read_practice(MapReader& reader, Block& block) {
   }
 }
 
+// Two answers that read alike cannot be told apart by who gives them.
+void check_labels_differ(MapReader& reader, const Protocol& protocol, const Block& block) {
+  std::map<std::string, std::string> name_of_label;
+  for (const Option& option : block.task->options(block, protocol)) {
+    const auto [known, is_new] = name_of_label.emplace(option.label, option.name);
+    if (!is_new) {
+      reader.reject(fmt::format("the answers '{}' and '{}' have the same label, '{}'",
+                                known->second, option.name, option.label));
+    }
+  }
+}
+
 void check_criterion(MapReader& reader, const Block& block) {
   if (!block.criterion) {
     return;
@@ -135,7 +147,10 @@ void check_criterion(MapReader& reader, const Block& block) {
   if (!block.task->has_correct_answer()) {
     reader.reject("criterion", fmt::format("no answer is right in a {} block", block.task->name()));
   }
-  if (planned_trials(block) < block.criterion->of_last) {
+  if (block.comparison) {
+    reader.reject("criterion",
+                  "is for trials that are planned: procedures may end before it is met");
+  } else if (planned_trials(block) < block.criterion->of_last) {
     reader.reject("criterion", fmt::format("the block has {} trials, fewer than of_last",
                                            planned_trials(block)));
   }
@@ -152,7 +167,7 @@ void check_presented(MapReader& reader, const Protocol& protocol, const Block& b
                                            block.task->name()));
   }
   std::map<std::pair<const Plate*, const Material*>, std::string> stimulus_of;
-  for (const std::string& name : block.stimuli) {
+  for (const std::string& name : all_presented(block)) {
     const auto stimulus = std::ranges::find(protocol.stimuli, name, &Stimulus::name);
     if (stimulus == protocol.stimuli.end()) {
       continue;  // rejected already
@@ -190,12 +205,15 @@ Block read_block(MapReader& reader, const Protocol& protocol) {
       "virtual");
   block.explore = read_explore(reader, block.presented);
   read_asides(reader, block);
-  check_presented(reader, protocol, block);
   block.allows_correction = reader.yes_or_no("correction", false);
   block.forms_after = read_form_names(reader, "forms_after", protocol);
   block.max_late_impact_repeats = reader.integer("max_late_impact_repeats", 0, 10, 0);
   if (block.task != nullptr) {
     block.task->read(reader, protocol, block);
+    check_presented(reader, protocol, block);
+    if (block.gives_feedback && block.allows_correction) {
+      reader.reject("correction", "would be of an answer whose right one was told by feedback");
+    }
     if (block.gives_feedback && !block.task->has_correct_answer()) {
       reader.reject("feedback",
                     fmt::format("no answer is right in a {} block", block.task->name()));
@@ -212,6 +230,7 @@ Block read_block(MapReader& reader, const Protocol& protocol) {
 void check_block(MapReader& reader, const Block& block, const Protocol& protocol) {
   if (block.task != nullptr && !block.stimuli.empty()) {
     check_constraints(reader, block);
+    check_labels_differ(reader, protocol, block);
     check_criterion(reader, block);
   }
   if (std::ranges::find(protocol.blocks, block.name, &Block::name) != protocol.blocks.end()) {

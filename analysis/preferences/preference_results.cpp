@@ -48,24 +48,28 @@ PairedCounts no_counts(const BlockDesign& design) {
   return {Eigen::MatrixXi::Zero(items, items), {}};
 }
 
-void judge_consistency(ParticipantPreferences& person) {
-  const Eigen::MatrixXi& wins = person.counts.wins;
-  Eigen::MatrixXi is_preferred = Eigen::MatrixXi::Zero(wins.rows(), wins.cols());
+// Why a judge's answers do not decide every pair; empty: they do.
+std::string undecided(const Eigen::MatrixXi& wins) {
   if (wins.rows() < 3) {
-    person.no_consistency = "circular triads take three stimuli";
-    return;
+    return "circular triads take three stimuli";
   }
   for (Eigen::Index i = 0; i < wins.rows(); ++i) {
-    for (Eigen::Index j = 0; j < wins.cols(); ++j) {
-      is_preferred(i, j) = wins(i, j) > wins(j, i) ? 1 : 0;
-      if (i != j && wins(i, j) == wins(j, i)) {
-        person.no_consistency = wins(i, j) == 0 ? "not every pair was compared"
-                                                : "a pair was preferred as often either way";
+    for (Eigen::Index j = 0; j < i; ++j) {
+      if (wins(i, j) == wins(j, i)) {
+        return wins(i, j) == 0 ? "not every pair was compared"
+                               : "a pair was preferred as often either way";
       }
     }
   }
+  return "";
+}
+
+void judge_consistency(ParticipantPreferences& person) {
+  const Eigen::MatrixXi& wins = person.counts.wins;
+  person.no_consistency = undecided(wins);
   if (person.no_consistency.empty()) {
-    person.consistency = consistency(is_preferred);
+    person.consistency =
+        consistency((wins.array() > wins.transpose().array()).cast<int>().matrix());
   }
 }
 

@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <future>
 #include <map>
+#include <thread>
 
 #include "core/error.hpp"
 namespace tapstudy::analysis {
@@ -14,8 +17,8 @@ constexpr double max_lapse = 0.1;
 constexpr int draws_of_fit = 200;
 constexpr std::uint64_t draws_seed = 1;
 // Levels of all participants together; the time of either grows with them.
-constexpr std::size_t max_levels_with_tests_of_fit = 100;
-constexpr std::size_t max_levels_with_posteriors = 60;
+constexpr std::size_t max_levels_with_tests_of_fit = 60;
+constexpr std::size_t max_levels_with_posteriors = 40;
 
 // Values of one stimulus differ in their last digits, where they are products.
 double to_nine_digits(double level) {
@@ -111,6 +114,25 @@ void add_posterior(ParticipantThreshold& person, const PsychometricModel& model)
   }
 }
 
+// Participants are independent of one another: as many at once as there are processors.
+template <typename Task>
+void each_at_once(std::vector<ParticipantThreshold>& people, Task task) {
+  std::atomic<std::size_t> next{0};
+  const auto work = [&] {
+    for (std::size_t i = next++; i < people.size(); i = next++) {
+      task(people[i]);
+    }
+  };
+  const std::size_t processors = std::max(1U, std::thread::hardware_concurrency());
+  std::vector<std::future<void>> workers;
+  for (std::size_t i = 0; i < std::min(processors, people.size()); ++i) {
+    workers.push_back(std::async(std::launch::async, work));
+  }
+  for (std::future<void>& worker : workers) {
+    worker.get();
+  }
+}
+
 std::vector<ParticipantEstimate> logarithms(const std::vector<ParticipantThreshold>& people) {
   std::vector<ParticipantEstimate> estimates;
   for (const ParticipantThreshold& person : people) {
@@ -144,12 +166,12 @@ ThresholdResults participant_thresholds(const BlockDesign& design,
   results.draws = levels <= max_levels_with_tests_of_fit ? draws_of_fit : 0;
   results.has_posteriors = levels <= max_levels_with_posteriors;
   const PsychometricModel model = model_of(design);
-  for (ParticipantThreshold& person : results.participants) {
+  each_at_once(results.participants, [&](ParticipantThreshold& person) {
     estimate(person, model, results.draws);
     if (results.has_posteriors) {
       add_posterior(person, model);
     }
-  }
+  });
   if (const auto estimates = logarithms(results.participants); estimates.size() > 1) {
     results.pooled_log = pooled(estimates);
     results.pooled_participants = static_cast<int>(estimates.size());

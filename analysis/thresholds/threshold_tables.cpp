@@ -52,7 +52,7 @@ ReportTable participants_table(const VariedAxis& axis, const ThresholdResults& r
       row.push_back(share(person.estimate->proportion_at_threshold));
     } else {
       for (const Column& of_threshold : thresholds) {
-        row.push_back(nothing(of_threshold, "not found"));
+        row.push_back(nothing(of_threshold));
       }
       row.push_back(nothing(at));
     }

@@ -38,18 +38,25 @@ int DiscriminationTask::visits(const Block& block, const SimulatedTapSettings& t
   return taps.visits * static_cast<int>(layouts(block).front().size());
 }
 
-// The comparison's value is chosen when its trial comes.
-std::vector<PlannedTrial> DiscriminationTask::of_family(const Block& block) const {
+// The comparison's value is chosen when its trial comes. Shuffled within runs, because procedures
+// may end at any trial; runs are long enough that nobody foresees how one ends.
+std::vector<PlannedTrial> DiscriminationTask::of_family(const Block& block, core::Rng& rng) const {
+  constexpr std::size_t times_in_run = 4;
   const Comparison& comparison = *block.comparison;
-  const std::string& family = block.stimuli.front();
-  const std::vector<Layout> ways = layouts(block);
+  const Alternative standard{block.stimuli.front(), {{comparison.axis, comparison.standard}}};
+  const Alternative varied{block.stimuli.front(), {}, true};
+  std::vector<Layout> run;
+  for (const Layout& way : layouts(block)) {
+    run.insert(run.end(), times_in_run, way);
+  }
   std::vector<PlannedTrial> all;
   for (std::size_t i = 0; i < trials_per_repetition(block); ++i) {
+    if (i % run.size() == 0) {
+      rng.shuffle(run);
+    }
     PlannedTrial trial{0, block.name, this, block.is_practice, 1, {}};
-    for (const bool is_comparison : ways[i % ways.size()]) {
-      trial.alternatives.push_back(
-          is_comparison ? Alternative{family, {}, true}
-                        : Alternative{family, {{comparison.axis, comparison.standard}}});
+    for (const bool is_comparison : run[i % run.size()]) {
+      trial.alternatives.push_back(is_comparison ? varied : standard);
     }
     all.push_back(std::move(trial));
   }
@@ -79,11 +86,6 @@ std::vector<PlannedTrial> DiscriminationTask::of_pairs(const Block& block, core:
 
 std::vector<PlannedTrial> DiscriminationTask::trials(const Block& block, const Draw& draw) const {
   core::Rng rng{core::derived_seed(draw.participant_seed, core::Purpose::labels, draw.block_index)};
-  if (!block.comparison) {
-    return of_pairs(block, rng);
-  }
-  std::vector<PlannedTrial> all = of_family(block);
-  rng.shuffle(all);
-  return all;
+  return block.comparison ? of_family(block, rng) : of_pairs(block, rng);
 }
 }  // namespace tapstudy::protocols

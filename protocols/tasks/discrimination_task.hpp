@@ -33,7 +33,7 @@ class DiscriminationTask : public Task {
 
  protected:
   // Whether each alternative is the comparison, for each way to present a trial. All ways are
-  // presented equally often.
+  // presented equally often, in every run of trials where procedures may end early.
   using Layout = std::vector<bool>;
   virtual std::vector<Layout> layouts(const Block& block) const = 0;
   virtual bool needs_procedure() const { return false; }
@@ -41,7 +41,7 @@ class DiscriminationTask : public Task {
   virtual int empty_trials_per_observation() const { return 0; }
 
  private:
-  std::vector<PlannedTrial> of_family(const Block& block) const;
+  std::vector<PlannedTrial> of_family(const Block& block, core::Rng& rng) const;
   std::vector<PlannedTrial> of_pairs(const Block& block, core::Rng& rng) const;
 };
 }  // namespace tapstudy::protocols

@@ -65,27 +65,12 @@ std::map<std::string, std::string> right_responses(const Protocol& protocol, con
 }
 
 std::string label_of(const std::string& response, const Block& block, const Protocol& protocol) {
+  const auto stimulus = std::ranges::find(protocol.stimuli, response, &Stimulus::name);
   if (block.response_factor.empty()) {
-    return protocol.stimulus(response).label;
+    return stimulus == protocol.stimuli.end() ? response : stimulus->label;
   }
   const auto label = block.response_labels.find(response);
   return label == block.response_labels.end() ? response : label->second;
-}
-
-// Two answers that read alike cannot be told apart by who gives them.
-void check_labels_differ(MapReader& reader, const Protocol& protocol, const Block& block) {
-  std::map<std::string, std::string> name_of_label;
-  for (const std::string& response : block.responses) {
-    const auto stimulus = std::ranges::find(protocol.stimuli, response, &Stimulus::name);
-    if (stimulus == protocol.stimuli.end()) {
-      continue;  // a level, or rejected already
-    }
-    const auto [known, is_new] = name_of_label.emplace(stimulus->label, response);
-    if (!is_new) {
-      reader.reject("responses", fmt::format("'{}' and '{}' have the same label, '{}'",
-                                             known->second, response, stimulus->label));
-    }
-  }
 }
 
 const std::vector<std::string>& known_stimuli(const Block& block) {
@@ -109,7 +94,6 @@ class Identification final : public Task {
 
   void read(MapReader& reader, const Protocol& protocol, Block& block) const override {
     read_responses(reader, protocol, block);
-    check_labels_differ(reader, protocol, block);
     block.right_response = right_responses(protocol, block);
     if (block.responses.size() < 2) {
       reader.reject("responses", "an identification needs at least two possible answers");

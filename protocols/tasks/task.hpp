@@ -110,7 +110,6 @@ class Task {
   virtual std::string response(const PlannedTrial& trial, const Block& block,
                                std::size_t option) const = 0;
   virtual std::vector<std::string> alternative_labels(const PlannedTrial& trial) const = 0;
-  // nullopt if the task has no correct answer.
   // What an answer tells the procedure that varies the comparison: one of its outcomes; nullopt if
   // nothing, because no comparison was presented beside a standard.
   virtual std::optional<std::size_t> outcome(const PlannedTrial& trial, const Block& block,
@@ -119,6 +118,7 @@ class Task {
   virtual double guess_rate(const Block& block, const Protocol& protocol) const;
   // Of d', in analysis; empty: none.
   virtual std::string_view decision_model() const { return {}; }
+  // nullopt if the task has no correct answer.
   virtual std::optional<bool> is_correct(const PlannedTrial& trial, const Block& block,
                                          const std::string& response) const = 0;
   // Of one participant's answers to a block, how many are counted as independent ones.

@@ -204,7 +204,7 @@ void print_languages(const protocols::Protocol& protocol) {
                missing.empty() ? "complete" : fmt::format("lacks {}", fmt::join(missing, ", ")));
   }
   if (in_one > 0) {
-    fmt::print("  {} texts are given once for all of them\n", in_one);
+    fmt::print("  texts given once for all of them: {}\n", in_one);
   }
 }
 

@@ -5,6 +5,7 @@
 
 #include "core/error.hpp"
 #include "protocols/read_protocol.hpp"
+#include "results/store.hpp"
 #include "runner/commands/commands.hpp"
 #include "runner/commands/seed.hpp"
 #include "runner/console/pages.hpp"
@@ -23,7 +24,7 @@ struct RunOptions {
   std::string row;
   std::string console;
   std::string listen;
-  std::string language{"en"};
+  std::string language;
   bool resume{false};
   bool pilot{false};
 };
@@ -77,15 +78,31 @@ void warn_of_language(const protocols::Protocol& protocol, const RunOptions& opt
   }
   const auto missing = protocols::texts_without(options.language, protocol.translations);
   if (!missing.empty()) {
-    warn(fmt::format("{} texts of the study are not given in '{}': {}", missing.size(),
-                     options.language, fmt::join(missing, ", ")));
+    warn(fmt::format("texts of the study that are not given in '{}': {}", options.language,
+                     fmt::join(missing, ", ")));
   }
   if (!options.console.empty() && !pages_speak(options.language)) {
     warn(fmt::format("the pages' own words are not given in '{}': English", options.language));
   }
 }
 
-void run(const RunOptions& options) {
+// A session goes on in the language that it was begun in.
+std::string language_of(const RunOptions& options) {
+  if (!options.language.empty()) {
+    return options.language;
+  }
+  if (options.resume && results::Store::has_database(options.directory)) {
+    const auto earlier =
+        results::Store::open_existing(options.directory).latest_session(options.participant);
+    if (earlier && !earlier->language.empty()) {
+      return earlier->language;
+    }
+  }
+  return "en";
+}
+
+void run(RunOptions options) {
+  options.language = language_of(options);
   const protocols::Protocol protocol = protocols::read_protocol(options.protocol, options.language);
   warn_of_language(protocol, options);
   const protocols::Rig rig = options.rig.empty() ? simulated_rig() : read_rig(options.rig);
@@ -114,8 +131,8 @@ void add_run(CommandParser& line) {
       "Serve a page each for participant and operator, at this port or a free one");
   command.option("--listen", options->listen,
                  "Address of this machine to serve the pages at; else only to itself");
-  command.option_with_default("--language", options->language,
-                              "Of what the participant reads: en, ja, …");
+  command.option("--language", options->language,
+                 "Of what the participant reads: en, ja, …; else English, or as before");
   command.flag("--resume", options->resume, "Resume the participant's last session");
   command.flag("--pilot", options->pilot, "Mark as a pilot, kept out of reports");
   command.on_run([options] { run(*options); });

@@ -70,6 +70,7 @@ void BrowserParticipant::arrive() {
 void BrowserParticipant::get_ready(const TrialPrompt& prompt) {
   progress_ = TrialProgress{prompt.number - 1, prompt.total, prompt.block->is_practice};
   notice_.reset();
+  correction_ = {};
   correction_state_ = CorrectionState::none;
   context_.move_hand();
 }
@@ -110,6 +111,9 @@ std::optional<std::size_t> BrowserParticipant::perform(const TrialPrompt& prompt
     exploration.pass_time(poll_s);
   }
   const auto accepted = screens_.close();
+  if (accepted && accepted->action == ScreenAction::correct) {
+    prompt.previous->correct(accepted->value);  // it was said to be accepted
+  }
   return accepted && accepted->action == ScreenAction::answer ? std::optional{accepted->value}
                                                               : std::nullopt;
 }

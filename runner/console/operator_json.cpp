@@ -66,13 +66,16 @@ Json actions_of(const DeskView& desk) {
   return actions;
 }
 
-Json log_of(const DeskView& desk) {
+// A correction's text is an answer, or the stimulus behind a blind label.
+Json log_of(const DeskView& desk, bool is_blind) {
   Json log = Json::array();
   for (const DeskView::Entry& entry : desk.log) {
-    log.push_back({{"t_s", entry.row.t_s},
-                   {"action", entry.row.action},
-                   {"text", entry.row.detail},
-                   {"is_stored", entry.is_stored}});
+    log.push_back(
+        {{"t_s", entry.row.t_s},
+         {"action", entry.row.action},
+         {"text", is_blind && entry.row.action == name(OperatorAction::correct) ? std::string{}
+                                                                                : entry.row.detail},
+         {"is_stored", entry.is_stored}});
   }
   return log;
 }
@@ -93,7 +96,7 @@ std::string state_json(const SessionInView& session, const DeskView& desk,
       {"trial", desk.trial ? json_of(*desk.trial, desk.current, session.is_blind) : Json{}},
       {"last_answer", desk.last_answer ? json_of(*desk.last_answer, session.is_blind) : Json{}},
       {"actions", actions_of(desk)},
-      {"log", log_of(desk)},
+      {"log", log_of(desk, session.is_blind)},
       {"is_paused", desk.is_paused},
       {"participant_page", session.has_participant_page},
       {"device", session.device},

@@ -76,19 +76,23 @@ Scenes::Scenes(const protocols::Protocol& protocol) : protocol_{protocol} {
   }
 }
 
+// The same for all trials of a block: where catch trials have another shape, none is shown.
 std::optional<int> Scenes::number_of(const std::string& stimulus,
                                      const protocols::Block& block) const {
   const int number = place_of(stimulus);
-  const bool tells_apart = std::ranges::any_of(block.stimuli, [&](const std::string& other) {
+  const bool tells_apart = std::ranges::any_of(all_presented(block), [&](const std::string& other) {
     return at(place_of(other)).shape != at(number).shape;
   });
   return tells_apart ? std::nullopt : std::optional{number};
 }
 
+// Of plates that look the same the first, so that the number says no more than the picture.
 int Scenes::place_of(const std::string& stimulus) const {
-  const auto found =
-      std::ranges::find(all_, protocol_.stimulus(stimulus).plate.get(), &Scene::plate);
-  return static_cast<int>(found - all_.begin());
+  const auto own = std::ranges::find(all_, protocol_.stimulus(stimulus).plate.get(), &Scene::plate);
+  const auto first = std::ranges::find_if(all_, [&](const Scene& scene) {
+    return scene.json == own->json && scene.plate->lateral_ratio == own->plate->lateral_ratio;
+  });
+  return static_cast<int>(first - all_.begin());
 }
 
 double Scenes::surface_along_normal_m() const {

@@ -134,6 +134,15 @@ void OperatorDesk::apply(const OperatorCommand& command) {
   }
 }
 
+// A participant may read it too: an answer by its label, which may be blind.
+std::string OperatorDesk::said_of(const OperatorCommand& command,
+                                  const results::OperatorActionRow& row) const {
+  return command.action == OperatorAction::correct
+             ? last_answer_->options.at(number_up_to(last_answer_->options.size(), command.text))
+                   .label
+             : row.detail;
+}
+
 OperatorDesk::Posted OperatorDesk::post(const OperatorCommand& command) {
   const std::lock_guard lock{mutex_};
   check_is_possible(command);
@@ -147,9 +156,10 @@ OperatorDesk::Posted OperatorDesk::post(const OperatorCommand& command) {
     stored = recorder_.note(row).share();
   }
   apply(command);
+  const std::string text = said_of(command, row);
   std::string said =
       fmt::format("{}{}{}", row.action, row.number ? fmt::format(", trial {}", *row.number) : "",
-                  row.detail.empty() ? "" : ": " + row.detail);
+                  text.empty() ? "" : ": " + text);
   log_.push_back({std::move(row), stored});
   return {std::move(said), stored};
 }

@@ -71,6 +71,7 @@ class OperatorDesk final : public Operator {
   std::optional<int> trial_of(OperatorAction action) const;
   bool is_excluded() const;
   void apply(const OperatorCommand& command);
+  std::string said_of(const OperatorCommand& command, const results::OperatorActionRow& row) const;
   results::CorrectionRow correction(const std::string& option, results::GivenBy by,
                                     std::string& detail) const;
 

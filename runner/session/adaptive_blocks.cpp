@@ -1,13 +1,37 @@
 #include "runner/session/adaptive_blocks.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "core/rng.hpp"
 #include "protocols/axes/presented_stimulus.hpp"
+#include "results/store_error.hpp"
 namespace tapstudy::runner {
 using protocols::Alternative;
 using protocols::Block;
 using protocols::PlannedTrial;
+
+namespace {
+// Throws StoreError where the answer is to no trial of the schedule.
+PlannedTrial as_presented(const protocols::Schedule& schedule,
+                          const results::JournalledAnswer& answer) {
+  const auto planned = std::ranges::find(schedule, answer.trial.number, &PlannedTrial::number);
+  bool is_planned = planned != schedule.end() && planned->block == answer.trial.block &&
+                    planned->alternatives.size() == answer.alternatives.size();
+  PlannedTrial trial = is_planned ? *planned : PlannedTrial{};
+  for (std::size_t i = 0; i < trial.alternatives.size(); ++i) {
+    trial.alternatives[i].values = answer.alternatives[i].axis_values;
+    is_planned = is_planned && !trial.alternatives[i].values.empty();
+  }
+  if (!is_planned) {
+    throw results::StoreError{
+        fmt::format("trial {} is not stored as it was planned (tapstudy verify says more)",
+                    answer.trial.number)};
+  }
+  return trial;
+}
+}  // namespace
 
 AdaptiveBlocks::AdaptiveBlocks(const protocols::Protocol& protocol, std::uint64_t seed,
                                const protocols::Schedule& schedule,
@@ -22,11 +46,9 @@ AdaptiveBlocks::AdaptiveBlocks(const protocols::Protocol& protocol, std::uint64_
     }
   }
   for (const results::JournalledAnswer& answer : earlier) {
-    PlannedTrial trial = schedule.at(static_cast<std::size_t>(answer.trial.number - 1));
-    for (std::size_t i = 0; i < trial.alternatives.size(); ++i) {
-      trial.alternatives[i].values = answer.alternatives.at(i).axis_values;
+    if (tracks_.contains(answer.trial.block)) {
+      observe(as_presented(schedule, answer), answer.response.response);
     }
-    observe(trial, answer.response.response);
   }
 }
 

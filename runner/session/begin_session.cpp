@@ -38,9 +38,9 @@ void resume(const results::SessionRow& earlier, const protocols::Protocol& proto
         "one; resume with the version that began the session"};
   }
   session.row.resumes = earlier.id;
-  session.earlier = {store.filled_forms(earlier.participant_id),
-                     PracticeRecord{answers_of(earlier.participant_id, store)},
-                     store.answers_as_given(earlier.participant_id)};
+  const auto as_given = store.answers_as_given(earlier.participant_id);
+  session.earlier = {store.filled_forms(earlier.participant_id), PracticeRecord{as_given},
+                     as_given};
   const std::vector<int> answered = store.answered_trials(earlier.participant_id);
   session.done = {answered.begin(), answered.end()};
   for (const auto& trials : {given_up_trials(protocol, earlier.participant_id, store),

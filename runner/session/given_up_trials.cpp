@@ -18,15 +18,6 @@ std::vector<int> given_up_trials(const protocols::Protocol& protocol,
   return given_up;
 }
 
-std::vector<results::AnswerRow> answers_of(const std::string& participant_id,
-                                           results::Store& store) {
-  std::vector<results::AnswerRow> answers = store.answers();
-  std::erase_if(answers, [&](const results::AnswerRow& answer) {
-    return answer.participant_id != participant_id;
-  });
-  return answers;
-}
-
 std::vector<int> unneeded_trials(const protocols::Protocol& protocol,
                                  const std::string& participant_id, results::Store& store) {
   const auto session = store.latest_session(participant_id);
@@ -35,9 +26,9 @@ std::vector<int> unneeded_trials(const protocols::Protocol& protocol,
   }
   const protocols::Schedule schedule =
       protocols::make_schedule(protocol, session->seed, session->order_index);
-  const PracticeRecord practice{answers_of(participant_id, store)};
-  const AdaptiveBlocks adaptive{protocol, session->seed, schedule,
-                                store.answers_as_given(participant_id)};
+  const auto as_given = store.answers_as_given(participant_id);
+  const PracticeRecord practice{as_given};
+  const AdaptiveBlocks adaptive{protocol, session->seed, schedule, as_given};
   const std::vector<int> answered = store.answered_trials(participant_id);
   std::set<int> done{answered.begin(), answered.end()};
   const std::vector<int> given_up = given_up_trials(protocol, participant_id, store);

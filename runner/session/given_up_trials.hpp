@@ -13,7 +13,4 @@ std::vector<int> given_up_trials(const protocols::Protocol& protocol,
 // procedures were finished.
 std::vector<int> unneeded_trials(const protocols::Protocol& protocol,
                                  const std::string& participant_id, results::Store& store);
-// The participant's answers, of whatever blocks.
-std::vector<results::AnswerRow> answers_of(const std::string& participant_id,
-                                           results::Store& store);
 }  // namespace tapstudy::runner

@@ -4,11 +4,10 @@
 
 #include <algorithm>
 namespace tapstudy::runner {
-PracticeRecord::PracticeRecord(std::vector<results::AnswerRow> answers) {
-  std::ranges::sort(answers, {}, &results::AnswerRow::trial_id);
-  for (const results::AnswerRow& answer : answers) {
-    if (answer.is_practice) {
-      add(answer.block, answer.is_correct.value_or(false));
+PracticeRecord::PracticeRecord(const std::vector<results::JournalledAnswer>& answers) {
+  for (const results::JournalledAnswer& answer : answers) {
+    if (answer.trial.is_practice) {
+      add(answer.trial.block, answer.response.is_correct.value_or(false));
     }
   }
 }

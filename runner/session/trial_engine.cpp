@@ -236,6 +236,15 @@ void TrialEngine::store(const PlannedTrial& trial, Presentation presentation, En
   }
 }
 
+// It is stored.
+void TrialEngine::note_answer(const PlannedTrial& trial, const TrialPrompt& prompt,
+                              const std::string& response) {
+  last_answer_ = AnswerInView{trial, prompt.options, response};
+  parts_.by.answer_is_stored(*last_answer_);
+  adaptive_->observe(trial, response);
+  practice_.add(trial, response);
+}
+
 TrialEngine::Outcome TrialEngine::run_trial(const PlannedTrial& planned, int total) {
   const PlannedTrial trial = adaptive_->with_values(planned);
   const TrialPrompt prompt = prompt_of(trial, total);
@@ -249,13 +258,10 @@ TrialEngine::Outcome TrialEngine::run_trial(const PlannedTrial& planned, int tot
   const std::optional<Answer> answer = presentation.answer;
   const core::TickFault fault = presentation.result.loop.stopped_by;
   store(trial, std::move(presentation), ending);
-  if (answer && (ending == Ending::answered || ending == Ending::faulted)) {
-    adaptive_->observe(trial, answer->response);
-  }
   switch (ending) {
     case Ending::faulted:
       if (answer) {
-        parts_.by.answer_is_stored({trial, prompt.options, answer->response});
+        note_answer(trial, prompt, answer->response);
       }
       parts_.participant.interrupted();
       return {.interruption = Interruption{trial.number, fault, answer.has_value(),
@@ -280,13 +286,11 @@ TrialEngine::Outcome TrialEngine::run_trial(const PlannedTrial& planned, int tot
     case Ending::answered:
       break;
   }
-  last_answer_ = AnswerInView{trial, prompt.options, answer->response};
-  parts_.by.answer_is_stored(*last_answer_);
+  note_answer(trial, prompt, answer->response);
   parts_.participant.saved(prompt);
   if (block.gives_feedback) {
     give_feedback(trial, prompt, answer->response);
   }
-  practice_.add(trial, answer->response);
   return {};
 }
 }  // namespace tapstudy::runner

@@ -69,6 +69,8 @@ class TrialEngine {
   using Ending = TrialEnding;
   Ending ending_of(const Presentation& presentation, const protocols::PlannedTrial& trial);
   void store(const protocols::PlannedTrial& trial, Presentation presentation, Ending ending);
+  void note_answer(const protocols::PlannedTrial& trial, const TrialPrompt& prompt,
+                   const std::string& response);
   Outcome run_trial(const protocols::PlannedTrial& planned, int total);
   Outcome run_until_it_counts(const protocols::PlannedTrial& trial, int total);
   void save(const std::shared_ptr<const results::TrialRecord>& record);

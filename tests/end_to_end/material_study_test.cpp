@@ -37,6 +37,51 @@ TEST_CASE("practice ends with the answer that meets its criterion", "[end_to_end
         "2\n");  // in a later session too
 }
 
+TEST_CASE(
+    "a corrected practice answer changes nothing of how well was practised, nor a resumed "
+    "session the language",
+    "[end_to_end][threads]") {
+  const TempDirectory directory;
+  const std::string loose = directory / "loose.yaml";
+  testing::write(loose, testing::replaced(testing::contents(study), "    criterion:",
+                                          "    correction: true\n    criterion:"));
+  const auto run = [&](const std::string& input, const std::vector<std::string>& more) {
+    std::vector<std::string> line{"run", loose,   "--participant",
+                                  "P01", "--out", directory / "study"};
+    line.insert(line.end(), more.begin(), more.end());
+    return testing::tapstudy(line, input);
+  };
+  // met with the second answer, which is corrected to a wrong one in the next trial
+  run("1\n2\n:correct 1\n\n1\n", {"--language", "de"});
+  run("\n2\n", {"--resume"});
+  CHECK(sql(directory, "SELECT count(*) FROM trial WHERE is_practice") == "2\n");
+  CHECK(sql(directory, "SELECT group_concat(language) FROM session") == "de,de\n");
+}
+
+TEST_CASE("catch trials, labels and corrections that contradict are refused at their line",
+          "[end_to_end]") {
+  const auto [from, to, said] = GENERATE(table<std::string, std::string, std::string>({
+      {"expected: {hard_held: acrylic}", "expected: {}", "catch_trials.expected: "},
+      {"expected: {hard_held: acrylic}", "expected: {hard_held: mdf}", "where 'acrylic' is right"},
+      {"expected: {hard_held: acrylic}", "expected: {hard_held: oak}", "cannot be answered"},
+      {"mdf: {en: wood fibre, de: Holzfaser}", "mdf: acrylic", "have the same label"},
+      {"    criterion:", "    feedback: true\n    correction: true\n    criterion:",
+       "told by feedback"},
+      {"correct: 2, of_last: 2", "correct: 3, of_last: 2", "no 3 can be right"},
+      {"    presented: real\n", "    presented: real\n    explore: {min_contacts: 1}\n",
+       "contacts are not measured"},
+      {"{en: \"Which plate is it?\", de:", "{english: \"Which plate is it?\", de:",
+       "is not a language"},
+  }));
+  const TempDirectory directory;
+  const std::string file = directory / "study.yaml";
+  testing::write(file, testing::replaced(testing::contents(study), from, to));
+  const auto result = testing::tapstudy({"check", file});
+  CAPTURE(to, result.standard_error);
+  CHECK(result.exit_code == 2);
+  CHECK_THAT(result.standard_error, Contains(said) && Contains("study.yaml:"));
+}
+
 TEST_CASE("a simulated participant who misses a criterion that had to be met leaves the study",
           "[end_to_end]") {
   const TempDirectory directory;

@@ -98,10 +98,8 @@ std::optional<std::size_t> BrowserParticipant::perform(const TrialPrompt& prompt
       notice_.reset();
       return input->value;
     }
-    if (input && input->action == ScreenAction::correct) {
-      correction_ = prompt.previous->correct(input->value);
-    } else if (input) {
-      exploration.switch_to(input->value);
+    if (input) {
+      act_on(*input, prompt, exploration);
     }
     if (input || is_switched || follow_correction()) {
       notice_.reset();
@@ -110,12 +108,29 @@ std::optional<std::size_t> BrowserParticipant::perform(const TrialPrompt& prompt
     }
     exploration.pass_time(poll_s);
   }
-  const auto accepted = screens_.close();
-  if (accepted && accepted->action == ScreenAction::correct) {
-    prompt.previous->correct(accepted->value);  // it was said to be accepted
+  return last_word(prompt, exploration);
+}
+
+void BrowserParticipant::act_on(const ScreenInput& input, const TrialPrompt& prompt,
+                                Exploration& exploration) {
+  if (input.action == ScreenAction::correct) {
+    correction_ = prompt.previous->correct(input.value);
+  } else {
+    exploration.switch_to(input.value);
   }
-  return accepted && accepted->action == ScreenAction::answer ? std::optional{accepted->value}
-                                                              : std::nullopt;
+}
+
+// What the page was told to be accepted in the moment before the trial ended.
+std::optional<std::size_t> BrowserParticipant::last_word(const TrialPrompt& prompt,
+                                                         Exploration& exploration) {
+  const auto accepted = screens_.close();
+  if (accepted && accepted->action == ScreenAction::answer) {
+    return accepted->value;
+  }
+  if (accepted) {
+    act_on(*accepted, prompt, exploration);
+  }
+  return std::nullopt;
 }
 
 bool BrowserParticipant::follow_correction() {

@@ -44,6 +44,8 @@ class BrowserParticipant final : public Participant {
   // Until it is answered; throws Stopped if the session is to stop.
   ScreenInput answer_to(Screen screen);
   void tell(Message message);
+  void act_on(const ScreenInput& input, const TrialPrompt& prompt, Exploration& exploration);
+  std::optional<std::size_t> last_word(const TrialPrompt& prompt, Exploration& exploration);
   void pause_if_left();
   // Whether there is something new to show of it.
   bool follow_correction();

@@ -4,36 +4,38 @@
 
 #include "runner/terminal/exit_code.hpp"
 namespace tapstudy::runner {
-bool Practice::is_over(const protocols::PlannedTrial& trial) const {
-  return record_.is_met(protocol_.block(trial.block));
-}
-
 void Practice::add(const protocols::PlannedTrial& trial, const std::string& response) {
   const protocols::Block& block = protocol_.block(trial.block);
-  if (!block.criterion) {
-    return;
-  }
-  record_.add(block.name, trial.task->is_correct(trial, block, response).value_or(false));
-  if (record_.is_met(block)) {
-    states_.enter(SessionState::practised, {},
-                  fmt::format("{}: met, {}", block.name, record_.latest(block)));
+  if (block.criterion) {
+    record_.add(block.name, trial.task->is_correct(trial, block, response).value_or(false));
   }
 }
 
-void Practice::check(const protocols::PlannedTrial& next) {
+bool Practice::is_needed(const protocols::PlannedTrial& next) {
   for (const protocols::Block& block : protocol_.blocks) {
-    if (block.name == next.block) {
-      return;
+    const bool is_met = record_.is_met(block);
+    const bool is_own = block.name == next.block;
+    if (block.criterion && (is_met || !is_own)) {
+      note(block);
     }
-    if (!block.criterion || record_.is_met(block) || !missed_.insert(block.name).second) {
-      continue;
+    if (is_own) {
+      return !is_met;
     }
-    const std::string missed = fmt::format("{}: not met, {}", block.name, record_.latest(block));
-    states_.enter(SessionState::practised, {}, missed);
-    if (block.criterion->must_be_met) {
-      throw PracticeMissed{
-          fmt::format("the practice criterion of block {}; every answer is kept", missed)};
-    }
+  }
+  return true;
+}
+
+void Practice::note(const protocols::Block& block) {
+  if (!noted_.insert(block.name).second) {
+    return;
+  }
+  const bool is_met = record_.is_met(block);
+  const std::string what =
+      fmt::format("{}: {}, {}", block.name, is_met ? "met" : "not met", record_.latest(block));
+  states_.enter(SessionState::practised, {}, what);
+  if (!is_met && block.criterion->must_be_met) {
+    throw PracticeMissed{
+        fmt::format("the practice criterion of block {}; every answer is kept", what)};
   }
 }
 }  // namespace tapstudy::runner

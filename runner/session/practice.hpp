@@ -13,15 +13,16 @@ class Practice {
   Practice(const protocols::Protocol& protocol, SessionStates& states, PracticeRecord earlier)
       : protocol_{protocol}, states_{states}, record_{std::move(earlier)} {}
   void add(const protocols::PlannedTrial& trial, const std::string& response);
-  // Whether the trial is not needed: its block's criterion is met.
-  bool is_over(const protocols::PlannedTrial& trial) const;
-  // Throws PracticeMissed where an earlier block's criterion had to be met.
-  void check(const protocols::PlannedTrial& next);
+  // Between trials. False: its block's criterion is met. What became of that criterion and of
+  // those of earlier blocks is noted, once. Throws PracticeMissed where an earlier one had to be
+  // met.
+  bool is_needed(const protocols::PlannedTrial& next);
 
  private:
+  void note(const protocols::Block& block);
   const protocols::Protocol& protocol_;
   SessionStates& states_;
   PracticeRecord record_;
-  std::set<std::string> missed_;  // blocks
+  std::set<std::string> noted_;  // blocks
 };
 }  // namespace tapstudy::runner

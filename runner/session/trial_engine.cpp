@@ -72,11 +72,10 @@ std::optional<Interruption> TrialEngine::run_all(const protocols::Schedule& sche
     stop_if_asked();
     const PlannedTrial trial = waiting.front();
     waiting.pop_front();
-    if (practice_.is_over(trial) || adaptive_->is_over(trial)) {
+    if (!practice_.is_needed(trial) || adaptive_->is_over(trial)) {
       done_trials.insert(trial.number);
       continue;
     }
-    practice_.check(trial);
     interludes_.before(trial);
     const Outcome outcome = run_until_it_counts(trial, static_cast<int>(schedule.size()));
     if (outcome.is_requeued) {

@@ -40,13 +40,13 @@ class WholeSession(unittest.TestCase):
                            lambda: self.contacts() >= before + contacts)
 
     def next_trial(self, number):
-        seen = lambda: (screen := browser.current_screen(self.driver)) and \
-            screen["kind"] == "trial" and self.trial_number() == number and screen["isSettled"] and screen
-        return browser.wait_until(self.driver, f"trial {number}", seen, 30)
-
-    def trial_number(self):
-        found = re.search(r"\d+", browser.find(self.driver, "#progress-text").text)
-        return int(found.group()) + 1 if found else None
+        """Read at one moment: a press on a screen that has not settled does nothing."""
+        def there():
+            screen = browser.current_screen(self.driver)
+            is_there = screen and screen["kind"] == "trial" and screen["isSettled"]
+            done = re.search(r"\d+", screen["progress"]) if is_there else None
+            return screen if done and int(done.group()) + 1 == number else None
+        return browser.wait_until(self.driver, f"trial {number}", there, 30)
 
     def answer_until_accepted(self, answer, index):
         """As a person does who is told to tap first."""

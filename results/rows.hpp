@@ -59,6 +59,8 @@ struct AlternativeRow {
   AxisValues axis_values{};  // as presented; empty if it does not vary
   bool is_comparison{};      // not the standard that it is compared with
 };
+// By trial id; of each trial by position.
+using AlternativesOfTrials = std::map<std::int64_t, std::vector<AlternativeRow>>;
 struct ResponseRow {
   std::string response;                             // as the task stores it: a stimulus's name
   std::optional<bool> is_correct;                   // unset if no answer is correct
@@ -196,7 +198,7 @@ struct AnswerRow {
   std::int64_t impacts{};
   std::int64_t late_impacts{};  // of these; up to 5 ms after a late tick
   std::int64_t trial_id{};      // ascends with time: a trial that was put off is answered later
-  std::vector<AlternativeRow> alternatives{};  // by position, where they are asked for
+  std::vector<AlternativeRow> alternatives{};  // by position; Store::answers leaves them out
 };
 
 // How long and how often each alternative was felt, where there were several.

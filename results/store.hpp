@@ -88,7 +88,7 @@ class Store {
   // The participant's, without corrections, in the order given.
   std::vector<JournalledAnswer> answers_as_given(const std::string& participant_id);
   std::vector<VisitRow> visits();
-  std::vector<AlternativeRow> alternatives_of(std::int64_t trial_id);  // by position
+  AlternativesOfTrials alternatives();
   std::vector<SessionRow> sessions();
   JournalEntries entries_for_journal();
   std::vector<std::int64_t> trials();  // the ids of all, whatever became of them
@@ -114,6 +114,9 @@ class Store {
   void check_has_not_moved();
   int next_participant_index(Mode mode);
   int free_order_index(Mode mode);
+  std::vector<AlternativeRow> alternatives_of(std::int64_t trial_id);
+  AlternativesOfTrials alternatives_where(const char* condition,
+                                          std::optional<std::int64_t> trial_id);
   std::vector<JournalledAnswer> answers_for_journal();
   std::vector<JournalledAnswer> journalled_answers(Statement& row);
   std::vector<CorrectionRow> corrections_for_journal();

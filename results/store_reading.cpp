@@ -116,20 +116,38 @@ std::vector<JournalledAnswer> Store::journalled_answers(Statement& row) {
 }
 
 std::vector<AlternativeRow> Store::alternatives_of(std::int64_t trial_id) {
-  Statement row{database_,
-                "SELECT position, label, stimulus, is_comparison FROM alternative "
-                "WHERE trial_id = ? ORDER BY position"};
-  row.bind(trial_id);
-  std::vector<AlternativeRow> alternatives;
-  while (row.step()) {
-    alternatives.push_back(
-        {static_cast<int>(row.integer(0)), row.text(1), row.text(2), {}, row.integer(3) != 0});
+  return alternatives_where("WHERE trial_id = ?", trial_id)[trial_id];
+}
+
+AlternativesOfTrials Store::alternatives() {
+  return alternatives_where("", {});
+}
+
+AlternativesOfTrials Store::alternatives_where(const char* condition,
+                                               std::optional<std::int64_t> trial_id) {
+  Statement row{database_, fmt::format("SELECT trial_id, position, label, stimulus, is_comparison "
+                                       "FROM alternative {} ORDER BY trial_id, position",
+                                       condition)};
+  Statement value{
+      database_,
+      fmt::format("SELECT trial_id, position, axis, value FROM axis_value {}", condition)};
+  if (trial_id) {
+    row.bind(*trial_id);
+    value.bind(*trial_id);
   }
-  Statement value{database_, "SELECT position, axis, value FROM axis_value WHERE trial_id = ?"};
-  value.bind(trial_id);
+  AlternativesOfTrials alternatives;
+  while (row.step()) {
+    alternatives[row.integer(0)].push_back(
+        {static_cast<int>(row.integer(1)), row.text(2), row.text(3), {}, row.integer(4) != 0});
+  }
   while (value.step()) {
-    alternatives.at(static_cast<std::size_t>(value.integer(0))).axis_values[value.text(1)] =
-        value.real(2);
+    std::vector<AlternativeRow>& of_trial = alternatives[value.integer(0)];
+    const auto position = static_cast<std::size_t>(value.integer(1));
+    if (position >= of_trial.size()) {
+      throw StoreError{fmt::format("{}: trial {} has no alternative {}, but a value of it",
+                                   database_.file(), value.integer(0), position)};
+    }
+    of_trial[position].axis_values[value.text(2)] = value.real(3);
   }
   return alternatives;
 }

@@ -15,6 +15,7 @@ class InterleavedTracks {
   InterleavedTracks(const std::vector<std::shared_ptr<const TrackSettings>>& settings,
                     std::uint64_t seed);
 
+  bool are_finished() const { return !drawn(); }
   // nullopt: all are finished.
   std::optional<Request> next() const;
   // Of the track drawn by next(), as Track::observe. Throws InvalidInput, also if all are finished.

@@ -19,8 +19,7 @@ class Abx final : public DiscriminationTask {
   }
   std::optional<bool> is_correct(const PlannedTrial& trial, const Block& /*block*/,
                                  const std::string& response) const override {
-    const Alternative& picked = trial.alternatives.at(response == blind_label(0) ? 0 : 1);
-    return picked.is_comparison == trial.alternatives.at(2).is_comparison;
+    return labelled(trial, response).is_comparison == trial.alternatives.at(2).is_comparison;
   }
   std::size_t simulated_answer(const Block& /*block*/, const Simulation& simulation,
                                SimulatedTouch& touch) const override {

@@ -36,10 +36,7 @@ class ComparisonTask final : public DiscriminationTask {
   }
   std::optional<bool> is_correct(const PlannedTrial& trial, const Block& block,
                                  const std::string& response) const override {
-    const auto labels = blind_labels(trial);
-    const auto place = std::ranges::find(labels, response) - labels.begin();
-    return trial.alternatives.at(static_cast<std::size_t>(place)).is_comparison !=
-           block.comparison->is_standard_right;
+    return labelled(trial, response).is_comparison != block.comparison->is_standard_right;
   }
 
   // Which way to look for is known from practice.

@@ -25,10 +25,7 @@ class OddOneOut final : public DiscriminationTask {
                                  const std::string& response) const override {
     const auto comparisons = std::ranges::count_if(trial.alternatives, &Alternative::is_comparison);
     const bool is_comparison_odd = comparisons == 1;
-    const auto labels = blind_labels(trial);
-    const auto place = std::ranges::find(labels, response) - labels.begin();
-    return trial.alternatives.at(static_cast<std::size_t>(place)).is_comparison ==
-           is_comparison_odd;
+    return labelled(trial, response).is_comparison == is_comparison_odd;
   }
   // The one that is furthest from all others together.
   std::size_t simulated_answer(const Block& block, const Simulation& simulation,

@@ -1,6 +1,8 @@
 #include "protocols/tasks/task_parts.hpp"
 
 #include <numeric>
+
+#include "core/error.hpp"
 namespace tapstudy::protocols {
 std::optional<std::size_t> Task::outcome(const PlannedTrial& trial, const Block& block,
                                          const std::string& response) const {
@@ -37,6 +39,16 @@ std::vector<Option> blind_options(std::size_t count) {
     options.push_back({blind_label(i), blind_label(i)});
   }
   return options;
+}
+
+const Alternative& labelled(const PlannedTrial& trial, const std::string& label) {
+  for (std::size_t i = 0; i < trial.alternatives.size(); ++i) {
+    if (blind_label(i) == label) {
+      return trial.alternatives[i];
+    }
+  }
+  throw core::InvalidInput{"trial " + std::to_string(trial.number) + ": the answer '" + label +
+                           "' names no alternative"};
 }
 
 std::vector<std::pair<std::size_t, std::size_t>> pairs_of(std::size_t count) {

@@ -9,6 +9,9 @@ void visit_all(std::size_t alternatives, const Simulation& simulation, Simulated
 std::vector<std::string> blind_labels(const PlannedTrial& trial);
 std::vector<Option> blind_options(std::size_t count);
 
+// The alternative that a blind label names. Throws InvalidInput if none has it.
+const Alternative& labelled(const PlannedTrial& trial, const std::string& label);
+
 // Of `count` things taken two at a time, each with a smaller and a greater place.
 std::vector<std::pair<std::size_t, std::size_t>> pairs_of(std::size_t count);
 }  // namespace tapstudy::protocols

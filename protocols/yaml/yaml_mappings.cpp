@@ -74,12 +74,18 @@ void MapReader::each_point(
 
 void MapReader::each_text(const std::string& key, Presence presence,
                           const std::function<void(const std::string&, const std::string&)>& take) {
-  map(key, presence, [&](MapReader& texts) {
-    texts.has_free_names_ = true;
-    for (const auto& entry : *texts.node_) {
-      if (texts.check_name(entry.first, path_of(key))) {
-        const std::string name = entry.first.Scalar();
-        take(name, texts.name(name));
+  each_named(key, presence,
+             [&](MapReader& texts, const std::string& name) { take(name, texts.name(name)); });
+}
+
+void MapReader::each_named(
+    const std::string& key, Presence presence,
+    const std::function<void(MapReader& inner, const std::string& name)>& read) {
+  map(key, presence, [&](MapReader& inner) {
+    inner.has_free_names_ = true;
+    for (const auto& entry : *inner.node_) {
+      if (inner.check_name(entry.first, path_of(key))) {
+        read(inner, entry.first.Scalar());
       }
     }
   });

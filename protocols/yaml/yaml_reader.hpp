@@ -125,6 +125,9 @@ class MapReader {
                                   const Range& range);
   void read_inner(const YAML::Node& node, const std::string& path, const std::string& pattern,
                   const ReadMap& read);
+  // Each key of a mapping from free names, in the file's order.
+  void each_named(const std::string& key, Presence presence,
+                  const std::function<void(MapReader& inner, const std::string& name)>& read);
   std::optional<YAML::Node> find_map(const std::string& key, Presence presence);
   bool check_name(const YAML::Node& node, const std::string& path);
   bool is_allowed(const YAML::Node& node, const std::string& path, const std::string& kind,

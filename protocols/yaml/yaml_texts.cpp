@@ -127,14 +127,8 @@ std::vector<std::pair<std::string, std::string>> MapReader::translated_list(
 void MapReader::each_translated(
     const std::string& key, Presence presence,
     const std::function<void(const std::string&, const std::string&)>& take) {
-  map(key, presence, [&](MapReader& texts) {
-    texts.has_free_names_ = true;
-    for (const auto& entry : *texts.node_) {
-      if (texts.check_name(entry.first, path_of(key))) {
-        const std::string name = entry.first.Scalar();
-        take(name, texts.translated(name));
-      }
-    }
+  each_named(key, presence, [&](MapReader& texts, const std::string& name) {
+    take(name, texts.translated(name));
   });
 }
 }  // namespace tapstudy::protocols

@@ -129,10 +129,9 @@ Summary summary_of_study(results::Store& store, Mode mode, const std::string& di
     throw core::InvalidInput{fmt::format("{}: no answers of {} participants to report", directory,
                                          results::to_text(mode))};
   }
+  results::AlternativesOfTrials alternatives = store.alternatives();
   for (results::AnswerRow& answer : answers) {
-    if (answer.stimulus.empty()) {
-      answer.alternatives = store.alternatives_of(answer.trial_id);
-    }
+    answer.alternatives = std::move(alternatives[answer.trial_id]);
   }
   const protocols::Protocol protocol = stored_protocol(study);
   std::vector<results::VisitRow> visits = store.visits();

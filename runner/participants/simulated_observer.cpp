@@ -90,9 +90,8 @@ double SimulatedObserver::noise_variance_db2() const {
 
 double SimulatedObserver::position(const Percept& percept, const std::string& from,
                                    const std::string& to) const {
-  constexpr double undecided = 0.5;
   if (percept.felt.empty()) {
-    return undecided;
+    return percept.noise.front();
   }
   const Memory& start = memories_.at(from);
   const Memory& end = memories_.at(to);

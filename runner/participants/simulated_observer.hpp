@@ -36,7 +36,7 @@ class SimulatedObserver {
     Features noise;
   };
   // 0 at one remembered plate, 1 at another: the projection on the difference of the two, each
-  // feature weighted by its noise. 0.5 if nothing was felt.
+  // feature weighted by its noise. If nothing was felt, noise alone.
   double position(const Percept& percept, const std::string& from, const std::string& to) const;
   // Mean square over the features, in units of the noise of such a difference; places that only one
   // of two was tapped at say nothing.

@@ -54,7 +54,7 @@ AdaptiveBlocks::AdaptiveBlocks(const protocols::Protocol& protocol, std::uint64_
 
 bool AdaptiveBlocks::is_over(const PlannedTrial& trial) const {
   const auto tracks = tracks_.find(trial.block);
-  return tracks != tracks_.end() && !tracks->second.next();
+  return tracks != tracks_.end() && tracks->second.are_finished();
 }
 
 PlannedTrial AdaptiveBlocks::with_values(PlannedTrial trial) const {

@@ -1,5 +1,6 @@
 #include "runner/session/given_up_trials.hpp"
 
+#include <algorithm>
 #include <set>
 
 #include "protocols/schedule.hpp"
@@ -18,10 +19,16 @@ std::vector<int> given_up_trials(const protocols::Protocol& protocol,
   return given_up;
 }
 
+namespace {
+bool may_end_early(const protocols::Block& block) {
+  return block.criterion || block.comparison;
+}
+}  // namespace
+
 std::vector<int> unneeded_trials(const protocols::Protocol& protocol,
                                  const std::string& participant_id, results::Store& store) {
   const auto session = store.latest_session(participant_id);
-  if (!session) {
+  if (!session || std::ranges::none_of(protocol.blocks, may_end_early)) {
     return {};
   }
   const protocols::Schedule schedule =

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <catch2/catch.hpp>
+#include <cstdlib>
 
 #include "support/alsa_file.hpp"
 #include "support/processes.hpp"
@@ -51,6 +52,15 @@ TEST_CASE("every trial of a session has its noise, and says so", "[end_to_end][a
   CHECK(sql(directory, "SELECT count(*) FROM event WHERE kind LIKE 'masking_%'") == "0\n");
   CHECK(testing::rms_db(testing::channel_of(played, 0)) == Approx(-24.0).margin(0.5));
   CHECK(testing::tapstudy({"verify", directory / "the_study"}).exit_code == 0);
+}
+
+TEST_CASE("a client of JACK hears the noise at its level, spectrum and ramps",
+          "[end_to_end][audio]") {
+  setenv("TAPSTUDY_PROGRAM", TAPSTUDY_PROGRAM, 1);
+  const auto heard =
+      testing::run_program({"/usr/bin/python3", "-B", testing::source("tests/audio/jack_test.py")});
+  INFO(heard.standard_output << heard.standard_error);
+  CHECK(heard.exit_code == 0);
 }
 
 TEST_CASE("a session without a card is warned, or refused before anything is stored",

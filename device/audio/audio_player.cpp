@@ -73,6 +73,11 @@ void AudioPlayer::fade_out() {
   wanted_ = Heard::no;
 }
 
+bool AudioPlayer::is_playing() const {
+  const std::lock_guard lock{mutex_};
+  return wanted_ == Heard::yes && !played_.loss;
+}
+
 Played AudioPlayer::played() const {
   const std::lock_guard lock{mutex_};
   return played_;

@@ -46,6 +46,7 @@ class AudioPlayer {
   // Returns at once; the ramp goes on.
   void fade_out();
   Played played() const;
+  bool is_playing() const;  // or fading in
 
  private:
   void run();

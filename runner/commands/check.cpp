@@ -18,6 +18,7 @@
 #include "runner/devices/device_kind.hpp"
 #include "runner/devices/masking_noise.hpp"
 #include "runner/devices/rigs.hpp"
+#include "runner/experiments/screens.hpp"
 #include "runner/session/session_row.hpp"
 #include "runner/stimuli/model_library.hpp"
 namespace tapstudy::runner {
@@ -107,11 +108,14 @@ void warn_of_balance(const protocols::Block& block, int participants) {
     return;
   }
   const int rows = protocols::williams_sequences(conditions, block.repetitions);
-  if (block.order != protocols::Order::williams) {
+  if (block.order == protocols::Order::listed) {
+    fmt::print("    note: the order is the same for every participant, and not balanced\n");
+  } else if (block.order != protocols::Order::williams) {
     fmt::print(
         "    note: random orders balance only on average; order: williams balances {} "
-        "stimuli, {} times each, over every {} participants\n",
-        conditions, block.repetitions, rows);
+        "stimuli, {} each, over every {} participants\n",
+        conditions, block.repetitions == 1 ? "once" : fmt::format("{} times", block.repetitions),
+        rows);
   } else if (participants % rows != 0) {
     fmt::print("    warning: {} participants do not balance the {} orders (use a multiple of {})\n",
                participants, rows, rows);
@@ -159,6 +163,9 @@ void print_design(const protocols::Protocol& protocol, int participants) {
                block.stimuli.size() == 1 ? block.stimuli.front()
                                          : fmt::format("{} stimuli", block.stimuli.size()),
                block.comparison ? "at most " : "", trials, seconds);
+    if (block.is_practice) {
+      continue;  // in no result
+    }
     warn_of_balance(block, participants);
     if (block.comparison) {
       print_procedures(*block.comparison);
@@ -169,22 +176,14 @@ void print_design(const protocols::Protocol& protocol, int participants) {
   fmt::print("\n  {} participants, {:.0f} min of tapping each\n", participants, total_s / 60.0);
 }
 
-void print_forms(const protocols::Protocol& protocol) {
-  if (protocol.forms.empty()) {
-    return;
+void print_screens(const protocols::Protocol& protocol) {
+  fmt::print("\nscreens of a participant\n");
+  int total = 0;
+  for (const ScreenGroup& screen : screens_of(protocol)) {
+    fmt::print("  {:>4}  {}\n", screen.count, screen.shown);
+    total += screen.count;
   }
-  fmt::print("\nquestionnaires\n");
-  const auto print = [&](const std::vector<std::string>& names, const std::string& when) {
-    for (const std::string& name : names) {
-      const protocols::Form& form = protocol.forms.at(name);
-      fmt::print("  {}: {} questions, {}\n", name, form.items.size(), when);
-    }
-  };
-  print(protocol.forms_before, "before the first trial");
-  for (const protocols::Block& block : protocol.blocks) {
-    print(block.forms_after, fmt::format("after {}", block.name));
-  }
-  print(protocol.forms_after, "at the end");
+  fmt::print("  {:>4}  in all, if no trial is repeated\n", total);
 }
 
 void print_languages(const protocols::Protocol& protocol) {
@@ -225,7 +224,7 @@ void run_check(const CheckOptions& options) {
   if (protocol.masking) {
     fmt::print("\nmasking\n  {}\n", described(*protocol.masking));
   }
-  print_forms(protocol);
+  print_screens(protocol);
   print_languages(protocol);
   ModelLibrary models;
   print_models(protocol, models);

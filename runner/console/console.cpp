@@ -60,7 +60,8 @@ ConsoleApi::Session Console::in_view(const ConsoleRequest& request, const Sessio
           request.language,
           session.protocol.display.is_operator_blind,
           guarded(state_),
-          guarded(last_fault_)};
+          guarded(last_fault_),
+          session.masking};
 }
 
 void Console::note_state(const results::SessionEventRow& event) {

@@ -21,6 +21,7 @@ class Console {
     const results::SessionRow& row;
     OperatorDesk& desk;
     std::function<void()> move_hand;  // as a ConsoleParticipant's
+    std::function<std::optional<MaskingInView>()> masking;
   };
   // Throws InvalidInput if the address cannot be listened to.
   Console(const ConsoleRequest& request, const Session& session);

@@ -4,7 +4,6 @@
 
 #include "core/error.hpp"
 #include "results/store_error.hpp"
-#include "runner/console/operator_json.hpp"
 #include "runner/console/pages.hpp"
 #include "runner/terminal/whole_number.hpp"
 namespace tapstudy::runner {
@@ -111,9 +110,9 @@ std::string ConsoleApi::operator_events(SentToPage& sent) const {
 }
 
 std::string ConsoleApi::operator_state() const {
-  return state_json(
-      {session_.title, session_.participant_id, session_.mode, session_.device, session_.language,
-       session_.is_blind, session_.state(), session_.last_fault(), screens_.open_pages() > 0},
-      desk_.view(), live_.totals());
+  return state_json({session_.title, session_.participant_id, session_.mode, session_.device,
+                     session_.language, session_.is_blind, session_.state(), session_.last_fault(),
+                     screens_.open_pages() > 0, session_.masking()},
+                    desk_.view(), live_.totals());
 }
 }  // namespace tapstudy::runner

@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "runner/console/live_view.hpp"
+#include "runner/console/operator_json.hpp"
 #include "runner/console/scenes.hpp"
 #include "runner/console/screen_exchange.hpp"
 #include "runner/operators/operator_desk.hpp"
@@ -44,6 +45,7 @@ class ConsoleApi {
     bool is_blind{};                          // for the operator, too
     std::function<std::string()> state;       // of the session, now
     std::function<std::string()> last_fault;  // empty: none
+    std::function<std::optional<MaskingInView>()> masking;
   };
   ConsoleApi(Session session, ScreenExchange& screens, OperatorDesk& desk, const LiveView& live,
              const Scenes& scenes)

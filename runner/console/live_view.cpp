@@ -14,6 +14,7 @@ void LiveView::begin_trial() {
   const std::lock_guard lock{mutex_};
   totals_.contacts = 0;
   was_touching_ = false;
+  last_tick_ns_.reset();
   has_step_ = false;
 }
 
@@ -22,8 +23,11 @@ void LiveView::add(const core::TraceSample& sample) {
     return;  // its position may be NaN
   }
   const auto& [x, y, z] = sample.force_n;
-  const Step step{std::hypot(x, y, z), core::along_normal(sample.position_m)};
   const std::lock_guard lock{mutex_};
+  const double interval_s =
+      1e-9 * static_cast<double>(sample.t_ns - last_tick_ns_.value_or(sample.t_ns));
+  const Step step{std::hypot(x, y, z), core::along_normal(sample.position_m), interval_s};
+  last_tick_ns_ = sample.t_ns;
   pointer_ = {core::Vec3{sample.position_m.data()}, sample.touching, sample.alternative,
               pointer_.tick + 1};
   ++totals_.ticks;
@@ -37,7 +41,8 @@ void LiveView::add(const core::TraceSample& sample) {
     has_step_ = false;
   }
   if (has_step_) {
-    step_ = {std::max(step_.force_n, step.force_n), std::min(step_.normal_m, step.normal_m)};
+    step_ = {std::max(step_.force_n, step.force_n), std::min(step_.normal_m, step.normal_m),
+             std::max(step_.interval_s, step.interval_s)};
   } else {
     step_ = step;
     step_ends_ns_ = sample.t_ns - sample.t_ns % step_ns + step_ns;

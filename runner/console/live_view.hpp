@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <mutex>
+#include <optional>
 #include <vector>
 
 #include "core/haptic_state.hpp"
@@ -15,9 +16,10 @@ class LiveView {
     std::uint8_t alternative{};
     std::int64_t tick{-1};  // since the session's begin; -1: none yet
   };
-  struct Step {         // of step_s
-    double force_n{};   // magnitude: the largest
-    double normal_m{};  // position along the device's normal: the lowest
+  struct Step {           // of step_s
+    double force_n{};     // magnitude: the largest
+    double normal_m{};    // position along the device's normal: the lowest
+    double interval_s{};  // between the beginnings of two ticks: the longest
   };
   static constexpr double step_s = 0.01;
   struct Steps {
@@ -42,6 +44,7 @@ class LiveView {
   Pointer pointer_;
   Totals totals_;
   bool was_touching_{false};
+  std::optional<std::int64_t> last_tick_ns_;  // of this trial
   std::int64_t step_ends_ns_{0};
   bool has_step_{false};
   Step step_;

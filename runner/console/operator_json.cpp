@@ -54,6 +54,12 @@ Json json_of(const AnswerInView& answer, bool is_blind) {
   return json;
 }
 
+Json json_of(const MaskingInView& masking) {
+  return {{"is_playing", masking.is_playing},
+          {"level_db_fs", masking.level_db_fs},
+          {"underruns", masking.underruns}};
+}
+
 Json actions_of(const DeskView& desk) {
   Json actions = Json::array();
   for (const ActionInfo& info : operator_actions()) {
@@ -103,7 +109,7 @@ std::string state_json(const SessionInView& session, const DeskView& desk,
       {"force_is_off",
        desk.force == ForceState::unknown ? Json{} : Json(desk.force == ForceState::off)},
       {"ticks", {{"total", totals.ticks}, {"late", totals.late}}},
-      {"masking", nullptr},
+      {"masking", session.masking ? json_of(*session.masking) : Json{}},
       {"warnings", Json::array()}};
   const std::string force =
       desk.force == ForceState::unknown ? std::string{device::force_may_be_on} : std::string{};
@@ -119,14 +125,17 @@ std::string live_json(const LiveView::Steps& steps, const LiveView::Totals& tota
                       double surface_along_normal_m) {
   Json force = Json::array();
   Json height = Json::array();
+  Json interval = Json::array();
   for (const LiveView::Step& step : steps.steps) {
     force.push_back(step.force_n);
     height.push_back(step.normal_m - surface_along_normal_m);
+    interval.push_back(step.interval_s);
   }
   return dumped({{"t_s", LiveView::step_s * static_cast<double>(steps.end)},
                  {"step_s", LiveView::step_s},
                  {"force_n", force},
                  {"height_m", height},
+                 {"interval_s", interval},
                  {"contacts", totals.contacts}});
 }
 

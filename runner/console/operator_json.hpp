@@ -1,9 +1,17 @@
 #pragma once
+#include <cstdint>
+#include <optional>
 #include <string>
 
 #include "runner/console/live_view.hpp"
 #include "runner/operators/operator_desk.hpp"
 namespace tapstudy::runner {
+struct MaskingInView {
+  bool is_playing{};
+  double level_db_fs{};
+  std::int64_t underruns{};  // in this trial, or the last
+};
+
 struct SessionInView {
   std::string title;
   std::string participant_id;
@@ -14,6 +22,7 @@ struct SessionInView {
   std::string state;
   std::string last_fault;
   bool has_participant_page{};
+  std::optional<MaskingInView> masking{};  // unset: the study has none
 };
 
 // For the operator's page.

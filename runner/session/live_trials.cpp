@@ -36,6 +36,22 @@ bool is_excluded(const LiveTrials::Parts& parts) {
   return parts.store.excluded_participants().contains(parts.session.row.participant_id);
 }
 
+double masking_level_db_fs(const LiveTrials::Parts& parts) {
+  return played_noise(parts.live.protocol, parts.live.rig).level_db_fs;
+}
+
+std::optional<MaskingInView> masking_in_view(const LiveTrials::Parts& parts) {
+  if (!parts.live.protocol.masking) {
+    return std::nullopt;
+  }
+  MaskingInView view{.level_db_fs = masking_level_db_fs(parts)};
+  if (parts.masking != nullptr) {
+    view.is_playing = parts.masking->is_playing();
+    view.underruns = parts.masking->played().underruns;
+  }
+  return view;
+}
+
 std::unique_ptr<Console> console_of(const LiveTrials::Parts& parts, OperatorDesk& desk,
                                     LiveTrialLoop& loop, std::function<void()> move_hand) {
   if (!parts.live.console) {
@@ -43,7 +59,8 @@ std::unique_ptr<Console> console_of(const LiveTrials::Parts& parts, OperatorDesk
   }
   auto console = std::make_unique<Console>(
       *parts.live.console,
-      Console::Session{parts.live.protocol, parts.session.row, desk, std::move(move_hand)});
+      Console::Session{parts.live.protocol, parts.session.row, desk, std::move(move_hand),
+                       [parts] { return masking_in_view(parts); }});
   loop.watch(
       [seen_by = console.get()](const core::TraceSample& sample) { seen_by->watch(sample); });
   // the terminal's lines are commands then, and the operator may be at a page
@@ -58,8 +75,7 @@ std::optional<MaskedTrialLoop> masked(TrialLoop& loop, const LiveTrials::Parts& 
   if (parts.masking == nullptr) {
     return std::nullopt;
   }
-  return std::make_optional<MaskedTrialLoop>(
-      loop, *parts.masking, played_noise(parts.live.protocol, parts.live.rig).level_db_fs);
+  return std::make_optional<MaskedTrialLoop>(loop, *parts.masking, masking_level_db_fs(parts));
 }
 
 TrialLoop& loop_of(TrialLoop& bare, std::optional<MaskedTrialLoop>& masked) {

@@ -340,6 +340,24 @@ TEST_CASE("a file that is no protocol is refused however long it is", "[end_to_e
   CHECK_THAT(run.standard_error, Contains("too long"));
 }
 
+TEST_CASE("check counts the screens that a session shows", "[end_to_end][threads]") {
+  const TempDirectory directory;
+  const std::string study = testing::source("tests/data/every_screen.yaml");
+  const auto shown = testing::tapstudy({"check", study}).standard_output;
+  const std::string answers = "\nright\n1\n2\n\n1\n2\n\n2\n3\n4\n0.75\n\n";
+  REQUIRE(testing::tapstudy({"run", study, "--participant", "P01", "--out", directory / "study"},
+                            answers)
+              .exit_code == 0);
+  const auto counted = testing::run_program(
+      {"/usr/bin/sqlite3", (directory / "study") + "/study.db",
+       "SELECT printf('%6d  in all', count(*)) FROM session_event WHERE state IN ('instructions', "
+       "'form', 'exploring', 'feedback', 'confidence', 'resting')"});
+  INFO(shown);
+  const std::string total = counted.standard_output;
+  CHECK_THAT(shown, Contains(total.substr(0, total.size() - 1)));
+  CHECK_THAT(shown, Contains("1  a break of at least 1 s, after every 1 trial\n"));
+}
+
 TEST_CASE("check warns of a contact that the hand cannot rest on", "[end_to_end]") {
   const TempDirectory directory;
   const auto checked = [&](const std::string& stiffness) {

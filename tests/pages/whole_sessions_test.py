@@ -1,7 +1,9 @@
 """The paper's three studies, each a whole session in a browser, by a participant and an operator."""
 import os
 import re
+import shutil
 import sys
+import tempfile
 import unittest
 from pathlib import Path
 
@@ -165,6 +167,7 @@ class WholeSession(unittest.TestCase):
         browser.check_axe(self.operator, ("serious", "critical"))
         self.next_trial(1)
         self.wait_for_touch()
+        self.assertRegex(browser.plot_in_words(self.operator, "interval"), r"now \d+\.\d\d ms, last 5 s: \d")
         self.shoot("operator", self.operator)
         self.answer_until_accepted(browser.answer_by_mouse, 0)
         self.next_trial(2)
@@ -191,6 +194,24 @@ class WholeSession(unittest.TestCase):
                                    "resume ", "skip ", "end feels sick"])
         self.assertEqual(self.session.rows("SELECT detail FROM session_event WHERE state = 'stopped'"),
                          [("feels sick",)])
+
+    def test_the_operator_sees_the_noise_that_is_played(self):
+        directory = Path(tempfile.mkdtemp(prefix="tapstudy_masked_"))
+        self.addCleanup(shutil.rmtree, directory)
+        source = Path(__file__).resolve().parents[2]
+        study, rig = directory / "study.yaml", directory / "rig.yaml"
+        study.write_text((source / "protocols/paper/discrimination.yaml").read_text() +
+                         "\nmasking: {kind: pink, level_db_fs: -30, ramp_s: 0.1}\n")
+        rig.write_text((source / "protocols/rigs/simulated_hand.yaml").read_text() +
+                       '\naudio: {card: "null", gain_db: -5}\n')
+        self.start(study, "--rig", str(rig))
+        self.watch()
+        browser.wait_for_state(self.operator, "exploring")
+        machine = lambda: browser.operator_state(self.operator)["machine"]
+        browser.wait_until(self.operator, "the noise", lambda: "playing, -35 dB FS" in machine())
+        self.assertNotIn("not playing", machine())
+        browser.command(self.operator, "pause")
+        browser.wait_until(self.operator, "silence", lambda: "not playing, -35 dB FS" in machine())
 
     def test_real_plates_are_mounted_and_the_last_answer_is_corrected(self):
         self.start("tests/data/material_study.yaml", "--language", "de", width=375, height=800)

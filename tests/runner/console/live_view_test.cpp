@@ -36,6 +36,27 @@ TEST_CASE("a screen's step has the largest force and the lowest position of its 
   CHECK(live.totals().contacts == 0);
 }
 
+TEST_CASE("a late tick is seen in the longest interval of its step, a pause between trials in none",
+          "[runner][console]") {
+  LiveView live;
+  live.begin_trial();
+  constexpr std::int64_t late_ns = 700'000;
+  for (int i = 0; i < 25; ++i) {
+    core::TraceSample sample = tick(i, 0.0, 0.01);
+    sample.t_ns += i == 15 ? late_ns : 0;
+    live.add(sample);
+  }
+  live.begin_trial();
+  for (int i = 1000; i < 1025; ++i) {
+    live.add(tick(i, 0.0, 0.01));
+  }
+  const auto steps = live.since(-1).steps;
+  REQUIRE(steps.size() == 4);
+  CHECK(steps[0].interval_s == Approx(0.001));
+  CHECK(steps[1].interval_s == Approx(0.0017));
+  CHECK(steps[2].interval_s == Approx(0.001));
+}
+
 TEST_CASE("a page that was away for long gets the latest steps, as many as are kept",
           "[runner][console]") {
   LiveView live;

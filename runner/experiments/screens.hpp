@@ -1,0 +1,13 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "protocols/protocol.hpp"
+namespace tapstudy::runner {
+struct ScreenGroup {
+  std::string shown;  // in words
+  int count{};
+};
+// What one participant sees, in this order: the most that there can be, if no trial is repeated.
+std::vector<ScreenGroup> screens_of(const protocols::Protocol& protocol);
+}  // namespace tapstudy::runner

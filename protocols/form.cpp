@@ -32,16 +32,6 @@ std::string unless_within(const std::string& text, double low, double high, bool
                     : fmt::format("please answer with a {}number from {:.6g} to {:.6g}",
                                   is_whole ? "whole " : "", low, high);
 }
-
-FormItem tlx_scale(const char* name, const char* question, const char* low, const char* high) {
-  FormItem item;
-  item.name = name;
-  item.kind = ItemKind::scale;
-  item.question = question;
-  item.low = low;
-  item.high = high;
-  return item;
-}
 }  // namespace
 
 std::string wrong_with(const FormItem& item, const std::string& answer) {
@@ -64,26 +54,5 @@ std::string wrong_with(const FormItem& item, const std::string& answer) {
       break;
   }
   return answer.size() <= max_text ? "" : fmt::format("at most {} characters", max_text);
-}
-
-const Form& nasa_tlx() {
-  static const Form form{
-      "nasa_tlx",
-      "Task load",
-      "Please mark on each line how the task was for you.",
-      {tlx_scale("mental_demand", "How mentally demanding was the task?", "Very low", "Very high"),
-       tlx_scale("physical_demand", "How physically demanding was the task?", "Very low",
-                 "Very high"),
-       tlx_scale("temporal_demand", "How hurried or rushed was the pace of the task?", "Very low",
-                 "Very high"),
-       tlx_scale("performance",
-                 "How successful were you in accomplishing what you were asked to do?", "Perfect",
-                 "Failure"),
-       tlx_scale("effort", "How hard did you have to work to accomplish your level of performance?",
-                 "Very low", "Very high"),
-       tlx_scale("frustration",
-                 "How insecure, discouraged, irritated, stressed, and annoyed were you?",
-                 "Very low", "Very high")}};
-  return form;
 }
 }  // namespace tapstudy::protocols

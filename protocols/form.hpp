@@ -39,8 +39,4 @@ struct Form {
 
 // What is wrong with an answer, and what is allowed; empty: nothing. Numbers are written as in C.
 std::string wrong_with(const FormItem& item, const std::string& answer);
-
-// The task load index of NASA, six scales without weights ("raw TLX"; Hart and Staveland 1988, Hart
-// 2006): its wording is that of the agency's own form, a work of the United States government.
-const Form& nasa_tlx();
 }  // namespace tapstudy::protocols

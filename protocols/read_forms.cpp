@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "protocols/nasa_tlx.hpp"
 #include "protocols/read_sections.hpp"
 namespace tapstudy::protocols {
 namespace {
@@ -47,8 +48,8 @@ FormItem read_item(MapReader& reader) {
 Form read_form(const std::string& name, MapReader& reader) {
   Form form;
   if (reader.has("shipped")) {
-    reader.word("shipped", "form", {nasa_tlx().name});
-    form = nasa_tlx();
+    reader.word("shipped", "form", {"nasa_tlx"});
+    form = nasa_tlx(reader.language_among("shipped", nasa_tlx_languages()));
   } else {
     form.title = reader.translated("title");
     form.text = reader.translated_paragraphs("text", "");

@@ -59,6 +59,8 @@ class MapReader {
   // A mapping from free names to such texts.
   void each_translated(const std::string& key, Presence presence,
                        const std::function<void(const std::string&, const std::string&)>& take);
+  // Of a text that this key stands for: the wanted language if it is given, else the first.
+  std::string language_among(const std::string& key, const std::vector<std::string>& given);
   // A name that is valid in data, tables and file names: see is_name.
   std::string name(const std::string& key);
   // `size` numbers in brackets.

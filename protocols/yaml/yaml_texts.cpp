@@ -103,6 +103,16 @@ std::string MapReader::translated_paragraphs(const std::string& key,
   return node ? translation_at(*node, path_of(key), Lines::several) : otherwise.value_or("");
 }
 
+std::string MapReader::language_among(const std::string& key,
+                                      const std::vector<std::string>& given) {
+  if (translations_ == nullptr) {
+    return given.front();
+  }
+  translations_->given[path_of(key)] = given;
+  const auto wanted = std::ranges::find(given, translations_->language);
+  return wanted == given.end() ? given.front() : *wanted;
+}
+
 std::vector<std::pair<std::string, std::string>> MapReader::translated_list(
     const std::string& key) {
   std::vector<std::pair<std::string, std::string>> all;

@@ -1,6 +1,10 @@
 #include "protocols/form.hpp"
 
 #include <catch2/catch.hpp>
+
+#include "protocols/nasa_tlx.hpp"
+#include "protocols/read_protocol.hpp"
+#include "support/texts.hpp"
 using namespace tapstudy::protocols;
 
 namespace {
@@ -48,9 +52,23 @@ TEST_CASE("only what is not required may be left out", "[protocols][forms]") {
 }
 
 TEST_CASE("NASA's task load index has its six scales", "[protocols][forms]") {
-  REQUIRE(nasa_tlx().items.size() == 6);
-  for (const FormItem& scale : nasa_tlx().items) {
-    CHECK(scale.kind == ItemKind::scale);
-    CHECK(scale.is_required);
+  for (const std::string& language : nasa_tlx_languages()) {
+    const Form form = nasa_tlx(language);
+    REQUIRE(form.items.size() == 6);
+    for (std::size_t i = 0; i < 6; ++i) {
+      CHECK(form.items[i].name == nasa_tlx("en").items[i].name);
+      CHECK(form.items[i].kind == ItemKind::scale);
+      CHECK(form.items[i].is_required);
+      CHECK_FALSE(form.items[i].question.empty());
+    }
   }
+}
+
+TEST_CASE("NASA's task load index is asked in the language of the session, else in English",
+          "[protocols][forms]") {
+  CHECK(nasa_tlx("de").title != nasa_tlx("en").title);
+  CHECK(nasa_tlx("fr").title == nasa_tlx("en").title);
+  const auto study = tapstudy::testing::shipped("recommended/discrimination.yaml").string();
+  CHECK(read_protocol(study, "ja").forms.at("load").title == nasa_tlx("ja").title);
+  CHECK(read_protocol(study).forms.at("load").title == nasa_tlx("en").title);
 }

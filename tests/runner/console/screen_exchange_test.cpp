@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "core/error.hpp"
+#include "protocols/nasa_tlx.hpp"
 using namespace tapstudy;
 using namespace tapstudy::runner;
 
@@ -83,7 +84,7 @@ TEST_CASE("a screen takes what can be done with it and nothing else", "[runner][
 
 TEST_CASE("a form is taken when all that it requires is answered, and nothing else is",
           "[runner][console][forms]") {
-  const Screen form{.kind = ScreenKind::form, .form = protocols::nasa_tlx()};
+  const Screen form{.kind = ScreenKind::form, .form = protocols::nasa_tlx("en")};
   ScreenInput input{ScreenAction::form, 0, {}};
   for (const protocols::FormItem& item : form.form->items) {
     CHECK_FALSE(accepts(form, input));

@@ -19,6 +19,14 @@ struct HypothesisResult {
   double p_floor{};         // where no draw was as good: p is only known to be no larger
 };
 
+// What a block was made to find out, as one number of the whole sample.
+struct MainResult {
+  std::string name;  // with its unit
+  double estimate{};
+  Interval range;             // 95 %, over participants
+  std::optional<double> p{};  // of the planned test, where there is one
+};
+
 // The rows of one block.
 struct BlockRows {
   std::vector<results::AnswerRow> answers;
@@ -47,6 +55,8 @@ class BlockSummary {
   virtual void write_html(std::ostream& out) const = 0;  // a part of a page
   virtual nlohmann::ordered_json as_json() const = 0;
   virtual std::vector<CsvTable> tables() const = 0;
+  // Empty: the answers do not determine it.
+  virtual std::vector<MainResult> main_results() const { return {}; }
 
   std::string block;  // empty where only a table of counts is known
   std::string task;

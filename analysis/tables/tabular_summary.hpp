@@ -16,10 +16,12 @@ class TabularSummary final : public BlockSummary {
   // {"block", "task", TABLE: [{key: value}], "remarks": [sentence], "hypotheses"}
   nlohmann::ordered_json as_json() const override;
   std::vector<CsvTable> tables() const override;  // TABLE.csv, a header of keys
+  std::vector<MainResult> main_results() const override { return main; }
 
   std::vector<ReportTable> parts;    // those without rows are left out for people
   std::vector<std::string> remarks;  // how it was computed, and what could not be
   std::vector<Chart> charts;
   std::vector<HypothesisResult> hypotheses;
+  std::vector<MainResult> main;
 };
 }  // namespace tapstudy::analysis

@@ -1,8 +1,20 @@
 #include "analysis/thresholds/threshold_summary.hpp"
 
+#include <cmath>
+
 #include "analysis/tables/tabular_summary.hpp"
 #include "analysis/thresholds/threshold_tables.hpp"
 namespace tapstudy::analysis {
+namespace {
+MainResult mean_threshold(const VariedAxis& axis, const PooledEstimate& log_mean) {
+  const auto from_log = [](double log) { return std::pow(10.0, log); };
+  return {axis.is_fraction ? "Weber fraction of " + axis.name
+                           : "just noticeable difference of " + axis.name,
+          from_log(log_mean.mean),
+          {from_log(log_mean.interval.low), from_log(log_mean.interval.high)}};
+}
+}  // namespace
+
 std::shared_ptr<const BlockSummary> summarise_thresholds(const BlockDesign& design,
                                                          const BlockRows& rows) {
   const ThresholdResults results = participant_thresholds(design, rows.answers);
@@ -10,6 +22,9 @@ std::shared_ptr<const BlockSummary> summarise_thresholds(const BlockDesign& desi
   summary->parts = threshold_tables(design, results);
   summary->charts = threshold_charts(design, results);
   summary->remarks = threshold_remarks(design, results);
+  if (results.pooled_log) {
+    summary->main = {mean_threshold(*design.axis, *results.pooled_log)};
+  }
   for (const PlannedHypothesis& planned : design.hypotheses) {
     summary->hypotheses.push_back(
         {planned,

@@ -1,26 +1,22 @@
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
-#include <algorithm>
 #include <memory>
-#include <set>
 
-#include "analysis/statistics/proportion.hpp"
 #include "core/error.hpp"
 #include "core/rng.hpp"
 #include "device/hand/penalty_limit.hpp"
-#include "protocols/ordering.hpp"
 #include "protocols/read_protocol.hpp"
 #include "protocols/schedule.hpp"
+#include "runner/commands/check_design.hpp"
 #include "runner/commands/commands.hpp"
 #include "runner/commands/families.hpp"
 #include "runner/commands/seed.hpp"
 #include "runner/devices/device_kind.hpp"
-#include "runner/devices/masking_noise.hpp"
 #include "runner/devices/rigs.hpp"
-#include "runner/experiments/screens.hpp"
+#include "runner/experiments/design_simulation.hpp"
 #include "runner/session/session_row.hpp"
 #include "runner/stimuli/model_library.hpp"
+#include "runner/terminal/stop_signal.hpp"
 namespace tapstudy::runner {
 namespace {
 struct CheckOptions {
@@ -28,9 +24,8 @@ struct CheckOptions {
   int participants{10};
   std::string seed{"1"};
   std::string rig;
+  int simulations{0};
 };
-constexpr double alpha = 0.05;
-
 // Newmark's amplification of an overdamped mode is negative at large steps: the force changes sign
 // with every tick.
 void warn_of_overdamped_modes(const protocols::Protocol& protocol, ModelLibrary& models) {
@@ -99,111 +94,27 @@ void print_contact(const protocols::Protocol& protocol, int delay_ticks) {
   }
 }
 
-void warn_of_balance(const protocols::Block& block, int participants) {
-  if (!block.task->uses_order()) {
-    return;
-  }
-  const int conditions = static_cast<int>(block.stimuli.size());
-  if (conditions < 2) {
-    return;
-  }
-  const int rows = protocols::williams_sequences(conditions, block.repetitions);
-  if (block.order == protocols::Order::listed) {
-    fmt::print("    note: the order is the same for every participant, and not balanced\n");
-  } else if (block.order != protocols::Order::williams) {
+void print_simulated(const SimulatedDesign& design, const protocols::Protocol& protocol) {
+  check_trial_length(protocol);
+  listen_for_stop();
+  const auto results = simulate_design(design, protocol);
+  fmt::print("\n{} simulated studies of {} participants, who are as `simulation` says\n",
+             design.studies, design.participants);
+  for (const ResultOfDesign& result : results) {
     fmt::print(
-        "    note: random orders balance only on average; order: williams balances {} "
-        "stimuli, {} each, over every {} participants\n",
-        conditions, block.repetitions == 1 ? "once" : fmt::format("{} times", block.repetitions),
-        rows);
-  } else if (participants % rows != 0) {
-    fmt::print("    warning: {} participants do not balance the {} orders (use a multiple of {})\n",
-               participants, rows, rows);
-  }
-}
-
-void print_power(const protocols::Protocol& protocol, const protocols::Block& block,
-                 int participants) {
-  const std::size_t options = block.task->options(block, protocol).size();
-  const double chance = 1.0 / static_cast<double>(options);
-  const int answers = participants * block.task->counted_answers(block);
-  const int critical = analysis::critical_successes(answers, chance, alpha);
-  fmt::print(
-      "    chance {:.0f} %; of {} answers {} must {} for p < .05 (one-sided, answers "
-      "independent)\n",
-      100.0 * chance, answers, critical, block.task->success());
-  fmt::print("    power if the truth is");
-  for (const double above : {0.1, 0.2, 0.3}) {
-    fmt::print("{} {:.0f} %: {:.2f}", above > 0.15 ? "," : "", 100.0 * (chance + above),
-               analysis::binomial_power(answers, chance, alpha, chance + above));
-  }
-  fmt::print("\n");
-}
-
-void print_procedures(const protocols::Comparison& comparison) {
-  for (const auto& track : comparison.tracks) {
-    const auto [low, high] = track->ranges().front();
-    fmt::print("    at most {} trials of {}: {} against {:.6g}, from {:.6g} to {:.6g}\n",
-               track->max_trials(), comparison.axis, comparison.is_below ? "below" : "above",
-               comparison.standard, comparison.value_at(low), comparison.value_at(high));
-  }
-}
-
-void print_design(const protocols::Protocol& protocol, int participants) {
-  fmt::print("{}\n\n", protocol.title);
-  double total_s = 0.0;
-  for (const protocols::Block& block : protocol.blocks) {
-    const int trials = planned_trials(block);
-    const double seconds = trials * simulated_trial_s(protocol, block);
-    total_s += seconds;
-    fmt::print("  {}{}{}: {}, {}, {}{} trials a participant, about {:.0f} s of tapping\n",
-               block.name, block.is_practice ? " (practice)" : "",
-               block.presented == protocols::Presented::real_plates ? " (real plates)" : "",
-               block.task->name(),
-               block.stimuli.size() == 1 ? block.stimuli.front()
-                                         : fmt::format("{} stimuli", block.stimuli.size()),
-               block.comparison ? "at most " : "", trials, seconds);
-    if (block.is_practice) {
-      continue;  // in no result
+        "  {}: {} {:.3g}, standard deviation {:.2g} between studies; 95 % intervals {:.2g} "
+        "wide on average",
+        result.block, result.name, result.mean, result.spread, result.width);
+    if (result.tested > 0) {
+      fmt::print("; p < .05 in {} of {}", result.significant, result.tested);
     }
-    warn_of_balance(block, participants);
-    if (block.comparison) {
-      print_procedures(*block.comparison);
-    } else if (block.task->has_chance_level()) {
-      print_power(protocol, block, participants);
+    if (result.found < design.studies) {
+      fmt::print("; not found in {}", design.studies - result.found);
     }
+    fmt::print("\n");
   }
-  fmt::print("\n  {} participants, {:.0f} min of tapping each\n", participants, total_s / 60.0);
-}
-
-void print_screens(const protocols::Protocol& protocol) {
-  fmt::print("\nscreens of a participant\n");
-  int total = 0;
-  for (const ScreenGroup& screen : screens_of(protocol)) {
-    fmt::print("  {:>4}  {}\n", screen.count, screen.shown);
-    total += screen.count;
-  }
-  fmt::print("  {:>4}  in all, if no trial is repeated\n", total);
-}
-
-void print_languages(const protocols::Protocol& protocol) {
-  std::set<std::string> all;
-  std::size_t in_one = 0;
-  for (const auto& [path, languages] : protocol.translations.given) {
-    all.insert(languages.begin(), languages.end());
-    in_one += languages.empty() ? 1 : 0;
-  }
-  if (all.empty()) {
-    return;
-  }
-  fmt::print("\nlanguages\n");
-  for (const std::string& language : all) {
-    const auto missing = texts_without(language, protocol.translations);
-    fmt::print("  {}: {}\n", language,
-               missing.empty() ? "complete" : fmt::format("lacks {}", fmt::join(missing, ", ")));
-  }
-  if (in_one > 0) {
-    fmt::print("  texts given once for all of them: {}\n", in_one);
+  if (results.empty()) {
+    fmt::print("  no block has a result that is one number\n");
   }
 }
 
@@ -213,6 +124,10 @@ void run_check(const CheckOptions& options) {
     throw core::InvalidInput{
         fmt::format("--participants: {} is not allowed (from 1 to 10000)", options.participants)};
   }
+  if (options.simulations < 0 || options.simulations > 10000) {
+    throw core::InvalidInput{
+        fmt::format("--simulations: {} is not allowed (from 0 to 10000)", options.simulations)};
+  }
   int delay_ticks = 0;
   if (!options.rig.empty()) {
     const protocols::Rig rig = read_rig(options.rig);
@@ -221,11 +136,6 @@ void run_check(const CheckOptions& options) {
     delay_ticks = kind_of(rig).delay_ticks(rig);
   }
   print_design(protocol, options.participants);
-  if (protocol.masking) {
-    fmt::print("\nmasking\n  {}\n", described(*protocol.masking));
-  }
-  print_screens(protocol);
-  print_languages(protocol);
   ModelLibrary models;
   print_models(protocol, models);
   print_families(protocol, models);
@@ -237,6 +147,11 @@ void run_check(const CheckOptions& options) {
   fmt::print("\nschedule of participant {} of a simulation with seed {}\n", options.participants,
              options.seed);
   fmt::print("{}", protocols::described(make_schedule(protocol, seed, index)));
+  if (options.simulations > 0) {
+    print_simulated({options.protocol, options.participants, options.simulations,
+                     seed_from(options.seed, "--seed")},
+                    protocol);
+  }
 }
 }  // namespace
 
@@ -248,6 +163,8 @@ void add_check(CommandParser& line) {
   command.option_with_default("--seed", options->seed, "Seed of the schedule shown");
   command.option("--rig", options->rig,
                  "Check that this device reaches the tapping points; bound of its contact");
+  command.option_with_default("--simulations", options->simulations,
+                              "Simulate the study so often: power, and widths of intervals");
   command.on_run([options] { run_check(*options); });
 }
 }  // namespace tapstudy::runner

@@ -38,11 +38,12 @@ void add_trials(const protocols::Block& block, std::vector<ScreenGroup>& screens
     screens.push_back({"feedback, after each", trials});
   }
   if (block.breaks) {
-    const int rests = (trials - 1) / block.breaks->every_trials;
-    screens.push_back(
-        {fmt::format("a break of at least {} s, after every {}", block.breaks->min_seconds,
-                     counted(static_cast<std::size_t>(block.breaks->every_trials), "trial")),
-         rests});
+    const protocols::Breaks& breaks = *block.breaks;
+    const std::string length =
+        breaks.min_seconds > 0.0 ? fmt::format(" of at least {} s", breaks.min_seconds) : "";
+    const auto every = static_cast<std::size_t>(breaks.every_trials);
+    screens.push_back({fmt::format("a break{}, after every {}", length, counted(every, "trial")),
+                       (trials - 1) / breaks.every_trials});
   }
 }
 }  // namespace

@@ -127,7 +127,8 @@ SimulatedTime simulate(const SimulatedStudy& study, const protocols::Protocol& p
       results::Store::open_or_create(study.directory, study_row(protocol, study.protocol_file));
   std::vector<PlannedSession> sessions;
   store.in_one_transaction([&] { sessions = add_sessions(study, protocol, rig, store); });
-  const Progress progress{fmt::format("simulating {} participants", study.participants)};
+  const Progress progress{
+      fmt::format("{}simulating {} participants", study.of_studies, study.participants)};
   std::atomic<std::int64_t> ticks{0};
   std::atomic<int> trials{0};
   results::Recorder recorder{store};

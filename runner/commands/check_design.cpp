@@ -1,0 +1,135 @@
+#include "runner/commands/check_design.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <set>
+
+#include "analysis/statistics/proportion.hpp"
+#include "protocols/ordering.hpp"
+#include "protocols/schedule.hpp"
+#include "runner/devices/masking_noise.hpp"
+#include "runner/experiments/screens.hpp"
+#include "runner/session/session_row.hpp"
+namespace tapstudy::runner {
+namespace {
+constexpr double alpha = 0.05;
+
+void warn_of_balance(const protocols::Block& block, int participants) {
+  if (!block.task->uses_order()) {
+    return;
+  }
+  const int conditions = static_cast<int>(block.stimuli.size());
+  if (conditions < 2) {
+    return;
+  }
+  const int rows = protocols::williams_sequences(conditions, block.repetitions);
+  if (block.order == protocols::Order::listed) {
+    fmt::print("    note: the order is the same for every participant, and not balanced\n");
+  } else if (block.order != protocols::Order::williams) {
+    fmt::print(
+        "    note: random orders balance only on average; order: williams balances {} "
+        "stimuli, {} each, over every {} participants\n",
+        conditions, block.repetitions == 1 ? "once" : fmt::format("{} times", block.repetitions),
+        rows);
+  } else if (participants % rows != 0) {
+    fmt::print("    warning: {} participants do not balance the {} orders (use a multiple of {})\n",
+               participants, rows, rows);
+  }
+}
+
+void print_power(const protocols::Protocol& protocol, const protocols::Block& block,
+                 int participants) {
+  const std::size_t options = block.task->options(block, protocol).size();
+  const double chance = 1.0 / static_cast<double>(options);
+  const int answers = participants * block.task->counted_answers(block);
+  const int critical = analysis::critical_successes(answers, chance, alpha);
+  fmt::print(
+      "    chance {:.0f} %; of {} answers {} must {} for p < .05 (one-sided, answers "
+      "independent)\n",
+      100.0 * chance, answers, critical, block.task->success());
+  fmt::print("    power if the truth is");
+  for (const double above : {0.1, 0.2, 0.3}) {
+    fmt::print("{} {:.0f} %: {:.2f}", above > 0.15 ? "," : "", 100.0 * (chance + above),
+               analysis::binomial_power(answers, chance, alpha, chance + above));
+  }
+  fmt::print("\n");
+}
+
+void print_procedures(const protocols::Comparison& comparison) {
+  for (const auto& track : comparison.tracks) {
+    const auto [low, high] = track->ranges().front();
+    fmt::print("    at most {} trials of {}: {} against {:.6g}, from {:.6g} to {:.6g}\n",
+               track->max_trials(), comparison.axis, comparison.is_below ? "below" : "above",
+               comparison.standard, comparison.value_at(low), comparison.value_at(high));
+  }
+}
+
+void print_blocks(const protocols::Protocol& protocol, int participants) {
+  fmt::print("{}\n\n", protocol.title);
+  double total_s = 0.0;
+  for (const protocols::Block& block : protocol.blocks) {
+    const int trials = planned_trials(block);
+    const double seconds = trials * simulated_trial_s(protocol, block);
+    total_s += seconds;
+    fmt::print("  {}{}{}: {}, {}, {}{} trials a participant, about {:.0f} s of tapping\n",
+               block.name, block.is_practice ? " (practice)" : "",
+               block.presented == protocols::Presented::real_plates ? " (real plates)" : "",
+               block.task->name(),
+               block.stimuli.size() == 1 ? block.stimuli.front()
+                                         : fmt::format("{} stimuli", block.stimuli.size()),
+               block.comparison ? "at most " : "", trials, seconds);
+    if (block.is_practice) {
+      continue;  // in no result
+    }
+    warn_of_balance(block, participants);
+    if (block.comparison) {
+      print_procedures(*block.comparison);
+    } else if (block.task->has_chance_level()) {
+      print_power(protocol, block, participants);
+    }
+  }
+  fmt::print("\n  {} participants, {:.0f} min of tapping each\n", participants, total_s / 60.0);
+}
+
+void print_screens(const protocols::Protocol& protocol) {
+  fmt::print("\nscreens of a participant\n");
+  int total = 0;
+  for (const ScreenGroup& screen : screens_of(protocol)) {
+    fmt::print("  {:>4}  {}\n", screen.count, screen.shown);
+    total += screen.count;
+  }
+  fmt::print("  {:>4}  in all, if no trial is repeated\n", total);
+}
+
+void print_languages(const protocols::Protocol& protocol) {
+  std::set<std::string> all;
+  std::size_t in_one = 0;
+  for (const auto& [path, languages] : protocol.translations.given) {
+    all.insert(languages.begin(), languages.end());
+    in_one += languages.empty() ? 1 : 0;
+  }
+  if (all.empty()) {
+    return;
+  }
+  fmt::print("\nlanguages\n");
+  for (const std::string& language : all) {
+    const auto missing = texts_without(language, protocol.translations);
+    fmt::print("  {}: {}\n", language,
+               missing.empty() ? "complete" : fmt::format("lacks {}", fmt::join(missing, ", ")));
+  }
+  if (in_one > 0) {
+    fmt::print("  texts given once for all of them: {}\n", in_one);
+  }
+}
+}  // namespace
+
+void print_design(const protocols::Protocol& protocol, int participants) {
+  print_blocks(protocol, participants);
+  if (protocol.masking) {
+    fmt::print("\nmasking\n  {}\n", described(*protocol.masking));
+  }
+  print_screens(protocol);
+  print_languages(protocol);
+}
+}  // namespace tapstudy::runner

@@ -87,6 +87,8 @@ class TrackSettings {
   virtual std::size_t max_trials() const = 0;
   // On each axis the least and the greatest value that may be requested.
   virtual std::vector<std::pair<double, double>> ranges() const = 0;
+  // The guess rates that it holds possible; nullopt: it makes no assumption of any.
+  virtual std::optional<std::pair<double, double>> guess_rates() const { return std::nullopt; }
   virtual std::unique_ptr<Track> start(std::uint64_t seed) const = 0;
 };
 

@@ -49,6 +49,15 @@ QuestPlusSettings::QuestPlusSettings(QuestPlusDesign design, const QuestPlusStop
   }
 }
 
+std::optional<std::pair<double, double>> QuestPlusSettings::guess_rates() const {
+  const auto& parameters = table_->design().parameters;
+  const auto guess = std::ranges::find(parameters, "guess", &ParameterGrid::name);
+  if (guess == parameters.end()) {
+    return std::nullopt;
+  }
+  return std::pair{guess->values.front(), guess->values.back()};
+}
+
 std::unique_ptr<Track> QuestPlusSettings::start(std::uint64_t /*seed*/) const {
   return std::make_unique<QuestPlusTrack>(table_, stop_);
 }

@@ -38,6 +38,7 @@ class QuestPlusSettings final : public TrackSettings {
   std::size_t outcomes() const override { return table_->design().outcomes; }
   std::size_t max_trials() const override { return stop_.trials; }
   std::vector<std::pair<double, double>> ranges() const override;
+  std::optional<std::pair<double, double>> guess_rates() const override;
   // A QuestPlusTrack. Nothing in it is random.
   std::unique_ptr<Track> start(std::uint64_t seed) const override;
   const LikelihoodTable& table() const { return *table_; }

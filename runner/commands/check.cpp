@@ -101,10 +101,12 @@ void print_simulated(const SimulatedDesign& design, const protocols::Protocol& p
   fmt::print("\n{} simulated studies of {} participants, who are as `simulation` says\n",
              design.studies, design.participants);
   for (const ResultOfDesign& result : results) {
-    fmt::print(
-        "  {}: {} {:.3g}, standard deviation {:.2g} between studies; 95 % intervals {:.2g} "
-        "wide on average",
-        result.block, result.name, result.mean, result.spread, result.width);
+    fmt::print("  {}: {} {:.3g}{}; median width of the 95 % intervals {:.2g}", result.block,
+               result.name, result.mean,
+               result.found > 1
+                   ? fmt::format(", standard deviation {:.2g} between studies", result.spread)
+                   : "",
+               result.median_width);
     if (result.tested > 0) {
       fmt::print("; p < .05 in {} of {}", result.significant, result.tested);
     }

@@ -56,12 +56,26 @@ void print_power(const protocols::Protocol& protocol, const protocols::Block& bl
   fmt::print("\n");
 }
 
-void print_procedures(const protocols::Comparison& comparison) {
+// A procedure that takes guesses for discrimination chooses levels that are too low.
+void warn_of_guess_rate(const protocols::TrackSettings& track, double of_task) {
+  constexpr double rounding = 1e-3;  // of one third, written with three digits
+  const auto rates = track.guess_rates();
+  if (rates && (of_task < rates->first - rounding || of_task > rates->second + rounding)) {
+    fmt::print("    warning: the procedure's guess rate is {}, by chance {:.3g} is right\n",
+               rates->first == rates->second
+                   ? fmt::format("{:.3g}", rates->first)
+                   : fmt::format("{:.3g} to {:.3g}", rates->first, rates->second),
+               of_task);
+  }
+}
+
+void print_procedures(const protocols::Comparison& comparison, double guess_rate) {
   for (const auto& track : comparison.tracks) {
     const auto [low, high] = track->ranges().front();
     fmt::print("    at most {} trials of {}: {} against {:.6g}, from {:.6g} to {:.6g}\n",
                track->max_trials(), comparison.axis, comparison.is_below ? "below" : "above",
                comparison.standard, comparison.value_at(low), comparison.value_at(high));
+    warn_of_guess_rate(*track, guess_rate);
   }
 }
 
@@ -84,7 +98,7 @@ void print_blocks(const protocols::Protocol& protocol, int participants) {
     }
     warn_of_balance(block, participants);
     if (block.comparison) {
-      print_procedures(*block.comparison);
+      print_procedures(*block.comparison, block.task->guess_rate(block, protocol));
     } else if (block.task->has_chance_level()) {
       print_power(protocol, block, participants);
     }

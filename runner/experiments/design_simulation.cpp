@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <cmath>
+#include <algorithm>
 #include <filesystem>
-#include <map>
-#include <utility>
+#include <iterator>
 
+#include "analysis/statistics/quantiles.hpp"
 #include "core/rng.hpp"
 #include "results/store.hpp"
 #include "runner/experiments/simulated_study.hpp"
@@ -37,21 +37,28 @@ class ScratchDirectory {
   fs::path path_;
 };
 
-struct Sums {
-  ResultOfDesign result;
-  double squares{};
+struct Found {
+  std::string block;
+  std::string name;
+  std::vector<analysis::MainResult> results;
 };
 
-// Running mean and sum of squared deviations (Welford 1962).
-void add(const analysis::MainResult& found, Sums& sums) {
-  ResultOfDesign& result = sums.result;
-  ++result.found;
-  const double deviation = found.estimate - result.mean;
-  result.mean += deviation / result.found;
-  sums.squares += deviation * (found.estimate - result.mean);
-  result.width += (found.range.high - found.range.low - result.width) / result.found;
-  result.tested += found.p ? 1 : 0;
-  result.significant += found.p && *found.p < alpha ? 1 : 0;
+ResultOfDesign result_of(const Found& found) {
+  std::vector<double> estimates;
+  std::vector<double> widths;
+  ResultOfDesign result{
+      .block = found.block, .name = found.name, .found = static_cast<int>(found.results.size())};
+  for (const analysis::MainResult& one : found.results) {
+    estimates.push_back(one.estimate);
+    widths.push_back(one.range.high - one.range.low);
+    result.tested += one.p ? 1 : 0;
+    result.significant += one.p && *one.p < alpha ? 1 : 0;
+  }
+  const analysis::MeanAndSpread estimated = analysis::mean_and_spread(estimates);
+  result.mean = estimated.mean;
+  result.spread = estimated.standard_deviation;
+  result.median_width = analysis::quantile(widths, 0.5);
+  return result;
 }
 
 analysis::Summary summary_of_one(const SimulatedDesign& design, int study,
@@ -69,27 +76,21 @@ analysis::Summary summary_of_one(const SimulatedDesign& design, int study,
 
 std::vector<ResultOfDesign> simulate_design(const SimulatedDesign& design,
                                             const protocols::Protocol& protocol) {
-  std::map<std::pair<std::string, std::string>, std::size_t> places;
-  std::vector<Sums> all;
+  std::vector<Found> all;
   for (int i = 0; i < design.studies; ++i) {
     stop_if_asked();
     for (const auto& block : summary_of_one(design, i, protocol).blocks) {
-      for (const analysis::MainResult& found : block->main_results()) {
-        const auto [place, is_new] = places.try_emplace({block->block, found.name}, all.size());
-        if (is_new) {
-          all.push_back({{.block = block->block, .name = found.name}});
-        }
-        add(found, all[place->second]);
+      for (const analysis::MainResult& result : block->main_results()) {
+        auto known = std::ranges::find_if(all, [&](const Found& found) {
+          return found.block == block->block && found.name == result.name;
+        });
+        known = known == all.end() ? all.insert(known, {block->block, result.name, {}}) : known;
+        known->results.push_back(result);
       }
     }
   }
   std::vector<ResultOfDesign> results;
-  for (Sums& sums : all) {
-    if (sums.result.found > 1) {
-      sums.result.spread = std::sqrt(sums.squares / (sums.result.found - 1));
-    }
-    results.push_back(sums.result);
-  }
+  std::ranges::transform(all, std::back_inserter(results), result_of);
   return results;
 }
 }  // namespace tapstudy::runner

@@ -16,10 +16,10 @@ struct SimulatedDesign {
 struct ResultOfDesign {
   std::string block;
   std::string name;
-  int found{};      // in so many of the studies
-  double mean{};    // of the estimates
-  double spread{};  // their standard deviation; 0 of a single one
-  double width{};   // of the 95 % intervals over participants, on average
+  int found{};            // in so many of the studies
+  double mean{};          // of the estimates
+  double spread{};        // their standard deviation; NaN of a single one
+  double median_width{};  // of the 95 % intervals over participants
   int tested{};
   int significant{};  // of these, p < .05
 };

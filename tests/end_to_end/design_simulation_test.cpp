@@ -15,7 +15,7 @@ using testing::TempDirectory;
 
 namespace {
 const std::string study = testing::shipped("examples/stiffness_jnd.yaml").string();
-const std::vector<std::string> participants{"--participants", "3"};
+const std::vector<std::string> participants{"--participants", "6"};
 
 testing::ProgramResult tapstudy_with_participants(std::vector<std::string> line) {
   line.insert(line.end(), participants.begin(), participants.end());
@@ -50,10 +50,10 @@ TEST_CASE("check says how the results of simulated studies scatter, and how wide
       tapstudy_with_participants({"check", study, "--seed", "5", "--simulations", "2"});
   REQUIRE(checked.exit_code == 0);
   CHECK_THAT(checked.standard_output,
-             Contains("2 simulated studies of 3 participants") &&
+             Contains("2 simulated studies of 6 participants") &&
                  Contains(fmt::format("Weber fraction of youngs_modulus_pa {:.3g}, standard "
-                                      "deviation {:.2g} between studies; 95 % intervals {:.2g} "
-                                      "wide",
+                                      "deviation {:.2g} between studies; median width of the 95 % "
+                                      "intervals {:.2g}",
                                       mean, spread, width)));
 }
 

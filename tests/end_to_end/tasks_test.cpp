@@ -191,3 +191,16 @@ TEST_CASE("what cannot be compared is refused at its line", "[end_to_end]") {
   CHECK(result.exit_code == 2);
   CHECK_THAT(result.standard_error, Contains(said) && Contains("study.yaml:"));
 }
+
+TEST_CASE("check warns of a procedure that assumes another guess rate than the task has",
+          "[end_to_end]") {
+  const TempDirectory directory;
+  const std::string jnd = testing::shipped("examples/stiffness_jnd.yaml").string();
+  const std::string warning =
+      "warning: the procedure's guess rate is 0.333, by chance 0.5 is right";
+  CHECK_THAT(testing::tapstudy({"check", jnd}).standard_output, !Contains("guess rate"));
+  const std::string other = directory / "other.yaml";
+  testing::write(other, testing::replaced(testing::contents(jnd), "guess: {values: [0.5]}",
+                                          "guess: {values: [0.333]}"));
+  CHECK_THAT(testing::tapstudy({"check", other}).standard_output, Contains(warning));
+}

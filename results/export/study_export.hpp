@@ -1,0 +1,22 @@
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "results/export/csvw.hpp"
+#include "results/export/table.hpp"
+#include "results/store.hpp"
+namespace tapstudy::results {
+// What an export holds, whatever its format.
+struct StudyExport {
+  Provenance provenance;
+  std::string protocol_text;
+  std::vector<Table> tables;
+  std::vector<std::int64_t> trials;  // whose traces are written: each must have one
+};
+
+// Fills a directory: a file NAME.csv a table, csv-metadata.json (csvw.hpp), protocol.yaml, and of
+// each trial that has a trace traces/trial_000001.csv. Throws InvalidInput where it cannot be
+// written, StoreError where the study cannot be read.
+void write_csv_files(const std::string& directory, Store& store, const StudyExport& study);
+}  // namespace tapstudy::results

@@ -37,6 +37,8 @@ void append_real(Buffer& line, double number) {
     append(line, missing_in_csv);
   } else if (std::isinf(number)) {
     append(line, number > 0.0 ? "INF" : "-INF");
+  } else if (number == 0.0 && std::signbit(number)) {
+    append(line, "-0.0");  // "-0" would be read as an integer, without its sign
   } else {
     fmt::format_to(std::back_inserter(line), "{}", number);
   }

@@ -54,6 +54,22 @@ TEST_CASE("pandas and R read of an export what sqlite3 reads of the study",
         std::stoul(sql(study, "SELECT count(DISTINCT trial_id) FROM trace_chunk")));
 }
 
+TEST_CASE("the documented reader of traces reads sample by sample what is exported",
+          "[results][export]") {
+  const TempDirectory directory;
+  const std::string study = messy::make(directory);
+  REQUIRE(testing::tapstudy({"export", study, "--out", directory / "out", "--traces"}).exit_code ==
+          0);
+  const auto read = testing::run_program({"/usr/bin/python3",
+                                          testing::source("tests/results/export/traces_match.py"),
+                                          study, directory / "out"});
+  INFO(read.standard_error);
+  CHECK(read.exit_code == 0);
+  CHECK(read.standard_output == sql(study,
+                                    "SELECT count(DISTINCT trial_id) || ' trials ' || sum(ticks) "
+                                    "|| ' ticks' FROM trace_chunk"));
+}
+
 TEST_CASE("views say who was excluded, and which answers were corrected", "[results][export]") {
   const TempDirectory directory;
   const std::string study = messy::make(directory);

@@ -49,6 +49,12 @@ add_library(csv::csv INTERFACE IMPORTED)
 target_include_directories(csv::csv SYSTEM INTERFACE ${CSV_INCLUDE})
 target_link_libraries(csv::csv INTERFACE ${CSV_LIBRARY})
 
+find_path(HDF5_INCLUDE hdf5.h PATH_SUFFIXES hdf5/serial REQUIRED)
+find_library(HDF5_LIBRARY NAMES hdf5_serial hdf5 REQUIRED)
+add_library(hdf5::hdf5 INTERFACE IMPORTED)
+target_include_directories(hdf5::hdf5 SYSTEM INTERFACE ${HDF5_INCLUDE})
+target_link_libraries(hdf5::hdf5 INTERFACE ${HDF5_LIBRARY})
+
 find_path(TETGEN_INCLUDE tetgen.h REQUIRED)
 find_library(TETGEN_LIBRARY tet REQUIRED)
 add_library(tetgen::tetgen INTERFACE IMPORTED)

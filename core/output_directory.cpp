@@ -46,6 +46,15 @@ class Unfinished {
  private:
   std::string name_;
 };
+
+void rename_to_new(const std::string& from, const std::string& to) {
+  check_is_new(to);  // a rename would replace a file, and an empty directory
+  std::error_code error;
+  fs::rename(from, to, error);
+  if (error) {
+    throw InvalidInput{to + ": cannot be made: " + error.message()};
+  }
+}
 }  // namespace
 
 void write_new_directory(const std::string& directory,
@@ -54,11 +63,15 @@ void write_new_directory(const std::string& directory,
   check_is_new(final_name);
   const Unfinished unfinished{final_name};
   fill(unfinished.name());
-  check_is_new(final_name);  // a rename would replace an empty directory
-  std::error_code error;
-  fs::rename(unfinished.name(), final_name, error);
-  if (error) {
-    throw InvalidInput{final_name + ": cannot be made: " + error.message()};
-  }
+  rename_to_new(unfinished.name(), final_name);
+}
+
+void write_new_file_by(const std::string& file,
+                       const std::function<void(const std::string& unfinished)>& fill) {
+  check_is_new(file);
+  const Unfinished beside{file};
+  const std::string unfinished = (fs::path{beside.name()} / fs::path{file}.filename()).string();
+  fill(unfinished);
+  rename_to_new(unfinished, file);
 }
 }  // namespace tapstudy::core

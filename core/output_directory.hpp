@@ -9,4 +9,7 @@ namespace tapstudy::core {
 // be made; and what `fill` throws.
 void write_new_directory(const std::string& directory,
                          const std::function<void(const std::string& unfinished)>& fill);
+// The same for a single file, which `fill` creates under the name that it is given.
+void write_new_file_by(const std::string& file,
+                       const std::function<void(const std::string& unfinished)>& fill);
 }  // namespace tapstudy::core

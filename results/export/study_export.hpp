@@ -19,4 +19,13 @@ struct StudyExport {
 // each trial that has a trace traces/trial_000001.csv. Throws InvalidInput where it cannot be
 // written, StoreError where the study cannot be read.
 void write_csv_files(const std::string& directory, Store& store, const StudyExport& study);
+
+// Writes one new HDF5 file. Errors as above.
+//   /protocol            its text
+//   /tables/NAME/COLUMN  a dataset a column, one-dimensional; attributes unit, description. Missing
+//                        numbers are NaN (a column of integers with missing ones is one of
+//                        doubles), missing texts "NA"
+//   /traces/trial_000001 ticks x columns, doubles; attributes trial_id, columns, units,
+//   descriptions
+void write_hdf5_file(const std::string& name, Store& store, const StudyExport& study);
 }  // namespace tapstudy::results

@@ -187,9 +187,13 @@ std::vector<Column> trace_columns() {
 }
 
 Table trace_table(Store& store, std::int64_t trial_id) {
+  std::string whose;
+  store.each_row(
+      fmt::format("SELECT participant_id, mode FROM trial_context WHERE trial_id = {}", trial_id),
+      [&](Statement& row) { whose = fmt::format("{} ({})", row.text(0), row.text(1)); });
   return {fmt::format("trial_{:06}", trial_id),
-          fmt::format("The trace of trial {}: a row a tick.", trial_id), trace_columns(),
-          [&store, trial_id](const RowSink& sink) {
+          fmt::format("Every tick of trial {}, of participant {}.", trial_id, whose),
+          trace_columns(), [&store, trial_id](const RowSink& sink) {
             for (const core::TraceSample& sample : store.trace(trial_id)) {
               sink(row_of(sample));
             }

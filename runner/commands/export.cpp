@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+#include <array>
 #include <memory>
 
 #include "core/error.hpp"
@@ -50,19 +52,46 @@ results::StudyExport study_export(results::Store& store) {
           {}};
 }
 
+struct Format {
+  const char* name;
+  bool always_has_traces;
+  void (*write)(const std::string& out, results::Store& store, const results::StudyExport& study);
+};
+
+const std::array formats{
+    Format{"csv", false,
+           [](const std::string& out, results::Store& store, const results::StudyExport& study) {
+             core::write_new_directory(out, [&](const std::string& directory) {
+               results::write_csv_files(directory, store, study);
+             });
+           }},
+    Format{"hdf5", true,
+           [](const std::string& out, results::Store& store, const results::StudyExport& study) {
+             core::write_new_file_by(out, [&](const std::string& file) {
+               results::write_hdf5_file(file, store, study);
+             });
+           }},
+};
+
+std::vector<std::string> format_names() {
+  std::vector<std::string> names;
+  std::ranges::transform(formats, std::back_inserter(names), &Format::name);
+  return names;
+}
+
 void run_export(const ExportOptions& options) {
+  core::check_is_new(options.out);
   results::Store store = results::Store::open_existing(options.directory);
   store.at_one_moment([&] {
     if (store.answers().empty()) {
       throw core::InvalidInput{options.directory + ": holds no answers yet to export"};
     }
+    const Format& format = *std::ranges::find(formats, options.format, &Format::name);
     results::StudyExport study = study_export(store);
-    core::write_new_directory(options.out, [&](const std::string& directory) {
-      if (options.wants_traces) {
-        study.trials = results::trials_with_traces(store);
-      }
-      results::write_csv_files(directory, store, study);
-    });
+    if (format.always_has_traces || options.wants_traces) {
+      study.trials = results::trials_with_traces(store);
+    }
+    format.write(options.out, store, study);
   });
   fmt::print("{}\n", options.out);
 }
@@ -73,11 +102,12 @@ void add_export(CommandParser& line) {
   const auto options = std::make_shared<ExportOptions>();
   command.argument("directory", options->directory, "Directory of a study", Need::required);
   command.option("--out", options->out, "What to write; nothing is overwritten", Need::required);
-  command.one_of("--format", options->format, {"csv"},
-                 "csv (default): a directory of tidy tables with a data dictionary "
-                 "(CSV on the Web: csv-metadata.json)");
+  command.one_of("--format", options->format, format_names(),
+                 "csv (default): a directory of tidy tables and their data dictionary (CSV on the "
+                 "Web); hdf5: one file of the same tables and all traces");
   command.flag("--traces", options->wants_traces,
-               "csv: every tick too, a file a trial (about 200 bytes a tick)");
+               "csv: every tick too, a file a trial (about 200 bytes a tick); the other formats "
+               "have them always");
   command.on_run([options] { run_export(*options); });
 }
 }  // namespace tapstudy::runner

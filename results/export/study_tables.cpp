@@ -83,14 +83,8 @@ Table table_from(Store& store, const Source& source, std::vector<Column> columns
   const std::string select =
       fmt::format("SELECT {} FROM {}", fmt::join(expressions, ", "), source.from);
   return {source.name, source.description, columns, [&store, select, columns](const RowSink& sink) {
-            store.each_row(select, [&](Statement& statement) {
-              Row row;
-              row.reserve(columns.size());
-              for (std::size_t i = 0; i < columns.size(); ++i) {
-                row.push_back(cell_of(statement, static_cast<int>(i), columns[i].type));
-              }
-              sink(row);
-            });
+            store.each_row(select,
+                           [&](Statement& statement) { sink(row_from(statement, columns)); });
           }};
 }
 
@@ -169,6 +163,15 @@ std::vector<Table> study_tables(Store& store,
   }
   tables.push_back(alternatives_table(store, axis_units));
   return tables;
+}
+
+Row row_from(Statement& statement, const std::vector<Column>& columns) {
+  Row row;
+  row.reserve(columns.size());
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    row.push_back(cell_of(statement, static_cast<int>(i), columns[i].type));
+  }
+  return row;
 }
 
 std::vector<std::int64_t> trials_with_traces(Store& store) {

@@ -13,6 +13,8 @@ namespace tapstudy::results {
 // are asked for, and it must live as long. Throws StoreError, also when rows are read.
 std::vector<Table> study_tables(Store& store, const std::map<std::string, std::string>& axis_units);
 
+// A row of a SELECT of these columns.
+Row row_from(Statement& statement, const std::vector<Column>& columns);
 // Trials of which ticks are stored; of a real plate there are none.
 std::vector<std::int64_t> trials_with_traces(Store& store);
 // Every tick of a trial; columns as in trace_format.md. A NaN is where a device reports nothing.

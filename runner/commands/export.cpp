@@ -34,10 +34,23 @@ std::map<std::string, std::string> units_of_axes() {
   return units;
 }
 
-results::StudyExport study_export(results::Store& store) {
+std::vector<results::BlockText> block_texts(const protocols::Protocol& protocol) {
+  std::vector<results::BlockText> texts;
+  for (const protocols::Block& block : protocol.blocks) {
+    results::BlockText text{block.name, block.question, block.instructions, {}};
+    for (const std::string& name : protocols::all_presented(block)) {
+      text.levels.emplace_back(name, protocol.stimulus(name).label);
+    }
+    texts.push_back(std::move(text));
+  }
+  return texts;
+}
+
+results::StudyExport study_export(results::Store& store, bool has_tables) {
   const results::StudyRow study = store.study();
-  StimulusTables stimuli = stimulus_tables(stored_protocol(study), models_of_this_user());
-  if (!stimuli.without_model.empty()) {
+  const protocols::Protocol protocol = stored_protocol(study);
+  StimulusTables stimuli = stimulus_tables(protocol, models_of_this_user());
+  if (has_tables && !stimuli.without_model.empty()) {
     warn(
         fmt::format("no modes are listed of {}: their models are not cached (`tapstudy check` "
                     "builds them; then export again)",
@@ -48,27 +61,35 @@ results::StudyExport study_export(results::Store& store) {
   return {{study.title, study.protocol_sha256,
            fmt::format("tapstudy {} ({})", program_version(), git_hash())},
           study.protocol_text,
+          block_texts(protocol),
           std::move(tables),
           {}};
 }
 
 struct Format {
   const char* name;
+  bool has_tables;  // of stimuli and their modes, too
   bool always_has_traces;
   void (*write)(const std::string& out, results::Store& store, const results::StudyExport& study);
 };
 
 const std::array formats{
-    Format{"csv", false,
+    Format{"csv", true, false,
            [](const std::string& out, results::Store& store, const results::StudyExport& study) {
              core::write_new_directory(out, [&](const std::string& directory) {
                results::write_csv_files(directory, store, study);
              });
            }},
-    Format{"hdf5", true,
+    Format{"hdf5", true, true,
            [](const std::string& out, results::Store& store, const results::StudyExport& study) {
              core::write_new_file_by(out, [&](const std::string& file) {
                results::write_hdf5_file(file, store, study);
+             });
+           }},
+    Format{"bids", false, true,
+           [](const std::string& out, results::Store& store, const results::StudyExport& study) {
+             core::write_new_directory(out, [&](const std::string& directory) {
+               results::write_bids_dataset(directory, store, study);
              });
            }},
 };
@@ -87,7 +108,7 @@ void run_export(const ExportOptions& options) {
       throw core::InvalidInput{options.directory + ": holds no answers yet to export"};
     }
     const Format& format = *std::ranges::find(formats, options.format, &Format::name);
-    results::StudyExport study = study_export(store);
+    results::StudyExport study = study_export(store, format.has_tables);
     if (format.always_has_traces || options.wants_traces) {
       study.trials = results::trials_with_traces(store);
     }
@@ -104,7 +125,9 @@ void add_export(CommandParser& line) {
   command.option("--out", options->out, "What to write; nothing is overwritten", Need::required);
   command.one_of("--format", options->format, format_names(),
                  "csv (default): a directory of tidy tables and their data dictionary (CSV on the "
-                 "Web); hdf5: one file of the same tables and all traces");
+                 "Web); hdf5: one file of the same tables and all traces; bids: a dataset of the "
+                 "Brain Imaging "
+                 "Data Structure, without names, notes and questionnaires");
   command.flag("--traces", options->wants_traces,
                "csv: every tick too, a file a trial (about 200 bytes a tick); the other formats "
                "have them always");

@@ -2,8 +2,9 @@
 namespace tapstudy::results {
 // PRAGMA application_id of a study's database ("taps") and PRAGMA user_version of its schema.
 inline constexpr int application_id = 0x74617073;
-inline constexpr int schema_version = 9;
+inline constexpr int schema_version = 10;
 
+// Tables hold each fact once; the views v_… are for reading by hand and for exports.
 inline constexpr const char* schema_sql = R"sql(
 CREATE TABLE study (
   id INTEGER PRIMARY KEY CHECK (id = 1),
@@ -141,5 +142,75 @@ CREATE TABLE tick_statistics (
   worst_lateness_s REAL NOT NULL,
   fault TEXT NOT NULL
 ) STRICT;
+CREATE VIEW excluded_participant AS SELECT participant_id, detail AS exclusion_reason FROM
+  (SELECT participant_id, action, detail,
+     row_number() OVER (PARTITION BY participant_id ORDER BY action_id DESC) AS from_latest
+   FROM operator_action JOIN session USING (session_id)
+   WHERE action IN ('exclude', 'include'))
+  WHERE from_latest = 1 AND action = 'exclude';
+CREATE VIEW v_sessions AS SELECT session_id, participant_id, participant_index, order_index, mode,
+    exclusion_reason IS NOT NULL AS is_excluded, exclusion_reason, resumes, started_utc, language,
+    rate_hz, device, scheduler, program_version, git_hash, compiler, seed, planned_order,
+    rig_text, doctor
+  FROM session JOIN participant USING (participant_id)
+  LEFT JOIN excluded_participant USING (participant_id);
+CREATE VIEW trial_context AS SELECT trial_id, session_id, participant_id, mode, is_excluded,
+    exclusion_reason, block, task, number, attempt, repetition, is_practice, is_catch, presented,
+    status, duration_s,
+    CASE (SELECT count(*) FROM alternative WHERE alternative.trial_id = trial.trial_id)
+      WHEN 1 THEN (SELECT stimulus FROM alternative WHERE alternative.trial_id = trial.trial_id)
+    END AS stimulus               -- NULL if there were several
+  FROM trial JOIN v_sessions USING (session_id);
+-- An alternative is visited from the switch to it until the next switch or the trial's end.
+CREATE VIEW v_visits AS SELECT trial_id, session_id, participant_id, mode, is_excluded, exclusion_reason, block, task,
+    number, attempt, is_practice, is_catch, presented, status, visit, visited.position AS position, label,
+    alternative.stimulus AS stimulus, begin_s,
+    coalesce(next_s, duration_s) AS end_s, coalesce(next_s, duration_s) - begin_s AS dwell_s
+  FROM (SELECT trial_id, CAST(value AS INTEGER) AS position, t_s AS begin_s,
+      row_number() OVER (PARTITION BY trial_id ORDER BY t_s) AS visit,
+      lead(t_s) OVER (PARTITION BY trial_id ORDER BY t_s) AS next_s
+    FROM event WHERE kind = 'switch') AS visited
+  JOIN trial_context USING (trial_id) JOIN alternative USING (trial_id, position);
+CREATE VIEW v_stimuli AS SELECT trial_id, session_id, participant_id, mode, is_excluded, exclusion_reason, block, task,
+    number, attempt, is_practice, is_catch, presented, status, alternative.position AS position, label,
+    alternative.stimulus AS stimulus, is_comparison,
+    (SELECT group_concat(axis || '=' || value, ' ') FROM axis_value
+      WHERE axis_value.trial_id = alternative.trial_id
+        AND axis_value.position = alternative.position) AS axis_values,
+    coalesce(visits, 0) AS visits, coalesce(total_dwell_s, 0.0) AS total_dwell_s
+  FROM alternative JOIN trial_context USING (trial_id)
+  LEFT JOIN (SELECT trial_id, position, count(*) AS visits,
+      sum(dwell_s) AS total_dwell_s FROM v_visits GROUP BY trial_id, position)
+    USING (trial_id, position);
+CREATE VIEW v_answers AS SELECT response_id, trial_id, session_id, participant_id, mode, is_excluded, exclusion_reason, block, task,
+    number, attempt, is_practice, is_catch, presented, status,
+    stimulus, response, is_correct, response_time_s, time_from_first_contact_s, confidence,
+    given_by, supersedes, supersedes IS NOT NULL AS is_correction,
+    response_id NOT IN (SELECT supersedes FROM response WHERE supersedes IS NOT NULL)
+      AS is_current
+  FROM response JOIN trial_context USING (trial_id);
+CREATE VIEW v_trials AS SELECT trial_context.*, current_response.response AS response,
+    current_response.is_correct AS is_correct,
+    current_response.supersedes IS NOT NULL AS is_corrected,
+    first.response AS first_response, first.is_correct AS first_is_correct,
+    current_response.given_by AS given_by, current_response.confidence AS confidence,
+    current_response.response_time_s AS response_time_s,
+    current_response.time_from_first_contact_s AS time_from_first_contact_s,
+    (SELECT min(t_s) FROM event WHERE event.trial_id = trial_context.trial_id
+      AND kind = 'contact') AS first_contact_s,
+    (SELECT count(*) FROM event WHERE event.trial_id = trial_context.trial_id
+      AND kind = 'contact') AS contacts,
+    (SELECT count(*) FROM event WHERE event.trial_id = trial_context.trial_id
+      AND kind = 'impact') AS impacts,
+    (SELECT count(*) FROM event WHERE event.trial_id = trial_context.trial_id
+      AND kind = 'late_impact') AS late_impacts,
+    (SELECT max(value) FROM event WHERE event.trial_id = trial_context.trial_id
+      AND kind = 'impact') AS max_impact_speed_m_s,
+    ticks, late AS late_ticks, skipped AS skipped_ticks, saturated AS saturated_ticks,
+    dropped_samples, lateness_p999_s, worst_lateness_s, fault
+  FROM trial_context LEFT JOIN current_response USING (trial_id)
+  LEFT JOIN response AS first ON first.trial_id = trial_context.trial_id
+    AND first.supersedes IS NULL
+  LEFT JOIN tick_statistics ON tick_statistics.trial_id = trial_context.trial_id;
 )sql";
 }  // namespace tapstudy::results

@@ -91,6 +91,10 @@ class Store {
   AlternativesOfTrials alternatives();
   std::vector<SessionRow> sessions();
   JournalEntries entries_for_journal();
+  // Rows of a SELECT, each shown as it comes.
+  void each_row(const std::string& select, const std::function<void(Statement&)>& show);
+  // All that `read` reads is of one moment, whatever a session adds meanwhile.
+  void at_one_moment(const std::function<void()>& read);
   std::vector<std::int64_t> trials();  // the ids of all, whatever became of them
   // Every tick of a trial, in order; empty if there is no such trial.
   std::vector<core::TraceSample> trace(std::int64_t trial_id);

@@ -108,17 +108,10 @@ std::vector<DeviationRow> Store::deviations() {
 }
 
 std::map<std::string, std::string> Store::excluded_participants() {
-  Statement row{database_,
-                "SELECT participant_id, action, detail FROM operator_action "
-                "JOIN session USING (session_id) WHERE action IN ('exclude', 'include') "
-                "ORDER BY action_id"};
+  Statement row{database_, "SELECT participant_id, exclusion_reason FROM excluded_participant"};
   std::map<std::string, std::string> excluded;
   while (row.step()) {
-    if (row.text(1) == "exclude") {
-      excluded[row.text(0)] = row.text(2);
-    } else {
-      excluded.erase(row.text(0));
-    }
+    excluded[row.text(0)] = row.text(1);
   }
   return excluded;
 }

@@ -233,20 +233,14 @@ std::vector<AnswerRow> Store::answers() {
   return answers;
 }
 
-// A visit lasts from the switch to an alternative to the next switch or the end of the trial.
 std::vector<VisitRow> Store::visits() {
-  Statement row{
-      database_,
-      "WITH visit AS (SELECT trial_id, t_s, CAST(value AS INTEGER) AS position, "
-      "  lead(t_s) OVER (PARTITION BY trial_id ORDER BY t_s) AS until_s "
-      "  FROM event WHERE kind = 'switch') "
-      "SELECT participant_id, block, stimulus, count(*), "
-      "  sum(coalesce(until_s, duration_s) - t_s) "
-      "FROM visit JOIN trial USING (trial_id) JOIN session USING (session_id) "
-      "JOIN participant USING (participant_id) JOIN alternative USING (trial_id, position) "
-      "WHERE status = 'answered' AND EXISTS (SELECT 1 FROM alternative AS second "
-      "  WHERE second.trial_id = visit.trial_id AND second.position = 1) "
-      "GROUP BY participant_id, block, stimulus ORDER BY mode, participant_index, block, stimulus"};
+  Statement row{database_,
+                "SELECT participant_id, block, stimulus, count(*), sum(dwell_s) "
+                "FROM v_visits JOIN participant USING (participant_id) "
+                "WHERE status = 'answered' AND EXISTS (SELECT 1 FROM alternative AS second "
+                "  WHERE second.trial_id = v_visits.trial_id AND second.position = 1) "
+                "GROUP BY participant_id, block, stimulus "
+                "ORDER BY v_visits.mode, participant_index, block, stimulus"};
   std::vector<VisitRow> visits;
   while (row.step()) {
     visits.push_back(
@@ -267,6 +261,24 @@ std::vector<SurfaceRow> Store::surfaces() {
     surfaces.push_back({row.text(0), row.text(1), std::move(text)});
   }
   return surfaces;
+}
+
+void Store::each_row(const std::string& select, const std::function<void(Statement&)>& show) {
+  Statement row{database_, select};
+  while (row.step()) {
+    show(row);
+  }
+}
+
+void Store::at_one_moment(const std::function<void()>& read) {
+  database_.run("BEGIN");
+  try {
+    read();
+  } catch (...) {
+    database_.run("ROLLBACK");
+    throw;
+  }
+  database_.run("COMMIT");
 }
 
 std::vector<std::int64_t> Store::trials() {

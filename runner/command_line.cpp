@@ -12,6 +12,8 @@ ExitCode run_command_line(int argc, const char* const* argv) {
   add_run(line);
   add_simulate(line);
   add_report(line);
+  add_export(line);
+  add_redact(line);
   add_verify(line);
   add_modes(line);
   add_tap(line);

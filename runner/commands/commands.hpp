@@ -6,6 +6,8 @@ void add_check(CommandParser& line);
 void add_run(CommandParser& line);
 void add_simulate(CommandParser& line);
 void add_report(CommandParser& line);
+void add_export(CommandParser& line);
+void add_redact(CommandParser& line);
 void add_verify(CommandParser& line);
 void add_modes(CommandParser& line);
 void add_tap(CommandParser& line);

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "core/error.hpp"
-#include "protocols/read_protocol.hpp"
+#include "runner/experiments/stored_protocol.hpp"
 #include "runner/experiments/study_design.hpp"
 #include "runner/session/given_up_trials.hpp"
 namespace tapstudy::runner {
@@ -101,19 +101,6 @@ std::vector<std::string> deviations_of(results::Store& store, const Excluded& ex
   }
   return found;
 }
-
-// From the store alone: the files named by the protocol may no longer exist.
-protocols::Protocol stored_protocol(const results::StudyRow& study) {
-  return protocols::parse_protocol(
-      {study.protocol_text, study.protocol_file}, [&](const std::string& file) {
-        const auto found = std::ranges::find(study.surfaces, file, &results::SurfaceRow::file);
-        if (found == study.surfaces.end()) {
-          throw core::InvalidInput{file + ": is not stored with the study"};
-        }
-        return found->bytes;
-      });
-}
-
 }  // namespace
 
 Summary summary_of_study(results::Store& store, Mode mode, const std::string& directory) {

@@ -1,0 +1,15 @@
+#pragma once
+#include <functional>
+#include <string>
+namespace tapstudy::core {
+// Makes a new directory all at once: `fill` writes into an unfinished one beside it, given its
+// name, which gets the final name when everything is in it. What remains of a killed program is
+// called NAME.unfinished-… and never read.
+// Throws InvalidInput, and leaves nothing, if there is something of that name already or it cannot
+// be made; and what `fill` throws.
+void write_new_directory(const std::string& directory,
+                         const std::function<void(const std::string& unfinished)>& fill);
+// The same for a single file, which `fill` creates under the name that it is given.
+void write_new_file_by(const std::string& file,
+                       const std::function<void(const std::string& unfinished)>& fill);
+}  // namespace tapstudy::core

@@ -1,0 +1,13 @@
+#pragma once
+#include <ostream>
+
+#include "results/export/table.hpp"
+namespace tapstudy::results {
+// What stands for a missing value, and for a number that is not one: R and pandas read it as such.
+inline constexpr const char* missing_in_csv = "NA";
+
+// Writes a table as CSV (RFC 4180, lines ended by LF, UTF-8), names of columns first. Text is
+// literal: quoted where it holds a comma, a quote, a line end or a tab, begins or ends with a
+// space, or is empty; never changed. Reals have the fewest digits that give the same double again.
+void write_csv(std::ostream& out, const Table& table);
+}  // namespace tapstudy::results

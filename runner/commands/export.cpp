@@ -1,0 +1,136 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <memory>
+
+#include "core/error.hpp"
+#include "core/output_directory.hpp"
+#include "core/output_file.hpp"
+#include "protocols/axes/axis.hpp"
+#include "results/export/study_export.hpp"
+#include "results/export/study_tables.hpp"
+#include "runner/build_info.hpp"
+#include "runner/commands/commands.hpp"
+#include "runner/experiments/stimulus_tables.hpp"
+#include "runner/experiments/stored_protocol.hpp"
+#include "runner/stimuli/model_library.hpp"
+#include "runner/terminal/logging.hpp"
+namespace tapstudy::runner {
+namespace {
+struct ExportOptions {
+  std::string directory;
+  std::string out;
+  std::string format{"csv"};
+  bool wants_traces{false};
+};
+
+std::map<std::string, std::string> units_of_axes() {
+  std::map<std::string, std::string> units;
+  for (const protocols::Axis& axis : protocols::axes()) {
+    units.emplace(axis.name, axis.unit);
+  }
+  return units;
+}
+
+std::vector<results::BlockText> block_texts(const protocols::Protocol& protocol) {
+  std::vector<results::BlockText> texts;
+  for (const protocols::Block& block : protocol.blocks) {
+    results::BlockText text{block.name, block.question, block.instructions, {}};
+    for (const std::string& name : protocols::all_presented(block)) {
+      text.levels.emplace_back(name, protocol.stimulus(name).label);
+    }
+    texts.push_back(std::move(text));
+  }
+  return texts;
+}
+
+results::StudyExport study_export(results::Store& store, bool has_tables) {
+  const results::StudyRow study = store.study();
+  const protocols::Protocol protocol = stored_protocol(study);
+  StimulusTables stimuli = stimulus_tables(protocol, models_of_this_user());
+  if (has_tables && !stimuli.without_model.empty()) {
+    warn(
+        fmt::format("no modes are listed of {}: their models are not cached (`tapstudy check` "
+                    "builds them; then export again)",
+                    fmt::join(stimuli.without_model, ", ")));
+  }
+  std::vector<results::Table> tables = results::study_tables(store, units_of_axes());
+  std::ranges::move(stimuli.tables, std::back_inserter(tables));
+  return {{study.title, study.protocol_sha256,
+           fmt::format("tapstudy {} ({})", program_version(), git_hash())},
+          study.protocol_text,
+          block_texts(protocol),
+          std::move(tables),
+          {}};
+}
+
+struct Format {
+  const char* name;
+  bool has_tables;  // of stimuli and their modes, too
+  bool always_has_traces;
+  void (*write)(const std::string& out, results::Store& store, const results::StudyExport& study);
+};
+
+const std::array formats{
+    Format{"csv", true, false,
+           [](const std::string& out, results::Store& store, const results::StudyExport& study) {
+             core::write_new_directory(out, [&](const std::string& directory) {
+               results::write_csv_files(directory, store, study);
+             });
+           }},
+    Format{"hdf5", true, true,
+           [](const std::string& out, results::Store& store, const results::StudyExport& study) {
+             core::write_new_file_by(out, [&](const std::string& file) {
+               results::write_hdf5_file(file, store, study);
+             });
+           }},
+    Format{"bids", false, true,
+           [](const std::string& out, results::Store& store, const results::StudyExport& study) {
+             core::write_new_directory(out, [&](const std::string& directory) {
+               results::write_bids_dataset(directory, store, study);
+             });
+           }},
+};
+
+std::vector<std::string> format_names() {
+  std::vector<std::string> names;
+  std::ranges::transform(formats, std::back_inserter(names), &Format::name);
+  return names;
+}
+
+void run_export(const ExportOptions& options) {
+  core::check_is_new(options.out);
+  results::Store store = results::Store::open_existing(options.directory);
+  store.at_one_moment([&] {
+    if (store.answers().empty()) {
+      throw core::InvalidInput{options.directory + ": holds no answers yet to export"};
+    }
+    const Format& format = *std::ranges::find(formats, options.format, &Format::name);
+    results::StudyExport study = study_export(store, format.has_tables);
+    if (format.always_has_traces || options.wants_traces) {
+      study.trials = results::trials_with_traces(store);
+    }
+    format.write(options.out, store, study);
+  });
+  fmt::print("{}\n", options.out);
+}
+}  // namespace
+
+void add_export(CommandParser& line) {
+  Command command = line.add("export", "Write a study's data in standard formats");
+  const auto options = std::make_shared<ExportOptions>();
+  command.argument("directory", options->directory, "Directory of a study", Need::required);
+  command.option("--out", options->out, "What to write; nothing is overwritten", Need::required);
+  command.one_of("--format", options->format, format_names(),
+                 "csv (default): a directory of tidy tables and their data dictionary (CSV on the "
+                 "Web); hdf5: one file of the same tables and all traces; bids: a dataset of the "
+                 "Brain Imaging "
+                 "Data Structure, without names, notes and questionnaires");
+  command.flag("--traces", options->wants_traces,
+               "csv: every tick too, a file a trial (about 200 bytes a tick); the other formats "
+               "have them always");
+  command.on_run([options] { run_export(*options); });
+}
+}  // namespace tapstudy::runner

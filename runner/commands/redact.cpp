@@ -1,0 +1,57 @@
+#include <fmt/format.h>
+
+#include <memory>
+#include <set>
+
+#include "core/output_directory.hpp"
+#include "core/output_file.hpp"
+#include "results/redacted_copy.hpp"
+#include "results/store.hpp"
+#include "runner/commands/commands.hpp"
+#include "runner/experiments/stored_protocol.hpp"
+namespace tapstudy::runner {
+namespace {
+struct RedactOptions {
+  std::string directory;
+  std::string out;
+};
+
+// Numbers, scales and choices; what the protocol does not have is taken for text.
+std::set<std::pair<std::string, std::string>> items_without_text(
+    const protocols::Protocol& protocol) {
+  std::set<std::pair<std::string, std::string>> items;
+  for (const auto& [name, form] : protocol.forms) {
+    for (const protocols::FormItem& item : form.items) {
+      if (item.kind != protocols::ItemKind::text) {
+        items.emplace(name, item.name);
+      }
+    }
+  }
+  return items;
+}
+
+void redact(const RedactOptions& options) {
+  core::check_is_new(options.out);
+  const protocols::Protocol protocol =
+      stored_protocol(results::Store::open_existing(options.directory).study());
+  core::write_new_directory(options.out, [&](const std::string& unfinished) {
+    results::write_redacted_copy(options.directory, unfinished, items_without_text(protocol));
+  });
+  fmt::print(
+      "{}: participants are called person-001 and so on; operators' words and free text are "
+      "removed, the journal is written anew\n"
+      "kept: the protocol, rigs, dates, other answers to questionnaires, traces\n",
+      options.out);
+}
+}  // namespace
+
+void add_redact(CommandParser& line) {
+  Command command = line.add(
+      "redact", "Copy a study without participants' names, operators' notes and free text");
+  const auto options = std::make_shared<RedactOptions>();
+  command.argument("directory", options->directory, "Directory of a study", Need::required);
+  command.option("--out", options->out, "Directory of the copy; nothing is overwritten",
+                 Need::required);
+  command.on_run([options] { redact(*options); });
+}
+}  // namespace tapstudy::runner

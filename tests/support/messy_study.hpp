@@ -1,0 +1,71 @@
+#pragma once
+#include <catch2/catch.hpp>
+#include <string>
+
+#include "results/store.hpp"
+#include "support/processes.hpp"
+#include "support/small_study.hpp"
+#include "support/texts.hpp"
+// A simulated study to which people are added who write what breaks careless formats.
+namespace tapstudy::testing::messy_study {
+inline const std::string text =
+    "say \"hi\", then\nleave\r\n\ttab, \xE6\x97\xA5\xE6\x9C\xAC \xC3\xA4; 'x' \\n #1";
+inline const std::string formula = "=cmd()|'/C calc'!A0";
+inline const std::string participant = "Anna, \"the\" M\xC3\xBCller";
+
+inline results::TrialRecord trial(std::int64_t session_id, int number,
+                                  const std::string& response) {
+  results::TrialRecord record = small_study::trial(session_id, number, response);
+  record.events = {{0.0, "switch", 0.0},
+                   {0.1, "contact", 0.0},
+                   {0.1, "impact", 0.3},
+                   {0.5, "switch", 1.0},
+                   {0.9, "switch", 0.0}};
+  record.alternatives = {{0, "A", "bare", {{"thickness_m", 0.1 + 0.2}}},
+                         {1, formula, "ringing", {}, true}};
+  return record;
+}
+
+inline void add_people(const std::string& directory) {
+  const results::StudyRow study = results::Store::open_existing(directory).study();
+  results::Store store = results::Store::open_or_create(directory, study);
+  results::SessionRow first = small_study::session(participant);
+  first.participant_index = 0;
+  first.rig_text = "device: simulated_hand\n";
+  first.started_utc = "2026-01-01T00:00:00Z";
+  store.add_session(first);
+  store.add_trial(trial(first.id, 1, "bare"));
+  results::TrialRecord skipped = trial(first.id, 2, "bare");
+  skipped.response.reset();
+  skipped.trial.status = "skipped";
+  store.add_trial(skipped);
+  store.add_trial(trial(first.id, 3, formula));
+  store.add_correction({first.id, 3, "ringing", true}, {first.id, 9.5, "correct", 3, formula});
+  store.add_operator_action({first.id, 10.0, "note", {}, text});
+  store.add_form({{first.id, 11.0, "about", "session begin", "age", {}},
+                  {first.id, 11.0, "about", "session begin", "hand", "left"},
+                  {first.id, 12.0, "rating", "main", "remarks", text},
+                  {first.id, 12.0, "rating", "main", "clear", formula}});
+  results::SessionRow second = small_study::session("P02", results::Mode::pilot);
+  second.participant_index = 0;
+  store.add_session(second);
+  store.add_trial(trial(second.id, 1, "ringing"));
+  store.add_operator_action({second.id, 3.0, "exclude", {}, "left, \"early\""});
+  results::SessionRow third = small_study::session("P03", results::Mode::pilot);
+  third.participant_index = 1;
+  store.add_session(third);
+  store.add_operator_action({third.id, 1.0, "exclude", {}, "by mistake"});
+  store.add_operator_action({third.id, 2.0, "include", {}, ""});
+}
+
+// DIR/study: of tests/data/every_screen.yaml.
+inline std::string make(const TempDirectory& directory) {
+  const std::string study = directory / "study";
+  const auto run = tapstudy({"simulate", source("tests/data/every_screen.yaml"), "--participants",
+                             "2", "--seed", "3", "--out", study});
+  INFO(run.standard_error);
+  REQUIRE(run.exit_code == 0);
+  add_people(study);
+  return study;
+}
+}  // namespace tapstudy::testing::messy_study

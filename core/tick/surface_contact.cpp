@@ -131,6 +131,7 @@ void SurfaceContact::describe(const Planes& planes, const HandState& tip) noexce
   contact_.touching = true;
   contact_.penetration_m = std::max(0.0, depth - skin_m_);
   contact_.normal = depth > 2.0 * skin_m_ ? Vec3{push / depth} : planes.held[0].normal;
+  contact_.normal_velocity_m_s = contact_.normal.dot(tip.velocity_m_s);
   const auto* const main = std::max_element(
       planes.held.begin(), planes.held.begin() + planes.count, [&](const Plane& a, const Plane& b) {
         return a.normal.dot(contact_.normal) < b.normal.dot(contact_.normal);

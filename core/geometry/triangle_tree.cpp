@@ -70,6 +70,7 @@ TriangleTree::TriangleTree(TriangleSurface surface) : surface_{std::move(surface
     normals_.row(i) = (corner(i, 1) - a).cross(corner(i, 2) - a).normalized();
     centres_.row(i) = (a + corner(i, 1) + corner(i, 2)) / 3.0;
   }
+  smooth_.emplace(surface_, normals_);
   order_.resize(static_cast<std::size_t>(count));
   std::iota(order_.begin(), order_.end(), 0);
   build(0, static_cast<int>(count));

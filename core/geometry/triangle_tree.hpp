@@ -1,7 +1,9 @@
 #pragma once
 #include <array>
+#include <optional>
 #include <vector>
 
+#include "core/geometry/smooth_normals.hpp"
 #include "core/geometry/triangle_surface.hpp"
 namespace tapstudy::core {
 // Finds the triangles near a point or along a segment in logarithmic time: a binary bounding-box
@@ -30,6 +32,11 @@ class TriangleTree {
 
   const TriangleSurface& surface() const noexcept { return surface_; }
   Point normal(int triangle) const noexcept { return normals_.row(triangle); }  // unit length
+  // Of the smooth surface that the triangles stand for.
+  bool is_flat(int triangle) const noexcept { return smooth_->is_flat(triangle); }
+  std::optional<SmoothNormals::Foot> foot_of(const Point& inside, int nearby) const noexcept {
+    return smooth_->foot_of(inside, nearby, surface_);
+  }
   // Barycentric coordinates of the nearest point of the triangle.
   std::array<double, 3> barycentric(int triangle, const Point& point) const noexcept;
 
@@ -75,6 +82,7 @@ class TriangleTree {
   TriangleSurface surface_;
   TriangleSurface::Points normals_;
   TriangleSurface::Points centres_;
+  std::optional<SmoothNormals> smooth_;
   std::vector<Node> nodes_;
   std::vector<int> order_;
 };

@@ -17,5 +17,6 @@ struct ForcePart {
 };
 
 extern const ForcePart plate_vibration;    // plate_vibration_part.cpp
+extern const ForcePart coupled_vibration;  // coupled_vibration_part.cpp
 extern const ForcePart decaying_sinusoid;  // decaying_sinusoid_part.cpp
 }  // namespace tapstudy::core

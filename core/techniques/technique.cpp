@@ -12,6 +12,9 @@ const std::vector<Technique>& techniques() {
       {"fem+sinusoid",
        "the plate's vibration and the decaying sinusoid",
        {&plate_vibration, &decaying_sinusoid}},
+      {"fem-coupled",
+       "a finger that stays on the vibrating plate, each acting on the other",
+       {&coupled_vibration}},
   };
   return table;
 }

@@ -10,6 +10,7 @@ struct Contact {
   bool impact{false};               // an impact that excites the plate: true for one tick only
   double penetration_m{0.0};        // from the god-object to the haptic interaction point
   double impact_speed_m_s{0.0};     // approach speed, in the tick of the impact
+  double normal_velocity_m_s{0.0};  // of the tip while it touches, outwards positive
   Vec3 god_object_m{Vec3::Zero()};  // the haptic interaction point, constrained to the surface
   Vec3 normal{Vec3::UnitZ()};       // outward unit normal: direction of the penalty force
   // On a surface of triangles: which one the god-object is on, and where on it.

@@ -1,5 +1,6 @@
 #include "core/tick/modal_state.hpp"
 
+#include <cmath>
 #include <numbers>
 namespace tapstudy::core {
 namespace {
@@ -7,25 +8,29 @@ namespace {
 // smallest relevant motion is some eighty orders of magnitude larger.
 constexpr double silence = 1e-100;
 
-void flush_to_zero(Eigen::ArrayXd& state) noexcept {
-  state = (state.abs() < silence).select(0.0, state);
+double flushed_to_zero(double value) noexcept {
+  return std::abs(value) < silence ? 0.0 : value;
 }
 }  // namespace
 
 ModalState::ModalState(const ModalModel& model, Integrator integrator, double dt_s)
     : model_{&model} {
   const Eigen::Index modes = model.frequency_hz.size();
-  for (Eigen::ArrayXd* array :
-       {&qq_, &qv_, &vq_, &vv_, &displacement_, &velocity_, &next_, &touched_}) {
+  for (Eigen::ArrayXd* array : {&qq_, &qv_, &vq_, &vv_, &held_q_, &held_v_, &displacement_,
+                                &velocity_, &previous_, &touched_}) {
     array->setZero(modes);
   }
   for (Eigen::Index i = 0; i < modes; ++i) {
     const double omega = 2.0 * std::numbers::pi * model.frequency_hz[i];
     const StateTransition step = state_transition(integrator, omega, model.damping_ratio[i], dt_s);
+    const HeldForceResponse held =
+        held_force_response(integrator, omega, model.damping_ratio[i], dt_s);
     qq_[i] = step.qq;
     qv_[i] = step.qv;
     vq_[i] = step.vq;
     vv_[i] = step.vv;
+    held_q_[i] = held.q;
+    held_v_[i] = held.v;
   }
 }
 
@@ -46,18 +51,30 @@ void ModalState::strike(double impulse_n_s) noexcept {
   velocity_ += impulse_n_s * touched_;
 }
 
+// eq. 11, all modes in one pass.
 void ModalState::tick() noexcept {
-  // eq. 11, all modes at once
-  next_ = qq_ * displacement_ + qv_ * velocity_;
-  velocity_ = vq_ * displacement_ + vv_ * velocity_;
-  displacement_.swap(next_);
-  flush_to_zero(displacement_);
-  flush_to_zero(velocity_);
+  previous_.swap(displacement_);
+  const Eigen::Index modes = previous_.size();
+  const double* const from = previous_.data();
+  double* const to = displacement_.data();
+  double* const velocity = velocity_.data();
+  for (Eigen::Index i = 0; i < modes; ++i) {
+    const double q = from[i];
+    const double v = velocity[i];
+    to[i] = flushed_to_zero(qq_[i] * q + qv_[i] * v);
+    velocity[i] = flushed_to_zero(vq_[i] * q + vv_[i] * v);
+  }
+}
+
+void ModalState::push(double force_n) noexcept {
+  displacement_ += force_n * held_q_ * touched_;
+  velocity_ += force_n * held_v_ * touched_;
 }
 
 void ModalState::reset() noexcept {
   displacement_.setZero();
   velocity_.setZero();
+  previous_.setZero();
 }
 
 // eq. 9 at the touched point: the nodes' displacements, weighted by eq. 16, along the normal.
@@ -67,6 +84,14 @@ double ModalState::displacement_m() const noexcept {
 
 double ModalState::velocity_m_s() const noexcept {
   return (touched_ * velocity_).sum();
+}
+
+double ModalState::previous_displacement_m() const noexcept {
+  return (touched_ * previous_).sum();
+}
+
+double ModalState::compliance_m_per_n() const noexcept {
+  return (touched_.square() * held_q_).sum();
 }
 
 double ModalState::energy_j() const noexcept {

@@ -18,18 +18,26 @@ class ModalState {
   // jumps by its component of P' p (paper eq. 11, 15).
   void strike(double impulse_n_s) noexcept;
   void tick() noexcept;
+  // Adds to the tick just made the response to a force at the contact point along the normal
+  // [N, outwards positive] that was held throughout it: HeldForceResponse, one per mode.
+  void push(double force_n) noexcept;
   void reset() noexcept;
 
   // At the contact point, along the normal, outwards positive (paper eq. 16, 17).
   double displacement_m() const noexcept;
   double velocity_m_s() const noexcept;
+  // The displacement there before the last tick.
+  double previous_displacement_m() const noexcept;
+  // What displacement_m() becomes larger by, for each newton that is pushed.
+  double compliance_m_per_n() const noexcept;
   // Of the whole plate: kinetic plus elastic.
   double energy_j() const noexcept;
 
  private:
   const ModalModel* model_;
   Eigen::ArrayXd qq_, qv_, vq_, vv_;  // StateTransition, one per mode
-  Eigen::ArrayXd displacement_, velocity_, next_;
+  Eigen::ArrayXd held_q_, held_v_;    // HeldForceResponse
+  Eigen::ArrayXd displacement_, velocity_, previous_;
   Eigen::ArrayXd touched_;  // the touched point's displacement along the normal, per mode
 };
 }  // namespace tapstudy::core

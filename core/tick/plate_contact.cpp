@@ -19,6 +19,7 @@ const Contact& PlateContact::tick(const HandState& tip) noexcept {
   contact_.impact = enters && history_.impact_armed;
   contact_.impact_speed_m_s = contact_.impact ? std::max(0.0, -tip.velocity_m_s.z()) : 0.0;
   contact_.penetration_m = contact_.touching ? -at.z() : 0.0;
+  contact_.normal_velocity_m_s = contact_.touching ? tip.velocity_m_s.z() : 0.0;
   contact_.god_object_m = contact_.touching ? Vec3{at.x(), at.y(), 0.0} : at;
   history_.impact_armed = !contact_.impact && (history_.impact_armed || at.z() > release_height_m_);
   history_.tip_m = at;

@@ -3,6 +3,8 @@
 #include <cmath>
 namespace tapstudy::core {
 namespace {
+constexpr double small_step = 1e-3;  // five terms of a series suffice for all digits below it
+
 StateTransition underdamped_transition(double omega, double zeta, double dt) noexcept {
   const double decay_rate = zeta * omega;
   const double damped = omega * std::sqrt((1.0 - zeta) * (1.0 + zeta));
@@ -50,5 +52,23 @@ StateTransition state_transition(Integrator integrator, double omega_rad_s, doub
                                  double dt_s) noexcept {
   return integrator == Integrator::exact ? exact_transition(omega_rad_s, damping_ratio, dt_s)
                                          : newmark_transition(omega_rad_s, damping_ratio, dt_s);
+}
+
+HeldForceResponse held_force_response(Integrator integrator, double omega_rad_s,
+                                      double damping_ratio, double dt_s) noexcept {
+  const StateTransition step = state_transition(integrator, omega_rad_s, damping_ratio, dt_s);
+  if (integrator == Integrator::newmark) {
+    return {0.5 * dt_s * step.qv, step.qv};
+  }
+  const double damping = 2.0 * damping_ratio * omega_rad_s * dt_s;
+  const double stiffness = omega_rad_s * omega_rad_s * dt_s * dt_s;
+  if (damping + stiffness > small_step) {
+    return {(1.0 - step.qq) / (omega_rad_s * omega_rad_s), step.qv};
+  }
+  // Taylor's series: 1 - qq would cancel
+  const double third = -damping / 6.0;
+  const double fourth = (damping * damping - stiffness) / 24.0;
+  const double fifth = damping * (2.0 * stiffness - damping * damping) / 120.0;
+  return {dt_s * dt_s * (0.5 + third + fourth + fifth), step.qv};
 }
 }  // namespace tapstudy::core

@@ -10,6 +10,13 @@ namespace tapstudy::core {
 // corner), and it moves on to the nearest point that satisfies them. At convex edges constraints
 // that end there are released.
 //
+// The force is shaded: its direction and depth, and the place that is felt, are those of the tip's
+// foot on the smooth surface that the triangles stand for (SmoothNormals). So they change
+// continuously from facet to facet, and only across edges sharper than
+// SmoothNormals::sharp_above_rad abruptly. The god-object itself stays on the facets. On flat
+// faces, in sharp concave edges, and deeper than the radius of curvature the force is that of the
+// god-object.
+//
 // A tip found inside without having entered (the first reading) is not in contact. Contact chatter
 // does not retrigger impacts: see PlateContact.
 class SurfaceContact {
@@ -37,6 +44,7 @@ class SurfaceContact {
   std::optional<Vec3> nearest_allowed(const Planes& planes, const Vec3& wanted_m) const noexcept;
   static std::optional<Vec3> nearest_on(const Planes& planes, unsigned choice,
                                         const Vec3& wanted_m) noexcept;
+  void shade(const Planes& planes, const Vec3& tip_m) noexcept;
   void describe(const Planes& planes, const HandState& tip) noexcept;
 
   const TriangleTree* tree_;

@@ -3,7 +3,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/techniques/force_part.hpp"
+#include "core/techniques/technique.hpp"
 #include "protocols/yaml/yaml_reader.hpp"
 namespace tapstudy::protocols {
 struct PresentedStimulus;  // protocols/axes/presented_stimulus.hpp
@@ -20,8 +20,8 @@ struct Axis {
   std::string_view name;  // in protocols, on the command line and in data; ends in its unit
   std::string_view unit;  // SI; empty for a ratio
   AxisKind kind{};
-  const core::ForcePart* used_by{};  // the techniques that have it use this axis; null: all do
-  bool is_of_boxes{};                // other shapes cannot vary so
+  bool (*is_used_by)(const core::Technique& technique){};  // null: by all
+  bool is_of_boxes{};                                      // other shapes cannot vary so
   // What the stimulus allows: what the study's own key allows, or less.
   Range (*allowed)(const PresentedStimulus& stimulus){};
   double (*value)(const PresentedStimulus& stimulus){};

@@ -108,60 +108,69 @@ Range lateral_sizes_m(const PresentedStimulus& stimulus) {
   const Range& edge = allowed::edge_m;
   return {edge.low * std::max(1.0, aspect), edge.high * std::min(1.0, aspect)};
 }
+
+bool vibrates(const core::Technique& technique) {
+  return technique.needs_model();
+}
+bool scales_vibration(const core::Technique& technique) {
+  return technique.has(core::plate_vibration);
+}
+bool has_sinusoid(const core::Technique& technique) {
+  return technique.has(core::decaying_sinusoid);
+}
 }  // namespace
 
 const std::vector<Axis>& axes() {
   using P = PresentedStimulus;
   static const std::vector<Axis> table{
-      {"youngs_modulus_pa", "Pa", AxisKind::scaled, &core::plate_vibration, false,
+      {"youngs_modulus_pa", "Pa", AxisKind::scaled, vibrates, false,
        constant<allowed::youngs_modulus_pa>,
        [](const P& stimulus) { return stimulus.material->youngs_modulus_pa; },
        [](P& stimulus, double value) {
          change_material(stimulus, [&](Material& m) { m.youngs_modulus_pa = value; });
        }},
-      {"density_kg_per_m3", "kg/m³", AxisKind::scaled, &core::plate_vibration, false,
+      {"density_kg_per_m3", "kg/m³", AxisKind::scaled, vibrates, false,
        constant<allowed::density_kg_per_m3>,
        [](const P& stimulus) { return stimulus.material->density_kg_per_m3; },
        [](P& stimulus, double value) {
          change_material(stimulus, [&](Material& m) { m.density_kg_per_m3 = value; });
        }},
-      {"damping_scale", "", AxisKind::scaled, &core::plate_vibration, false, damping_factors,
+      {"damping_scale", "", AxisKind::scaled, vibrates, false, damping_factors,
        [](const P& /*stimulus*/) { return 1.0; },
        [](P& stimulus, double value) {
          change_material(stimulus,
                          [&](Material& m) { m.damping = core::scaled(m.damping, value); });
        }},
-      {"vibration_gain", "", AxisKind::scaled, &core::plate_vibration, false, gains,
+      {"vibration_gain", "", AxisKind::scaled, scales_vibration, false, gains,
        [](const P& stimulus) { return stimulus.rendering.vibration_gain; },
        [](P& stimulus, double value) { stimulus.rendering.vibration_gain = value; }},
-      {"sinusoid_amplitude_n_s_per_m", "N s/m", AxisKind::scaled, &core::decaying_sinusoid, false,
+      {"sinusoid_amplitude_n_s_per_m", "N s/m", AxisKind::scaled, has_sinusoid, false,
        constant<allowed::sinusoid_amplitude_n_s_per_m>,
        [](const P& stimulus) { return stimulus.rendering.sinusoid.amplitude_n_s_per_m; },
        [](P& stimulus, double value) { stimulus.rendering.sinusoid.amplitude_n_s_per_m = value; }},
-      {"sinusoid_decay_per_s", "1/s", AxisKind::scaled, &core::decaying_sinusoid, false,
+      {"sinusoid_decay_per_s", "1/s", AxisKind::scaled, has_sinusoid, false,
        constant<allowed::sinusoid_decay_per_s>,
        [](const P& stimulus) { return stimulus.rendering.sinusoid.decay_per_s; },
        [](P& stimulus, double value) { stimulus.rendering.sinusoid.decay_per_s = value; }},
-      {"sinusoid_frequency_hz", "Hz", AxisKind::scaled, &core::decaying_sinusoid, false,
-       frequencies_hz, [](const P& stimulus) { return stimulus.rendering.sinusoid.frequency_hz; },
+      {"sinusoid_frequency_hz", "Hz", AxisKind::scaled, has_sinusoid, false, frequencies_hz,
+       [](const P& stimulus) { return stimulus.rendering.sinusoid.frequency_hz; },
        [](P& stimulus, double value) { stimulus.rendering.sinusoid.frequency_hz = value; }},
       {"penalty_stiffness_n_per_m", "N/m", AxisKind::scaled, nullptr, false,
        constant<allowed::penalty_stiffness_n_per_m>,
        [](const P& stimulus) { return stimulus.rendering.penalty_stiffness_n_per_m; },
        [](P& stimulus, double value) { stimulus.rendering.penalty_stiffness_n_per_m = value; }},
-      {"poissons_ratio", "", AxisKind::tabled, &core::plate_vibration, false,
-       constant<allowed::poissons_ratio>,
+      {"poissons_ratio", "", AxisKind::tabled, vibrates, false, constant<allowed::poissons_ratio>,
        [](const P& stimulus) { return stimulus.material->poissons_ratio; },
        [](P& stimulus, double value) {
          change_material(stimulus, [&](Material& m) { m.poissons_ratio = value; });
        }},
-      {"thickness_m", "m", AxisKind::tabled, &core::plate_vibration, true,
-       constant<allowed::edge_m>, [](const P& stimulus) { return box_of(stimulus).size_m.z(); },
+      {"thickness_m", "m", AxisKind::tabled, vibrates, true, constant<allowed::edge_m>,
+       [](const P& stimulus) { return box_of(stimulus).size_m.z(); },
        [](P& stimulus, double value) {
          change_plate(stimulus,
                       [&](Plate& plate) { std::get<core::Box>(plate.shape).size_m.z() = value; });
        }},
-      {"lateral_size_m", "m", AxisKind::tabled, &core::plate_vibration, true, lateral_sizes_m,
+      {"lateral_size_m", "m", AxisKind::tabled, vibrates, true, lateral_sizes_m,
        [](const P& stimulus) { return box_of(stimulus).size_m.x(); }, set_lateral_size},
   };
   return table;
@@ -180,10 +189,10 @@ std::vector<std::string> axis_names() {
 }
 
 std::string refusal(const Axis& axis, const PresentedStimulus& stimulus) {
-  if (axis.used_by != nullptr && !stimulus.technique->has(*axis.used_by)) {
+  if (axis.is_used_by != nullptr && !axis.is_used_by(*stimulus.technique)) {
     std::vector<std::string_view> users;
     for (const core::Technique& technique : core::techniques()) {
-      if (technique.has(*axis.used_by)) {
+      if (axis.is_used_by(technique)) {
         users.push_back(technique.name);
       }
     }

@@ -1,10 +1,14 @@
-// One tick of fem+sinusoid on a finger that slides in contact, against the number of modes and
-// against a plain vector loop over the same state.
+// One tick of fem+sinusoid on a finger that slides in contact, against the number of modes; the
+// modes alone against a plain vector loop over the same state, and each technique against fem, as
+// ratios of batches taken in turn.
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
 #include <cmath>
+#include <string>
 #include <vector>
 
+#include "core/model/stopwatch.hpp"
 #include "core/rng.hpp"
 #include "core/techniques/make_renderer.hpp"
 #include "core/tick/modal_state.hpp"
@@ -59,6 +63,61 @@ RenderSettings settings() {
   all.sinusoid.amplitude_n_s_per_m = 3.0;
   return all;
 }
+
+// The median, over the iterations, of the time of `ours` per time of `theirs`, each called
+// `batch` times in a row.
+template <class Ours, class Theirs>
+void compare(benchmark::State& state, const Ours& ours, const Theirs& theirs) {
+  constexpr int batch = 1000;
+  std::vector<double> ratios;
+  for (auto _ : state) {
+    Stopwatch watch;
+    for (int i = 0; i < batch; ++i) {
+      ours();
+    }
+    const double ours_s = watch.lap_s();
+    for (int i = 0; i < batch; ++i) {
+      theirs();
+    }
+    ratios.push_back(ours_s / watch.lap_s());
+  }
+  std::ranges::nth_element(ratios, ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2));
+  state.counters["ratio"] = ratios[ratios.size() / 2];
+}
+
+// A finger that slides in contact.
+class Slide {
+ public:
+  Slide(const Technique& technique, const VibratingPlate& plate)
+      : renderer_{make_renderer(technique, settings(), PlateFace{0.3, 0.3}, &plate)} {
+    renderer_.tick({{0.0, 0.0, 0.001}, {0.0, 0.0, -0.3}});
+  }
+  void operator()() {
+    angle_ += 1e-3;
+    benchmark::DoNotOptimize(renderer_.tick(
+        {{0.2 * std::cos(angle_), 0.2 * std::sin(angle_), -0.001}, {0.0, 0.0, 0.0}}));
+  }
+
+ private:
+  TapRenderer renderer_;
+  double angle_{0.0};
+};
+
+// A tick of each technique over one of fem.
+void technique_per_fem(benchmark::State& state) {
+  const Technique& technique = techniques().at(static_cast<std::size_t>(state.range(0)));
+  const VibratingPlate plate{made_up_model(state.range(1), 10, static_cast<int>(state.range(2)))};
+  Slide ours{technique, plate};
+  Slide fem{*find_technique("fem"), plate};
+  state.SetLabel(std::string{technique.name});
+  compare(
+      state, [&] { ours(); }, [&] { fem(); });
+}
+BENCHMARK(technique_per_fem)
+    ->ArgNames({"technique", "modes", "order"})
+    ->ArgsProduct({benchmark::CreateDenseRange(0, static_cast<int>(techniques().size()) - 1, 1),
+                   {14, 55, 220},
+                   {2}});
 
 void tick_in_contact(benchmark::State& state) {
   const VibratingPlate plate{made_up_model(state.range(0), static_cast<int>(state.range(1)),
@@ -122,11 +181,17 @@ void modal_core(benchmark::State& state) {
 BENCHMARK(modal_core)->ArgName("silent")->Arg(0)->Arg(1);
 
 // What the modal core does, written by hand on arrays.
-void plain_loop(benchmark::State& state) {
-  constexpr std::size_t modes = 55;
-  std::vector<double> q(modes, 1.0), v(modes, 0.5), touched(modes, 0.3);
-  const std::vector<double> qq(modes, 0.99), qv(modes, 1e-3), vq(modes, -0.5), vv(modes, 0.98);
-  for (auto _ : state) {
+struct PlainModes {
+  static constexpr std::size_t modes = 55;
+  std::vector<double> q = std::vector<double>(modes, 1.0);
+  std::vector<double> v = std::vector<double>(modes, 0.5);
+  std::vector<double> touched = std::vector<double>(modes, 0.3);
+  std::vector<double> qq = std::vector<double>(modes, 0.99);
+  std::vector<double> qv = std::vector<double>(modes, 1e-3);
+  std::vector<double> vq = std::vector<double>(modes, -0.5);
+  std::vector<double> vv = std::vector<double>(modes, 0.98);
+
+  void tick() {
     double sum = 0.0;
     for (std::size_t i = 0; i < modes; ++i) {
       const double next = qq[i] * q[i] + qv[i] * v[i];
@@ -137,7 +202,31 @@ void plain_loop(benchmark::State& state) {
     benchmark::DoNotOptimize(sum);
     q[0] += 1e-6;
   }
+};
+
+void plain_loop(benchmark::State& state) {
+  PlainModes plain;
+  for (auto _ : state) {
+    plain.tick();
+  }
 }
 BENCHMARK(plain_loop);
+
+// A tick of the modes and their displacement over a plain loop's.
+void modal_core_per_plain_loop(benchmark::State& state) {
+  const VibratingPlate plate{made_up_model(PlainModes::modes, 10)};
+  ModalState modes{plate.model, Integrator::exact, dt_s};
+  modes.touch(plate.locator->locate(0.1, 0.1), {0.0, 0.0, 1.0});
+  PlainModes plain;
+  compare(
+      state,
+      [&] {
+        modes.tick();
+        benchmark::DoNotOptimize(modes.displacement_m());
+        modes.strike(1e-6);
+      },
+      [&] { plain.tick(); });
+}
+BENCHMARK(modal_core_per_plain_loop);
 }  // namespace
 BENCHMARK_MAIN();

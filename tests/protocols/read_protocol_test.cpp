@@ -1,5 +1,8 @@
 #include "protocols/read_protocol.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <string>
@@ -123,6 +126,30 @@ TEST_CASE("what makes no sense as a study is refused", "[protocols]") {
   }));
   INFO(from << " → " << to);
   CHECK_THAT(refusal(replaced(discrimination(), from, to)), Contains(said));
+}
+
+TEST_CASE("a coupled finger without a mass, or not held to the hand, is one error at its line",
+          "[protocols][coupled]") {
+  const std::string coupled =
+      replaced(discrimination(), "technique: fem", "technique: fem-coupled");
+  CHECK_NOTHROW(protocols::parse_protocol(coupled, "study.yaml"));
+  const auto line_of = [](const std::string& text, const std::string& key) {
+    const auto end = text.begin() + static_cast<std::ptrdiff_t>(text.find(key));
+    return 1 + std::count(text.begin(), end, '\n');
+  };
+  const auto only_error = [&](const std::string& text, const std::string& key) {
+    const std::string said = refusal(text);
+    CHECK(std::count(said.begin(), said.end(), '\n') == 0);
+    CHECK_THAT(said, Catch::StartsWith(fmt::format("study.yaml:{}:", line_of(text, key))));
+    return said;
+  };
+  CHECK_THAT(only_error(replaced(coupled, "  mass_kg: 0.058", "  # no mass"), "finger:"),
+             Contains("finger.mass_kg: is missing"));
+  CHECK_THAT(only_error(replaced(coupled, "mass_kg: 0.058", "mass_kg: 0"), "mass_kg"),
+             Contains("finger.mass_kg: 0 is not allowed"));
+  CHECK_THAT(only_error(replaced(coupled, "stiffness_n_per_m: 300", "stiffness_n_per_m: 0"),
+                        "technique: fem-coupled"),
+             Contains("'fem-coupled' needs finger.stiffness_n_per_m above 0"));
 }
 
 TEST_CASE("a file that is not there, empty or no text is refused", "[protocols]") {

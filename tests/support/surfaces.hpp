@@ -108,4 +108,116 @@ inline core::TriangleSurface sphere_surface(double radius_m, int rings) {
   }
   return surface_of(points, triangles);
 }
+
+// Around the origin: an icosahedron, its triangles cut into four so many times.
+inline core::TriangleSurface icosphere_surface(double radius_m, int cuts) {
+  const double golden = 0.5 * (1.0 + std::sqrt(5.0));
+  std::vector<Eigen::RowVector3d> points;
+  for (const double a : {-1.0, 1.0}) {
+    for (const double b : {-golden, golden}) {
+      points.insert(points.end(), {{0.0, a, b}, {a, b, 0.0}, {b, 0.0, a}});
+    }
+  }
+  std::vector<Eigen::RowVector3i> triangles;
+  for (int i = 0; i < 12; ++i) {
+    for (int j = i + 1; j < 12; ++j) {
+      for (int k = j + 1; k < 12; ++k) {
+        const auto near = [&](int a, int b) {
+          return (points[static_cast<std::size_t>(a)] - points[static_cast<std::size_t>(b)])
+                     .norm() < 2.1;
+        };
+        if (near(i, j) && near(j, k) && near(k, i)) {
+          triangles.emplace_back(i, j, k);
+        }
+      }
+    }
+  }
+  for (int cut = 0; cut < cuts; ++cut) {
+    std::map<std::pair<int, int>, int> middles;
+    const auto middle = [&](int a, int b) {
+      const auto [found, is_new] =
+          middles.emplace(std::minmax(a, b), static_cast<int>(points.size()));
+      if (is_new) {
+        points.emplace_back(0.5 * (points[static_cast<std::size_t>(a)].normalized() +
+                                   points[static_cast<std::size_t>(b)].normalized()));
+      }
+      return found->second;
+    };
+    std::vector<Eigen::RowVector3i> finer;
+    for (const Eigen::RowVector3i& t : triangles) {
+      const Eigen::RowVector3i m{middle(t[0], t[1]), middle(t[1], t[2]), middle(t[2], t[0])};
+      finer.insert(finer.end(), {{t[0], m[0], m[2]}, {t[1], m[1], m[0]}, {t[2], m[2], m[1]}, m});
+    }
+    triangles = finer;
+  }
+  for (Eigen::RowVector3d& point : points) {
+    point *= radius_m / point.norm();
+  }
+  for (Eigen::RowVector3i& t : triangles) {
+    const auto at = [&](int i) {
+      return points[static_cast<std::size_t>(t[i])].transpose().eval();
+    };
+    if (at(0).dot(at(1).cross(at(2))) < 0.0) {
+      std::swap(t[1], t[2]);
+    }
+  }
+  return surface_of(points, triangles);
+}
+
+// A closed grid of around × along quadrilaterals, each cut in two; the point at (i, j).
+template <class At>
+core::TriangleSurface wrapped_surface(int around, int along, const At& at) {
+  std::vector<Eigen::RowVector3d> points;
+  std::vector<Eigen::RowVector3i> triangles;
+  for (int i = 0; i < around; ++i) {
+    for (int j = 0; j < along; ++j) {
+      points.push_back(at(i, j));
+      const int next = (i + 1) % around;
+      const int a = i * along + j;
+      const int b = next * along + j;
+      const int c = next * along + (j + 1) % along;
+      const int d = i * along + (j + 1) % along;
+      triangles.emplace_back(a, b, c);
+      triangles.emplace_back(a, c, d);
+    }
+  }
+  return surface_of(points, triangles);
+}
+
+// Around the z axis.
+inline core::TriangleSurface torus_surface(double radius_m, double tube_m, int around, int along) {
+  return wrapped_surface(around, along, [&](int i, int j) -> Eigen::RowVector3d {
+    const double u = 2.0 * M_PI * i / around;
+    const double v = 2.0 * M_PI * j / along;
+    const double out = radius_m + tube_m * std::cos(v);
+    return {out * std::cos(u), out * std::sin(u), tube_m * std::sin(v)};
+  });
+}
+
+// A prism along y, 0.2 m long: the profile's points (x, z) in the order that turns x towards -z,
+// clockwise seen from -y. Its ends are fans, so the profile is star-shaped about its first point.
+inline core::TriangleSurface prism_surface(const std::vector<Eigen::Vector2d>& profile, int cells) {
+  std::vector<Eigen::RowVector3d> points;
+  std::vector<Eigen::RowVector3i> triangles;
+  const auto count = static_cast<int>(profile.size());
+  for (int j = 0; j <= cells; ++j) {
+    for (const Eigen::Vector2d& at : profile) {
+      points.emplace_back(at.x(), 0.2 * j / cells - 0.1, at.y());
+    }
+  }
+  for (int j = 0; j < cells; ++j) {
+    for (int i = 0; i < count; ++i) {
+      const int a = j * count + i;
+      const int b = j * count + (i + 1) % count;
+      triangles.emplace_back(a, b, b + count);
+      triangles.emplace_back(a, b + count, a + count);
+    }
+  }
+  const int last = cells * count;
+  for (int i = 1; i + 1 < count; ++i) {
+    triangles.emplace_back(0, i + 1, i);
+    triangles.emplace_back(last, last + i, last + i + 1);
+  }
+  return surface_of(points, triangles);
+}
 }  // namespace tapstudy::testing

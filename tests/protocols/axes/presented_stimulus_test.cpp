@@ -132,14 +132,15 @@ TEST_CASE("an axis that the technique or the plate does not have is refused at i
     const char* users;
   };
   const auto [axis, technique, users] = GENERATE(values<Pair>({
-      {"youngs_modulus_pa: {from: 1e9, to: 2e9}", "none", "fem, fem+sinusoid do"},
-      {"youngs_modulus_pa: {from: 1e9, to: 2e9}", "sinusoid", "fem, fem+sinusoid do"},
-      {"density_kg_per_m3: {from: 1e3, to: 2e3}", "none", "fem, fem+sinusoid do"},
-      {"damping_scale: {from: 1, to: 2}", "sinusoid", "fem, fem+sinusoid do"},
+      {"youngs_modulus_pa: {from: 1e9, to: 2e9}", "none", "fem, fem+sinusoid, fem-coupled do"},
+      {"youngs_modulus_pa: {from: 1e9, to: 2e9}", "sinusoid", "fem, fem+sinusoid, fem-coupled do"},
+      {"density_kg_per_m3: {from: 1e3, to: 2e3}", "none", "fem, fem+sinusoid, fem-coupled do"},
+      {"damping_scale: {from: 1, to: 2}", "sinusoid", "fem, fem+sinusoid, fem-coupled do"},
       {"vibration_gain: {from: 1, to: 2}", "none", "fem, fem+sinusoid do"},
-      {"thickness_m: {values: [0.01]}", "none", "fem, fem+sinusoid do"},
-      {"lateral_size_m: {values: [0.5]}", "sinusoid", "fem, fem+sinusoid do"},
-      {"poissons_ratio: {values: [0.2]}", "none", "fem, fem+sinusoid do"},
+      {"vibration_gain: {from: 1, to: 2}", "fem-coupled", "fem, fem+sinusoid do"},
+      {"thickness_m: {values: [0.01]}", "none", "fem, fem+sinusoid, fem-coupled do"},
+      {"lateral_size_m: {values: [0.5]}", "sinusoid", "fem, fem+sinusoid, fem-coupled do"},
+      {"poissons_ratio: {values: [0.2]}", "none", "fem, fem+sinusoid, fem-coupled do"},
       {"sinusoid_decay_per_s: {from: 1, to: 2}", "fem", "sinusoid, fem+sinusoid do"},
       {"sinusoid_amplitude_n_s_per_m: {from: 1, to: 2}", "none", "sinusoid, fem+sinusoid do"},
       {"sinusoid_frequency_hz: {from: 1, to: 2}", "fem", "sinusoid, fem+sinusoid do"},

@@ -18,6 +18,7 @@ struct SurfaceRow {
   std::string file;  // as the protocol names it
   std::string sha256;
   std::string bytes;
+  bool operator==(const SurfaceRow& other) const = default;
 };
 
 struct StudyRow {

@@ -50,6 +50,11 @@ void Command::argument(const std::string& name, std::string& value, const std::s
   app_->add_option(name, value, help)->required(need == Need::required);
 }
 
+void Command::arguments(const std::string& name, std::vector<std::string>& values,
+                        const std::string& help) {
+  app_->add_option(name, values, help);
+}
+
 void Command::option(const std::string& name, std::string& value, const std::string& help,
                      Need need) {
   app_->add_option(name, value, help)->required(need == Need::required);

@@ -24,7 +24,7 @@ using analysis::Summary;
 using results::Mode;
 
 struct ReportOptions {
-  std::string directory;
+  std::vector<std::string> directories;
   std::string counts;
   std::string out;
   std::string mode;
@@ -57,9 +57,19 @@ results::Store store_to_report(const std::string& directory) {
   return results::Store::from_journal(directory);
 }
 
-Summary summary_of_directory(const ReportOptions& options) {
-  results::Store store = store_to_report(options.directory);
-  return summary_of_study(store, mode_to_report(options, store.sessions()), options.directory);
+Summary summary_of_directories(const ReportOptions& options) {
+  std::vector<results::Store> stores;
+  std::vector<results::SessionRow> sessions;
+  for (const std::string& directory : options.directories) {
+    stores.push_back(store_to_report(directory));
+    const auto more = stores.back().sessions();
+    sessions.insert(sessions.end(), more.begin(), more.end());
+  }
+  std::vector<StudyStore> studies;
+  for (std::size_t i = 0; i < stores.size(); ++i) {
+    studies.push_back({options.directories[i], &stores[i]});
+  }
+  return summary_of_study(studies, mode_to_report(options, sessions));
 }
 
 std::vector<std::string> listed(const std::string& words) {
@@ -123,16 +133,19 @@ void write_files(const ReportOptions& options, const Summary& summary) {
 }
 
 void run_report(ReportOptions options) {
-  if (options.directory.empty() == options.counts.empty()) {
-    throw core::InvalidInput{"report takes either the directory of a study or --counts FILE.csv"};
+  if (options.directories.empty() == options.counts.empty()) {
+    throw core::InvalidInput{"report takes either directories of a study or --counts FILE.csv"};
+  }
+  if (options.directories.size() > 1 && options.out.empty()) {
+    throw core::InvalidInput{"--out: a report of several directories needs one of its own"};
   }
   const Summary summary = options.counts.empty()
-                              ? summary_of_directory(options)
+                              ? summary_of_directories(options)
                               : summary_of_counts(options.counts, options.responses);
   analysis::write_text(std::cout, summary);
   std::cout << std::endl;
   if (options.out.empty() && options.counts.empty()) {
-    options.out = options.directory;
+    options.out = options.directories.front();
   }
   if (!options.out.empty()) {
     write_files(options, summary);
@@ -144,12 +157,13 @@ void add_report(CommandParser& line) {
   Command command =
       line.add("report", "Confusion matrix and statistics: terminal, HTML, JSON and CSV");
   const auto options = std::make_shared<ReportOptions>();
-  command.argument("directory", options->directory, "Directory of a study", Need::optional);
+  command.arguments("directories", options->directories,
+                    "Directory of a study; several, if it was run on several machines");
   command.option("--counts", options->counts,
                  "Instead of a study: a matrix or a stimulus,response table (CSV)");
   command.option("--responses", options->responses,
                  "With --counts: answers that are no stimuli, comma-separated");
-  command.option("--out", options->out, "Output directory; default: the study's directory");
+  command.option("--out", options->out, "Output directory; default: the study's own");
   command.one_of("--mode", options->mode, {"real", "pilot", "simulated"},
                  "Which sessions: real, pilot or simulated");
   command.flag("--replace", options->replace, "Replace an earlier report");

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <set>
 #include <utility>
@@ -101,36 +102,120 @@ std::vector<std::string> deviations_of(results::Store& store, const Excluded& ex
   }
   return found;
 }
-}  // namespace
+// Of one store.
+struct StoredResults {
+  std::vector<results::SessionRow> sessions;
+  std::vector<results::AnswerRow> answers;  // that count
+  std::vector<results::VisitRow> visits;    // of those who gave them
+  std::vector<std::string> unfinished;
+  std::vector<std::string> excluded;
+  std::vector<std::string> deviations;
+};
 
-Summary summary_of_study(results::Store& store, Mode mode, const std::string& directory) {
-  const results::StudyRow study = store.study();
-  const std::vector<results::SessionRow> sessions = store.sessions();
-  const std::map<std::string, std::string> excluded = store.excluded_participants();
+std::vector<results::AnswerRow> counted_answers(results::Store& store, const Excluded& excluded,
+                                                Mode mode) {
   std::vector<results::AnswerRow> answers = store.answers();
   std::erase_if(answers, [&](const results::AnswerRow& answer) {
     return answer.mode != mode || answer.is_practice || answer.is_catch ||
            excluded.contains(answer.participant_id);
   });
-  if (answers.empty()) {
-    throw core::InvalidInput{fmt::format("{}: no answers of {} participants to report", directory,
-                                         results::to_text(mode))};
-  }
   results::AlternativesOfTrials alternatives = store.alternatives();
   for (results::AnswerRow& answer : answers) {
     answer.alternatives = std::move(alternatives[answer.trial_id]);
   }
-  const protocols::Protocol protocol = stored_protocol(study);
-  std::vector<results::VisitRow> visits = store.visits();
-  std::erase_if(visits, [&](const results::VisitRow& visit) {
-    return std::ranges::find(answers, visit.participant_id, &results::AnswerRow::participant_id) ==
-           answers.end();
+  return answers;
+}
+
+StoredResults stored_results(results::Store& store, const protocols::Protocol& protocol,
+                             Mode mode) {
+  const Excluded excluded = store.excluded_participants();
+  StoredResults found;
+  found.sessions = store.sessions();
+  found.answers = counted_answers(store, excluded, mode);
+  found.visits = store.visits();
+  std::erase_if(found.visits, [&](const results::VisitRow& visit) {
+    return std::ranges::find(found.answers, visit.participant_id,
+                             &results::AnswerRow::participant_id) == found.answers.end();
   });
-  Summary summary = analysis::summarise(design_of(protocol, mode), answers, visits);
-  summary.provenance = provenance(study, sessions, mode);
-  summary.unfinished = unfinished(store, protocol, sessions, mode);
-  summary.excluded = excluded_of(excluded, sessions, mode);
-  summary.deviations = deviations_of(store, excluded, mode);
+  found.unfinished = unfinished(store, protocol, found.sessions, mode);
+  found.excluded = excluded_of(excluded, found.sessions, mode);
+  found.deviations = deviations_of(store, excluded, mode);
+  return found;
+}
+
+void check_same_protocol(const std::vector<StudyStore>& stores) {
+  const results::StudyRow first = stores.front().store->study();
+  for (const StudyStore& other : stores) {
+    const results::StudyRow study = other.store->study();
+    if (study.protocol_sha256 != first.protocol_sha256 || study.surfaces != first.surfaces) {
+      throw core::InvalidInput{fmt::format(
+          "{} and {} hold different protocols: their answers cannot be put into one report",
+          stores.front().directory, other.directory)};
+    }
+  }
+}
+
+void check_different_participants(const std::vector<StudyStore>& stores) {
+  std::map<std::string, std::string> directories;
+  for (const StudyStore& each : stores) {
+    std::set<std::string> here;
+    for (const results::SessionRow& session : each.store->sessions()) {
+      here.insert(session.participant_id);
+    }
+    for (const std::string& participant : here) {
+      const auto [before, is_new] = directories.try_emplace(participant, each.directory);
+      if (!is_new) {
+        throw core::InvalidInput{fmt::format("participant {} is in {} and in {}", participant,
+                                             before->second, each.directory)};
+      }
+    }
+  }
+}
+
+template <class Row>
+void append(std::vector<Row>& all, std::vector<Row> more) {
+  all.insert(all.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
+}
+
+// Participants are counted on, since each of them has an order of their own to draw again. Their
+// balanced orders stay those that they had.
+void append(StoredResults& all, StoredResults more) {
+  int next_index = 0;
+  for (const results::AnswerRow& answer : all.answers) {
+    next_index = std::max(next_index, answer.participant_index + 1);
+  }
+  for (results::AnswerRow& answer : more.answers) {
+    answer.participant_index += next_index;
+  }
+  append(all.sessions, std::move(more.sessions));
+  append(all.answers, std::move(more.answers));
+  append(all.visits, std::move(more.visits));
+  append(all.unfinished, std::move(more.unfinished));
+  append(all.excluded, std::move(more.excluded));
+  append(all.deviations, std::move(more.deviations));
+}
+}  // namespace
+
+Summary summary_of_study(const std::vector<StudyStore>& stores, Mode mode) {
+  check_same_protocol(stores);
+  check_different_participants(stores);
+  const results::StudyRow study = stores.front().store->study();
+  const protocols::Protocol protocol = stored_protocol(study);
+  StoredResults all;
+  std::vector<std::string> directories;
+  for (const StudyStore& each : stores) {
+    append(all, stored_results(*each.store, protocol, mode));
+    directories.push_back(each.directory);
+  }
+  if (all.answers.empty()) {
+    throw core::InvalidInput{fmt::format("{}: no answers of {} participants to report",
+                                         fmt::join(directories, ", "), results::to_text(mode))};
+  }
+  Summary summary = analysis::summarise(design_of(protocol, mode), all.answers, all.visits);
+  summary.provenance = provenance(study, all.sessions, mode);
+  summary.unfinished = std::move(all.unfinished);
+  summary.excluded = std::move(all.excluded);
+  summary.deviations = std::move(all.deviations);
   return summary;
 }
 }  // namespace tapstudy::runner

@@ -1,12 +1,18 @@
 #pragma once
 #include <string>
+#include <vector>
 
 #include "analysis/report/summary.hpp"
 #include "results/store.hpp"
 namespace tapstudy::runner {
+// A store of a study: of one rig, where there were several.
+struct StudyStore {
+  std::string directory;  // in messages
+  results::Store* store;
+};
+
 // What a study says of its participants of one mode; those who were excluded, practice and catch
-// trials are named, and left out of the results. directory: in messages. Throws InvalidInput if
-// there is no answer.
-analysis::Summary summary_of_study(results::Store& store, results::Mode mode,
-                                   const std::string& directory);
+// trials are named, and left out of the results. Throws InvalidInput if there is no answer, two stores
+// are of different protocols, or a participant is in two of them.
+analysis::Summary summary_of_study(const std::vector<StudyStore>& stores, results::Mode mode);
 }  // namespace tapstudy::runner

@@ -1,17 +1,15 @@
 #pragma once
 #include <functional>
-#include <optional>
 #include <utility>
 #include <vector>
 
 #include "core/haptic_state.hpp"
 #include "core/tick/trace_ring.hpp"
 #include "results/rows.hpp"
+#include "results/trace_events.hpp"
 namespace tapstudy::results {
 // Collects one trial's samples from the haptic thread's ring for the store: encodes them in chunks
-// as they arrive and extracts the events (contacts, impacts, switches). Where a late tick came up
-// to 5 ms before an impact, the hand's speed was averaged over a longer time: the impact is noted
-// once more as late_impact.
+// as they arrive and extracts the events (trace_events.hpp).
 class TraceCollector {
  public:
   explicit TraceCollector(core::SpscRing<core::TraceSample>& ring) : ring_{&ring} {}
@@ -31,15 +29,12 @@ class TraceCollector {
   Collected finish();
 
  private:
-  void note_events(const core::TraceSample& sample);
   void pack();
 
   core::SpscRing<core::TraceSample>* ring_;
   Watch watch_;
   std::vector<core::TraceSample> pending_;
   Collected collected_;
-  core::TraceSample previous_{};
-  std::optional<std::int64_t> last_late_ns_;
-  bool has_previous_{false};
+  TraceEvents events_;
 };
 }  // namespace tapstudy::results

@@ -1,12 +1,18 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 #include <set>
 
+#include "core/error.hpp"
+#include "protocols/protocol.hpp"
 #include "results/journal.hpp"
+#include "results/recomputation.hpp"
 #include "results/store.hpp"
 #include "results/store_error.hpp"
 #include "runner/commands/commands.hpp"
+#include "runner/experiments/stored_protocol.hpp"
+#include "runner/terminal/logging.hpp"
 namespace tapstudy::runner {
 namespace {
 struct VerifyOptions {
@@ -31,16 +37,68 @@ int print_missing(const std::set<std::string>& lines, const std::set<std::string
   return missing;
 }
 
+protocols::PlannedTrial planned(const results::TrialRow& row,
+                                const std::vector<results::AlternativeRow>& alternatives,
+                                const protocols::Block& block) {
+  protocols::PlannedTrial trial;
+  trial.number = row.number;
+  trial.block = row.block;
+  trial.task = block.task;
+  trial.is_practice = row.is_practice;
+  trial.repetition = row.repetition;
+  trial.is_catch = row.is_catch;
+  for (const results::AlternativeRow& alternative : alternatives) {
+    trial.alternatives.push_back(
+        {alternative.stimulus, alternative.axis_values, alternative.is_comparison});
+  }
+  return trial;
+}
+
+// Of a protocol that is not one of this version, no block is known.
+results::TaskRule rule_of(const results::StudyRow& study) {
+  auto protocol = std::make_shared<protocols::Protocol>();
+  try {
+    *protocol = stored_protocol(study);
+  } catch (const core::InvalidInput&) {
+    warn("the study's protocol cannot be read by this version");
+  }
+  const auto block_of = [protocol](const results::TrialRow& trial) {
+    const auto found = std::ranges::find(protocol->blocks, trial.block, &protocols::Block::name);
+    return found == protocol->blocks.end() ? nullptr : &*found;
+  };
+  return {[block_of](const results::TrialRow& trial) { return block_of(trial) != nullptr; },
+          [block_of](const results::TrialRow& trial,
+                     const std::vector<results::AlternativeRow>& alternatives,
+                     const std::string& response) {
+            const protocols::Block& block = *block_of(trial);
+            return block.task->is_correct(planned(trial, alternatives, block), block, response);
+          }};
+}
+
+void print_recomputed(const results::Recomputation& recomputed, const std::string& directory) {
+  constexpr std::size_t max_printed = 20;
+  const auto& differences = recomputed.differences;
+  for (std::size_t i = 0; i < std::min(differences.size(), max_printed); ++i) {
+    fmt::print("differs: {}\n", differences[i]);
+  }
+  if (!differences.empty()) {
+    throw results::StoreError{fmt::format(
+        "{}: {} values are not what their traces and answers give", directory, differences.size())};
+  }
+  fmt::print("recomputed       {} events from their traces, {} answers by their task's rule{}\n",
+             recomputed.events, recomputed.answers,
+             recomputed.unknown_blocks == 0 ? ""
+                                            : fmt::format(" ({} of blocks that the protocol lacks)",
+                                                          recomputed.unknown_blocks));
+}
+
 void verify(const VerifyOptions& options) {
   results::Store store = results::Store::open_existing(options.directory);
-  std::int64_t ticks = 0;
-  const std::vector<std::int64_t> trials = store.trials();
-  for (const std::int64_t trial : trials) {
-    ticks += static_cast<std::int64_t>(store.trace(trial).size());
-  }
+  const results::Recomputation recomputed = results::recompute(store, rule_of(store.study()));
   const results::JournalEntries in_store = store.entries_for_journal();
-  fmt::print("study.db         {} trials, {} answers, {} ticks: sound\n", trials.size(),
-             in_store.answers.size(), ticks);
+  fmt::print("study.db         {} trials, {} answers, {} ticks: sound\n", store.trials().size(),
+             in_store.answers.size(), recomputed.ticks);
+  print_recomputed(recomputed, options.directory);
   const results::JournalEntries in_journal = results::read_journal(options.directory).entries;
   fmt::print("answers.journal  {} answers: every line follows from the one before\n",
              in_journal.answers.size());
@@ -57,8 +115,10 @@ void verify(const VerifyOptions& options) {
 }  // namespace
 
 void add_verify(CommandParser& line) {
-  Command command =
-      line.add("verify", "Check a study's database, its traces and its journal of answers");
+  Command command = line.add(
+      "verify",
+      "Check a study's database, its traces and its journal of answers, and recompute what "
+      "follows from them");
   const auto options = std::make_shared<VerifyOptions>();
   command.argument("directory", options->directory, "Directory of a study", Need::required);
   command.on_run([options] { verify(*options); });

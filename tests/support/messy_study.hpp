@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <catch2/catch.hpp>
 #include <string>
 
@@ -16,11 +17,17 @@ inline const std::string participant = "Anna, \"the\" M\xC3\xBCller";
 inline results::TrialRecord trial(std::int64_t session_id, int number,
                                   const std::string& response) {
   results::TrialRecord record = small_study::trial(session_id, number, response);
-  record.events = {{0.0, "switch", 0.0},
-                   {0.1, "contact", 0.0},
-                   {0.1, "impact", 0.3},
-                   {0.5, "switch", 1.0},
-                   {0.9, "switch", 0.0}};
+  std::vector<core::TraceSample> trace(6);
+  trace[1] = small_study::sample(250'000'000, true);
+  trace[1].impact = true;
+  trace[1].velocity_m_s = {0.0, -0.3, 0.0};
+  for (std::size_t i = 2; i < trace.size(); ++i) {
+    trace[i].t_ns =
+        std::array<std::int64_t, 4>{500'000'000, 900'000'000, 950'000'000, 2'000'000'000}[i - 2];
+  }
+  trace[2].alternative = 1;
+  small_study::set_trace(record, trace);
+  record.response->is_correct = response == "bare";
   record.alternatives = {{0, "A", "bare", {{"thickness_m", 0.1 + 0.2}}},
                          {1, formula, "ringing", {}, true}};
   return record;
@@ -40,7 +47,7 @@ inline void add_people(const std::string& directory) {
   skipped.trial.status = "skipped";
   store.add_trial(skipped);
   store.add_trial(trial(first.id, 3, formula));
-  store.add_correction({first.id, 3, "ringing", true}, {first.id, 9.5, "correct", 3, formula});
+  store.add_correction({first.id, 3, "ringing", false}, {first.id, 9.5, "correct", 3, formula});
   store.add_operator_action({first.id, 10.0, "note", {}, text});
   store.add_form({{first.id, 11.0, "about", "session begin", "age", {}},
                   {first.id, 11.0, "about", "session begin", "hand", "left"},

@@ -5,6 +5,7 @@
 #include "core/sha256.hpp"
 #include "results/store.hpp"
 #include "results/trace_codec.hpp"
+#include "results/trace_events.hpp"
 // The smallest study that a store takes, and its trials.
 namespace tapstudy::testing::small_study {
 inline const results::StudyRow study{
@@ -21,15 +22,33 @@ inline results::SessionRow session(const std::string& participant,
   return row;
 }
 
+inline core::TraceSample sample(std::int64_t t_ns, bool is_touching) {
+  core::TraceSample tick{};
+  tick.t_ns = t_ns;
+  tick.touching = is_touching;
+  return tick;
+}
+
+// Makes what is derived from a trace what it would have been in a session.
+inline void set_trace(results::TrialRecord& record, const std::vector<core::TraceSample>& trace) {
+  record.events.clear();
+  results::TraceEvents events;
+  for (const core::TraceSample& tick : trace) {
+    events.add(tick, record.events);
+  }
+  const auto ticks = static_cast<std::int64_t>(trace.size());
+  record.trace = {{0, ticks, results::encode_trace(trace)}};
+  record.statistics.ticks = ticks;
+  record.trial.duration_s = results::time_s(trace.back());
+}
+
 inline results::TrialRecord trial(std::int64_t session_id, int number,
                                   const std::string& response) {
   results::TrialRecord record;
   record.trial = {session_id, number, 1, "main", "identification", false, 1, "answered", 2.0};
   record.alternatives = {{0, "", "a"}};
   record.response = results::ResponseRow{response, response == "a", 1.5, 1.25};
-  record.events = {{0.1, "contact", 0.0}};
-  record.trace = {{0, 3, results::encode_trace(std::vector<core::TraceSample>(3))}};
-  record.statistics.ticks = 3;
+  set_trace(record, {sample(0, false), sample(250'000'000, true), sample(2'000'000'000, true)});
   return record;
 }
 

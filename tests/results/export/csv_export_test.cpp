@@ -78,7 +78,7 @@ TEST_CASE("views say who was excluded, and which answers were corrected", "[resu
             "WHERE is_excluded") == "pilot|P02|left, \"early\"\n");
   CHECK(sql(study,
             "SELECT number, response, is_correct, first_response, given_by FROM v_trials "
-            "WHERE is_corrected") == "3|ringing|1|" + messy::formula + "|operator\n");
+            "WHERE is_corrected") == "3|ringing|0|" + messy::formula + "|operator\n");
   CHECK(sql(study,
             "SELECT number, response, is_current FROM v_answers WHERE number = 3 AND "
             "mode = 'real' ORDER BY response_id") == "3|" + messy::formula + "|0\n3|ringing|1\n");

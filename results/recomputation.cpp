@@ -1,0 +1,159 @@
+#include "results/recomputation.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "results/trace_events.hpp"
+namespace tapstudy::results {
+namespace {
+struct StoredTrial {
+  std::int64_t id{};
+  std::string participant_id;
+  TrialRow row;
+  std::int64_t ticks{};
+};
+struct StoredAnswer {
+  std::int64_t id{};
+  ResponseRow row;
+};
+
+std::vector<StoredTrial> stored_trials(Store& store) {
+  std::vector<StoredTrial> trials;
+  store.each_row(
+      "SELECT trial_id, participant_id, session_id, number, attempt, block, task, is_practice, "
+      "repetition, status, duration_s, is_catch, presented = 'real', ticks FROM trial_context "
+      "LEFT JOIN tick_statistics USING (trial_id) ORDER BY trial_id",
+      [&](Statement& row) {
+        trials.push_back(
+            {row.integer(0),
+             row.text(1),
+             {row.integer(2), static_cast<int>(row.integer(3)), static_cast<int>(row.integer(4)),
+              row.text(5), row.text(6), row.integer(7) != 0, static_cast<int>(row.integer(8)),
+              row.text(9), row.real(10), row.integer(11) != 0, row.integer(12) != 0},
+             row.integer(13)});
+      });
+  return trials;
+}
+
+std::vector<EventRow> stored_events(Store& store, std::int64_t trial_id) {
+  std::vector<EventRow> events;
+  store.each_row(fmt::format("SELECT t_s, kind, value FROM event WHERE trial_id = {} AND kind NOT "
+                             "LIKE 'masking%' ORDER BY rowid",
+                             trial_id),
+                 [&](Statement& row) {
+                   events.push_back({row.real(0), row.text(1), row.real(2)});
+                 });
+  return events;
+}
+
+std::vector<StoredAnswer> stored_answers(Store& store, std::int64_t trial_id) {
+  std::vector<StoredAnswer> answers;
+  store.each_row(
+      fmt::format("SELECT response_id, response, is_correct, response_time_s, "
+                  "time_from_first_contact_s FROM response WHERE trial_id = {}",
+                  trial_id),
+      [&](Statement& row) {
+        answers.push_back({row.integer(0),
+                           {row.text(1),
+                            row.is_null(2) ? std::nullopt : std::optional{row.integer(2) != 0},
+                            row.real(3),
+                            row.is_null(4) ? std::nullopt : std::optional{row.real(4)},
+                            {}}});
+      });
+  return answers;
+}
+
+std::string to_text(const std::optional<bool>& is_correct) {
+  return is_correct ? (*is_correct ? "1" : "0") : "NULL";
+}
+std::string to_text(const std::optional<double>& number) {
+  return number ? fmt::format("{}", *number) : "NULL";
+}
+std::string to_text(const EventRow& event) {
+  return fmt::format("{} {} at {} s", event.kind, event.value, event.t_s);
+}
+bool are_equal(const EventRow& a, const EventRow& b) {
+  return a.t_s == b.t_s && a.kind == b.kind && a.value == b.value;
+}
+
+class Comparison {
+ public:
+  Comparison(Store& store, const TaskRule& rule) : store_{&store}, rule_{&rule} {}
+
+  void compare(const StoredTrial& trial, const std::vector<AlternativeRow>& alternatives) {
+    trial_ = &trial;
+    const std::vector<EventRow> events = stored_events(*store_, trial.id);
+    compare_trace(events);
+    for (const StoredAnswer& answer : stored_answers(*store_, trial.id)) {
+      compare_times(answer, events);
+      compare_rule(answer, alternatives);
+    }
+  }
+  Recomputation result() { return std::move(result_); }
+
+ private:
+  void note(const std::string& what, const std::string& stored, const std::string& recomputed) {
+    if (stored != recomputed) {
+      result_.differences.push_back(
+          fmt::format("trial {} (participant {}, number {}): {} is {}, recomputed {}", trial_->id,
+                      trial_->participant_id, trial_->row.number, what, stored, recomputed));
+    }
+  }
+
+  void compare_trace(const std::vector<EventRow>& stored) {
+    const std::vector<core::TraceSample> trace = store_->trace(trial_->id);
+    if (trace.empty()) {
+      return;
+    }
+    std::vector<EventRow> events;
+    TraceEvents extracted;
+    for (const core::TraceSample& sample : trace) {
+      extracted.add(sample, events);
+    }
+    result_.ticks += std::ssize(trace);
+    result_.events += std::ssize(events);
+    note("tick_statistics.ticks", fmt::format("{}", trial_->ticks),
+         fmt::format("{}", trace.size()));
+    note("trial.duration_s", fmt::format("{}", trial_->row.duration_s),
+         fmt::format("{}", time_s(trace.back())));
+    const auto [a, b] = std::ranges::mismatch(stored, events, are_equal);
+    note("event", a == stored.end() ? "missing" : to_text(*a),
+         b == events.end() ? "missing" : to_text(*b));
+  }
+
+  void compare_times(const StoredAnswer& answer, const std::vector<EventRow>& events) {
+    const auto contact = std::ranges::find(events, "contact", &EventRow::kind);
+    const std::optional<double> expected =
+        contact == events.end() ? std::nullopt
+                                : std::optional{answer.row.response_time_s - contact->t_s};
+    note(fmt::format("response {}: time_from_first_contact_s", answer.id),
+         to_text(answer.row.time_from_first_contact_s), to_text(expected));
+  }
+
+  void compare_rule(const StoredAnswer& answer, const std::vector<AlternativeRow>& alternatives) {
+    if (!rule_->knows(trial_->row)) {
+      ++result_.unknown_blocks;
+      return;
+    }
+    ++result_.answers;
+    note(fmt::format("response {}: is_correct", answer.id), to_text(answer.row.is_correct),
+         to_text(rule_->is_correct(trial_->row, alternatives, answer.row.response)));
+  }
+
+  Store* store_;
+  const TaskRule* rule_;
+  const StoredTrial* trial_{};
+  Recomputation result_;
+};
+}  // namespace
+
+Recomputation recompute(Store& store, const TaskRule& rule) {
+  Comparison comparison{store, rule};
+  AlternativesOfTrials alternatives = store.alternatives();
+  for (const StoredTrial& trial : stored_trials(store)) {
+    comparison.compare(trial, alternatives[trial.id]);
+  }
+  return comparison.result();
+}
+}  // namespace tapstudy::results

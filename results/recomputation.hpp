@@ -1,0 +1,37 @@
+#pragma once
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "results/store.hpp"
+namespace tapstudy::results {
+// What the task's rule says of an answer: right, wrong, or (unset) neither. Not called of trials
+// whose block it does not know.
+struct TaskRule {
+  std::function<bool(const TrialRow& trial)> knows;
+  std::function<std::optional<bool>(const TrialRow& trial,
+                                    const std::vector<AlternativeRow>& alternatives,
+                                    const std::string& response)>
+      is_correct;
+};
+
+// Recomputes what a study stores twice, and says where the two differ, a line each, naming table,
+// trial and column:
+//   event            contacts, impacts (with their speeds), releases, switches, from the trace, bit
+//                    for bit: visits, dwell times and the fastest impact follow from them
+//   trial            duration_s, from the trace's last tick
+//   tick_statistics  ticks, from the trace
+//   response         time_from_first_contact_s, from response_time_s and the first contact;
+//                    is_correct, by the rule
+// Trials without a trace (real plates) have nothing of the first four to compare. Throws StoreError
+// where a trace is damaged.
+struct Recomputation {
+  std::vector<std::string> differences;
+  std::int64_t ticks{};  // read
+  std::int64_t events{};
+  std::int64_t answers{};         // held against the rule
+  std::int64_t unknown_blocks{};  // answers of blocks that the rule does not know
+};
+Recomputation recompute(Store& store, const TaskRule& rule);
+}  // namespace tapstudy::results

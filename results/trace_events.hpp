@@ -1,0 +1,22 @@
+#pragma once
+#include <optional>
+#include <vector>
+
+#include "core/haptic_state.hpp"
+#include "results/rows.hpp"
+namespace tapstudy::results {
+// The events of one trial, extracted from its ticks in order: contacts, impacts, releases,
+// switches. Where a late tick came up to 5 ms before an impact, the hand's speed was averaged over
+// a longer time: the impact is noted once more as late_impact. A tick with a fault yields no event.
+class TraceEvents {
+ public:
+  void add(const core::TraceSample& sample, std::vector<EventRow>& events);
+
+ private:
+  core::TraceSample previous_{};
+  std::optional<std::int64_t> last_late_ns_;
+  bool has_previous_{false};
+};
+// Time of a tick from the first one of its trial.
+double time_s(const core::TraceSample& sample);
+}  // namespace tapstudy::results

@@ -1,23 +1,18 @@
 #pragma once
 #include <vector>
 
-#include "core/settings/hand_body.hpp"
-#include "core/tick/state_transition.hpp"
 #include "device/device.hpp"
+#include "device/hand/muscle_body.hpp"
 #include "device/hand/tap_path.hpp"
 namespace tapstudy::device {
-// The unforced motion of hand and muscle over dt about a fixed aim.
-core::StateTransition muscle_transition(const core::HandBody& body, double dt_s) noexcept;
-
 // What the hand perceives in one tick: position and applied force. Nothing about the plate.
 struct FeltTick {
   core::HandState hand;
   core::Vec3 force_n;
 };
 
-// A hand that taps on its own and responds to the applied force: m x'' = k (a - x) +
-// b (a' - x') + f, with the muscle's aim a from a TapPath; f, a and a' are held between ticks, and
-// the motion is integrated exactly. Implements Device, for studies without hardware.
+// A hand that taps on its own and responds to the applied force: a MuscleBody whose aim follows a
+// TapPath. Implements Device, for studies without hardware.
 class SimulatedHand final : public Device {
  public:
   enum class Memory { kept, none };
@@ -36,14 +31,12 @@ class SimulatedHand final : public Device {
   std::string description() const override { return "simulated hand"; }
 
  private:
-  core::HandBody body_;
+  MuscleBody body_;
   double dt_s_;
   Memory memory_;
-  core::StateTransition step_;
   TapPath path_{{}};
   std::int64_t ticks_{0};
   bool has_started_{false};
-  core::HandState hand_;
   core::Vec3 force_n_{core::Vec3::Zero()};
   std::vector<FeltTick> felt_;
 };

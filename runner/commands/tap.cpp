@@ -14,6 +14,8 @@
 #include "core/placement.hpp"
 #include "core/print.hpp"
 #include "protocols/read_protocol.hpp"
+#include "protocols/tap_script.hpp"
+#include "protocols/yaml/text_file.hpp"
 #include "runner/commands/axis_settings.hpp"
 #include "runner/commands/commands.hpp"
 #include "runner/devices/rigs.hpp"
@@ -29,6 +31,7 @@ struct TapOptions {
   double speed_m_s{0.3};
   double seconds{0.3};
   std::string technique;
+  std::string script;
   std::string csv;
   std::string panels;
   std::string frames;
@@ -64,11 +67,15 @@ double largest(const std::vector<TraceSample>& trace, const Value& value) {
   return most;
 }
 
-void print_summary(const TapOptions& options, const ScriptedTap& tap,
+void print_summary(const TapOptions& options, const protocols::PresentedStimulus& stimulus,
                    const std::vector<TraceSample>& trace) {
   const auto impact = std::ranges::find(trace, true, &TraceSample::impact);
-  fmt::print("{} at {}\n", options.stimulus, options.at);
-  for (const auto& [name, value] : tap.stimulus.values) {
+  if (options.script.empty()) {
+    fmt::print("{} at {}\n", options.stimulus, options.at);
+  } else {
+    fmt::print("{} by {}\n", options.stimulus, options.script);
+  }
+  for (const auto& [name, value] : stimulus.values) {
     fmt::print("  {} {}\n", name, value);
   }
   if (impact != trace.end()) {
@@ -179,8 +186,33 @@ void draw_frames(const TapOptions& options, const protocols::Protocol& protocol,
       options.frames);
 }
 
+std::vector<TraceSample> trace_of_script(const TapOptions& options,
+                                         const protocols::Protocol& protocol,
+                                         const protocols::PresentedStimulus& stimulus,
+                                         ModelLibrary& models) {
+  const protocols::TapScript script = protocols::parse_tap_script(
+      protocols::contents_of(options.script), options.script, *stimulus.plate);
+  return trace_of(stimulus, script, protocol, simulated_rig(), models);
+}
+
+std::vector<TraceSample> trace_of_tap(const TapOptions& options,
+                                      const protocols::Protocol& protocol,
+                                      const protocols::PresentedStimulus& stimulus,
+                                      ModelLibrary& models) {
+  const ScriptedTap tap{stimulus, point_on_plate(options.at, *stimulus.plate), options.speed_m_s,
+                        options.seconds};
+  const auto trace = trace_of(tap, protocol, simulated_rig(), models);
+  if (!options.frames.empty()) {
+    draw_frames(options, protocol, tap, models);
+  }
+  return trace;
+}
+
 void run_tap(const TapOptions& options) {
   const protocols::Protocol protocol = protocol_with_technique(options);
+  if (!options.script.empty() && !(options.panels.empty() && options.frames.empty())) {
+    throw core::InvalidInput{"--script is of one trace (--csv): no --panels, no --frames"};
+  }
   if (!options.settings.empty() && !options.panels.empty()) {
     throw core::InvalidInput{"--set is of one stimulus (--stimulus), --panels draws all of them"};
   }
@@ -199,14 +231,10 @@ void run_tap(const TapOptions& options) {
   ModelLibrary models;
   const protocols::PresentedStimulus stimulus =
       member_set_to(options.settings, protocol, protocol.stimulus(options.stimulus));
-  const ScriptedTap tap{stimulus, point_on_plate(options.at, *stimulus.plate), options.speed_m_s,
-                        options.seconds};
-  const auto trace = trace_of(tap, protocol, simulated_rig(), models);
-  if (!options.frames.empty()) {
-    draw_frames(options, protocol, tap, models);
-  }
+  const auto trace = options.script.empty() ? trace_of_tap(options, protocol, stimulus, models)
+                                            : trace_of_script(options, protocol, stimulus, models);
   if (options.csv.empty()) {
-    print_summary(options, tap, trace);
+    print_summary(options, stimulus, trace);
     return;
   }
   if (options.csv == "-") {
@@ -214,7 +242,7 @@ void run_tap(const TapOptions& options) {
     return;
   }
   core::write_new_file(options.csv, [&](std::ostream& out) { write_csv(out, trace); });
-  print_summary(options, tap, trace);
+  print_summary(options, stimulus, trace);
 }
 }  // namespace
 
@@ -229,6 +257,8 @@ void add_tap(CommandParser& line) {
       "--technique", options->technique,
       fmt::format("{} instead of the stimulus's own", fmt::join(core::technique_names(), ", ")));
   command.number("--seconds", options->seconds, "How long the finger stays");
+  command.option("--script", options->script,
+                 "What the finger does (YAML), instead of --at, --speed and --seconds");
   command.repeatable("--set", options->settings, set_help);
   command.option("--csv", options->csv, "Write every tick to this new file (- for stdout)");
   command.option("--panels", options->panels,

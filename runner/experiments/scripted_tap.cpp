@@ -10,9 +10,11 @@
 
 #include "core/error.hpp"
 #include "core/model/shape/top_height.hpp"
+#include "device/hand/aimed_hand.hpp"
 #include "device/hand/simulated_hand.hpp"
 #include "device/loop/haptic_loop.hpp"
 #include "runner/devices/rigs.hpp"
+#include "runner/experiments/script_path.hpp"
 #include "runner/stimuli/trial_stimuli.hpp"
 namespace tapstudy::runner {
 namespace {
@@ -57,6 +59,28 @@ std::vector<core::TraceSample> samples_of(device::Device& hand,
   return samples;
 }
 
+// Where the muscle aims in each tick, in the device frame.
+std::vector<core::Vec3> aims_of(const ScriptPath& path, const core::Shape& shape,
+                                const core::Placement& placement, double dt_s) {
+  const core::TopHeight top{shape};
+  std::vector<core::Vec3> aims_m;
+  for (double t_s = 0.0; t_s <= path.duration_s();
+       t_s = static_cast<double>(aims_m.size()) * dt_s) {
+    core::Vec3 aim_m = path.at(t_s);
+    const Eigen::Vector2d sideways_m = aim_m.head<2>();
+    const auto height_m = top.at_m(sideways_m);
+    if (!height_m) {
+      throw core::InvalidInput{
+          fmt::format("--script: the finger leaves the plate after {:.4g} s at "
+                      "({:.4g}, {:.4g}) ({})",
+                      t_s, sideways_m.x(), sideways_m.y(), top.outline_words(sideways_m))};
+    }
+    aim_m.z() += *height_m;
+    aims_m.push_back(placement.point_to_device(aim_m));
+  }
+  return aims_m;
+}
+
 std::optional<double> number(const std::string& text) {
   double value{};
   const char* const end = text.data() + text.size();
@@ -84,6 +108,21 @@ std::vector<core::TraceSample> trace_of(const ScriptedTap& tap, const protocols:
   hand.follow({planned});
   TrialStimuli stimuli = build_trial_stimuli(protocol, std::vector{tap.stimulus}, models);
   return samples_of(hand, stimuli.alternatives, settings, hover_m / tap.speed_m_s + tap.seconds);
+}
+
+std::vector<core::TraceSample> trace_of(const protocols::PresentedStimulus& stimulus,
+                                        const protocols::TapScript& script,
+                                        const protocols::Protocol& protocol,
+                                        const protocols::Rig& rig, ModelLibrary& models) {
+  const protocols::Plate& plate = *stimulus.plate;
+  const device::LoopSettings settings = loop_settings(protocol, rig);
+  const double dt_s = protocol.rendering.dt_s;
+  const core::HandBody& body = protocol.simulation.hand;
+  const ScriptPath path{script, body, stimulus.rendering.penalty_stiffness_n_per_m};
+  device::AimedHand hand{
+      body, dt_s, aims_of(path, plate.shape, settings.placement.scaled(plate.lateral_ratio), dt_s)};
+  TrialStimuli stimuli = build_trial_stimuli(protocol, std::vector{stimulus}, models);
+  return samples_of(hand, stimuli.alternatives, settings, path.duration_s());
 }
 
 Eigen::Vector2d point_on_plate(const std::string& text, const protocols::Plate& plate) {

@@ -5,6 +5,7 @@
 #include "core/haptic_state.hpp"
 #include "protocols/axes/presented_stimulus.hpp"
 #include "protocols/rig.hpp"
+#include "protocols/tap_script.hpp"
 #include "runner/stimuli/model_library.hpp"
 namespace tapstudy::runner {
 // One tap by the simulated hand with exactly this impact speed, and its trace.
@@ -16,6 +17,13 @@ struct ScriptedTap {
 };
 // Throws InvalidInput if the point is off the plate or the speed out of 0.001 to 10 m/s.
 std::vector<core::TraceSample> trace_of(const ScriptedTap& tap, const protocols::Protocol& protocol,
+                                        const protocols::Rig& rig, ModelLibrary& models);
+
+// The simulated hand does what a script says, and its trace. Throws InvalidInput, with the step's
+// line, if the finger leaves the plate or cannot be where it should in time.
+std::vector<core::TraceSample> trace_of(const protocols::PresentedStimulus& stimulus,
+                                        const protocols::TapScript& script,
+                                        const protocols::Protocol& protocol,
                                         const protocols::Rig& rig, ModelLibrary& models);
 
 // "X,Y" in metres or the name of a tapping point. Throws InvalidInput if it is neither.

@@ -143,7 +143,7 @@ TEST_CASE("a coupled finger without a mass, or not held to the hand, is one erro
     CHECK_THAT(said, Catch::StartsWith(fmt::format("study.yaml:{}:", line_of(text, key))));
     return said;
   };
-  CHECK_THAT(only_error(replaced(coupled, "  mass_kg: 0.058", "  # no mass"), "finger:"),
+  CHECK_THAT(only_error(replaced(coupled, "  mass_kg: 0.058", "  # no mass"), "stiffness_n_per_m"),
              Contains("finger.mass_kg: is missing"));
   CHECK_THAT(only_error(replaced(coupled, "mass_kg: 0.058", "mass_kg: 0"), "mass_kg"),
              Contains("finger.mass_kg: 0 is not allowed"));

@@ -64,7 +64,8 @@ enum class Purpose : std::uint64_t {
   masking,
   catch_trials,
   procedure,
-  interleaving
+  interleaving,
+  resampling
 };
 
 // The seed of one stream of a study. Mixes by the finaliser of SplitMix64 (Steele et al. 2014).

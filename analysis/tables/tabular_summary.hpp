@@ -20,6 +20,5 @@ class TabularSummary final : public BlockSummary {
   std::vector<ReportTable> parts;    // those without rows are left out for people
   std::vector<std::string> remarks;  // how it was computed, and what could not be
   std::vector<Chart> charts;
-  std::vector<HypothesisResult> hypotheses;
 };
 }  // namespace tapstudy::analysis

@@ -3,8 +3,8 @@
 #include "analysis/tables/tabular_summary.hpp"
 #include "analysis/thresholds/threshold_tables.hpp"
 namespace tapstudy::analysis {
-std::shared_ptr<const BlockSummary> summarise_thresholds(const BlockDesign& design,
-                                                         const BlockRows& rows) {
+std::shared_ptr<BlockSummary> summarise_thresholds(const BlockDesign& design,
+                                                   const BlockRows& rows) {
   const ThresholdResults results = participant_thresholds(design, rows.answers);
   auto summary = std::make_shared<TabularSummary>(design);
   summary->parts = threshold_tables(design, results);

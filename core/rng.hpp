@@ -65,7 +65,8 @@ enum class Purpose : std::uint64_t {
   catch_trials,
   procedure,
   interleaving,
-  study
+  study,
+  resampling
 };
 
 // The seed of one stream of a study. Mixes by the finaliser of SplitMix64 (Steele et al. 2014).

@@ -203,7 +203,14 @@ std::vector<AnswerRow> Store::answers() {
                 "    AND kind = 'impact'), "
                 "  (SELECT count(*) FROM event WHERE event.trial_id = trial.trial_id "
                 "    AND kind = 'late_impact'), "
-                "  trial_id "
+                "  trial_id, repetition, time_from_first_contact_s, "
+                "  (SELECT avg(value) FROM event WHERE event.trial_id = trial.trial_id "
+                "    AND kind = 'impact'), "
+                "  (SELECT coalesce(sum(CASE kind WHEN 'release' THEN t_s "
+                "      WHEN 'contact' THEN -t_s END), 0) + "
+                "    coalesce(sum((kind = 'contact') - (kind = 'release')), 0) * duration_s "
+                "    FROM event WHERE event.trial_id = trial.trial_id "
+                "    AND kind IN ('contact', 'release')) "
                 "FROM trial JOIN session USING (session_id) JOIN current_response USING (trial_id) "
                 "JOIN tick_statistics USING (trial_id) JOIN participant USING (participant_id) "
                 "WHERE status = 'answered' ORDER BY mode, participant_index, number"};
@@ -229,6 +236,11 @@ std::vector<AnswerRow> Store::answers() {
                        row.integer(17),
                        row.integer(18),
                        row.integer(19)});
+    AnswerRow& answer = answers.back();
+    answer.repetition = static_cast<int>(row.integer(20));
+    answer.time_from_first_contact_s = row.is_null(21) ? std::nullopt : std::optional{row.real(21)};
+    answer.mean_impact_speed_m_s = row.is_null(22) ? std::nullopt : std::optional{row.real(22)};
+    answer.contact_s = row.real(23);
   }
   return answers;
 }

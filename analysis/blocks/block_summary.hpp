@@ -15,8 +15,9 @@ struct HypothesisResult {
   std::string test;
   Proportion observed;
   double chance{};
-  std::optional<double> p;  // unset where there is no test: `test` says why
-  double p_floor{};         // where no draw was as good: p is only known to be no larger
+  std::optional<double> p;         // unset where there is no test: `test` says why
+  double p_floor{};                // where no draw was as good: p is only known to be no larger
+  std::optional<double> p_holm{};  // adjusted for all of the study's hypotheses (Holm 1979)
 };
 
 // What a block was made to find out, as one number of the whole sample.
@@ -61,5 +62,6 @@ class BlockSummary {
   std::string block;  // empty where only a table of counts is known
   std::string task;
   std::string question;
+  std::vector<HypothesisResult> hypotheses;
 };
 }  // namespace tapstudy::analysis

@@ -28,24 +28,32 @@ std::string escaped(const std::string& text) {
   return safe;
 }
 
-std::string dot_plot(const Proportion& proportion, double chance) {
-  if (proportion.trials == 0) {
-    return "";
-  }
-  const Interval interval = wilson_interval(proportion);
+std::string dot_plot(double share, const Interval& interval, double chance,
+                     const std::string& alternative) {
   return fmt::format(
       R"(<svg class=dot viewBox="0 0 200 16" role=img aria-label="{}">)"
       "<line class=axis x1=0 y1=8 x2=200 y2=8 /><line class=chance x1={:.1f} y1=0 x2={:.1f} y2=16 "
       "/>"
       "<line class=interval x1={:.1f} y1=8 x2={:.1f} y2=8 /><circle cx={:.1f} cy=8 r=4 /></svg>",
-      with_interval(proportion), 200 * chance, 200 * chance, 200 * interval.low,
-      200 * interval.high, 200 * proportion.value());
+      escaped(alternative), 200 * chance, 200 * chance, 200 * interval.low, 200 * interval.high,
+      200 * share);
+}
+
+std::string dot_plot(const Proportion& proportion, double chance) {
+  return proportion.trials == 0 ? ""
+                                : dot_plot(proportion.value(), wilson_interval(proportion), chance,
+                                           with_interval(proportion));
+}
+
+void write_dot_row(std::ostream& out, const std::string& title, const std::string& words,
+                   const std::string& dots) {
+  core::print(out, "<tr><th scope=row>{}</th><td>{}</td><td>{}</td></tr>\n", escaped(title),
+              escaped(words), dots);
 }
 
 void write_accuracy_row(std::ostream& out, const std::string& title, const Proportion& proportion,
                         double chance) {
-  core::print(out, "<tr><th scope=row>{}</th><td>{}</td><td>{}</td></tr>\n", escaped(title),
-              with_interval(proportion), dot_plot(proportion, chance));
+  write_dot_row(out, title, with_interval(proportion), dot_plot(proportion, chance));
 }
 
 void write_hypotheses_html(std::ostream& out, const std::vector<HypothesisResult>& hypotheses) {
@@ -58,8 +66,10 @@ void write_hypotheses_html(std::ostream& out, const std::vector<HypothesisResult
                                      ? fmt::format("{} against {:.0f} % by chance; ",
                                                    fraction(result.observed), 100.0 * result.chance)
                                      : "";
-    core::print(out, "<li>{} <b>{}</b> ({}{})</li>\n", escaped(result.planned.statement),
-                escaped(p_value(result)), observed, escaped(result.test));
+    const std::string adjusted =
+        result.p_holm ? fmt::format("; {} after Holm 1979", p_value(*result.p_holm)) : "";
+    core::print(out, "<li>{} <b>{}</b> ({}{}{})</li>\n", escaped(result.planned.statement),
+                escaped(p_value(result)), observed, escaped(result.test), escaped(adjusted));
   }
   out << "</ul>\n";
 }

@@ -26,7 +26,8 @@ nlohmann::ordered_json as_json(const std::vector<HypothesisResult>& hypotheses) 
                     {"observed", as_json(result.observed)},
                     {"chance", result.chance},
                     {"p", result.p ? Json(*result.p) : Json(nullptr)},
-                    {"p_is_upper_bound", result.p_floor > 0.0}});
+                    {"p_is_upper_bound", result.p_floor > 0.0},
+                    {"p_holm", result.p_holm ? Json(*result.p_holm) : Json(nullptr)}});
   }
   return list;
 }

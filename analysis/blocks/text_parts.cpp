@@ -33,10 +33,12 @@ std::string wrapped(const std::string& text, std::size_t indent) {
 
 void write_hypotheses_text(std::ostream& out, const std::vector<HypothesisResult>& hypotheses) {
   for (const HypothesisResult& result : hypotheses) {
+    const std::string adjusted =
+        result.p_holm ? fmt::format(", {} after Holm 1979", p_value(*result.p_holm)) : "";
     out << wrapped(result.planned.statement, 2)
-        << wrapped(result.p ? fmt::format("{} against {:.0f} % by chance: {} ({})",
+        << wrapped(result.p ? fmt::format("{} against {:.0f} % by chance: {} ({}){}",
                                           fraction(result.observed), 100.0 * result.chance,
-                                          p_value(result), result.test)
+                                          p_value(result), result.test, adjusted)
                             : "not tested: " + result.test,
                    4);
   }

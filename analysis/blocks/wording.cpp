@@ -2,6 +2,21 @@
 
 #include <fmt/format.h>
 namespace tapstudy::analysis {
+namespace {
+// As many digits of percent as the ends of an interval take to differ.
+int digits_of(const Interval& interval) {
+  constexpr int max_digits = 3;
+  int digits = 0;
+  const auto in_percent = [&](double share) {
+    return fmt::format("{:.{}f}", 100.0 * share, digits);
+  };
+  while (digits < max_digits && in_percent(interval.low) == in_percent(interval.high)) {
+    ++digits;
+  }
+  return digits;
+}
+}  // namespace
+
 std::string fraction(const Proportion& proportion) {
   return fmt::format("{}/{}", proportion.successes, proportion.trials);
 }
@@ -15,18 +30,13 @@ std::string with_interval(const Proportion& proportion) {
     return "no answers";
   }
   const Interval interval = wilson_interval(proportion);
-  // as many digits as the interval's ends take to differ
-  constexpr int max_digits = 3;
-  int digits = 0;
-  const auto in_percent = [&](double share) {
-    return fmt::format("{:.{}f}", 100.0 * share, digits);
-  };
-  while (digits < max_digits && in_percent(interval.low) == in_percent(interval.high)) {
-    ++digits;
-  }
-  return fmt::format("{} = {} % (95 % CI {}–{} %)", fraction(proportion),
-                     in_percent(proportion.value()), in_percent(interval.low),
-                     in_percent(interval.high));
+  return fmt::format("{} = {:.{}f} % (95 % CI {})", fraction(proportion),
+                     100.0 * proportion.value(), digits_of(interval), percent_range(interval));
+}
+
+std::string percent_range(const Interval& shares) {
+  const int digits = digits_of(shares);
+  return fmt::format("{:.{}f}–{:.{}f} %", 100.0 * shares.low, digits, 100.0 * shares.high, digits);
 }
 
 std::string p_value(const HypothesisResult& result) {

@@ -70,8 +70,7 @@ HypothesisResult tested(const ChoiceSummary& summary, const PlannedHypothesis& p
 }
 }  // namespace
 
-std::shared_ptr<const BlockSummary> summarise_choice(const BlockDesign& design,
-                                                     const BlockRows& rows) {
+std::shared_ptr<BlockSummary> summarise_choice(const BlockDesign& design, const BlockRows& rows) {
   const std::vector<results::AnswerRow>& answers = rows.answers;
   auto summary = std::make_shared<ChoiceSummary>(design);
   for (const results::AnswerRow& answer : answers) {

@@ -30,9 +30,7 @@ class ChoiceSummary final : public BlockSummary {
   Vote vote{Vote::majority};
   bool has_repeated_choices{};  // some participants chose several times
   std::string untested;         // why nothing is tested; empty: it is
-  std::vector<HypothesisResult> hypotheses;
 };
 
-std::shared_ptr<const BlockSummary> summarise_choice(const BlockDesign& design,
-                                                     const BlockRows& rows);
+std::shared_ptr<BlockSummary> summarise_choice(const BlockDesign& design, const BlockRows& rows);
 }  // namespace tapstudy::analysis

@@ -152,8 +152,8 @@ HypothesisResult tested(const BlockDesign& design, const DiscriminationResults& 
 }
 }  // namespace
 
-std::shared_ptr<const BlockSummary> summarise_discrimination(const BlockDesign& design,
-                                                             const BlockRows& rows) {
+std::shared_ptr<BlockSummary> summarise_discrimination(const BlockDesign& design,
+                                                       const BlockRows& rows) {
   const DiscriminationResults results = discrimination_results(design, rows.answers);
   auto summary = std::make_shared<TabularSummary>(design);
   summary->parts = {all_table(design, results), participants_table(results), pairs_table(results),

@@ -7,6 +7,6 @@ namespace tapstudy::analysis {
 // correct against design.guess_rate, d' by design.decision_model, and where some trials hold no
 // difference the rates of answering that there is one. Throws InvalidInput as
 // discrimination_results does.
-std::shared_ptr<const BlockSummary> summarise_discrimination(const BlockDesign& design,
-                                                             const BlockRows& rows);
+std::shared_ptr<BlockSummary> summarise_discrimination(const BlockDesign& design,
+                                                       const BlockRows& rows);
 }  // namespace tapstudy::analysis

@@ -1,3 +1,5 @@
+#include <utility>
+
 #include "analysis/identification/identification_summary.hpp"
 #include "analysis/statistics/counts_csv.hpp"
 #include "analysis/statistics/csv_rows.hpp"
@@ -28,6 +30,11 @@ void write_matrix(std::ostream& out, const ConfusionMatrix& matrix) {
 }  // namespace
 
 std::vector<CsvTable> IdentificationSummary::tables() const {
-  return {{"confusion.csv", [this](std::ostream& out) { write_matrix(out, matrix); }}};
+  std::vector<CsvTable> tables{
+      {"confusion.csv", [this](std::ostream& out) { write_matrix(out, matrix); }}};
+  for (CsvTable& table : csv_of(sections)) {
+    tables.push_back(std::move(table));
+  }
+  return tables;
 }
 }  // namespace tapstudy::analysis

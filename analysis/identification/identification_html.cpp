@@ -5,7 +5,7 @@
 #include "analysis/blocks/html_parts.hpp"
 #include "analysis/blocks/wording.hpp"
 #include "analysis/identification/identification_summary.hpp"
-#include "analysis/identification/title_of.hpp"
+#include "analysis/identification/identification_words.hpp"
 #include "core/print.hpp"
 namespace tapstudy::analysis {
 namespace {
@@ -39,14 +39,26 @@ void write_matrix(std::ostream& out, const ConfusionMatrix& matrix) {
   }
   out << "</tbody></table>\n";
 }
+
+void write_share_row(std::ostream& out, const FactorResult& result) {
+  const std::string words = with_interval(result.accuracy, result.over_participants);
+  const std::string dots =
+      result.accuracy.trials == 0
+          ? ""
+          : dot_plot(result.accuracy.value(),
+                     result.over_participants ? result.over_participants->interval
+                                              : wilson_interval(result.accuracy),
+                     result.chance, words);
+  write_dot_row(out, title_of(result), words, dots);
+}
 }  // namespace
 
 void IdentificationSummary::write_html(std::ostream& out) const {
   write_matrix(out, matrix);
-  out << "<h3>Accuracy</h3><table class=accuracy>\n";
-  write_accuracy_row(out, "all answers", accuracy, matrix.chance());
+  out << "<h3>Right answers</h3><table class=accuracy>\n";
+  write_share_row(out, {"all answers", "", accuracy, matrix.chance(), accuracy_over_participants});
   for (const FactorResult& result : factors) {
-    write_accuracy_row(out, title_of(result), result.accuracy, result.chance);
+    write_share_row(out, result);
   }
   out << "</table>\n";
   if (!participants.empty()) {
@@ -56,7 +68,11 @@ void IdentificationSummary::write_html(std::ostream& out) const {
     }
     out << "</table>\n";
   }
-  out << "<p class=note>Dot: share correct; bar: 95 % interval; dashed line: chance.</p>\n";
+  core::print(out, "<p class=note>Dot: share of all answers; bar: {}; dashed line: chance.</p>\n",
+              accuracy_over_participants
+                  ? "95 % interval over participants (of one participant: of their answers)"
+                  : "score interval, if answers are independent");
   write_hypotheses_html(out, hypotheses);
+  write_sections_html(out, sections, block.empty() ? "counts" : block);
 }
 }  // namespace tapstudy::analysis

@@ -13,6 +13,14 @@ Json names_of(const std::vector<Item>& items) {
   }
   return names;
 }
+
+// The interval is that over participants, null where there are not two.
+Json share_json(const Proportion& pooled, const std::optional<MeanProportion>& over) {
+  Json json = as_json(pooled);
+  json["over_participants_95"] =
+      over ? Json{over->interval.low, over->interval.high} : Json(nullptr);
+  return json;
+}
 }  // namespace
 
 nlohmann::ordered_json IdentificationSummary::as_json() const {
@@ -22,13 +30,14 @@ nlohmann::ordered_json IdentificationSummary::as_json() const {
             {"responses", names_of(matrix.responses)},
             {"counts", matrix.counts},
             {"chance", matrix.chance()},
-            {"accuracy", analysis::as_json(accuracy)}};
+            {"accuracy", share_json(accuracy, accuracy_over_participants)}};
   json["factors"] = Json::array();
   for (const FactorResult& result : factors) {
     Json factor{{"factor", result.factor}};
     factor["given"] = result.given.empty() ? Json(nullptr) : Json(result.given);
-    factor["accuracy"] = analysis::as_json(result.accuracy);
+    factor["accuracy"] = share_json(result.accuracy, result.over_participants);
     factor["chance"] = result.chance;
+    factor["p"] = result.p ? Json(*result.p) : Json(nullptr);
     json["factors"].push_back(factor);
   }
   json["participants"] = Json::array();
@@ -36,6 +45,7 @@ nlohmann::ordered_json IdentificationSummary::as_json() const {
     json["participants"].push_back({{"participant_id", participant.participant_id},
                                     {"accuracy", analysis::as_json(participant.accuracy)}});
   }
+  add_sections(json, sections);
   json["hypotheses"] = analysis::as_json(hypotheses);
   return json;
 }

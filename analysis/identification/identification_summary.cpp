@@ -3,26 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <iterator>
-#include <map>
+#include <functional>
 #include <utility>
 
-#include "analysis/statistics/permutation_test.hpp"
-#include "core/error.hpp"
+#include "analysis/identification/chance_tests.hpp"
+#include "analysis/identification/matrix_sections.hpp"
+#include "analysis/identification/participant_sections.hpp"
 namespace tapstudy::analysis {
 namespace {
-using results::AnswerRow;
-constexpr int max_draws = 9999;
-constexpr int min_draws = 999;  // p can then fall to .001
-constexpr std::uint64_t draws_seed = 1;
-
-// As many as can be computed quickly; the report states the number.
-int draws_for(std::size_t answers) {
-  constexpr std::size_t max_work = 20'000'000;
-  return static_cast<int>(
-      std::clamp<std::size_t>(max_work / std::max<std::size_t>(answers, 1), min_draws, max_draws));
-}
-
 std::vector<FactorResult> factor_results(const ConfusionMatrix& matrix) {
   std::vector<FactorResult> found;
   if (std::ranges::any_of(matrix.stimuli, [](const Item& stimulus) {
@@ -45,93 +33,84 @@ std::vector<FactorResult> factor_results(const ConfusionMatrix& matrix) {
   }
   return found;
 }
-void check_correctness(const BlockDesign& design, const AnswerRow& answer) {
-  if (!answer.is_correct) {
-    throw core::InvalidInput{
-        fmt::format("block '{}': the answer of {} to trial {} is neither right nor wrong",
-                    design.name, answer.participant_id, answer.number)};
-  }
-  const auto presented = std::ranges::find(design.stimuli, answer.stimulus, &Item::name);
-  if (presented != design.stimuli.end() &&
-      *answer.is_correct != presented->is_answered_by(answer.response)) {
-    throw core::InvalidInput{fmt::format(
-        "block '{}': the answer of {} to trial {} is stored as {}, which a confusion matrix of "
-        "'{}' answered '{}' contradicts",
-        design.name, answer.participant_id, answer.number,
-        *answer.is_correct ? "correct" : "incorrect", answer.stimulus, answer.response)};
-  }
-}
 
-// A participant's answers of a block, with the places of their trials in its order.
-struct Person {
-  Place place;
-  Answers answers;
-  std::vector<std::size_t> places;
-};
-
-// Which of the answers is right for a stimulus; one that cannot be answered has a code of its own.
-int right_answer(const BlockDesign& design, std::size_t stimulus) {
-  const auto right = std::ranges::find_if(design.responses, [&](const Item& response) {
-    return design.stimuli[stimulus].is_answered_by(response.name);
-  });
-  const auto codes = design.responses.size();
-  return static_cast<int>(right != design.responses.end()
-                              ? static_cast<std::size_t>(right - design.responses.begin())
-                              : codes + stimulus);
-}
-
-int code_of(const std::vector<Item>& items, const std::string& name) {
-  return static_cast<int>(std::ranges::find(items, name, &Item::name) - items.begin());
-}
-
-std::vector<Person> people_of(const BlockDesign& design, const std::vector<AnswerRow>& answers) {
-  std::vector<Person> people;
-  std::map<std::string, std::size_t> place_of_person;
-  for (const AnswerRow& answer : answers) {
-    const auto [person, is_new] = place_of_person.emplace(answer.participant_id, people.size());
-    if (is_new) {
-      people.push_back({{answer.participant_index, answer.order_index}, {}, {}});
+ConfusionMatrix matrix_of(const IdentificationData& data) {
+  ConfusionMatrix matrix{data.stimuli, data.responses};
+  for (const IdentifyingParticipant& person : data.participants) {
+    for (const IdentifiedTrial& trial : person.trials) {
+      ++matrix.counts[trial.stimulus][trial.response];
     }
-    Person& of = people[person->second];
-    of.answers.stimuli.push_back(
-        right_answer(design, static_cast<std::size_t>(code_of(design.stimuli, answer.stimulus))));
-    of.answers.responses.push_back(code_of(design.responses, answer.response));
-    of.places.push_back(static_cast<std::size_t>(answer.number - design.first_trial));
   }
-  return people;
+  return matrix;
 }
 
-PermutationResult accuracy_test(const BlockDesign& design, const std::vector<AnswerRow>& rows) {
-  const std::vector<Person> people = people_of(design, rows);
-  std::vector<Answers> answers;
-  std::ranges::transform(people, std::back_inserter(answers), &Person::answers);
-  const Redraw redraw = [&](std::size_t person, std::uint64_t draw) {
-    const std::vector<int> order = design.redraw(people[person].place, draw);
-    std::vector<int> stimuli;
-    for (const std::size_t place : people[person].places) {
-      stimuli.push_back(right_answer(design, static_cast<std::size_t>(order.at(place))));
+MatrixOfParticipants counted_by(const IdentificationData& data, const ConfusionMatrix& matrix) {
+  MatrixOfParticipants counted{matrix, {}};
+  for (const IdentifyingParticipant& person : data.participants) {
+    counted.participants.push_back({person.id, counts_of(data, person)});
+  }
+  return counted;
+}
+
+using AccuracyOf = std::function<Proportion(const ConfusionMatrix& matrix)>;
+std::optional<MeanProportion> over_participants(const MatrixOfParticipants& counted,
+                                                const AccuracyOf& accuracy_of) {
+  std::vector<Proportion> people;
+  ConfusionMatrix own = counted.matrix;
+  for (const ParticipantCounts& person : counted.participants) {
+    own.counts = person.counts;
+    people.push_back(accuracy_of(own));
+  }
+  return mean_proportion(people);
+}
+
+void add_matrix_sections(const MatrixOfParticipants& counted, IdentificationSummary& summary) {
+  if (summary.accuracy.trials == 0) {
+    return;
+  }
+  InformationSection information = information_section(counted);
+  summary.information = information.sentence;
+  summary.sections.push_back(std::move(information.section));
+  summary.sections.push_back(sensitivity_section(counted));
+  summary.sections.push_back(similarity_section(counted));
+  summary.sections.push_back(dependence_section(counted));
+}
+
+void add_over_participants(const MatrixOfParticipants& counted, IdentificationSummary& summary) {
+  summary.accuracy_over_participants = over_participants(counted, overall_accuracy);
+  for (FactorResult& result : summary.factors) {
+    result.over_participants = over_participants(counted, [&](const ConfusionMatrix& matrix) {
+      return result.given.empty() ? factor_accuracy(matrix, result.factor)
+                                  : conditional_accuracy(matrix, result.factor, result.given);
+    });
+  }
+}
+
+void add_tests(const BlockDesign& design, const IdentificationData& data,
+               IdentificationSummary& summary) {
+  std::vector<std::string> factors;
+  for (const FactorResult& result : summary.factors) {
+    if (result.given.empty()) {
+      factors.push_back(result.factor);
     }
-    return stimuli;
-  };
-  return permutation_test(answers, redraw, draws_for(rows.size()), draws_seed);
-}
-
-HypothesisResult tested(const BlockDesign& design, const BlockRows& rows,
-                        const PlannedHypothesis& planned, const IdentificationSummary& summary) {
-  HypothesisResult result{planned, "", summary.accuracy, summary.matrix.chance(), {}, 0.0};
-  if (rows.answers.empty()) {
-    result.test = "there are no answers";
-  } else if (!design.redraw) {
-    result.test =
-        "the order was listed, not drawn, so that no randomisation says what chance would give";
-  } else {
-    const PermutationResult test = accuracy_test(design, rows.answers);
-    result.p = test.p;
-    result.p_floor = test.as_good == 0 ? test.p : 0.0;
-    result.test = fmt::format("randomisation test by {} draws of the study's own orders, one-sided",
-                              test.draws);
   }
-  return result;
+  const ChanceTests tests = chance_tests(design, data, factors);
+  summary.chance_test = tests.test;
+  if (tests.accuracy) {
+    summary.chance_p = tests.accuracy->p;
+  }
+  for (std::size_t i = 0; i < tests.factors.size(); ++i) {
+    summary.factors[i].p = tests.factors[i].p;  // those without condition come first
+  }
+  for (const PlannedHypothesis& planned : design.hypotheses) {
+    HypothesisResult result{planned,      tests.test, summary.accuracy, summary.matrix.chance(),
+                            std::nullopt, 0.0};
+    if (tests.accuracy) {
+      result.p = tests.accuracy->p;
+      result.p_floor = tests.accuracy->as_good == 0 ? tests.accuracy->p : 0.0;
+    }
+    summary.hypotheses.push_back(result);
+  }
 }
 }  // namespace
 
@@ -139,28 +118,37 @@ IdentificationSummary::IdentificationSummary(const BlockDesign& design, Confusio
     : BlockSummary{design},
       matrix{std::move(counted)},
       accuracy{overall_accuracy(matrix)},
-      factors{factor_results(matrix)} {}
+      factors{factor_results(matrix)} {
+  add_matrix_sections({matrix, {{"", matrix.counts}}}, *this);
+}
 
-std::shared_ptr<const BlockSummary> summarise_identification(const BlockDesign& design,
-                                                             const BlockRows& rows) {
-  ConfusionMatrix matrix{design.stimuli, design.responses};
-  std::vector<ParticipantAccuracy> participants;
-  for (const AnswerRow& answer : rows.answers) {
-    check_correctness(design, answer);
-    matrix.add(answer.stimulus, answer.response);
-    auto person = std::ranges::find(participants, answer.participant_id,
-                                    &ParticipantAccuracy::participant_id);
-    if (person == participants.end()) {
-      person = participants.insert(person, {answer.participant_id, {}});
-    }
-    ++person->accuracy.trials;
-    person->accuracy.successes += *answer.is_correct ? 1 : 0;
+IdentificationSummary::IdentificationSummary(const BlockDesign& design,
+                                             const IdentificationData& data)
+    : BlockSummary{design},
+      matrix{matrix_of(data)},
+      accuracy{overall_accuracy(matrix)},
+      factors{factor_results(matrix)} {
+  const MatrixOfParticipants counted = counted_by(data, matrix);
+  for (const ParticipantCounts& person : counted.participants) {
+    ConfusionMatrix own = matrix;
+    own.counts = person.counts;
+    participants.push_back({person.id, overall_accuracy(own)});
   }
-  auto summary = std::make_shared<IdentificationSummary>(design, std::move(matrix));
-  summary->participants = std::move(participants);
-  for (const PlannedHypothesis& planned : design.hypotheses) {
-    summary->hypotheses.push_back(tested(design, rows, planned, *summary));
+  add_over_participants(counted, *this);
+  add_tests(design, data, *this);
+  if (accuracy.trials == 0) {
+    return;
   }
-  return summary;
+  sections.push_back(accuracy_section(*this));
+  add_matrix_sections(counted, *this);
+  for (const auto section :
+       {counts_section, contrasts_section, order_section, times_section, exploration_section}) {
+    sections.push_back(section(data));
+  }
+}
+
+std::shared_ptr<BlockSummary> summarise_identification(const BlockDesign& design,
+                                                       const BlockRows& rows) {
+  return std::make_shared<IdentificationSummary>(design, identification_data(design, rows.answers));
 }
 }  // namespace tapstudy::analysis

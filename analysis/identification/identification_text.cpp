@@ -5,7 +5,7 @@
 #include "analysis/blocks/text_parts.hpp"
 #include "analysis/blocks/wording.hpp"
 #include "analysis/identification/identification_summary.hpp"
-#include "analysis/identification/title_of.hpp"
+#include "analysis/identification/identification_words.hpp"
 #include "core/print.hpp"
 namespace tapstudy::analysis {
 namespace {
@@ -34,11 +34,19 @@ void write_matrix(std::ostream& out, const ConfusionMatrix& matrix) {
 
 void IdentificationSummary::write_text(std::ostream& out) const {
   write_matrix(out, matrix);
-  core::print(out, "\n  correct: {}, chance {:.0f} %\n", with_interval(accuracy),
-              100.0 * matrix.chance());
+  const auto line = [&](const std::string& title, const Proportion& share,
+                        const std::optional<MeanProportion>& over, double chance) {
+    out << wrapped(
+        fmt::format("{}: {}, chance {:.0f} %", title, with_interval(share, over), 100.0 * chance),
+        2);
+  };
+  out << '\n';
+  line("correct", accuracy, accuracy_over_participants, matrix.chance());
   for (const FactorResult& result : factors) {
-    core::print(out, "  {}: {}, chance {:.0f} %\n", title_of(result),
-                with_interval(result.accuracy), 100.0 * result.chance);
+    line(title_of(result), result.accuracy, result.over_participants, result.chance);
+  }
+  if (!information.empty()) {
+    out << wrapped(information, 2);
   }
   write_hypotheses_text(out, hypotheses);
 }

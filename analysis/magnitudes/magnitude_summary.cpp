@@ -109,8 +109,8 @@ Chart chart_of(const BlockDesign& design, const StimulusMagnitudes& of) {
 }
 }  // namespace
 
-std::shared_ptr<const BlockSummary> summarise_magnitudes(const BlockDesign& design,
-                                                         const BlockRows& rows) {
+std::shared_ptr<BlockSummary> summarise_magnitudes(const BlockDesign& design,
+                                                   const BlockRows& rows) {
   const Magnitudes results = magnitude_results(design, rows.answers);
   auto summary = std::make_shared<TabularSummary>(design);
   summary->parts = {exponents_table(results), means_table(design, results),

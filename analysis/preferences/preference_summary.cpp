@@ -152,8 +152,8 @@ HypothesisResult tested(const BlockDesign& design, const PreferenceResults& resu
 }
 }  // namespace
 
-std::shared_ptr<const BlockSummary> summarise_preferences(const BlockDesign& design,
-                                                          const BlockRows& rows) {
+std::shared_ptr<BlockSummary> summarise_preferences(const BlockDesign& design,
+                                                    const BlockRows& rows) {
   const PreferenceResults results = preference_results(design, rows.answers);
   auto summary = std::make_shared<TabularSummary>(design);
   summary->parts = {scale_table(design, results), wins_table(design, results),

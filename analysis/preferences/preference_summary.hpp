@@ -7,6 +7,6 @@ namespace tapstudy::analysis {
 // Bradley & Terry and by Thurstone, each participant's consistency, the share of the first
 // position. Throws InvalidInput as preference_results does, and for a hypothesis about no stimulus
 // of the block.
-std::shared_ptr<const BlockSummary> summarise_preferences(const BlockDesign& design,
-                                                          const BlockRows& rows);
+std::shared_ptr<BlockSummary> summarise_preferences(const BlockDesign& design,
+                                                    const BlockRows& rows);
 }  // namespace tapstudy::analysis

@@ -147,8 +147,7 @@ HypothesisResult tested(const BlockDesign& design, const RatingResults& results,
 }
 }  // namespace
 
-std::shared_ptr<const BlockSummary> summarise_ratings(const BlockDesign& design,
-                                                      const BlockRows& rows) {
+std::shared_ptr<BlockSummary> summarise_ratings(const BlockDesign& design, const BlockRows& rows) {
   const RatingResults results = rating_results(design, rows.answers);
   auto summary = std::make_shared<TabularSummary>(design);
   summary->parts = {stimuli_table(design, results), friedman_table(results), pairs_table(results),

@@ -6,6 +6,20 @@
 #include "analysis/report/writers.hpp"
 #include "core/print.hpp"
 namespace tapstudy::analysis {
+namespace {
+// Of the blocks, if there are several.
+void write_contents(std::ostream& out, const Summary& summary) {
+  if (summary.blocks.size() < 2) {
+    return;
+  }
+  out << "<nav class=contents aria-label=Blocks><ul>\n";
+  for (const auto& block : summary.blocks) {
+    core::print(out, "<li><a href=\"#block-{0}\">{0}</a></li>\n", escaped(block->block));
+  }
+  out << "</ul></nav>\n";
+}
+}  // namespace
+
 void write_html(std::ostream& out, const Summary& summary) {
   core::print(out,
               "<!DOCTYPE html>\n<html lang=en><head><meta charset=utf-8><meta name=viewport "
@@ -27,9 +41,11 @@ void write_html(std::ostream& out, const Summary& summary) {
     core::print(out, "<p>Not as planned: {}.</p>\n",
                 escaped(fmt::format("{}", fmt::join(summary.deviations, "; "))));
   }
+  write_contents(out, summary);
   for (const auto& block : summary.blocks) {
     if (!block->block.empty()) {
-      core::print(out, "<h2>{}</h2>\n<p>{}</p>\n", escaped(block->block), escaped(block->question));
+      core::print(out, "<h2 id=\"block-{0}\">{0}</h2>\n<p>{1}</p>\n", escaped(block->block),
+                  escaped(block->question));
     }
     block->write_html(out);
   }

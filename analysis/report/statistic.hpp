@@ -10,8 +10,7 @@ namespace tapstudy::analysis {
 // statistic.cpp; each task names its own.
 struct Statistic {
   std::string_view name;
-  std::shared_ptr<const BlockSummary> (*summarise)(const BlockDesign& design,
-                                                   const BlockRows& rows){};
+  std::shared_ptr<BlockSummary> (*summarise)(const BlockDesign& design, const BlockRows& rows){};
 };
 const std::vector<Statistic>& statistics();
 // Throws InvalidInput if there is none of that name.

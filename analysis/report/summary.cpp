@@ -8,11 +8,30 @@
 #include <set>
 
 #include "analysis/identification/identification_summary.hpp"
+#include "analysis/ratings/signed_rank.hpp"
 #include "analysis/report/statistic.hpp"
 namespace tapstudy::analysis {
 namespace {
 using results::AnswerRow;
 using results::VisitRow;
+
+// Adjusts the probabilities of all declared hypotheses for their number, if there are several.
+void adjust(const std::vector<std::shared_ptr<BlockSummary>>& blocks) {
+  std::vector<HypothesisResult*> tested;
+  std::vector<double> p;
+  for (const auto& block : blocks) {
+    for (HypothesisResult& result : block->hypotheses) {
+      if (result.p) {
+        tested.push_back(&result);
+        p.push_back(*result.p);
+      }
+    }
+  }
+  const std::vector<double> adjusted = holm_adjusted(p);
+  for (std::size_t i = 0; i < tested.size() && tested.size() > 1; ++i) {
+    tested[i]->p_holm = adjusted[i];
+  }
+}
 
 LoopQuality loop_quality(const std::vector<AnswerRow>& answers) {
   LoopQuality quality;
@@ -42,14 +61,17 @@ Summary summarise(const StudyDesign& design, const std::vector<AnswerRow>& answe
   summary.modes = fmt::format("{}", fmt::join(modes, ", "));
   summary.participants = static_cast<int>(participants.size());
   summary.loop = loop_quality(answers);
+  std::vector<std::shared_ptr<BlockSummary>> blocks;
   for (const BlockDesign& block : design.blocks) {
     BlockRows rows;
     std::ranges::copy_if(answers, std::back_inserter(rows.answers),
                          [&](const AnswerRow& answer) { return answer.block == block.name; });
     std::ranges::copy_if(visits, std::back_inserter(rows.visits),
                          [&](const VisitRow& visit) { return visit.block == block.name; });
-    summary.blocks.push_back(find_statistic(block.statistic).summarise(block, rows));
+    blocks.push_back(find_statistic(block.statistic).summarise(block, rows));
   }
+  adjust(blocks);
+  summary.blocks.assign(blocks.begin(), blocks.end());
   return summary;
 }
 
@@ -77,14 +99,15 @@ std::string banner(const Summary& summary) {
 
 std::string methods(const Summary& summary) {
   if (!summary.loop) {
-    return "Computed from a table of counts; participants are not known, so intervals (Wilson "
-           "1927) treat all answers as independent.";
+    return "Computed from a table of counts; participants are not known, so intervals and "
+           "probabilities treat all answers as independent.";
   }
   std::string text = fmt::format("{} participant{} ({}). ", summary.participants,
                                  summary.participants == 1 ? "" : "s", summary.modes);
   text +=
-      "Intervals of proportions are 95 % score intervals (Wilson 1927); pooled over participants "
-      "they treat answers as independent. Accuracy of identification is tested by drawing the "
+      "Intervals of proportions are 95 % score intervals (Wilson 1927) where nothing else is said; "
+      "those over participants hold for participants of whom these are a sample. Accuracy of "
+      "identification is tested by drawing the "
       "orders of presentation again as the study drew them, choices by the exact binomial and "
       "multinomial distributions, one vote a participant; other statistics state their methods "
       "with their results. ";

@@ -11,7 +11,8 @@ struct Item {
   std::string name;
   std::string label;
   std::map<std::string, std::string> factors;
-  std::string right{};  // of a stimulus: the response that is right, if not its own name
+  std::string right{};      // of a stimulus: the response that is right, if not its own name
+  std::string technique{};  // by which a stimulus was rendered; empty: not known
   bool is_answered_by(const std::string& response) const {
     return response == (right.empty() ? name : right);
   }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <boost/math/quadrature/gauss_kronrod.hpp>
+#include <boost/math/tools/minima.hpp>
 #include <boost/math/tools/toms748_solve.hpp>
 
 #include "core/error.hpp"
@@ -32,5 +33,13 @@ double root(const RealFunction& function, double one_end, double other_end) {
       function, low, high, at_low, at_high,
       boost::math::tools::eps_tolerance<double>{significant_bits}, iterations);
   return 0.5 * (left + right);
+}
+
+Minimum minimum(const RealFunction& function, double low, double high) {
+  constexpr int significant_bits = 20;
+  std::uintmax_t iterations = 200;
+  const auto [at, value] =
+      boost::math::tools::brent_find_minima(function, low, high, significant_bits, iterations);
+  return {at, value};
 }
 }  // namespace tapstudy::analysis

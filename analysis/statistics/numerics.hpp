@@ -10,4 +10,12 @@ double integral(const RealFunction& function, double low, double high);
 // The root between two ends, at which function must differ in sign or vanish; to fourteen digits
 // (Alefeld et al. 1995, algorithm 748, by Boost.Math). Throws InvalidInput if it does not.
 double root(const RealFunction& function, double one_end, double other_end);
+
+struct Minimum {
+  double at{};
+  double value{};
+};
+// The minimum between two ends of a function with one minimum, to six digits of its place (Brent
+// 1973, by Boost.Math).
+Minimum minimum(const RealFunction& function, double low, double high);
 }  // namespace tapstudy::analysis

@@ -64,10 +64,17 @@ std::string joined(const Chart& chart) {
 }
 
 std::string mark(const Chart& chart, const ChartPoint& point) {
-  return fmt::format("<circle{} cx={:.1f} cy={:.1f} r={:.1f} />",
-                     point.is_open ? " class=open" : "", place_x(chart, point.x),
-                     place_y(chart, point.y),
-                     std::max(smallest_radius, largest_radius * std::sqrt(point.weight)));
+  const double x = place_x(chart, point.x);
+  const double y = place_y(chart, point.y);
+  const double radius = std::max(smallest_radius, largest_radius * std::sqrt(point.weight));
+  const bool is_left = x > 0.5 * (left + right);
+  const std::string label =
+      point.label.empty() ? ""
+                          : fmt::format("<text x={:.1f} y={:.1f} text-anchor={}>{}</text>",
+                                        is_left ? x - radius - 3.0 : x + radius + 3.0, y + 4.0,
+                                        is_left ? "end" : "start", escaped(point.label));
+  return fmt::format("<circle{} cx={:.1f} cy={:.1f} r={:.1f} />{}",
+                     point.is_open ? " class=open" : "", x, y, radius, label);
 }
 
 std::vector<double> logarithmic_ticks(const Interval& range) {

@@ -10,6 +10,7 @@ struct ChartPoint {
   double y{};
   double weight{1.0};  // of the area of its mark, in (0, 1]
   bool is_open{};      // an outline only
+  std::string label{};
 };
 
 struct Chart {

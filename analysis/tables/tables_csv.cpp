@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "analysis/statistics/csv_rows.hpp"
+#include "analysis/tables/table_writers.hpp"
 #include "analysis/tables/tabular_summary.hpp"
 namespace tapstudy::analysis {
 namespace {
@@ -16,7 +17,9 @@ struct ToCsv {
   std::string operator()(const std::string& text) const { return csv_cell(text); }
 };
 
-void write_table(std::ostream& out, const ReportTable& table) {
+}  // namespace
+
+void write_table_csv(std::ostream& out, const ReportTable& table) {
   const char* separator = "";
   for (const Column& column : table.columns) {
     for (const std::string& key : column.keys) {
@@ -36,13 +39,12 @@ void write_table(std::ostream& out, const ReportTable& table) {
     out << '\n';
   }
 }
-}  // namespace
 
 std::vector<CsvTable> TabularSummary::tables() const {
   std::vector<CsvTable> written;
   for (const ReportTable& table : parts) {
     written.push_back(
-        {table.name + ".csv", [&table](std::ostream& out) { write_table(out, table); }});
+        {table.name + ".csv", [&table](std::ostream& out) { write_table_csv(out, table); }});
   }
   return written;
 }

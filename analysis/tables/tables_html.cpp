@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "analysis/blocks/html_parts.hpp"
+#include "analysis/tables/table_writers.hpp"
 #include "analysis/tables/tabular_summary.hpp"
 #include "core/print.hpp"
 namespace tapstudy::analysis {
@@ -19,8 +20,9 @@ void write_row(std::ostream& out, const ReportTable& table, const std::vector<Ce
   out << "</tr>\n";
 }
 
-// A wide table scrolls within its own frame, which the keyboard reaches.
-void write_table(std::ostream& out, const ReportTable& table) {
+}  // namespace
+
+void write_table_html(std::ostream& out, const ReportTable& table) {
   core::print(out,
               "<h3>{0}</h3><div class=scroll tabindex=0 role=region aria-label=\"{0}\">"
               "<table class=data><thead><tr>",
@@ -36,12 +38,11 @@ void write_table(std::ostream& out, const ReportTable& table) {
   }
   out << "</tbody></table></div>\n";
 }
-}  // namespace
 
 void TabularSummary::write_html(std::ostream& out) const {
   for (const ReportTable& table : parts) {
     if (!table.is_for_programs && !table.rows.empty()) {
-      write_table(out, table);
+      write_table_html(out, table);
     }
   }
   if (!charts.empty()) {

@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/blocks/json_parts.hpp"
+#include "analysis/tables/table_writers.hpp"
 #include "analysis/tables/tabular_summary.hpp"
 namespace tapstudy::analysis {
 namespace {
@@ -34,14 +35,18 @@ Json row_json(const ReportTable& table, const std::vector<Cell>& row) {
 }
 }  // namespace
 
+nlohmann::ordered_json table_json(const ReportTable& table) {
+  Json rows = Json::array();
+  for (const auto& row : table.rows) {
+    rows.push_back(row_json(table, row));
+  }
+  return rows;
+}
+
 nlohmann::ordered_json TabularSummary::as_json() const {
   Json json{{"block", block}, {"task", task}};
   for (const ReportTable& table : parts) {
-    Json rows = Json::array();
-    for (const auto& row : table.rows) {
-      rows.push_back(row_json(table, row));
-    }
-    json[table.name] = rows;
+    json[table.name] = table_json(table);
   }
   json["remarks"] = remarks;
   json["hypotheses"] = analysis::as_json(hypotheses);

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "analysis/blocks/text_parts.hpp"
+#include "analysis/tables/table_writers.hpp"
 #include "analysis/tables/tabular_summary.hpp"
 #include "core/print.hpp"
 namespace tapstudy::analysis {
@@ -60,7 +61,9 @@ void write_entries(std::ostream& out, const Grid& grid) {
   }
 }
 
-void write_table(std::ostream& out, const ReportTable& table) {
+}  // namespace
+
+void write_table_text(std::ostream& out, const ReportTable& table) {
   const Grid grid = grid_of(table);
   const std::vector<std::size_t> widths = widths_of(grid);
   std::size_t total = 0;
@@ -78,12 +81,11 @@ void write_table(std::ostream& out, const ReportTable& table) {
   }
   out << '\n';
 }
-}  // namespace
 
 void TabularSummary::write_text(std::ostream& out) const {
   for (const ReportTable& table : parts) {
     if (!table.is_for_programs && !table.rows.empty()) {
-      write_table(out, table);
+      write_table_text(out, table);
     }
   }
   for (const std::string& remark : remarks) {

@@ -21,7 +21,6 @@ class TabularSummary final : public BlockSummary {
   std::vector<ReportTable> parts;    // those without rows are left out for people
   std::vector<std::string> remarks;  // how it was computed, and what could not be
   std::vector<Chart> charts;
-  std::vector<HypothesisResult> hypotheses;
   std::vector<MainResult> main;
 };
 }  // namespace tapstudy::analysis

@@ -15,8 +15,8 @@ MainResult mean_threshold(const VariedAxis& axis, const PooledEstimate& log_mean
 }
 }  // namespace
 
-std::shared_ptr<const BlockSummary> summarise_thresholds(const BlockDesign& design,
-                                                         const BlockRows& rows) {
+std::shared_ptr<BlockSummary> summarise_thresholds(const BlockDesign& design,
+                                                   const BlockRows& rows) {
   const ThresholdResults results = participant_thresholds(design, rows.answers);
   auto summary = std::make_shared<TabularSummary>(design);
   summary->parts = threshold_tables(design, results);

@@ -6,6 +6,6 @@ namespace tapstudy::analysis {
 // A comparison differs from a standard along design.axis, by a level that a procedure chose: each
 // participant's psychometric function and threshold, and their mean. Throws InvalidInput as
 // participant_thresholds does.
-std::shared_ptr<const BlockSummary> summarise_thresholds(const BlockDesign& design,
-                                                         const BlockRows& rows);
+std::shared_ptr<BlockSummary> summarise_thresholds(const BlockDesign& design,
+                                                   const BlockRows& rows);
 }  // namespace tapstudy::analysis

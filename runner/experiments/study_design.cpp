@@ -15,7 +15,10 @@ std::vector<analysis::Item> presented_items(const protocols::Protocol& protocol,
     const protocols::Stimulus& stimulus = protocol.stimulus(name);
     const auto right = block.right_response.find(name);
     items.push_back({stimulus.name, stimulus.label, stimulus.factors,
-                     right == block.right_response.end() ? std::string{} : right->second});
+                     right == block.right_response.end() ? std::string{} : right->second,
+                     block.presented == protocols::Presented::real_plates
+                         ? std::string{}
+                         : std::string{stimulus.technique->name}});
   }
   return items;
 }

@@ -1,0 +1,107 @@
+#include "analysis/identification/chance_tests.hpp"
+
+#include <fmt/format.h>
+
+#include "analysis/resampling/replicates.hpp"
+namespace tapstudy::analysis {
+namespace {
+constexpr int max_draws = 9999;
+constexpr int min_draws = 999;  // p can then fall to .001
+constexpr std::size_t most_redrawn = 20'000;
+
+RightAnswers right_answers(const IdentificationData& data) {
+  RightAnswers right;
+  for (const Item& stimulus : data.stimuli) {
+    right.emplace_back();
+    for (const Item& response : data.responses) {
+      right.back().push_back(stimulus.is_answered_by(response.name));
+    }
+  }
+  return right;
+}
+
+RightAnswers same_level(const IdentificationData& data, const std::string& factor) {
+  RightAnswers right;
+  for (const Item& stimulus : data.stimuli) {
+    right.emplace_back();
+    for (const Item& response : data.responses) {
+      const auto level = response.factors.find(factor);
+      right.back().push_back(level != response.factors.end() &&
+                             level->second == stimulus.factors.at(factor));
+    }
+  }
+  return right;
+}
+
+std::vector<PermutationResult> by_own_orders(const BlockDesign& design,
+                                             const IdentificationData& data,
+                                             const std::vector<RightAnswers>& notions,
+                                             const ChanceDraws& wanted) {
+  std::vector<Answers> answers;
+  for (const IdentifyingParticipant& person : data.participants) {
+    answers.emplace_back();
+    for (const IdentifiedTrial& trial : person.trials) {
+      answers.back().stimuli.push_back(static_cast<int>(trial.stimulus));
+      answers.back().responses.push_back(static_cast<int>(trial.response));
+    }
+  }
+  const Redraw redraw = [&](std::size_t person, std::uint64_t draw) {
+    const std::vector<int> order = design.redraw(data.participants[person].place, draw);
+    std::vector<int> stimuli;
+    for (const IdentifiedTrial& trial : data.participants[person].trials) {
+      stimuli.push_back(order.at(trial.place));
+    }
+    return stimuli;
+  };
+  return permutation_tests(answers, redraw, notions, wanted.draws, wanted.seed);
+}
+
+std::vector<PermutationResult> by_shuffling(const IdentificationData& data,
+                                            const std::vector<RightAnswers>& notions,
+                                            const ChanceDraws& wanted) {
+  std::vector<CountTable> tables;
+  for (const IdentifyingParticipant& person : data.participants) {
+    tables.push_back(counts_of(data, person));
+  }
+  return shuffle_tests(tables, notions, wanted.draws, wanted.seed);
+}
+}  // namespace
+
+ChanceTests chance_tests(const BlockDesign& design, const IdentificationData& data,
+                         const std::vector<std::string>& factors, const ChanceDraws& wanted) {
+  std::size_t answers = 0;
+  for (const IdentifyingParticipant& person : data.participants) {
+    answers += person.trials.size();
+  }
+  if (answers == 0) {
+    return {"there are no answers", {}, {}};
+  }
+  if (!design.redraw) {
+    return {"the order was listed, not drawn, so that no randomisation says what chance would give",
+            {},
+            {}};
+  }
+  std::vector<RightAnswers> notions{right_answers(data)};
+  for (const std::string& factor : factors) {
+    notions.push_back(same_level(data, factor));
+  }
+  const bool is_redrawn = answers <= most_redrawn;
+  constexpr std::size_t cost_of_a_cell = 100;
+  const std::size_t cells = data.participants.size() * data.stimuli.size() * data.responses.size();
+  ChanceDraws draws = wanted;
+  if (draws.draws == 0) {
+    draws.draws =
+        affordable_replicates(is_redrawn ? answers : cost_of_a_cell * cells, min_draws, max_draws);
+  }
+  const auto results =
+      is_redrawn ? by_own_orders(design, data, notions, draws) : by_shuffling(data, notions, draws);
+  ChanceTests tests;
+  tests.accuracy = results.front();
+  tests.test = fmt::format(
+      "randomisation test by {} {}, one-sided", tests.accuracy->draws,
+      is_redrawn ? "draws of the study's own orders"
+                 : "shuffles of each participant's answers, too many to draw the study's orders");
+  tests.factors.assign(results.begin() + 1, results.end());
+  return tests;
+}
+}  // namespace tapstudy::analysis

@@ -1,0 +1,102 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "analysis/agreement/independence.hpp"
+#include "analysis/agreement/kappa.hpp"
+#include "analysis/agreement/symmetry.hpp"
+#include "analysis/identification/matrix_sections.hpp"
+#include "analysis/resampling/replicates.hpp"
+namespace tapstudy::analysis {
+namespace {
+constexpr int most_draws = 9999;
+constexpr int fewest_draws = 999;
+constexpr std::uint64_t seed = 4;
+
+void add_independence(const MatrixOfParticipants& counted, ReportSection& section) {
+  const auto test = independence(counted.matrix.counts);
+  if (!test) {
+    section.remarks.emplace_back(
+        "Dependence is not tested: fewer than two stimuli or answers occurred.");
+    return;
+  }
+  constexpr std::size_t cost_of_a_cell = 100;
+  const std::size_t cells = counted.matrix.stimuli.size() * counted.matrix.responses.size();
+  const auto tables = tables_of(counted.participants);
+  const MonteCarloTest exact = monte_carlo_independence(
+      tables,
+      affordable_replicates(cost_of_a_cell * cells * tables.size(), fewest_draws, most_draws),
+      seed);
+  ReportTable table{"dependence",
+                    "Do answers depend on what was presented?",
+                    {column("X²", "chi_squared"), column("df", "degrees_of_freedom"),
+                     column("G²", "g_squared"), column("Cramér's V", "cramers_v"),
+                     column("Monte-Carlo", "p"), column("", "draws"), column("", "asymptotic_p")}};
+  table.rows.push_back({number(test->chi_squared), number(test->degrees_of_freedom),
+                        number(test->g_squared), number(test->cramers_v), probability(exact.p),
+                        count(exact.draws), probability(test->asymptotic_p)});
+  section.tables.push_back(table);
+  section.remarks.push_back(
+      fmt::format("X² is compared with {} shuffles of {} answers over the trials (Hope 1968).",
+                  exact.draws, counted.are_known() ? "each participant's" : "all"));
+}
+
+ReportTable residuals_table(const ConfusionMatrix& matrix) {
+  ReportTable table{"residuals",
+                    "Adjusted residuals: beyond ±2 more or less often than without dependence",
+                    {column("presented", "stimulus")}};
+  for (const Item& response : matrix.responses) {
+    table.columns.push_back(column(response.label, "residual_" + response.name));
+  }
+  const auto residuals = adjusted_residuals(matrix.counts);
+  for (std::size_t i = 0; i < matrix.stimuli.size(); ++i) {
+    table.rows.push_back({word(matrix.stimuli[i].name)});
+    for (const double residual : residuals[i]) {
+      table.rows.back().push_back({fmt::format("{:.1f}", residual), {residual}});
+    }
+  }
+  return table;
+}
+
+void add_square(const CountTable& square, ReportSection& section) {
+  ReportTable kappas{"kappa",
+                     "Agreement of answers with stimuli",
+                     {interval_column("Cohen's κ (95 %, answers independent)", "kappa"),
+                      column("standard error", "standard_error")}};
+  if (const auto kappa = cohens_kappa(square)) {
+    kappas.rows.push_back({interval(kappa->kappa, kappa->interval), number(kappa->standard_error)});
+  }
+  ReportTable symmetry{
+      "symmetry",
+      "Symmetry of confusions",
+      {column("test", "test"), column("χ²", "chi_squared"), column("df", "degrees_of_freedom"),
+       column("p (answers independent)", "p")}};
+  const auto add = [&](const std::string& name, const std::optional<ChiSquaredTest>& test) {
+    if (test) {
+      symmetry.rows.push_back({word(name), number(test->chi_squared),
+                               number(test->degrees_of_freedom), probability(test->p)});
+    } else {
+      section.remarks.push_back(name + ": nothing to test.");
+    }
+  };
+  add("i for j as often as j for i (Bowker 1948)", bowker_test(square));
+  add("named as often as presented (Stuart 1955, Maxwell 1970)", stuart_maxwell_test(square));
+  section.tables.push_back(kappas);
+  section.tables.push_back(symmetry);
+}
+}  // namespace
+
+ReportSection dependence_section(const MatrixOfParticipants& counted) {
+  const ConfusionMatrix& matrix = counted.matrix;
+  ReportSection section{"Dependence, agreement and symmetry"};
+  add_independence(counted, section);
+  section.tables.push_back(residuals_table(matrix));
+  if (const auto square = by_right_response(matrix.stimuli, matrix.responses, matrix.counts)) {
+    add_square(*square, section);
+  }
+  if (const std::string warning = independence_warning(counted); !warning.empty()) {
+    section.remarks.push_back(warning);
+  }
+  return section;
+}
+}  // namespace tapstudy::analysis

@@ -1,0 +1,37 @@
+#pragma once
+#include "analysis/identification/identification_summary.hpp"
+#include "analysis/participants/paired_contrast.hpp"
+#include "analysis/participants/serial_dependence.hpp"
+namespace tapstudy::analysis {
+// What the participants' answers say, beyond their sum.
+ReportSection accuracy_section(const IdentificationSummary& summary);
+// Counts and shares of rows: pooled, by participant, technique, repetition and level.
+ReportSection counts_section(const IdentificationData& data);
+// Techniques and levels of factors against one another, within participants.
+ReportSection contrasts_section(const IdentificationData& data);
+// Learning over presentations; what the trial before does to an answer.
+ReportSection order_section(const IdentificationData& data);
+// Each participant's slope of right answers on presentations, against 0; unset unless two
+// participants were presented a stimulus twice.
+std::optional<PairedContrast> learning_of(const IdentificationData& data);
+// The participants' trials, for what one does to the next.
+std::vector<AnswerSequence> sequences_of(const IdentificationData& data);
+ReportSection times_section(const IdentificationData& data);
+// Taps, speed and contact: what the participants did.
+ReportSection exploration_section(const IdentificationData& data);
+
+// Ways to group trials: of each the name, and the level of a trial.
+struct Grouping {
+  std::string name;
+  std::vector<std::string> levels;
+  std::vector<std::size_t> level_of_stimulus;  // place in levels; empty: by repetition
+  std::size_t level_of(const IdentifiedTrial& trial) const {
+    return level_of_stimulus.empty() ? static_cast<std::size_t>(trial.repetition - 1)
+                                     : level_of_stimulus[trial.stimulus];
+  }
+};
+// By technique and by the factors of the stimuli; those with one level are left out.
+std::vector<Grouping> groupings_of_stimuli(const IdentificationData& data);
+// By the presentations of a stimulus; none if there was one.
+std::optional<Grouping> grouping_by_repetition(const IdentificationData& data);
+}  // namespace tapstudy::analysis

@@ -1,0 +1,106 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "analysis/identification/matrix_sections.hpp"
+#include "analysis/similarity/scaling.hpp"
+#include "analysis/similarity/similarity_choice.hpp"
+namespace tapstudy::analysis {
+namespace {
+ReportTable biases_table(const std::vector<Item>& classes, const SimilarityChoice& model) {
+  ReportTable table{"biases",
+                    "Response biases of the similarity-choice model",
+                    {column("class", "class"), column("bias", "bias")}};
+  for (std::size_t i = 0; i < classes.size(); ++i) {
+    table.rows.push_back({word(classes[i].name), number(model.biases[i])});
+  }
+  return table;
+}
+
+ReportTable similarities_table(const std::vector<Item>& classes, const SimilarityChoice& model) {
+  ReportTable table{
+      "similarities",
+      "Similarities of the similarity-choice model",
+      {column("class", "first"), column("and", "second"), column("similarity η", "similarity")}};
+  for (std::size_t i = 0; i < classes.size(); ++i) {
+    for (std::size_t j = i + 1; j < classes.size(); ++j) {
+      table.rows.push_back(
+          {word(classes[i].name), word(classes[j].name), number(model.similarities[i][j])});
+    }
+  }
+  return table;
+}
+
+ReportTable fit_table(const SimilarityChoice& model) {
+  ReportTable table{"similarity_fit",
+                    "Fit of the similarity-choice model",
+                    {column("G²", "g_squared"), column("df", "degrees_of_freedom"),
+                     column("p (answers independent)", "p")}};
+  const bool is_tested = model.degrees_of_freedom > 0;
+  table.rows.push_back(
+      {number(model.g_squared), count(model.degrees_of_freedom),
+       is_tested ? probability(model.p) : nothing(table.columns.back(), "no freedom left")});
+  return table;
+}
+
+void add_map(const std::vector<Item>& classes, const SimilarityChoice& model,
+             ReportSection& section) {
+  ReportTable table{
+      "map", "Map of the classes", {column("class", "class"), column("x", "x"), column("y", "y")}};
+  table.is_for_programs = true;
+  const bool has_distances = std::ranges::all_of(model.similarities, [](const auto& row) {
+    return std::ranges::all_of(row, [](double similarity) { return similarity > 0.0; });
+  });
+  if (!has_distances) {
+    section.remarks.emplace_back("No map: a pair that was never confused is infinitely far apart.");
+  } else if (classes.size() > 2) {
+    const ScaledMap map = classical_scaling(distances_of(model.similarities), 2);
+    Chart chart;
+    chart.caption = fmt::format(
+        "Classes on a map, far apart where seldom confused: distances -ln η, classical "
+        "scaling, {:.0f} % in two dimensions.",
+        100.0 * map.explained);
+    chart.alternative = "Map of the classes";
+    std::vector<double> all;
+    for (std::size_t i = 0; i < classes.size(); ++i) {
+      const double x = map.points[i][0];
+      const double y = map.points[i][1];
+      table.rows.push_back({word(classes[i].name), number(x), number(y)});
+      chart.points.push_back({x, y, 0.4, false, classes[i].label});
+      all.insert(all.end(), {x, y});
+    }
+    chart.x_range = chart.y_range = range_of(all, false);
+    section.charts.push_back(chart);
+  }
+  section.tables.push_back(table);
+}
+}  // namespace
+
+std::string independence_warning(const MatrixOfParticipants& counted) {
+  return counted.participants.size() > 1 || !counted.are_known()
+             ? "Intervals and probabilities marked so treat all answers as independent of one "
+               "another, which those of one participant are not: they are too narrow and too small."
+             : "";
+}
+
+ReportSection similarity_section(const MatrixOfParticipants& counted) {
+  const ConfusionMatrix& matrix = counted.matrix;
+  ReportSection section{"Similarity and bias"};
+  const auto square = by_right_response(matrix.stimuli, matrix.responses, matrix.counts);
+  const SimilarityChoice model =
+      square ? similarity_choice(*square)
+             : SimilarityChoice{"a stimulus has no right answer", {}, {}, 0.0, 0, 0.0};
+  if (!model.refusal.empty()) {
+    section.remarks.push_back("No similarity-choice model: " + model.refusal + ".");
+    return section;
+  }
+  section.tables = {biases_table(matrix.responses, model),
+                    similarities_table(matrix.responses, model), fit_table(model)};
+  section.remarks.emplace_back(
+      "Similarity-choice model (Luce 1963): class i is answered with j in proportion to bias b(j) "
+      "times similarity η(i, j), by maximum likelihood; biases add up to 1, η(i, i) = 1. A small p "
+      "of G² says that the model does not describe the answers.");
+  add_map(matrix.responses, model, section);
+  return section;
+}
+}  // namespace tapstudy::analysis

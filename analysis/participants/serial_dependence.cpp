@@ -1,0 +1,101 @@
+#include "analysis/participants/serial_dependence.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "analysis/resampling/replicates.hpp"
+#include "core/error.hpp"
+#include "core/rng.hpp"
+namespace tapstudy::analysis {
+namespace {
+void check(const AnswerSequence& sequence) {
+  if (sequence.stimuli.size() != sequence.responses.size() ||
+      sequence.right.size() != sequence.responses.size()) {
+    throw core::InvalidInput{"a sequence has one answer for each stimulus"};
+  }
+}
+
+// Counts of answers equal to the last answer, and of answers right for the last trial.
+void add_counts(const AnswerSequence& sequence, const std::vector<std::size_t>& responses,
+                std::vector<double>& counts) {
+  for (std::size_t i = 1; i < responses.size(); ++i) {
+    counts[0] += responses[i] == responses[i - 1] ? 1.0 : 0.0;
+    counts[1] += responses[i] == sequence.right[i - 1] ? 1.0 : 0.0;
+  }
+}
+
+using Trials = std::vector<std::vector<std::size_t>>;  // those of each stimulus
+Trials trials_by_stimulus(const AnswerSequence& sequence) {
+  std::map<std::size_t, std::vector<std::size_t>> by;
+  for (std::size_t i = 0; i < sequence.stimuli.size(); ++i) {
+    by[sequence.stimuli[i]].push_back(i);
+  }
+  Trials trials;
+  for (auto& [stimulus, places] : by) {
+    trials.push_back(std::move(places));
+  }
+  return trials;
+}
+
+std::vector<std::size_t> permuted(const AnswerSequence& sequence, const Trials& trials,
+                                  core::Rng& rng) {
+  std::vector<std::size_t> responses = sequence.responses;
+  for (const auto& places : trials) {
+    std::vector<std::size_t> of_stimulus;
+    for (const std::size_t place : places) {
+      of_stimulus.push_back(sequence.responses[place]);
+    }
+    rng.shuffle(of_stimulus);
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      responses[places[i]] = of_stimulus[i];
+    }
+  }
+  return responses;
+}
+
+SerialEffect effect_of(const std::vector<std::vector<double>>& drawn, std::size_t which,
+                       double observed, int trials) {
+  double sum = observed;
+  for (const auto& counts : drawn) {
+    sum += counts[which];
+  }
+  const double expected = sum / (static_cast<double>(drawn.size()) + 1.0);
+  std::vector<double> distances;
+  for (const auto& counts : drawn) {
+    distances.push_back(std::abs(counts[which] - expected));
+  }
+  const double n = std::max(1.0, static_cast<double>(trials));
+  return {observed / n, expected / n, monte_carlo_p(distances, std::abs(observed - expected)),
+          trials};
+}
+}  // namespace
+
+SerialDependence serial_dependence(const std::vector<AnswerSequence>& participants, int draws,
+                                   std::uint64_t seed, unsigned threads) {
+  if (draws < 1) {
+    throw core::InvalidInput{"a permutation test takes one draw or more"};
+  }
+  std::vector<Trials> trials;
+  std::vector<double> observed(2, 0.0);
+  int following = 0;
+  for (const AnswerSequence& sequence : participants) {
+    check(sequence);
+    trials.push_back(trials_by_stimulus(sequence));
+    add_counts(sequence, sequence.responses, observed);
+    following += std::max(0, static_cast<int>(sequence.responses.size()) - 1);
+  }
+  const auto drawn = replicated_vectors(
+      draws,
+      [&](std::uint64_t own_seed) {
+        core::Rng rng{own_seed};
+        std::vector<double> counts(2, 0.0);
+        for (std::size_t i = 0; i < participants.size(); ++i) {
+          add_counts(participants[i], permuted(participants[i], trials[i], rng), counts);
+        }
+        return counts;
+      },
+      seed, threads);
+  return {effect_of(drawn, 0, observed[0], following), effect_of(drawn, 1, observed[1], following)};
+}
+}  // namespace tapstudy::analysis

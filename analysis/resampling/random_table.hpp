@@ -1,0 +1,20 @@
+#pragma once
+#include "analysis/statistics/count_table.hpp"
+#include "core/rng.hpp"
+namespace tapstudy::analysis {
+// ln n!, n >= 0, from any thread: a table below 1024, Stirling's series above (to 1e-15, relative).
+double log_factorial(std::int64_t n);
+
+// How many of `drawn` without replacement are marked, of a population of which so many are:
+// hypergeometric, by inversion outward from the mode. marked and drawn in [0, population].
+std::int64_t random_hypergeometric(std::int64_t marked, std::int64_t drawn, std::int64_t population,
+                                   core::Rng& rng);
+
+// A table with the same totals of rows and columns, as shuffling the answers over the trials would
+// give it (the distribution that Patefield 1981 draws from): cell by cell, each hypergeometric
+// given those before it. Costs as many steps a cell as its standard deviation.
+CountTable random_table(const TableTotals& totals, core::Rng& rng);
+
+// One random table of each of these, of one shape, added up. Throws InvalidInput if there is none.
+CountTable sum_of_random_tables(const std::vector<TableTotals>& totals, core::Rng& rng);
+}  // namespace tapstudy::analysis

@@ -1,0 +1,85 @@
+#include "analysis/information/information_transfer.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "core/error.hpp"
+#include "support/confusion_tables.hpp"
+#include "support/r_program.hpp"
+using namespace tapstudy;
+using namespace tapstudy::analysis;
+using namespace tapstudy::testing;
+
+TEST_CASE(
+    "information transfer is what the entropies of stimuli and answers have in common, each "
+    "corrected by Miller and Madow",
+    "[analysis][information]") {
+  for (const CountTable& table : all_tables()) {
+    const auto r =
+        r_numbers("m <- " + r_matrix(table) +
+                  "; n <- sum(m); h <- function(x) { x <- x[x > 0]; -sum(x / n * log2(x / n)) };"
+                  "k <- function(x) (sum(x > 0) - 1) / (2 * n * log(2));"
+                  "out(h(rowSums(m)) + h(colSums(m)) - h(m), h(rowSums(m)) + k(rowSums(m)) + "
+                  "h(colSums(m)) + k(colSums(m)) - h(m) - k(m), sum(m > 0))");
+    const InformationTransfer result = information_transfer(table);
+    CHECK(result.bits == Approx(r[0]).margin(1e-12));
+    CHECK(result.miller_madow_bits == Approx(r[1]).margin(1e-12));
+    CHECK(result.occupied_cells == static_cast<int>(r[2]));
+  }
+}
+
+TEST_CASE("perfect answers transfer log2 k bits, and 5 k^2 answers are the fewest that say so",
+          "[analysis][information]") {
+  const CountTable perfect{{20, 0, 0, 0}, {0, 20, 0, 0}, {0, 0, 20, 0}, {0, 0, 0, 20}};
+  CHECK(information_transfer(perfect).bits == Approx(2.0));
+  CHECK(fewest_answers_for_information(perfect) == 80);
+  CHECK_THROWS_AS(information_transfer({{0, 0}, {0, 0}}), core::InvalidInput);
+  CHECK_THROWS_AS(information_transfer({{1, 0}, {0}}), core::InvalidInput);
+  CHECK_THROWS_AS(information_transfer({{1, -1}}), core::InvalidInput);
+}
+
+TEST_CASE("what guessing transfers is as in R's random tables of the same totals",
+          "[analysis][information]") {
+  constexpr int draws = 20'000;
+  for (const CountTable& table : ordinary_tables()) {
+    const auto r =
+        r_numbers("set.seed(1); m <- " + r_matrix(table) +
+                  "; n <- sum(m); e <- outer(rowSums(m), colSums(m)) / n; it <- function(x) "
+                  "sum(ifelse(x > 0, x / n * log2(x / e), 0));"
+                  "x <- sapply(r2dtable(20000, rowSums(m), colSums(m)), it);"
+                  "out(mean(x), sd(x), median(x), quantile(x, .95))");
+    const GuessedInformation guessed = guessed_information({table}, draws, 3);
+    const double error = r[1] / std::sqrt(draws);
+    CHECK(guessed.mean == Approx(r[0]).margin(6.0 * error));
+    CHECK(guessed.median == Approx(r[2]).margin(10.0 * error));
+    CHECK(guessed.quantile_95 == Approx(r[3]).margin(15.0 * error));
+  }
+}
+
+TEST_CASE("guessing by each participant's own preferences transfers what differs between them",
+          "[analysis][information]") {
+  // two who always give one answer each: nothing can be shuffled
+  const std::vector<CountTable> stubborn{{{4, 0}, {0, 0}}, {{0, 0}, {0, 4}}};
+  const GuessedInformation guessed = guessed_information(stubborn, 99, 1);
+  CHECK(guessed.mean == Approx(1.0));
+  CHECK(guessed.p == 1.0);
+  CHECK_THROWS_AS(guessed_information({}, 99, 1), core::InvalidInput);
+  CHECK_THROWS_AS(guessed_information(stubborn, 0, 1), core::InvalidInput);
+}
+
+TEST_CASE("the interval of information is R's jackknife over participants",
+          "[analysis][information]") {
+  const std::vector<CountTable> people{
+      {{5, 1}, {2, 4}}, {{3, 3}, {1, 5}}, {{6, 0}, {0, 6}}, {{4, 2}, {4, 2}}};
+  const auto r = r_numbers(
+      "p <- list(matrix(c(5,2,1,4),2), matrix(c(3,1,3,5),2), matrix(c(6,0,0,6),2), "
+      "matrix(c(4,4,2,2),2)); it <- function(m) { n <- sum(m); e <- outer(rowSums(m), "
+      "colSums(m)) / n; sum(ifelse(m > 0, m / n * log2(m / e), 0)) + (sum(rowSums(m) > 0) + "
+      "sum(colSums(m) > 0) - sum(m > 0) - 1) / (2 * n * log(2)) };"
+      "all <- Reduce(`+`, p); v <- sapply(p, function(x) it(all - x));"
+      "se <- sqrt(3 / 4 * sum((v - mean(v))^2)); out(it(all) + c(-1, 1) * qt(.975, 3) * se)");
+  const auto interval = information_interval(people);
+  REQUIRE(interval);
+  CHECK(interval->low == Approx(std::max(0.0, r[0])).margin(1e-9));
+  CHECK(interval->high == Approx(r[1]));
+  CHECK_FALSE(information_interval({people[0], people[1]}));
+}

@@ -1,0 +1,189 @@
+#include <fmt/format.h>
+
+#include <boost/math/distributions/beta.hpp>
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "analysis/participants/mean_proportion.hpp"
+#include "analysis/participants/paired_contrast.hpp"
+#include "core/error.hpp"
+#include "core/rng.hpp"
+#include "support/python_program.hpp"
+#include "support/r_program.hpp"
+using namespace tapstudy;
+using namespace tapstudy::analysis;
+using namespace tapstudy::testing;
+
+namespace {
+const std::vector<Proportion> people{{2, 8}, {5, 8}, {3, 8}, {7, 8}, {4, 7},
+                                     {1, 8}, {4, 8}, {6, 6}, {3, 8}, {5, 8}};
+
+// Right answers of participants whose shares are beta distributed.
+std::vector<Proportion> sample(double mean, double intraclass, core::Rng& rng) {
+  constexpr int participants = 10;
+  constexpr int answers = 8;
+  std::vector<Proportion> drawn;
+  for (int i = 0; i < participants; ++i) {
+    double share = mean;
+    if (intraclass > 0.0) {
+      const double nu = 1.0 / intraclass - 1.0;
+      share = boost::math::quantile(boost::math::beta_distribution<>{nu * mean, nu * (1.0 - mean)},
+                                    rng.uniform());
+    }
+    Proportion of{0, answers};
+    for (int k = 0; k < answers; ++k) {
+      of.successes += rng.uniform() < share ? 1 : 0;
+    }
+    drawn.push_back(of);
+  }
+  return drawn;
+}
+}  // namespace
+
+TEST_CASE("the mean over participants and its interval are those of R's beta-binomial likelihood",
+          "[analysis][participants]") {
+  const auto result = mean_proportion(people);
+  REQUIRE(result);
+  const std::string profile =
+      "k <- c(2,5,3,7,4,1,4,6,3,5); n <- c(8,8,8,8,7,8,8,6,8,8);"
+      "l <- function(m, r) { v <- 1 / r - 1; sum(lbeta(k + v * m, n - k + v * (1 - m)) - "
+      "lbeta(v * m, v * (1 - m))) };"
+      "f <- optim(c(0, -2), function(x) -l(plogis(x[1]), plogis(x[2])), control = list(reltol = "
+      "1e-15, maxit = 5000)); p <- function(m) optimize(function(r) l(m, r), c(1e-6, .999), "
+      "maximum = TRUE, tol = 1e-9)$objective;";
+  const auto r = r_numbers(profile + "out(plogis(f$par))");
+  CHECK(result->mean == Approx(r[0]).epsilon(1e-4));
+  CHECK(result->intraclass_correlation == Approx(r[1]).epsilon(1e-3));
+  const auto ends = r_numbers(profile +
+                              "t <- qt(.975, 9)^2; e <- function(m) 2 * (-f$value - "
+                              "p(m)) - t; out(uniroot(e, c(.01, plogis(f$par[1])), "
+                              "tol = 1e-9)$root, uniroot(e, c(plogis(f$par[1]), .99), "
+                              "tol = 1e-9)$root)");
+  CHECK(result->interval.low == Approx(ends[0]).epsilon(1e-4));
+  CHECK(result->interval.high == Approx(ends[1]).epsilon(1e-4));
+}
+
+TEST_CASE("intervals of participants' mean share are R's by t and SciPy's by bootstrap",
+          "[analysis][participants]") {
+  const auto result = mean_proportion(people);
+  std::string shares;
+  for (const Proportion& of : people) {
+    shares += fmt::format("{}{:.17g}", shares.empty() ? "" : ",", of.value());
+  }
+  const auto r = r_numbers("out(t.test(c(" + shares + "))$conf.int)");
+  REQUIRE((result->t && result->bootstrap));
+  CHECK(result->t->low == Approx(r[0]));
+  CHECK(result->t->high == Approx(r[1]));
+  const auto scipy = python_numbers(
+      "from scipy.stats import bootstrap\nr = bootstrap((np.array([" + shares +
+      "]),), np.mean, n_resamples=40000, method='BCa', random_state=1).confidence_interval\n"
+      "out(r.low, r.high)\n");
+  CHECK(result->bootstrap->low == Approx(scipy[0]).margin(0.012));
+  CHECK(result->bootstrap->high == Approx(scipy[1]).margin(0.012));
+}
+
+TEST_CASE("a skewed sample moves the bootstrap interval as SciPy's does",
+          "[analysis][participants]") {
+  const std::vector<double> values{0.1, 0.2, 0.15, 0.1, 0.9, 0.25, 0.3};
+  const auto scipy = python_numbers(
+      "from scipy.stats import bootstrap\nr = bootstrap((np.array([.1,.2,.15,.1,.9,.25,.3]),), "
+      "np.mean, n_resamples=60000, method='BCa', random_state=1).confidence_interval\n"
+      "out(r.low, r.high)\n");
+  const auto interval = bca_interval(values, 60'000, 1);
+  REQUIRE(interval);
+  CHECK(interval->low == Approx(scipy[0]).margin(0.005));
+  CHECK(interval->high == Approx(scipy[1]).margin(0.01));
+}
+
+TEST_CASE("participants who do not differ, or are all right, have an interval too",
+          "[analysis][participants]") {
+  const auto equal = mean_proportion({{4, 8}, {4, 8}, {4, 8}});
+  REQUIRE(equal);
+  CHECK_FALSE(equal->t);
+  CHECK_FALSE(equal->bootstrap);
+  CHECK(equal->intraclass_correlation == 0.0);
+  CHECK((equal->interval.low < 0.4 && equal->interval.high > 0.6));
+  const auto perfect = mean_proportion({{8, 8}, {8, 8}, {8, 8}, {8, 8}, {0, 0}});
+  REQUIRE(perfect);
+  CHECK(perfect->participants == 4);
+  CHECK(perfect->interval.high == 1.0);
+  // all or none of a participant's answers are right with probability m: 4 ln m >= -t^2 / 2
+  const double t = r_numbers("out(qt(.975, 3))").front();
+  CHECK(perfect->interval.low == Approx(std::exp(-t * t / 8.0)).margin(0.01));
+  CHECK(mean_proportion({{0, 1}, {1, 1}})->interval.low < 0.05);
+  CHECK_FALSE(mean_proportion({{3, 8}}));
+  CHECK_THROWS_AS(mean_proportion({{9, 8}, {1, 8}}), core::InvalidInput);
+}
+
+TEST_CASE(
+    "the interval over participants holds the true share in 95 % of studies or more, however "
+    "they differ, where the pooled one does not",
+    "[analysis][participants][slow]") {
+  constexpr int studies = 1000;
+  constexpr double truth = 0.25;
+  const double error = std::sqrt(0.95 * 0.05 / studies);
+  for (const double intraclass : {0.0, 0.05, 0.1, 0.2}) {
+    core::Rng rng{17};
+    int ours = 0;
+    int by_t = 0;
+    int pooled = 0;
+    for (int study = 0; study < studies; ++study) {
+      const auto drawn = sample(truth, intraclass, rng);
+      const auto holds = [&](const Interval& of) { return of.low <= truth && truth <= of.high; };
+      const auto result = mean_proportion(drawn);
+      Proportion all;
+      for (const Proportion& of : drawn) {
+        all.successes += of.successes;
+        all.trials += of.trials;
+      }
+      ours += holds(result->interval) ? 1 : 0;
+      by_t += result->t && holds(*result->t) ? 1 : 0;
+      pooled += holds(wilson_interval(all)) ? 1 : 0;
+    }
+    fmt::print("  intra-class correlation {}: covered {} (t {}, pooled Wilson {}) of {}\n",
+               intraclass, ours, by_t, pooled, studies);
+    CHECK(ours >= (0.95 - 3.0 * error) * studies);
+    CHECK(ours >= by_t - 3.0 * error * studies);
+    CHECK((intraclass < 0.1 || pooled < 0.9 * studies));
+  }
+}
+
+TEST_CASE("a paired contrast is tested by all patterns of signs", "[analysis][participants]") {
+  const std::vector<double> differences{0.25, -0.125, 0.5, 0.0, 0.375, 0.125, -0.25, 0.625};
+  const auto r = r_numbers("d <- " + r_vector(differences) +
+                           "; s <- as.matrix(expand.grid(rep(list(c(-1, 1)), length(d))));"
+                           "out(mean(abs(s %*% d) >= abs(sum(d)) - 1e-9), t.test(d)$conf.int)");
+  const PairedContrast contrast = paired_contrast(differences, 1);
+  CHECK(contrast.is_exact);
+  CHECK(contrast.p == Approx(r[0]));
+  CHECK(contrast.interval->low == Approx(r[1]));
+  CHECK(contrast.interval->high == Approx(r[2]));
+  CHECK(contrast.mean == Approx(0.1875));
+}
+
+TEST_CASE("a contrast of many participants is drawn, near what all patterns give",
+          "[analysis][participants]") {
+  std::vector<double> differences;
+  for (int i = 1; i <= 20; ++i) {
+    differences.push_back(i % 3 == 0 ? -i : 0.7 * i);
+  }
+  for (double& difference : differences) {
+    difference = std::round(difference);
+  }
+  const auto r = r_numbers("d <- " + r_vector(differences) +
+                           "; p <- 1; for (x in abs(d)) { q <- numeric(length(p) + 2 * x); "
+                           "q[seq_along(p)] <- p / 2; i <- 2 * x + seq_along(p); q[i] <- q[i] + "
+                           "p / 2; p <- q }; v <- seq(-sum(abs(d)), sum(abs(d)));"
+                           "out(sum(p[abs(v) >= abs(sum(d))]))");
+  const SignFlipTest test = sign_flip_test(differences, 1);
+  CHECK_FALSE(test.is_exact);
+  CHECK(test.p == Approx(r[0]).margin(5.0 * std::sqrt(r[0] * (1.0 - r[0]) / 9999)));
+}
+
+TEST_CASE("one participant and no difference show nothing", "[analysis][participants]") {
+  CHECK(sign_flip_test({0.5}, 1).p == 1.0);
+  CHECK(sign_flip_test({0.0, 0.0, 0.0}, 1).p == 1.0);
+  CHECK_FALSE(paired_contrast({0.5}, 1).interval);
+  CHECK_THROWS_AS(sign_flip_test({}, 1), core::InvalidInput);
+  CHECK_THROWS_AS(sign_flip_test({std::nan("")}, 1), core::InvalidInput);
+}

@@ -1,0 +1,64 @@
+#include "analysis/response_times/response_times.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "analysis/participants/serial_dependence.hpp"
+#include "core/error.hpp"
+#include "support/r_program.hpp"
+using namespace tapstudy;
+using namespace tapstudy::analysis;
+using testing::r_numbers;
+
+TEST_CASE("balanced integration scores are R's standardised shares less standardised times",
+          "[analysis][response_times]") {
+  const auto scores =
+      balanced_integration_scores({{0.5, 1.2}, {0.75, 2.0}, {0.9, 1.4}, {0.25, 0.8}});
+  const auto r = r_numbers(
+      "z <- function(x) (x - mean(x)) / sqrt(mean((x - mean(x))^2));"
+      "out(z(c(.5, .75, .9, .25)) - z(c(1.2, 2, 1.4, .8)))");
+  for (std::size_t i = 0; i < scores.size(); ++i) {
+    CHECK(scores[i] == Approx(r[i]));
+  }
+  CHECK(balanced_integration_scores({{0.5, 1.0}}).empty());
+  CHECK(balanced_integration_scores({{0.5, 1.0}, {0.5, 1.0}}) == std::vector<double>{0.0, 0.0});
+}
+
+TEST_CASE("conditional accuracy averages equal parts of each participant's ordered answers",
+          "[analysis][response_times]") {
+  const auto bins = conditional_accuracy(
+      {{{4, true}, {1, false}, {2, true}, {3, true}}, {{10, false}, {20, true}}, {{1, true}}}, 2);
+  REQUIRE(bins.size() == 2);
+  CHECK(bins[0].mean_time_s == Approx(0.5 * (1.5 + 10)));
+  CHECK(bins[0].share_right == Approx(0.5 * (0.5 + 0.0)));
+  CHECK(bins[1].mean_time_s == Approx(0.5 * (3.5 + 20)));
+  CHECK(bins[1].share_right == Approx(1.0));
+  CHECK(conditional_accuracy({{{1, true}}}, 2).empty());
+  CHECK_THROWS_AS(conditional_accuracy({}, 0), core::InvalidInput);
+}
+
+TEST_CASE("who repeats the last answer is found, and what is confused with what is not",
+          "[analysis][participants]") {
+  AnswerSequence repeating;
+  AnswerSequence confusing;
+  for (std::size_t i = 0; i < 40; ++i) {
+    const std::size_t stimulus = (i * 7 + i / 3) % 4;
+    const std::size_t last = i == 0 ? 0 : repeating.responses.back();
+    for (AnswerSequence* of : {&repeating, &confusing}) {
+      of->stimuli.push_back(stimulus);
+      of->right.push_back(stimulus);
+    }
+    repeating.responses.push_back(i % 4 == 0 ? (last + 1) % 4 : last);
+    confusing.responses.push_back((stimulus + 1) % 4);
+  }
+  const SerialDependence found = serial_dependence({repeating}, 999, 1);
+  CHECK(found.repeated_answer.p == Approx(0.001));
+  CHECK(found.repeated_answer.observed > found.repeated_answer.expected);
+  const SerialDependence none = serial_dependence({confusing}, 999, 1);
+  CHECK(none.repeated_answer.p == 1.0);
+  CHECK(none.last_right.p == 1.0);
+  CHECK(serial_dependence({repeating}, 200, 5, 1).last_right.p ==
+        serial_dependence({repeating}, 200, 5, 3).last_right.p);
+  CHECK(serial_dependence({}, 9, 1).repeated_answer.p == 1.0);
+  CHECK_THROWS_AS(serial_dependence({{{1}, {1}, {}}}, 9, 1), core::InvalidInput);
+  CHECK_THROWS_AS(serial_dependence({confusing}, 0, 1), core::InvalidInput);
+}

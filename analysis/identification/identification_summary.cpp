@@ -147,6 +147,14 @@ IdentificationSummary::IdentificationSummary(const BlockDesign& design,
   }
 }
 
+std::vector<MainResult> IdentificationSummary::main_results() const {
+  if (!accuracy_over_participants) {
+    return {};
+  }
+  return {{"accuracy", accuracy_over_participants->mean, accuracy_over_participants->interval,
+           chance_p}};
+}
+
 std::shared_ptr<BlockSummary> summarise_identification(const BlockDesign& design,
                                                        const BlockRows& rows) {
   return std::make_shared<IdentificationSummary>(design, identification_data(design, rows.answers));

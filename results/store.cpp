@@ -272,4 +272,22 @@ StudyRow Store::study() {
   study.surfaces = surfaces();
   return study;
 }
+
+void Store::each_row(const std::string& select, const std::function<void(Statement&)>& show) {
+  Statement row{database_, select};
+  while (row.step()) {
+    show(row);
+  }
+}
+
+void Store::at_one_moment(const std::function<void()>& read) {
+  database_.run("BEGIN");
+  try {
+    read();
+  } catch (...) {
+    database_.run("ROLLBACK");
+    throw;
+  }
+  database_.run("COMMIT");
+}
 }  // namespace tapstudy::results

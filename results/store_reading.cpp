@@ -275,24 +275,6 @@ std::vector<SurfaceRow> Store::surfaces() {
   return surfaces;
 }
 
-void Store::each_row(const std::string& select, const std::function<void(Statement&)>& show) {
-  Statement row{database_, select};
-  while (row.step()) {
-    show(row);
-  }
-}
-
-void Store::at_one_moment(const std::function<void()>& read) {
-  database_.run("BEGIN");
-  try {
-    read();
-  } catch (...) {
-    database_.run("ROLLBACK");
-    throw;
-  }
-  database_.run("COMMIT");
-}
-
 std::vector<std::int64_t> Store::trials() {
   Statement row{database_, "SELECT trial_id FROM trial ORDER BY trial_id"};
   std::vector<std::int64_t> ids;

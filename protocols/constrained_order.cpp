@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+
+#include "protocols/ordering.hpp"
 namespace tapstudy::protocols {
 namespace {
 constexpr std::size_t max_states = 60'000;
@@ -10,11 +12,10 @@ constexpr int max_presentations = 2'000;
 }  // namespace
 
 ConstrainedOrders::ConstrainedOrders(const Block& block)
-    : begin_{std::vector<int>(block.stimuli.size(), block.repetitions), {}, 0},
+    : begin_{std::vector<int>(conditions(block), block.repetitions), {}, 0},
       constraints_{block.constraints},
       is_within_repetition_{block.order == Order::shuffle_within_repetition},
-      is_too_large_{static_cast<int>(block.stimuli.size()) * block.repetitions >
-                    max_presentations} {}
+      is_too_large_{static_cast<int>(conditions(block)) * block.repetitions > max_presentations} {}
 
 bool ConstrainedOrders::may_come(const State& state, std::size_t stimulus) const {
   if (state.left[stimulus] == 0 ||

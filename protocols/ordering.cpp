@@ -12,11 +12,21 @@
 #include "protocols/constrained_order.hpp"
 namespace tapstudy::protocols {
 namespace {
+OrderedStimulus condition(const Block& block, std::size_t index, int repetition) {
+  if (!block.on_axis) {
+    return {block.stimuli.at(index), repetition};
+  }
+  const std::size_t count = block.on_axis->values.size();
+  return {block.stimuli.at(index / count),
+          repetition,
+          {{block.on_axis->axis, block.on_axis->values[index % count]}}};
+}
+
 std::vector<OrderedStimulus> listed(const Block& block) {
   std::vector<OrderedStimulus> all;
   for (int repetition = 1; repetition <= block.repetitions; ++repetition) {
-    for (const std::string& stimulus : block.stimuli) {
-      all.push_back({stimulus, repetition});
+    for (std::size_t i = 0; i < conditions(block); ++i) {
+      all.push_back(condition(block, i, repetition));
     }
   }
   return all;
@@ -35,12 +45,12 @@ int sequence_of(int sequences, const Counterbalancing& counterbalancing) {
 
 std::vector<OrderedStimulus> williams(const Block& block,
                                       const Counterbalancing& counterbalancing) {
-  const int n = static_cast<int>(block.stimuli.size());
+  const int n = static_cast<int>(conditions(block));
   const int sequence = sequence_of(williams_sequences(n, block.repetitions), counterbalancing);
   std::vector<OrderedStimulus> all;
   for (const int i : williams_sequence(n, block.repetitions, sequence)) {
     all.push_back(
-        {block.stimuli.at(static_cast<std::size_t>(i)), 1 + static_cast<int>(all.size()) / n});
+        condition(block, static_cast<std::size_t>(i), 1 + static_cast<int>(all.size()) / n));
   }
   return all;
 }
@@ -50,13 +60,13 @@ std::vector<OrderedStimulus> shuffled(const Block& block, core::Rng& rng) {
   if (block.order == Order::shuffle) {
     rng.shuffle(all);
     // by how often the stimulus has been presented, whatever its place in the list was
-    std::map<std::string, int> seen;
+    std::map<std::pair<std::string, AxisValues>, int> seen;
     for (OrderedStimulus& next : all) {
-      next.repetition = ++seen[next.stimulus];
+      next.repetition = ++seen[{next.stimulus, next.values}];
     }
     return all;
   }
-  const std::size_t size = block.stimuli.size();
+  const std::size_t size = conditions(block);
   for (std::size_t first = 0; first < all.size(); first += size) {
     rng.shuffle(std::span{all}.subspan(first, size));
   }
@@ -67,7 +77,7 @@ std::vector<OrderedStimulus> shuffled(const Block& block, core::Rng& rng) {
 ConstrainedOrders& orders_of(const Block& block) {
   using Key = std::array<std::size_t, 5>;
   thread_local std::map<Key, ConstrainedOrders> known;
-  const Key key{block.stimuli.size(), static_cast<std::size_t>(block.repetitions),
+  const Key key{conditions(block), static_cast<std::size_t>(block.repetitions),
                 static_cast<std::size_t>(block.constraints.max_run),
                 static_cast<std::size_t>(block.constraints.min_distance),
                 static_cast<std::size_t>(block.order)};
@@ -84,13 +94,17 @@ std::vector<OrderedStimulus> constrained(const Block& block, core::Rng& rng) {
               : "there are too many presentations to draw a constrained order (split the block)")};
   }
   std::vector<OrderedStimulus> all;
-  std::map<std::string, int> seen;
+  std::map<std::size_t, int> seen;
   for (const std::size_t i : orders.draw(rng)) {
-    all.push_back({block.stimuli[i], ++seen[block.stimuli[i]]});
+    all.push_back(condition(block, i, ++seen[i]));
   }
   return all;
 }
 }  // namespace
+
+std::size_t conditions(const Block& block) {
+  return block.stimuli.size() * (block.on_axis ? block.on_axis->values.size() : 1);
+}
 
 std::vector<OrderedStimulus> ordered_stimuli(const Block& block, core::Rng& rng,
                                              const Counterbalancing& counterbalancing) {

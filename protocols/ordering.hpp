@@ -7,8 +7,11 @@
 namespace tapstudy::protocols {
 struct OrderedStimulus {
   std::string stimulus;
-  int repetition{};  // counts the presentations of this stimulus, from 1
+  int repetition{};     // counts the presentations of this stimulus at these values, from 1
+  AxisValues values{};  // where the block names values of an axis
 };
+// How many a block orders: its stimuli, or those at each of its values.
+std::size_t conditions(const Block& block);
 // Which participants get which of the balanced sequences.
 struct Counterbalancing {
   int order_index{};     // from 0

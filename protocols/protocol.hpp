@@ -134,6 +134,19 @@ struct RatingScale {
   std::string high;
 };
 
+// Values of an axis at which every stimulus of a block is presented.
+struct ValuesOnAxis {
+  std::string axis;
+  std::vector<double> values;  // from low to high, as presented
+};
+
+// A stimulus that is presented beside the one to be judged, with the number that it is said to
+// have.
+struct Modulus {
+  std::string stimulus;
+  double number{};
+};
+
 struct Block {
   std::string name;
   const Task* task{};
@@ -146,6 +159,8 @@ struct Block {
   std::map<std::string, std::string> right_response;   // by stimulus; empty: none is right
   std::optional<Comparison> comparison;
   std::optional<RatingScale> rating;
+  std::optional<ValuesOnAxis> on_axis;
+  std::optional<Modulus> modulus;
   int alternatives{};  // presented in a trial, where the task leaves a choice
   Presented presented{Presented::virtual_plates};
   std::optional<CatchTrials> catch_trials;

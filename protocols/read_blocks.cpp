@@ -131,7 +131,7 @@ void read_practice(MapReader& reader, Block& block) {
 // Two answers that read alike cannot be told apart by who gives them.
 void check_labels_differ(MapReader& reader, const Protocol& protocol, const Block& block) {
   std::map<std::string, std::string> name_of_label;
-  for (const Option& option : block.task->options(block, protocol)) {
+  for (const Option& option : block.task->answers(block, protocol).options) {
     const auto [known, is_new] = name_of_label.emplace(option.label, option.name);
     if (!is_new) {
       reader.reject(fmt::format("the answers '{}' and '{}' have the same label, '{}'",
@@ -236,7 +236,7 @@ void check_block(MapReader& reader, const Block& block, const Protocol& protocol
   if (std::ranges::find(protocol.blocks, block.name, &Block::name) != protocol.blocks.end()) {
     reader.reject("name", fmt::format("'{}' is the name of an earlier block", block.name));
   }
-  if (block.order == Order::williams && block.stimuli.size() < 2) {
+  if (block.order == Order::williams && conditions(block) < 2) {
     reader.reject("order", "a Williams order needs at least two stimuli");
   }
   if (block.stimuli.size() > 26) {

@@ -28,11 +28,16 @@ double number_of(const BlockDesign& design, const AnswerRow& answer) {
   return number;
 }
 
+// What stands before it is the modulus.
+const results::AlternativeRow& judged(const AnswerRow& answer) {
+  return answer.alternatives.back();
+}
+
 Value value_of(const BlockDesign& design, const AnswerRow& answer) {
   if (!design.axis || answer.alternatives.empty()) {
     return std::nullopt;
   }
-  const results::AxisValues& values = answer.alternatives.front().axis_values;
+  const results::AxisValues& values = judged(answer).axis_values;
   const auto found = values.find(design.axis->name);
   return found == values.end() ? Value{} : Value{found->second};
 }
@@ -87,7 +92,9 @@ std::vector<StimulusMagnitudes> magnitude_results(const BlockDesign& design,
                                                   const std::vector<AnswerRow>& answers) {
   std::map<std::string, Logarithms> stimuli;
   for (const AnswerRow& answer : answers) {
-    stimuli[answer.stimulus][value_of(design, answer)][answer.participant_id].push_back(
+    const std::string& stimulus =
+        answer.alternatives.empty() ? answer.stimulus : judged(answer).stimulus;
+    stimuli[stimulus][value_of(design, answer)][answer.participant_id].push_back(
         std::log10(number_of(design, answer)));
   }
   std::vector<StimulusMagnitudes> results;

@@ -10,7 +10,7 @@ namespace tapstudy::analysis {
 namespace {
 using Magnitudes = std::vector<StimulusMagnitudes>;
 
-ReportTable exponents_table(const Magnitudes& results) {
+ReportTable exponents_table(const BlockDesign& design, const Magnitudes& results) {
   ReportTable table{"power_law",
                     "Stevens' power law",
                     {column("stimulus", "stimulus"), column("participants", "participants"),
@@ -18,6 +18,9 @@ ReportTable exponents_table(const Magnitudes& results) {
                      column("log10 constant", "log10_constant"), column("R squared", "r_squared"),
                      column("", "not_computed_because")}};
   for (const StimulusMagnitudes& of : results) {
+    if (!design.axis) {
+      break;
+    }
     std::vector<Cell> row{word(of.stimulus)};
     if (const auto& law = of.power_law) {
       row.insert(row.end(), {count(static_cast<std::int64_t>(of.participants.size())),
@@ -66,9 +69,15 @@ ReportTable participants_table(const Magnitudes& results) {
   return table;
 }
 
-std::vector<std::string> remarks_on(const Magnitudes& results) {
+std::vector<std::string> remarks_on(const BlockDesign& design, const Magnitudes& results) {
   if (results.empty()) {
     return {"There are no answers."};
+  }
+  if (!design.axis) {
+    return {
+        "Each participant's repeated estimates of a stimulus count as their geometric mean. There "
+        "is "
+        "no exponent: the stimuli have no values on an axis."};
   }
   std::vector<std::string> remarks{
       "Each participant's repeated estimates of a value count as their geometric mean. Exponents "
@@ -113,9 +122,9 @@ std::shared_ptr<BlockSummary> summarise_magnitudes(const BlockDesign& design,
                                                    const BlockRows& rows) {
   const Magnitudes results = magnitude_results(design, rows.answers);
   auto summary = std::make_shared<TabularSummary>(design);
-  summary->parts = {exponents_table(results), means_table(design, results),
+  summary->parts = {exponents_table(design, results), means_table(design, results),
                     participants_table(results)};
-  summary->remarks = remarks_on(results);
+  summary->remarks = remarks_on(design, results);
   for (const StimulusMagnitudes& of : results) {
     if (of.power_law) {
       summary->charts.push_back(chart_of(design, of));

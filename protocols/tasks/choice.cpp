@@ -8,7 +8,7 @@ class Choice final : public PreferenceTask {
  public:
   std::string_view name() const override { return "choice"; }
   std::string_view statistic(const Block& /*block*/) const override { return "choices"; }
-  Claim claim() const override { return Claim::chosen_above_chance; }
+  std::optional<Claim> claim() const override { return Claim::chosen_above_chance; }
   bool uses_order() const override { return false; }
   bool can_present_real_plates() const override { return false; }
   bool is_random(const Block& /*block*/) const override { return true; }
@@ -39,32 +39,24 @@ class Choice final : public PreferenceTask {
   }
   std::size_t trials_per_repetition(const Block& /*block*/) const override { return 1; }
 
-  std::vector<Option> options(const Block& block, const Protocol& /*protocol*/) const override {
-    std::vector<Option> all;
-    for (std::size_t i = 0; i < block.stimuli.size(); ++i) {
-      all.push_back({blind_label(i), blind_label(i)});
-    }
-    return all;
+  Answers answers(const Block& block, const Protocol& /*protocol*/) const override {
+    return one_of(blind_options(block.stimuli.size()));
   }
   std::string response(const PlannedTrial& trial, const Block& /*block*/,
-                       std::size_t option) const override {
-    return trial.alternatives.at(option).stimulus;
+                       const std::string& answer) const override {
+    return labelled(trial, answer).stimulus;
   }
   std::vector<std::string> alternative_labels(const PlannedTrial& trial) const override {
-    std::vector<std::string> labels;
-    for (std::size_t i = 0; i < trial.alternatives.size(); ++i) {
-      labels.push_back(blind_label(i));
-    }
-    return labels;
+    return blind_labels(trial);
   }
 
   int visits(const Block& block, const SimulatedTapSettings& taps) const override {
     return taps.visits * static_cast<int>(block.stimuli.size());
   }
-  std::size_t simulated_answer(const Block& block, const Simulation& simulation,
+  std::string simulated_answer(const Block& block, const Simulation& simulation,
                                SimulatedTouch& touch) const override {
     visit_all(block.stimuli.size(), simulation, touch);
-    return touch.most_similar_alternative(simulation.observer.reference);
+    return blind_label(touch.most_similar_alternative(simulation.observer.reference));
   }
 };
 }  // namespace

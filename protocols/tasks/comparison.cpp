@@ -27,12 +27,8 @@ class ComparisonTask final : public DiscriminationTask {
       reader.reject("right", "the standard is one of two alternatives only");
     }
   }
-  std::vector<Option> options(const Block& block, const Protocol& /*protocol*/) const override {
-    return blind_options(static_cast<std::size_t>(block.alternatives));
-  }
-  std::string response(const PlannedTrial& /*trial*/, const Block& /*block*/,
-                       std::size_t option) const override {
-    return blind_label(option);
+  Answers answers(const Block& block, const Protocol& /*protocol*/) const override {
+    return one_of(blind_options(static_cast<std::size_t>(block.alternatives)));
   }
   std::optional<bool> is_correct(const PlannedTrial& trial, const Block& block,
                                  const std::string& response) const override {
@@ -48,7 +44,7 @@ class ComparisonTask final : public DiscriminationTask {
     return {{block.name + standard_key, family, {{comparison.axis, comparison.standard}}, false},
             {block.name + comparison_key, family, {{comparison.axis, most}}, false}};
   }
-  std::size_t simulated_answer(const Block& block, const Simulation& simulation,
+  std::string simulated_answer(const Block& block, const Simulation& simulation,
                                SimulatedTouch& touch) const override {
     const auto alternatives = static_cast<std::size_t>(block.alternatives);
     visit_all(alternatives, simulation, touch);
@@ -59,7 +55,7 @@ class ComparisonTask final : public DiscriminationTask {
     }
     const auto picked = block.comparison->is_standard_right ? std::ranges::min_element(positions)
                                                             : std::ranges::max_element(positions);
-    return static_cast<std::size_t>(picked - positions.begin());
+    return blind_label(static_cast<std::size_t>(picked - positions.begin()));
   }
 
  protected:

@@ -8,7 +8,7 @@ class DiscriminationTask : public Task {
   std::string_view statistic(const Block& block) const override {
     return block.comparison ? "psychometric" : "discrimination";
   }
-  Claim claim() const override { return Claim::accuracy_above_chance; }
+  std::optional<Claim> claim() const override { return Claim::accuracy_above_chance; }
   bool needs_reference() const override { return false; }
   bool has_correct_answer() const override { return true; }
   bool uses_order() const override { return false; }

@@ -9,6 +9,7 @@
 #include "protocols/protocol.hpp"
 #include "protocols/read_sections.hpp"
 #include "protocols/tasks/shipped_tasks.hpp"
+#include "protocols/tasks/task_parts.hpp"
 namespace tapstudy::protocols {
 namespace {
 // Its levels among these stimuli, in their order.
@@ -81,7 +82,7 @@ class Identification final : public Task {
  public:
   std::string_view name() const override { return "identification"; }
   std::string_view statistic(const Block& /*block*/) const override { return "confusion"; }
-  Claim claim() const override { return Claim::accuracy_above_chance; }
+  std::optional<Claim> claim() const override { return Claim::accuracy_above_chance; }
   bool needs_reference() const override { return false; }
   bool has_correct_answer() const override { return true; }
   bool uses_order() const override { return true; }
@@ -121,16 +122,12 @@ class Identification final : public Task {
     return block.stimuli.size();
   }
 
-  std::vector<Option> options(const Block& block, const Protocol& protocol) const override {
+  Answers answers(const Block& block, const Protocol& protocol) const override {
     std::vector<Option> all;
     for (const std::string& response : block.responses) {
       all.push_back({response, label_of(response, block, protocol)});
     }
-    return all;
-  }
-  std::string response(const PlannedTrial& /*trial*/, const Block& block,
-                       std::size_t option) const override {
-    return block.responses.at(option);
+    return one_of(std::move(all));
   }
   std::vector<std::string> alternative_labels(const PlannedTrial& /*trial*/) const override {
     return {};
@@ -153,14 +150,12 @@ class Identification final : public Task {
   int visits(const Block& /*block*/, const SimulatedTapSettings& /*taps*/) const override {
     return 1;
   }
-  std::size_t simulated_answer(const Block& block, const Simulation& /*simulation*/,
+  std::string simulated_answer(const Block& block, const Simulation& /*simulation*/,
                                SimulatedTouch& touch) const override {
     touch.visit(0);
     const std::vector<std::string>& stimuli = known_stimuli(block);
     const std::string& felt = stimuli.at(touch.most_similar_stimulus(stimuli));
-    const auto answer = std::ranges::find(
-        block.responses, block.response_factor.empty() ? felt : block.right_response.at(felt));
-    return static_cast<std::size_t>(answer - block.responses.begin());
+    return block.response_factor.empty() ? felt : block.right_response.at(felt);
   }
 };
 }  // namespace

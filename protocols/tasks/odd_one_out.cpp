@@ -14,12 +14,8 @@ class OddOneOut final : public DiscriminationTask {
     block.alternatives = reader.integer("alternatives", 3, 4, 3);
     DiscriminationTask::read(reader, protocol, block);
   }
-  std::vector<Option> options(const Block& block, const Protocol& /*protocol*/) const override {
-    return blind_options(static_cast<std::size_t>(block.alternatives));
-  }
-  std::string response(const PlannedTrial& /*trial*/, const Block& /*block*/,
-                       std::size_t option) const override {
-    return blind_label(option);
+  Answers answers(const Block& block, const Protocol& /*protocol*/) const override {
+    return one_of(blind_options(static_cast<std::size_t>(block.alternatives)));
   }
   std::optional<bool> is_correct(const PlannedTrial& trial, const Block& /*block*/,
                                  const std::string& response) const override {
@@ -28,7 +24,7 @@ class OddOneOut final : public DiscriminationTask {
     return labelled(trial, response).is_comparison == is_comparison_odd;
   }
   // The one that is furthest from all others together.
-  std::size_t simulated_answer(const Block& block, const Simulation& simulation,
+  std::string simulated_answer(const Block& block, const Simulation& simulation,
                                SimulatedTouch& touch) const override {
     const auto alternatives = static_cast<std::size_t>(block.alternatives);
     visit_all(alternatives, simulation, touch);
@@ -38,7 +34,7 @@ class OddOneOut final : public DiscriminationTask {
       sums[first] += distance;
       sums[second] += distance;
     }
-    return static_cast<std::size_t>(std::ranges::max_element(sums) - sums.begin());
+    return blind_label(static_cast<std::size_t>(std::ranges::max_element(sums) - sums.begin()));
   }
 
  protected:

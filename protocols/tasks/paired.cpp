@@ -8,7 +8,7 @@ class Paired final : public PreferenceTask {
  public:
   std::string_view name() const override { return "paired"; }
   std::string_view statistic(const Block& /*block*/) const override { return "paired"; }
-  Claim claim() const override { return Claim::chosen_above_chance; }
+  std::optional<Claim> claim() const override { return Claim::chosen_above_chance; }
   bool uses_order() const override { return false; }
   bool can_present_real_plates() const override { return false; }
   bool is_random(const Block& /*block*/) const override { return true; }
@@ -40,12 +40,12 @@ class Paired final : public PreferenceTask {
   std::size_t trials_per_repetition(const Block& block) const override {
     return 2 * pairs_of(block.stimuli.size()).size();
   }
-  std::vector<Option> options(const Block& /*block*/, const Protocol& /*protocol*/) const override {
-    return blind_options(2);
+  Answers answers(const Block& /*block*/, const Protocol& /*protocol*/) const override {
+    return one_of(blind_options(2));
   }
   std::string response(const PlannedTrial& trial, const Block& /*block*/,
-                       std::size_t option) const override {
-    return trial.alternatives.at(option).stimulus;
+                       const std::string& answer) const override {
+    return labelled(trial, answer).stimulus;
   }
   std::vector<std::string> alternative_labels(const PlannedTrial& trial) const override {
     return blind_labels(trial);
@@ -53,10 +53,10 @@ class Paired final : public PreferenceTask {
   int visits(const Block& /*block*/, const SimulatedTapSettings& taps) const override {
     return 2 * taps.visits;
   }
-  std::size_t simulated_answer(const Block& /*block*/, const Simulation& simulation,
+  std::string simulated_answer(const Block& /*block*/, const Simulation& simulation,
                                SimulatedTouch& touch) const override {
     visit_all(2, simulation, touch);
-    return touch.most_similar_alternative(simulation.observer.reference);
+    return blind_label(touch.most_similar_alternative(simulation.observer.reference));
   }
 };
 }  // namespace

@@ -12,7 +12,7 @@ class Rating final : public PreferenceTask {
  public:
   std::string_view name() const override { return "rating"; }
   std::string_view statistic(const Block& /*block*/) const override { return "ratings"; }
-  Claim claim() const override { return Claim::rated_highest; }
+  std::optional<Claim> claim() const override { return Claim::rated_highest; }
   bool has_chance_level() const override { return false; }
   bool uses_order() const override { return true; }
   bool can_present_real_plates() const override { return true; }
@@ -39,7 +39,7 @@ class Rating final : public PreferenceTask {
   std::size_t trials_per_repetition(const Block& block) const override {
     return block.stimuli.size();
   }
-  std::vector<Option> options(const Block& block, const Protocol& /*protocol*/) const override {
+  Answers answers(const Block& block, const Protocol& /*protocol*/) const override {
     std::vector<Option> all;
     for (int step = 1; step <= block.rating->steps; ++step) {
       const std::string number = std::to_string(step);
@@ -47,11 +47,7 @@ class Rating final : public PreferenceTask {
     }
     all.front().label += " " + block.rating->low;
     all.back().label += " " + block.rating->high;
-    return all;
-  }
-  std::string response(const PlannedTrial& /*trial*/, const Block& /*block*/,
-                       std::size_t option) const override {
-    return std::to_string(option + 1);
+    return one_of(std::move(all));
   }
   std::vector<std::string> alternative_labels(const PlannedTrial& /*trial*/) const override {
     return {};
@@ -60,12 +56,12 @@ class Rating final : public PreferenceTask {
     return 1;
   }
   // The nearer to the reference, the higher: a mean square of 1, its own noise, is the top.
-  std::size_t simulated_answer(const Block& block, const Simulation& simulation,
+  std::string simulated_answer(const Block& block, const Simulation& simulation,
                                SimulatedTouch& touch) const override {
     touch.visit(0);
     const double excess =
         std::max(0.0, touch.distance(std::size_t{0}, simulation.observer.reference) - 1.0);
-    return static_cast<std::size_t>(std::lround((block.rating->steps - 1) * std::exp(-excess)));
+    return std::to_string(1 + std::lround((block.rating->steps - 1) * std::exp(-excess)));
   }
 };
 }  // namespace

@@ -17,12 +17,12 @@ class SameDifferent final : public DiscriminationTask {
   std::string_view decision_model() const override {
     return "same_different_independent_observation";
   }
-  std::vector<Option> options(const Block& block, const Protocol& /*protocol*/) const override {
+  Answers answers(const Block& block, const Protocol& /*protocol*/) const override {
     const auto label = [&](const char* response) {
       const auto found = block.response_labels.find(response);
       return found == block.response_labels.end() ? std::string{response} : found->second;
     };
-    return {{same, label(same)}, {different, label(different)}};
+    return one_of({{same, label(same)}, {different, label(different)}});
   }
   void read(MapReader& reader, const Protocol& protocol, Block& block) const override {
     DiscriminationTask::read(reader, protocol, block);
@@ -35,10 +35,6 @@ class SameDifferent final : public DiscriminationTask {
                              block.response_labels[response] = label;
                            });
   }
-  std::string response(const PlannedTrial& /*trial*/, const Block& /*block*/,
-                       std::size_t option) const override {
-    return option == 0 ? same : different;
-  }
   std::optional<bool> is_correct(const PlannedTrial& trial, const Block& /*block*/,
                                  const std::string& response) const override {
     return are_different(trial) == (response == different);
@@ -50,11 +46,11 @@ class SameDifferent final : public DiscriminationTask {
                                 : std::nullopt;
   }
   // Different if they are further apart than two of the same are in five of six cases.
-  std::size_t simulated_answer(const Block& /*block*/, const Simulation& simulation,
+  std::string simulated_answer(const Block& /*block*/, const Simulation& simulation,
                                SimulatedTouch& touch) const override {
     constexpr double criterion = 1.28;  // mean and standard deviation of 26 squared features
     visit_all(2, simulation, touch);
-    return touch.distance(std::size_t{0}, std::size_t{1}) > criterion ? 1 : 0;
+    return touch.distance(std::size_t{0}, std::size_t{1}) > criterion ? different : same;
   }
 
  protected:

@@ -16,4 +16,6 @@ const Task& abx();
 const Task& paired();
 // One stimulus, on a scale of steps.
 const Task& rating();
+// One stimulus, by a number; beside one whose number is told, or by itself.
+const Task& magnitude();
 }  // namespace tapstudy::protocols

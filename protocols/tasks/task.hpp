@@ -7,7 +7,7 @@
 
 #include "core/rng.hpp"
 #include "protocols/axes/axis_range.hpp"
-#include "protocols/form.hpp"
+#include "protocols/tasks/answers.hpp"
 namespace tapstudy::protocols {
 class MapReader;
 class Task;
@@ -72,6 +72,9 @@ class SimulatedTouch {
   // units of the internal noise: about 1 for two of the same.
   virtual double distance(std::size_t first, std::size_t second) = 0;
   virtual double distance(std::size_t alternative, const std::string& stimulus) = 0;
+  // How strongly an alternative is felt, in decibels above the threshold: the mean over what is
+  // felt of it, blurred by the internal noise.
+  virtual double level_db(std::size_t alternative) = 0;
   virtual core::Rng& rng() = 0;  // of the hand
 };
 
@@ -86,7 +89,7 @@ class Task {
 
   // Its own keys of a block; problems go to the reader. The common keys are read already.
   virtual void read(MapReader& reader, const Protocol& protocol, Block& block) const = 0;
-  virtual Claim claim() const = 0;
+  virtual std::optional<Claim> claim() const = 0;  // nullopt: none
   // Whether simulated participants need simulation.observer.reference.
   virtual bool needs_reference() const = 0;
   // Whether some answers are right and others wrong.
@@ -104,11 +107,13 @@ class Task {
   virtual std::vector<PlannedTrial> trials(const Block& block, const Draw& draw) const = 0;
   virtual std::size_t trials_per_repetition(const Block& block) const = 0;
 
-  // The allowed answers; how each is stored; the labels by which a participant switches between the
-  // alternatives of a trial (empty: nothing to switch).
-  virtual std::vector<Option> options(const Block& block, const Protocol& protocol) const = 0;
-  virtual std::string response(const PlannedTrial& trial, const Block& block,
-                               std::size_t option) const = 0;
+  // The allowed answers; how one of them, as answer_in gives it, is stored; the labels by which a
+  // participant switches between the alternatives of a trial (empty: nothing to switch).
+  virtual Answers answers(const Block& block, const Protocol& protocol) const = 0;
+  virtual std::string response(const PlannedTrial& /*trial*/, const Block& /*block*/,
+                               const std::string& answer) const {
+    return answer;
+  }
   virtual std::vector<std::string> alternative_labels(const PlannedTrial& trial) const = 0;
   // What an answer tells the procedure that varies the comparison: one of its outcomes; nullopt if
   // nothing, because no comparison was presented beside a standard.
@@ -127,11 +132,11 @@ class Task {
   virtual std::string_view success() const = 0;
 
   // For simulated participants: what to remember, the number of visits per trial, and the decision
-  // rule, which returns the index of an option.
+  // rule, which returns an answer.
   virtual std::vector<Remembered> remembered(const Block& block,
                                              const Simulation& simulation) const = 0;
   virtual int visits(const Block& block, const SimulatedTapSettings& taps) const = 0;
-  virtual std::size_t simulated_answer(const Block& block, const Simulation& simulation,
+  virtual std::string simulated_answer(const Block& block, const Simulation& simulation,
                                        SimulatedTouch& touch) const = 0;
 };
 

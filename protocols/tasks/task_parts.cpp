@@ -11,7 +11,8 @@ std::optional<std::size_t> Task::outcome(const PlannedTrial& trial, const Block&
 }
 
 double Task::guess_rate(const Block& block, const Protocol& protocol) const {
-  return has_correct_answer() ? 1.0 / static_cast<double>(options(block, protocol).size()) : 0.0;
+  return has_correct_answer() ? 1.0 / static_cast<double>(answers(block, protocol).options.size())
+                              : 0.0;
 }
 
 void visit_all(std::size_t alternatives, const Simulation& simulation, SimulatedTouch& touch) {
@@ -39,6 +40,10 @@ std::vector<Option> blind_options(std::size_t count) {
     options.push_back({blind_label(i), blind_label(i)});
   }
   return options;
+}
+
+Answers one_of(std::vector<Option> options) {
+  return {AnswerKind::option, std::move(options)};
 }
 
 const Alternative& labelled(const PlannedTrial& trial, const std::string& label) {

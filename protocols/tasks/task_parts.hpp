@@ -8,6 +8,8 @@ void visit_all(std::size_t alternatives, const Simulation& simulation, Simulated
 // Blind labels of all alternatives of a trial; the names and labels of the first so many.
 std::vector<std::string> blind_labels(const PlannedTrial& trial);
 std::vector<Option> blind_options(std::size_t count);
+// The answers of a trial in which one of these is picked.
+Answers one_of(std::vector<Option> options);
 
 // The alternative that a blind label names. Throws InvalidInput if none has it.
 const Alternative& labelled(const PlannedTrial& trial, const std::string& label);

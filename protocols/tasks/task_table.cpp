@@ -5,7 +5,7 @@ namespace tapstudy::protocols {
 const std::vector<const Task*>& tasks() {
   static const std::vector<const Task*> table{&identification(), &choice(),      &comparison(),
                                               &same_different(), &odd_one_out(), &abx(),
-                                              &paired(),         &rating()};
+                                              &paired(),         &rating(),      &magnitude()};
   return table;
 }
 

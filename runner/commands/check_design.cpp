@@ -19,7 +19,7 @@ void warn_of_balance(const protocols::Block& block, int participants) {
   if (!block.task->uses_order()) {
     return;
   }
-  const int conditions = static_cast<int>(block.stimuli.size());
+  const int conditions = static_cast<int>(protocols::conditions(block));
   if (conditions < 2) {
     return;
   }
@@ -40,7 +40,7 @@ void warn_of_balance(const protocols::Block& block, int participants) {
 
 void print_power(const protocols::Protocol& protocol, const protocols::Block& block,
                  int participants) {
-  const std::size_t options = block.task->options(block, protocol).size();
+  const std::size_t options = block.task->answers(block, protocol).options.size();
   const double chance = 1.0 / static_cast<double>(options);
   const int answers = participants * block.task->counted_answers(block);
   const int critical = analysis::critical_successes(answers, chance, alpha);

@@ -81,7 +81,7 @@ std::int64_t BrowserParticipant::show_trial(const TrialPrompt& prompt, std::size
                .scene = context_.scene(current)});
 }
 
-std::optional<std::size_t> BrowserParticipant::perform(const TrialPrompt& prompt,
+std::optional<std::string> BrowserParticipant::perform(const TrialPrompt& prompt,
                                                        Exploration& exploration) {
   constexpr double poll_s = 0.01;
   std::size_t current = exploration.current();
@@ -96,7 +96,7 @@ std::optional<std::size_t> BrowserParticipant::perform(const TrialPrompt& prompt
     }
     if (input && input->action == ScreenAction::answer) {
       notice_.reset();
-      return input->value;
+      return answer_in(input->text, prompt.answers);
     }
     if (input) {
       act_on(*input, prompt, exploration);
@@ -114,18 +114,18 @@ std::optional<std::size_t> BrowserParticipant::perform(const TrialPrompt& prompt
 void BrowserParticipant::act_on(const ScreenInput& input, const TrialPrompt& prompt,
                                 Exploration& exploration) {
   if (input.action == ScreenAction::correct) {
-    correction_ = prompt.previous->correct(input.value);
+    correction_ = prompt.previous->correct(input.text);
   } else {
     exploration.switch_to(input.value);
   }
 }
 
 // What the page was told to be accepted in the moment before the trial ended.
-std::optional<std::size_t> BrowserParticipant::last_word(const TrialPrompt& prompt,
+std::optional<std::string> BrowserParticipant::last_word(const TrialPrompt& prompt,
                                                          Exploration& exploration) {
   const auto accepted = screens_.close();
   if (accepted && accepted->action == ScreenAction::answer) {
-    return accepted->value;
+    return answer_in(accepted->text, prompt.answers);
   }
   if (accepted) {
     act_on(*accepted, prompt, exploration);

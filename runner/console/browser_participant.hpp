@@ -26,7 +26,7 @@ class BrowserParticipant final : public Participant {
   void wait_while(const std::function<bool()>& is_paused) override;
   void arrive() override;
   void get_ready(const TrialPrompt& prompt) override;
-  std::optional<std::size_t> perform(const TrialPrompt& prompt, Exploration& exploration) override;
+  std::optional<std::string> perform(const TrialPrompt& prompt, Exploration& exploration) override;
   std::optional<int> confidence(const protocols::Confidence& scale) override;
   void feedback(bool is_correct, const std::string& right_label) override;
   void refused(const TrialPrompt& prompt, const TooEarly& why) override;
@@ -45,7 +45,7 @@ class BrowserParticipant final : public Participant {
   ScreenInput answer_to(Screen screen);
   void tell(Message message);
   void act_on(const ScreenInput& input, const TrialPrompt& prompt, Exploration& exploration);
-  std::optional<std::size_t> last_word(const TrialPrompt& prompt, Exploration& exploration);
+  std::optional<std::string> last_word(const TrialPrompt& prompt, Exploration& exploration);
   void pause_if_left();
   // Whether there is something new to show of it.
   bool follow_correction();

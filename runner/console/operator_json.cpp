@@ -5,6 +5,7 @@
 
 #include "core/error.hpp"
 #include "device/device.hpp"
+#include "runner/console/answers_json.hpp"
 #include "runner/console/parse_json.hpp"
 namespace tapstudy::runner {
 namespace {
@@ -12,14 +13,6 @@ using Json = nlohmann::ordered_json;
 
 std::string dumped(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
-
-Json labels_of(const std::vector<protocols::Option>& options) {
-  Json labels = Json::array();
-  for (const protocols::Option& option : options) {
-    labels.push_back(option.label);
-  }
-  return labels;
 }
 
 Json json_of(const TrialInView& view, std::size_t current, bool is_blind) {
@@ -41,13 +34,13 @@ Json json_of(const TrialInView& view, std::size_t current, bool is_blind) {
           {"block", view.trial.block},
           {"is_practice", view.trial.is_practice},
           {"question", view.prompt.block->question},
-          {"options", labels_of(view.prompt.options)},
+          {"answers", answers_json(view.prompt.answers)},
           {"alternatives", alternatives},
           {"current", current}};
 }
 
 Json json_of(const AnswerInView& answer, bool is_blind) {
-  Json json{{"number", answer.trial.number}, {"options", labels_of(answer.options)}};
+  Json json{{"number", answer.trial.number}, {"answers", answers_json(answer.answers)}};
   if (!is_blind) {
     json["response"] = answer.response;
   }

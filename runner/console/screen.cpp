@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/error.hpp"
+#include "runner/console/answers_json.hpp"
 #include "runner/console/parse_json.hpp"
 namespace tapstudy::runner {
 namespace {
@@ -36,24 +37,17 @@ Json json_of(const TooEarly& notice) {
           {"seconds", notice.min_seconds}};
 }
 
-Json labels_of(const std::vector<protocols::Option>& options) {
-  Json labels = Json::array();
-  for (const protocols::Option& option : options) {
-    labels.push_back(option.label);
-  }
-  return labels;
-}
-
 Json json_of(const TrialScreen& trial) {
   constexpr std::array corrections{"", "stored", "failed"};
-  return {{"number", trial.prompt.number},
-          {"question", trial.prompt.block->question},
-          {"options", labels_of(trial.prompt.options)},
-          {"previous", trial.prompt.previous ? labels_of(trial.prompt.previous->options) : Json{}},
-          {"correction", corrections.at(static_cast<std::size_t>(trial.correction))},
-          {"alternatives", trial.prompt.alternative_labels},
-          {"current", trial.current},
-          {"notice", trial.notice ? json_of(*trial.notice) : Json{}}};
+  return {
+      {"number", trial.prompt.number},
+      {"question", trial.prompt.block->question},
+      {"answers", answers_json(trial.prompt.answers)},
+      {"previous", trial.prompt.previous ? answers_json(trial.prompt.previous->answers) : Json{}},
+      {"correction", corrections.at(static_cast<std::size_t>(trial.correction))},
+      {"alternatives", trial.prompt.alternative_labels},
+      {"current", trial.current},
+      {"notice", trial.notice ? json_of(*trial.notice) : Json{}}};
 }
 
 Json json_of(const protocols::Confidence& scale) {
@@ -133,10 +127,10 @@ bool accepts(const Screen& screen, const ScreenInput& input) {
     case ScreenAction::switch_to:
       return screen.trial && input.value < screen.trial->prompt.alternative_labels.size();
     case ScreenAction::answer:
-      return screen.trial && input.value < screen.trial->prompt.options.size();
+      return screen.trial && answer_in(input.text, screen.trial->prompt.answers);
     case ScreenAction::correct:
       return screen.trial && screen.trial->prompt.previous &&
-             input.value < screen.trial->prompt.previous->options.size();
+             answer_in(input.text, screen.trial->prompt.previous->answers);
     case ScreenAction::confidence:
       return screen.confidence && input.value >= 1 &&
              input.value <= static_cast<std::size_t>(screen.confidence->steps);
@@ -164,6 +158,9 @@ ScreenInput parse_input(const std::string& text, std::int64_t& screen) {
     screen = json.at("screen").get<std::int64_t>();
     if (found->second == ScreenAction::form) {
       return {found->second, 0, form_answers(json.at("value"))};
+    }
+    if (found->second == ScreenAction::answer || found->second == ScreenAction::correct) {
+      return {found->second, 0, {}, json.at("value").get<std::string>()};
     }
     const bool has_value = found->second != ScreenAction::go_on;
     const Json value = has_value ? json.at("value") : Json(0U);

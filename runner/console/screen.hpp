@@ -67,6 +67,7 @@ struct ScreenInput {
   ScreenAction action{};
   std::size_t value{};
   Participant::FormAnswers answers{};  // form
+  std::string text{};                  // answer, correct
   bool operator==(const ScreenInput& other) const = default;
 };
 // Whether that is one of the things that can be done with this screen.

@@ -66,6 +66,9 @@ void add_discrimination(const protocols::Block& block, const protocols::Protocol
   part.guess_rate = block.task->guess_rate(block, protocol);
   part.alternatives = block.alternatives > 0 ? block.alternatives : 2;
   part.steps = block.rating ? block.rating->steps : 0;
+  if (block.on_axis) {
+    part.axis = analysis::VariedAxis{block.on_axis->axis, 0.0, false, false};
+  }
   if (block.comparison) {
     const protocols::Comparison& comparison = *block.comparison;
     part.axis = analysis::VariedAxis{comparison.axis, comparison.standard, comparison.is_fraction,
@@ -113,7 +116,7 @@ analysis::StudyDesign design_of(const protocols::Protocol& protocol, results::Mo
                                {},
                                vote_of(block)};
     add_discrimination(block, protocol, part);
-    if (block.task->is_random(block)) {
+    if (block.task->is_random(block) && block.task->has_chance_level()) {
       part.redraw = redraw_of(protocol, i);
     }
     if (mode == results::Mode::simulated && block.task->needs_reference()) {

@@ -16,8 +16,8 @@ struct TrialInView {
 };
 struct AnswerInView {
   protocols::PlannedTrial trial;
-  std::vector<protocols::Option> options;
-  std::string response;  // as the task stores it
+  protocols::Answers answers;  // that could be given
+  std::string response;        // as the task stores it
 };
 
 // unknown: the device did not confirm zero force.
@@ -38,9 +38,9 @@ class Operator {
   virtual void force_is(ForceState /*force*/) {}
   virtual void answer_is_stored(const AnswerInView& /*answer*/) {}
 
-  // The participant corrects the last answer. Ready once that is stored, or carries the StoreError;
-  // throws InvalidInput if there is nothing to correct.
-  virtual std::shared_future<void> participant_corrects(std::size_t /*option*/) {
+  // The participant corrects the last answer, by a text that is one. Ready once that is stored, or
+  // carries the StoreError; throws InvalidInput if there is nothing to correct.
+  virtual std::shared_future<void> participant_corrects(const std::string& /*text*/) {
     throw core::InvalidInput{"there is nobody to correct an answer"};
   }
 

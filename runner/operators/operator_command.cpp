@@ -19,7 +19,7 @@ constexpr std::array<ActionInfo, 10> actions{
      {repeat, "repeat", ActionText::optional, "present the running trial again"},
      {skip, "skip", ActionText::optional, "end the running trial without an answer"},
      {correct, "correct", ActionText::required,
-      "N: the last answer was option N; the first one stays in the store"},
+      "ANSWER: the last answer was option N, or that number; the first one stays in the store"},
      {switch_to, "switch", ActionText::required, "N: render alternative N of the running trial"},
      {note, "note", ActionText::required, "TEXT: store a remark with its time"},
      {end, "end", ActionText::required, "REASON: end the session; all answers are kept"},

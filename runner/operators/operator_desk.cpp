@@ -20,6 +20,14 @@ std::size_t number_up_to(std::size_t most, const std::string& text) {
   return static_cast<std::size_t>(*number - 1);
 }
 
+std::string answer_of(const std::string& text, const protocols::Answers& answers) {
+  const std::optional<std::string> answer = answer_in(text, answers);
+  if (!answer) {
+    throw core::InvalidInput{fmt::format("'{}' is not {}", text, expected_answer(answers))};
+  }
+  return *answer;
+}
+
 bool is_over(const std::shared_future<void>& future) {
   return future.wait_for(std::chrono::seconds{0}) == std::future_status::ready;
 }
@@ -91,14 +99,14 @@ std::optional<int> OperatorDesk::trial_of(OperatorAction action) const {
   return trial_ ? std::optional{trial_->trial.number} : std::nullopt;
 }
 
-results::CorrectionRow OperatorDesk::correction(const std::string& option, results::GivenBy by,
+results::CorrectionRow OperatorDesk::correction(const std::string& text, results::GivenBy by,
                                                 std::string& detail) const {
   const protocols::PlannedTrial& trial = last_answer_->trial;
-  const std::size_t index = number_up_to(last_answer_->options.size(), option);
+  const std::string answer = answer_of(text, last_answer_->answers);
   results::CorrectionRow row;
   row.session_id = session_.id;
   row.number = trial.number;
-  row.response = trial.task->response(trial, session_.protocol.block(trial.block), index);
+  row.response = trial.task->response(trial, session_.protocol.block(trial.block), answer);
   row.is_correct =
       trial.task->is_correct(trial, session_.protocol.block(trial.block), row.response);
   row.given_by = by;
@@ -138,8 +146,8 @@ void OperatorDesk::apply(const OperatorCommand& command) {
 std::string OperatorDesk::said_of(const OperatorCommand& command,
                                   const results::OperatorActionRow& row) const {
   return command.action == OperatorAction::correct
-             ? last_answer_->options.at(number_up_to(last_answer_->options.size(), command.text))
-                   .label
+             ? label_of_answer(answer_of(command.text, last_answer_->answers),
+                               last_answer_->answers)
              : row.detail;
 }
 
@@ -238,12 +246,8 @@ void OperatorDesk::answer_is_stored(const AnswerInView& answer) {
   last_answer_ = answer;
 }
 
-std::shared_future<void> OperatorDesk::participant_corrects(std::size_t option) {
-  return post({OperatorAction::correct,
-               std::to_string(option + 1),
-               {},
-               results::GivenBy::participant})
-      .stored;
+std::shared_future<void> OperatorDesk::participant_corrects(const std::string& text) {
+  return post({OperatorAction::correct, text, {}, results::GivenBy::participant}).stored;
 }
 
 void OperatorDesk::force_is(ForceState force) {

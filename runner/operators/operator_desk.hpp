@@ -59,7 +59,7 @@ class OperatorDesk final : public Operator {
   void trial_is_over(std::optional<TrialRequest> carried_out) override;
   void force_is(ForceState force) override;
   void answer_is_stored(const AnswerInView& answer) override;
-  std::shared_future<void> participant_corrects(std::size_t option) override;
+  std::shared_future<void> participant_corrects(const std::string& text) override;
   bool is_paused() const override;
   std::optional<TrialRequest> request() const override;
   std::optional<std::size_t> take_switch() override;
@@ -72,7 +72,7 @@ class OperatorDesk final : public Operator {
   bool is_excluded() const;
   void apply(const OperatorCommand& command);
   std::string said_of(const OperatorCommand& command, const results::OperatorActionRow& row) const;
-  results::CorrectionRow correction(const std::string& option, results::GivenBy by,
+  results::CorrectionRow correction(const std::string& text, results::GivenBy by,
                                     std::string& detail) const;
 
   Session session_;

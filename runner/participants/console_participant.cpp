@@ -24,19 +24,20 @@ std::string upper_case_without_spaces(const std::string& line) {
   return word;
 }
 
-bool options_name_alternatives(const TrialPrompt& prompt) {
-  return prompt.alternative_of(0).has_value();
-}
-
 // "= B".
-std::optional<std::size_t> option_after_equals(const std::string& word,
+std::optional<std::string> option_after_equals(const std::string& word,
                                                const std::vector<protocols::Option>& options) {
   const auto option = word.starts_with('=')
                           ? std::ranges::find(options, word.substr(1), &protocols::Option::label)
                           : options.end();
-  return option == options.end()
-             ? std::nullopt
-             : std::optional{static_cast<std::size_t>(option - options.begin())};
+  return option == options.end() ? std::nullopt : std::optional{option->name};
+}
+
+// Where people see labels to switch among, they answer by them.
+std::optional<std::string> answer_typed(const std::string& line, const TrialPrompt& prompt) {
+  return prompt.answers_name_alternatives()
+             ? option_after_equals(upper_case_without_spaces(line), prompt.answers.options)
+             : answer_in(line, prompt.answers);
 }
 
 std::optional<std::size_t> number_in(const std::string& word, std::size_t most) {
@@ -146,15 +147,20 @@ void ConsoleParticipant::get_ready(const TrialPrompt& prompt) {
   say("\nTrial {} of {}{}. {}\n", prompt.number, prompt.total,
       prompt.block->is_practice ? " (practice)" : "", prompt.block->question);
   if (prompt.previous) {
-    say("  (correct and the number of an answer: what your last answer should have been)\n");
+    say("  (correct and {}: what your last answer should have been)\n",
+        expected_answer(prompt.previous->answers));
   }
-  const bool are_named = options_name_alternatives(prompt);
-  for (std::size_t i = 0; !are_named && i < prompt.options.size(); ++i) {
-    say("  {}  {}\n", i + 1, prompt.options[i].label);
+  const bool are_named = prompt.answers_name_alternatives();
+  const std::vector<protocols::Option>& options = prompt.answers.options;
+  for (std::size_t i = 0; !are_named && i < options.size(); ++i) {
+    say("  {}  {}\n", i + 1, options[i].label);
   }
   if (!prompt.alternative_labels.empty()) {
     say("  {}: feel that one.{}\n", fmt::join(prompt.alternative_labels, ", "),
-        are_named ? fmt::format("   = {}: choose it.", prompt.options.front().label) : "");
+        are_named ? fmt::format("   = {}: choose it.", options.front().label) : "");
+  }
+  if (prompt.answers.modulus) {
+    say("  {} is {}\n", prompt.alternative_labels.front(), *prompt.answers.modulus);
   }
 }
 
@@ -166,42 +172,42 @@ std::optional<std::string> ConsoleParticipant::next_line(const TrialPrompt& prom
     if (!line || asks_to_quit(*line)) {
       return std::nullopt;
     }
-    const std::string word = upper_case_without_spaces(*line);
-    if (!corrects(word, prompt, exploration)) {
-      return word;
+    if (!corrects(*line, prompt, exploration)) {
+      return line;
     }
   }
 }
 
-bool ConsoleParticipant::corrects(const std::string& word, const TrialPrompt& prompt,
+bool ConsoleParticipant::corrects(const std::string& line, const TrialPrompt& prompt,
                                   Exploration& exploration) const {
   constexpr std::string_view command{"CORRECT"};
-  if (!prompt.previous || !word.starts_with(command)) {
+  if (!prompt.previous || !upper_case_without_spaces(line).starts_with(command)) {
     return false;
   }
-  const auto option = number_in(word.substr(command.size()), prompt.previous->options.size());
-  if (!option) {
-    say("  please type correct and a number from 1 to {}\n", prompt.previous->options.size());
+  const std::string text = line.substr(std::min(line.size(), line.find_first_of("tT") + 1));
+  const auto answer = answer_in(text, prompt.previous->answers);
+  if (!answer) {
+    say("  please type correct and {}\n", expected_answer(prompt.previous->answers));
     return true;
   }
-  const std::shared_future<void> stored = prompt.previous->correct(*option);
+  const std::shared_future<void> stored = prompt.previous->correct(text);
   while (stored.wait_for(std::chrono::seconds{0}) != std::future_status::ready &&
          exploration.is_running()) {
     exploration.pass_time(0.01);
   }
   try {
     stored.get();
-    say("  your last answer is now {}\n", prompt.previous->options[*option].label);
+    say("  your last answer is now {}\n", label_of_answer(*answer, prompt.previous->answers));
   } catch (const results::StoreError& error) {
     say("  your last answer is not corrected: {}\n", error.what());
   }
   return true;
 }
 
-std::optional<std::size_t> ConsoleParticipant::perform(const TrialPrompt& prompt,
+std::optional<std::string> ConsoleParticipant::perform(const TrialPrompt& prompt,
                                                        Exploration& exploration) {
-  return prompt.alternative_labels.empty() ? number_of_answer(prompt, exploration)
-                                           : chosen_alternative(prompt, exploration);
+  return prompt.alternative_labels.empty() ? answer_by_itself(prompt, exploration)
+                                           : answer_among_alternatives(prompt, exploration);
 }
 
 void ConsoleParticipant::let_script_wait(const TrialPrompt& prompt, std::size_t alternative,
@@ -221,37 +227,34 @@ void ConsoleParticipant::let_script_wait(const TrialPrompt& prompt, std::size_t 
   }
 }
 
-std::optional<std::size_t> ConsoleParticipant::number_of_answer(const TrialPrompt& prompt,
+std::optional<std::string> ConsoleParticipant::answer_by_itself(const TrialPrompt& prompt,
                                                                 Exploration& exploration) {
-  while (const auto word = next_line(prompt, exploration)) {
-    if (const auto option = number_in(*word, prompt.options.size())) {
+  while (const auto line = next_line(prompt, exploration)) {
+    if (auto answer = answer_typed(*line, prompt)) {
       let_script_wait(prompt, 0, exploration);
-      return option;
+      return answer;
     }
-    say("  please type a number from 1 to {}, or quit\n", prompt.options.size());
+    say("  please type {}, or quit\n", expected_answer(prompt.answers));
   }
   return std::nullopt;
 }
 
-std::optional<std::size_t> ConsoleParticipant::chosen_alternative(const TrialPrompt& prompt,
-                                                                  Exploration& exploration) {
+std::optional<std::string> ConsoleParticipant::answer_among_alternatives(const TrialPrompt& prompt,
+                                                                         Exploration& exploration) {
   const std::vector<std::string>& labels = prompt.alternative_labels;
-  const bool are_named = options_name_alternatives(prompt);
-  while (const auto word = next_line(prompt, exploration)) {
-    const auto option = are_named ? option_after_equals(*word, prompt.options)
-                                  : number_in(*word, prompt.options.size());
-    if (option) {
-      return option;
+  while (const auto line = next_line(prompt, exploration)) {
+    if (auto answer = answer_typed(*line, prompt)) {
+      return answer;
     }
-    const auto alternative = index_of(*word, labels);
-    if (alternative) {
+    if (const auto alternative = index_of(upper_case_without_spaces(*line), labels)) {
       exploration.switch_to(*alternative);
       say("  now {} (takes effect once the finger is off the plate)\n", labels[*alternative]);
       let_script_wait(prompt, *alternative, exploration);
       continue;
     }
     say("  please type {} to feel one, {}, or quit\n", fmt::join(labels, ", "),
-        are_named ? "= and a label to choose it" : "a number to answer");
+        prompt.answers_name_alternatives() ? "= and a label to choose it"
+                                           : expected_answer(prompt.answers) + " to answer");
   }
   return std::nullopt;
 }

@@ -4,8 +4,9 @@
 #include "runner/participants/participant.hpp"
 #include "runner/terminal/line_input.hpp"
 namespace tapstudy::runner {
-// A person at the terminal. Questions go to stderr, answers come from the input: the number of an
-// answer; in trials with several alternatives, a label to feel that one and "= label" to choose it.
+// A person at the terminal. Questions go to stderr, answers come from the input: an answer as
+// protocols::answer_in takes it; in trials with several alternatives, a label to feel that one and
+// "= label" to choose it.
 // "quit" or end of input stops the session; a line that begins with a colon is the operator's.
 class ConsoleParticipant final : public Participant {
  public:
@@ -20,7 +21,7 @@ class ConsoleParticipant final : public Participant {
   FormAnswers fill_in(const protocols::Form& form) override;
   void wait_while(const std::function<bool()>& is_paused) override;
   void get_ready(const TrialPrompt& prompt) override;
-  std::optional<std::size_t> perform(const TrialPrompt& prompt, Exploration& exploration) override;
+  std::optional<std::string> perform(const TrialPrompt& prompt, Exploration& exploration) override;
   std::optional<int> confidence(const protocols::Confidence& scale) override;
   void feedback(bool is_correct, const std::string& right_label) override;
   void saved(const TrialPrompt& prompt) override;
@@ -40,10 +41,10 @@ class ConsoleParticipant final : public Participant {
                        Exploration& exploration) const;
   std::optional<std::string> next_line(const TrialPrompt& prompt, Exploration& exploration);
   // "correct 2": whether the word was that.
-  bool corrects(const std::string& word, const TrialPrompt& prompt, Exploration& exploration) const;
-  std::optional<std::size_t> number_of_answer(const TrialPrompt& prompt, Exploration& exploration);
-  std::optional<std::size_t> chosen_alternative(const TrialPrompt& prompt,
-                                                Exploration& exploration);
+  bool corrects(const std::string& line, const TrialPrompt& prompt, Exploration& exploration) const;
+  std::optional<std::string> answer_by_itself(const TrialPrompt& prompt, Exploration& exploration);
+  std::optional<std::string> answer_among_alternatives(const TrialPrompt& prompt,
+                                                       Exploration& exploration);
 
   LineInput& input_;
   std::function<void()> move_hand_;

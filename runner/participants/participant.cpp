@@ -5,11 +5,15 @@
 
 #include <algorithm>
 namespace tapstudy::runner {
-std::optional<std::size_t> TrialPrompt::alternative_of(std::size_t option) const {
-  const auto found = std::ranges::find(alternative_labels, options.at(option).label);
+std::optional<std::size_t> TrialPrompt::alternative_of(const std::string& answer) const {
+  const auto found = std::ranges::find(alternative_labels, answer);
   return found == alternative_labels.end()
-             ? std::nullopt
+             ? answers.judged
              : std::optional{static_cast<std::size_t>(found - alternative_labels.begin())};
+}
+
+bool TrialPrompt::answers_name_alternatives() const {
+  return !answers.options.empty() && alternative_of(answers.options.front().name).has_value();
 }
 
 std::string to_text(const TooEarly& too_early) {

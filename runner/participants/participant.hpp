@@ -14,16 +14,18 @@ struct TrialPrompt {
   int number{};
   int total{};
   const protocols::Block* block{};
-  std::vector<protocols::Option> options;  // the allowed answers
+  protocols::Answers answers;  // the allowed ones
   std::vector<std::string>
       alternative_labels;  // to switch among; empty: there is nothing to switch
-  // The alternative that an option names; nullopt: it names none, "same" for one.
-  std::optional<std::size_t> alternative_of(std::size_t option) const;
+  // The alternative that an answer names, or that all answers are about; nullopt: none, as "same".
+  std::optional<std::size_t> alternative_of(const std::string& answer) const;
+  bool answers_name_alternatives() const;
   // The participant's last answer, where it may still be corrected.
   struct Previous {
-    std::vector<protocols::Option> options;
-    // Ready once the correction is stored, or carries the StoreError.
-    std::function<std::shared_future<void>(std::size_t option)> correct;
+    protocols::Answers answers;
+    // Takes a text that is an answer. Ready once the correction is stored, or carries the
+    // StoreError.
+    std::function<std::shared_future<void>(const std::string& text)> correct;
   };
   std::optional<Previous> previous{};
 };
@@ -55,8 +57,9 @@ class Participant {
   virtual void arrive() {}
   // Before the trial's loop starts.
   virtual void get_ready(const TrialPrompt& /*prompt*/) {}
-  // Explores and answers: the index of an option, or nullopt if the trial could not be finished.
-  virtual std::optional<std::size_t> perform(const TrialPrompt& prompt,
+  // Explores and answers: one of the prompt's answers, or nullopt if the trial could not be
+  // finished.
+  virtual std::optional<std::string> perform(const TrialPrompt& prompt,
                                              Exploration& exploration) = 0;
   // How sure the participant is of the answer just given; nullopt if that is not said.
   virtual std::optional<int> confidence(const protocols::Confidence& /*scale*/) { return {}; }

@@ -147,6 +147,15 @@ double SimulatedObserver::distance(const Percept& percept, const std::string& st
   return sum / (noise_variance_db2() * static_cast<double>(felt.size()));
 }
 
+double SimulatedObserver::level_db(const Percept& percept) const {
+  const Features felt = mean_of(percept.felt);
+  double sum = 0.0;
+  for (std::size_t i = 0; i < felt.size(); ++i) {
+    sum += felt.at(i) + percept.noise.at(i);
+  }
+  return sum / static_cast<double>(felt.size());
+}
+
 Features SimulatedObserver::difference(std::span<const FeltTap> felt, const Memory& memory) const {
   Features mean{};
   for (const FeltTap& tap : felt) {

@@ -42,6 +42,8 @@ class SimulatedObserver {
   // of two was tapped at say nothing.
   double distance(const Percept& first, const Percept& second) const;
   double distance(const Percept& percept, const std::string& stimulus) const;
+  // The mean over taps and features; noise alone if nothing was felt.
+  double level_db(const Percept& percept) const;
   // Which of several felt alternatives is most like the remembered plate? One that was not felt is
   // excluded; if none was felt, a guess.
   std::size_t most_similar(const std::vector<std::vector<FeltTap>>& felt,

@@ -67,6 +67,9 @@ class SimulatedParticipant::Touch final : public protocols::SimulatedTouch {
   double distance(std::size_t alternative, const std::string& stimulus) override {
     return self_.observer_.distance(percept(alternative), stimulus);
   }
+  double level_db(std::size_t alternative) override {
+    return self_.observer_.level_db(percept(alternative));
+  }
   core::Rng& rng() override { return self_.hand_rng_; }
 
  private:
@@ -156,7 +159,7 @@ void SimulatedParticipant::timed_out(const TrialPrompt& prompt, bool is_presente
   }
 }
 
-std::optional<std::size_t> SimulatedParticipant::perform(const TrialPrompt& prompt,
+std::optional<std::string> SimulatedParticipant::perform(const TrialPrompt& prompt,
                                                          Exploration& exploration) {
   const std::size_t alternatives = std::max<std::size_t>(1, prompt.alternative_labels.size());
   Touch touch{*this, alternatives, exploration};

@@ -4,7 +4,7 @@
 namespace tapstudy::runner {
 namespace {
 // Labels of the alternatives that still have to be touched.
-std::vector<std::string> untouched(const TrialPrompt& prompt, std::size_t answer,
+std::vector<std::string> untouched(const TrialPrompt& prompt, const std::string& answer,
                                    const Exploration& exploration) {
   const std::optional<std::size_t> answered = prompt.alternative_of(answer);
   std::vector<std::string> labels;
@@ -18,7 +18,7 @@ std::vector<std::string> untouched(const TrialPrompt& prompt, std::size_t answer
 }
 }  // namespace
 
-std::optional<TooEarly> too_early(const TrialPrompt& prompt, std::size_t answer,
+std::optional<TooEarly> too_early(const TrialPrompt& prompt, const std::string& answer,
                                   const Exploration& exploration) {
   using Reason = TooEarly::Reason;
   const protocols::ExploreLimits& limits = prompt.block->explore;

@@ -7,7 +7,7 @@
 #include "runner/trial_loop/exploration.hpp"
 namespace tapstudy::runner {
 // Why an answer given now would be too early; nullopt: it is not.
-std::optional<TooEarly> too_early(const TrialPrompt& prompt, std::size_t answer,
+std::optional<TooEarly> too_early(const TrialPrompt& prompt, const std::string& answer,
                                   const Exploration& exploration);
 
 // An exploration that ends once the block's time is up.

@@ -22,15 +22,15 @@ void ask(const TrialInView& view, Exploration& exploration, const SessionParts& 
   const double latest_s =
       view.prompt.block->explore.max_seconds.value_or(std::numeric_limits<double>::infinity()) +
       handover_s;
-  while (const auto option = parts.participant.perform(view.prompt, limited)) {
+  while (const auto answer = parts.participant.perform(view.prompt, limited)) {
     if (limited.time_s() > latest_s) {
       break;
     }
-    const std::optional<TooEarly> why = too_early(view.prompt, *option, limited);
+    const std::optional<TooEarly> why = too_early(view.prompt, *answer, limited);
     const bool is_rendering = limited.is_rendering();
     if (!why && is_rendering) {
       presentation.answer =
-          Answer{trial.task->response(trial, parts.protocol.block(trial.block), *option),
+          Answer{trial.task->response(trial, parts.protocol.block(trial.block), *answer),
                  std::min(limited.time_s(), latest_s - handover_s)};
       return;
     }

@@ -99,7 +99,7 @@ TrialPrompt TrialEngine::prompt_of(const PlannedTrial& trial, int total) const {
   return {trial.number,
           total,
           &block,
-          trial.task->options(block, parts_.protocol),
+          trial.task->answers(block, parts_.protocol),
           trial.task->alternative_labels(trial),
           correctable()};
 }
@@ -108,8 +108,8 @@ std::optional<TrialPrompt::Previous> TrialEngine::correctable() const {
   if (!last_answer_ || !parts_.protocol.block(last_answer_->trial.block).allows_correction) {
     return std::nullopt;
   }
-  return TrialPrompt::Previous{last_answer_->options, [this](std::size_t option) {
-                                 return parts_.by.participant_corrects(option);
+  return TrialPrompt::Previous{last_answer_->answers, [this](const std::string& text) {
+                                 return parts_.by.participant_corrects(text);
                                }};
 }
 
@@ -186,10 +186,10 @@ void TrialEngine::give_feedback(const PlannedTrial& trial, const TrialPrompt& pr
   const auto is_right = [&](const std::string& other) {
     return trial.task->is_correct(trial, block, other).value_or(false);
   };
-  for (std::size_t i = 0; i < prompt.options.size(); ++i) {
-    if (is_right(trial.task->response(trial, block, i))) {
+  for (const protocols::Option& option : prompt.answers.options) {
+    if (is_right(trial.task->response(trial, block, option.name))) {
       parts_.states.enter(SessionState::feedback, trial.number);
-      parts_.participant.feedback(is_right(response), prompt.options[i].label);
+      parts_.participant.feedback(is_right(response), option.label);
       return;
     }
   }
@@ -238,7 +238,7 @@ void TrialEngine::store(const PlannedTrial& trial, Presentation presentation, En
 // It is stored.
 void TrialEngine::note_answer(const PlannedTrial& trial, const TrialPrompt& prompt,
                               const std::string& response) {
-  last_answer_ = AnswerInView{trial, prompt.options, response};
+  last_answer_ = AnswerInView{trial, prompt.answers, response};
   parts_.by.answer_is_stored(*last_answer_);
   adaptive_->observe(trial, response);
   practice_.add(trial, response);

@@ -64,7 +64,7 @@ TEST_CASE("alternatives that are physically the same are told apart by chance in
   std::istringstream rows{
       sql(directory,
           "SELECT block, sum(is_correct), count(*) FROM current_response "
-          "JOIN trial USING (trial_id) WHERE block <> 'paired' GROUP BY block")};
+          "JOIN trial USING (trial_id) WHERE is_correct IS NOT NULL GROUP BY block")};
   std::string block;
   int right = 0;
   int answers = 0;
@@ -83,6 +83,88 @@ TEST_CASE("alternatives that are physically the same are told apart by chance in
                     "JOIN alternative USING (trial_id) JOIN trial USING (trial_id) "
                     "WHERE block = 'paired' AND position = 0"));
   CHECK(first == Approx(0.5).margin(4.0 * 0.5 / std::sqrt(9.0 * 240.0)));
+}
+
+TEST_CASE("a magnitude does not depend on the name of what was felt", "[end_to_end][slow]") {
+  const TempDirectory directory;
+  const std::string file = directory / "study.yaml";
+  std::string text = testing::contents(testing::source("tests/data/same_alternatives.yaml"));
+  const auto first = text.find("  - name: comparison");
+  text.erase(first, text.find("  - {name: magnitude") - first);
+  testing::write(file, testing::replaced(text, ", reference: one", ""));
+  REQUIRE(testing::tapstudy({"simulate", file, "--participants", "9", "--seed", "4", "--out",
+                             directory / "study"})
+              .exit_code == 0);
+  std::istringstream rows{
+      sql(directory,
+          "SELECT count(*), avg(m), avg(m * m) FROM (SELECT stimulus, log(response) AS m "
+          "FROM current_response JOIN trial USING (trial_id) JOIN alternative USING (trial_id) "
+          "WHERE block = 'magnitude' AND position = 1) GROUP BY stimulus")};
+  std::vector<double> means;
+  double variance = 0.0;
+  double count = 0.0;
+  double mean = 0.0;
+  double square = 0.0;
+  while (rows >> count >> mean >> square) {
+    CHECK(count == 9 * 120);
+    means.push_back(mean);
+    variance += (square - mean * mean) / count;
+  }
+  REQUIRE(means.size() == 2);
+  CHECK(variance > 0.0);
+  CHECK(means[0] == Approx(means[1]).margin(4.0 * std::sqrt(variance)));
+  // as strong as the modulus, which it is: the mean of the logarithms is that of 10
+  CHECK(means[0] == Approx(1.0).margin(4.0 * std::sqrt(variance)));
+}
+
+TEST_CASE("a stronger sinusoid is estimated higher by who only feels it", "[end_to_end][slow]") {
+  const TempDirectory directory;
+  const std::string file = directory / "study.yaml";
+  std::string text = testing::contents(testing::source("tests/data/same_alternatives.yaml"));
+  text.replace(text.find("blocks:"), text.find("simulation:") - text.find("blocks:"),
+               "blocks:\n  - {name: strength, task: magnitude, question: Strong, stimuli: "
+               "[family], values: [0.06, 0.6, 6], repetitions: 20}\n");
+  text = testing::replaced(text, "{from: 3, to: 6}", "{from: 0.06, to: 6}");
+  testing::write(file, testing::replaced(text, ", reference: one", ""));
+  REQUIRE(testing::tapstudy({"simulate", file, "--participants", "6", "--seed", "3", "--out",
+                             directory / "study"})
+              .exit_code == 0);
+  const auto report =
+      testing::tapstudy({"report", directory / "study", "--out", directory / "report"});
+  INFO(report.standard_output << report.standard_error);
+  REQUIRE(report.exit_code == 0);
+  std::istringstream rows{
+      sql(directory,
+          "SELECT avg(log(response)) FROM current_response JOIN trial USING (trial_id) "
+          "JOIN axis_value USING (trial_id) GROUP BY value ORDER BY value")};
+  std::vector<double> means(3);
+  rows >> means[0] >> means[1] >> means[2];
+  CHECK(means[0] < means[1]);
+  CHECK(means[1] < means[2]);
+  CHECK_THAT(report.standard_output, Contains("power law"));
+}
+
+TEST_CASE("what is no magnitude is refused in words and asked for again", "[end_to_end][threads]") {
+  const TempDirectory directory;
+  const std::string file = directory / "study.yaml";
+  std::string text = testing::contents(testing::source("tests/data/every_task.yaml"));
+  const auto first = text.find("  - name: comparison");
+  text.erase(first, text.find("  - {name: magnitude") - first);
+  testing::write(file, testing::replaced(text, ", reference: one", ""));
+  const auto result = session(directory, file,
+                              "0\n-3\nnan\ninf\n1e9\ntwelve\n" + std::string(1000, '9') +
+                                  "\n12.50\ncorrect x\ncorrect 13\na\nb\n0\n7\n");
+  INFO(result.standard_error);
+  CHECK(result.exit_code == 0);
+  CHECK(sql(directory, "SELECT response FROM current_response ORDER BY trial_id") == "13\n7\n");
+  const std::string& said = result.standard_error;
+  std::size_t refusals = 0;
+  for (auto at = said.find("please type a number above 0"); at != std::string::npos;
+       at = said.find("please type a number above 0", at + 1)) {
+    ++refusals;
+  }
+  CHECK(refusals == 7);
+  CHECK_THAT(said, Contains("A is 10") && Contains("please type correct and a number above 0"));
 }
 
 TEST_CASE("a staircase in a session goes down after right answers and up after a wrong one",
@@ -178,6 +260,12 @@ TEST_CASE("what cannot be compared is refused at its line", "[end_to_end]") {
        "is what the procedures make it"},
       {"    procedures:\n      - constant: {values: [0.0], repetitions: 240}\n", "",
        "procedures: is missing"},
+      {"stimuli: [one, other], modulus", "stimuli: [family], values: [4, 3], modulus",
+       "are not in increasing order"},
+      {"stimuli: [one, other], modulus", "stimuli: [family], values: [4, 9], modulus",
+       "9 is not allowed (from 3 to 6"},
+      {"stimuli: [one, other], modulus", "stimuli: [one, other], values: [4], modulus",
+       "values are of stimuli that have `vary`"},
       {"task: abx, question: \"Which is X?\", stimuli: [one, other]",
        "task: abx, question: \"Which is X?\", stimuli: [one]", "at least two stimuli"},
   }));

@@ -207,6 +207,26 @@ def answer_by_keyboard(driver, index):
     press(driver, Keys.ENTER)
 
 
+def has_number_field(driver):
+    return bool(find_all(driver, "#number-answer"))
+
+
+def answer_number_by_mouse(driver, number):
+    """Enters the number of a trial's answer and confirms it."""
+    field = find(driver, "#number-answer")
+    field.clear()
+    field.send_keys(number)
+    find(driver, "#confirm").click()
+
+
+def answer_number_by_keyboard(driver, number):
+    driver.execute_script("document.querySelector('#number-answer').value = ''")
+    press(driver, *number)
+    wait_until(driver, f"{number} in the field",
+               lambda: find(driver, "#number-answer").get_property("value") == number)
+    press(driver, Keys.ENTER)
+
+
 def focused(driver):
     return driver.switch_to.active_element
 

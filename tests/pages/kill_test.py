@@ -181,7 +181,7 @@ class Participant:
                 time.sleep(self.chance.uniform(0, 0.1))
             value = self.chance.randrange(len(STIMULI))
             self.ledger.sent[self.name, self.trial] = [STIMULI[value], None]
-            return {"screen": number, "action": "answer", "value": value}
+            return {"screen": number, "action": "answer", "value": str(value + 1)}
         if screen["kind"] == "confidence":
             value = self.chance.randint(1, screen["confidence"]["steps"])
             self.ledger.sent[self.name, self.trial][1] = value

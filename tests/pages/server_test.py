@@ -108,7 +108,7 @@ class ServerTest(unittest.TestCase):
         end = time.monotonic() + 60
         while self.session.process.poll() is None and time.monotonic() < end:
             try:
-                post(self.at, {"screen": next_trial_screen(self.at), "action": "answer", "value": 0})
+                post(self.at, {"screen": next_trial_screen(self.at), "action": "answer", "value": "1"})
             except NETWORK:
                 pass  # closed in the flood, or the session is over
             time.sleep(0.2)

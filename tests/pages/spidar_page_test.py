@@ -50,7 +50,7 @@ class SpidarPageTest(unittest.TestCase):
         end = time.monotonic() + 60
         while session.process.poll() is None and time.monotonic() < end:
             try:
-                post(page, {"screen": next_trial_screen(page), "action": "answer", "value": 0})
+                post(page, {"screen": next_trial_screen(page), "action": "answer", "value": "1"})
             except NETWORK:
                 time.sleep(0.05)  # the program is ending
         return session

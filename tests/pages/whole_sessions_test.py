@@ -241,29 +241,47 @@ class WholeSession(unittest.TestCase):
             self.answer_until_accepted(browser.answer_by_mouse, 0)
         self.finish()
 
+    def give_number(self, number, by_keys):
+        """After what is none; the answer of the trial before is corrected where that may be."""
+        for nonsense in ("0", "1.2.3", "1" * 30):
+            (browser.answer_number_by_keyboard if by_keys else browser.answer_number_by_mouse)(self.driver, nonsense)
+            browser.wait_for_status(self.driver, "a number above 0")
+        if browser.find_all(self.driver, ".previous #number-correction"):
+            browser.find(self.driver, ".previous summary").click()
+            browser.find(self.driver, "#number-correction").send_keys("13.5")
+            browser.find(self.driver, ".previous button").click()
+            browser.wait_for_status(self.driver, "is corrected")
+        self.answer_until_accepted(
+            browser.answer_number_by_keyboard if by_keys else browser.answer_number_by_mouse, "12.5")
+
     def test_every_task_is_answered_by_mouse_and_by_keyboard(self):
         self.start("tests/data/every_task.yaml", width=375, height=800)
-        alternatives = {"comparison": 2, "same_different": 2, "odd_one_out": 3, "abx": 3, "paired": 2}
+        alternatives = {"comparison": 2, "same_different": 2, "odd_one_out": 3, "abx": 3, "paired": 2, "with_modulus": 2}
         shown = set()
-        for number in range(1, 21):
+        for number in range(1, 23):
             screen = self.next_trial(number)
             feels = browser.find_all(self.driver, ".feel")
             by_keys = number % 2 == 0
             for index in range(len(feels)):
                 (browser.feel_by_keyboard if by_keys else browser.feel_by_mouse)(self.driver, index)
-            if len(feels) not in shown or not feels:
+            if len(feels) not in shown or not feels or number > 20:
                 self.check_screen(f"task_{number}")
                 shown.add(len(feels))
-            self.answer_until_accepted(browser.answer_by_keyboard if by_keys else browser.answer_by_mouse, 0)
+            if browser.has_number_field(self.driver):
+                self.give_number(number, by_keys)
+            else:
+                self.answer_until_accepted(browser.answer_by_keyboard if by_keys else browser.answer_by_mouse, 0)
         self.finish()
         counted = dict(self.session.rows(
             "SELECT block, max(position) + 1 FROM alternative JOIN trial USING (trial_id) "
-            "WHERE task <> 'rating' GROUP BY block"))
+            "WHERE block NOT IN ('rating', 'magnitude') GROUP BY block"))
         self.assertEqual(counted, alternatives)
         answers = dict(self.session.rows(
             "SELECT block, group_concat(DISTINCT response) FROM response JOIN trial USING (trial_id) GROUP BY block"))
         self.assertEqual(answers["same_different"], "same")
         self.assertEqual(answers["abx"], "A")
+        self.assertEqual(answers["magnitude"], "12.5,13.5")  # and its correction
+        self.assertEqual(answers["with_modulus"], "12.5")
         self.assertEqual(answers["rating"], "1")
 
     def test_a_page_that_vanishes_comes_back_to_the_same_question(self):

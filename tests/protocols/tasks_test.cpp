@@ -49,8 +49,8 @@ TEST_CASE("exactly one answer is right where one is, and it names what differs",
   const auto right_of = [&](const protocols::PlannedTrial& trial) {
     const protocols::Block& block = protocol.block(trial.block);
     std::vector<std::string> right;
-    for (std::size_t i = 0; i < trial.task->options(block, protocol).size(); ++i) {
-      const std::string response = trial.task->response(trial, block, i);
+    for (const protocols::Option& option : trial.task->answers(block, protocol).options) {
+      const std::string response = trial.task->response(trial, block, option.name);
       if (trial.task->is_correct(trial, block, response).value_or(false)) {
         right.push_back(response);
       }

@@ -38,7 +38,7 @@ export function showTrial(state, actions) {
       el("dl", {},
         ...(trial.block ? row(word("block"), trial.block) : []),
         ...row(word("question"), trial.question),
-        ...(trial.options?.length ? row(word("options"), trial.options.join(" · ")) : [])),
+        ...(trial.answers?.options.length ? row(word("options"), trial.answers.options.join(" · ")) : [])),
       ...(alternatives.length
         ? [el("h3", {}, word("alternatives")),
           el("ul", { className: "plain" }, ...alternatives.map((one, index) => alternativeRow(one, index, trial, actions)))]
@@ -47,13 +47,18 @@ export function showTrial(state, actions) {
   });
 }
 
-function correction({ number, options }, actions) {
-  const select = el("select", { id: "correct-to" },
+function correctionField({ kind, options }) {
+  if (kind !== "option") return el("input", { type: "text", id: "correct-to", autocomplete: "off" });
+  return el("select", { id: "correct-to" },
     ...options.map((label, index) => el("option", { value: String(index + 1) }, `${index + 1} ${label}`)));
-  const button = el("button", { type: "button", onclick: () => actions.send(`correct @${number} ${select.value}`, word("action_correct")) },
+}
+
+function correction({ number, answers }, actions) {
+  const field = correctionField(answers);
+  const button = el("button", { type: "button", onclick: () => actions.send(`correct @${number} ${field.value.trim()}`, word("action_correct")) },
     word("correct_do"));
   button.dataset.action = "correct";
-  return [el("label", { htmlFor: "correct-to" }, word("correct_to")), el("div", { className: "row" }, select, button)];
+  return [el("label", { htmlFor: "correct-to" }, word("correct_to")), el("div", { className: "row" }, field, button)];
 }
 
 export function showLastAnswer(state, actions) {
@@ -65,7 +70,7 @@ export function showLastAnswer(state, actions) {
     const response = answer.response ?? word("response_hidden");
     return [
       el("p", { className: "last-line" }, word("last_line", { number: answer.number, response })),
-      ...(hasCorrection && answer.options?.length ? correction(answer, actions) : []),
+      ...(hasCorrection ? correction(answer, actions) : []),
     ];
   });
 }

@@ -60,10 +60,10 @@ async function actBeside(action, value, failed) {
   }
 }
 const feel = (alternative) => actBeside("switch", alternative, "not_switched");
-const correct = (option) => actBeside("correct", option, "correction_failed");
+const correct = (text) => actBeside("correct", text, "correction_failed");
 
 function identity({ kind, number, trial, form }) {
-  if (kind === "trial") return JSON.stringify([kind, trial.number, trial.question, trial.options, trial.alternatives]);
+  if (kind === "trial") return JSON.stringify([kind, trial.number, trial.question, trial.answers, trial.alternatives]);
   if (kind === "form") return JSON.stringify([kind, form]);
   return JSON.stringify([kind, number]);
 }

@@ -1,22 +1,23 @@
-// A question with answers to pick from, and the button that sends the picked one.
+// A question with an answer to pick or to enter, and the button that sends it.
 
 import { el } from "./dom.js";
 import { pickedValue } from "./radio_cards.js";
 import { word } from "./words.js";
 
-// send(value as text) is called once an answer is picked and confirmed.
-export function question({ title, className, body, say, send }) {
+// valueOf(element): the answer as text, null as long as there is none: `missing` is said then.
+// send(value as text) is called once there is one and it is confirmed.
+export function question({ title, className, body, say, send, valueOf = pickedValue, missing = word("pick_first") }) {
   const confirm = el("button", { type: "submit", className: "main", id: "confirm", "aria-disabled": "true" }, word("confirm"));
   const element = el("form", { className, noValidate: true, autocomplete: "off" },
     el("fieldset", {}, el("legend", {}, el("h1", { tabIndex: -1 }, title)), ...body),
     confirm);
 
-  element.addEventListener("change", () => {
-    confirm.setAttribute("aria-disabled", String(pickedValue(element) === null));
-  });
+  const follow = () => confirm.setAttribute("aria-disabled", String(valueOf(element) === null));
+  element.addEventListener("change", follow);
+  element.addEventListener("input", follow);
   function submit() {
-    const value = pickedValue(element);
-    if (value === null) say(word("pick_first"));
+    const value = valueOf(element);
+    if (value === null) say(missing);
     else send(value);
     return true;
   }

@@ -1,16 +1,10 @@
 // A trial: which option is this, or which of several alternatives to feel is the right one.
 
+import { answerField, cardOf, otherAnswer } from "./answer_fields.js";
 import { el } from "./dom.js";
 import { question } from "./question.js";
-import { newGroupName, pickNumber, radioCard } from "./radio_cards.js";
+import { newGroupName } from "./radio_cards.js";
 import { word } from "./words.js";
-
-function optionCards(options) {
-  const group = newGroupName();
-  const cards = options.map((label, index) =>
-    radioCard({ group, value: index, label, key: index < 9 ? String(index + 1) : null }));
-  return el("div", { className: "options" }, ...cards);
-}
 
 const letterOf = (label, index) =>
   /^[a-z]$/i.test(label) ? label.toLowerCase() : String.fromCharCode("a".charCodeAt(0) + index);
@@ -20,16 +14,14 @@ function alternativeCard({ label, index, option, group, feel }) {
   const button = el("button", { type: "button", className: "feel", "aria-pressed": "false", onclick: () => feel(index) },
     el("span", {}, word("feel", { label })));
   if (option < 0) return el("div", { className: "alternative only-felt" }, button);
-  const choose = radioCard({
-    group, value: option, label: word("this_one"), key: option < 9 ? String(option + 1) : null,
-    spokenLabel: `${word("this_one")}: ${label}`,
-  });
+  const choose = cardOf({ group, option, label });
   return el("div", { className: "alternative" }, button, choose);
 }
 
-function hint(labels) {
+function hint(labels, { options, modulus }) {
   const keys = labels.map((label, index) => letterOf(label, index).toUpperCase()).join(", ");
-  return el("p", { className: "hint" }, word("feel_hint"), " ",
+  const told = modulus === null ? "" : ` ${word("modulus", { label: labels[0], number: modulus })}`;
+  return el("p", { className: "hint" }, word(options.length > 0 ? "feel_hint" : "feel_hint_number"), told, " ",
     el("span", { className: "keys" }, word("feel_keys", { keys })));
 }
 
@@ -47,38 +39,42 @@ function showCurrent(element, current) {
 }
 
 // The last answer, as long as it may be corrected.
-function lastAnswer(labels, correct) {
-  const buttons = labels.map((label, index) =>
-    el("button", { type: "button", onclick: () => correct(index) }, label));
+function lastAnswer(answers, say, correct) {
   return el("details", { className: "previous" },
     el("summary", {}, word("correct_last")),
     el("p", { className: "hint" }, word("correct_last_hint")),
-    el("div", { className: "options" }, ...buttons));
+    ...otherAnswer(answers, say, correct));
 }
 
 export function trialScreen({ trial }, { send, feel, correct, say }) {
   const labels = trial.alternatives ?? [];
   let current = trial.current;
   const feelOther = (index) => { if (index !== current) feel(index); };
-  const beside = labels.includes(trial.options[0]) ? [] : [optionCards(trial.options)];
+  const { answers } = trial;
+  const field = answerField(answers, labels.includes(answers.options[0]));
   const asked = question({
     title: trial.question,
     className: "trial",
     body: labels.length > 0
-      ? [hint(labels), alternativeCards(labels, trial.options, feelOther), ...beside]
-      : [optionCards(trial.options)],
+      ? [hint(labels, answers), alternativeCards(labels, answers.options, feelOther), ...field.body]
+      : field.body,
     say,
-    send: (value) => send("answer", Number(value)),
+    valueOf: field.valueOf,
+    missing: field.missing,
+    send: (value) => send("answer", value),
   });
-  if (trial.previous) asked.element.append(lastAnswer(trial.previous, correct));
+  if (trial.previous) asked.element.append(lastAnswer(trial.previous, say, correct));
   showCurrent(asked.element, current);
 
   function press(key) {
     const index = labels.findIndex((label, at) => letterOf(label, at) === key.toLowerCase());
-    if (index < 0) return pickNumber(asked.element, key);
+    if (index < 0) return field.press(asked.element, key);
     feelOther(index);
     return true;
   }
+  asked.element.querySelector("#number-answer")?.addEventListener("keydown", (event) => {
+    if (/^[a-z]$/i.test(event.key) && !event.ctrlKey && !event.metaKey && press(event.key)) event.preventDefault();
+  });
   function update(screen) {
     current = screen.trial.current;
     if (!screen.trial.correction) return showCurrent(asked.element, current);

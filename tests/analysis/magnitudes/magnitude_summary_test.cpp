@@ -103,11 +103,23 @@ TEST_CASE("where no exponent can be had the report says why and gives the means"
   BlockDesign without_axis = design_of();
   without_axis.axis.reset();
   formats = reported(statistic, without_axis, estimates(0.6, 4));
-  CHECK(formats.json["power_law"][0]["not_computed_because"] ==
-        "its trials have no value on an axis");
+  CHECK(formats.json["power_law"].empty());
+  CHECK_THAT(formats.text, Contains("the stimuli have no values on an axis"));
   CHECK(formats.json["means"].size() == 1);
   CHECK(formats.json["means"][0]["value"].is_null());
   CHECK_THAT(reported(statistic, design_of(), {}).text, Contains("There are no answers"));
+}
+
+TEST_CASE("a modulus beside what is judged changes nothing but what is judged",
+          "[analysis][magnitudes]") {
+  auto answers = estimates(0.6, 4);
+  const auto alone = reported(statistic, design_of(), answers).json;
+  for (results::AnswerRow& answer : answers) {
+    answer.alternatives.insert(answer.alternatives.begin(), {0, "A", "modulus"});
+    answer.alternatives.back().position = 1;
+    answer.stimulus.clear();
+  }
+  CHECK(reported(statistic, design_of(), answers).json == alone);
 }
 
 TEST_CASE("a magnitude is a number above 0", "[analysis][magnitudes]") {

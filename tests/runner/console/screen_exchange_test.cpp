@@ -10,11 +10,11 @@ using namespace tapstudy::runner;
 namespace {
 Screen trial_screen() {
   TrialPrompt prompt;
-  prompt.options = {{"mdf", "MDF"}, {"acrylic", "acrylic"}};
+  prompt.answers.options = {{"mdf", "MDF"}, {"acrylic", "acrylic"}};
   return {.kind = ScreenKind::trial, .trial = TrialScreen{prompt, 0, {}}};
 }
-const ScreenInput first{ScreenAction::answer, 0};
-const ScreenInput second{ScreenAction::answer, 1};
+const ScreenInput first{ScreenAction::answer, 0, {}, "1"};
+const ScreenInput second{ScreenAction::answer, 0, {}, "2"};
 }  // namespace
 
 TEST_CASE("an answer belongs to one screen, is taken once, and may be sent again",
@@ -68,7 +68,9 @@ TEST_CASE("a page that says it is alive is gone once it is silent", "[runner][co
 TEST_CASE("a screen takes what can be done with it and nothing else", "[runner][console]") {
   const Screen trial = trial_screen();
   CHECK(accepts(trial, second));
-  CHECK_FALSE(accepts(trial, {ScreenAction::answer, 2}));
+  for (const char* const text : {"0", "3", "-1", "1.5", "mdf", ""}) {
+    CHECK_FALSE(accepts(trial, {ScreenAction::answer, 0, {}, text}));
+  }
   CHECK_FALSE(accepts(trial, {ScreenAction::switch_to, 0}));  // there is nothing to switch
   CHECK_FALSE(accepts(trial, {ScreenAction::go_on, 0}));
   const Screen sure{.kind = ScreenKind::confidence, .confidence = protocols::Confidence{}};
@@ -100,14 +102,15 @@ TEST_CASE("a form is taken when all that it requires is answered, and nothing el
 
 TEST_CASE("what is no input is refused, whatever it is", "[runner][console]") {
   std::int64_t screen = 0;
-  CHECK(parse_input(R"({"screen":7,"action":"answer","value":1})", screen).value == 1);
+  CHECK(parse_input(R"({"screen":7,"action":"switch","value":1})", screen).value == 1);
+  CHECK(parse_input(R"({"screen":7,"action":"answer","value":"12.5"})", screen).text == "12.5");
   CHECK(screen == 7);
   for (const char* const text :
        {"", "{", "[]", "null", R"({"screen":7})", R"({"screen":7,"action":"quit"})",
         R"({"screen":"7","action":"go_on"})", R"({"screen":7,"action":"answer"})",
-        R"({"screen":7,"action":"answer","value":-1})",
-        R"({"screen":7,"action":"answer","value":1.5})",
-        R"({"screen":7,"action":"answer","value":"1"})",
+        R"({"screen":7,"action":"switch","value":-1})",
+        R"({"screen":7,"action":"switch","value":1.5})",
+        R"({"screen":7,"action":"answer","value":1})",
         R"({"screen":7,"action":["answer"],"value":1})", R"({"screen":7,"action":"form"})",
         R"({"screen":7,"action":"form","value":{"a":null}})",
         R"({"screen":7,"action":"form","value":{"a":{"b":1}}})"}) {

@@ -56,8 +56,7 @@ class Scripted final : public Participant {
  public:
   explicit Scripted(std::vector<std::string> commands) : commands_{std::move(commands)} {}
   OperatorDesk* desk{nullptr};
-  std::optional<std::size_t> perform(const TrialPrompt& /*prompt*/,
-                                     Exploration& exploration) override {
+  std::optional<std::string> perform(const TrialPrompt& prompt, Exploration& exploration) override {
     const std::string command = next_ < commands_.size() ? commands_[next_] : "";
     ++next_;
     try {
@@ -67,7 +66,8 @@ class Scripted final : public Participant {
     } catch (const core::InvalidInput& error) {
       refusals.emplace_back(error.what());
     }
-    return exploration.is_running() ? std::optional<std::size_t>{0} : std::nullopt;
+    return exploration.is_running() ? std::optional{prompt.answers.options.front().name}
+                                    : std::nullopt;
   }
   void wait_while(const std::function<bool()>& is_paused) override {
     ++pauses;

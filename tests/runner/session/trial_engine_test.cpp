@@ -49,9 +49,9 @@ class TroubledTrialLoop final : public runner::TrialLoop {
 
 class FirstOption final : public runner::Participant {
  public:
-  std::optional<std::size_t> perform(const runner::TrialPrompt& /*prompt*/,
+  std::optional<std::string> perform(const runner::TrialPrompt& prompt,
                                      runner::Exploration& /*exploration*/) override {
-    return 0;
+    return prompt.answers.options.front().name;
   }
   void repeats(const runner::TrialPrompt& /*prompt*/) override { ++repeats_told; }
   int repeats_told{0};
@@ -138,13 +138,14 @@ class PassingTime final : public runner::TrialLoop {
 // Answers at once, and a second later again.
 class Hasty final : public runner::Participant {
  public:
-  std::optional<std::size_t> perform(const runner::TrialPrompt& /*prompt*/,
+  std::optional<std::string> perform(const runner::TrialPrompt& prompt,
                                      runner::Exploration& exploration) override {
     if (!exploration.is_running()) {
       return std::nullopt;
     }
     exploration.pass_time(1.0);
-    return exploration.is_running() ? std::optional<std::size_t>{0} : std::nullopt;
+    return exploration.is_running() ? std::optional{prompt.answers.options.front().name}
+                                    : std::nullopt;
   }
   void refused(const runner::TrialPrompt& /*prompt*/, const runner::TooEarly& why) override {
     reasons.push_back(to_text(why));

@@ -1,0 +1,70 @@
+#include "protocols/tasks/answers.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+namespace tapstudy::protocols {
+namespace {
+constexpr std::size_t max_characters = 20;  // of a number
+
+std::string trimmed(const std::string& text) {
+  const auto first = text.find_first_not_of(" \t\r\n");
+  const auto last = text.find_last_not_of(" \t\r\n");
+  return first == std::string::npos ? std::string{} : text.substr(first, last - first + 1);
+}
+
+template <class Number>
+std::optional<Number> number_in(const std::string& text) {
+  Number number{};
+  const char* const end = text.data() + text.size();
+  const auto [stopped, error] = std::from_chars(text.data(), end, number);
+  return error == std::errc{} && stopped == end ? std::optional{number} : std::nullopt;
+}
+
+// Digits with at most one point: no sign, no exponent, no "inf".
+std::optional<std::string> number_above_0(const std::string& text) {
+  if (text.size() > max_characters || text.find_first_not_of("0123456789.") != std::string::npos) {
+    return std::nullopt;
+  }
+  const auto number = number_in<double>(text);
+  return number && *number > 0.0 && std::isfinite(*number)
+             ? std::optional{fmt::format("{}", *number)}
+             : std::nullopt;
+}
+
+std::optional<std::string> option_at(const std::string& text, const std::vector<Option>& options) {
+  const auto place = number_in<std::size_t>(text);
+  return place && *place >= 1 && *place <= options.size() ? std::optional{options[*place - 1].name}
+                                                          : std::nullopt;
+}
+}  // namespace
+
+std::optional<std::string> answer_in(const std::string& text, const Answers& answers) {
+  const std::string word = trimmed(text);
+  switch (answers.kind) {
+    case AnswerKind::option:
+      return option_at(word, answers.options);
+    case AnswerKind::number:
+      return number_above_0(word);
+  }
+  return std::nullopt;
+}
+
+std::string expected_answer(const Answers& answers) {
+  switch (answers.kind) {
+    case AnswerKind::option:
+      return fmt::format("a number from 1 to {}", answers.options.size());
+    case AnswerKind::number:
+      return fmt::format("a number above 0, such as 12 or 0.5, of at most {} characters",
+                         max_characters);
+  }
+  return {};
+}
+
+std::string label_of_answer(const std::string& answer, const Answers& answers) {
+  const auto option = std::ranges::find(answers.options, answer, &Option::name);
+  return option == answers.options.end() ? answer : option->label;
+}
+}  // namespace tapstudy::protocols

@@ -1,0 +1,153 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.hpp"
+#include "protocols/axes/presented_stimulus.hpp"
+#include "protocols/ordering.hpp"
+#include "protocols/read_sections.hpp"
+#include "protocols/tasks/preference_task.hpp"
+#include "protocols/tasks/shipped_tasks.hpp"
+#include "protocols/yaml/yaml_reader.hpp"
+namespace tapstudy::protocols {
+namespace {
+constexpr double largest = 1e15;
+
+std::vector<std::string> axes_of(const Protocol& protocol, const std::string& stimulus) {
+  std::vector<std::string> names;
+  const auto found = std::ranges::find(protocol.stimuli, stimulus, &Stimulus::name);
+  if (found != protocol.stimuli.end()) {
+    for (const AxisRange& range : found->vary) {
+      names.emplace_back(range.axis->name);
+    }
+  }
+  return names;
+}
+
+// As they are presented; a table has its own values.
+std::vector<double> presented(MapReader& reader, const Protocol& protocol, const Block& block,
+                              const std::string& axis, const std::vector<double>& asked) {
+  std::vector<double> values;
+  try {
+    for (const std::string& name : block.stimuli) {
+      values.clear();
+      for (const double value : asked) {
+        values.push_back(
+            presented_values(protocol, protocol.stimulus(name), {{axis, value}}).at(axis));
+      }
+    }
+  } catch (const core::InvalidInput& error) {
+    reader.reject("values", error.what());
+    return {};
+  }
+  if (std::ranges::adjacent_find(values, std::greater_equal{}) != values.end()) {
+    reader.reject("values", "are not in increasing order, each once, as they are presented");
+  }
+  return values;
+}
+
+std::optional<ValuesOnAxis> read_values(MapReader& reader, const Protocol& protocol,
+                                        const Block& block) {
+  if (!reader.has("values")) {
+    if (reader.has("axis")) {
+      reader.reject("axis", "has values only with `values`");
+    }
+    return std::nullopt;
+  }
+  const std::vector<std::string> axes =
+      block.stimuli.empty() ? std::vector<std::string>{} : axes_of(protocol, block.stimuli.front());
+  const std::string axis =
+      reader.word("axis", "axis of the stimuli", axes,
+                  axes.size() == 1 ? std::optional{axes.front()} : std::nullopt);
+  const std::vector<double> asked = reader.number_list("values", {-largest, largest});
+  if (axes.empty()) {
+    reader.reject("stimuli", "values are of stimuli that have `vary`");
+  }
+  if (std::ranges::find(axes, axis) == axes.end() || asked.empty()) {
+    return std::nullopt;
+  }
+  return ValuesOnAxis{axis, presented(reader, protocol, block, axis, asked)};
+}
+
+// How strong (hard, rough ...) is it, as a number? (Stevens 1957) With a modulus A, which has a
+// number, B is judged; without one participants choose their own unit.
+class Magnitude final : public PreferenceTask {
+ public:
+  std::string_view name() const override { return "magnitude"; }
+  std::string_view statistic(const Block& /*block*/) const override { return "magnitudes"; }
+  std::optional<Claim> claim() const override { return std::nullopt; }
+  bool has_chance_level() const override { return false; }
+  bool needs_reference() const override { return false; }
+  bool uses_order() const override { return true; }
+  bool can_present_real_plates() const override { return false; }
+  bool is_random(const Block& block) const override { return block.order != Order::listed; }
+  std::string_view success() const override { return {}; }
+
+  void read(MapReader& reader, const Protocol& protocol, Block& block) const override {
+    block.on_axis = read_values(reader, protocol, block);
+    reader.map("modulus", MapReader::Presence::optional, [&](MapReader& inner) {
+      block.modulus = Modulus{inner.word("stimulus", "stimulus", stimulus_names(protocol)),
+                              inner.number("number", Range::positive(1e6))};
+    });
+  }
+  std::vector<PlannedTrial> trials(const Block& block, const Draw& draw) const override {
+    core::Rng rng{
+        core::derived_seed(draw.participant_seed, core::Purpose::schedule, draw.block_index)};
+    std::vector<PlannedTrial> all;
+    for (const OrderedStimulus& next :
+         ordered_stimuli(block, rng, {draw.order_index, draw.counterbalancing_seed})) {
+      PlannedTrial trial{0, block.name, this, block.is_practice, next.repetition, {}};
+      if (block.modulus) {
+        trial.alternatives.push_back({block.modulus->stimulus});
+      }
+      trial.alternatives.push_back({next.stimulus, next.values, block.modulus.has_value()});
+      all.push_back(std::move(trial));
+    }
+    return all;
+  }
+  std::size_t trials_per_repetition(const Block& block) const override { return conditions(block); }
+  Answers answers(const Block& block, const Protocol& /*protocol*/) const override {
+    Answers numbers{AnswerKind::number};
+    numbers.judged = block.modulus ? 1 : 0;
+    if (block.modulus) {
+      numbers.modulus = block.modulus->number;
+    }
+    return numbers;
+  }
+  std::vector<std::string> alternative_labels(const PlannedTrial& trial) const override {
+    return trial.alternatives.size() > 1 ? blind_labels(trial) : std::vector<std::string>{};
+  }
+  std::vector<Remembered> remembered(const Block& /*block*/,
+                                     const Simulation& /*simulation*/) const override {
+    return {};
+  }
+  int visits(const Block& block, const SimulatedTapSettings& taps) const override {
+    return block.modulus ? 2 * taps.visits : 1;
+  }
+  // A power of the felt amplitude: of vibration at 250 Hz the exponent is 0.6 (Stevens 1959).
+  std::string simulated_answer(const Block& block, const Simulation& simulation,
+                               SimulatedTouch& touch) const override {
+    constexpr double exponent = 0.6;
+    constexpr double own_unit = 1.0;
+    constexpr double db_per_factor_10 = 20.0;
+    double level_db = 0.0;
+    if (block.modulus) {
+      visit_all(2, simulation, touch);
+      level_db = touch.level_db(1) - touch.level_db(0);
+    } else {
+      touch.visit(0);
+      level_db = touch.level_db(0);
+    }
+    const double number = (block.modulus ? block.modulus->number : own_unit) *
+                          std::pow(10.0, exponent * level_db / db_per_factor_10);
+    return fmt::format("{}", std::stod(fmt::format("{:.3g}", number)));
+  }
+};
+}  // namespace
+
+const Task& magnitude() {
+  static const Magnitude task;
+  return task;
+}
+}  // namespace tapstudy::protocols

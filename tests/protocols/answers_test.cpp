@@ -1,0 +1,66 @@
+// What answers are read from, at the terminal and from pages alike.
+#include "protocols/tasks/answers.hpp"
+
+#include <catch2/catch.hpp>
+#include <map>
+#include <string>
+using namespace tapstudy;
+using protocols::answer_in;
+using protocols::AnswerKind;
+using protocols::Answers;
+
+TEST_CASE("a magnitude is a number above 0 in decimal notation, and nothing else is",
+          "[protocols][tasks]") {
+  const Answers numbers{AnswerKind::number};
+  const std::map<std::string, double> read{{"12", 12.0},  {" 0.5 ", 0.5}, {"007", 7.0},
+                                           {".25", 0.25}, {"3.", 3.0},    {"1000000", 1e6},
+                                           {"2.50", 2.5}};
+  for (const auto& [text, number] : read) {
+    CAPTURE(text);
+    REQUIRE(answer_in(text, numbers));
+    CHECK(std::stod(*answer_in(text, numbers)) == number);
+  }
+  for (const char* const text : {"",
+                                 " ",
+                                 "0",
+                                 "0.0",
+                                 "-3",
+                                 "+3",
+                                 "nan",
+                                 "NaN",
+                                 "inf",
+                                 "infinity",
+                                 "1e3",
+                                 "0x10",
+                                 "twelve",
+                                 "1,5",
+                                 "1 2",
+                                 "1/2",
+                                 "1.2.3",
+                                 ".",
+                                 "12 cm",
+                                 "\u0661",
+                                 "100000000000000000000",
+                                 "0.0000000000000000001"}) {
+    CAPTURE(text);
+    CHECK_FALSE(answer_in(text, numbers));
+  }
+  CHECK_FALSE(answer_in(std::string(100'000, '9'), numbers));
+}
+
+TEST_CASE("the same magnitude is stored as the same text, however it was written",
+          "[protocols][tasks]") {
+  const Answers numbers{AnswerKind::number};
+  CHECK(answer_in("2.50", numbers) == answer_in(" 02.5", numbers));
+}
+
+TEST_CASE("an option is read from its place and told by its label", "[protocols][tasks]") {
+  const Answers answers{AnswerKind::option, {{"mdf", "wood fibre"}, {"acrylic", "acrylic"}}};
+  CHECK(answer_in("1", answers) == "mdf");
+  CHECK(answer_in(" 2 ", answers) == "acrylic");
+  CHECK(label_of_answer("mdf", answers) == "wood fibre");
+  for (const char* const text : {"", "0", "3", "-1", "1.0", "mdf", "18446744073709551617"}) {
+    CAPTURE(text);
+    CHECK_FALSE(answer_in(text, answers));
+  }
+}

@@ -6,11 +6,13 @@
 namespace tapstudy::analysis {
 std::vector<CsvTable> ChoiceSummary::tables() const {
   return {{"choices.csv", [this](std::ostream& out) {
-             out << "stimulus,votes,voters,visits,dwell_s\n";
+             out << "stimulus,votes,voters,goodman_low,goodman_high,visits,dwell_s\n";
              for (const AlternativeResult& result : alternatives) {
-               core::print(out, "{},{},{},{},{:.3f}\n", csv_cell(result.item.name),
-                           result.chosen.successes, result.chosen.trials, result.visits,
-                           result.dwell_s);
+               core::print(out, "{},{},{},{},{},{},{:.3f}\n", csv_cell(result.item.name),
+                           result.chosen.successes, result.chosen.trials,
+                           result.interval ? fmt::format("{}", result.interval->low) : "",
+                           result.interval ? fmt::format("{}", result.interval->high) : "",
+                           result.visits, result.dwell_s);
              }
            }}};
 }

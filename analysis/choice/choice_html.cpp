@@ -6,15 +6,21 @@
 namespace tapstudy::analysis {
 void ChoiceSummary::write_html(std::ostream& out) const {
   const double chance = 1.0 / static_cast<double>(alternatives.size());
-  out << "<table class=accuracy><thead><tr><th></th><th>chosen</th><th></th><th>visits</th>"
+  out << "<div class=scroll tabindex=0 role=region aria-label=Choices>"
+         "<table class=accuracy><thead><tr><th></th><th>chosen</th><th></th><th>visits</th>"
          "<th>time tried</th></tr></thead>\n";
   for (const AlternativeResult& result : alternatives) {
     core::print(
         out, "<tr><th scope=row>{}</th><td>{}</td><td>{}</td><td>{}</td><td>{:.1f} s</td></tr>\n",
-        escaped(result.item.label), with_interval(result.chosen), dot_plot(result.chosen, chance),
+        escaped(result.item.label), chosen_words(result),
+        result.interval
+            ? dot_plot(result.chosen.value(), *result.interval, chance, chosen_words(result))
+            : "",
         result.visits, result.dwell_s);
   }
-  core::print(out, "</table>\n<p>All alternatives equally likely: {}.{}</p>\n",
+  core::print(out,
+              "</table></div>\n<p class=note>Intervals: 95 %, of all alternatives at once (Goodman "
+              "1965).</p>\n<p>All alternatives equally likely: {}.{}</p>\n",
               escaped(multinomial_words(*this)),
               has_repeated_choices
                   ? fmt::format(" Of {} choices each participant has one vote: {}.", choices.size(),

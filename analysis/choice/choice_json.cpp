@@ -9,10 +9,13 @@ nlohmann::ordered_json ChoiceSummary::as_json() const {
   Json json{{"block", block}, {"task", task}};
   json["alternatives"] = Json::array();
   for (const AlternativeResult& result : alternatives) {
-    json["alternatives"].push_back({{"stimulus", result.item.name},
-                                    {"chosen", analysis::as_json(result.chosen)},
-                                    {"visits", result.visits},
-                                    {"dwell_s", result.dwell_s}});
+    json["alternatives"].push_back(
+        {{"stimulus", result.item.name},
+         {"chosen", analysis::as_json(result.chosen)},
+         {"goodman_95",
+          result.interval ? Json{result.interval->low, result.interval->high} : Json(nullptr)},
+         {"visits", result.visits},
+         {"dwell_s", result.dwell_s}});
   }
   json["choices"] = Json::array();
   for (const auto& [participant, stimulus] : choices) {

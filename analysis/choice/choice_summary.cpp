@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <map>
 
+#include "analysis/statistics/simultaneous.hpp"
 #include "core/error.hpp"
 namespace tapstudy::analysis {
 namespace {
@@ -38,6 +39,7 @@ AlternativeResult result_of(const Item& item, const std::vector<std::string>& vo
   AlternativeResult result{
       item,
       {std::ranges::count(votes, item.name), static_cast<std::int64_t>(votes.size())},
+      std::nullopt,
       0,
       0.0};
   for (const results::VisitRow& visit : rows.visits) {
@@ -86,6 +88,12 @@ std::shared_ptr<BlockSummary> summarise_choice(const BlockDesign& design, const 
   for (const Item& item : design.stimuli) {
     summary->alternatives.push_back(result_of(item, votes, rows));
     counts.push_back(static_cast<int>(summary->alternatives.back().chosen.successes));
+  }
+  if (!votes.empty() && counts.size() > 1) {
+    const std::vector<Interval> intervals = simultaneous_intervals(counts);
+    for (std::size_t i = 0; i < intervals.size(); ++i) {
+      summary->alternatives[i].interval = intervals[i];
+    }
   }
   if (summary->untested.empty()) {
     summary->multinomial_p = exact_multinomial_p(counts);

@@ -9,7 +9,8 @@
 namespace tapstudy::analysis {
 struct AlternativeResult {
   Item item;
-  Proportion chosen;  // votes
+  Proportion chosen;                 // votes
+  std::optional<Interval> interval;  // 95 %, of all alternatives at once; unset without votes
   int visits{};
   double dwell_s{};
 };

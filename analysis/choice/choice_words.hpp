@@ -12,6 +12,13 @@ inline std::string multinomial_words(const ChoiceSummary& summary) {
              : "not computed, too many possible outcomes";
 }
 
+// "7/10 = 70 % (95 % CI 34–91 %)", the interval that of all alternatives at once
+inline std::string chosen_words(const AlternativeResult& result) {
+  return result.interval ? fraction(result.chosen) + " = " + percent(result.chosen) + " (95 % CI " +
+                               percent_range(*result.interval) + ")"
+                         : fraction(result.chosen);
+}
+
 inline const char* words_of(Vote vote) {
   return vote == Vote::first ? "the first choice" : "the most frequent choice, of equals the first";
 }

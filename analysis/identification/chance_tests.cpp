@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "analysis/resampling/random_table.hpp"
 #include "analysis/resampling/replicates.hpp"
 namespace tapstudy::analysis {
 namespace {
@@ -56,14 +57,12 @@ std::vector<PermutationResult> by_own_orders(const BlockDesign& design,
   return permutation_tests(answers, redraw, notions, wanted.draws, wanted.seed);
 }
 
-std::vector<PermutationResult> by_shuffling(const IdentificationData& data,
-                                            const std::vector<RightAnswers>& notions,
-                                            const ChanceDraws& wanted) {
+std::vector<CountTable> tables_of(const IdentificationData& data) {
   std::vector<CountTable> tables;
   for (const IdentifyingParticipant& person : data.participants) {
     tables.push_back(counts_of(data, person));
   }
-  return shuffle_tests(tables, notions, wanted.draws, wanted.seed);
+  return tables;
 }
 }  // namespace
 
@@ -86,15 +85,14 @@ ChanceTests chance_tests(const BlockDesign& design, const IdentificationData& da
     notions.push_back(same_level(data, factor));
   }
   const bool is_redrawn = answers <= most_redrawn;
-  constexpr std::size_t cost_of_a_cell = 100;
-  const std::size_t cells = data.participants.size() * data.stimuli.size() * data.responses.size();
+  const std::vector<CountTable> tables = tables_of(data);
   ChanceDraws draws = wanted;
   if (draws.draws == 0) {
-    draws.draws =
-        affordable_replicates(is_redrawn ? answers : cost_of_a_cell * cells, min_draws, max_draws);
+    draws.draws = affordable_replicates(is_redrawn ? answers : work_of_random_tables(tables),
+                                        min_draws, max_draws);
   }
-  const auto results =
-      is_redrawn ? by_own_orders(design, data, notions, draws) : by_shuffling(data, notions, draws);
+  const auto results = is_redrawn ? by_own_orders(design, data, notions, draws)
+                                  : shuffle_tests(tables, notions, draws.draws, draws.seed);
   ChanceTests tests;
   tests.accuracy = results.front();
   tests.test = fmt::format(

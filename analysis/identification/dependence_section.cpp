@@ -6,6 +6,7 @@
 #include "analysis/agreement/kappa.hpp"
 #include "analysis/agreement/symmetry.hpp"
 #include "analysis/identification/matrix_sections.hpp"
+#include "analysis/resampling/random_table.hpp"
 #include "analysis/resampling/replicates.hpp"
 namespace tapstudy::analysis {
 namespace {
@@ -20,13 +21,9 @@ void add_independence(const MatrixOfParticipants& counted, ReportSection& sectio
         "Dependence is not tested: fewer than two stimuli or answers occurred.");
     return;
   }
-  constexpr std::size_t cost_of_a_cell = 100;
-  const std::size_t cells = counted.matrix.stimuli.size() * counted.matrix.responses.size();
   const auto tables = tables_of(counted.participants);
   const MonteCarloTest exact = monte_carlo_independence(
-      tables,
-      affordable_replicates(cost_of_a_cell * cells * tables.size(), fewest_draws, most_draws),
-      seed);
+      tables, affordable_replicates(work_of_random_tables(tables), fewest_draws, most_draws), seed);
   ReportTable table{"dependence",
                     "Do answers depend on what was presented?",
                     {column("X²", "chi_squared"), column("df", "degrees_of_freedom"),

@@ -53,9 +53,14 @@ std::optional<Grouping> grouping_by_repetition(const IdentificationData& data) {
       most = std::max(most, trial.repetition);
     }
   }
-  Grouping grouping{"presentation", {}, {}};
-  for (int repetition = 1; repetition <= most; ++repetition) {
-    grouping.levels.push_back(fmt::format("{}", repetition));
+  constexpr int most_levels = 20;
+  constexpr int parts = 10;
+  Grouping grouping{"presentation", {}, {}, most > most_levels ? (most + parts - 1) / parts : 1};
+  const int step = grouping.repetitions_a_level;
+  for (int first = 1; first <= most; first += step) {
+    grouping.levels.push_back(step == 1
+                                  ? fmt::format("{}", first)
+                                  : fmt::format("{}–{}", first, std::min(most, first + step - 1)));
   }
   return most > 1 ? std::optional{grouping} : std::nullopt;
 }

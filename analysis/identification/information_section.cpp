@@ -5,19 +5,13 @@
 
 #include "analysis/identification/matrix_sections.hpp"
 #include "analysis/information/information_transfer.hpp"
+#include "analysis/resampling/random_table.hpp"
 #include "analysis/resampling/replicates.hpp"
 namespace tapstudy::analysis {
 namespace {
 constexpr int most_draws = 9999;
 constexpr int fewest_draws = 999;
 constexpr std::uint64_t seed = 3;
-
-int draws_for(const MatrixOfParticipants& counted) {
-  constexpr std::size_t cost_of_a_cell = 100;
-  const std::size_t cells = counted.matrix.stimuli.size() * counted.matrix.responses.size();
-  return affordable_replicates(cost_of_a_cell * cells * counted.participants.size(), fewest_draws,
-                               most_draws);
-}
 
 ReportTable participants_table(const MatrixOfParticipants& counted) {
   ReportTable table{"information_participants",
@@ -59,7 +53,7 @@ InformationSection information_section(const MatrixOfParticipants& counted) {
   const ConfusionMatrix& matrix = counted.matrix;
   const InformationTransfer transfer = information_transfer(matrix.counts);
   const std::vector<CountTable> tables = tables_of(counted.participants);
-  const int draws = draws_for(counted);
+  const int draws = affordable_replicates(work_of_random_tables(tables), fewest_draws, most_draws);
   const GuessedInformation guessed = guessed_information(tables, draws, seed);
   const std::optional<Interval> over = information_interval(tables);
   const double most =

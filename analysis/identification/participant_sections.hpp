@@ -25,13 +25,15 @@ struct Grouping {
   std::string name;
   std::vector<std::string> levels;
   std::vector<std::size_t> level_of_stimulus;  // place in levels; empty: by repetition
+  int repetitions_a_level{1};
   std::size_t level_of(const IdentifiedTrial& trial) const {
-    return level_of_stimulus.empty() ? static_cast<std::size_t>(trial.repetition - 1)
-                                     : level_of_stimulus[trial.stimulus];
+    return level_of_stimulus.empty()
+               ? static_cast<std::size_t>((trial.repetition - 1) / repetitions_a_level)
+               : level_of_stimulus[trial.stimulus];
   }
 };
 // By technique and by the factors of the stimuli; those with one level are left out.
 std::vector<Grouping> groupings_of_stimuli(const IdentificationData& data);
-// By the presentations of a stimulus; none if there was one.
+// By the presentations of a stimulus, more than twenty in ten parts; none if there was one.
 std::optional<Grouping> grouping_by_repetition(const IdentificationData& data);
 }  // namespace tapstudy::analysis

@@ -66,7 +66,8 @@ void add_map(const std::vector<Item>& classes, const SimilarityChoice& model,
       const double x = map.points[i][0];
       const double y = map.points[i][1];
       table.rows.push_back({word(classes[i].name), number(x), number(y)});
-      chart.points.push_back({x, y, 0.4, false, classes[i].label});
+      chart.points.push_back({x, y, 0.4, false, fmt::format("{}", i + 1)});
+      chart.caption += fmt::format("{} {} {}", i == 0 ? "" : ",", i + 1, classes[i].label);
       all.insert(all.end(), {x, y});
     }
     chart.x_range = chart.y_range = range_of(all, false);

@@ -21,10 +21,11 @@ figure{margin:0}figcaption{font-size:.85rem;color:#567}.chart{width:100%;height:
 .chart path{fill:none}.chart .frame{stroke:#8796a5}.chart .line{stroke:#567;stroke-width:1.5}.chart .chance{stroke:#b0413e;stroke-dasharray:3 2}
 .chart .interval{stroke:#08519c;stroke-width:3}.chart circle{fill:#08519c;stroke:#08519c;fill-opacity:.8}.chart circle.open{fill:#fff;fill-opacity:1}
 .contents ul{display:flex;flex-wrap:wrap;gap:.2rem 1.2rem;padding:0;list-style:none}.contents a{color:#08519c}
+section>h3{font-size:1.1rem;border-top:1px solid #cdd6df;padding-top:.6rem}section .data~h3,section>h3~h3{font-size:1rem;border:0;padding:0}
 .note,.provenance{font-size:.85rem;color:#567}.provenance th{text-align:left;font-weight:500;padding-right:1rem;vertical-align:top}
 .provenance td{word-break:break-all}.notes{white-space:pre-line}
-@media (max-width:600px){table{display:block;overflow-x:auto}.accuracy td{white-space:normal;padding-right:.5rem}.accuracy th{padding-right:.5rem;overflow-wrap:anywhere}
-  .dot{width:90px}
+@media (max-width:600px){table{display:block;overflow-x:auto}.accuracy td{white-space:normal;padding-right:.5rem}.accuracy th{padding-right:.5rem;overflow-wrap:anywhere}.accuracy th[scope=row]{min-width:5.5rem}.accuracy thead th{overflow-wrap:normal}
+  .dot{width:72px}
   .matrix td{width:4rem;min-width:3.5rem;height:3rem}.matrix th{padding:.3rem}h1{font-size:1.3rem}}
 @media print{body{margin:0}.matrix td,.simulated{print-color-adjust:exact;-webkit-print-color-adjust:exact}}
 )css";

@@ -104,4 +104,16 @@ CountTable sum_of_random_tables(const std::vector<TableTotals>& totals, core::Rn
   }
   return sum_of(tables);
 }
+
+std::size_t work_of_random_tables(const std::vector<CountTable>& tables) {
+  constexpr double work_of_a_cell = 10.0;
+  double cells = 0.0;
+  double answers = 0.0;
+  for (const CountTable& table : tables) {
+    const TableTotals totals = totals_of(table);
+    cells += static_cast<double>(totals.rows.size() * totals.columns.size());
+    answers += static_cast<double>(totals.all);
+  }
+  return static_cast<std::size_t>(cells * work_of_a_cell + std::sqrt(answers * cells));
+}
 }  // namespace tapstudy::analysis

@@ -17,4 +17,7 @@ CountTable random_table(const TableTotals& totals, core::Rng& rng);
 
 // One random table of each of these, of one shape, added up. Throws InvalidInput if there is none.
 CountTable sum_of_random_tables(const std::vector<TableTotals>& totals, core::Rng& rng);
+
+// About how much work such a sum is, for affordable_replicates: cells, and the steps of each.
+std::size_t work_of_random_tables(const std::vector<CountTable>& tables);
 }  // namespace tapstudy::analysis

@@ -14,12 +14,12 @@ double quantile(std::vector<double> values, double probability) {
   if (!(probability >= 0.0 && probability <= 1.0)) {
     throw core::InvalidInput{fmt::format("a probability is between 0 and 1, not {}", probability)};
   }
-  std::ranges::sort(values);
   const double place = probability * static_cast<double>(values.size() - 1);
-  const auto below = static_cast<std::size_t>(place);
-  const std::size_t above = std::min(below + 1, values.size() - 1);
+  const auto below = static_cast<std::ptrdiff_t>(place);
   const double along = place - static_cast<double>(below);
-  return along == 0.0 ? values[below] : values[below] + along * (values[above] - values[below]);
+  const auto at = values.begin() + below;
+  std::ranges::nth_element(values, at);
+  return along == 0.0 ? *at : *at + along * (*std::min_element(at + 1, values.end()) - *at);
 }
 
 Quartiles quartiles(const std::vector<double>& values) {

@@ -16,21 +16,24 @@ struct Contrast {
   PairedContrast result;
 };
 
+Proportion right_at(const IdentifyingParticipant& person, const Grouping& grouping,
+                    std::size_t level) {
+  Proportion right;
+  for (const IdentifiedTrial& trial : person.trials) {
+    const bool is_of_level = grouping.level_of(trial) == level;
+    right.trials += is_of_level ? 1 : 0;
+    right.successes += is_of_level && trial.is_right ? 1 : 0;
+  }
+  return right;
+}
+
 // Of each participant with answers of both levels: the difference of the shares right.
 std::vector<double> differences(const IdentificationData& data, const Grouping& grouping,
                                 std::size_t first, std::size_t second) {
   std::vector<double> found;
   for (const IdentifyingParticipant& person : data.participants) {
-    Proportion of_first;
-    Proportion of_second;
-    for (const IdentifiedTrial& trial : person.trials) {
-      const std::size_t level = grouping.level_of(trial);
-      if (level == first || level == second) {
-        Proportion& of = level == first ? of_first : of_second;
-        ++of.trials;
-        of.successes += trial.is_right ? 1 : 0;
-      }
-    }
+    const Proportion of_first = right_at(person, grouping, first);
+    const Proportion of_second = right_at(person, grouping, second);
     if (of_first.trials > 0 && of_second.trials > 0) {
       found.push_back(of_first.value() - of_second.value());
     }

@@ -22,6 +22,27 @@ std::vector<double> standardised(const std::vector<double>& values) {
   }
   return z;
 }
+
+void check_times(const TimedAnswers& answers) {
+  if (!std::ranges::all_of(answers,
+                           [](const TimedAnswer& of) { return std::isfinite(of.time_s); })) {
+    throw core::InvalidInput{"response times are finite"};
+  }
+}
+
+// Adds the means of each part of a participant's answers in order of their times.
+void add_parts(TimedAnswers answers, std::vector<ConditionalAccuracyBin>& sums) {
+  std::ranges::stable_sort(answers, {}, &TimedAnswer::time_s);
+  for (std::size_t bin = 0; bin < sums.size(); ++bin) {
+    const std::size_t begin = bin * answers.size() / sums.size();
+    const std::size_t end = (bin + 1) * answers.size() / sums.size();
+    const auto size = static_cast<double>(end - begin);
+    for (std::size_t i = begin; i < end; ++i) {
+      sums[bin].mean_time_s += answers[i].time_s / size;
+      sums[bin].share_right += answers[i].is_right ? 1.0 / size : 0.0;
+    }
+  }
+}
 }  // namespace
 
 std::vector<ConditionalAccuracyBin> conditional_accuracy(
@@ -31,24 +52,11 @@ std::vector<ConditionalAccuracyBin> conditional_accuracy(
   }
   std::vector<ConditionalAccuracyBin> sums(bins);
   double people = 0.0;
-  for (TimedAnswers answers : participants) {
-    if (!std::ranges::all_of(answers,
-                             [](const TimedAnswer& of) { return std::isfinite(of.time_s); })) {
-      throw core::InvalidInput{"response times are finite"};
-    }
-    if (answers.size() < bins) {
-      continue;
-    }
-    std::ranges::stable_sort(answers, {}, &TimedAnswer::time_s);
-    people += 1.0;
-    for (std::size_t bin = 0; bin < bins; ++bin) {
-      const std::size_t begin = bin * answers.size() / bins;
-      const std::size_t end = (bin + 1) * answers.size() / bins;
-      const auto size = static_cast<double>(end - begin);
-      for (std::size_t i = begin; i < end; ++i) {
-        sums[bin].mean_time_s += answers[i].time_s / size;
-        sums[bin].share_right += answers[i].is_right ? 1.0 / size : 0.0;
-      }
+  for (const TimedAnswers& answers : participants) {
+    check_times(answers);
+    if (answers.size() >= bins) {
+      people += 1.0;
+      add_parts(answers, sums);
     }
   }
   if (people == 0.0) {

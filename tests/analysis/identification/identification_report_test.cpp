@@ -214,6 +214,37 @@ TEST_CASE("who is presented techniques that differ has contrasts of them",
   CHECK(json["contrasts"][0]["first"] == "simple");
 }
 
+TEST_CASE("agreement in a factor is tested by that factor's levels", "[analysis][identification]") {
+  const BlockDesign design = drawn(four_plates(), 2);
+  auto answers = answers_of(design, 4, 2, 1.0, 3);
+  for (auto& answer : answers) {  // the other material of the right structure
+    const bool is_mdf = answer.stimulus.starts_with("mdf");
+    answer.response = is_mdf ? testing::replaced(answer.stimulus, "mdf", "acrylic")
+                             : testing::replaced(answer.stimulus, "acrylic", "mdf");
+    answer.is_correct = false;
+  }
+  const auto tests = chance_tests(design, identification_data(design, answers),
+                                  {"material", "structure"}, {99, 1});
+  CHECK(tests.accuracy->p == 1.0);
+  CHECK(tests.factors.at(0).p == 1.0);
+  CHECK(tests.factors.at(1).p == 0.01);
+}
+
+TEST_CASE("an order drawn again is compared place by place with the answers",
+          "[analysis][identification]") {
+  BlockDesign design = drawn(four_plates(), 2);
+  const auto answers = answers_of(design, 1, 2, 1.0, 3);
+  std::vector<int> order;
+  for (const auto& answer : answers) {
+    const auto found = std::ranges::find(design.stimuli, answer.stimulus, &Item::name);
+    order.push_back(static_cast<int>(found - design.stimuli.begin()));
+  }
+  design.redraw = [order](const Place& /*place*/, std::uint64_t /*draw*/) { return order; };
+  // every draw is the order that was presented, so that each is as good
+  CHECK(chance_tests(design, identification_data(design, answers), {}, {99, 1}).accuracy->as_good ==
+        99);
+}
+
 TEST_CASE(
     "of studies in which nobody felt anything but all have preferences, probabilities are no "
     "smaller than they say",

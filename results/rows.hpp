@@ -199,8 +199,8 @@ struct AnswerRow {
   std::int64_t impacts{};
   std::int64_t late_impacts{};  // of these; up to 5 ms after a late tick
   std::int64_t trial_id{};      // ascends with time: a trial that was put off is answered later
-  std::vector<AlternativeRow> alternatives{};  // by position; Store::answers leaves them out
-  int repetition{};                            // of its stimulus in the block, from 1
+  std::vector<AlternativeRow> alternatives{};         // by position; Store::answers leaves them out
+  int repetition{};                                   // of its stimulus in the block, from 1
   std::optional<double> time_from_first_contact_s{};  // unset if the plate was never touched
   std::optional<double> mean_impact_speed_m_s{};      // unset without impacts
   double contact_s{};                                 // in contact, of the whole trial

@@ -12,7 +12,7 @@ struct StudyStore {
 };
 
 // What a study says of its participants of one mode; those who were excluded, practice and catch
-// trials are named, and left out of the results. Throws InvalidInput if there is no answer, two stores
-// are of different protocols, or a participant is in two of them.
+// trials are named, and left out of the results. Throws InvalidInput if there is no answer, two
+// stores are of different protocols, or a participant is in two of them.
 analysis::Summary summary_of_study(const std::vector<StudyStore>& stores, results::Mode mode);
 }  // namespace tapstudy::runner

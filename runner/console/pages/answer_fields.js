@@ -24,7 +24,7 @@ export const cardOf = ({ group, option, label }) => radioCard({
 function optionField({ options }, isBesideAlternatives) {
   return {
     body: isBesideAlternatives ? [] : [optionCards(options)],
-    valueOf: pickedValue,
+    answerIn: pickedValue,
     missing: word("pick_first"),
     press: (element, key) => pickNumber(element, key),
   };
@@ -43,7 +43,7 @@ function numberField() {
   const input = numberInput("number-answer");
   return {
     body: [el("label", { htmlFor: input.id, className: "number-label" }, word("number_label")), input],
-    valueOf: () => numberIn(input),
+    answerIn: () => numberIn(input),
     missing: word("number_needed"),
     press: (element, key) => {
       if (!/^[0-9.]$/.test(key)) return false;
@@ -57,7 +57,7 @@ function numberField() {
 
 const makers = { option: optionField, number: numberField };
 
-// {body, valueOf(element), missing, press(element, key)}
+// {body, answerIn(element), missing, press(element, key)}
 export const answerField = (answers, isBesideAlternatives) => makers[answers.kind](answers, isBesideAlternatives);
 
 // Another answer instead of one that was given, sent by a button.

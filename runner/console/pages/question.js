@@ -4,19 +4,19 @@ import { el } from "./dom.js";
 import { pickedValue } from "./radio_cards.js";
 import { word } from "./words.js";
 
-// valueOf(element): the answer as text, null as long as there is none: `missing` is said then.
+// answerIn(element): the answer as text, null as long as there is none: `missing` is said then.
 // send(value as text) is called once there is one and it is confirmed.
-export function question({ title, className, body, say, send, valueOf = pickedValue, missing = word("pick_first") }) {
+export function question({ title, className, body, say, send, answerIn = pickedValue, missing = word("pick_first") }) {
   const confirm = el("button", { type: "submit", className: "main", id: "confirm", "aria-disabled": "true" }, word("confirm"));
   const element = el("form", { className, noValidate: true, autocomplete: "off" },
     el("fieldset", {}, el("legend", {}, el("h1", { tabIndex: -1 }, title)), ...body),
     confirm);
 
-  const follow = () => confirm.setAttribute("aria-disabled", String(valueOf(element) === null));
+  const follow = () => confirm.setAttribute("aria-disabled", String(answerIn(element) === null));
   element.addEventListener("change", follow);
   element.addEventListener("input", follow);
   function submit() {
-    const value = valueOf(element);
+    const value = answerIn(element);
     if (value === null) say(missing);
     else send(value);
     return true;

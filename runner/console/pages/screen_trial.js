@@ -59,7 +59,7 @@ export function trialScreen({ trial }, { send, feel, correct, say }) {
       ? [hint(labels, answers), alternativeCards(labels, answers.options, feelOther), ...field.body]
       : field.body,
     say,
-    valueOf: field.valueOf,
+    answerIn: field.answerIn,
     missing: field.missing,
     send: (value) => send("answer", value),
   });

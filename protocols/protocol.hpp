@@ -43,6 +43,8 @@ struct Stimulus {
   const core::Technique* technique{};
   std::map<std::string, std::string> factors;  // factor → level, for reports
   std::vector<AxisRange> vary{};               // each axis once
+  // False while a file is read in which one of these names was rejected.
+  bool is_complete() const { return plate && material && technique != nullptr; }
 };
 
 // How the trials of a block follow one another.

@@ -31,6 +31,9 @@ std::vector<double> presented(MapReader& reader, const Protocol& protocol, const
   std::vector<double> values;
   try {
     for (const std::string& name : block.stimuli) {
+      if (!protocol.stimulus(name).is_complete()) {
+        return {};
+      }
       values.clear();
       for (const double value : asked) {
         values.push_back(

@@ -73,7 +73,8 @@ std::optional<Comparison> read_comparison(MapReader& reader, const Protocol& pro
     comparison.axis = reader.word("axis", "axis of the stimulus", axes,
                                   has_one_axis ? std::optional{axes.front()} : std::nullopt);
   }
-  const bool is_known = std::ranges::find(axes, comparison.axis) != axes.end();
+  const bool is_known =
+      std::ranges::find(axes, comparison.axis) != axes.end() && family->is_complete();
   const double own = is_known ? presented_values(protocol, *family, {}).at(comparison.axis) : 0.0;
   comparison.standard = reader.number("standard", {-any, any}, own);
   comparison.is_fraction =

@@ -292,3 +292,23 @@ TEST_CASE("check warns of a procedure that assumes another guess rate than the t
                                           "guess: {values: [0.333]}"));
   CHECK_THAT(testing::tapstudy({"check", other}).standard_output, Contains(warning));
 }
+
+TEST_CASE(
+    "a family of an unknown material, plate or technique is refused, and nothing else is said",
+    "[end_to_end]") {
+  const TempDirectory directory;
+  const std::string study = directory / "study.yaml";
+  const auto [example, from, to, said] =
+      GENERATE(table<std::string, std::string, std::string, std::string>({
+          {"stiffness_jnd", "    material: ", "    material: un", "plate.material: 'un"},
+          {"stiffness_jnd", "    technique: ", "    technique: un", "plate.technique: 'un"},
+          {"hardness_magnitude", "technique: ", "technique: un", ".technique: 'un"},
+      }));
+  testing::write(
+      study, testing::replaced(testing::contents(testing::shipped("examples/" + example + ".yaml")),
+                               from, to));
+  const auto checked = testing::tapstudy({"check", study});
+  INFO(checked.standard_error);
+  CHECK(checked.exit_code == 2);
+  CHECK_THAT(checked.standard_error, Contains(said));
+}

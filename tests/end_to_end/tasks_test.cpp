@@ -293,9 +293,8 @@ TEST_CASE("check warns of a procedure that assumes another guess rate than the t
   CHECK_THAT(testing::tapstudy({"check", other}).standard_output, Contains(warning));
 }
 
-TEST_CASE(
-    "a family of an unknown material, plate or technique is refused, and nothing else is said",
-    "[end_to_end]") {
+TEST_CASE("a family of an unknown material, plate or technique is refused by its name",
+          "[end_to_end]") {
   const TempDirectory directory;
   const std::string study = directory / "study.yaml";
   const auto [example, from, to, said] =

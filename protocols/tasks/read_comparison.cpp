@@ -60,6 +60,21 @@ void check_track(MapReader& reader, const Protocol& protocol, const Stimulus& fa
     }
   }
 }
+
+// Where the standard cannot be presented, which is said already, procedures are only read.
+void read_tracks(MapReader& reader, const Protocol& protocol, const Stimulus* usable_family,
+                 Comparison& comparison) {
+  reader.list("procedures", MapReader::Presence::required, [&](MapReader& inner) {
+    const auto track = read_procedure(inner);
+    if (track == nullptr) {
+      return;
+    }
+    if (usable_family != nullptr) {
+      check_track(inner, protocol, *usable_family, comparison, *track);
+    }
+    comparison.tracks.push_back(track);
+  });
+}
 }  // namespace
 
 std::optional<Comparison> read_comparison(MapReader& reader, const Protocol& protocol,
@@ -86,15 +101,7 @@ std::optional<Comparison> read_comparison(MapReader& reader, const Protocol& pro
   if (is_usable && comparison.is_fraction && comparison.standard <= 0.0) {
     reader.reject("level", "fractions are of a standard above 0");
   }
-  reader.list("procedures", MapReader::Presence::required, [&](MapReader& inner) {
-    const auto track = read_procedure(inner);
-    if (track != nullptr && is_usable) {
-      check_track(inner, protocol, *family, comparison, *track);
-    }
-    if (track != nullptr) {
-      comparison.tracks.push_back(track);
-    }
-  });
+  read_tracks(reader, protocol, is_usable ? family : nullptr, comparison);
   if (family == nullptr) {
     reader.reject("stimuli", "procedures vary one stimulus, which must have `vary`");
   }

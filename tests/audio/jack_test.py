@@ -47,8 +47,12 @@ class Recorder:
         outputs = self.client.get_ports(name_pattern="^tapstudy", is_audio=True, is_output=True)
         if len(outputs) < len(self.ports):
             return False
-        for output, port in zip(outputs, self.ports):
-            self.client.connect(output, port)
+        try:
+            for output, port in zip(outputs, self.ports):
+                if not port.connections:
+                    self.client.connect(output, port)
+        except jack.JackError:  # a port is named before its client is activated
+            return False
         return True
 
     def heard(self):

@@ -191,7 +191,7 @@ struct AnswerRow {
   std::string stimulus;  // that was presented; empty if there were several to choose from
   std::string response;
   std::optional<bool> is_correct;
-  double response_time_s{};
+  double response_time_s{};  // NaN: not known; stored ones are
   std::int64_t ticks{};
   std::int64_t late{};
   std::int64_t skipped{};

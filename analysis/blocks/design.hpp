@@ -58,6 +58,8 @@ struct BlockDesign {
   double guess_rate{};           // of right answers
   // Ratings: from 1 to this.
   int steps{};
+  // False: answers without a protocol, which nobody says the order of.
+  bool is_order_known{true};
 };
 struct StudyDesign {
   std::string title;

@@ -64,6 +64,16 @@ std::vector<CountTable> tables_of(const IdentificationData& data) {
   }
   return tables;
 }
+
+std::string_view words_of_draws(const BlockDesign& design, bool is_redrawn) {
+  if (is_redrawn) {
+    return "draws of the study's own orders";
+  }
+  return design.is_order_known
+             ? "shuffles of each participant's answers, too many to draw the study's orders"
+             : "shuffles of each participant's answers, which holds where each of them had the "
+               "stimuli in random order";
+}
 }  // namespace
 
 ChanceTests chance_tests(const BlockDesign& design, const IdentificationData& data,
@@ -75,7 +85,7 @@ ChanceTests chance_tests(const BlockDesign& design, const IdentificationData& da
   if (answers == 0) {
     return {"there are no answers", {}, {}};
   }
-  if (!design.redraw) {
+  if (!design.redraw && design.is_order_known) {
     return {"the order was listed, not drawn, so that no randomisation says what chance would give",
             {},
             {}};
@@ -84,7 +94,7 @@ ChanceTests chance_tests(const BlockDesign& design, const IdentificationData& da
   for (const std::string& factor : factors) {
     notions.push_back(same_level(data, factor));
   }
-  const bool is_redrawn = answers <= most_redrawn;
+  const bool is_redrawn = design.redraw && answers <= most_redrawn;
   const std::vector<CountTable> tables = tables_of(data);
   ChanceDraws draws = wanted;
   if (draws.draws == 0) {
@@ -95,10 +105,8 @@ ChanceTests chance_tests(const BlockDesign& design, const IdentificationData& da
                                   : shuffle_tests(tables, notions, draws.draws, draws.seed);
   ChanceTests tests;
   tests.accuracy = results.front();
-  tests.test = fmt::format(
-      "randomisation test by {} {}, one-sided", tests.accuracy->draws,
-      is_redrawn ? "draws of the study's own orders"
-                 : "shuffles of each participant's answers, too many to draw the study's orders");
+  tests.test = fmt::format("randomisation test by {} {}, one-sided", tests.accuracy->draws,
+                           words_of_draws(design, is_redrawn));
   tests.factors.assign(results.begin() + 1, results.end());
   return tests;
 }

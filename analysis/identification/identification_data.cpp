@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <unordered_map>
 
@@ -46,6 +47,10 @@ class Places {
   std::unordered_map<std::string, std::size_t> place_of_;
 };
 
+std::optional<double> known(double time_s) {
+  return std::isnan(time_s) ? std::nullopt : std::optional{time_s};
+}
+
 // Rows in the order of time.
 std::vector<const AnswerRow*> in_time(const std::vector<AnswerRow>& answers) {
   std::vector<const AnswerRow*> rows;
@@ -77,7 +82,7 @@ IdentificationData identification_data(const BlockDesign& design,
     data.participants[place_of_person.at(answer.participant_id)].trials.push_back(
         {stimulus, responses.of(answer.response), *answer.is_correct,
          static_cast<std::size_t>(answer.number - design.first_trial), answer.repetition,
-         answer.response_time_s, answer.time_from_first_contact_s, answer.impacts,
+         known(answer.response_time_s), answer.time_from_first_contact_s, answer.impacts,
          answer.mean_impact_speed_m_s, answer.contact_s});
   }
   return data;

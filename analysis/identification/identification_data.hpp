@@ -11,9 +11,9 @@ struct IdentifiedTrial {
   std::size_t stimulus{};
   std::size_t response{};
   bool is_right{};
-  std::size_t place{};  // in the block's order, from 0
-  int repetition{};     // of the stimulus, from 1; 0: not known
-  double response_time_s{};
+  std::size_t place{};                    // in the block's order, from 0
+  int repetition{};                       // of the stimulus, from 1; 0: not known
+  std::optional<double> response_time_s;  // from the start of the trial
   std::optional<double> time_from_first_contact_s;
   std::int64_t impacts{};
   std::optional<double> mean_impact_speed_m_s;

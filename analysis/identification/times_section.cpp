@@ -54,7 +54,7 @@ ReportTable times_table(const IdentificationData& data) {
   for (const auto& [name, counts] : subsets) {
     add_times(
         data, name, "start", counts,
-        [](const IdentifiedTrial& trial) { return std::optional{trial.response_time_s}; }, table);
+        [](const IdentifiedTrial& trial) { return trial.response_time_s; }, table);
     add_times(
         data, name, "first contact", counts,
         [](const IdentifiedTrial& trial) { return trial.time_from_first_contact_s; }, table);
@@ -63,7 +63,7 @@ ReportTable times_table(const IdentificationData& data) {
     add_times(
         data, data.stimuli[i].name, "start",
         [i](const IdentifiedTrial& trial) { return trial.stimulus == i; },
-        [](const IdentifiedTrial& trial) { return std::optional{trial.response_time_s}; }, table);
+        [](const IdentifiedTrial& trial) { return trial.response_time_s; }, table);
   }
   return table;
 }
@@ -73,7 +73,9 @@ std::vector<TimedAnswers> timed(const IdentificationData& data) {
   for (const IdentifyingParticipant& person : data.participants) {
     people.emplace_back();
     for (const IdentifiedTrial& trial : person.trials) {
-      people.back().push_back({trial.response_time_s, trial.is_right});
+      if (trial.response_time_s) {
+        people.back().push_back({*trial.response_time_s, trial.is_right});
+      }
     }
   }
   return people;
@@ -117,13 +119,16 @@ ReportTable balanced_table(const IdentificationData& data) {
   std::vector<SpeedAndAccuracy> entries;
   for (const IdentifyingParticipant& person : data.participants) {
     double time = 0.0;
+    double timed = 0.0;  // of the right ones
     double right = 0.0;
     for (const IdentifiedTrial& trial : person.trials) {
-      time += trial.is_right ? trial.response_time_s : 0.0;
+      const bool is_timed = trial.is_right && trial.response_time_s;
+      time += is_timed ? *trial.response_time_s : 0.0;
+      timed += is_timed ? 1.0 : 0.0;
       right += trial.is_right ? 1.0 : 0.0;
     }
-    if (right > 0.0) {
-      entries.push_back({right / static_cast<double>(person.trials.size()), time / right});
+    if (timed > 0.0) {
+      entries.push_back({right / static_cast<double>(person.trials.size()), time / timed});
       table.rows.push_back(
           {word(person.id), share(entries.back().share_right), number(entries.back().mean_time_s)});
     }
@@ -137,10 +142,22 @@ ReportTable balanced_table(const IdentificationData& data) {
   }
   return table;
 }
+
+bool are_times_known(const IdentificationData& data) {
+  return std::ranges::any_of(data.participants, [](const IdentifyingParticipant& person) {
+    return std::ranges::any_of(person.trials, [](const IdentifiedTrial& trial) {
+      return trial.response_time_s.has_value();
+    });
+  });
+}
 }  // namespace
 
 ReportSection times_section(const IdentificationData& data) {
   ReportSection section{"Response times"};
+  if (!are_times_known(data)) {
+    section.remarks.emplace_back("No times are known of these answers.");
+    return section;
+  }
   section.tables.push_back(times_table(data));
   add_conditional_accuracy(data, section);
   section.tables.push_back(balanced_table(data));

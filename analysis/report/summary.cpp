@@ -86,6 +86,32 @@ Summary summarise(const ConfusionMatrix& matrix, const std::string& title, std::
   return summary;
 }
 
+Summary summarise(const AnswerTable& table, const std::string& title, std::string_view task,
+                  const std::string& mode) {
+  if (!table.are_participants_known) {
+    ConfusionMatrix matrix{table.stimuli, table.responses};
+    for (const AnswerRow& answer : table.answers) {
+      matrix.add(answer.stimulus, answer.response);
+    }
+    return summarise(matrix, title, task, mode);
+  }
+  BlockDesign design;
+  design.task = task;
+  design.stimuli = table.stimuli;
+  design.responses = table.responses;
+  design.is_order_known = false;
+  Summary summary;
+  summary.title = title;
+  summary.modes = mode.empty() ? "answers" : "answers, " + mode;
+  std::set<std::string> participants;
+  std::ranges::transform(table.answers, std::inserter(participants, participants.end()),
+                         &AnswerRow::participant_id);
+  summary.participants = static_cast<int>(participants.size());
+  summary.blocks.push_back(std::make_shared<const IdentificationSummary>(
+      design, identification_data(design, table.answers)));
+  return summary;
+}
+
 std::string banner(const Summary& summary) {
   if (summary.modes.find("simulated") != std::string::npos) {
     return "SIMULATED participants: no person took part. These data show what the physics and the "
@@ -98,7 +124,7 @@ std::string banner(const Summary& summary) {
 }
 
 std::string methods(const Summary& summary) {
-  if (!summary.loop) {
+  if (!summary.loop && summary.participants == 0) {
     return "Computed from a table of counts; participants are not known, so intervals and "
            "probabilities treat all answers as independent.";
   }

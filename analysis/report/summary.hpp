@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "analysis/answer_tables/answer_table.hpp"
 #include "analysis/blocks/block_summary.hpp"
 namespace tapstudy::analysis {
 struct LoopQuality {
@@ -35,6 +36,9 @@ Summary summarise(const StudyDesign& design, const std::vector<results::AnswerRo
                   const std::vector<results::VisitRow>& visits);
 // From a matrix alone, participants unknown; `task` is the one that such a matrix comes from.
 Summary summarise(const ConfusionMatrix& matrix, const std::string& title, std::string_view task,
+                  const std::string& mode);
+// From somebody else's table; without participants it is summarised as its matrix.
+Summary summarise(const AnswerTable& table, const std::string& title, std::string_view task,
                   const std::string& mode);
 
 // What must stand above everything else where the participants are not those of a study; or empty.

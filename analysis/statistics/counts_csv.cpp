@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <set>
 #include <span>
 
 #include "analysis/statistics/csv_rows.hpp"
@@ -32,7 +31,9 @@ const std::vector<CsvRow>& checked_rows(const std::vector<CsvRow>& rows, const s
   }
   if (rows.size() < 2 || rows.front().cells.front() != "stimulus") {
     refuse(file, rows.empty() ? 1 : rows.front().line,
-           "is not a table with a header that starts with 'stimulus' and at least one row");
+           "is neither a matrix (its header starts with 'stimulus', and there is a row for each) "
+           "nor a "
+           "table of answers (a row each, with columns for stimulus and response)");
   }
   return rows;
 }
@@ -47,42 +48,6 @@ std::int64_t count_in(const std::string& cell, const std::string& file, int line
                        cell, max_answers, factor_mark));
   }
   return value;
-}
-
-// A typing mistake must not become a class of its own.
-ConfusionMatrix from_answers(const std::vector<CsvRow>& lines, const std::string& file,
-                             const std::vector<std::string>& extra_responses) {
-  std::set<std::string> stimuli;
-  for (std::size_t i = 1; i < lines.size(); ++i) {
-    stimuli.insert(lines[i].cells[0]);
-  }
-  std::set<std::string> responses = stimuli;
-  responses.insert(extra_responses.begin(), extra_responses.end());
-  for (const CsvRow& line : std::span{lines}.subspan(1)) {
-    if (!responses.contains(line.cells[1])) {
-      refuse(file, line.line,
-             fmt::format("response '{}' is no stimulus (if it can be answered, name it with "
-                         "--responses; leave a row without an answer out)",
-                         line.cells[1]));
-    }
-  }
-  if (responses.size() > max_classes) {
-    refuse(file, lines.front().line,
-           fmt::format("names {} different stimuli and responses (at most {})", responses.size(),
-                       max_classes));
-  }
-  const auto items_of = [](const std::set<std::string>& names) {
-    std::vector<Item> items;
-    for (const std::string& name : names) {
-      items.push_back({name, name, {}});
-    }
-    return items;
-  };
-  ConfusionMatrix matrix{items_of(stimuli), items_of(responses)};
-  for (std::size_t i = 1; i < lines.size(); ++i) {
-    matrix.add(lines[i].cells[0], lines[i].cells[1]);
-  }
-  return matrix;
 }
 
 std::vector<Item> stimuli_of(const std::vector<CsvRow>& lines, const std::string& file) {
@@ -148,22 +113,21 @@ ConfusionMatrix from_matrix(const std::vector<CsvRow>& lines, const std::string&
 }
 }  // namespace
 
-CountsTable read_counts(std::istream& text, const std::string& file,
-                        const std::vector<std::string>& extra_responses) {
-  const CsvText csv = read_csv(text, file);
+ConfusionMatrix read_counts(const CsvText& csv, const std::string& file) {
   const std::vector<CsvRow>& lines = checked_rows(csv.rows, file);
-  const std::vector<std::string>& header = lines.front().cells;
-  const bool is_answers = header.size() >= 2 && header[1] == "response";
-  CountsTable table{
-      is_answers ? from_answers(lines, file, extra_responses) : from_matrix(lines, file), {}};
-  if (table.matrix.total() == 0) {
+  ConfusionMatrix matrix = from_matrix(lines, file);
+  if (matrix.total() == 0) {
     refuse(file, lines.front().line, "holds no answers");
   }
+  return matrix;
+}
+
+std::string mode_of(const CsvText& csv) {
   for (const std::string& comment : csv.comments) {
     if (comment.starts_with(mode_mark)) {
-      table.mode = comment.substr(std::string_view{mode_mark}.size());
+      return comment.substr(std::string_view{mode_mark}.size());
     }
   }
-  return table;
+  return {};
 }
 }  // namespace tapstudy::analysis

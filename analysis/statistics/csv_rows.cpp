@@ -5,12 +5,27 @@
 #include <utf8cpp/utf8.h>
 
 #include <algorithm>
+#include <string_view>
 #include <utility>
 
 #include "core/error.hpp"
 namespace tapstudy::analysis {
 namespace {
 constexpr std::size_t max_bytes = 64'000'000;
+constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
+
+// The one of comma, semicolon and tabulator that is most frequent outside of quotes.
+char separator_of(const std::string& header) {
+  std::string outside;
+  bool is_quoted = false;
+  for (const char c : header) {
+    is_quoted = is_quoted != (c == '"');
+    outside += is_quoted ? ' ' : c;
+  }
+  constexpr std::string_view separators = ",;\t";
+  return *std::ranges::max_element(
+      separators, {}, [&](char separator) { return std::ranges::count(outside, separator); });
+}
 
 class CsvReader {
  public:
@@ -26,11 +41,17 @@ class CsvReader {
   CsvText read(std::istream& text) {
     for (std::string line; next_line(text, line);) {
       ++line_;
+      if (line_ == 1 && line.starts_with(byte_order_mark)) {
+        line.erase(0, byte_order_mark.size());
+      }
       check_characters(line);
       const bool is_before_rows = !is_inside_row_ && text_.rows.empty();
       if (is_before_rows && line.starts_with('#')) {
         text_.comments.push_back(line);
       } else {
+        if (is_before_rows) {
+          csv_set_delim(&parser_, static_cast<unsigned char>(separator_of(line)));
+        }
         take(line + '\n');
       }
     }

@@ -77,6 +77,11 @@ void Command::repeatable(const std::string& name, std::vector<std::string>& valu
   app_->add_option(name, values, help)->allow_extra_args(false);
 }
 
+void Command::list(const std::string& name, std::vector<std::string>& values,
+                   const std::string& help) {
+  app_->add_option(name, values, help);
+}
+
 void Command::option_with_default(const std::string& name, std::string& value,
                                   const std::string& help) {
   app_->add_option(name, value, help)->capture_default_str();

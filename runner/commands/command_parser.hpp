@@ -28,6 +28,8 @@ class Command {
   // An option that may be given several times, with one value each.
   void repeatable(const std::string& name, std::vector<std::string>& values,
                   const std::string& help);
+  // An option with one or more values after it.
+  void list(const std::string& name, std::vector<std::string>& values, const std::string& help);
   // Help shows the default.
   void option_with_default(const std::string& name, std::string& value, const std::string& help);
   void option_with_default(const std::string& name, int& value, const std::string& help);

@@ -12,10 +12,10 @@
 #include "analysis/statistics/counts_csv.hpp"
 #include "core/error.hpp"
 #include "core/output_file.hpp"
-#include "protocols/tasks/shipped_tasks.hpp"
 #include "results/store.hpp"
 #include "runner/commands/commands.hpp"
 #include "runner/experiments/study_summary.hpp"
+#include "runner/experiments/table_summary.hpp"
 #include "runner/terminal/logging.hpp"
 namespace tapstudy::runner {
 namespace {
@@ -25,10 +25,12 @@ using results::Mode;
 
 struct ReportOptions {
   std::vector<std::string> directories;
-  std::string counts;
+  std::vector<std::string> counts;
+  TableOptions table;
+  std::string responses;
+  std::string time_unit;
   std::string out;
   std::string mode;
-  std::string responses;
   bool replace{false};
 };
 
@@ -72,25 +74,11 @@ Summary summary_of_directories(const ReportOptions& options) {
   return summary_of_study(studies, mode_to_report(options, sessions));
 }
 
+// As a row of a table has them: a comma within an answer is in quotes.
 std::vector<std::string> listed(const std::string& words) {
-  std::vector<std::string> all;
   std::istringstream stream{words};
-  for (std::string word; std::getline(stream, word, ',');) {
-    all.push_back(word);
-  }
-  return all;
-}
-
-Summary summary_of_counts(const std::string& file, const std::string& responses) {
-  std::ifstream text{file};
-  if (!text) {
-    throw core::InvalidInput{file + ": cannot be read"};
-  }
-  const analysis::CountsTable counts = analysis::read_counts(text, file, listed(responses));
-  Summary summary = analysis::summarise(counts.matrix, fs::path{file}.stem().string(),
-                                        protocols::identification().name(), counts.mode);
-  summary.provenance = {{"counts", file}};
-  return summary;
+  const analysis::CsvText csv = analysis::read_csv(stream, "--responses");
+  return csv.rows.empty() ? std::vector<std::string>{} : csv.rows.front().cells;
 }
 
 // A table that leaves its report still says whose answers it holds.
@@ -132,16 +120,35 @@ void write_files(const ReportOptions& options, const Summary& summary) {
   }
 }
 
+bool reads_columns(const ReportOptions& options) {
+  return options.table.columns.are_given() || !options.table.conditions.empty() ||
+         !options.responses.empty();
+}
+
+TableOptions table_options(const ReportOptions& options) {
+  TableOptions table = options.table;
+  table.responses = listed(options.responses);
+  if (!options.time_unit.empty()) {
+    table.columns.time_unit_s = options.time_unit == "ms" ? 1e-3 : 1.0;
+  }
+  return table;
+}
+
 void run_report(ReportOptions options) {
   if (options.directories.empty() == options.counts.empty()) {
     throw core::InvalidInput{"report takes either directories of a study or --counts FILE.csv"};
+  }
+  if (options.counts.empty() && reads_columns(options)) {
+    throw core::InvalidInput{
+        "--stimulus-column, --response-column, --participant-column, --time-column, --where and "
+        "--responses say how to read --counts FILE.csv"};
   }
   if (options.directories.size() > 1 && options.out.empty()) {
     throw core::InvalidInput{"--out: a report of several directories needs one of its own"};
   }
   const Summary summary = options.counts.empty()
                               ? summary_of_directories(options)
-                              : summary_of_counts(options.counts, options.responses);
+                              : summary_of_tables(options.counts, table_options(options));
   analysis::write_text(std::cout, summary);
   std::cout << std::endl;
   if (options.out.empty() && options.counts.empty()) {
@@ -159,10 +166,22 @@ void add_report(CommandParser& line) {
   const auto options = std::make_shared<ReportOptions>();
   command.arguments("directories", options->directories,
                     "Directory of a study; several, if it was run on several machines");
-  command.option("--counts", options->counts,
-                 "Instead of a study: a matrix or a stimulus,response table (CSV)");
+  command.list("--counts", options->counts,
+               "Instead of a study: a matrix, or tables with a row for each answer (CSV, also "
+               "PsychoPy's and jsPsych's)");
+  analysis::AnswerColumns& columns = options->table.columns;
+  command.option("--stimulus-column", columns.stimulus, "With --counts: which was presented");
+  command.option("--response-column", columns.response, "With --counts: what was answered");
+  command.option("--participant-column", columns.participant,
+                 "With --counts: by whom; without it, each of several files is one participant's");
+  command.option("--time-column", columns.time, "With --counts: the response time");
+  command.one_of("--time-unit", options->time_unit, {"s", "ms"},
+                 "Of the response time; default: from the column's name or the file's format");
+  command.repeatable("--where", options->table.conditions,
+                     "With --counts: COLUMN=VALUE; rows with other values are left out");
   command.option("--responses", options->responses,
-                 "With --counts: answers that are no stimuli, comma-separated");
+                 "With --counts: answers that are no stimuli, and GIVEN=STIMULUS for what answers "
+                 "stand for, comma-separated");
   command.option("--out", options->out, "Output directory; default: the study's own");
   command.one_of("--mode", options->mode, {"real", "pilot", "simulated"},
                  "Which sessions: real, pilot or simulated");

@@ -1,5 +1,6 @@
 #include <sstream>
 
+#include "analysis/answer_tables/answer_table.hpp"
 #include "analysis/report/summary.hpp"
 #include "analysis/report/writers.hpp"
 #include "analysis/statistics/counts_csv.hpp"
@@ -8,8 +9,15 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   return tapstudy::fuzz::try_reading(data, size, [](const std::string& text) {
     std::istringstream stream{text};
-    const auto counts = tapstudy::analysis::read_counts(stream, "counts.csv");
-    const auto summary = tapstudy::analysis::summarise(counts.matrix, "counts", "", counts.mode);
+    const auto csv = tapstudy::analysis::read_csv(stream, "counts.csv");
+    const bool are_answers =
+        !csv.rows.empty() && tapstudy::analysis::has_answers(csv.rows.front().cells);
+    const auto summary =
+        are_answers
+            ? tapstudy::analysis::summarise(
+                  tapstudy::analysis::read_answers({{"answers.csv", csv}}, {}), "answers", "", "")
+            : tapstudy::analysis::summarise(tapstudy::analysis::read_counts(csv, "counts.csv"),
+                                            "counts", "", tapstudy::analysis::mode_of(csv));
     std::ostringstream out;
     tapstudy::analysis::write_text(out, summary);
     tapstudy::analysis::write_html(out, summary);

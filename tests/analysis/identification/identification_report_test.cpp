@@ -133,7 +133,7 @@ TEST_CASE("a report says with a word what it cannot say", "[analysis][identifica
 
 TEST_CASE("a class that nobody names leaves no hole in the report", "[analysis][identification]") {
   std::istringstream text{"stimulus,a,b,c\na,6,0,4\nb,5,0,5\nc,1,0,9\n"};
-  const auto matrix = read_counts(text, "counts.csv").matrix;
+  const auto matrix = read_counts(read_csv(text, "counts.csv"), "counts.csv");
   const auto formats = testing::formats_of(IdentificationSummary{BlockDesign{}, matrix});
   CHECK_THAT(formats.html,
              Contains("No similarity-choice model") && !Contains(">nan") && !Contains(">inf"));

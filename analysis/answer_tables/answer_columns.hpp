@@ -1,0 +1,36 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+namespace tapstudy::analysis {
+// Which columns of a table of answers hold what. Empty: those of the table's format.
+struct AnswerColumns {
+  std::string stimulus{};
+  std::string response{};
+  std::string participant{};
+  std::string time{};
+  double time_unit_s{};  // 0: the format's
+  bool are_given() const {
+    return !(stimulus.empty() && response.empty() && participant.empty() && time.empty());
+  }
+};
+
+// Their places in a row, from 0.
+struct AnswerPlaces {
+  std::size_t stimulus{};
+  std::size_t response{};
+  std::optional<std::size_t> participant{};
+  std::optional<std::size_t> time{};
+  std::optional<std::size_t> mode{};  // as tapstudy exports it: real, pilot or simulated
+  double time_unit_s{1.0};
+};
+
+// Formats are told apart by columns that no other has: PsychoPy's wide CSV (answers are keys of the
+// one keyboard component), jsPsych's CSV (times in milliseconds), and any table with columns
+// `stimulus` and `response`. Throws InvalidInput with `where` if a column that is named is missing
+// or there twice, or if several could hold the answers.
+AnswerPlaces find_columns(const std::vector<std::string>& header, const AnswerColumns& chosen,
+                          const std::string& where);
+// Whether the header is that of a table of answers, as far as its names say.
+bool has_answers(const std::vector<std::string>& header);
+}  // namespace tapstudy::analysis

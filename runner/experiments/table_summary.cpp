@@ -1,0 +1,93 @@
+#include "runner/experiments/table_summary.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <filesystem>
+#include <fstream>
+#include <set>
+
+#include "analysis/answer_tables/answer_table.hpp"
+#include "analysis/statistics/counts_csv.hpp"
+#include "core/error.hpp"
+#include "protocols/tasks/shipped_tasks.hpp"
+namespace tapstudy::runner {
+namespace {
+using analysis::NamedCsv;
+using analysis::Summary;
+
+NamedCsv read_file(const std::string& file) {
+  std::ifstream text{file};
+  if (!text) {
+    throw core::InvalidInput{file + ": cannot be read"};
+  }
+  return {file, analysis::read_csv(text, file)};
+}
+
+std::pair<std::string, std::string> split(const std::string& text) {
+  const std::size_t equals = text.find('=');
+  return equals == std::string::npos ? std::pair{text, text}
+                                     : std::pair{text.substr(0, equals), text.substr(equals + 1)};
+}
+
+analysis::AnswerReading reading_of(const TableOptions& options) {
+  analysis::AnswerReading reading;
+  reading.columns = options.columns;
+  for (const std::string& condition : options.conditions) {
+    if (condition.find('=') == std::string::npos) {
+      throw core::InvalidInput{
+          fmt::format("--where: '{}' is not of the form COLUMN=VALUE", condition)};
+    }
+    const auto [column, value] = split(condition);
+    reading.conditions.push_back({column, value});
+  }
+  for (const std::string& response : options.responses) {
+    reading.responses.insert(split(response));
+  }
+  return reading;
+}
+
+// What their comments say besides.
+std::string modes_of(const std::vector<NamedCsv>& tables, std::set<std::string> modes = {}) {
+  for (const NamedCsv& table : tables) {
+    if (const std::string mode = analysis::mode_of(table.text); !mode.empty()) {
+      modes.insert(mode);
+    }
+  }
+  return fmt::format("{}", fmt::join(modes, ", "));
+}
+
+bool hold_answers(const std::vector<NamedCsv>& tables, const TableOptions& options) {
+  return tables.size() > 1 || options.columns.are_given() || !options.conditions.empty() ||
+         (!tables.front().text.rows.empty() &&
+          analysis::has_answers(tables.front().text.rows.front().cells));
+}
+
+Summary summary_of_answers(const std::vector<NamedCsv>& tables, const TableOptions& options,
+                           const std::string& title) {
+  const analysis::AnswerTable table = analysis::read_answers(tables, reading_of(options));
+  Summary summary = analysis::summarise(table, title, protocols::identification().name(),
+                                        modes_of(tables, table.modes));
+  if (table.unanswered > 0) {
+    summary.deviations.push_back(
+        fmt::format("{} of {} rows have no answer and are left out", table.unanswered, table.rows));
+  }
+  return summary;
+}
+}  // namespace
+
+Summary summary_of_tables(const std::vector<std::string>& files, const TableOptions& options) {
+  std::vector<NamedCsv> tables;
+  for (const std::string& file : files) {
+    tables.push_back(read_file(file));
+  }
+  const std::string title = std::filesystem::path{files.front()}.stem().string();
+  Summary summary =
+      hold_answers(tables, options)
+          ? summary_of_answers(tables, options, title)
+          : analysis::summarise(analysis::read_counts(tables.front().text, files.front()), title,
+                                protocols::identification().name(), modes_of(tables));
+  summary.provenance = {{"counts", fmt::format("{}", fmt::join(files, ", "))}};
+  return summary;
+}
+}  // namespace tapstudy::runner

@@ -1,0 +1,39 @@
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include "support/processes.hpp"
+#include "support/texts.hpp"
+using namespace tapstudy;
+
+namespace {
+nlohmann::json block_of(const std::string& report) {
+  nlohmann::json block = nlohmann::json::parse(testing::contents(report))["blocks"][0];
+  auto& people = block["participants"];
+  std::sort(people.begin(), people.end(), [](const auto& one, const auto& other) {
+    return one["participant_id"] < other["participant_id"];
+  });
+  return block;
+}
+}  // namespace
+
+TEST_CASE("exported answers are counted as the study's own report counts them, and stay simulated",
+          "[end_to_end]") {
+  const testing::TempDirectory directory;
+  REQUIRE(testing::tapstudy({"simulate", testing::shipped("paper/discrimination.yaml"),
+                             "--participants", "3", "--seed", "5", "--out", directory / "study"})
+              .exit_code == 0);
+  REQUIRE(
+      testing::tapstudy({"export", directory / "study", "--out", directory / "csv"}).exit_code ==
+      0);
+  const auto table = testing::tapstudy(
+      {"report", "--counts", directory / "csv/trials.csv", "--out", directory / "of_table"});
+  REQUIRE(table.exit_code == 0);
+  CHECK_THAT(table.standard_output, Catch::Matchers::Contains("SIMULATED"));
+  REQUIRE(testing::tapstudy({"report", directory / "study", "--replace"}).exit_code == 0);
+  const nlohmann::json own = block_of(directory / "study/report.json");
+  const nlohmann::json read = block_of(directory / "of_table/report.json");
+  CHECK(read["accuracy"] == own["accuracy"]);
+  CHECK(read["participants"] == own["participants"]);
+  CHECK(read["response_times"][0] == own["response_times"][0]);
+}

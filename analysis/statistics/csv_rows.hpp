@@ -14,8 +14,8 @@ struct CsvText {
 };
 
 // Comma-separated values (RFC 4180), or separated by semicolons or tabulators, whichever the header
-// has most of: cells in double quotes may hold separators, quotes and line ends; spaces around other
-// cells do not count; empty lines and a byte order mark are skipped. Throws InvalidInput with
+// has most of: cells in double quotes may hold separators, quotes and line ends; spaces around
+// other cells do not count; empty lines and a byte order mark are skipped. Throws InvalidInput with
 // file:line for a quote that is out of place or left open, for what is no UTF-8 text, and for a
 // file beyond 64 MB.
 CsvText read_csv(std::istream& text, const std::string& file);

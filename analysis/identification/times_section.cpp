@@ -110,6 +110,23 @@ void add_conditional_accuracy(const IdentificationData& data, ReportSection& sec
   }
 }
 
+// Unset if no right answer has a time.
+std::optional<SpeedAndAccuracy> speed_and_accuracy(const IdentifyingParticipant& person) {
+  double time = 0.0;
+  double timed = 0.0;  // of the right ones
+  double right = 0.0;
+  for (const IdentifiedTrial& trial : person.trials) {
+    const bool is_timed = trial.is_right && trial.response_time_s;
+    time += is_timed ? *trial.response_time_s : 0.0;
+    timed += is_timed ? 1.0 : 0.0;
+    right += trial.is_right ? 1.0 : 0.0;
+  }
+  if (timed == 0.0) {
+    return std::nullopt;
+  }
+  return SpeedAndAccuracy{right / static_cast<double>(person.trials.size()), time / timed};
+}
+
 ReportTable balanced_table(const IdentificationData& data) {
   ReportTable table{"balanced_integration",
                     "Speed and accuracy of each participant",
@@ -118,17 +135,8 @@ ReportTable balanced_table(const IdentificationData& data) {
                      column("balanced integration score", "balanced_integration_score")}};
   std::vector<SpeedAndAccuracy> entries;
   for (const IdentifyingParticipant& person : data.participants) {
-    double time = 0.0;
-    double timed = 0.0;  // of the right ones
-    double right = 0.0;
-    for (const IdentifiedTrial& trial : person.trials) {
-      const bool is_timed = trial.is_right && trial.response_time_s;
-      time += is_timed ? *trial.response_time_s : 0.0;
-      timed += is_timed ? 1.0 : 0.0;
-      right += trial.is_right ? 1.0 : 0.0;
-    }
-    if (timed > 0.0) {
-      entries.push_back({right / static_cast<double>(person.trials.size()), time / timed});
+    if (const auto entry = speed_and_accuracy(person)) {
+      entries.push_back(*entry);
       table.rows.push_back(
           {word(person.id), share(entries.back().share_right), number(entries.back().mean_time_s)});
     }

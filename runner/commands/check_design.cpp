@@ -8,6 +8,7 @@
 #include "analysis/statistics/proportion.hpp"
 #include "protocols/ordering.hpp"
 #include "protocols/schedule.hpp"
+#include "results/trace_codec.hpp"
 #include "runner/devices/masking_noise.hpp"
 #include "runner/experiments/screens.hpp"
 #include "runner/session/session_row.hpp"
@@ -82,10 +83,12 @@ void print_procedures(const protocols::Comparison& comparison, double guess_rate
 void print_blocks(const protocols::Protocol& protocol, int participants) {
   fmt::print("{}\n\n", protocol.title);
   double total_s = 0.0;
+  double recorded_s = 0.0;
   for (const protocols::Block& block : protocol.blocks) {
     const int trials = planned_trials(block);
     const double seconds = trials * simulated_trial_s(protocol, block);
     total_s += seconds;
+    recorded_s += block.presented == protocols::Presented::real_plates ? 0.0 : seconds;
     fmt::print("  {}{}{}: {}, {}, {}{} trials a participant, about {:.0f} s of tapping\n",
                block.name, block.is_practice ? " (practice)" : "",
                block.presented == protocols::Presented::real_plates ? " (real plates)" : "",
@@ -104,6 +107,8 @@ void print_blocks(const protocols::Protocol& protocol, int participants) {
     }
   }
   fmt::print("\n  {} participants, {:.0f} min of tapping each\n", participants, total_s / 60.0);
+  fmt::print("  about {:.0f} MB of disk for all, if they tap no longer than simulated ones\n",
+             1e-6 * results::usual_bytes_per_tick * recorded_s * protocol.rate_hz * participants);
 }
 
 void print_screens(const protocols::Protocol& protocol) {

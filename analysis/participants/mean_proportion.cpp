@@ -17,6 +17,7 @@ constexpr int bootstrap_draws = 4999;
 constexpr std::uint64_t bootstrap_seed = 2;
 constexpr double largest_eta = 0.999;  // square root of the intra-class correlation
 constexpr double smallest_share = 1e-9;
+constexpr double indistinguishable = 1e-5;  // log likelihoods, by rounding where eta is small
 
 double log_likelihood(const std::vector<Proportion>& participants, double mean, double eta) {
   double sum = 0.0;
@@ -35,7 +36,8 @@ Profile profile_at(const std::vector<Proportion>& participants, double mean) {
   const Minimum inside = minimum(
       [&](double eta) { return -log_likelihood(participants, mean, eta); }, 0.0, largest_eta);
   const double without = log_likelihood(participants, mean, 0.0);
-  return without >= -inside.value ? Profile{0.0, without} : Profile{inside.at, -inside.value};
+  return without >= -inside.value - indistinguishable ? Profile{0.0, without}
+                                                      : Profile{inside.at, -inside.value};
 }
 
 Interval profile_interval(const std::vector<Proportion>& participants, double mean,
@@ -62,6 +64,16 @@ std::vector<Proportion> answered(const std::vector<Proportion>& participants) {
     }
   }
   return found;
+}
+
+// Of all answers, with its negative log likelihood.
+Minimum pooled_share(const std::vector<Proportion>& people) {
+  Proportion all;
+  for (const Proportion& of : people) {
+    all.successes += of.successes;
+    all.trials += of.trials;
+  }
+  return {all.value(), -profile_at(people, all.value()).log_likelihood};
 }
 
 bool are_equal(const std::vector<double>& values) {
@@ -142,8 +154,11 @@ std::optional<MeanProportion> mean_proportion(const std::vector<Proportion>& par
   if (people.size() < 2) {
     return std::nullopt;
   }
-  const Minimum best =
+  Minimum best =
       minimum([&](double mean) { return -profile_at(people, mean).log_likelihood; }, 0.0, 1.0);
+  // without correlation it is the share of all answers
+  const Minimum pooled = pooled_share(people);
+  best = pooled.value <= best.value + indistinguishable ? pooled : best;
   MeanProportion result;
   result.participants = static_cast<int>(people.size());
   result.mean = best.at;

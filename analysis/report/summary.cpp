@@ -124,6 +124,9 @@ std::string banner(const Summary& summary) {
 }
 
 std::string methods(const Summary& summary) {
+  if (!summary.stated_methods.empty()) {
+    return summary.stated_methods;
+  }
   if (!summary.loop && summary.participants == 0) {
     return "Computed from a table of counts; participants are not known, so intervals and "
            "probabilities treat all answers as independent.";

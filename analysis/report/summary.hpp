@@ -29,6 +29,7 @@ struct Summary {
   std::vector<std::shared_ptr<const BlockSummary>> blocks;
   std::optional<LoopQuality> loop;
   std::vector<std::pair<std::string, std::string>> provenance;
+  std::string stated_methods{};  // in place of what methods() would say
 };
 
 // All contents of a report, computed from the stored rows.

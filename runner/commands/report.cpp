@@ -8,6 +8,7 @@
 #include <sstream>
 #include <utility>
 
+#include "analysis/report/comparison.hpp"
 #include "analysis/report/writers.hpp"
 #include "analysis/statistics/counts_csv.hpp"
 #include "core/error.hpp"
@@ -26,6 +27,7 @@ using results::Mode;
 struct ReportOptions {
   std::vector<std::string> directories;
   std::vector<std::string> counts;
+  std::vector<std::string> compared;
   TableOptions table;
   std::string responses;
   std::string time_unit;
@@ -59,17 +61,18 @@ results::Store store_to_report(const std::string& directory) {
   return results::Store::from_journal(directory);
 }
 
-Summary summary_of_directories(const ReportOptions& options) {
+Summary summary_of_directories(const ReportOptions& options,
+                               const std::vector<std::string>& directories) {
   std::vector<results::Store> stores;
   std::vector<results::SessionRow> sessions;
-  for (const std::string& directory : options.directories) {
+  for (const std::string& directory : directories) {
     stores.push_back(store_to_report(directory));
     const auto more = stores.back().sessions();
     sessions.insert(sessions.end(), more.begin(), more.end());
   }
   std::vector<StudyStore> studies;
   for (std::size_t i = 0; i < stores.size(); ++i) {
-    studies.push_back({options.directories[i], &stores[i]});
+    studies.push_back({directories[i], &stores[i]});
   }
   return summary_of_study(studies, mode_to_report(options, sessions));
 }
@@ -134,11 +137,38 @@ TableOptions table_options(const ReportOptions& options) {
   return table;
 }
 
-void run_report(ReportOptions options) {
-  if (options.directories.empty() == options.counts.empty()) {
-    throw core::InvalidInput{"report takes either directories of a study or --counts FILE.csv"};
+// A study's directory, or a table.
+Summary summary_of_either(const ReportOptions& options, const std::string& path) {
+  return fs::is_directory(path) ? summary_of_directories(options, {path})
+                                : summary_of_tables({path}, table_options(options));
+}
+
+Summary summary_of_comparison(const ReportOptions& options) {
+  if (options.compared.size() != 2) {
+    throw core::InvalidInput{"--compare takes two directories of studies, or tables"};
   }
-  if (options.counts.empty() && reads_columns(options)) {
+  const Summary first = summary_of_either(options, options.compared.front());
+  const Summary second = summary_of_either(options, options.compared.back());
+  return analysis::compare({options.compared.front(), &first}, {options.compared.back(), &second});
+}
+
+Summary summary_of(const ReportOptions& options) {
+  if (!options.compared.empty()) {
+    return summary_of_comparison(options);
+  }
+  return options.counts.empty() ? summary_of_directories(options, options.directories)
+                                : summary_of_tables(options.counts, table_options(options));
+}
+
+void check_options(const ReportOptions& options) {
+  const int sources = static_cast<int>(!options.directories.empty()) +
+                      static_cast<int>(!options.counts.empty()) +
+                      static_cast<int>(!options.compared.empty());
+  if (sources != 1) {
+    throw core::InvalidInput{
+        "report takes either directories of a study, or --counts FILE.csv, or --compare A B"};
+  }
+  if (!options.directories.empty() && reads_columns(options)) {
     throw core::InvalidInput{
         "--stimulus-column, --response-column, --participant-column, --time-column, --where and "
         "--responses say how to read --counts FILE.csv"};
@@ -146,12 +176,14 @@ void run_report(ReportOptions options) {
   if (options.directories.size() > 1 && options.out.empty()) {
     throw core::InvalidInput{"--out: a report of several directories needs one of its own"};
   }
-  const Summary summary = options.counts.empty()
-                              ? summary_of_directories(options)
-                              : summary_of_tables(options.counts, table_options(options));
+}
+
+void run_report(ReportOptions options) {
+  check_options(options);
+  const Summary summary = summary_of(options);
   analysis::write_text(std::cout, summary);
   std::cout << std::endl;
-  if (options.out.empty() && options.counts.empty()) {
+  if (options.out.empty() && !options.directories.empty()) {
     options.out = options.directories.front();
   }
   if (!options.out.empty()) {
@@ -170,6 +202,8 @@ void add_report(CommandParser& line) {
                "Instead of a study: a matrix, or tables with a row for each answer (CSV, also "
                "PsychoPy's and jsPsych's)");
   analysis::AnswerColumns& columns = options->table.columns;
+  command.list("--compare", options->compared,
+               "Instead of a study: two of them, or two tables, and how they differ");
   command.option("--stimulus-column", columns.stimulus, "With --counts: which was presented");
   command.option("--response-column", columns.response, "With --counts: what was answered");
   command.option("--participant-column", columns.participant,

@@ -1,0 +1,131 @@
+#include "analysis/report/comparison.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "analysis/statistics/independent_difference.hpp"
+#include "analysis/tables/tabular_summary.hpp"
+#include "core/error.hpp"
+namespace tapstudy::analysis {
+namespace {
+using Block = std::shared_ptr<const BlockSummary>;
+
+const BlockSummary* find_block(const Summary& summary, const std::string& name) {
+  const auto found = std::ranges::find_if(summary.blocks,
+                                          [&](const Block& block) { return block->block == name; });
+  return found == summary.blocks.end() ? nullptr : found->get();
+}
+
+std::string participants_of(const NamedSummary& study) {
+  const int number = study.summary->participants;
+  return number == 0 ? study.name
+                     : fmt::format("{} ({} participant{}, {})", study.name, number,
+                                   number == 1 ? "" : "s", study.summary->modes);
+}
+
+Estimate estimate_of(const MainResult& result) {
+  return {result.estimate, result.range};
+}
+
+void add_rows(const MainResult& first, const MainResult& second, const NamedSummary& a,
+              const NamedSummary& b, ReportTable& table) {
+  const Estimate difference = independent_difference(estimate_of(first), estimate_of(second));
+  table.rows.push_back(
+      {word(first.name), word(participants_of(a)), interval(first.estimate, first.range)});
+  table.rows.push_back(
+      {word(first.name), word(participants_of(b)), interval(second.estimate, second.range)});
+  table.rows.push_back(
+      {word(first.name), word("difference"), interval(difference.value, difference.interval)});
+}
+
+std::shared_ptr<TabularSummary> compare_blocks(const BlockSummary& first,
+                                               const BlockSummary& second, const NamedSummary& a,
+                                               const NamedSummary& b) {
+  BlockDesign design;
+  design.name = first.block;
+  design.task = first.task;
+  design.question = first.question;
+  auto compared = std::make_shared<TabularSummary>(design);
+  ReportTable table{"comparison",
+                    "Second less first",
+                    {column("result", "result"), column("study", "study"),
+                     interval_column("estimate (95 % CI)", "estimate")}};
+  const std::vector<MainResult> others = second.main_results();
+  for (const MainResult& result : first.main_results()) {
+    const auto other = std::ranges::find(others, result.name, &MainResult::name);
+    if (other != others.end()) {
+      add_rows(result, *other, a, b, table);
+    }
+  }
+  if (first.question != second.question) {
+    compared->remarks.push_back(fmt::format("{} asked: {}", b.name, second.question));
+  }
+  compared->parts.push_back(std::move(table));
+  return compared;
+}
+
+// "block 'x': only in A", or what is compared.
+void add_block(const BlockSummary& block, const NamedSummary& first, const NamedSummary& second,
+               Summary& comparison) {
+  const auto leave_out = [&](const std::string& why) {
+    comparison.deviations.push_back(
+        fmt::format("block '{}' is not compared: {}", block.block, why));
+  };
+  const BlockSummary* const other = find_block(*second.summary, block.block);
+  if (other == nullptr) {
+    return leave_out(second.name + " has none of that name");
+  }
+  if (other->task != block.task) {
+    return leave_out(fmt::format("its task is {} in {}, {} in {}", block.task, first.name,
+                                 other->task, second.name));
+  }
+  const auto compared = compare_blocks(block, *other, first, second);
+  if (compared->parts.front().rows.empty()) {
+    return leave_out("it has no result with an interval over participants in both");
+  }
+  comparison.blocks.push_back(compared);
+}
+
+std::string modes_of(const Summary& first, const Summary& second) {
+  return first.modes == second.modes ? first.modes : first.modes + ", " + second.modes;
+}
+}  // namespace
+
+Summary compare(const NamedSummary& first, const NamedSummary& second) {
+  Summary comparison;
+  comparison.title = fmt::format("{} and {}", first.name, second.name);
+  comparison.modes = modes_of(*first.summary, *second.summary);
+  comparison.participants = first.summary->participants + second.summary->participants;
+  for (const Block& block : first.summary->blocks) {
+    add_block(*block, first, second, comparison);
+  }
+  for (const Block& block : second.summary->blocks) {
+    if (find_block(*first.summary, block->block) == nullptr) {
+      comparison.deviations.push_back(
+          fmt::format("block '{}' is not compared: {} has none of that "
+                      "name",
+                      block->block, first.name));
+    }
+  }
+  if (comparison.blocks.empty()) {
+    std::string reasons;
+    for (const std::string& reason : comparison.deviations) {
+      reasons += "\n  " + reason;
+    }
+    throw core::InvalidInput{
+        fmt::format("{} and {} have nothing to compare{}", first.name, second.name, reasons)};
+  }
+  for (const NamedSummary* const study : {&first, &second}) {
+    for (const auto& [key, value] : study->summary->provenance) {
+      comparison.provenance.emplace_back(study->name + ": " + key, value);
+    }
+  }
+  comparison.stated_methods =
+      "Estimates and 95 % intervals are those of the studies' own reports. Differences take the "
+      "two studies' participants for different people, with intervals recovered from the "
+      "estimates' own (Zou & Donner 2008).";
+  return comparison;
+}
+}  // namespace tapstudy::analysis

@@ -1,0 +1,56 @@
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include "support/processes.hpp"
+#include "support/texts.hpp"
+using namespace tapstudy;
+using Catch::Matchers::Contains;
+
+namespace {
+const char* const few_answers =
+    "participant,stimulus,response\n1,a,a\n1,b,b\n2,a,b\n2,b,b\n3,a,a\n3,b,a\n";
+const char* const others =
+    "participant,stimulus,response\n1,a,a\n1,b,b\n2,a,a\n2,b,b\n3,a,b\n3,b,b\n";
+
+nlohmann::json block_in(const std::string& directory) {
+  return nlohmann::json::parse(testing::contents(directory + "/report.json"))["blocks"][0];
+}
+}  // namespace
+
+TEST_CASE("two studies are compared by what their own reports say", "[end_to_end]") {
+  const testing::TempDirectory directory;
+  testing::write(directory / "first.csv", few_answers);
+  testing::write(directory / "second.csv", others);
+  for (const std::string name : {"first", "second"}) {
+    REQUIRE(testing::tapstudy(
+                {"report", "--counts", directory / (name + ".csv"), "--out", directory / name})
+                .exit_code == 0);
+  }
+  REQUIRE(testing::tapstudy({"report", "--compare", directory / "first.csv",
+                             directory / "second.csv", "--out", directory / "both"})
+              .exit_code == 0);
+  const nlohmann::json rows = block_in(directory / "both")["comparison"];
+  REQUIRE(rows.size() == 3);
+  CHECK(rows[0]["estimate"].get<double>() == 4.0 / 6.0);
+  CHECK(rows[1]["estimate"].get<double>() == 5.0 / 6.0);
+  for (const std::size_t i : {0, 1}) {
+    const auto own = block_in(directory / (i == 0 ? "first" : "second"))["accuracy"];
+    CHECK(rows[i]["estimate_low"] == own["over_participants_95"][0]);
+    CHECK(rows[i]["estimate_high"] == own["over_participants_95"][1]);
+  }
+  CHECK(rows[2]["estimate"].get<double>() ==
+        Approx(rows[1]["estimate"].get<double>() - rows[0]["estimate"].get<double>()));
+  CHECK(rows[2]["estimate_low"] < rows[2]["estimate"]);
+}
+
+TEST_CASE("studies with nothing in common are refused with the reasons", "[end_to_end]") {
+  const testing::TempDirectory directory;
+  testing::write(directory / "counts.csv", "stimulus,a,b\na,3,1\nb,0,4\n");
+  testing::write(directory / "answers.csv", few_answers);
+  const auto refused = testing::tapstudy(
+      {"report", "--compare", directory / "counts.csv", directory / "answers.csv"});
+  CHECK(refused.exit_code == 2);
+  CHECK_THAT(refused.standard_error, Contains("nothing to compare") &&
+                                         Contains("no result with an interval over participants"));
+  CHECK(testing::tapstudy({"report", "--compare", directory / "counts.csv"}).exit_code == 2);
+}

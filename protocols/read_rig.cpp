@@ -92,6 +92,9 @@ Rig parse(const std::string& text, const std::string& file, RigDevices devices,
   if (rig.has_hardware) {
     read_limits_of_motion(top, rig.gate);
   }
+  if (top.has("vibration_band_hz")) {
+    rig.vibration_band_hz = top.number("vibration_band_hz", Range::positive(1e5));
+  }
   read_loop(top, rig);
   read_placement(top, Presence::optional,
                  [&](const core::Placement& placement) { rig.placement = placement; });

@@ -30,6 +30,7 @@ struct Rig {
   std::shared_ptr<const DeviceSection> section;  // null for a kind without settings
   bool has_hardware{};                           // exerts force on a person's hand
   core::GateSettings gate;
+  std::optional<double> vibration_band_hz;  // the highest frequency that the device renders
   core::RealtimeRequest realtime;
   int max_late_ticks_in_a_row{0};            // 0: any
   double max_stall_s{0.0};                   // between two ticks; 0: any

@@ -10,6 +10,7 @@
 #include "runner/commands/check_design.hpp"
 #include "runner/commands/commands.hpp"
 #include "runner/commands/families.hpp"
+#include "runner/commands/lost_modes.hpp"
 #include "runner/commands/seed.hpp"
 #include "runner/devices/device_kind.hpp"
 #include "runner/devices/rigs.hpp"
@@ -131,15 +132,20 @@ void run_check(const CheckOptions& options) {
         fmt::format("--simulations: {} is not allowed (from 0 to 10000)", options.simulations)};
   }
   int delay_ticks = 0;
+  std::optional<double> vibration_band_hz;
   if (!options.rig.empty()) {
     const protocols::Rig rig = read_rig(options.rig);
     loop_settings(protocol, rig);
     check_fits(protocol, rig);
     delay_ticks = kind_of(rig).delay_ticks(rig);
+    vibration_band_hz = rig.vibration_band_hz;
   }
   print_design(protocol, options.participants);
   ModelLibrary models;
   print_models(protocol, models);
+  if (vibration_band_hz) {
+    print_lost_modes(protocol, models, *vibration_band_hz);
+  }
   print_families(protocol, models);
   print_contact(protocol, delay_ticks);
   const int index = options.participants - 1;
@@ -163,8 +169,10 @@ void add_check(CommandParser& line) {
   command.argument("protocol", options->protocol, "Study (YAML)");
   command.option_with_default("--participants", options->participants, "How many are planned");
   command.option_with_default("--seed", options->seed, "Seed of the schedule shown");
-  command.option("--rig", options->rig,
-                 "Check that this device reaches the tapping points; bound of its contact");
+  command.option(
+      "--rig", options->rig,
+      "Check that this device reaches the tapping points; bound of its contact; modes that it "
+      "does not render");
   command.option_with_default("--simulations", options->simulations,
                               "Simulate the study so often: power, and widths of intervals");
   command.on_run([options] { run_check(*options); });

@@ -80,6 +80,17 @@ void print_procedures(const protocols::Comparison& comparison, double guess_rate
   }
 }
 
+// "material: identification, 4 stimuli, 8 trials a participant"
+std::string heading(const protocols::Block& block, int trials) {
+  return fmt::format("{}{}{}: {}, {}, {}{} trials a participant", block.name,
+                     block.is_practice ? " (practice)" : "",
+                     block.presented == protocols::Presented::real_plates ? " (real plates)" : "",
+                     block.task->name(),
+                     block.stimuli.size() == 1 ? block.stimuli.front()
+                                               : fmt::format("{} stimuli", block.stimuli.size()),
+                     block.comparison ? "at most " : "", trials);
+}
+
 void print_blocks(const protocols::Protocol& protocol, int participants) {
   fmt::print("{}\n\n", protocol.title);
   double total_s = 0.0;
@@ -89,13 +100,7 @@ void print_blocks(const protocols::Protocol& protocol, int participants) {
     const double seconds = trials * simulated_trial_s(protocol, block);
     total_s += seconds;
     recorded_s += block.presented == protocols::Presented::real_plates ? 0.0 : seconds;
-    fmt::print("  {}{}{}: {}, {}, {}{} trials a participant, about {:.0f} s of tapping\n",
-               block.name, block.is_practice ? " (practice)" : "",
-               block.presented == protocols::Presented::real_plates ? " (real plates)" : "",
-               block.task->name(),
-               block.stimuli.size() == 1 ? block.stimuli.front()
-                                         : fmt::format("{} stimuli", block.stimuli.size()),
-               block.comparison ? "at most " : "", trials, seconds);
+    fmt::print("  {}, about {:.0f} s of tapping\n", heading(block, trials), seconds);
     if (block.is_practice) {
       continue;  // in no result
     }

@@ -238,7 +238,7 @@ TEST_CASE("the schemas of rigs and calibrations have exactly the keys that the r
     asked.merge(runner::rig_keys_asked_for(rig, directory / "rig.yaml"));
   }
   // these are asked for only where they stand
-  asked.insert({"loop.cpu", "spidar.relay", "spidar.rotary_switch"});
+  asked.insert({"loop.cpu", "vibration_band_hz", "spidar.relay", "spidar.rotary_switch"});
   CHECK(keys_in("rig") == asked);
   CHECK(keys_in("calibration") ==
         protocols::calibration_keys_asked_for(calibration(), "calibration.yaml"));
@@ -256,6 +256,8 @@ TEST_CASE("schema and reader accept the same rigs", "[protocols][rig][schema][sl
       {"simulated_hand", "max_force_n: 10\n", "max_force_n: 10\nmax_hand_speed_m_s: 1\n"},
       {"simulated_hand", "max_force_n: 10\n", "max_force_n: 0\n"},
       {"simulated_hand", "max_force_n: 10\n", "max_force_n: 10\nloop: {cpu: 1}\n"},
+      {"simulated_hand", "max_force_n: 10\n", "max_force_n: 10\nvibration_band_hz: 300\n"},
+      {"simulated_hand", "max_force_n: 10\n", "max_force_n: 10\nvibration_band_hz: 0\n"},
       {"simulated_hand", "max_force_n: 10\n", "max_force_n: 10\nloop: {cpu: -1}\n"},
       {"simulated_hand", "max_force_n: 10\n", "max_force_n: 10\naudio: {card: \"hw:1,0\"}\n"},
       {"simulated_hand", "max_force_n: 10\n", "max_force_n: 10\naudio: {card: \"\"}\n"},

@@ -45,13 +45,21 @@ class LockedFile {
   int descriptor_;
 };
 
-bool is_on_disk(int descriptor, const std::string& text) {
-  return core::write_all(descriptor, text) && fsync(descriptor) == 0;
+bool is_written(int descriptor, const std::string& text, Journal::Flush flush) {
+  return core::write_all(descriptor, text) &&
+         (flush == Journal::Flush::when_asked || fsync(descriptor) == 0);
 }
 }  // namespace
 
 std::string journal_file(const std::string& directory) {
   return (std::filesystem::path{directory} / "answers.journal").string();
+}
+
+void Journal::flush() {
+  const LockedFile file{file_};
+  if (fsync(file.descriptor()) != 0) {
+    throw failure(file_, "cannot be written");
+  }
 }
 
 // What other programs have appended since, too. Half a line at the end is cut off.
@@ -104,7 +112,7 @@ void Journal::complete(const std::function<StudyRow()>& study,
   for (const std::string& body : bodies) {
     text += chained(body);
   }
-  if (!text.empty() && !is_on_disk(file.descriptor(), text)) {
+  if (!text.empty() && !is_written(file.descriptor(), text, flush_)) {
     const StoreError error = failure(file_, "writing failed");
     chain_ = chain_before;
     static_cast<void>(!ftruncate(file.descriptor(), read_bytes_));  // else cut off when read next

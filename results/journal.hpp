@@ -35,6 +35,10 @@ std::string journal_file(const std::string& directory);
 class Journal {
  public:
   explicit Journal(const std::string& directory) : file_{journal_file(directory)} {}
+  enum class Flush { each_time, when_asked };
+  void set_flush(Flush flush) { flush_ = flush; }
+  // Throws StoreError if it cannot be written.
+  void flush();
   // Appends what it does not hold yet; the study is asked for if it is new. Throws StoreError if it
   // cannot be written; its end is then as it was before.
   void complete(const std::function<StudyRow()>& study, const std::vector<SessionRow>& sessions,
@@ -44,6 +48,7 @@ class Journal {
   void read_on(int descriptor);
   std::string chained(const std::string& body);
   std::string file_;
+  Flush flush_{Flush::each_time};
   std::set<std::string> known_;  // lines without their chain
   std::string chain_;            // of the last line known
   std::int64_t read_bytes_{0};

@@ -104,6 +104,10 @@ class Comparison {
   void compare_trace(const std::vector<EventRow>& stored) {
     const std::vector<core::TraceSample> trace = store_->trace(trial_->id);
     if (trace.empty()) {
+      const bool is_left_out =
+          trial_->row.is_of_real_plate || trial_->ticks == 0 ||
+          std::ranges::find(stored, untraced_event, &EventRow::kind) != stored.end();
+      note("its trace", is_left_out ? "left out" : "missing", "left out");
       return;
     }
     std::vector<EventRow> events;

@@ -24,8 +24,9 @@ struct TaskRule {
 //   tick_statistics  ticks, from the trace
 //   response         time_from_first_contact_s, from response_time_s and the first contact;
 //                    is_correct, by the rule
-// Trials without a trace (real plates) have nothing of the first four to compare. Throws StoreError
-// where a trace is damaged.
+// Trials without a trace (real plates, simulations without traces) have nothing of the first four
+// to compare; a trace that ought to be there and is not is a difference. Throws StoreError where a
+// trace is damaged.
 struct Recomputation {
   std::vector<std::string> differences;
   std::int64_t ticks{};  // read

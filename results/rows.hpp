@@ -107,11 +107,13 @@ struct CorrectionRow {
   GivenBy given_by{GivenBy::operator_of_session};
   int ordinal{};  // of the trial's corrections, from 1; the store counts
 };
+// Of a trial whose trace was not kept, as was asked for.
+inline constexpr const char* untraced_event = "untraced";
 struct EventRow {
   double t_s{};  // from the first tick of the trial
-  // contact, impact, late_impact, release, switch; of the masking noise, which is played from
-  // before the first tick: masking (it was), and of the whole trial masking_underrun, masking_cut
-  // (only where there were any) and masking_lost (the card plays no more)
+  // contact, impact, late_impact, release, switch, untraced; of the masking noise, which is played
+  // from before the first tick: masking (it was), and of the whole trial masking_underrun,
+  // masking_cut (only where there were any) and masking_lost (the card plays no more)
   std::string kind;
   // impacts: speed m/s; switch: position of the alternative; masking: RMS in dB FS;
   // masking_underrun, masking_cut: how many gaps, samples beyond full scale; else 0

@@ -34,6 +34,11 @@ class Store {
   static Store from_journal(const std::string& directory);
   static bool has_database(const std::string& directory);
   static bool has_journal(const std::string& directory);
+  // From here on, until confirm_all(), nothing waits for the disk and nothing is read back. A power
+  // cut may damage the file: only for new studies of simulated
+  // participants, whom their seed makes again.
+  void write_unconfirmed();
+  void confirm_all();
   // Leaves a writer's database as a single file, without the WAL files.
   ~Store();
   Store(Store&& other) noexcept = default;
@@ -139,6 +144,7 @@ class Store {
   void add_details(std::int64_t trial_id, const TrialRecord& record);
   Database database_;
   std::optional<Journal> journal_;
+  bool confirms_{true};
   std::optional<std::array<std::int64_t, 3>> unconfirmed_;  // a trial that is committed, no more
   // Likewise: as they were given, and as they were inserted.
   std::optional<std::pair<std::vector<std::string>, JournalEntries>> unjournalled_;

@@ -111,57 +111,13 @@ SaveOutcome Store::add_trial(const TrialRecord& record) {
     unconfirmed_ = key;
   }
   bool is_in_one_file = true;
-  if (journal_) {
+  if (journal_ && confirms_) {
     is_in_one_file = database_.checkpoint();
     check_is_in_place(trial);
-    add_to_journal(record);
   }
+  add_to_journal(record);
   unconfirmed_.reset();
   return is_in_one_file ? SaveOutcome::in_one_file : SaveOutcome::partly_in_log;
-}
-
-// The log of the deleted file must not be taken for the new one's.
-void Store::write_anew() {
-  const std::string file = fs::absolute(database_.file()).string();
-  const std::string unfinished = file + ".unfinished";
-  std::error_code error;
-  fs::remove(unfinished, error);  // of an earlier try, on a full disk
-  Statement{database_, "VACUUM INTO ?"}.bind(unfinished).finish();
-  for (const char* const beside : {"-wal", "-shm"}) {
-    fs::remove(file + beside, error);
-  }
-  fs::rename(unfinished, file, error);
-  if (error) {
-    throw StoreError{fmt::format("{}: cannot be written: {}", file, error.message())};
-  }
-}
-
-void Store::check_has_not_moved() {
-  const fs::path file{database_.file()};
-  std::error_code error;
-  if (database_.has_moved()) {
-    if (!fs::exists(file, error) && fs::is_directory(fs::absolute(file).parent_path(), error)) {
-      write_anew();
-      throw StoreRewritten{fmt::format(
-          "{}: was deleted meanwhile; all that it held is in a new file of that name (go on with "
-          "--resume)",
-          database_.file())};
-    }
-    throw StoreError{fmt::format(
-        "{}: is no longer where it was (put it back: all answers are in the file that was moved)",
-        database_.file())};
-  }
-}
-
-// Read back by whoever opens the file of that name.
-void Store::check_is_in_place(const TrialRow& trial) {
-  check_has_not_moved();
-  Database by_name{database_.file(), Database::Access::read};
-  Statement row{by_name, "SELECT 1 FROM trial WHERE session_id = ? AND number = ? AND attempt = ?"};
-  row.bind(trial.session_id).bind(trial.number).bind(trial.attempt);
-  if (!row.step()) {
-    throw StoreError{database_.file() + ": what was stored cannot be read back"};
-  }
 }
 
 void Store::add_to_journal(const TrialRecord& record) {

@@ -34,7 +34,9 @@ void TraceCollector::pack() {
     return;
   }
   const auto ticks = static_cast<std::int64_t>(pending_.size());
-  collected_.chunks.push_back({collected_.ticks, ticks, encode_trace(pending_)});
+  if (traced_ == Traced::whole) {
+    collected_.chunks.push_back({collected_.ticks, ticks, encode_trace(pending_)});
+  }
   collected_.ticks += ticks;
   pending_.clear();
 }
@@ -43,6 +45,9 @@ TraceCollector::Collected TraceCollector::finish() {
   drain();
   pack();
   events_ = {};
+  if (traced_ == Traced::events_only) {
+    collected_.events.insert(collected_.events.begin(), {0.0, untraced_event, 0.0});
+  }
   return std::exchange(collected_, {});
 }
 }  // namespace tapstudy::results

@@ -74,7 +74,7 @@ std::vector<Column> columns_of_conduct() {
        " operator actions from the begin of the session"},
       {"kind", text, "",
        "contact, impact, late_impact, release, switch (to an alternative), masking (noise is"
-       " played), masking_underrun, masking_cut, masking_lost"},
+       " played), masking_underrun, masking_cut, masking_lost, untraced (no trace was kept)"},
       {"value", real, "",
        "impact, late_impact: speed in m/s; switch: position of the alternative; masking: RMS level"
        " in dB of full scale; masking_underrun, masking_cut: count; otherwise 0"},

@@ -38,7 +38,11 @@ void add_simulate(CommandParser& line) {
   command.option_with_default("--participants", study->participants, "How many");
   command.option_with_default("--seed", *seed, "Seed of all random streams");
   command.option("--out", study->directory, "Directory of the study", Need::required);
-  command.on_run([study, seed] {
+  const auto leaves_traces_out = std::make_shared<bool>(false);
+  command.flag("--no-traces", *leaves_traces_out,
+               "Store answers and events only: faster and smaller, for questions of power");
+  command.on_run([study, seed, leaves_traces_out] {
+    study->keeps_traces = !*leaves_traces_out;
     study->seed = seed_from(*seed, "--seed");
     run_simulate(*study);
   });

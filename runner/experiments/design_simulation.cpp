@@ -66,7 +66,7 @@ analysis::Summary summary_of_one(const SimulatedDesign& design, int study,
   const std::uint64_t seed =
       core::derived_seed(design.seed, core::Purpose::study, static_cast<std::uint64_t>(study));
   const ScratchDirectory directory{seed};
-  simulate({design.protocol_file, directory.path(), design.participants, seed,
+  simulate({design.protocol_file, directory.path(), design.participants, seed, false,
             fmt::format("study {} of {}: ", study + 1, design.studies)},
            protocol);
   results::Store store = results::Store::open_existing(directory.path());

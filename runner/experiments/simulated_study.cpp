@@ -115,6 +115,50 @@ class Workers {
   std::mutex mutex_;
   std::exception_ptr failure_;
 };
+
+struct Tapped {
+  std::atomic<std::int64_t> ticks{0};
+  std::atomic<int> trials{0};
+};
+
+// What all sessions share.
+struct Laboratory {
+  const SimulatedStudy& study;
+  const protocols::Protocol& protocol;
+  const device::LoopSettings& settings;
+  ModelLibrary& models;
+};
+
+void run_session(const Laboratory& laboratory, const PlannedSession& session,
+                 results::Recorder& recorder, Tapped& tapped) {
+  const auto& [study, protocol, settings, models] = laboratory;
+  SimulatedParticipant participant{protocol, settings, models, session.seed};
+  VirtualTrialLoop trial_loop{participant.hand(), settings,
+                              study.keeps_traces ? Keep::trace : Keep::events};
+  SimulatedReality reality{protocol, models, participant.hand(), settings};
+  const TrialEngine* running = nullptr;
+  SessionStates states{session.id, [&running, rate_hz = protocol.rate_hz] {
+                         const std::int64_t ticks = running == nullptr ? 0 : running->ticks();
+                         return static_cast<double>(ticks) / rate_hz;
+                       }};
+  Operator nobody;
+  TrialEngine engine{
+      {protocol, models, trial_loop, reality, participant, nobody, states, session.seed}, recorder};
+  running = &engine;
+  take_part(engine, session.schedule);
+  tapped.ticks += engine.ticks();
+  tapped.trials += engine.trials();
+}
+
+void run_sessions(const Laboratory& laboratory, const std::vector<PlannedSession>& sessions,
+                  results::Store& store, Tapped& tapped) {
+  const Progress progress{fmt::format("{}simulating {} participants", laboratory.study.of_studies,
+                                      laboratory.study.participants)};
+  results::Recorder recorder{store};
+  Workers::share(sessions, [&](const PlannedSession& session) {
+    run_session(laboratory, session, recorder, tapped);
+  });
+}
 }  // namespace
 
 SimulatedTime simulate(const SimulatedStudy& study, const protocols::Protocol& protocol) {
@@ -123,34 +167,23 @@ SimulatedTime simulate(const SimulatedStudy& study, const protocols::Protocol& p
   const device::LoopSettings settings = loop_settings(protocol, rig);
   ModelLibrary models;
   models.build_all(protocol);
+  const bool is_new = !results::Store::has_database(study.directory);
   results::Store store =
       results::Store::open_or_create(study.directory, study_row(protocol, study.protocol_file));
   std::vector<PlannedSession> sessions;
   store.in_one_transaction([&] { sessions = add_sessions(study, protocol, rig, store); });
-  const Progress progress{
-      fmt::format("{}simulating {} participants", study.of_studies, study.participants)};
-  std::atomic<std::int64_t> ticks{0};
-  std::atomic<int> trials{0};
-  results::Recorder recorder{store};
-  Workers::share(sessions, [&](const PlannedSession& session) {
-    SimulatedParticipant participant{protocol, settings, models, session.seed};
-    VirtualTrialLoop trial_loop{participant.hand(), settings};
-    SimulatedReality reality{protocol, models, participant.hand(), settings};
-    const TrialEngine* running = nullptr;
-    SessionStates states{session.id, [&] {
-                           const std::int64_t tapped = running == nullptr ? 0 : running->ticks();
-                           return static_cast<double>(tapped) / protocol.rate_hz;
-                         }};
-    Operator nobody;
-    TrialEngine engine{
-        {protocol, models, trial_loop, reality, participant, nobody, states, session.seed},
-        recorder};
-    running = &engine;
-    take_part(engine, session.schedule);
-    ticks += engine.ticks();
-    trials += engine.trials();
-  });
+  if (is_new) {
+    store.write_unconfirmed();
+  }
+  Tapped tapped;
+  try {
+    run_sessions({study, protocol, settings, models}, sessions, store, tapped);
+  } catch (...) {
+    store.confirm_all();
+    throw;
+  }
+  store.confirm_all();
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
-  return {trials, static_cast<double>(ticks) / protocol.rate_hz, wall.count()};
+  return {tapped.trials, static_cast<double>(tapped.ticks) / protocol.rate_hz, wall.count()};
 }
 }  // namespace tapstudy::runner

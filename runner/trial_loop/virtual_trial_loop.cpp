@@ -21,7 +21,7 @@ class VirtualExploration final : public Exploration {
     while (left > 0 && is_running()) {
       const std::int64_t slice = std::min<std::int64_t>(left, ring_capacity);
       loop_.run_ticks(slice);
-      keep_ == Keep::trace ? collector_.drain() : collector_.discard();
+      keep_ == Keep::nothing ? collector_.discard() : collector_.drain();
       left -= slice;
     }
   }
@@ -42,7 +42,8 @@ class VirtualExploration final : public Exploration {
 TrialResult VirtualTrialLoop::run(std::span<core::TapRenderer> alternatives,
                                   const Explore& explore) {
   core::SpscRing<core::TraceSample> ring{ring_capacity};
-  results::TraceCollector collector{ring};
+  results::TraceCollector collector{
+      ring, keep_ == Keep::events ? results::Traced::events_only : results::Traced::whole};
   device::VirtualClock clock;
   device::HapticLoop loop{device_, alternatives, settings_, ring, clock};
   VirtualExploration exploration{loop, collector, 1e-9 * static_cast<double>(settings_.period),

@@ -3,7 +3,7 @@
 
 #include "runner/trial_loop/trial_loop.hpp"
 namespace tapstudy::runner {
-enum class Keep { trace, nothing };
+enum class Keep { trace, events, nothing };
 
 // In virtual time: the loop advances only while the explorer lets time pass, on one thread.
 class VirtualTrialLoop final : public TrialLoop {

@@ -9,7 +9,7 @@ struct SimulatedStudy {
   std::string directory;
   int participants{};
   std::uint64_t seed{};
-  bool keeps_traces{true};  // otherwise events and answers only
+  bool keeps_traces{true};   // otherwise events and answers only
   std::string of_studies{};  // which of how many, for progress; empty: the only one
 };
 struct SimulatedTime {

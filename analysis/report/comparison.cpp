@@ -48,7 +48,7 @@ std::shared_ptr<TabularSummary> compare_blocks(const BlockSummary& first,
   design.task = first.task;
   design.question = first.question;
   auto compared = std::make_shared<TabularSummary>(design);
-  ReportTable table{"comparison",
+  ReportTable table{"side_by_side",
                     "Second less first",
                     {column("result", "result"), column("study", "study"),
                      interval_column("estimate (95 % CI)", "estimate")}};

@@ -11,5 +11,11 @@ const ForcePart coupled_vibration{
     },
     [](const RenderSettings& settings, const VibratingPlate* plate) -> std::unique_ptr<AddedForce> {
       return std::make_unique<CoupledVibration>(*plate, settings);
+    },
+    // the pad, as stiff as the contact spring, in series with the finger's spring
+    [](const RenderSettings& settings) {
+      const double pad = settings.penalty_stiffness_n_per_m;
+      const double finger = settings.finger.stiffness_n_per_m;
+      return pad * finger / (pad + finger);
     }};
 }  // namespace tapstudy::core

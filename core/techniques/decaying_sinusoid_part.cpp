@@ -9,5 +9,6 @@ const ForcePart decaying_sinusoid{
                  : "rendering.sinusoid with an amplitude above 0";
     },
     [](const RenderSettings& settings, const VibratingPlate* /*plate*/)
-        -> std::unique_ptr<AddedForce> { return std::make_unique<DecayingSinusoid>(settings); }};
+        -> std::unique_ptr<AddedForce> { return std::make_unique<DecayingSinusoid>(settings); },
+    nullptr};
 }  // namespace tapstudy::core

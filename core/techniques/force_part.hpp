@@ -14,6 +14,8 @@ struct ForcePart {
   // plate is non-null if a model is needed; it must outlive the returned object.
   std::unique_ptr<AddedForce> (*make)(const RenderSettings& settings,
                                       const VibratingPlate* plate){};
+  // Of a slow press, beside the contact spring; null: it adds none.
+  double (*added_stiffness_n_per_m)(const RenderSettings& settings){};
 };
 
 extern const ForcePart plate_vibration;    // plate_vibration_part.cpp

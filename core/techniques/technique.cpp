@@ -15,6 +15,9 @@ const std::vector<Technique>& techniques() {
       {"fem-coupled",
        "a finger that stays on the vibrating plate, each acting on the other",
        {&coupled_vibration}},
+      {"fem-coupled+sinusoid",
+       "a finger that stays on the vibrating plate, and the decaying sinusoid",
+       {&coupled_vibration, &decaying_sinusoid}},
   };
   return table;
 }
@@ -34,6 +37,14 @@ std::string_view Technique::missing(const RenderSettings& settings) const {
     }
   }
   return {};
+}
+
+double Technique::added_stiffness_n_per_m(const RenderSettings& settings) const {
+  double sum = 0.0;
+  for (const ForcePart* const part : parts) {
+    sum += part->added_stiffness_n_per_m == nullptr ? 0.0 : part->added_stiffness_n_per_m(settings);
+  }
+  return sum;
 }
 
 const Technique* find_technique(std::string_view name) {

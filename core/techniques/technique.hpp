@@ -14,6 +14,8 @@ struct Technique {
 
   bool needs_model() const;
   bool has(const ForcePart& part) const;
+  // Beside the contact spring's, of a slow press.
+  double added_stiffness_n_per_m(const RenderSettings& settings) const;
   // The missing setting: see ForcePart.
   std::string_view missing(const RenderSettings& settings) const;
 };

@@ -74,14 +74,18 @@ void print_models(const protocols::Protocol& protocol, ModelLibrary& models) {
 
 // The bound of a device that acts later than it is told is lower.
 void print_contact(const protocols::Protocol& protocol, int delay_ticks) {
-  const double asked = largest_penalty_n_per_m(protocol);
+  const double asked = largest_contact_stiffness_n_per_m(protocol);
   core::HandBody hand = protocol.simulation.hand;
   const auto limit_of = [&](int delay) {
     return device::largest_stable_penalty_n_per_m(hand, protocol.rendering.dt_s, delay);
   };
   const double limit = limit_of(delay_ticks);
-  fmt::print("\ncontact\n  penalty {} N/m; at {} Hz the simulated hand rests on up to {:.0f} N/m",
-             asked, protocol.rate_hz, limit);
+  fmt::print(
+      "\ncontact\n  {:.6g} N/m{}; at {} Hz the simulated hand rests on up to {:.0f} N/m", asked,
+      asked > protocol.rendering.penalty_stiffness_n_per_m
+          ? fmt::format(" at most, penalty {} N/m", protocol.rendering.penalty_stiffness_n_per_m)
+          : " of penalty",
+      protocol.rate_hz, limit);
   if (delay_ticks > 0) {
     fmt::print(" with this device, whose force acts {} tick late\n", delay_ticks);
   } else {

@@ -6,6 +6,6 @@ namespace tapstudy::runner {
 // and to hold, and how many modes the members have. Builds all models. Throws as build_all does.
 void print_families(const protocols::Protocol& protocol, ModelLibrary& models);
 
-// The contact springs of all members of all stimuli: the stiffest.
-double largest_penalty_n_per_m(const protocols::Protocol& protocol);
+// The stiffest contact of all members of all stimuli: its spring and what techniques add to it.
+double largest_contact_stiffness_n_per_m(const protocols::Protocol& protocol);
 }  // namespace tapstudy::runner

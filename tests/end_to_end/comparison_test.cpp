@@ -29,7 +29,7 @@ TEST_CASE("two studies are compared by what their own reports say", "[end_to_end
   REQUIRE(testing::tapstudy({"report", "--compare", directory / "first.csv",
                              directory / "second.csv", "--out", directory / "both"})
               .exit_code == 0);
-  const nlohmann::json rows = block_in(directory / "both")["comparison"];
+  const nlohmann::json rows = block_in(directory / "both")["side_by_side"];
   REQUIRE(rows.size() == 3);
   CHECK(rows[0]["estimate"].get<double>() == 4.0 / 6.0);
   CHECK(rows[1]["estimate"].get<double>() == 5.0 / 6.0);

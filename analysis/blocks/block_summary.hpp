@@ -8,6 +8,7 @@
 
 #include "analysis/blocks/design.hpp"
 #include "analysis/statistics/proportion.hpp"
+#include "analysis/tables/cells.hpp"
 #include "results/rows.hpp"
 namespace tapstudy::analysis {
 struct HypothesisResult {
@@ -56,6 +57,8 @@ class BlockSummary {
   virtual void write_html(std::ostream& out) const = 0;  // a part of a page
   virtual nlohmann::ordered_json as_json() const = 0;
   virtual std::vector<CsvTable> tables() const = 0;
+  // Those for people.
+  virtual std::vector<ReportTable> report_tables() const = 0;
   // Empty: the answers do not determine it.
   virtual std::vector<MainResult> main_results() const { return {}; }
 

@@ -24,6 +24,7 @@ class ChoiceSummary final : public BlockSummary {
   void write_html(std::ostream& out) const override;
   nlohmann::ordered_json as_json() const override;
   std::vector<CsvTable> tables() const override;
+  std::vector<ReportTable> report_tables() const override;
 
   std::vector<AlternativeResult> alternatives;
   std::vector<std::pair<std::string, std::string>> choices;  // participant, stimulus

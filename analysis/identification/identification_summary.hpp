@@ -37,6 +37,7 @@ class IdentificationSummary final : public BlockSummary {
   void write_html(std::ostream& out) const override;
   nlohmann::ordered_json as_json() const override;
   std::vector<CsvTable> tables() const override;
+  std::vector<ReportTable> report_tables() const override;
   std::vector<MainResult> main_results() const override;
 
   ConfusionMatrix matrix;

@@ -1,6 +1,8 @@
 #pragma once
 #include <nlohmann/json_fwd.hpp>
 #include <ostream>
+#include <string>
+#include <string_view>
 
 #include "analysis/tables/cells.hpp"
 namespace tapstudy::analysis {
@@ -9,5 +11,9 @@ void write_table_text(std::ostream& out, const ReportTable& table);  // in 100 c
 // A wide table scrolls within its own frame, which the keyboard reaches.
 void write_table_html(std::ostream& out, const ReportTable& table);
 void write_table_csv(std::ostream& out, const ReportTable& table);  // a header of keys
-nlohmann::ordered_json table_json(const ReportTable& table);        // [{key: value}]
+// A float with rules of the package booktabs; `label` without special characters.
+void write_table_latex(std::ostream& out, const ReportTable& table, const std::string& label);
+// Text as LaTeX shows it.
+std::string latex_text(std::string_view text);
+nlohmann::ordered_json table_json(const ReportTable& table);  // [{key: value}]
 }  // namespace tapstudy::analysis

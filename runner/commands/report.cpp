@@ -111,6 +111,7 @@ void write_files(const ReportOptions& options, const Summary& summary) {
   };
   add("report.html", written(analysis::write_html));
   add("report.json", written(analysis::write_json));
+  add("tables.tex", written(analysis::write_latex));
   for (const auto& block : summary.blocks) {
     for (const analysis::CsvTable& table : block->tables()) {
       add(block->block.empty() ? table.name : block->block + "_" + table.name,

@@ -3,6 +3,7 @@
 
 #include "analysis/blocks/text_parts.hpp"
 #include "analysis/statistics/csv_rows.hpp"
+#include "analysis/tables/table_writers.hpp"
 #include "analysis/tables/tabular_summary.hpp"
 #include "support/formats.hpp"
 using namespace tapstudy;
@@ -43,6 +44,18 @@ TEST_CASE("every format of a table has the same values", "[analysis][tables]") {
   CHECK_THAT(formats.html, Contains("a, &lt;b&gt;</th><td>1.5 (1 to ∞)</td>"));
   CHECK_THAT(formats.text, !Contains("tall"));
   CHECK_THAT(formats.html, Contains("Of &lt;two&gt; people."));
+}
+
+TEST_CASE("a table for LaTeX shows every character as itself", "[analysis][tables]") {
+  ReportTable table{"t", "50 % of A_1", {column("who", "who"), column("n & m", "n")}};
+  table.rows.push_back({word("\\input{x} #1 ~ a^b $5"), word("χ² 1–2")});
+  std::ostringstream out;
+  write_table_latex(out, table, "t");
+  CHECK(out.str() ==
+        "\\begin{table}[htbp]\n\\centering\n\\caption{50 \\% of A\\_1}\n\\label{tab:t}\n"
+        "\\begin{tabular}{lr}\n\\toprule\nwho & n \\& m \\\\\n\\midrule\n"
+        "\\textbackslash{}input\\{x\\} \\#1 \\textasciitilde{} a\\textasciicircum{}b \\$5 & "
+        "$\\chi$\\textsuperscript{2} 1--2 \\\\\n\\bottomrule\n\\end{tabular}\n\\end{table}\n");
 }
 
 TEST_CASE("a table too wide for a terminal is written entry by entry", "[analysis][tables]") {

@@ -1,0 +1,18 @@
+#include "analysis/blocks/wording.hpp"
+#include "analysis/choice/choice_summary.hpp"
+namespace tapstudy::analysis {
+std::vector<ReportTable> ChoiceSummary::report_tables() const {
+  ReportTable table{"choices",
+                    "Choices",
+                    {column("stimulus", "stimulus"), proportion_column("chosen", "chosen"),
+                     interval_column("simultaneous 95 % CI (Goodman)", "goodman"),
+                     column("visits", "visits"), column("time there, s", "dwell_s")}};
+  for (const AlternativeResult& result : alternatives) {
+    const Cell simultaneous = result.interval ? interval(result.chosen.value(), *result.interval)
+                                              : nothing(table.columns[2]);
+    table.rows.push_back({word(result.item.label), proportion(result.chosen), simultaneous,
+                          count(result.visits), number(result.dwell_s)});
+  }
+  return {table};
+}
+}  // namespace tapstudy::analysis

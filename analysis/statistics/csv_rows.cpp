@@ -10,12 +10,11 @@
 #include "core/error.hpp"
 namespace tapstudy::analysis {
 namespace {
-constexpr std::size_t max_bytes = 64'000'000;
-
 class CsvReader {
  public:
-  explicit CsvReader(std::string file) : file_{std::move(file)} {
+  CsvReader(std::string file, char separator) : file_{std::move(file)} {
     csv_init(&parser_, CSV_STRICT | CSV_STRICT_FINI);
+    csv_set_delim(&parser_, static_cast<unsigned char>(separator));
   }
   ~CsvReader() { csv_free(&parser_); }
   CsvReader(const CsvReader&) = delete;
@@ -45,9 +44,9 @@ class CsvReader {
   bool next_line(std::istream& text, std::string& line) {
     line.clear();
     for (char c = 0; text.get(c);) {
-      if (++size_ > max_bytes) {
+      if (++size_ > max_csv_bytes) {
         throw core::InvalidInput{
-            fmt::format("{}: is larger than {} MB", file_, max_bytes / 1'000'000)};
+            fmt::format("{}: is larger than {} MB", file_, max_csv_bytes / 1'000'000)};
       }
       if (c == '\n') {
         return true;
@@ -101,8 +100,8 @@ class CsvReader {
 };
 }  // namespace
 
-CsvText read_csv(std::istream& text, const std::string& file) {
-  return CsvReader{file}.read(text);
+CsvText read_csv(std::istream& text, const std::string& file, char separator) {
+  return CsvReader{file, separator}.read(text);
 }
 
 std::string csv_cell(const std::string& text) {

@@ -1,4 +1,5 @@
 #pragma once
+#include <cstddef>
 #include <istream>
 #include <string>
 #include <vector>
@@ -13,11 +14,14 @@ struct CsvText {
   std::vector<CsvRow> rows;
 };
 
+inline constexpr std::size_t max_csv_bytes = 64'000'000;
+
 // Comma-separated values (RFC 4180): cells in double quotes may hold commas, quotes and line ends;
 // spaces around other cells do not count; empty lines are skipped. Throws InvalidInput with
 // file:line for a quote that is out of place or left open, for what is no UTF-8 text, and for a
 // file beyond 64 MB.
-CsvText read_csv(std::istream& text, const std::string& file);
+// The separator of cells may be another character, such as ; or a tab.
+CsvText read_csv(std::istream& text, const std::string& file, char separator = ',');
 
 // A cell as a file has it: in quotes if it needs them.
 std::string csv_cell(const std::string& text);

@@ -13,6 +13,7 @@ namespace {
 constexpr double frame_s = 0.002;
 constexpr std::size_t min_frame = 8;
 constexpr std::size_t frames_per_group = 10;
+constexpr std::size_t frames_before = 5;
 constexpr double onset_ratio = 10.0;
 constexpr double rise_ratio = 2.0;
 constexpr double end_ratio = 2.0;
@@ -75,10 +76,16 @@ std::vector<std::size_t> frames_of_impacts(const Energies& energies, double rate
   return impacts;
 }
 
+// The first sample above the noise and above what rang in the frames before.
 std::size_t onset_near(std::size_t frame, const Energies& energies,
                        const std::vector<double>& centred) {
-  const double limit = std::sqrt(onset_ratio * energies.floor);
-  std::size_t i = (frame > 0 ? frame - 1 : 0) * energies.frame;
+  const std::size_t first = (frame > 0 ? frame - 1 : 0) * energies.frame;
+  const std::size_t before = frames_before * energies.frame;
+  double limit = std::sqrt(onset_ratio * energies.floor);
+  for (std::size_t i = first > before ? first - before : 0; i < first; ++i) {
+    limit = std::max(limit, std::abs(centred[i]));
+  }
+  std::size_t i = first;
   const std::size_t end = (frame + 1) * energies.frame;
   while (i + 1 < end && std::abs(centred[i]) <= limit) {
     ++i;

@@ -12,6 +12,7 @@ namespace tapstudy::analysis {
 namespace {
 constexpr Eigen::Index max_pencil = 400;
 constexpr Eigen::Index min_pencil = 8;
+constexpr int further_orders = 20;  // weak modes hide among the noise's singular values
 constexpr double max_damping_ratio = 0.7;
 
 // Y' Y of the Hankel matrix Y(r, c) = y(r + c) with so many columns.
@@ -73,7 +74,8 @@ MatrixPencil matrix_pencil(const FreeDecay& decay, const Band& band, int max_ord
   MatrixPencil result;
   result.singular_values = pairs.values.reverse().cwiseMax(0.0).cwiseSqrt();
   result.significant_order = count_above_noise(result.singular_values);
-  const int last = std::min(max_order, static_cast<int>(pencil) - 2);
+  const int last = std::min(
+      {max_order, result.significant_order + further_orders, static_cast<int>(pencil) - 2});
   for (int order = 2; order <= last; order += 2) {
     const Eigen::EigenSolver<Eigen::MatrixXd> solver{shift_matrix(pairs.vectors.rightCols(order)),
                                                      false};

@@ -10,7 +10,7 @@ struct PolesOfOrder {
 struct MatrixPencil {
   Eigen::VectorXd singular_values;   // of the Hankel matrix, descending
   int significant_order{};           // how many exceed what noise alone gives
-  std::vector<PolesOfOrder> orders;  // 2, 4 ... max_order
+  std::vector<PolesOfOrder> orders;  // 2, 4 ... 20 beyond significant_order, max_order at most
 };
 
 // The matrix pencil method (Hua & Sarkar 1990): the right singular vectors of the Hankel matrix

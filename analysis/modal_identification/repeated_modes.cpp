@@ -46,6 +46,14 @@ bool is_of(const Sightings& group, const Sighting& one) {
          std::ranges::find(group, one.tap, &Sighting::tap) == group.end();
 }
 
+double norm_of(const std::vector<double>& errors) {
+  double squares = 0.0;
+  for (const double error : errors) {
+    squares += error * error;
+  }
+  return std::sqrt(squares);
+}
+
 std::vector<Sightings> groups_of(const Sightings& all) {
   std::vector<Sightings> groups;
   for (const Sighting& one : all) {
@@ -113,13 +121,15 @@ Estimate estimate_over_taps(const std::vector<double>& values, const std::vector
   double freedom = degrees_of_freedom_of_one;
   estimate.value = values.front();
   estimate.standard_error = errors.front();
+  double error = errors.front();
   if (values.size() > 1) {
     const MeanAndSpread over = mean_and_spread(values);
     freedom = count - 1.0;
     estimate.value = over.mean;
-    estimate.standard_error = over.standard_deviation / std::sqrt(count);
+    error = over.standard_deviation / std::sqrt(count);
+    estimate.standard_error = std::max(error, norm_of(errors) / count);
   }
-  const double half = t_quantile(0.975, freedom) * estimate.standard_error;
+  const double half = t_quantile(0.975, freedom) * error;
   estimate.interval = {estimate.value - half, estimate.value + half};
   if (values.size() >= min_taps_to_resample) {
     estimate.bootstrap = bca_interval(values, bootstrap_draws, bootstrap_seed);

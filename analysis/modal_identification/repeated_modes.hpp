@@ -5,7 +5,7 @@ namespace tapstudy::analysis {
 // A value with its 95 % interval.
 struct Estimate {
   double value{};
-  double standard_error{};
+  double standard_error{};            // over taps, not below what their noise alone gives
   Interval interval;                  // Student's t: over taps, or of one tap's noise
   std::optional<Interval> bootstrap;  // over taps, bias-corrected and accelerated, of 5 and more
 };

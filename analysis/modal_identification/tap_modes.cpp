@@ -146,7 +146,7 @@ TapMode judged(const FittedMode& fitted, const Candidate& candidate, double dura
     mode.standing = Standing::line;
     mode.why = hum_at(fitted);
     if (mode.why.empty()) {
-      mode.why = "does not decay: a steady tone";
+      mode.why = "does not decay within the tap: a steady tone";
     }
   } else if (candidate.stable_orders == 0) {
     mode.standing = Standing::doubtful;

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <numbers>
 
 #include "core/error.hpp"
@@ -70,6 +69,9 @@ class Identifier {
     for (const analysis::Recording& recording : recordings) {
       impacts += add(recording, impacts);
     }
+    if (result_.taps.empty()) {
+      throw core::InvalidInput{fmt::format("{}", fmt::join(result_.remarks, "\n"))};
+    }
     give_speeds(impacts);
     sum_up();
     return std::move(result_);
@@ -84,13 +86,15 @@ class Identifier {
     }
     for (const analysis::Tap& tap : found.taps) {
       hook_(fmt::format("tap {} of {}", tap.impact, recording.file));
-      add(recording, tap);
-      impact_numbers_.push_back(before + tap.impact);
+      if (add(recording, tap)) {
+        impact_numbers_.push_back(before + tap.impact);
+      }
     }
     return found.impacts;
   }
 
-  void add(const analysis::Recording& recording, const analysis::Tap& tap) {
+  // A tap that is too short for the band is left out with a remark.
+  bool add(const analysis::Recording& recording, const analysis::Tap& tap) {
     IdentifiedTap one;
     one.file = recording.file;
     one.channel = recording.channel;
@@ -100,8 +104,9 @@ class Identifier {
     try {
       one.modes = analysis::identify_modes(one.decay, {result_.band});
     } catch (const core::InvalidInput& error) {
-      throw core::InvalidInput{
-          fmt::format("{}: the tap at {:.3f} s: {}", recording.file, one.time_s, error.what())};
+      result_.remarks.push_back(fmt::format("{}: the tap at {:.3f} s is left out: {}",
+                                            recording.file, one.time_s, error.what()));
+      return false;
     }
     const Band wide{result_.band.low_hz,
                     std::max(result_.band.high_hz,
@@ -109,6 +114,7 @@ class Identifier {
     one.sinusoid =
         analysis::fit_decaying_sinusoid(decay_between(recording, tap.onset, tap.end), wide);
     result_.taps.push_back(std::move(one));
+    return true;
   }
 
   void give_speeds(int impacts) {

@@ -31,11 +31,12 @@ Eigen::MatrixXd hankel_gram(const Eigen::VectorXd& y, Eigen::Index columns) {
 }
 
 // Phi = V1^+ V2, where V1' V1 = I - v v' with v the last row of V (Sherman-Morrison).
-Eigen::MatrixXd shift_matrix(const Eigen::MatrixXd& V) {
-  const Eigen::Index rows = V.rows() - 1;
-  const Eigen::MatrixXd product = V.topRows(rows).transpose() * V.bottomRows(rows);
-  const Eigen::VectorXd v = V.row(rows).transpose();
-  return product + v * (v.transpose() * product) / std::max(1.0 - v.squaredNorm(), 1e-12);
+Eigen::MatrixXd shift_matrix(const Eigen::MatrixXd& singular_vectors) {
+  const Eigen::Index rows = singular_vectors.rows() - 1;
+  const Eigen::MatrixXd product =
+      singular_vectors.topRows(rows).transpose() * singular_vectors.bottomRows(rows);
+  const Eigen::VectorXd last = singular_vectors.row(rows).transpose();
+  return product + last * (last.transpose() * product) / std::max(1.0 - last.squaredNorm(), 1e-12);
 }
 
 std::vector<Pole> poles_in(const Eigen::VectorXcd& eigenvalues, double rate_hz, const Band& band) {

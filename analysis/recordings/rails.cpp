@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "analysis/recordings/taps.hpp"
 namespace tapstudy::analysis {
@@ -20,6 +21,13 @@ double resolution_of(const std::vector<double>& samples) {
   return std::isfinite(least) ? least : 0.0;
 }
 
+// How far the signal moves at either end of a run, at most.
+double step_beside(const std::vector<double>& samples, std::size_t begin, std::size_t end) {
+  const double before = begin > 0 ? std::abs(samples[begin - 1] - samples[begin]) : 0.0;
+  const double after = end < samples.size() ? std::abs(samples[end] - samples[begin]) : 0.0;
+  return std::max(before, after);
+}
+
 void add_runs_at(double extreme, const std::vector<double>& samples, double resolution,
                  std::vector<std::size_t>& rails) {
   for (std::size_t i = 0; i < samples.size();) {
@@ -27,14 +35,9 @@ void add_runs_at(double extreme, const std::vector<double>& samples, double reso
     while (end < samples.size() && samples[end] == extreme) {
       ++end;
     }
-    if (end - i >= min_run) {
-      const double before = i > 0 ? std::abs(samples[i - 1] - extreme) : 0.0;
-      const double after = end < samples.size() ? std::abs(samples[end] - extreme) : 0.0;
-      if (std::max(before, after) > smooth_steps * resolution) {
-        for (std::size_t k = i; k < end; ++k) {
-          rails.push_back(k);
-        }
-      }
+    if (end - i >= min_run && step_beside(samples, i, end) > smooth_steps * resolution) {
+      rails.resize(rails.size() + end - i);
+      std::iota(rails.end() - static_cast<std::ptrdiff_t>(end - i), rails.end(), i);
     }
     i = std::max(end, i + 1);
   }

@@ -11,23 +11,28 @@
 namespace tapstudy::analysis {
 namespace {
 using Complex = std::complex<double>;
-constexpr int nuisance_terms = 4;
+constexpr Eigen::Index smooth_terms = 4;
 constexpr int max_steps = 60;
 
 // Unknowns: for each pole Re ln z and Im ln z, times the length; then a and b of Re((a - j b) z^n)
 // for each, then the nuisance terms. Complex values as two real ones each, below one another.
 class DecayModel {
  public:
-  DecayModel(const BandSpectrum& spectrum, Eigen::Index poles)
+  DecayModel(const BandSpectrum& spectrum, Eigen::Index poles, const std::vector<double>& lines_hz)
       : spectrum_{spectrum},
         poles_{poles},
         length_{static_cast<double>(spectrum.length)},
         data_{stacked(spectrum.values)} {
     const Eigen::ArrayXcd q = (Complex{0.0, -1.0} * spectrum.rad_per_sample.cast<Complex>()).exp();
-    nuisance_ = Eigen::MatrixXd{data_.size(), nuisance_terms};
+    const auto lines = static_cast<Eigen::Index>(lines_hz.size());
+    nuisance_ = Eigen::MatrixXd{data_.size(), smooth_terms + 2 * lines};
     nuisance_.col(0) = stacked((1.0 / (1.0 - q)).matrix());
     for (int power = 0; power < 3; ++power) {
       nuisance_.col(power + 1) = stacked(q.pow(power).matrix());
+    }
+    for (Eigen::Index k = 0; k < lines; ++k) {
+      const Complex log_z = log_of({lines_hz[static_cast<std::size_t>(k)], 0.0}, spectrum.rate_hz);
+      set_pair(nuisance_, smooth_terms + 2 * k, cut_exponential(log_z, spectrum));
     }
   }
 
@@ -40,13 +45,11 @@ class DecayModel {
   };
 
   State at(const Eigen::VectorXd& logs) const {
-    State state{logs, {}, Eigen::MatrixXd{data_.size(), 2 * poles_ + nuisance_terms}, {}, 0.0};
+    State state{logs, {}, Eigen::MatrixXd{data_.size(), 2 * poles_ + nuisance_.cols()}, {}, 0.0};
     for (Eigen::Index k = 0; k < poles_; ++k) {
-      const CutExponential both = transforms(logs, k);
-      state.basis.col(2 * k) = stacked(both.plus);
-      state.basis.col(2 * k + 1) = stacked(Complex{0.0, -1.0} * both.minus);
+      set_pair(state.basis, 2 * k, cut_exponential(log_of_pole(logs, k), spectrum_));
     }
-    state.basis.rightCols(nuisance_terms) = nuisance_;
+    state.basis.rightCols(nuisance_.cols()) = nuisance_;
     const Eigen::RowVectorXd size = state.basis.colwise().norm().cwiseMax(1e-300);
     const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> factor{state.basis *
                                                              size.cwiseInverse().asDiagonal()};
@@ -58,7 +61,7 @@ class DecayModel {
 
   // d model / d unknowns: poles, then shares
   Eigen::MatrixXd jacobian(const State& state) const {
-    Eigen::MatrixXd result{data_.size(), 4 * poles_ + nuisance_terms};
+    Eigen::MatrixXd result{data_.size(), 4 * poles_ + nuisance_.cols()};
     for (Eigen::Index k = 0; k < poles_; ++k) {
       const Complex share{state.shares[2 * k], -state.shares[2 * k + 1]};
       const CutExponential slopes =
@@ -66,14 +69,14 @@ class DecayModel {
       result.col(2 * k) = stacked(slopes.plus) / length_;
       result.col(2 * k + 1) = stacked(Complex{0.0, 1.0} * slopes.minus) / length_;
     }
-    result.rightCols(2 * poles_ + nuisance_terms) = state.basis;
+    result.rightCols(2 * poles_ + nuisance_.cols()) = state.basis;
     return result;
   }
 
   Complex log_of_pole(const Eigen::VectorXd& logs, Eigen::Index k) const {
     return {logs[2 * k] / length_, logs[2 * k + 1] / length_};
   }
-  Eigen::Index unknowns() const { return 4 * poles_ + nuisance_terms; }
+  Eigen::Index unknowns() const { return 4 * poles_ + nuisance_.cols(); }
   Eigen::Index poles() const { return poles_; }
   double length() const { return length_; }
   const Eigen::VectorXd& data() const { return data_; }
@@ -84,8 +87,10 @@ class DecayModel {
     all << values.real(), values.imag();
     return all;
   }
-  CutExponential transforms(const Eigen::VectorXd& logs, Eigen::Index k) const {
-    return cut_exponential(log_of_pole(logs, k), spectrum_);
+  // The columns of cosine and sine.
+  static void set_pair(Eigen::MatrixXd& columns, Eigen::Index first, const CutExponential& both) {
+    columns.col(first) = stacked(both.plus);
+    columns.col(first + 1) = stacked(Complex{0.0, -1.0} * both.minus);
   }
 
   const BandSpectrum& spectrum_;
@@ -171,8 +176,9 @@ FittedMode mode_of(const DecayModel& model, const DecayModel::State& state,
 }
 }  // namespace
 
-DecayFit fit_decay(const BandSpectrum& spectrum, const std::vector<Pole>& start) {
-  const DecayModel model{spectrum, static_cast<Eigen::Index>(start.size())};
+DecayFit fit_decay(const BandSpectrum& spectrum, const std::vector<Pole>& start,
+                   const std::vector<double>& lines_hz) {
+  const DecayModel model{spectrum, static_cast<Eigen::Index>(start.size()), lines_hz};
   const double freedom = static_cast<double>(model.data().size() - model.unknowns());
   if (freedom < 1.0) {
     throw core::InvalidInput{"a decay is too short for so many modes"};

@@ -31,6 +31,8 @@ struct DecayFit {
 // exponential cut off after N samples, (1 - z^N) / (1 - z q), q = e^(-jw), is exact: a rectangular
 // window leaks nothing that is not in the model. A drift 1 / (1 - q) and 1, q, q^2 take up what
 // modes outside the band leave in it. Standard errors are those of the Cramer-Rao bound, with the
-// noise of the residual. Throws InvalidInput for more unknowns than values.
-DecayFit fit_decay(const BandSpectrum& spectrum, const std::vector<Pole>& start);
+// noise of the residual. Steady lines of these frequencies, such as hum, take part with amplitudes
+// alone. Throws InvalidInput for more unknowns than values.
+DecayFit fit_decay(const BandSpectrum& spectrum, const std::vector<Pole>& start,
+                   const std::vector<double>& lines_hz = {});
 }  // namespace tapstudy::analysis

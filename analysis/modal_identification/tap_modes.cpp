@@ -17,6 +17,7 @@ constexpr double max_ratio = 0.7;
 constexpr double max_line_fall = 0.5;
 constexpr double min_line_z = 2.0;
 constexpr double neighbourhood = 0.1;  // of the frequency
+constexpr double same_line = 0.01;
 constexpr int further_pairs = 4;
 constexpr double mains_tolerance = 0.004;
 
@@ -65,6 +66,17 @@ std::vector<std::size_t> insignificant(const std::vector<FittedMode>& modes, con
   return dropped;
 }
 
+bool is_near(double frequency_hz, double line_hz) {
+  return std::abs(frequency_hz / line_hz - 1.0) < same_line;
+}
+
+// A pole on a line that is in the fit already.
+bool is_at_line(const Pole& pole, const std::vector<double>& lines_hz) {
+  return std::abs(pole.damping_ratio) < same_line &&
+         std::ranges::any_of(lines_hz,
+                             [&](double line_hz) { return is_near(pole.frequency_hz, line_hz); });
+}
+
 std::vector<Pole> poles_of(const std::vector<Candidate>& candidates) {
   std::vector<Pole> poles;
   for (const Candidate& one : candidates) {
@@ -75,9 +87,9 @@ std::vector<Pole> poles_of(const std::vector<Candidate>& candidates) {
 
 // Fits, drops what is weak, and again, until all are significant.
 DecayFit fit_significant(const BandSpectrum& spectrum, const Band& band,
-                         std::vector<Candidate>& candidates) {
+                         const std::vector<double>& lines_hz, std::vector<Candidate>& candidates) {
   for (;;) {
-    DecayFit fit = fit_decay(spectrum, poles_of(candidates));
+    DecayFit fit = fit_decay(spectrum, poles_of(candidates), lines_hz);
     const std::vector<std::size_t> drop = insignificant(fit.modes, band);
     if (drop.empty()) {
       return fit;
@@ -98,7 +110,8 @@ DecayFit fit_significant(const BandSpectrum& spectrum, const Band& band,
 
 // Each pole of the rational fit goes to the nearest mode with which it agrees, one to each.
 void match_rational_fit(const DecayFit& fit, const std::vector<Pole>& rational,
-                        std::vector<Candidate>& candidates, std::vector<Pole>& unmatched) {
+                        const std::vector<double>& lines_hz, std::vector<Candidate>& candidates,
+                        std::vector<Pole>& unmatched) {
   for (const Pole& pole : rational) {
     std::size_t best = candidates.size();
     double least = 0.0;
@@ -112,7 +125,7 @@ void match_rational_fit(const DecayFit& fit, const std::vector<Pole>& rational,
     }
     if (best < candidates.size()) {
       candidates[best].by_rational_fit = pole;
-    } else if (pole.damping_ratio < max_ratio) {
+    } else if (pole.damping_ratio < max_ratio && !is_at_line(pole, lines_hz)) {
       unmatched.push_back(pole);
     }
   }
@@ -176,19 +189,22 @@ TapModes identify_modes(const FreeDecay& decay, const ModeFinding& finding) {
   stable.resize(std::min(stable.size(), room));
   std::vector<Candidate> candidates;
   for (const StablePole& one : stable) {
-    candidates.push_back({one.pole, one.orders, std::nullopt});
+    if (!is_at_line(one.pole, finding.lines_hz)) {
+      candidates.push_back({one.pole, one.orders, std::nullopt});
+    }
   }
-  result.fit = fit_significant(result.spectrum, wide, candidates);
+  result.fit = fit_significant(result.spectrum, wide, finding.lines_hz, candidates);
   const int pairs =
       std::min(static_cast<int>(candidates.size()) + further_pairs, static_cast<int>(room));
   std::vector<Pole> unmatched;
-  match_rational_fit(result.fit, vector_fitting(result.spectrum, pairs), candidates, unmatched);
+  match_rational_fit(result.fit, vector_fitting(result.spectrum, pairs), finding.lines_hz,
+                     candidates, unmatched);
   if (!unmatched.empty() && candidates.size() + unmatched.size() <= room) {
     std::vector<Candidate> with_others = candidates;
     for (const Pole& pole : unmatched) {
       with_others.push_back({pole, 0, pole});
     }
-    result.fit = fit_significant(result.spectrum, wide, with_others);
+    result.fit = fit_significant(result.spectrum, wide, finding.lines_hz, with_others);
     candidates = std::move(with_others);
   }
   for (std::size_t i = 0; i < candidates.size(); ++i) {
@@ -200,5 +216,21 @@ TapModes identify_modes(const FreeDecay& decay, const ModeFinding& finding) {
   std::ranges::sort(result.modes, {},
                     [](const TapMode& mode) { return mode.fitted.pole.frequency_hz; });
   return result;
+}
+
+std::vector<double> lines_missed(const TapModes& tap, const std::vector<TapModes>& taps) {
+  std::vector<double> missed;
+  const auto frequency_of = [](const TapMode& mode) { return mode.fitted.pole.frequency_hz; };
+  for (const TapModes& other : taps) {
+    for (const TapMode& mode : other.modes) {
+      const double line_hz = frequency_of(mode);
+      const auto is_it = [&](double frequency_hz) { return is_near(frequency_hz, line_hz); };
+      if (mode.standing == Standing::line && std::ranges::none_of(missed, is_it) &&
+          std::ranges::none_of(tap.modes, is_it, frequency_of)) {
+        missed.push_back(line_hz);
+      }
+    }
+  }
+  return missed;
 }
 }  // namespace tapstudy::analysis

@@ -28,6 +28,7 @@ struct TapModes {
 struct ModeFinding {
   Band band;
   int max_order{60};
+  std::vector<double> lines_hz{};  // steady tones known to be there, from other taps
 };
 
 // Modes of one tap. Poles that are stable by the matrix pencil and those by vector fitting are
@@ -38,4 +39,8 @@ struct ModeFinding {
 // quarter (or 0.003, or four standard errors). What falls by less than a half of its logarithm over
 // the tap, or not significantly, is a line. Throws InvalidInput for decays that are too short.
 TapModes identify_modes(const FreeDecay& decay, const ModeFinding& finding);
+
+// Lines that some taps show and this one does not, within 1 % of any mode of its own: beside a mode
+// of nearly the same frequency hum may go unnoticed, and falsify its damping. Each once.
+std::vector<double> lines_missed(const TapModes& tap, const std::vector<TapModes>& taps);
 }  // namespace tapstudy::analysis

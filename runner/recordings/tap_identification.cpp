@@ -133,12 +133,25 @@ class Identifier {
     }
   }
 
-  void sum_up() {
-    std::vector<analysis::TapModes> of_taps;
+  std::vector<analysis::TapModes> modes_of_taps() const {
+    std::vector<analysis::TapModes> modes;
     for (const IdentifiedTap& tap : result_.taps) {
-      of_taps.push_back(tap.modes);
+      modes.push_back(tap.modes);
     }
-    result_.modes = analysis::modes_over_taps(of_taps);
+    return modes;
+  }
+
+  void sum_up() {
+    const std::vector<analysis::TapModes> of_taps = modes_of_taps();
+    for (IdentifiedTap& tap : result_.taps) {
+      const std::vector<double> lines_hz = analysis::lines_missed(tap.modes, of_taps);
+      if (!lines_hz.empty()) {
+        analysis::ModeFinding finding{result_.band};
+        finding.lines_hz = lines_hz;
+        tap.modes = analysis::identify_modes(tap.decay, finding);
+      }
+    }
+    result_.modes = analysis::modes_over_taps(modes_of_taps());
     std::vector<analysis::MeasuredRatio> ratios;
     for (std::size_t i = 0; i < result_.modes.size(); ++i) {
       const analysis::RepeatedMode& mode = result_.modes[i];

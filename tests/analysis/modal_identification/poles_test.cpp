@@ -216,3 +216,28 @@ TEST_CASE("a decay that is too short for the band is refused with the length it 
   CHECK_THROWS_WITH(identify_modes(decay, {band}), Contains("too short") && Contains("at least"));
   CHECK_THROWS_AS(identify_modes(decay, {band}), core::InvalidInput);
 }
+
+TEST_CASE("hum beside a mode falsifies its damping until another tap tells of it",
+          "[analysis][modal_identification]") {
+  const std::vector<PlantedMode> with_hum{{{48.3, 0.055}, 1.0}, {{50.0, 0.0}, 0.03, 0.7}};
+  // too short a tap to tell the two apart
+  FreeDecay decay = testing::planted_decay(with_hum, 4000.0, 0.12);
+  core::Rng rng{6};
+  testing::add_noise(decay, 35.0, rng);
+  FreeDecay long_decay = testing::planted_decay(with_hum, 4000.0, 1.0);
+  testing::add_noise(long_decay, 40.0, rng);
+  const TapModes alone = identify_modes(decay, {{20.0, 200.0}});
+  const std::vector<TapModes> taps{alone, identify_modes(long_decay, {{20.0, 200.0}})};
+  REQUIRE(alone.modes.size() == 1);
+  REQUIRE(taps[1].modes.size() == 2);
+  CHECK(lines_missed(taps[1], taps).empty());
+  const std::vector<double> lines_hz = lines_missed(alone, taps);
+  REQUIRE(lines_hz.size() == 1);
+  CHECK(lines_hz.front() == Approx(50.0).margin(0.05));
+  const TapModes told = identify_modes(decay, {{20.0, 200.0}, 60, lines_hz});
+  REQUIRE(told.modes.size() == 1);
+  const FittedMode& mode = told.modes.front().fitted;
+  CHECK(std::abs(mode.pole.damping_ratio - 0.055) < 3.0 * mode.ratio_error);
+  CHECK(std::abs(alone.modes.front().fitted.pole.damping_ratio - 0.055) >
+        2.0 * std::abs(mode.pole.damping_ratio - 0.055));
+}

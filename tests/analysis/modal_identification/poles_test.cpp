@@ -128,9 +128,10 @@ TEST_CASE("standard errors are those of the Cramer-Rao bound, which NumPy comput
           "[analysis][modal_identification]") {
   FreeDecay decay = testing::planted_decay({{{100.0, 0.03}, 2.0, 0.5}}, 1000.0, 0.4);
   core::Rng rng{5};
-  testing::add_noise(decay, 30.0, rng);
+  const double noise = testing::add_noise(decay, 30.0, rng);
   const DecayFit fit = fit_decay(band_spectrum(decay, {2.0, 499.0}), {{100.0, 0.03}});
   REQUIRE(fit.has_converged);
+  CHECK(fit.noise == Approx(noise).epsilon(0.1));
   const FittedMode& mode = fit.modes.front();
   const std::string given = "f, z, A, p, sigma = " + std::to_string(mode.pole.frequency_hz) + ", " +
                             std::to_string(mode.pole.damping_ratio) + ", " +
@@ -178,12 +179,17 @@ TEST_CASE("noise has no agreed mode", "[analysis][modal_identification]") {
 
 TEST_CASE("an undamped line is no mode, and at the mains it is called hum",
           "[analysis][modal_identification]") {
-  const auto [line_hz, words] = GENERATE(table<double, std::string>(
-      {{50.0, "50 Hz hum"}, {150.1, "3 times 50 Hz"}, {60.0, "60 Hz hum"}, {73.0, "steady tone"}}));
+  using Line = std::tuple<double, double, std::string>;
+  // the last falls a little, significantly, but by no more than a tenth in the whole tap
+  const auto [line_hz, ratio, words] = GENERATE(values<Line>({{50.0, 0.0, "50 Hz hum"},
+                                                              {150.1, 0.0, "3 times 50 Hz"},
+                                                              {60.0, 0.0, "60 Hz hum"},
+                                                              {73.0, 0.0, "steady tone"},
+                                                              {73.0, 0.0005, "steady tone"}}));
   FreeDecay decay =
-      testing::planted_decay({{{90.0, 0.03}, 1.0}, {{line_hz, 0.0}, 0.3}}, 2000.0, 0.5);
+      testing::planted_decay({{{90.0, 0.03}, 1.0}, {{line_hz, ratio}, 0.3}}, 2000.0, 0.5);
   core::Rng rng{3};
-  testing::add_noise(decay, 30.0, rng);
+  testing::add_noise(decay, ratio > 0.0 ? 60.0 : 30.0, rng);
   const TapModes tap = identify_modes(decay, {{20.0, 300.0}});
   const TapMode* const line = mode_near(tap, line_hz);
   REQUIRE(line != nullptr);

@@ -50,6 +50,12 @@ add_library(csv::csv INTERFACE IMPORTED)
 target_include_directories(csv::csv SYSTEM INTERFACE ${CSV_INCLUDE})
 target_link_libraries(csv::csv INTERFACE ${CSV_LIBRARY})
 
+find_path(SNDFILE_INCLUDE sndfile.h REQUIRED)
+find_library(SNDFILE_LIBRARY sndfile REQUIRED)
+add_library(sndfile::sndfile INTERFACE IMPORTED)
+target_include_directories(sndfile::sndfile SYSTEM INTERFACE ${SNDFILE_INCLUDE})
+target_link_libraries(sndfile::sndfile INTERFACE ${SNDFILE_LIBRARY})
+
 find_path(HDF5_INCLUDE hdf5.h PATH_SUFFIXES hdf5/serial REQUIRED)
 find_library(HDF5_LIBRARY NAMES hdf5_serial hdf5 REQUIRED)
 add_library(hdf5::hdf5 INTERFACE IMPORTED)

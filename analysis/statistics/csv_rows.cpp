@@ -11,10 +11,9 @@
 #include "core/error.hpp"
 namespace tapstudy::analysis {
 namespace {
-constexpr std::size_t max_bytes = 64'000'000;
 constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
 
-// The one of comma, semicolon and tabulator that is most frequent outside of quotes.
+// Outside of quotes: commas may be decimal ones beside the others.
 char separator_of(const std::string& header) {
   std::string outside;
   bool is_quoted = false;
@@ -22,9 +21,12 @@ char separator_of(const std::string& header) {
     is_quoted = is_quoted != (c == '"');
     outside += is_quoted ? ' ' : c;
   }
-  constexpr std::string_view separators = ",;\t";
-  return *std::ranges::max_element(
-      separators, {}, [&](char separator) { return std::ranges::count(outside, separator); });
+  for (const char separator : {'\t', ';'}) {
+    if (outside.find(separator) != std::string::npos) {
+      return separator;
+    }
+  }
+  return ',';
 }
 
 class CsvReader {
@@ -50,7 +52,8 @@ class CsvReader {
         text_.comments.push_back(line);
       } else {
         if (is_before_rows) {
-          csv_set_delim(&parser_, static_cast<unsigned char>(separator_of(line)));
+          text_.separator = separator_of(line);
+          csv_set_delim(&parser_, static_cast<unsigned char>(text_.separator));
         }
         take(line + '\n');
       }
@@ -66,9 +69,9 @@ class CsvReader {
   bool next_line(std::istream& text, std::string& line) {
     line.clear();
     for (char c = 0; text.get(c);) {
-      if (++size_ > max_bytes) {
+      if (++size_ > max_csv_bytes) {
         throw core::InvalidInput{
-            fmt::format("{}: is larger than {} MB", file_, max_bytes / 1'000'000)};
+            fmt::format("{}: is larger than {} MB", file_, max_csv_bytes / 1'000'000)};
       }
       if (c == '\n') {
         return true;

@@ -1,4 +1,5 @@
 #pragma once
+#include <cstddef>
 #include <istream>
 #include <string>
 #include <vector>
@@ -9,15 +10,18 @@ struct CsvRow {
 };
 
 struct CsvText {
+  char separator{','};
   std::vector<std::string> comments;  // lines before the first row that start with #
   std::vector<CsvRow> rows;
 };
 
-// Comma-separated values (RFC 4180), or separated by semicolons or tabulators, whichever the header
-// has most of: cells in double quotes may hold separators, quotes and line ends; spaces around
-// other cells do not count; empty lines and a byte order mark are skipped. Throws InvalidInput with
-// file:line for a quote that is out of place or left open, for what is no UTF-8 text, and for a
-// file beyond 64 MB.
+inline constexpr std::size_t max_csv_bytes = 64'000'000;
+
+// Comma-separated values (RFC 4180), or separated by tabulators or semicolons where the header has
+// any: cells in double quotes may hold separators, quotes and line ends; spaces around other cells
+// do not count; empty lines and a byte order mark are skipped. Throws InvalidInput with file:line
+// for a quote that is out of place or left open, for what is no UTF-8 text, and for a file beyond
+// 64 MB.
 CsvText read_csv(std::istream& text, const std::string& file);
 
 // A cell as a file has it: in quotes if it needs them.

@@ -1,0 +1,23 @@
+#pragma once
+#include "analysis/modal_identification/free_decay.hpp"
+namespace tapstudy::analysis {
+// The poles found with one model order (an even number of exponentials, two a mode).
+struct PolesOfOrder {
+  int order{};
+  std::vector<Pole> poles;  // inside the band, ascending frequency, damping ratio below 0.7
+};
+
+struct MatrixPencil {
+  Eigen::VectorXd singular_values;   // of the Hankel matrix, descending
+  int significant_order{};           // how many exceed what noise alone gives
+  std::vector<PolesOfOrder> orders;  // 2, 4 ... 20 beyond significant_order, max_order at most
+};
+
+// The matrix pencil method (Hua & Sarkar 1990): the right singular vectors of the Hankel matrix
+// that belong to the `order` largest singular values span shifted exponentials, V2 = V1 Phi, and
+// the eigenvalues of Phi are the poles z. The singular vectors are found from the Gram matrix,
+// whose entries follow from one another in O(L^2): half of the digits are enough for what was
+// measured. Pencil parameter L a third of the samples, at most 400. The decay is decimated first.
+// Throws InvalidInput if fewer than 24 samples are left then.
+MatrixPencil matrix_pencil(const FreeDecay& decay, const Band& band, int max_order);
+}  // namespace tapstudy::analysis

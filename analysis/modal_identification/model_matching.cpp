@@ -1,0 +1,175 @@
+#include "analysis/modal_identification/model_matching.hpp"
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+
+#include "analysis/statistics/distributions.hpp"
+namespace tapstudy::analysis {
+namespace {
+constexpr double skip_cost = max_match_difference * max_match_difference;
+constexpr int max_rounds = 50;
+constexpr double factor_between_starts = 1.02;
+constexpr int starts_each_way = 15;  // frequencies 0.74 to 1.35 times the model's
+
+struct Pair {
+  std::size_t measured{};
+  std::size_t model{};
+};
+
+struct Assignment {
+  std::vector<Pair> pairs;
+  double log_factor{};  // measured over model
+  double cost{};        // pairs and those left alone
+};
+
+class Matcher {
+ public:
+  Matcher(const std::vector<double>& measured, const std::vector<double>& model)
+      : measured_{measured}, model_{model} {}
+
+  Assignment settled_from(double log_factor) const {
+    Assignment now = assigned(log_factor);
+    for (int round = 0; round < max_rounds; ++round) {
+      const Assignment next = assigned(now.log_factor);
+      const bool is_settled = next.cost >= now.cost - 1e-15;
+      now = next.cost < now.cost ? next : now;
+      if (is_settled) {
+        break;
+      }
+    }
+    return now;
+  }
+
+ private:
+  // cost(i, j): of the first i measured and the first j model modes
+  Assignment assigned(double log_factor) const {
+    const auto rows = static_cast<Eigen::Index>(measured_.size());
+    const auto columns = static_cast<Eigen::Index>(model_.size());
+    Eigen::MatrixXd cost = Eigen::MatrixXd::Zero(rows + 1, columns + 1);
+    cost.col(0) = Eigen::VectorXd::LinSpaced(rows + 1, 0.0, static_cast<double>(rows)) * skip_cost;
+    const auto pair_cost = [&](Eigen::Index i, Eigen::Index j) {
+      const double difference = measured_[static_cast<std::size_t>(i - 1)] -
+                                model_[static_cast<std::size_t>(j - 1)] - log_factor;
+      return difference * difference;
+    };
+    for (Eigen::Index i = 1; i <= rows; ++i) {
+      for (Eigen::Index j = 1; j <= columns; ++j) {
+        cost(i, j) = std::min(
+            {cost(i, j - 1), cost(i - 1, j) + skip_cost, cost(i - 1, j - 1) + pair_cost(i, j)});
+      }
+    }
+    std::vector<Pair> pairs;
+    for (Eigen::Index i = rows, j = columns; i > 0 && j > 0;) {
+      if (cost(i, j) == cost(i, j - 1)) {
+        --j;
+      } else if (cost(i, j) == cost(i - 1, j) + skip_cost) {
+        --i;
+      } else {
+        pairs.push_back({static_cast<std::size_t>(--i), static_cast<std::size_t>(--j)});
+      }
+    }
+    std::ranges::reverse(pairs);
+    return with_factor(std::move(pairs), log_factor);
+  }
+
+  // The least-squares factor of these pairs.
+  Assignment with_factor(std::vector<Pair> pairs, double log_factor) const {
+    Assignment result{std::move(pairs), log_factor, 0.0};
+    double sum = 0.0;
+    for (const Pair& pair : result.pairs) {
+      sum += measured_[pair.measured] - model_[pair.model];
+    }
+    if (!result.pairs.empty()) {
+      result.log_factor = sum / static_cast<double>(result.pairs.size());
+    }
+    for (const Pair& pair : result.pairs) {
+      const double difference = measured_[pair.measured] - model_[pair.model] - result.log_factor;
+      result.cost += difference * difference;
+    }
+    result.cost += skip_cost * static_cast<double>(measured_.size() - result.pairs.size());
+    return result;
+  }
+
+  const std::vector<double>& measured_;
+  const std::vector<double>& model_;
+};
+
+std::optional<double> rival_factor(const Matcher& matcher, const Assignment& chosen) {
+  std::optional<double> rival;
+  double least = 0.5 * chosen.cost;
+  for (int i = -starts_each_way; i <= starts_each_way; ++i) {
+    const Assignment other = matcher.settled_from(i * std::log(factor_between_starts));
+    if (other.pairs.size() >= chosen.pairs.size() && other.cost < least) {
+      least = other.cost;
+      rival = other.log_factor;
+    }
+  }
+  return rival;
+}
+
+std::vector<double> logarithms(const std::vector<double>& values) {
+  std::vector<double> logs(values.size());
+  std::ranges::transform(values, logs.begin(), [](double x) { return std::log(x); });
+  return logs;
+}
+
+// Of ln factor, and what its t has of degrees of freedom.
+struct FactorError {
+  double value{};
+  double degrees_of_freedom{};
+};
+FactorError error_of(const Assignment& found, const std::vector<Estimate>& measured_hz,
+                     double squares) {
+  const auto count = static_cast<double>(found.pairs.size());
+  if (found.pairs.size() > 1) {
+    return {std::sqrt(squares / (count - 1.0) / count), count - 1.0};
+  }
+  const Estimate& only = measured_hz[found.pairs.front().measured];
+  return {only.standard_error / only.value, 1e6};
+}
+}  // namespace
+
+std::optional<ModelUpdate> update_youngs_modulus(const std::vector<Estimate>& measured_hz,
+                                                 const std::vector<double>& model_hz,
+                                                 double youngs_modulus_pa) {
+  std::vector<double> values;
+  for (const Estimate& one : measured_hz) {
+    values.push_back(one.value);
+  }
+  const std::vector<double> measured = logarithms(values);
+  const std::vector<double> model = logarithms(model_hz);
+  const Matcher matcher{measured, model};
+  const Assignment found = matcher.settled_from(0.0);
+  if (found.pairs.empty()) {
+    return std::nullopt;
+  }
+  ModelUpdate update;
+  double squares = 0.0;
+  for (const Pair& pair : found.pairs) {
+    const double difference = measured[pair.measured] - model[pair.model] - found.log_factor;
+    update.matched.push_back({pair.measured, pair.model, std::expm1(difference)});
+    squares += difference * difference;
+  }
+  for (std::size_t i = 0; i < measured.size(); ++i) {
+    if (std::ranges::find(found.pairs, i, &Pair::measured) == found.pairs.end()) {
+      update.unmatched.push_back(i);
+    }
+  }
+  update.rms_misfit = std::sqrt(squares / static_cast<double>(found.pairs.size()));
+  const FactorError error = error_of(found, measured_hz, squares);
+  const double half = t_quantile(0.975, error.degrees_of_freedom) * error.value;
+  const auto modulus = [&](double log_factor) {
+    return youngs_modulus_pa * std::exp(2.0 * log_factor);
+  };
+  const double value = modulus(found.log_factor);
+  update.youngs_modulus_pa = {value,
+                              2.0 * value * error.value,
+                              {modulus(found.log_factor - half), modulus(found.log_factor + half)},
+                              std::nullopt};
+  if (const auto rival = rival_factor(matcher, found)) {
+    update.rival_pa = modulus(*rival);
+  }
+  return update;
+}
+}  // namespace tapstudy::analysis

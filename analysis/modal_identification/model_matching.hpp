@@ -1,0 +1,37 @@
+#pragma once
+#include <optional>
+#include <vector>
+
+#include "analysis/modal_identification/repeated_modes.hpp"
+namespace tapstudy::analysis {
+struct MatchedMode {
+  std::size_t measured{};  // index into the measured modes
+  std::size_t model{};     // index into the model's modes
+  double misfit{};         // measured / model - 1 after the update
+};
+
+struct ModelUpdate {
+  std::vector<MatchedMode> matched;    // ascending
+  std::vector<std::size_t> unmatched;  // measured modes without one
+  Estimate youngs_modulus_pa;
+  double rms_misfit{};  // of the logarithms of frequencies
+  // Another Young's modulus from which the assignment fits as many modes with less than half of the
+  // misfit, or more modes: a reason to look twice.
+  std::optional<double> rival_pa;
+};
+
+// Measured modes differ from their model's by at most this share of the frequency, once the common
+// factor is taken out.
+inline constexpr double max_match_difference = 0.15;
+
+// Young's modulus by least squares of logarithms of frequencies, which are proportional to its root
+// at one Poisson's ratio, density and geometry. Modes are assigned so that the sum of squared
+// differences of the logarithms is least, each at most once; a mode without a partner costs
+// max_match_difference squared. Both are sorted, so that the best assignment keeps their order, and
+// is found by dynamic programming. Assignment and factor are repeated until they settle, from the
+// modulus given. The interval is Student's t of the scatter between modes, or of one mode its own.
+// Both ascending, not empty, above 0 [Hz]. Unset if no mode finds a partner.
+std::optional<ModelUpdate> update_youngs_modulus(const std::vector<Estimate>& measured_hz,
+                                                 const std::vector<double>& model_hz,
+                                                 double youngs_modulus_pa);
+}  // namespace tapstudy::analysis

@@ -1,0 +1,14 @@
+#pragma once
+#include "analysis/modal_identification/matrix_pencil.hpp"
+namespace tapstudy::analysis {
+// A pole that does not move as the order grows.
+struct StablePole {
+  Pole pole;     // medians over the orders
+  int orders{};  // how many successive orders found it
+};
+inline constexpr int min_stable_orders = 4;
+// A stabilisation diagram, read: poles that at least min_stable_orders successive orders found,
+// each within 1 % of the frequency (a third of its half-power bandwidth if that is more) and 10 %
+// (or 0.003) of the damping ratio of the one before. Of chains at one pole the longest counts.
+std::vector<StablePole> stable_poles(const std::vector<PolesOfOrder>& orders);
+}  // namespace tapstudy::analysis

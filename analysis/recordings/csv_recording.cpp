@@ -1,0 +1,233 @@
+#include "analysis/recordings/csv_recording.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <sstream>
+
+#include "analysis/statistics/csv_rows.hpp"
+#include "core/error.hpp"
+namespace tapstudy::analysis {
+namespace {
+constexpr double max_rate_difference = 0.01;
+
+[[noreturn]] void refuse(const std::string& file, int line, const std::string& what) {
+  throw core::InvalidInput{fmt::format("{}:{}: {}", file, line, what)};
+}
+
+std::optional<double> number_in(std::string cell, bool has_decimal_comma) {
+  if (has_decimal_comma) {
+    std::ranges::replace(cell, ',', '.');
+  }
+  double value{};
+  const char* const begin = cell.data() + (cell.starts_with('+') ? 1 : 0);
+  const char* const end = cell.data() + cell.size();
+  const auto [stopped, error] = std::from_chars(begin, end, value);
+  if (error != std::errc{} || stopped != end) {
+    return std::nullopt;
+  }
+  return value;
+}
+
+std::string lower_case(std::string text) {
+  std::ranges::transform(text, text.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
+// Seconds per unit of a time column's header: "t", "time", "Time (ms)", "time_us", "t [s]" ...;
+// 0: the header is not that of a time.
+double seconds_per_unit(const std::string& header) {
+  std::string letters;
+  for (const char c : lower_case(header)) {
+    letters += std::isalpha(static_cast<unsigned char>(c)) != 0 ? c : ' ';
+  }
+  std::istringstream stream{letters};
+  std::string word;
+  std::string unit;
+  std::string rest;
+  stream >> word >> unit >> rest;
+  if ((word != "t" && word != "time") || !rest.empty()) {
+    return 0.0;
+  }
+  if (unit.empty() || unit == "s" || unit == "sec" || unit == "seconds") {
+    return 1.0;
+  }
+  return unit == "ms" ? 1e-3 : (unit == "us" ? 1e-6 : 0.0);
+}
+
+// Rows of numbers below an optional header.
+class Table {
+ public:
+  Table(CsvText text, std::string file)
+      : rows_{std::move(text.rows)},
+        file_{std::move(file)},
+        has_decimal_comma_{text.separator != ','} {
+    if (rows_.empty()) {
+      refuse(file_, 1, "holds no values");
+    }
+    const CsvRow& first = rows_.front();
+    if (std::ranges::none_of(first.cells, [&](const std::string& cell) {
+          return number_in(cell, has_decimal_comma_).has_value();
+        })) {
+      headers_ = first.cells;
+      first_row_ = 1;
+    }
+    columns_ = first.cells.size();
+  }
+
+  std::size_t columns() const { return columns_; }
+  std::size_t rows() const { return rows_.size() - first_row_; }
+  bool has_headers() const { return !headers_.empty(); }
+  const std::vector<std::string>& headers() const { return headers_; }
+  const std::string& file() const { return file_; }
+  int line(std::size_t row) const { return rows_[first_row_ + row].line; }
+  int last_line() const { return rows_.back().line; }
+  std::string title(std::size_t column) const {
+    return has_headers() ? headers_[column] : fmt::format("column {}", column + 1);
+  }
+
+  std::vector<double> values(std::size_t column) const {
+    std::vector<double> all;
+    all.reserve(rows());
+    for (std::size_t i = first_row_; i < rows_.size(); ++i) {
+      const CsvRow& row = rows_[i];
+      if (row.cells.size() != columns_) {
+        refuse(file_, row.line,
+               fmt::format("has {} cells, the first row {}", row.cells.size(), columns_));
+      }
+      const std::optional<double> value = number_in(row.cells[column], has_decimal_comma_);
+      if (!value || !std::isfinite(*value)) {
+        refuse(file_, row.line, fmt::format("'{}' is not a finite number", row.cells[column]));
+      }
+      all.push_back(*value);
+    }
+    return all;
+  }
+
+ private:
+  std::vector<CsvRow> rows_;
+  std::string file_;
+  bool has_decimal_comma_;
+  std::vector<std::string> headers_;
+  std::size_t first_row_{0};
+  std::size_t columns_{0};
+};
+
+struct TimeColumn {
+  std::size_t index{};
+  double seconds_per_unit{1.0};
+};
+
+std::optional<TimeColumn> time_column(const Table& table, const ReadingOptions& options) {
+  for (std::size_t i = 0; i < table.headers().size(); ++i) {
+    const double unit = seconds_per_unit(table.headers()[i]);
+    if (unit > 0.0) {
+      return TimeColumn{i, unit};
+    }
+  }
+  if (table.has_headers() || options.rate_hz > 0.0 || table.columns() < 2) {
+    return std::nullopt;
+  }
+  const std::vector<double> first = table.values(0);
+  const bool ascends = std::ranges::adjacent_find(first, std::greater_equal{}) == first.end();
+  return ascends ? std::optional{TimeColumn{0, 1.0}} : std::nullopt;
+}
+
+double rate_from_times(const Table& table, const TimeColumn& column) {
+  const std::vector<double> times = table.values(column.index);
+  const auto periods = static_cast<double>(times.size() - 1);
+  const double period = (times.back() - times.front()) / periods;
+  if (!(period > 0.0)) {
+    refuse(table.file(), table.last_line(), "times must ascend");
+  }
+  double furthest = 0.0;
+  std::size_t worst_step = 1;
+  for (std::size_t i = 1; i < times.size(); ++i) {
+    const double expected = times.front() + period * static_cast<double>(i);
+    furthest = std::max(furthest, std::abs(times[i] - expected) / period);
+    const auto misfit = [&](std::size_t k) { return std::abs(times[k] - times[k - 1] - period); };
+    worst_step = misfit(i) > misfit(worst_step) ? i : worst_step;
+  }
+  if (furthest > max_jitter_periods) {
+    refuse(table.file(), table.line(worst_step),
+           fmt::format("times are up to {:.2g} periods from a uniform grid (at most {}); here the "
+                       "step is {:.3g} periods: samples are missing or were not taken uniformly",
+                       furthest, max_jitter_periods,
+                       (times[worst_step] - times[worst_step - 1]) / period));
+  }
+  return 1.0 / (period * column.seconds_per_unit);
+}
+
+// By header, else by number from 1.
+std::size_t named_column(const Table& table, const std::string& column) {
+  const auto found = std::ranges::find(table.headers(), column);
+  if (found != table.headers().end()) {
+    return static_cast<std::size_t>(found - table.headers().begin());
+  }
+  std::size_t number = 0;
+  const char* const end = column.data() + column.size();
+  const auto [stopped, error] = std::from_chars(column.data(), end, number);
+  if (error == std::errc{} && stopped == end && number >= 1 && number <= table.columns()) {
+    return number - 1;
+  }
+  refuse(table.file(), 1,
+         fmt::format("--column '{}' is none of its columns ({})", column,
+                     table.has_headers() ? fmt::format("{}", fmt::join(table.headers(), ", "))
+                                         : fmt::format("1 to {}", table.columns())));
+}
+
+std::size_t data_column(const Table& table, const ReadingOptions& options,
+                        const std::optional<TimeColumn>& time) {
+  if (!options.column.empty()) {
+    const std::size_t chosen = named_column(table, options.column);
+    if (time && chosen == time->index) {
+      refuse(table.file(), 1, fmt::format("--column '{}' is the time", options.column));
+    }
+    return chosen;
+  }
+  const std::size_t channels = table.columns() - (time ? 1 : 0);
+  if (channels != 1) {
+    refuse(table.file(), 1,
+           fmt::format("has {} channels (choose one by --column: {})", channels,
+                       table.has_headers() ? fmt::format("{}", fmt::join(table.headers(), ", "))
+                                           : fmt::format("1 to {}", table.columns())));
+  }
+  return time && time->index == 0 ? 1 : 0;
+}
+
+double rate_of(const Table& table, const ReadingOptions& options,
+               const std::optional<TimeColumn>& time) {
+  if (!time && !(options.rate_hz > 0.0)) {
+    refuse(table.file(), 1, "has no time column (give the rate by --rate HZ)");
+  }
+  if (!time) {
+    return options.rate_hz;
+  }
+  const double rate_hz = rate_from_times(table, *time);
+  if (options.rate_hz > 0.0 && std::abs(rate_hz / options.rate_hz - 1.0) > max_rate_difference) {
+    refuse(table.file(), table.last_line(),
+           fmt::format("its times say {:.6g} samples a second, --rate {:g}", rate_hz,
+                       options.rate_hz));
+  }
+  return options.rate_hz > 0.0 ? options.rate_hz : rate_hz;
+}
+}  // namespace
+
+Recording read_csv_recording(std::istream& text, const std::string& file,
+                             const ReadingOptions& options) {
+  const Table table{read_csv(text, file), file};
+  if (table.rows() < min_samples) {
+    refuse(file, table.last_line(),
+           fmt::format("has {} samples (at least {})", table.rows(), min_samples));
+  }
+  const std::optional<TimeColumn> time = time_column(table, options);
+  const std::size_t column = data_column(table, options, time);
+  return {file, table.title(column), rate_of(table, options, time), table.values(column), {}};
+}
+}  // namespace tapstudy::analysis

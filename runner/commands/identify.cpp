@@ -1,0 +1,97 @@
+#include <fmt/format.h>
+
+#include <charconv>
+#include <filesystem>
+#include <memory>
+
+#include "core/error.hpp"
+#include "runner/commands/commands.hpp"
+#include "runner/recordings/writers.hpp"
+#include "runner/terminal/progress.hpp"
+namespace tapstudy::runner {
+namespace {
+struct IdentifyOptions {
+  TapQuestion question;
+  std::string quantity{"acceleration"};
+  std::string band;
+  bool wants_json{false};
+  std::string out;
+};
+
+// "10:300"
+analysis::Band band_from(const std::string& text) {
+  analysis::Band band;
+  const char* const end = text.data() + text.size();
+  const auto [colon, low_error] = std::from_chars(text.data(), end, band.low_hz);
+  const bool has_low = low_error == std::errc{} && colon != end && *colon == ':';
+  const auto [stopped, high_error] = std::from_chars(has_low ? colon + 1 : end, end, band.high_hz);
+  const bool is_band = has_low && high_error == std::errc{} && stopped == end;
+  if (!is_band || !(band.low_hz > 0.0 && band.low_hz < band.high_hz && band.high_hz <= 1e5)) {
+    throw core::InvalidInput{
+        fmt::format("--band '{}': must be LOW:HIGH in Hz, 0 < LOW < HIGH <= 100000", text)};
+  }
+  return band;
+}
+
+TapQuestion question_of(const IdentifyOptions& options) {
+  TapQuestion question = options.question;
+  if (question.recordings.empty()) {
+    throw core::InvalidInput{"identify takes at least one recording (CSV or WAV)"};
+  }
+  if (question.protocol.empty() != question.stimulus.empty()) {
+    throw core::InvalidInput{"--protocol and --stimulus go together"};
+  }
+  question.quantity = analysis::quantity_from(options.quantity);
+  if (!options.band.empty()) {
+    question.band = band_from(options.band);
+  }
+  return question;
+}
+
+void run_identify(const IdentifyOptions& options) {
+  const TapQuestion question = question_of(options);
+  if (std::filesystem::exists(options.out)) {
+    throw core::InvalidInput{options.out + ": exists already (a new directory is needed)"};
+  }
+  const TapIdentification found = [&] {
+    Progress progress{"identifying"};
+    return identify_taps(question, progress);
+  }();
+  write_files(options.out, found);
+  if (options.wants_json) {
+    fmt::print("{}\n", json_of(found));
+  } else {
+    print(found);
+  }
+}
+}  // namespace
+
+void add_identify(CommandParser& line) {
+  Command command =
+      line.add("identify", "Recordings of real taps: modes, damping, Young's modulus, sinusoid");
+  const auto options = std::make_shared<IdentifyOptions>();
+  TapQuestion& question = options->question;
+  command.arguments("recordings", question.recordings,
+                    "Recordings (.csv, .txt, .tsv; WAV, FLAC ...)");
+  command.option("--out", options->out,
+                 "New directory for identified.yaml, identified.json and figures", Need::required);
+  command.option("--protocol", question.protocol, "Study (YAML) with a model of what was tapped");
+  command.option("--stimulus", question.stimulus, "Which of its stimuli was tapped");
+  command.number_within("--rate", question.reading.rate_hz, 0.0, 1e7,
+                        "Samples a second, of tables without a time column");
+  command.option("--column", question.reading.column,
+                 "Header or number (from 1) of the channel; default: the only one");
+  command.one_of("--quantity", options->quantity, {"acceleration", "velocity", "displacement"},
+                 "What was measured; default: acceleration");
+  command.number_within("--scale", question.si_per_unit, 1e-12, 1e12,
+                        "SI units (m/s2, m/s, m) per unit of the recordings");
+  command.option("--band", options->band,
+                 "LOW:HIGH in Hz; default: 10 to the protocol's band limit, or 1000");
+  command.number_within("--skip", question.finding.skip_s, 0.0, 1.0,
+                        "Seconds after a tap's peak before it rings freely");
+  command.option("--speeds", question.speeds,
+                 "CSV with a column speed_m_s: the speed of each impact, in order");
+  command.flag("--json", options->wants_json, "Output as JSON");
+  command.on_run([options] { run_identify(*options); });
+}
+}  // namespace tapstudy::runner

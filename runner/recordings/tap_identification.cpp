@@ -1,0 +1,266 @@
+#include "runner/recordings/tap_identification.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/error.hpp"
+#include "core/model/plate_model.hpp"
+#include "protocols/read_protocol.hpp"
+#include "runner/recordings/speeds.hpp"
+#include "runner/stimuli/at_its_line.hpp"
+#include "runner/stimuli/model_library.hpp"
+namespace tapstudy::runner {
+namespace {
+using analysis::Band;
+using analysis::Estimate;
+
+constexpr double default_low_hz = 10.0;
+constexpr double default_high_hz = 1000.0;
+constexpr double usable_rate_share = 0.4;  // of the rate; sensors' own filters begin above
+constexpr double max_rate_share = 0.47;
+constexpr double further_band = 1.25;  // of the model: its modes may move down into the band
+constexpr double min_explained = 0.5;
+
+Band band_for(const TapQuestion& question, double rate_hz, std::optional<double> band_limit_hz) {
+  if (!question.band) {
+    return {default_low_hz,
+            std::min(usable_rate_share * rate_hz, band_limit_hz.value_or(default_high_hz))};
+  }
+  if (question.band->high_hz > max_rate_share * rate_hz) {
+    throw core::InvalidInput{fmt::format("--band: ends at {:g} Hz, above {} of the rate of {:g} Hz",
+                                         question.band->high_hz, max_rate_share, rate_hz)};
+  }
+  return *question.band;
+}
+
+analysis::FreeDecay decay_between(const analysis::Recording& recording, std::size_t begin,
+                                  std::size_t end) {
+  const auto first = static_cast<Eigen::Index>(begin);
+  const auto count = static_cast<Eigen::Index>(end - begin);
+  const Eigen::Map<const Eigen::VectorXd> all{recording.samples.data(),
+                                              static_cast<Eigen::Index>(recording.samples.size())};
+  analysis::FreeDecay decay{recording.rate_hz, all.segment(first, count)};
+  decay.samples.array() -= decay.samples.mean();
+  return decay;
+}
+
+class Identifier {
+ public:
+  Identifier(const TapQuestion& question, Progress& progress) : hook_{progress.hook()} {
+    result_.question = question;
+    if (!question.protocol.empty()) {
+      protocol_ = protocols::read_protocol(question.protocol);
+      static_cast<void>(protocol_->stimulus(question.stimulus));  // must be there
+    }
+  }
+
+  TapIdentification identify() {
+    std::vector<analysis::Recording> recordings;
+    for (const std::string& file : result_.question.recordings) {
+      recordings.push_back(analysis::read_recording(file, result_.question.reading));
+    }
+    const auto slowest = std::ranges::min_element(recordings, {}, &analysis::Recording::rate_hz);
+    result_.band = band_for(result_.question, slowest->rate_hz,
+                            protocol_ ? std::optional{protocol_->band_limit_hz} : std::nullopt);
+    int impacts = 0;
+    for (const analysis::Recording& recording : recordings) {
+      impacts += add(recording, impacts);
+    }
+    if (result_.taps.empty()) {
+      throw core::InvalidInput{fmt::format("{}", fmt::join(result_.remarks, "\n"))};
+    }
+    give_speeds(impacts);
+    sum_up();
+    return std::move(result_);
+  }
+
+ private:
+  // How many impacts it has; `before` are those of earlier recordings.
+  int add(const analysis::Recording& recording, int before) {
+    const analysis::FoundTaps found = analysis::find_taps(recording, result_.question.finding);
+    for (const std::string& remark : found.remarks) {
+      result_.remarks.push_back(recording.file + ": " + remark);
+    }
+    for (const analysis::Tap& tap : found.taps) {
+      hook_(fmt::format("tap {} of {}", tap.impact, recording.file));
+      if (add(recording, tap)) {
+        impact_numbers_.push_back(before + tap.impact);
+      }
+    }
+    return found.impacts;
+  }
+
+  // A tap that is too short for the band is left out with a remark.
+  bool add(const analysis::Recording& recording, const analysis::Tap& tap) {
+    IdentifiedTap one;
+    one.file = recording.file;
+    one.channel = recording.channel;
+    one.tap = tap;
+    one.time_s = static_cast<double>(tap.onset) / recording.rate_hz;
+    one.decay = decay_between(recording, tap.begin, tap.end);
+    try {
+      one.modes = analysis::identify_modes(one.decay, {result_.band});
+    } catch (const core::InvalidInput& error) {
+      result_.remarks.push_back(fmt::format("{}: the tap at {:.3f} s is left out: {}",
+                                            recording.file, one.time_s, error.what()));
+      return false;
+    }
+    const Band wide{result_.band.low_hz,
+                    std::max(result_.band.high_hz,
+                             std::min(default_high_hz, usable_rate_share * recording.rate_hz))};
+    one.sinusoid =
+        analysis::fit_decaying_sinusoid(decay_between(recording, tap.onset, tap.end), wide);
+    result_.taps.push_back(std::move(one));
+    return true;
+  }
+
+  void give_speeds(int impacts) {
+    if (result_.question.speeds.empty()) {
+      return;
+    }
+    const std::vector<double> speeds = read_speeds(result_.question.speeds);
+    if (speeds.size() != static_cast<std::size_t>(impacts)) {
+      throw core::InvalidInput{
+          fmt::format("{}: has {} speeds, the recordings {} impacts (one row for each, in their "
+                      "order, also for those left out)",
+                      result_.question.speeds, speeds.size(), impacts)};
+    }
+    for (std::size_t i = 0; i < result_.taps.size(); ++i) {
+      result_.taps[i].speed_m_s = speeds[static_cast<std::size_t>(impact_numbers_[i] - 1)];
+    }
+  }
+
+  std::vector<analysis::TapModes> modes_of_taps() const {
+    std::vector<analysis::TapModes> modes;
+    for (const IdentifiedTap& tap : result_.taps) {
+      modes.push_back(tap.modes);
+    }
+    return modes;
+  }
+
+  void sum_up() {
+    const std::vector<analysis::TapModes> of_taps = modes_of_taps();
+    for (IdentifiedTap& tap : result_.taps) {
+      const std::vector<double> lines_hz = analysis::lines_missed(tap.modes, of_taps);
+      if (!lines_hz.empty()) {
+        analysis::ModeFinding finding{result_.band};
+        finding.lines_hz = lines_hz;
+        tap.modes = analysis::identify_modes(tap.decay, finding);
+      }
+    }
+    result_.modes = analysis::modes_over_taps(modes_of_taps());
+    std::vector<analysis::MeasuredRatio> ratios;
+    for (std::size_t i = 0; i < result_.modes.size(); ++i) {
+      const analysis::RepeatedMode& mode = result_.modes[i];
+      if (mode.standing == analysis::Standing::agreed) {
+        result_.agreed.push_back(i);
+        ratios.push_back({mode.frequency_hz.value, mode.damping_ratio.value,
+                          std::max(mode.damping_ratio.standard_error, 1e-12)});
+      }
+    }
+    result_.rayleigh = analysis::fit_rayleigh(ratios);
+    if (result_.agreed.empty()) {
+      result_.remarks.emplace_back("no mode was found by both methods");
+    }
+    result_.sinusoid = sinusoid_law();
+    if (protocol_) {
+      result_.model = model_comparison();
+    }
+  }
+
+  std::optional<SinusoidLaw> sinusoid_law() {
+    std::vector<double> decays, decay_errors, frequencies, frequency_errors, amplitudes, speeds;
+    SinusoidLaw law;
+    for (const IdentifiedTap& tap : result_.taps) {
+      if (tap.sinusoid && tap.sinusoid->explained >= min_explained) {
+        decays.push_back(tap.sinusoid->decay_per_s);
+        decay_errors.push_back(tap.sinusoid->decay_error_per_s);
+        frequencies.push_back(tap.sinusoid->frequency_hz);
+        frequency_errors.push_back(tap.sinusoid->frequency_error_hz);
+        law.explained += tap.sinusoid->explained;
+        if (tap.speed_m_s) {
+          speeds.push_back(*tap.speed_m_s);
+          amplitudes.push_back(tap.sinusoid->amplitude * result_.question.si_per_unit);
+        }
+      }
+    }
+    if (decays.empty()) {
+      result_.remarks.push_back(
+          fmt::format("no tap is mostly one decaying sinusoid (it would have to explain {:.0f} % "
+                      "of its energy)",
+                      100.0 * min_explained));
+      return std::nullopt;
+    }
+    law.explained /= static_cast<double>(decays.size());
+    constexpr double many = 1e6;  // degrees of freedom of one tap's samples
+    law.decay_per_s = analysis::estimate_over_taps(decays, decay_errors, many);
+    law.frequency_hz = analysis::estimate_over_taps(frequencies, frequency_errors, many);
+    if (!speeds.empty()) {
+      law.amplitude_per_speed = analysis::amplitude_per_speed(speeds, amplitudes);
+      if (protocol_) {
+        law.amplitude_n_s_per_m = law.amplitude_per_speed->value * newtons_per_unit(law);
+      }
+    }
+    return law;
+  }
+
+  // Acceleration moves the finger's mass; velocity and displacement of the surface are felt through
+  // its spring and damper (eq. 17), at s = -decay + i omega.
+  double newtons_per_unit(const SinusoidLaw& law) const {
+    const core::Finger& finger = protocol_->rendering.finger;
+    const std::complex<double> s{-law.decay_per_s.value,
+                                 2.0 * std::numbers::pi * law.frequency_hz.value};
+    const double per_metre = std::abs(finger.stiffness_n_per_m + finger.damping_n_s_per_m * s);
+    switch (result_.question.quantity) {
+      case analysis::Quantity::acceleration:
+        return finger.mass_kg;
+      case analysis::Quantity::velocity:
+        return per_metre / std::abs(s);
+      case analysis::Quantity::displacement:
+        break;
+    }
+    return per_metre;
+  }
+
+  ModelComparison model_comparison() {
+    const protocols::Stimulus& stimulus = protocol_->stimulus(result_.question.stimulus);
+    const protocols::PresentedStimulus presented = protocols::stimulus_with(*protocol_, stimulus);
+    ModelComparison model;
+    model.material = presented.material;
+    for (const auto& [name, material] : protocol_->materials) {
+      if (material == stimulus.material) {
+        model.material_name = name;
+      }
+    }
+    model.band_limit_hz = protocol_->band_limit_hz;
+    core::PlateSpec spec = plate_spec(*protocol_, presented);
+    spec.band_limit_hz = further_band * std::max(spec.band_limit_hz, result_.band.high_hz);
+    spec.material.damping = core::ConstantDamping{};  // only frequencies are compared
+    const core::PlateModel plate =
+        at_its_line(presented, [&] { return core::build_plate_model(spec, hook_); });
+    model.frequencies_hz.assign(plate.modal.frequency_hz.begin(), plate.modal.frequency_hz.end());
+    std::vector<Estimate> measured;
+    for (const std::size_t i : result_.agreed) {
+      measured.push_back(result_.modes[i].frequency_hz);
+    }
+    if (!measured.empty() && !model.frequencies_hz.empty()) {
+      model.update = analysis::update_youngs_modulus(measured, model.frequencies_hz,
+                                                     model.material->youngs_modulus_pa);
+    }
+    return model;
+  }
+
+  TapIdentification result_;
+  std::optional<protocols::Protocol> protocol_;
+  core::ProgressHook hook_;
+  std::vector<int> impact_numbers_;  // over all recordings, of each tap
+};
+}  // namespace
+
+TapIdentification identify_taps(const TapQuestion& question, Progress& progress) {
+  return Identifier{question, progress}.identify();
+}
+}  // namespace tapstudy::runner

@@ -1,0 +1,72 @@
+#pragma once
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "analysis/modal_identification/decaying_sinusoid_fit.hpp"
+#include "analysis/modal_identification/model_matching.hpp"
+#include "analysis/modal_identification/rayleigh_fit.hpp"
+#include "analysis/modal_identification/tap_modes.hpp"
+#include "analysis/recordings/taps.hpp"
+#include "protocols/axes/presented_stimulus.hpp"
+#include "runner/terminal/progress.hpp"
+namespace tapstudy::runner {
+// What is asked of recordings of real taps.
+struct TapQuestion {
+  std::vector<std::string> recordings;
+  analysis::ReadingOptions reading;
+  analysis::Quantity quantity{analysis::Quantity::acceleration};
+  double si_per_unit{1.0};  // from the recordings' unit to m/s², m/s or m
+  analysis::TapFinding finding;
+  std::optional<analysis::Band> band;  // unset: 10 Hz to the protocol's band limit or 1000 Hz
+  std::string speeds;    // CSV with a column speed_m_s, a row for each tap; may be empty
+  std::string protocol;  // with a stimulus, or both empty
+  std::string stimulus;
+};
+
+struct IdentifiedTap {
+  std::string file;
+  std::string channel;
+  analysis::Tap tap;
+  double time_s{};            // of the impact
+  analysis::FreeDecay decay;  // in the recording's unit, about its mean
+  analysis::TapModes modes;
+  std::optional<analysis::FittedSinusoid> sinusoid;
+  std::optional<double> speed_m_s;
+};
+
+struct SinusoidLaw {
+  analysis::Estimate decay_per_s;
+  analysis::Estimate frequency_hz;
+  double explained{};                                     // of the taps' energy, on average
+  std::optional<analysis::Estimate> amplitude_per_speed;  // SI unit of the quantity per m/s
+  std::optional<double> amplitude_n_s_per_m;  // as the protocol's finger makes a force of it
+};
+
+// The model of the protocol's stimulus beside what was measured.
+struct ModelComparison {
+  std::shared_ptr<const protocols::Material> material;
+  std::string material_name;
+  std::vector<double> frequencies_hz;
+  double band_limit_hz{};
+  std::optional<analysis::ModelUpdate> update;  // unset: no mode has a partner
+};
+
+struct TapIdentification {
+  TapQuestion question;
+  analysis::Band band;
+  std::vector<IdentifiedTap> taps;
+  std::vector<analysis::RepeatedMode> modes;
+  std::vector<std::size_t> agreed;                // indices into modes
+  std::optional<analysis::RayleighFit> rayleigh;  // of the agreed modes
+  std::optional<SinusoidLaw> sinusoid;
+  std::optional<ModelComparison> model;
+  std::vector<std::string> remarks;
+};
+
+// Reads, finds the taps, identifies modes, damping, sinusoid and Young's modulus. Throws
+// InvalidInput for what cannot be read, recordings without a tap, a band that does not fit, speeds
+// that are not as many as impacts; ModelError if the stimulus's model cannot be built.
+TapIdentification identify_taps(const TapQuestion& question, Progress& progress);
+}  // namespace tapstudy::runner

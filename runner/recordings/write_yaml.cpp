@@ -1,0 +1,136 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "runner/recordings/writers.hpp"
+namespace tapstudy::runner {
+namespace {
+using analysis::Estimate;
+
+std::string comment(const Estimate& estimate) {
+  return fmt::format("# 95 %: {:.4g} to {:.4g}", estimate.interval.low, estimate.interval.high);
+}
+
+struct RatioAt {
+  double frequency_hz{};
+  double ratio{};
+};
+
+double interpolated(const std::vector<RatioAt>& known, double frequency_hz) {
+  const auto above = std::ranges::lower_bound(known, frequency_hz, {}, &RatioAt::frequency_hz);
+  if (above == known.begin()) {
+    return known.front().ratio;
+  }
+  if (above == known.end()) {
+    return known.back().ratio;
+  }
+  const RatioAt& below = *(above - 1);
+  const double share =
+      (frequency_hz - below.frequency_hz) / (above->frequency_hz - below.frequency_hz);
+  return below.ratio + share * (above->ratio - below.ratio);
+}
+
+// Lines do not decay; neither may a ratio that noise made negative feed energy into a mode.
+double usable(double ratio) {
+  return std::max(ratio, 0.0);
+}
+
+std::vector<double> ratios_of_measured(const TapIdentification& found) {
+  std::vector<double> ratios;
+  for (const std::size_t i : found.agreed) {
+    ratios.push_back(usable(found.modes[i].damping_ratio.value));
+  }
+  return ratios;
+}
+
+// One for each of the model's modes inside the band.
+std::vector<double> ratios_of_model(const TapIdentification& found, const ModelComparison& model) {
+  const double factor =
+      std::sqrt(model.update->youngs_modulus_pa.value / model.material->youngs_modulus_pa);
+  std::vector<RatioAt> known;
+  for (const analysis::MatchedMode& one : model.update->matched) {
+    known.push_back({factor * model.frequencies_hz[one.model],
+                     usable(found.modes[found.agreed[one.measured]].damping_ratio.value)});
+  }
+  std::vector<double> ratios;
+  for (const double frequency_hz : model.frequencies_hz) {
+    if (factor * frequency_hz <= model.band_limit_hz) {
+      ratios.push_back(interpolated(known, factor * frequency_hz));
+    }
+  }
+  return ratios;
+}
+
+std::string listed(const std::vector<double>& ratios) {
+  std::string list;
+  for (const double ratio : ratios) {
+    list += fmt::format("{}{:.5g}", list.empty() ? "" : ", ", ratio);
+  }
+  return fmt::format("{{modal_ratios: [{}], further_ratio: {:.5g}}}", list, ratios.back());
+}
+
+std::string modal(const TapIdentification& found) {
+  const bool has_model = found.model && found.model->update;
+  const std::vector<double> of_model =
+      has_model ? ratios_of_model(found, *found.model) : std::vector<double>{};
+  return listed(of_model.empty() ? ratios_of_measured(found) : of_model);
+}
+
+// At least one mode is agreed.
+std::string damping_of(const TapIdentification& found, const std::string& indent) {
+  const auto& rayleigh = found.rayleigh;
+  if (!rayleigh) {
+    const Estimate& only = found.modes[found.agreed.front()].damping_ratio;
+    return fmt::format("{0}{1}\n{0}damping: {{ratio: {2:.5g}}}\n", indent, comment(only),
+                       usable(only.value));
+  }
+  const std::string by_rayleigh = fmt::format("{{alpha_per_s: {:.5g}, beta_s: {:.5g}}}",
+                                              rayleigh->alpha_per_s.value, rayleigh->beta_s.value);
+  const std::string by_mode = modal(found);
+  const auto& first = rayleigh->fits() ? by_rayleigh : by_mode;
+  const auto& second = rayleigh->fits() ? by_mode : by_rayleigh;
+  return fmt::format(
+      "{0}# alpha_per_s {1}\n{0}# beta_s {2}\n{0}# Rayleigh's misfit of a ratio: {3:.1f} % at "
+      "most\n"
+      "{0}damping: {4}\n{0}# or damping: {5}\n",
+      indent, comment(rayleigh->alpha_per_s).substr(2), comment(rayleigh->beta_s).substr(2),
+      100.0 * rayleigh->largest_misfit, first, second);
+}
+}  // namespace
+
+std::string yaml_of(const TapIdentification& found) {
+  std::string text = fmt::format(
+      "# tapstudy identify: {} taps, {}, {:g} to {:g} Hz. To be pasted over the keys of the same "
+      "name.\n",
+      found.taps.size(), name(found.question.quantity), found.band.low_hz, found.band.high_hz);
+  if (found.sinusoid && found.sinusoid->amplitude_n_s_per_m) {
+    const SinusoidLaw& law = *found.sinusoid;
+    text += fmt::format(
+        "rendering:\n  sinusoid:\n    amplitude_n_s_per_m: {:.5g}\n    decay_per_s: {:.5g}  {}\n"
+        "    frequency_hz: {:.5g}  {}\n",
+        *law.amplitude_n_s_per_m, law.decay_per_s.value, comment(law.decay_per_s),
+        law.frequency_hz.value, comment(law.frequency_hz));
+  } else if (found.sinusoid) {
+    text += fmt::format(
+        "# sinusoid: {{amplitude_n_s_per_m: unknown, decay_per_s: {:.5g}, frequency_hz: {:.5g}}}\n",
+        found.sinusoid->decay_per_s.value, found.sinusoid->frequency_hz.value);
+  }
+  if (found.agreed.empty()) {
+    return text + "# no mode was found by both methods\n";
+  }
+  if (!found.model) {
+    return text + damping_of(found, "");
+  }
+  const core::Material& material = *found.model->material;
+  const auto& update = found.model->update;
+  return text +
+         fmt::format(
+             "materials:\n  {}:\n    youngs_modulus_pa: {:.5g}  {}\n    density_kg_per_m3: {:.9g}\n"
+             "    poissons_ratio: {:.9g}\n{}",
+             found.model->material_name,
+             update ? update->youngs_modulus_pa.value : material.youngs_modulus_pa,
+             update ? comment(update->youngs_modulus_pa) : "# the protocol's: no mode matched",
+             material.density_kg_per_m3, material.poissons_ratio, damping_of(found, "    "));
+}
+}  // namespace tapstudy::runner

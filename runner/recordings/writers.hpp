@@ -1,0 +1,30 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "analysis/figures/figure.hpp"
+#include "runner/recordings/tap_identification.hpp"
+namespace tapstudy::runner {
+// To stdout: taps, modes, damping, sinusoid, the model beside it, and remarks.
+void print(const TapIdentification& found);
+
+// What a protocol takes, with intervals as comments: of a protocol's stimulus its material, whole,
+// under `materials`, else `damping` alone; under `rendering` the sinusoid where its force is known.
+// Damping is Rayleigh's where it fits, else a ratio a mode: of the model's modes inside the band,
+// those that were not measured get a ratio by linear interpolation over frequency.
+std::string yaml_of(const TapIdentification& found);
+
+std::string json_of(const TapIdentification& found);
+
+struct NamedFigure {
+  std::string name;  // of its file
+  analysis::Figure figure;
+};
+// time.svg and spectrum.svg: measured and fitted, of the first taps; stabilisation.svg of the
+// first.
+std::vector<NamedFigure> figures_of(const TapIdentification& found);
+
+// identified.yaml, identified.json and the figures, into a new directory. Throws InvalidInput if it
+// exists already or cannot be written.
+void write_files(const std::string& directory, const TapIdentification& found);
+}  // namespace tapstudy::runner

@@ -1,0 +1,231 @@
+// `identify`: parameters planted in recordings of taps come back, in a form that a protocol takes.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "core/model/modes/damping.hpp"
+#include "protocols/read_protocol.hpp"
+#include "support/processes.hpp"
+#include "support/synthetic_taps.hpp"
+#include "support/texts.hpp"
+using namespace tapstudy;
+using Catch::Matchers::Contains;
+using Json = nlohmann::json;
+
+namespace {
+const std::string damping_line = "    damping: {alpha_per_s: 10, beta_s: 1.0e-5}\n";
+const std::string material =
+    "  board:\n    youngs_modulus_pa: 3.0e9\n    density_kg_per_m3: 700\n    poissons_ratio: "
+    "0.3\n" +
+    damping_line;
+const std::string shelf = R"(format: tapstudy/1
+title: A plate to identify
+finger: {mass_kg: 0.02, stiffness_n_per_m: 300, damping_n_s_per_m: 3}
+rendering:
+  rate_hz: 4000
+  penalty_stiffness_n_per_m: 3000
+  band_limit_hz: 350
+placement: {origin_m: [0, 0, 0], lateral_scale: 0.1}
+materials:
+)" + material + R"(plates:
+  shelf:
+    size_m: [0.4, 0.25, 0.012]
+    mesh: {order: 2, max_tet_volume_m3: 2.0e-5}
+    fixations:
+      - {region: side, side: left}
+tapping_points_m: {P1: [0.1, 0.05]}
+stimuli:
+  shelf: {label: shelf, plate: shelf, material: board, technique: fem}
+  other: {label: other, plate: shelf, material: board, technique: none}
+blocks:
+  - {name: main, task: identification, question: Which, stimuli: [shelf, other]}
+)";
+const std::vector<double> tap_times_s{0.5, 2.0, 3.4, 5.0, 6.1};
+const std::vector<double> speeds_m_s{0.2, 0.35, 0.3, 0.5, 0.25};
+constexpr double rate_hz = 4000.0;
+
+// The shelf's own frequencies, as the program computes them for 3 GPa.
+std::vector<double> frequencies_of_model(const std::string& protocol) {
+  const auto run = testing::tapstudy({"modes", protocol, "--stimulus", "shelf", "--json"});
+  REQUIRE(run.exit_code == 0);
+  return Json::parse(run.standard_output)["frequencies_hz"].get<std::vector<double>>();
+}
+
+std::string recording_text(const std::vector<testing::PlantedMode>& modes) {
+  core::Rng rng{12};
+  std::string text = "time_s,acceleration\n";
+  for (int n = 0; n < 30000; ++n) {
+    const double t_s = n / rate_hz;
+    double value = 0.002 * rng.normal();
+    for (std::size_t i = 0; i < tap_times_s.size(); ++i) {
+      if (t_s >= tap_times_s[i]) {
+        value += speeds_m_s[i] * testing::ringing(modes, t_s - tap_times_s[i]);
+      }
+    }
+    text += fmt::format("{:.6f},{:.7g}\n", t_s, value);
+  }
+  return text;
+}
+
+struct Case {
+  testing::TempDirectory directory;
+  std::string protocol = directory / "shelf.yaml";
+  std::string recording = directory / "taps.csv";
+  std::string out = directory / "identified";
+
+  // Modes of a material with this factor on Young's modulus, each damped by ratio_at.
+  template <class RatioAt>
+  void record(double modulus_factor, const RatioAt& ratio_at) {
+    testing::write(protocol, shelf);
+    std::vector<testing::PlantedMode> modes;
+    for (const double model_hz : frequencies_of_model(protocol)) {
+      const double frequency_hz = model_hz * std::sqrt(modulus_factor);
+      modes.push_back({{frequency_hz, ratio_at(frequency_hz)},
+                       1.0 / (1.0 + 0.3 * static_cast<double>(modes.size()))});
+    }
+    REQUIRE(modes.size() == 4);
+    testing::write(recording, recording_text(modes));
+  }
+  testing::ProgramResult identify(std::vector<std::string> more) const {
+    more.insert(more.begin(), {"identify", recording, "--out", out, "--band", "15:350"});
+    return testing::tapstudy(more);
+  }
+  std::string yaml() const { return testing::contents(out + "/identified.yaml"); }
+  Json json() const { return Json::parse(testing::contents(out + "/identified.json")); }
+};
+
+double rayleigh_ratio(double frequency_hz) {
+  const double omega = 2.0 * std::numbers::pi * frequency_hz;
+  return core::damping_ratios({6.0, 2e-5}, Eigen::ArrayXd::Constant(1, omega))[0];
+}
+
+// What follows a line "key:" of identified.yaml, up to the next line that is not indented.
+std::string section(const std::string& yaml, const std::string& key) {
+  const std::size_t begin = yaml.find('\n' + key + ":\n");
+  REQUIRE(begin != std::string::npos);
+  std::string text;
+  for (std::size_t at = yaml.find('\n', begin + 1) + 1; at < yaml.size() && yaml[at] == ' ';) {
+    const std::size_t end = yaml.find('\n', at) + 1;
+    text += yaml.substr(at, end - at);
+    at = end;
+  }
+  return text;
+}
+}  // namespace
+
+TEST_CASE("Young's modulus, damping and modes of a shelf are found in recordings of its taps",
+          "[identify][end_to_end][slow]") {
+  Case shelf_taps;
+  constexpr double factor = 1.08;
+  shelf_taps.record(factor, rayleigh_ratio);
+  testing::write(shelf_taps.directory / "speeds.csv", [] {
+    std::string text = "speed_m_s\n";
+    for (const double speed_m_s : speeds_m_s) {
+      text += fmt::format("{}\n", speed_m_s);
+    }
+    return text;
+  }());
+  const auto run = shelf_taps.identify({"--protocol", shelf_taps.protocol, "--stimulus", "shelf",
+                                        "--speeds", shelf_taps.directory / "speeds.csv"});
+  INFO(run.standard_output << run.standard_error);
+  REQUIRE(run.exit_code == 0);
+  CHECK_THAT(run.standard_output, Contains("5 taps") && Contains("Young's modulus") &&
+                                      Contains("stiffness of a fixation is not identified"));
+  const Json json = shelf_taps.json();
+  REQUIRE(json["taps"].size() == tap_times_s.size());
+  CHECK(std::ranges::count(json["modes"], "agreed",
+                           [](const Json& m) { return m["standing"].get<std::string>(); }) == 4);
+  const Json& modulus = json["model"]["youngs_modulus_pa"];
+  CHECK(modulus["value"].get<double>() == Approx(factor * 3.0e9).epsilon(1e-3));
+  CHECK(json["model"]["matched"].size() == 4);
+  CHECK(json["rayleigh"]["alpha_per_s"]["value"].get<double>() == Approx(6.0).epsilon(0.03));
+  CHECK(json["rayleigh"]["beta_s"]["value"].get<double>() == Approx(2e-5).epsilon(0.03));
+  for (const std::string name : {"time.svg", "spectrum.svg", "stabilisation.svg"}) {
+    CHECK_THAT(testing::contents(shelf_taps.out + "/" + name), Contains("</svg>"));
+  }
+
+  const std::string yaml = shelf_taps.yaml();
+  INFO(yaml);
+  std::string pasted = testing::replaced(shelf, material, section(yaml, "materials"));
+  pasted = testing::replaced(pasted, "rendering:\n", "rendering:\n" + section(yaml, "rendering"));
+  const protocols::Protocol protocol = protocols::parse_protocol(pasted, "pasted.yaml");
+  const protocols::Material& board = *protocol.materials.at("board");
+  CHECK(board.youngs_modulus_pa == Approx(modulus["value"].get<double>()).epsilon(1e-4));
+  CHECK(board.density_kg_per_m3 == 700.0);
+  CHECK(std::get<core::RayleighDamping>(board.damping).alpha_per_s == Approx(6.0).epsilon(0.03));
+  const core::SinusoidShape& sinusoid = protocol.rendering.sinusoid;
+  CHECK(sinusoid.decay_per_s ==
+        Approx(json["sinusoid"]["decay_per_s"]["value"].get<double>()).epsilon(1e-4));
+  // acceleration times the finger's mass
+  CHECK(
+      sinusoid.amplitude_n_s_per_m ==
+      Approx(0.02 * json["sinusoid"]["amplitude_per_speed"]["value"].get<double>()).epsilon(1e-4));
+}
+
+TEST_CASE("damping that Rayleigh's cannot be is given mode by mode",
+          "[identify][end_to_end][slow]") {
+  Case shelf_taps;
+  // falls and rises: highest in the middle
+  shelf_taps.record(1.0, [](double frequency_hz) {
+    return frequency_hz < 60.0 ? 0.01 : frequency_hz < 120.0 ? 0.04 : 0.012;
+  });
+  SECTION("for the modes of the model, where there is one") {
+    const auto run =
+        shelf_taps.identify({"--protocol", shelf_taps.protocol, "--stimulus", "shelf"});
+    REQUIRE(run.exit_code == 0);
+    CHECK_THAT(run.standard_output, Contains("does not fit"));
+    const std::string yaml = shelf_taps.yaml();
+    INFO(yaml);
+    const protocols::Protocol protocol = protocols::parse_protocol(
+        testing::replaced(shelf, material, section(yaml, "materials")), "pasted.yaml");
+    const auto damping =
+        std::get<core::ModalDamping>(protocol.materials.at("board")->damping).ratios;
+    REQUIRE(damping.size() == 4);
+    CHECK(damping[0] == Approx(0.01).epsilon(0.05));
+    CHECK(damping[1] == Approx(0.04).epsilon(0.05));
+    CHECK(damping[2] == Approx(0.012).epsilon(0.05));
+  }
+  SECTION("for the measured modes, without a protocol") {
+    REQUIRE(shelf_taps.identify({}).exit_code == 0);
+    const std::string yaml = shelf_taps.yaml();
+    INFO(yaml);
+    const std::size_t begin = yaml.find("\ndamping: ") + 1;
+    const std::string line = yaml.substr(begin, yaml.find('\n', begin) + 1 - begin);
+    const protocols::Protocol protocol = protocols::parse_protocol(
+        testing::replaced(shelf, damping_line, "    " + line), "pasted.yaml");
+    CHECK(std::get<core::ModalDamping>(protocol.materials.at("board")->damping).ratios[1] ==
+          Approx(0.04).epsilon(0.05));
+  }
+}
+
+TEST_CASE("what cannot be identified is refused in words, and leaves nothing behind",
+          "[identify][end_to_end]") {
+  Case noise;
+  core::Rng rng{1};
+  std::string text = "acceleration\n";
+  for (int n = 0; n < 5000; ++n) {
+    text += fmt::format("{:.5f}\n", rng.normal());
+  }
+  testing::write(noise.recording, text);
+  testing::write(noise.protocol, shelf);
+  const auto refused = [&](std::vector<std::string> more, const std::string& words) {
+    const auto run = noise.identify(std::move(more));
+    INFO(words);
+    CHECK(run.exit_code == 2);
+    CHECK_THAT(run.standard_error, Contains(words));
+    CHECK_FALSE(std::filesystem::exists(noise.out));
+  };
+  refused({}, "give the rate by --rate HZ");
+  refused({"--rate", "4000"}, "holds no tap");
+  refused({"--rate", "400"}, "--band: ends at 350 Hz");
+  refused({"--rate", "4000", "--stimulus", "shelf"}, "--protocol and --stimulus go together");
+  refused({"--rate", "4000", "--protocol", noise.protocol, "--stimulus", "no"}, "shelf");
+  std::filesystem::create_directory(noise.out);
+  const auto run = noise.identify({"--rate", "4000"});
+  CHECK(run.exit_code == 2);
+  CHECK_THAT(run.standard_error, Contains("exists already"));
+}

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <sstream>
 
 #include "analysis/statistics/csv_rows.hpp"
 #include "core/error.hpp"

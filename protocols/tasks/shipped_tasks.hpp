@@ -12,6 +12,8 @@ const Task& same_different();
 // Which of three or four differs? Triangle and tetrad tests.
 const Task& odd_one_out();
 const Task& abx();
+// Which of two to four is the sample?
+const Task& match_to_sample();
 // Which of two? All pairs of the stimuli.
 const Task& paired();
 // One stimulus, on a scale of steps.

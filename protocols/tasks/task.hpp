@@ -122,7 +122,7 @@ class Task {
   // Of right answers, by chance; 0 where none is right.
   virtual double guess_rate(const Block& block, const Protocol& protocol) const;
   // Of d', in analysis; empty: none.
-  virtual std::string_view decision_model() const { return {}; }
+  virtual std::string_view decision_model(const Block& /*block*/) const { return {}; }
   // nullopt if the task has no correct answer.
   virtual std::optional<bool> is_correct(const PlannedTrial& trial, const Block& block,
                                          const std::string& response) const = 0;

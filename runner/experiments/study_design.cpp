@@ -62,7 +62,7 @@ analysis::BlockDesign::Redraw redraw_of(const protocols::Protocol& protocol,
 
 void add_discrimination(const protocols::Block& block, const protocols::Protocol& protocol,
                         analysis::BlockDesign& part) {
-  part.decision_model = block.task->decision_model();
+  part.decision_model = block.task->decision_model(block);
   part.guess_rate = block.task->guess_rate(block, protocol);
   part.alternatives = block.alternatives > 0 ? block.alternatives : 2;
   part.steps = block.rating ? block.rating->steps : 0;

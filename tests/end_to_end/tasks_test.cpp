@@ -59,8 +59,11 @@ TEST_CASE("alternatives that are physically the same are told apart by chance in
   REQUIRE(testing::tapstudy({"simulate", testing::source("tests/data/same_alternatives.yaml"),
                              "--participants", "9", "--seed", "4", "--out", directory / "study"})
               .exit_code == 0);
-  const std::map<std::string, double> chance{
-      {"comparison", 0.5}, {"same_different", 0.5}, {"odd_one_out", 1.0 / 3.0}, {"abx", 0.5}};
+  const std::map<std::string, double> chance{{"comparison", 0.5},
+                                             {"same_different", 0.5},
+                                             {"odd_one_out", 1.0 / 3.0},
+                                             {"abx", 0.5},
+                                             {"match_to_sample", 1.0 / 3.0}};
   std::istringstream rows{
       sql(directory,
           "SELECT block, sum(is_correct), count(*) FROM current_response "
@@ -76,7 +79,7 @@ TEST_CASE("alternatives that are physically the same are told apart by chance in
     const double p = chance.at(block);
     CHECK(right == Approx(answers * p).margin(4.0 * std::sqrt(answers * p * (1.0 - p))));
   }
-  CHECK(blocks == 4);
+  CHECK(blocks == 5);
   const double first =
       std::stod(sql(directory,
                     "SELECT avg(response = stimulus) FROM current_response "
@@ -268,6 +271,12 @@ TEST_CASE("what cannot be compared is refused at its line", "[end_to_end]") {
        "values are of stimuli that have `vary`"},
       {"task: abx, question: \"Which is X?\", stimuli: [one, other]",
        "task: abx, question: \"Which is X?\", stimuli: [one]", "at least two stimuli"},
+      {"stimuli: [one, other, third], repetitions: 25", "stimuli: [one, other], repetitions: 25",
+       "among 3 alternatives needs at least as many stimuli"},
+      {"stimuli: [one, other, third], repetitions: 25",
+       "stimuli: [one, other, other], repetitions: 25", "other"},
+      {"stimuli: [one, other, third], repetitions: 25",
+       "stimuli: [one, other, third], alternatives: 5", "2 to 4"},
   }));
   const TempDirectory directory;
   const std::string file = directory / "study.yaml";

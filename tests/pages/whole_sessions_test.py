@@ -256,15 +256,16 @@ class WholeSession(unittest.TestCase):
 
     def test_every_task_is_answered_by_mouse_and_by_keyboard(self):
         self.start("tests/data/every_task.yaml", width=375, height=800)
-        alternatives = {"comparison": 2, "same_different": 2, "odd_one_out": 3, "abx": 3, "paired": 2, "with_modulus": 2}
+        alternatives = {"comparison": 2, "same_different": 2, "odd_one_out": 3, "abx": 3, "match_to_sample": 4,
+                        "paired": 2, "with_modulus": 2}
         shown = set()
-        for number in range(1, 23):
+        for number in range(1, 32):
             screen = self.next_trial(number)
             feels = browser.find_all(self.driver, ".feel")
             by_keys = number % 2 == 0
             for index in range(len(feels)):
                 (browser.feel_by_keyboard if by_keys else browser.feel_by_mouse)(self.driver, index)
-            if len(feels) not in shown or not feels or number > 20:
+            if len(feels) not in shown or not feels or number > 29:
                 self.check_screen(f"task_{number}")
                 shown.add(len(feels))
             if browser.has_number_field(self.driver):
@@ -280,6 +281,7 @@ class WholeSession(unittest.TestCase):
             "SELECT block, group_concat(DISTINCT response) FROM response JOIN trial USING (trial_id) GROUP BY block"))
         self.assertEqual(answers["same_different"], "same")
         self.assertEqual(answers["abx"], "A")
+        self.assertEqual(answers["match_to_sample"], "A")
         self.assertEqual(answers["magnitude"], "12.5,13.5")  # and its correction
         self.assertEqual(answers["with_modulus"], "12.5")
         self.assertEqual(answers["rating"], "1")

@@ -20,4 +20,6 @@ const Task& paired();
 const Task& rating();
 // One stimulus, by a number; beside one whose number is told, or by itself.
 const Task& magnitude();
+// One stimulus is moved along an axis until it feels equal to a standard.
+const Task& adjustment();
 }  // namespace tapstudy::protocols

@@ -4,8 +4,8 @@
 namespace tapstudy::protocols {
 const std::vector<const Task*>& tasks() {
   static const std::vector<const Task*> table{
-      &identification(), &choice(), &comparison(), &same_different(), &odd_one_out(), &abx(),
-      &paired(),         &rating(), &magnitude(),  &match_to_sample()};
+      &identification(), &choice(), &comparison(), &same_different(),  &odd_one_out(), &abx(),
+      &paired(),         &rating(), &magnitude(),  &match_to_sample(), &adjustment()};
   return table;
 }
 

@@ -19,9 +19,9 @@ struct Setting {
 
 struct ParticipantSettings {
   std::string participant_id;
-  std::vector<Setting> settings;     // in the order of the trials
-  double mean{};                     // the participant's point of subjective equality
-  double standard_deviation{};       // of the settings, with n - 1; NaN of one
+  std::vector<Setting> settings;       // in the order of the trials
+  double mean{};                       // the participant's point of subjective equality
+  double standard_deviation{};         // of the settings, with n - 1; NaN of one
   std::optional<double> error{};       // constant error; unset without a standard on the axis
   std::optional<double> ascending{};   // mean of the runs that started below the middle
   std::optional<double> descending{};  // of those that started above

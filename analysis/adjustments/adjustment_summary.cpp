@@ -25,21 +25,21 @@ std::vector<Estimate> estimates_of(const AdjustedAxis& axis, const AdjustmentRes
   static const std::optional<SignFlipTest> none;
   const bool is_log = axis.is_logarithmic;
   return {{"point of subjective equality", axis.name, results.equality, none},
-          {is_log ? "it, of the standard (constant error)" : "constant error",
+          {is_log ? "constant error (over the standard)" : "constant error",
            is_log ? "ratio" : axis.name, results.error, results.error_test},
           {is_log ? "standard deviation of logarithms" : "standard deviation",
            is_log ? "natural logarithm" : axis.name, results.deviation, none},
-          {is_log ? "ascending, of descending runs" : "ascending less descending runs",
+          {is_log ? "ascending over descending runs" : "ascending less descending runs",
            is_log ? "ratio" : axis.name, results.hysteresis, results.hysteresis_test}};
 }
 
 ReportTable estimates_table(const AdjustedAxis& axis, const AdjustmentResults& results) {
-  ReportTable table{
-      "over_participants",
-      "Over participants",
-      {column("estimate", "estimate"), column("in", "unit"), interval_column("mean (95 % CI by t)", "mean"),
-       interval_column("by bootstrap", "bootstrap_mean"), column("participants", "participants"),
-       column("p", "p")}};
+  ReportTable table{"over_participants",
+                    "Over participants",
+                    {column("estimate", "estimate"), column("in", "unit"),
+                     interval_column("mean (95 % CI by t)", "mean"),
+                     interval_column("by bootstrap", "bootstrap_mean"),
+                     column("participants", "participants"), column("p", "p")}};
   for (const Estimate& row : estimates_of(axis, results)) {
     if (!row.of) {
       continue;
@@ -59,7 +59,7 @@ ReportTable participants_table(const AdjustedAxis& axis, const AdjustmentResults
       fmt::format("Participants: {} that feels equal", axis.name),
       {column("participant", "participant_id"), column("settings", "settings"),
        column(axis.is_logarithmic ? "geometric mean" : "mean", "mean"),
-       column(axis.is_logarithmic ? "of the standard" : "constant error", "constant_error"),
+       column(axis.is_logarithmic ? "over the standard" : "constant error", "constant_error"),
        column(axis.is_logarithmic ? "SD of ln" : "SD", "standard_deviation"),
        column("ascending", "ascending"), column("descending", "descending")}};
   for (const ParticipantSettings& person : results.participants) {
@@ -92,9 +92,10 @@ std::vector<std::string> remarks_on(const BlockDesign& design, const AdjustmentR
   }
   const AdjustedAxis& axis = *design.adjusted;
   std::vector<std::string> remarks{fmt::format(
-      "Each participant's settings count as their {}; intervals over participants. The standard "
-      "deviation of a participant's settings estimates the difference threshold{}.",
-      axis.is_logarithmic ? "geometric mean, and ratios as one" : "mean",
+      "Each participant counts as the {} of the settings; intervals over participants{}. The "
+      "standard deviation of a participant's settings estimates the difference threshold{}.",
+      axis.is_logarithmic ? "geometric mean" : "mean",
+      axis.is_logarithmic ? ", whose means are geometric too" : "",
       axis.is_logarithmic ? ", as a share: it is of natural logarithms" : "")};
   remarks.push_back(axis.standard
                         ? fmt::format("The standard is {:.6g}.", *axis.standard)

@@ -227,6 +227,11 @@ TEST_CASE("who has no noise adjusts to what is equal, by feeling it", "[end_to_e
   const auto verified = testing::tapstudy({"verify", directory / "study"});
   INFO(verified.standard_output << verified.standard_error);
   CHECK(verified.exit_code == 0);
+  const auto report = testing::tapstudy({"report", directory / "study"});
+  INFO(report.standard_error);
+  CHECK(report.exit_code == 0);
+  CHECK_THAT(report.standard_output,
+             Contains("point of subjective equality") && Contains("ascending over descending"));
 }
 
 TEST_CASE("a setting does not depend on the name of the standard", "[end_to_end][slow]") {

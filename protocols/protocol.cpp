@@ -30,12 +30,21 @@ const Block& Protocol::block(const std::string& name) const {
 
 std::vector<std::string> all_presented(const Block& block) {
   std::vector<std::string> names = block.stimuli;
+  const auto add = [&](const std::string& name) {
+    if (!name.empty() && std::ranges::find(names, name) == names.end()) {
+      names.push_back(name);
+    }
+  };
   if (block.catch_trials) {
     for (const auto& [name, answer] : block.catch_trials->expected) {
-      if (std::ranges::find(names, name) == names.end()) {
-        names.push_back(name);
-      }
+      add(name);
     }
+  }
+  if (block.modulus) {
+    add(block.modulus->stimulus);
+  }
+  if (block.adjustment) {
+    add(block.adjustment->reference);
   }
   return names;
 }

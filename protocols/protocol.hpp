@@ -43,6 +43,7 @@ struct Stimulus {
   const core::Technique* technique{};
   std::map<std::string, std::string> factors;  // factor → level, for reports
   std::vector<AxisRange> vary{};               // each axis once
+  bool is_vary_refused{false};                 // while a file is read in which it was rejected
   // False while a file is read in which one of these names was rejected.
   bool is_complete() const { return plate && material && technique != nullptr; }
 };
@@ -149,6 +150,21 @@ struct Modulus {
   double number{};
 };
 
+// One stimulus is moved along an axis of its family until it feels equal to a standard: the same
+// stimulus at one value, or another stimulus.
+struct Adjustment {
+  std::string axis;
+  std::vector<double> values;  // that it can be set to, from low to high, as presented
+  Spacing spacing{Spacing::linear};
+  std::optional<double> standard;  // on the axis
+  std::string reference;           // the other stimulus, where there is no such value
+  // Runs start below or above it: the standard, or the middle of the values as they are spaced.
+  double middle() const {
+    constexpr double half = 0.5;
+    return standard.value_or(between(values.front(), values.back(), spacing, half));
+  }
+};
+
 struct Block {
   std::string name;
   const Task* task{};
@@ -163,6 +179,7 @@ struct Block {
   std::optional<RatingScale> rating;
   std::optional<ValuesOnAxis> on_axis;
   std::optional<Modulus> modulus;
+  std::optional<Adjustment> adjustment;
   int alternatives{};  // presented in a trial, where the task leaves a choice
   Presented presented{Presented::virtual_plates};
   std::optional<CatchTrials> catch_trials;
@@ -182,7 +199,7 @@ struct Block {
   int max_late_impact_repeats{0};  // of a trial with an impact just after a late tick
 };
 
-// Its stimuli, and those of its catch trials.
+// Its stimuli, those of its catch trials, and what is presented beside them.
 std::vector<std::string> all_presented(const Block& block);
 
 // A pre-registered hypothesis; reports treat only these as planned tests.

@@ -99,6 +99,7 @@ void read_stimuli(MapReader& top, Protocol& protocol) {
     check_factors(reader, stimulus, protocol);
     check_technique(reader, stimulus, protocol);
     stimulus.vary = read_vary(reader, stimulus, protocol);
+    stimulus.is_vary_refused = reader.has("vary") && stimulus.vary.empty();
     protocol.stimuli.push_back(stimulus);
   });
 }

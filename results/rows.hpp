@@ -111,12 +111,13 @@ struct CorrectionRow {
 inline constexpr const char* untraced_event = "untraced";
 struct EventRow {
   double t_s{};  // from the first tick of the trial
-  // contact, impact, late_impact, release, switch, untraced; of the masking noise, which is played
-  // from before the first tick: masking (it was), and of the whole trial masking_underrun,
+  // contact, impact, late_impact, release, switch, untraced; setting: what the participant set the
+  // axis of the last alternative to, first at 0 s where it started; of the masking noise, which is
+  // played from before the first tick: masking (it was), and of the whole trial masking_underrun,
   // masking_cut (only where there were any) and masking_lost (the card plays no more)
   std::string kind;
-  // impacts: speed m/s; switch: position of the alternative; masking: RMS in dB FS;
-  // masking_underrun, masking_cut: how many gaps, samples beyond full scale; else 0
+  // impacts: speed m/s; switch: position of the alternative; setting: the axis's unit; masking: RMS
+  // in dB FS; masking_underrun, masking_cut: how many gaps, samples beyond full scale; else 0
   double value{};
 };
 struct TraceChunk {
@@ -206,6 +207,7 @@ struct AnswerRow {
   std::optional<double> time_from_first_contact_s{};  // unset if the plate was never touched
   std::optional<double> mean_impact_speed_m_s{};      // unset without impacts
   double contact_s{};                                 // in contact, of the whole trial
+  std::optional<double> first_setting{};              // where an adjustment started
 };
 
 // How long and how often each alternative was felt, where there were several.

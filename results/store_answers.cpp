@@ -21,7 +21,9 @@ std::vector<AnswerRow> Store::answers() {
                 "      WHEN 'contact' THEN -t_s END), 0) + "
                 "    coalesce(sum((kind = 'contact') - (kind = 'release')), 0) * duration_s "
                 "    FROM event WHERE event.trial_id = trial.trial_id "
-                "    AND kind IN ('contact', 'release')) "
+                "    AND kind IN ('contact', 'release')), "
+                "  (SELECT value FROM event WHERE event.trial_id = trial.trial_id "
+                "    AND kind = 'setting' ORDER BY t_s, rowid LIMIT 1) "
                 "FROM trial JOIN session USING (session_id) JOIN current_response USING (trial_id) "
                 "JOIN tick_statistics USING (trial_id) JOIN participant USING (participant_id) "
                 "WHERE status = 'answered' ORDER BY mode, participant_index, number"};
@@ -52,6 +54,7 @@ std::vector<AnswerRow> Store::answers() {
     answer.time_from_first_contact_s = row.is_null(21) ? std::nullopt : std::optional{row.real(21)};
     answer.mean_impact_speed_m_s = row.is_null(22) ? std::nullopt : std::optional{row.real(22)};
     answer.contact_s = row.real(23);
+    answer.first_setting = row.is_null(24) ? std::nullopt : std::optional{row.real(24)};
   }
   return answers;
 }

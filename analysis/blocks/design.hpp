@@ -34,6 +34,13 @@ struct VariedAxis {
     return is_fraction ? difference / standard : difference;
   }
 };
+// The axis along which participants adjust a stimulus.
+struct AdjustedAxis {
+  std::string name;  // ends in its unit
+  bool is_logarithmic{};
+  double middle{};                 // runs start below or above it
+  std::optional<double> standard;  // unset: what it is adjusted to has no value on the axis
+};
 struct BlockDesign {
   std::string name;
   std::string task;
@@ -56,6 +63,7 @@ struct BlockDesign {
   std::string decision_model{};  // of d': a row of detection/decision_model.hpp; empty: none
   int alternatives{};            // presented in a trial
   double guess_rate{};           // of right answers
+  std::optional<AdjustedAxis> adjusted{};
   // Ratings: from 1 to this.
   int steps{};
   // False: answers without a protocol, which nobody says the order of.

@@ -115,6 +115,10 @@ std::vector<std::string> remarks_on(const BlockDesign& design,
         "d' by the decision model '{}' ({}), interval by that of the proportion; their mean with "
         "an interval by t over participants.",
         results.model->name, results.model->summary));
+  } else {
+    remarks.push_back(
+        fmt::format("There is no d': no decision model is known for {} with a chance of {:.3g}.",
+                    design.task, design.guess_rate));
   }
   for (const ParticipantDiscrimination& person : results.participants) {
     const std::string remark = person.sensitivity ? remark_on(*person.sensitivity) : "";

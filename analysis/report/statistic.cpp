@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "analysis/adjustments/adjustment_summary.hpp"
 #include "analysis/choice/choice_summary.hpp"
 #include "analysis/discrimination/discrimination_summary.hpp"
 #include "analysis/identification/identification_summary.hpp"
@@ -16,7 +17,7 @@ const std::vector<Statistic>& statistics() {
       {"confusion", summarise_identification}, {"choices", summarise_choice},
       {"psychometric", summarise_thresholds},  {"discrimination", summarise_discrimination},
       {"paired", summarise_preferences},       {"ratings", summarise_ratings},
-      {"magnitudes", summarise_magnitudes}};
+      {"magnitudes", summarise_magnitudes},    {"adjustments", summarise_adjustments}};
   return table;
 }
 

@@ -32,7 +32,7 @@ struct LoopSettings {
   Nanoseconds max_heartbeat_gap{0};  // a longer gap is a fault; 0: no heartbeat
 };
 
-inline constexpr std::size_t max_alternatives = 26;
+inline constexpr std::size_t max_alternatives = 128;  // traces have a byte for it
 
 // wait → read → render → limit → write → record, once per period, for one trial. The renderers are
 // the trial's alternatives; a switch request takes effect in the first tick without contact, so

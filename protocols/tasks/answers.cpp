@@ -34,10 +34,20 @@ std::optional<std::string> number_above_0(const std::string& text) {
              : std::nullopt;
 }
 
-std::optional<std::string> option_at(const std::string& text, const std::vector<Option>& options) {
+// From 1.
+std::optional<std::size_t> place_in(const std::string& text, std::size_t count) {
   const auto place = number_in<std::size_t>(text);
-  return place && *place >= 1 && *place <= options.size() ? std::optional{options[*place - 1].name}
-                                                          : std::nullopt;
+  return place && *place >= 1 && *place <= count ? place : std::nullopt;
+}
+
+std::optional<std::string> option_at(const std::string& text, const std::vector<Option>& options) {
+  const auto place = place_in(text, options.size());
+  return place ? std::optional{options[*place - 1].name} : std::nullopt;
+}
+
+std::optional<std::string> setting_at(const std::string& text, std::size_t settings) {
+  const auto place = place_in(text, settings);
+  return place ? std::optional{std::to_string(*place)} : std::nullopt;
 }
 }  // namespace
 
@@ -48,6 +58,8 @@ std::optional<std::string> answer_in(const std::string& text, const Answers& ans
       return option_at(word, answers.options);
     case AnswerKind::number:
       return number_above_0(word);
+    case AnswerKind::setting:
+      return setting_at(word, answers.settings);
   }
   return std::nullopt;
 }
@@ -59,6 +71,8 @@ std::string expected_answer(const Answers& answers) {
     case AnswerKind::number:
       return fmt::format("a number above 0, such as 12 or 0.5, of at most {} characters",
                          max_characters);
+    case AnswerKind::setting:
+      return fmt::format("a number from 1 to {}", answers.settings);
   }
   return {};
 }

@@ -8,7 +8,8 @@ namespace tapstudy::protocols {
 // How an answer is given.
 //   option  one of the options
 //   number  any number above 0
-enum class AnswerKind { option, number };
+//   setting where the last alternative was set to: the place of its setting, from 1
+enum class AnswerKind { option, number, setting };
 
 // The answers that a trial takes. Each is given as a text, the same at the terminal, from a page
 // and in a correction.
@@ -16,12 +17,13 @@ struct Answers {
   AnswerKind kind{AnswerKind::option};
   std::vector<Option> options{};
   std::optional<std::size_t> judged{};  // the alternative that all answers are about
+  std::size_t settings{};               // how many there are
   std::optional<double> modulus{};      // the number of the first alternative, as people are told
 };
 
 // The answer that a text gives: an option's name where the text is its place, from 1; a number
-// above 0 in decimal notation, at most 20 characters, in its shortest form. Spaces around it do not
-// matter. nullopt: the text is no answer.
+// above 0 in decimal notation, at most 20 characters, in its shortest form; a setting's place.
+// Spaces around it do not matter. nullopt: the text is no answer.
 std::optional<std::string> answer_in(const std::string& text, const Answers& answers);
 // What answer_in takes: "a number from 1 to 4".
 std::string expected_answer(const Answers& answers);

@@ -13,7 +13,7 @@ constexpr const char* comparison_key = "the greatest comparison";
 class ComparisonTask final : public DiscriminationTask {
  public:
   std::string_view name() const override { return "comparison"; }
-  std::string_view decision_model() const override { return "forced_choice"; }
+  std::string_view decision_model(const Block& /*block*/) const override { return "forced_choice"; }
 
   void read(MapReader& reader, const Protocol& protocol, Block& block) const override {
     DiscriminationTask::read(reader, protocol, block);

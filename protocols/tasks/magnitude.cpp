@@ -3,52 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/error.hpp"
-#include "protocols/axes/presented_stimulus.hpp"
 #include "protocols/ordering.hpp"
 #include "protocols/read_sections.hpp"
 #include "protocols/tasks/preference_task.hpp"
+#include "protocols/tasks/read_axis_values.hpp"
 #include "protocols/tasks/shipped_tasks.hpp"
 #include "protocols/yaml/yaml_reader.hpp"
 namespace tapstudy::protocols {
 namespace {
 constexpr double largest = 1e15;
-
-std::vector<std::string> axes_of(const Protocol& protocol, const std::string& stimulus) {
-  std::vector<std::string> names;
-  const auto found = std::ranges::find(protocol.stimuli, stimulus, &Stimulus::name);
-  if (found != protocol.stimuli.end()) {
-    for (const AxisRange& range : found->vary) {
-      names.emplace_back(range.axis->name);
-    }
-  }
-  return names;
-}
-
-// As they are presented; a table has its own values.
-std::vector<double> presented(MapReader& reader, const Protocol& protocol, const Block& block,
-                              const std::string& axis, const std::vector<double>& asked) {
-  std::vector<double> values;
-  try {
-    for (const std::string& name : block.stimuli) {
-      if (!protocol.stimulus(name).is_complete()) {
-        return {};
-      }
-      values.clear();
-      for (const double value : asked) {
-        values.push_back(
-            presented_values(protocol, protocol.stimulus(name), {{axis, value}}).at(axis));
-      }
-    }
-  } catch (const core::InvalidInput& error) {
-    reader.reject("values", error.what());
-    return {};
-  }
-  if (std::ranges::adjacent_find(values, std::greater_equal{}) != values.end()) {
-    reader.reject("values", "are not in increasing order, each once, as they are presented");
-  }
-  return values;
-}
 
 std::optional<ValuesOnAxis> read_values(MapReader& reader, const Protocol& protocol,
                                         const Block& block) {
@@ -60,9 +23,7 @@ std::optional<ValuesOnAxis> read_values(MapReader& reader, const Protocol& proto
   }
   const std::vector<std::string> axes =
       block.stimuli.empty() ? std::vector<std::string>{} : axes_of(protocol, block.stimuli.front());
-  const std::string axis =
-      reader.word("axis", "axis of the stimuli", axes,
-                  axes.size() == 1 ? std::optional{axes.front()} : std::nullopt);
+  const std::string axis = read_axis(reader, axes);
   const std::vector<double> asked = reader.number_list("values", {-largest, largest});
   if (axes.empty()) {
     reader.reject("stimuli", "values are of stimuli that have `vary`");
@@ -70,7 +31,7 @@ std::optional<ValuesOnAxis> read_values(MapReader& reader, const Protocol& proto
   if (std::ranges::find(axes, axis) == axes.end() || asked.empty()) {
     return std::nullopt;
   }
-  return ValuesOnAxis{axis, presented(reader, protocol, block, axis, asked)};
+  return ValuesOnAxis{axis, presented_on_axis(reader, "values", protocol, block, {axis, asked})};
 }
 
 // How strong (hard, rough ...) is it, as a number? (Stevens 1957) With a modulus A, which has a

@@ -9,7 +9,7 @@ namespace {
 class OddOneOut final : public DiscriminationTask {
  public:
   std::string_view name() const override { return "odd_one_out"; }
-  std::string_view decision_model() const override { return "oddity"; }
+  std::string_view decision_model(const Block& /*block*/) const override { return "oddity"; }
   void read(MapReader& reader, const Protocol& protocol, Block& block) const override {
     block.alternatives = reader.integer("alternatives", 3, 4, 3);
     DiscriminationTask::read(reader, protocol, block);

@@ -14,7 +14,7 @@ bool are_different(const PlannedTrial& trial) {
 class SameDifferent final : public DiscriminationTask {
  public:
   std::string_view name() const override { return "same_different"; }
-  std::string_view decision_model() const override {
+  std::string_view decision_model(const Block& /*block*/) const override {
     return "same_different_independent_observation";
   }
   Answers answers(const Block& block, const Protocol& /*protocol*/) const override {

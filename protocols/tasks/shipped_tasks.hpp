@@ -12,10 +12,14 @@ const Task& same_different();
 // Which of three or four differs? Triangle and tetrad tests.
 const Task& odd_one_out();
 const Task& abx();
+// Which of two to four is the sample?
+const Task& match_to_sample();
 // Which of two? All pairs of the stimuli.
 const Task& paired();
 // One stimulus, on a scale of steps.
 const Task& rating();
 // One stimulus, by a number; beside one whose number is told, or by itself.
 const Task& magnitude();
+// One stimulus is moved along an axis until it feels equal to a standard.
+const Task& adjustment();
 }  // namespace tapstudy::protocols

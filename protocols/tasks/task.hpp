@@ -36,6 +36,13 @@ struct PlannedTrial {
   bool is_catch{false};
 };
 
+// What the last alternative of a trial can be set to while it is felt, and where it starts.
+inline constexpr std::size_t max_settings = 100;
+struct Settings {
+  std::vector<AxisValues> values;
+  std::size_t start{};
+};
+
 // Participant and block for which an order is drawn.
 struct Draw {
   std::uint64_t participant_seed{};
@@ -75,7 +82,11 @@ class SimulatedTouch {
   // How strongly an alternative is felt, in decibels above the threshold: the mean over what is
   // felt of it, blurred by the internal noise.
   virtual double level_db(std::size_t alternative) = 0;
-  virtual core::Rng& rng() = 0;  // of the hand
+  // Moves the last alternative by so many settings; what was felt of it is of the past. False: it
+  // cannot be moved so far.
+  virtual bool adjust(int settings) = 0;
+  virtual std::size_t setting() const = 0;  // where it is, for the answer
+  virtual core::Rng& rng() = 0;             // of the hand
 };
 
 // A psychophysical task: what is presented, which answers are allowed, which is correct, what is
@@ -115,6 +126,11 @@ class Task {
     return answer;
   }
   virtual std::vector<std::string> alternative_labels(const PlannedTrial& trial) const = 0;
+  // Where the participant adjusts the last alternative; nullopt: all are as they are.
+  virtual std::optional<Settings> settings(const PlannedTrial& /*trial*/,
+                                           const Block& /*block*/) const {
+    return std::nullopt;
+  }
   // What an answer tells the procedure that varies the comparison: one of its outcomes; nullopt if
   // nothing, because no comparison was presented beside a standard.
   virtual std::optional<std::size_t> outcome(const PlannedTrial& trial, const Block& block,
@@ -122,7 +138,7 @@ class Task {
   // Of right answers, by chance; 0 where none is right.
   virtual double guess_rate(const Block& block, const Protocol& protocol) const;
   // Of d', in analysis; empty: none.
-  virtual std::string_view decision_model() const { return {}; }
+  virtual std::string_view decision_model(const Block& /*block*/) const { return {}; }
   // nullopt if the task has no correct answer.
   virtual std::optional<bool> is_correct(const PlannedTrial& trial, const Block& block,
                                          const std::string& response) const = 0;
@@ -139,6 +155,10 @@ class Task {
   virtual std::string simulated_answer(const Block& block, const Simulation& simulation,
                                        SimulatedTouch& touch) const = 0;
 };
+
+// What is rendered in a trial, by position in stores and traces: its alternatives, the last of them
+// once for each of its settings, if it has some.
+std::vector<Alternative> rendered(const PlannedTrial& trial, const Block& block);
 
 // All there are. nullptr if there is none of that name.
 const std::vector<const Task*>& tasks();

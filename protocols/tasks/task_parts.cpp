@@ -10,6 +10,18 @@ std::optional<std::size_t> Task::outcome(const PlannedTrial& trial, const Block&
   return is_right ? std::optional<std::size_t>{*is_right ? 1 : 0} : std::nullopt;
 }
 
+std::vector<Alternative> rendered(const PlannedTrial& trial, const Block& block) {
+  std::vector<Alternative> all = trial.alternatives;
+  if (const auto settings = trial.task->settings(trial, block)) {
+    const Alternative adjusted = all.back();
+    all.pop_back();
+    for (const AxisValues& values : settings->values) {
+      all.push_back({adjusted.stimulus, values, adjusted.is_comparison});
+    }
+  }
+  return all;
+}
+
 double Task::guess_rate(const Block& block, const Protocol& protocol) const {
   return has_correct_answer() ? 1.0 / static_cast<double>(answers(block, protocol).options.size())
                               : 0.0;

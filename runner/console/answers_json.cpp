@@ -5,13 +5,14 @@
 namespace tapstudy::runner {
 nlohmann::ordered_json answers_json(const protocols::Answers& answers) {
   using Json = nlohmann::ordered_json;
-  constexpr std::array kinds{"option", "number"};
+  constexpr std::array kinds{"option", "number", "setting"};
   Json labels = Json::array();
   for (const protocols::Option& option : answers.options) {
     labels.push_back(option.label);
   }
   return {{"kind", kinds.at(static_cast<std::size_t>(answers.kind))},
           {"options", labels},
+          {"settings", answers.settings},
           {"modulus", answers.modulus ? Json(*answers.modulus) : Json{}}};
 }
 }  // namespace tapstudy::runner

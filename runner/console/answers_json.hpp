@@ -3,6 +3,6 @@
 
 #include "protocols/tasks/answers.hpp"
 namespace tapstudy::runner {
-// {"kind", "options": [label], "modulus"}, for both pages.
+// {"kind", "options": [label], "settings", "modulus"}, for both pages.
 nlohmann::ordered_json answers_json(const protocols::Answers& answers);
 }  // namespace tapstudy::runner

@@ -75,17 +75,20 @@ void BrowserParticipant::get_ready(const TrialPrompt& prompt) {
   context_.move_hand();
 }
 
-std::int64_t BrowserParticipant::show_trial(const TrialPrompt& prompt, std::size_t current) {
-  return show({.kind = ScreenKind::trial,
-               .trial = TrialScreen{prompt, current, notice_, correction_state_},
-               .scene = context_.scene(current)});
+std::int64_t BrowserParticipant::show_trial(const TrialPrompt& prompt,
+                                            const Exploration& exploration) {
+  const std::size_t current = exploration.current();
+  return show(
+      {.kind = ScreenKind::trial,
+       .trial = TrialScreen{prompt, current, exploration.setting(), notice_, correction_state_},
+       .scene = context_.scene(current)});
 }
 
 std::optional<std::string> BrowserParticipant::perform(const TrialPrompt& prompt,
                                                        Exploration& exploration) {
   constexpr double poll_s = 0.01;
   std::size_t current = exploration.current();
-  std::int64_t number = show_trial(prompt, current);
+  std::int64_t number = show_trial(prompt, exploration);
   seen_at_ = std::chrono::steady_clock::now();
   while (exploration.is_running() && !stop_was_asked()) {
     pause_if_left();
@@ -104,7 +107,7 @@ std::optional<std::string> BrowserParticipant::perform(const TrialPrompt& prompt
     if (input || is_switched || follow_correction()) {
       notice_.reset();
       current = exploration.current();
-      number = show_trial(prompt, current);
+      number = show_trial(prompt, exploration);
     }
     exploration.pass_time(poll_s);
   }
@@ -115,6 +118,8 @@ void BrowserParticipant::act_on(const ScreenInput& input, const TrialPrompt& pro
                                 Exploration& exploration) {
   if (input.action == ScreenAction::correct) {
     correction_ = prompt.previous->correct(input.text);
+  } else if (input.action == ScreenAction::adjust) {
+    exploration.adjust(input.value);
   } else {
     exploration.switch_to(input.value);
   }

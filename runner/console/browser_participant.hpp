@@ -40,7 +40,7 @@ class BrowserParticipant final : public Participant {
 
  private:
   std::int64_t show(Screen screen);
-  std::int64_t show_trial(const TrialPrompt& prompt, std::size_t current);
+  std::int64_t show_trial(const TrialPrompt& prompt, const Exploration& exploration);
   // Until it is answered; throws Stopped if the session is to stop.
   ScreenInput answer_to(Screen screen);
   void tell(Message message);

@@ -47,6 +47,7 @@ Json json_of(const TrialScreen& trial) {
       {"correction", corrections.at(static_cast<std::size_t>(trial.correction))},
       {"alternatives", trial.prompt.alternative_labels},
       {"current", trial.current},
+      {"setting", trial.setting},
       {"notice", trial.notice ? json_of(*trial.notice) : Json{}}};
 }
 
@@ -112,6 +113,13 @@ Participant::FormAnswers form_answers(const Json& json) {
   return answers;
 }
 
+// A setting is answered as it is, not as it is on its way to be.
+bool is_answer(const std::string& text, const TrialScreen& trial) {
+  const auto answer = answer_in(text, trial.prompt.answers);
+  return answer && (trial.prompt.answers.kind != protocols::AnswerKind::setting ||
+                    *answer == std::to_string(trial.setting + 1));
+}
+
 // A message that only says what happened is read and dismissed.
 bool can_be_dismissed(const Screen& screen) {
   return screen.kind == ScreenKind::message && screen.message != Message::operator_is_needed &&
@@ -126,8 +134,10 @@ bool accepts(const Screen& screen, const ScreenInput& input) {
              screen.kind == ScreenKind::feedback || can_be_dismissed(screen);
     case ScreenAction::switch_to:
       return screen.trial && input.value < screen.trial->prompt.alternative_labels.size();
+    case ScreenAction::adjust:
+      return screen.trial && input.value < screen.trial->prompt.answers.settings;
     case ScreenAction::answer:
-      return screen.trial && answer_in(input.text, screen.trial->prompt.answers);
+      return screen.trial && is_answer(input.text, *screen.trial);
     case ScreenAction::correct:
       return screen.trial && screen.trial->prompt.previous &&
              answer_in(input.text, screen.trial->prompt.previous->answers);
@@ -141,9 +151,10 @@ bool accepts(const Screen& screen, const ScreenInput& input) {
 }
 
 ScreenInput parse_input(const std::string& text, std::int64_t& screen) {
-  static const std::array<std::pair<std::string, ScreenAction>, 6> actions{
+  static const std::array<std::pair<std::string, ScreenAction>, 7> actions{
       {{"go_on", ScreenAction::go_on},
        {"switch", ScreenAction::switch_to},
+       {"adjust", ScreenAction::adjust},
        {"answer", ScreenAction::answer},
        {"correct", ScreenAction::correct},
        {"confidence", ScreenAction::confidence},

@@ -34,6 +34,7 @@ enum class CorrectionState { none, stored, failed };
 struct TrialScreen {
   TrialPrompt prompt;
   std::size_t current{};  // the alternative that is rendered
+  std::size_t setting{};  // of the last alternative, where it has some
   std::optional<TooEarly> notice;
   CorrectionState correction{CorrectionState::none};
 };
@@ -62,7 +63,7 @@ struct Screen {
 };
 
 // What the participant does with it.
-enum class ScreenAction { go_on, switch_to, answer, correct, confidence, form };
+enum class ScreenAction { go_on, switch_to, adjust, answer, correct, confidence, form };
 struct ScreenInput {
   ScreenAction action{};
   std::size_t value{};

@@ -62,10 +62,15 @@ analysis::BlockDesign::Redraw redraw_of(const protocols::Protocol& protocol,
 
 void add_discrimination(const protocols::Block& block, const protocols::Protocol& protocol,
                         analysis::BlockDesign& part) {
-  part.decision_model = block.task->decision_model();
+  part.decision_model = block.task->decision_model(block);
   part.guess_rate = block.task->guess_rate(block, protocol);
   part.alternatives = block.alternatives > 0 ? block.alternatives : 2;
   part.steps = block.rating ? block.rating->steps : 0;
+  if (block.adjustment) {
+    const protocols::Adjustment& of = *block.adjustment;
+    part.adjusted = analysis::AdjustedAxis{of.axis, of.spacing == protocols::Spacing::log,
+                                           of.middle(), of.standard};
+  }
   if (block.on_axis) {
     part.axis = analysis::VariedAxis{block.on_axis->axis, 0.0, false, false};
   }

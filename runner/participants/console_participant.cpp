@@ -4,42 +4,16 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cctype>
 #include <chrono>
 #include <thread>
 
 #include "results/store_error.hpp"
+#include "runner/participants/typed_answers.hpp"
 #include "runner/terminal/say.hpp"
 #include "runner/terminal/stop_signal.hpp"
 #include "runner/terminal/whole_number.hpp"
 namespace tapstudy::runner {
 namespace {
-std::string upper_case_without_spaces(const std::string& line) {
-  std::string word;
-  for (const char c : line) {
-    if (std::isspace(static_cast<unsigned char>(c)) == 0) {
-      word += static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
-    }
-  }
-  return word;
-}
-
-// "= B".
-std::optional<std::string> option_after_equals(const std::string& word,
-                                               const std::vector<protocols::Option>& options) {
-  const auto option = word.starts_with('=')
-                          ? std::ranges::find(options, word.substr(1), &protocols::Option::label)
-                          : options.end();
-  return option == options.end() ? std::nullopt : std::optional{option->name};
-}
-
-// Where people see labels to switch among, they answer by them.
-std::optional<std::string> answer_typed(const std::string& line, const TrialPrompt& prompt) {
-  return prompt.answers_name_alternatives()
-             ? option_after_equals(upper_case_without_spaces(line), prompt.answers.options)
-             : answer_in(line, prompt.answers);
-}
-
 std::optional<std::size_t> number_in(const std::string& word, std::size_t most) {
   const auto number = whole_number(word, 1, static_cast<int>(most));
   return number ? std::optional{static_cast<std::size_t>(*number - 1)} : std::nullopt;
@@ -157,7 +131,7 @@ void ConsoleParticipant::get_ready(const TrialPrompt& prompt) {
   }
   if (!prompt.alternative_labels.empty()) {
     say("  {}: feel that one.{}\n", fmt::join(prompt.alternative_labels, ", "),
-        are_named ? fmt::format("   = {}: choose it.", options.front().label) : "");
+        how_to_answer(prompt));
   }
   if (prompt.answers.modulus) {
     say("  {} is {}\n", prompt.alternative_labels.front(), *prompt.answers.modulus);
@@ -230,7 +204,7 @@ void ConsoleParticipant::let_script_wait(const TrialPrompt& prompt, std::size_t 
 std::optional<std::string> ConsoleParticipant::answer_by_itself(const TrialPrompt& prompt,
                                                                 Exploration& exploration) {
   while (const auto line = next_line(prompt, exploration)) {
-    if (auto answer = answer_typed(*line, prompt)) {
+    if (auto answer = answer_typed(*line, prompt, exploration)) {
       let_script_wait(prompt, 0, exploration);
       return answer;
     }
@@ -243,7 +217,7 @@ std::optional<std::string> ConsoleParticipant::answer_among_alternatives(const T
                                                                          Exploration& exploration) {
   const std::vector<std::string>& labels = prompt.alternative_labels;
   while (const auto line = next_line(prompt, exploration)) {
-    if (auto answer = answer_typed(*line, prompt)) {
+    if (auto answer = answer_typed(*line, prompt, exploration)) {
       return answer;
     }
     if (const auto alternative = index_of(upper_case_without_spaces(*line), labels)) {
@@ -252,11 +226,35 @@ std::optional<std::string> ConsoleParticipant::answer_among_alternatives(const T
       let_script_wait(prompt, *alternative, exploration);
       continue;
     }
+    if (adjusts(*line, prompt, exploration)) {
+      continue;
+    }
     say("  please type {} to feel one, {}, or quit\n", fmt::join(labels, ", "),
-        prompt.answers_name_alternatives() ? "= and a label to choose it"
-                                           : expected_answer(prompt.answers) + " to answer");
+        expected_among_alternatives(prompt));
   }
   return std::nullopt;
+}
+
+// As far as there are settings.
+bool ConsoleParticipant::adjusts(const std::string& line, const TrialPrompt& prompt,
+                                 Exploration& exploration) const {
+  const auto moved = settings_moved(line);
+  if (prompt.answers.settings == 0 || !moved) {
+    return false;
+  }
+  const auto last = static_cast<std::ptrdiff_t>(prompt.answers.settings) - 1;
+  const auto from = static_cast<std::ptrdiff_t>(exploration.setting());
+  const std::ptrdiff_t to = std::clamp<std::ptrdiff_t>(from + *moved, 0, last);
+  const std::string& label = prompt.alternative_labels.back();
+  if (to == from) {
+    say("  {} goes no further that way\n", label);
+    return true;
+  }
+  exploration.adjust(static_cast<std::size_t>(to));
+  say("  {} is changed (takes effect once the finger is off the plate){}\n", label,
+      to == from + *moved ? "" : fmt::format("; {} goes no further that way", label));
+  let_script_wait(prompt, prompt.alternative_labels.size() - 1, exploration);
+  return true;
 }
 
 void ConsoleParticipant::repeats(const TrialPrompt& prompt) {

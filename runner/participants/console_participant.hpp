@@ -6,7 +6,7 @@
 namespace tapstudy::runner {
 // A person at the terminal. Questions go to stderr, answers come from the input: an answer as
 // protocols::answer_in takes it; in trials with several alternatives, a label to feel that one and
-// "= label" to choose it.
+// "= label" to choose it; where the last of them is set, "+" and "-" move it and "=" answers.
 // "quit" or end of input stops the session; a line that begins with a colon is the operator's.
 class ConsoleParticipant final : public Participant {
  public:
@@ -42,6 +42,8 @@ class ConsoleParticipant final : public Participant {
   std::optional<std::string> next_line(const TrialPrompt& prompt, Exploration& exploration);
   // "correct 2": whether the word was that.
   bool corrects(const std::string& line, const TrialPrompt& prompt, Exploration& exploration) const;
+  // "++", "-": whether the line was that.
+  bool adjusts(const std::string& line, const TrialPrompt& prompt, Exploration& exploration) const;
   std::optional<std::string> answer_by_itself(const TrialPrompt& prompt, Exploration& exploration);
   std::optional<std::string> answer_among_alternatives(const TrialPrompt& prompt,
                                                        Exploration& exploration);

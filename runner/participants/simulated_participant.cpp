@@ -42,8 +42,11 @@ protocols::Simulation drawn_person(protocols::Simulation simulation, std::uint64
 // One trial: what was felt of each alternative.
 class SimulatedParticipant::Touch final : public protocols::SimulatedTouch {
  public:
-  Touch(SimulatedParticipant& self, std::size_t alternatives, Exploration& exploration)
-      : self_{self}, exploration_{exploration}, felt_(alternatives) {}
+  Touch(SimulatedParticipant& self, const TrialPrompt& prompt, Exploration& exploration)
+      : self_{self},
+        exploration_{exploration},
+        settings_{prompt.answers.settings},
+        felt_(std::max<std::size_t>(1, prompt.alternative_labels.size())) {}
   void visit(std::size_t alternative) override {
     if (felt_.size() > 1) {
       exploration_.switch_to(alternative);
@@ -70,11 +73,25 @@ class SimulatedParticipant::Touch final : public protocols::SimulatedTouch {
   double level_db(std::size_t alternative) override {
     return self_.observer_.level_db(percept(alternative));
   }
+  bool adjust(int settings) override {
+    const auto wanted = static_cast<std::ptrdiff_t>(exploration_.setting()) + settings;
+    if (wanted < 0 || wanted >= static_cast<std::ptrdiff_t>(settings_)) {
+      return false;
+    }
+    exploration_.adjust(static_cast<std::size_t>(wanted));
+    felt_.back().clear();
+    if (noise_.size() == felt_.size()) {
+      noise_.back() = self_.observer_.noise();
+    }
+    return true;
+  }
+  std::size_t setting() const override { return exploration_.setting(); }
   core::Rng& rng() override { return self_.hand_rng_; }
 
  private:
   SimulatedParticipant& self_;
   Exploration& exploration_;
+  std::size_t settings_;
   // Noise is drawn with the first question: whoever asks for none leaves the stream as it was.
   SimulatedObserver::Percept percept(std::size_t alternative) {
     while (noise_.size() < felt_.size()) {
@@ -161,8 +178,7 @@ void SimulatedParticipant::timed_out(const TrialPrompt& prompt, bool is_presente
 
 std::optional<std::string> SimulatedParticipant::perform(const TrialPrompt& prompt,
                                                          Exploration& exploration) {
-  const std::size_t alternatives = std::max<std::size_t>(1, prompt.alternative_labels.size());
-  Touch touch{*this, alternatives, exploration};
+  Touch touch{*this, prompt, exploration};
   return prompt.block->task->simulated_answer(*prompt.block, person_, touch);
 }
 }  // namespace tapstudy::runner

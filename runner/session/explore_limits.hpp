@@ -17,6 +17,8 @@ class LimitedExploration final : public Exploration {
       : inner_{inner}, limits_{limits} {}
   void switch_to(std::size_t alternative) override { inner_.switch_to(alternative); }
   std::size_t current() const override { return inner_.current(); }
+  void adjust(std::size_t setting) override { inner_.adjust(setting); }
+  std::size_t setting() const override { return inner_.setting(); }
   void pass_time(double seconds) override {
     const double left_s = limits_.max_seconds ? *limits_.max_seconds - time_s() : seconds;
     inner_.pass_time(std::clamp(seconds, 0.0, std::max(0.0, left_s)));

@@ -11,6 +11,8 @@ class OperatedExploration final : public Exploration {
   OperatedExploration(Exploration& inner, Operator& by) : inner_{inner}, operator_{by} {}
   void switch_to(std::size_t alternative) override { inner_.switch_to(alternative); }
   std::size_t current() const override { return inner_.current(); }
+  void adjust(std::size_t setting) override { inner_.adjust(setting); }
+  std::size_t setting() const override { return inner_.setting(); }
   void pass_time(double seconds) override { inner_.pass_time(seconds); }
   // Called continually while anybody waits, so the operator's switches are made here.
   bool is_running() const override {

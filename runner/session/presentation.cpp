@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "runner/session/adjusted_exploration.hpp"
 #include "runner/session/explore_limits.hpp"
 #include "runner/session/operated_exploration.hpp"
 #include "runner/stimuli/trial_stimuli.hpp"
@@ -56,11 +57,19 @@ TrialStimuli stimuli_of(const protocols::PlannedTrial& trial, bool is_of_real_pl
     return parts.real_plates.mount(trial.alternatives.front().stimulus);
   }
   std::vector<protocols::PresentedStimulus> presented;
-  for (const protocols::Alternative& alternative : trial.alternatives) {
+  const protocols::Block& block = parts.protocol.block(trial.block);
+  for (const protocols::Alternative& alternative : rendered(trial, block)) {
     presented.push_back(protocols::stimulus_at(
         parts.protocol, parts.protocol.stimulus(alternative.stimulus), alternative.values));
   }
   return build_trial_stimuli(parts.protocol, presented, parts.models);
+}
+
+// Of events at the same time those of the trace come first.
+void add_in_time(const std::vector<results::EventRow>& more,
+                 std::vector<results::EventRow>& events) {
+  events.insert(events.end(), more.begin(), more.end());
+  std::ranges::stable_sort(events, {}, &results::EventRow::t_s);
 }
 }  // namespace
 
@@ -76,13 +85,16 @@ Presentation present(const TrialInView& trial, const SessionParts& parts) {
   Presentation presentation;
   parts.states.enter(SessionState::exploring, trial.trial.number);
   parts.by.trial_begins(trial);
+  std::vector<results::EventRow> settings;
   presentation.result = loop.run(stimuli.alternatives, [&](Exploration& exploration) {
+    AdjustedExploration adjusted{exploration, trial.trial, *trial.prompt.block, settings};
     try {
-      ask(trial, exploration, parts, presentation);
+      ask(trial, adjusted, parts, presentation);
     } catch (...) {
       presentation.failure = std::current_exception();
     }
   });
+  add_in_time(settings, presentation.result.trace.events);
   parts.by.trial_is_over(presentation.request);
   parts.by.force_is(loop.is_force_off() ? ForceState::off : ForceState::unknown);
   if (presentation.result.loop.stop == device::StopOutcome::unconfirmed) {

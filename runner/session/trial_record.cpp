@@ -37,11 +37,12 @@ results::TrialRecord trial_record(std::int64_t session_id, const protocols::Plan
                   trial.is_catch,
                   block.presented == protocols::Presented::real_plates};
   const std::vector<std::string> labels = trial.task->alternative_labels(trial);
-  for (std::size_t i = 0; i < trial.alternatives.size(); ++i) {
-    const protocols::Alternative& alternative = trial.alternatives[i];
-    record.alternatives.push_back({static_cast<int>(i), labels.empty() ? std::string{} : labels[i],
-                                   alternative.stimulus, alternative.values,
-                                   alternative.is_comparison});
+  const std::vector<protocols::Alternative> alternatives = rendered(trial, block);
+  for (std::size_t i = 0; i < alternatives.size(); ++i) {
+    const std::string label =
+        labels.empty() ? std::string{} : labels[std::min(i, labels.size() - 1)];
+    record.alternatives.push_back({static_cast<int>(i), label, alternatives[i].stimulus,
+                                   alternatives[i].values, alternatives[i].is_comparison});
   }
   if (answer) {
     record.response = response_row(trial, block, *answer, result.trace.events);

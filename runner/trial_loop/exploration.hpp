@@ -14,7 +14,10 @@ class Exploration {
   // Whether the alternatives are rendered right now: an answer given in a stall is none.
   virtual bool is_rendering() const { return is_running(); }
   virtual double time_s() const = 0;  // since the trial began
-  // How often the finger has come down on an alternative.
+  // Sets the last alternative, where it has settings, to one of them, from 0, and switches to it.
+  virtual void adjust(std::size_t /*setting*/) {}
+  virtual std::size_t setting() const { return 0; }
+  // How often the finger has come down on an alternative, as it is set.
   virtual int contacts(std::size_t alternative) const = 0;
 };
 using Explore = std::function<void(Exploration&)>;

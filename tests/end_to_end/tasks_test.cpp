@@ -59,8 +59,11 @@ TEST_CASE("alternatives that are physically the same are told apart by chance in
   REQUIRE(testing::tapstudy({"simulate", testing::source("tests/data/same_alternatives.yaml"),
                              "--participants", "9", "--seed", "4", "--out", directory / "study"})
               .exit_code == 0);
-  const std::map<std::string, double> chance{
-      {"comparison", 0.5}, {"same_different", 0.5}, {"odd_one_out", 1.0 / 3.0}, {"abx", 0.5}};
+  const std::map<std::string, double> chance{{"comparison", 0.5},
+                                             {"same_different", 0.5},
+                                             {"odd_one_out", 1.0 / 3.0},
+                                             {"abx", 0.5},
+                                             {"match_to_sample", 1.0 / 3.0}};
   std::istringstream rows{
       sql(directory,
           "SELECT block, sum(is_correct), count(*) FROM current_response "
@@ -76,7 +79,7 @@ TEST_CASE("alternatives that are physically the same are told apart by chance in
     const double p = chance.at(block);
     CHECK(right == Approx(answers * p).margin(4.0 * std::sqrt(answers * p * (1.0 - p))));
   }
-  CHECK(blocks == 4);
+  CHECK(blocks == 5);
   const double first =
       std::stod(sql(directory,
                     "SELECT avg(response = stimulus) FROM current_response "
@@ -165,6 +168,117 @@ TEST_CASE("what is no magnitude is refused in words and asked for again", "[end_
   }
   CHECK(refusals == 7);
   CHECK_THAT(said, Contains("A is 10") && Contains("please type correct and a number above 0"));
+}
+
+namespace {
+// The study of every task with these blocks instead.
+std::string study_of(const TempDirectory& directory, const std::string& blocks,
+                     const std::string& observer = "noise_db: 3, reality: sinusoid") {
+  const std::string file = directory / "study.yaml";
+  std::string text = testing::contents(testing::source("tests/data/every_task.yaml"));
+  const auto first = text.find("blocks:");
+  text.replace(first, text.find("simulation:") - first, "blocks:\n" + blocks);
+  text = testing::replaced(text, "{from: 3, to: 6}", "{from: 0.06, to: 6}");
+  testing::write(
+      file, testing::replaced(text, "noise_db: 3, reality: sinusoid, reference: one", observer));
+  return file;
+}
+std::string adjustment(const std::string& name, const std::string& to, int repetitions) {
+  return fmt::format(
+      "  - {{name: {}, task: adjustment, question: Equal, stimuli: [family], settings: {{from: "
+      "0.6, to: 6, count: 11, spacing: log}}, {}, repetitions: {}, explore: {{min_contacts: "
+      "0}}}}\n",
+      name, to, repetitions);
+}
+}  // namespace
+
+TEST_CASE("who has no noise adjusts to what is equal, by feeling it", "[end_to_end][slow]") {
+  const TempDirectory directory;
+  std::string file = study_of(directory,
+                              adjustment("low", "standard: 1.19715738898", 4) +
+                                  adjustment("high", "standard: 3.78574406688", 4),
+                              "noise_db: 0, reality: sinusoid");
+  testing::write(file,
+                 testing::replaced(testing::contents(file), "taps_per_visit: 1, visits: 1",
+                                   "taps_per_visit: 6, visits: 1, scatter_m: 0, speed_spread: 0"));
+  const auto result = testing::tapstudy(
+      {"simulate", file, "--participants", "6", "--seed", "4", "--out", directory / "study"});
+  INFO(result.standard_error);
+  REQUIRE(result.exit_code == 0);
+  // taps differ all the same; of a guess one in eleven would be the standard
+  for (const char* const block : {"low", "high"}) {
+    const std::string of_block = fmt::format(
+        " FROM current_response JOIN trial USING (trial_id) "
+        "WHERE block = '{}'",
+        block);
+    CAPTURE(block, sql(directory, "SELECT response, count(*)" + of_block + " GROUP BY 1"));
+    CHECK(std::stod(sql(directory, "SELECT count(*)" + of_block)) == 24);
+    CHECK(std::stod(sql(directory,
+                        "SELECT avg(abs(response - (SELECT value FROM axis_value WHERE "
+                        "axis_value.trial_id = trial.trial_id AND position = 0)) < "
+                        "1e-6)" +
+                            of_block)) > 0.7);
+  }
+  // the answer is the last setting
+  CHECK(sql(directory,
+            "SELECT max(abs(response - (SELECT value FROM event WHERE event.trial_id = "
+            "trial.trial_id AND kind = 'setting' ORDER BY rowid DESC LIMIT 1))) "
+            "FROM trial JOIN current_response USING (trial_id)") == "0.0\n");
+  const auto verified = testing::tapstudy({"verify", directory / "study"});
+  INFO(verified.standard_output << verified.standard_error);
+  CHECK(verified.exit_code == 0);
+  const auto report = testing::tapstudy({"report", directory / "study"});
+  INFO(report.standard_error);
+  CHECK(report.exit_code == 0);
+  CHECK_THAT(report.standard_output,
+             Contains("point of subjective equality") && Contains("ascending over descending"));
+}
+
+TEST_CASE("a setting does not depend on the name of the standard", "[end_to_end][slow]") {
+  const TempDirectory directory;
+  std::string file = study_of(directory, adjustment("first", "reference: one", 20) +
+                                             adjustment("second", "reference: other", 20));
+  testing::write(
+      file, testing::replaced(testing::contents(file), "technique: none", "technique: sinusoid"));
+  REQUIRE(testing::tapstudy({"simulate", file, "--participants", "9", "--seed", "4", "--out",
+                             directory / "study"})
+              .exit_code == 0);
+  std::istringstream rows{
+      sql(directory,
+          "SELECT count(*), avg(m), avg(m * m) FROM (SELECT block, log(response) AS m "
+          "FROM current_response JOIN trial USING (trial_id)) GROUP BY block")};
+  std::vector<double> means;
+  double variance = 0.0;
+  double count = 0.0;
+  double mean = 0.0;
+  double square = 0.0;
+  while (rows >> count >> mean >> square) {
+    CHECK(count == 9 * 20);
+    means.push_back(mean);
+    variance += (square - mean * mean) / count;
+  }
+  REQUIRE(means.size() == 2);
+  CHECK(variance > 0.0);
+  CHECK(means[0] == Approx(means[1]).margin(4.0 * std::sqrt(variance)));
+}
+
+TEST_CASE("at the terminal + and - move the stimulus, = answers as it is set, each is stored",
+          "[end_to_end][threads]") {
+  const TempDirectory directory;
+  const std::string file = study_of(directory, adjustment("strength", "standard: 3", 1));
+  const auto result =
+      session(directory, file, "a\nb\n" + std::string(30, '-') + "\n-\n7\n+++\n-\n+-\n = \n");
+  INFO(result.standard_error);
+  CHECK(result.exit_code == 0);
+  // from the lowest of 11 values over a decade three up and one down
+  const double expected = 0.6 * std::pow(10.0, 2.0 * 0.1);
+  CHECK(std::stod(sql(directory, "SELECT response FROM current_response")) ==
+        Approx(expected).epsilon(1e-6));
+  CHECK(sql(directory, "SELECT count(*) FROM event WHERE kind = 'setting'") == "4\n");
+  CHECK(sql(directory, "SELECT count(*), count(DISTINCT label) FROM alternative") == "12 2\n");
+  CHECK_THAT(result.standard_error, Contains("B goes no further that way") &&
+                                        Contains("+ or - to change B, = when it is set"));
+  CHECK(testing::tapstudy({"verify", directory / "study"}).exit_code == 0);
 }
 
 TEST_CASE("a staircase in a session goes down after right answers and up after a wrong one",
@@ -268,6 +382,12 @@ TEST_CASE("what cannot be compared is refused at its line", "[end_to_end]") {
        "values are of stimuli that have `vary`"},
       {"task: abx, question: \"Which is X?\", stimuli: [one, other]",
        "task: abx, question: \"Which is X?\", stimuli: [one]", "at least two stimuli"},
+      {"stimuli: [one, other, third], repetitions: 25", "stimuli: [one, other], repetitions: 25",
+       "among 3 alternatives needs at least as many stimuli"},
+      {"stimuli: [one, other, third], repetitions: 25",
+       "stimuli: [one, other, other], repetitions: 25", "other"},
+      {"stimuli: [one, other, third], repetitions: 25",
+       "stimuli: [one, other, third], alternatives: 5", "2 to 4"},
   }));
   const TempDirectory directory;
   const std::string file = directory / "study.yaml";

@@ -211,6 +211,11 @@ def has_number_field(driver):
     return bool(find_all(driver, "#number-answer"))
 
 
+def move_by_mouse(driver, way):
+    """One setting up or down."""
+    find_all(driver, "#screen .move")[2 if way > 0 else 1].click()
+
+
 def answer_number_by_mouse(driver, number):
     """Enters the number of a trial's answer and confirms it."""
     field = find(driver, "#number-answer")

@@ -254,21 +254,39 @@ class WholeSession(unittest.TestCase):
         self.answer_until_accepted(
             browser.answer_number_by_keyboard if by_keys else browser.answer_number_by_mouse, "12.5")
 
+    def adjust(self, by_keys):
+        """To the highest of 13 settings, and one back."""
+        up = lambda: browser.press(self.driver, browser.Keys.ARROW_UP) if by_keys else browser.move_by_mouse(self.driver, 1)
+        for _ in range(13):
+            up()
+        browser.wait_for_status(self.driver, "B goes no further that way")
+        browser.wait_until(self.driver, "B to be felt", lambda: browser.current_screen(self.driver)["felt"] == 1)
+        if by_keys:
+            browser.press(self.driver, "-")
+        else:
+            browser.move_by_mouse(self.driver, -1)
+        confirm = lambda driver, _: browser.press(driver, browser.Keys.ENTER) if by_keys else browser.find(driver, "#confirm").click()
+        self.answer_until_accepted(confirm, None)
+
     def test_every_task_is_answered_by_mouse_and_by_keyboard(self):
         self.start("tests/data/every_task.yaml", width=375, height=800)
-        alternatives = {"comparison": 2, "same_different": 2, "odd_one_out": 3, "abx": 3, "paired": 2, "with_modulus": 2}
+        alternatives = {"comparison": 2, "same_different": 2, "odd_one_out": 3, "abx": 3, "match_to_sample": 4, "adjustment": 14,
+                        "paired": 2, "with_modulus": 2}
         shown = set()
-        for number in range(1, 23):
+        for number in range(1, 34):
             screen = self.next_trial(number)
             feels = browser.find_all(self.driver, ".feel")
             by_keys = number % 2 == 0
             for index in range(len(feels)):
                 (browser.feel_by_keyboard if by_keys else browser.feel_by_mouse)(self.driver, index)
-            if len(feels) not in shown or not feels or number > 20:
+            if len(feels) not in shown or not feels or number > 31:
                 self.check_screen(f"task_{number}")
                 shown.add(len(feels))
             if browser.has_number_field(self.driver):
                 self.give_number(number, by_keys)
+            elif browser.find_all(self.driver, ".move"):
+                self.check_screen(f"adjustment_{number}")
+                self.adjust(by_keys)
             else:
                 self.answer_until_accepted(browser.answer_by_keyboard if by_keys else browser.answer_by_mouse, 0)
         self.finish()
@@ -280,6 +298,8 @@ class WholeSession(unittest.TestCase):
             "SELECT block, group_concat(DISTINCT response) FROM response JOIN trial USING (trial_id) GROUP BY block"))
         self.assertEqual(answers["same_different"], "same")
         self.assertEqual(answers["abx"], "A")
+        self.assertEqual(answers["match_to_sample"], "A")
+        self.assertEqual(answers["adjustment"], "5.75")
         self.assertEqual(answers["magnitude"], "12.5,13.5")  # and its correction
         self.assertEqual(answers["with_modulus"], "12.5")
         self.assertEqual(answers["rating"], "1")

@@ -64,3 +64,15 @@ TEST_CASE("an option is read from its place and told by its label", "[protocols]
     CHECK_FALSE(answer_in(text, answers));
   }
 }
+
+TEST_CASE("a setting is answered by its place, and nothing else is one", "[protocols][tasks]") {
+  Answers answers{AnswerKind::setting};
+  answers.settings = 12;
+  CHECK(answer_in("1", answers) == "1");
+  CHECK(answer_in(" 012 ", answers) == "12");
+  for (const char* const text : {"", "0", "13", "-1", "+1", "1.5", "=", "A"}) {
+    CAPTURE(text);
+    CHECK_FALSE(answer_in(text, answers));
+  }
+  CHECK(protocols::expected_answer(answers) == "a number from 1 to 12");
+}

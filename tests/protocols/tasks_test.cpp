@@ -63,7 +63,8 @@ TEST_CASE("exactly one answer is right where one is, and it names what differs",
        {{"SS", "same"}, {"CC", "same"}, {"SC", "different"}, {"CS", "different"}}},
       {"odd_one_out",
        {{"CSS", "A"}, {"SCS", "B"}, {"SSC", "C"}, {"SCC", "A"}, {"CSC", "B"}, {"CCS", "C"}}},
-      {"abx", {{"SCS", "A"}, {"SCC", "B"}, {"CSS", "B"}, {"CSC", "A"}}}};
+      {"abx", {{"SCS", "A"}, {"SCC", "B"}, {"CSS", "B"}, {"CSC", "A"}}},
+      {"match_to_sample", {{"CSSC", "A"}, {"SCSC", "B"}, {"SSCC", "C"}}}};
   for (const protocols::PlannedTrial& trial : make_schedule(protocol, 3, 0)) {
     CAPTURE(trial.block, layout_of(trial));
     if (expected.contains(trial.block)) {
@@ -71,6 +72,28 @@ TEST_CASE("exactly one answer is right where one is, and it names what differs",
     } else {
       CHECK(right_of(trial).empty());
     }
+  }
+}
+
+TEST_CASE("every stimulus is the sample equally often with its match at every place",
+          "[protocols][tasks]") {
+  const protocols::Protocol protocol = every_task();
+  std::map<std::pair<std::string, std::string>, int> seen;
+  for (const protocols::PlannedTrial& trial : make_schedule(protocol, 7, 0)) {
+    if (trial.block == "match_to_sample") {
+      std::set<std::string> stimuli;
+      for (std::size_t i = 0; i + 1 < trial.alternatives.size(); ++i) {
+        stimuli.insert(trial.alternatives[i].stimulus);
+        CHECK((trial.alternatives[i].stimulus == trial.alternatives.back().stimulus) ==
+              trial.alternatives[i].is_comparison);
+      }
+      CHECK(stimuli == std::set<std::string>{"one", "other", "third"});
+      ++seen[{trial.alternatives.back().stimulus, layout_of(trial)}];
+    }
+  }
+  CHECK(seen.size() == 9);
+  for (const auto& [sample, count] : seen) {
+    CHECK(count == 25);
   }
 }
 

@@ -1,5 +1,6 @@
-// What a trial's answers are given by: cards to pick one of the options, or a field for a number.
-// The text that is sent is what would be typed at the terminal: an option's place, or the number.
+// What a trial's answers are given by: cards to pick one of the options, a field for a number, or
+// buttons that change an alternative. The text that is sent is an option's place, the number, or the
+// setting's place.
 
 import { el } from "./dom.js";
 import { newGroupName, pickedValue, pickNumber, radioCard } from "./radio_cards.js";
@@ -21,7 +22,7 @@ export const cardOf = ({ group, option, label }) => radioCard({
 });
 
 // isBesideAlternatives: the options stand there already.
-function optionField({ options }, isBesideAlternatives) {
+function optionField({ options }, { isBesideAlternatives }) {
   return {
     body: isBesideAlternatives ? [] : [optionCards(options)],
     answerIn: pickedValue,
@@ -55,10 +56,58 @@ function numberField() {
   };
 }
 
-const makers = { option: optionField, number: numberField };
+const farSteps = 5;
+const moves = [
+  { steps: -farSteps, name: "setting_far_down", key: "PageDown" }, { steps: -1, name: "setting_down", key: "ArrowDown" },
+  { steps: 1, name: "setting_up", key: "ArrowUp" }, { steps: farSteps, name: "setting_far_up", key: "PageUp" },
+];
 
-// {body, answerIn(element), missing, press(element, key)}
-export const answerField = (answers, isBesideAlternatives) => makers[answers.kind](answers, isBesideAlternatives);
+// Buttons that move an alternative among its settings. Where it stands is not shown: it is to be felt.
+function settingField({ settings }, { label, setting, adjust, say }) {
+  let shown = setting;
+  let wanted = setting;
+  let isSending = false;
+  async function sendWanted() {
+    if (isSending) return;
+    isSending = true;
+    let sent;
+    do {
+      sent = wanted;
+      if (!await adjust(sent)) wanted = sent = shown;
+    } while (wanted !== sent);
+    isSending = false;
+  }
+  function move(steps) {
+    const to = Math.min(settings - 1, Math.max(0, wanted + steps));
+    if (to === wanted) return say(word("no_further", { label }));
+    wanted = to;
+    return sendWanted();
+  }
+  const buttons = moves.map(({ steps, name }) =>
+    el("button", { type: "button", className: "move", onclick: () => move(steps), "aria-label": word(`${name}_spoken`, { label }) },
+      word(name, { label })));
+  return {
+    body: [el("div", { className: "moves" }, ...buttons)],
+    answerIn: () => (wanted === shown ? String(shown + 1) : null),
+    missing: word("please_wait"),
+    press: (element, key) => {
+      const wantedMove = moves.find((one) => one.key === key || (one.name === "setting_up" && key === "+") ||
+        (one.name === "setting_down" && key === "-"));
+      if (wantedMove) move(wantedMove.steps);
+      return Boolean(wantedMove);
+    },
+    update: (now) => {
+      shown = now;
+      if (!isSending) wanted = now;
+    },
+  };
+}
+
+const makers = { option: optionField, number: numberField, setting: settingField };
+
+// {body, answerIn(element), missing, press(element, key)}, of a setting also update(setting).
+// trial: {isBesideAlternatives, label, setting, adjust, say}
+export const answerField = (answers, trial) => makers[answers.kind](answers, trial);
 
 // Another answer instead of one that was given, sent by a button.
 export function otherAnswer({ kind, options }, say, send) {

@@ -55,11 +55,14 @@ async function actBeside(action, value, failed) {
     let verdict = await post(first);
     if (!verdict.accepted && shown === before && screen.number !== first.screen) verdict = await post(input());
     if (!verdict.accepted && shown === before) say(word("not_accepted", { why: verdict.why ?? "" }));
+    return verdict.accepted;
   } catch {
     say(word(failed));
+    return false;
   }
 }
 const feel = (alternative) => actBeside("switch", alternative, "not_switched");
+const adjust = (setting) => actBeside("adjust", setting, "not_switched");
 const correct = (text) => actBeside("correct", text, "correction_failed");
 
 function identity({ kind, number, trial, form }) {
@@ -84,7 +87,7 @@ function settle() {
 
 function mount(key) {
   shown?.leave?.();
-  shown = (makers[screen.kind] ?? textScreen)(screen, { send, feel, correct, say });
+  shown = (makers[screen.kind] ?? textScreen)(screen, { send, feel, adjust, correct, say });
   shown.key = key;
   byId("screen").replaceChildren(shown.element);
   window.scrollTo(0, 0);

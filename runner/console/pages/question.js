@@ -13,6 +13,7 @@ export function question({ title, className, body, say, send, answerIn = pickedV
     confirm);
 
   const follow = () => confirm.setAttribute("aria-disabled", String(answerIn(element) === null));
+  follow();
   element.addEventListener("change", follow);
   element.addEventListener("input", follow);
   function submit() {

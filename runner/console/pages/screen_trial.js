@@ -18,11 +18,13 @@ function alternativeCard({ label, index, option, group, feel }) {
   return el("div", { className: "alternative" }, button, choose);
 }
 
-function hint(labels, { options, modulus }) {
+const hints = { option: "feel_hint", number: "feel_hint_number", setting: "feel_hint_setting" };
+
+function hint(labels, { kind, modulus }) {
   const keys = labels.map((label, index) => letterOf(label, index).toUpperCase()).join(", ");
   const told = modulus === null ? "" : ` ${word("modulus", { label: labels[0], number: modulus })}`;
-  return el("p", { className: "hint" }, word(options.length > 0 ? "feel_hint" : "feel_hint_number"), told, " ",
-    el("span", { className: "keys" }, word("feel_keys", { keys })));
+  return el("p", { className: "hint" }, word(hints[kind], { label: labels.at(-1) }), told, " ",
+    el("span", { className: "keys" }, word("feel_keys", { keys }), kind === "setting" ? ` ${word("setting_keys", { label: labels.at(-1) })}` : ""));
 }
 
 function alternativeCards(labels, options, feel) {
@@ -46,12 +48,14 @@ function lastAnswer(answers, say, correct) {
     ...otherAnswer(answers, say, correct));
 }
 
-export function trialScreen({ trial }, { send, feel, correct, say }) {
+export function trialScreen({ trial }, { send, feel, adjust, correct, say }) {
   const labels = trial.alternatives ?? [];
   let current = trial.current;
   const feelOther = (index) => { if (index !== current) feel(index); };
   const { answers } = trial;
-  const field = answerField(answers, labels.includes(answers.options[0]));
+  const field = answerField(answers, {
+    isBesideAlternatives: labels.includes(answers.options[0]), label: labels.at(-1), setting: trial.setting, adjust, say,
+  });
   const asked = question({
     title: trial.question,
     className: "trial",
@@ -77,6 +81,7 @@ export function trialScreen({ trial }, { send, feel, correct, say }) {
   });
   function update(screen) {
     current = screen.trial.current;
+    field.update?.(screen.trial.setting);
     if (!screen.trial.correction) return showCurrent(asked.element, current);
     asked.element.querySelector(".previous")?.removeAttribute("open");
     say(word(`correction_${screen.trial.correction}`));

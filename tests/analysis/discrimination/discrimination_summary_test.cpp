@@ -78,6 +78,17 @@ TEST_CASE("d' is that of the decision model, its mean has R's interval",
   CHECK(json["all"][0]["mean_d_prime_high"].get<double>() == Approx(r[2]).epsilon(1e-9));
 }
 
+TEST_CASE("where no decision model is known there is no d', and the report says so",
+          "[analysis][discrimination]") {
+  std::vector<results::AnswerRow> answers;
+  add(answers, "a", 18, 30);
+  add(answers, "b", 25, 30);
+  const auto report = reported(statistic, design_of("", 3), answers);
+  CHECK(report.json["participants"][0]["d_prime"].is_null());
+  CHECK(report.json["participants"][0]["p"].get<double>() > 0.0);
+  CHECK_THAT(report.text, Catch::Matchers::Contains("There is no d'"));
+}
+
 TEST_CASE("the upper tail of Student's t is R's", "[analysis][discrimination]") {
   for (const double t : {-2.5, 0.0, 1.3, 6.0}) {
     const auto r = r_numbers(fmt::format("out(pt({}, 7, lower.tail = FALSE))", t));

@@ -11,7 +11,7 @@ namespace {
 Screen trial_screen() {
   TrialPrompt prompt;
   prompt.answers.options = {{"mdf", "MDF"}, {"acrylic", "acrylic"}};
-  return {.kind = ScreenKind::trial, .trial = TrialScreen{prompt, 0, {}}};
+  return {.kind = ScreenKind::trial, .trial = TrialScreen{prompt, 0, 0, {}}};
 }
 const ScreenInput first{ScreenAction::answer, 0, {}, "1"};
 const ScreenInput second{ScreenAction::answer, 0, {}, "2"};
@@ -82,6 +82,20 @@ TEST_CASE("a screen takes what can be done with it and nothing else", "[runner][
   }
   CHECK_FALSE(accepts({.kind = ScreenKind::message, .message = Message::operator_is_needed},
                       {ScreenAction::go_on, 0}));
+}
+
+TEST_CASE("a setting is taken as one of those there are, and answered only as it is",
+          "[runner][console]") {
+  TrialPrompt prompt;
+  prompt.alternative_labels = {"A", "B"};
+  prompt.answers = {protocols::AnswerKind::setting};
+  prompt.answers.settings = 5;
+  const Screen trial{.kind = ScreenKind::trial, .trial = TrialScreen{prompt, 1, 3, {}}};
+  CHECK(accepts(trial, {ScreenAction::adjust, 4}));
+  CHECK_FALSE(accepts(trial, {ScreenAction::adjust, 5}));
+  CHECK(accepts(trial, {ScreenAction::answer, 0, {}, "4"}));
+  CHECK_FALSE(accepts(trial, {ScreenAction::answer, 0, {}, "3"}));
+  CHECK_FALSE(accepts(trial_screen(), {ScreenAction::adjust, 0}));
 }
 
 TEST_CASE("a form is taken when all that it requires is answered, and nothing else is",

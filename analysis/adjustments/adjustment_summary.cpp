@@ -1,0 +1,162 @@
+#include "analysis/adjustments/adjustment_summary.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "analysis/adjustments/adjustment_results.hpp"
+#include "analysis/tables/tabular_summary.hpp"
+namespace tapstudy::analysis {
+namespace {
+Cell mean_cell(const MeanOfSettings& of) {
+  return of.interval ? interval(of.mean, *of.interval)
+                     : Cell{rounded(of.mean), {Value{of.mean}, Value{}, Value{}}};
+}
+
+// What is estimated over participants, a row each.
+struct Estimate {
+  std::string name;
+  std::string unit;
+  const std::optional<MeanOfSettings>& of;
+  const std::optional<SignFlipTest>& test;
+};
+
+std::vector<Estimate> estimates_of(const AdjustedAxis& axis, const AdjustmentResults& results) {
+  static const std::optional<SignFlipTest> none;
+  const bool is_log = axis.is_logarithmic;
+  return {{"point of subjective equality", axis.name, results.equality, none},
+          {is_log ? "constant error (over the standard)" : "constant error",
+           is_log ? "ratio" : axis.name, results.error, results.error_test},
+          {is_log ? "standard deviation of logarithms" : "standard deviation",
+           is_log ? "natural logarithm" : axis.name, results.deviation, none},
+          {is_log ? "ascending over descending runs" : "ascending less descending runs",
+           is_log ? "ratio" : axis.name, results.hysteresis, results.hysteresis_test}};
+}
+
+ReportTable estimates_table(const AdjustedAxis& axis, const AdjustmentResults& results) {
+  ReportTable table{"over_participants",
+                    "Over participants",
+                    {column("estimate", "estimate"), column("in", "unit"),
+                     interval_column("mean (95 % CI by t)", "mean"),
+                     interval_column("by bootstrap", "bootstrap_mean"),
+                     column("participants", "participants"), column("p", "p")}};
+  for (const Estimate& row : estimates_of(axis, results)) {
+    if (!row.of) {
+      continue;
+    }
+    const auto& drawn = row.of->bootstrap;
+    table.rows.push_back({word(row.name), word(row.unit), mean_cell(*row.of),
+                          drawn ? interval(row.of->mean, *drawn) : nothing(table.columns[3]),
+                          count(row.of->participants),
+                          probability(row.test ? std::optional{row.test->p} : std::nullopt)});
+  }
+  return table;
+}
+
+ReportTable participants_table(const AdjustedAxis& axis, const AdjustmentResults& results) {
+  ReportTable table{
+      "participants",
+      fmt::format("Participants: {} that feels equal", axis.name),
+      {column("participant", "participant_id"), column("settings", "settings"),
+       column(axis.is_logarithmic ? "geometric mean" : "mean", "mean"),
+       column(axis.is_logarithmic ? "over the standard" : "constant error", "constant_error"),
+       column(axis.is_logarithmic ? "SD of ln" : "SD", "standard_deviation"),
+       column("ascending", "ascending"), column("descending", "descending")}};
+  for (const ParticipantSettings& person : results.participants) {
+    table.rows.push_back(
+        {word(person.participant_id), count(static_cast<std::int64_t>(person.settings.size())),
+         number(person.mean), number(person.error), number(person.standard_deviation),
+         number(person.ascending), number(person.descending)});
+  }
+  return table;
+}
+
+ReportTable settings_table(const AdjustmentResults& results) {
+  ReportTable table{"settings",
+                    "All settings",
+                    {column("participant", "participant_id"), column("start", "start"),
+                     column("setting", "setting")}};
+  table.is_for_programs = true;
+  for (const ParticipantSettings& person : results.participants) {
+    for (const Setting& setting : person.settings) {
+      table.rows.push_back(
+          {word(person.participant_id), number(setting.start, 9), number(setting.value, 9)});
+    }
+  }
+  return table;
+}
+
+std::vector<std::string> remarks_on(const BlockDesign& design, const AdjustmentResults& results) {
+  if (results.participants.empty()) {
+    return {"There are no answers."};
+  }
+  const AdjustedAxis& axis = *design.adjusted;
+  std::vector<std::string> remarks{fmt::format(
+      "Each participant counts as the {} of the settings; intervals over participants{}. The "
+      "standard deviation of a participant's settings estimates the difference threshold{}.",
+      axis.is_logarithmic ? "geometric mean" : "mean",
+      axis.is_logarithmic ? ", whose means are geometric too" : "",
+      axis.is_logarithmic ? ", as a share: it is of natural logarithms" : "")};
+  remarks.push_back(axis.standard
+                        ? fmt::format("The standard is {:.6g}.", *axis.standard)
+                        : "There is no constant error: the standard has no value on the axis.");
+  remarks.push_back(
+      fmt::format("Ascending runs started below {:.6g}, descending runs above.", axis.middle));
+  remarks.push_back(design.premise.empty()
+                        ? "p: two-sided, by exchanging the signs of the participants' differences."
+                        : "Not tested: " + design.premise);
+  return remarks;
+}
+
+std::optional<Chart> chart_of(const AdjustedAxis& axis, const AdjustmentResults& results) {
+  if (!results.equality) {
+    return std::nullopt;
+  }
+  Chart chart;
+  std::vector<double> starts;
+  std::vector<double> values{results.equality->mean};
+  for (const ParticipantSettings& person : results.participants) {
+    for (const Setting& setting : person.settings) {
+      if (std::isfinite(setting.start)) {
+        constexpr double size = 0.3;
+        starts.push_back(setting.start);
+        values.push_back(setting.value);
+        chart.points.push_back({setting.start, setting.value, size});
+      }
+    }
+  }
+  if (chart.points.empty()) {
+    return std::nullopt;
+  }
+  chart.caption = "Each setting against where it started; dashed: their mean over participants";
+  chart.alternative = fmt::format("{} settings of {}; point of subjective equality {}",
+                                  chart.points.size(), axis.name, rounded(results.equality->mean));
+  chart.x_label = "start, " + axis.name;
+  chart.y_label = "setting";
+  chart.is_x_logarithmic = axis.is_logarithmic;
+  chart.is_y_logarithmic = axis.is_logarithmic;
+  chart.x_range = range_of(starts, axis.is_logarithmic);
+  chart.y_range = range_of(values, axis.is_logarithmic);
+  chart.levels = {results.equality->mean};
+  return chart;
+}
+}  // namespace
+
+std::shared_ptr<BlockSummary> summarise_adjustments(const BlockDesign& design,
+                                                    const BlockRows& rows) {
+  const AdjustmentResults results = adjustment_results(design, rows.answers);
+  const AdjustedAxis& axis = *design.adjusted;
+  auto summary = std::make_shared<TabularSummary>(design);
+  summary->parts = {estimates_table(axis, results), participants_table(axis, results),
+                    settings_table(results)};
+  summary->remarks = remarks_on(design, results);
+  if (const auto chart = chart_of(axis, results)) {
+    summary->charts.push_back(*chart);
+  }
+  if (results.equality && results.equality->interval) {
+    summary->main.push_back({fmt::format("point of subjective equality, {}", axis.name),
+                             results.equality->mean, *results.equality->interval});
+  }
+  return summary;
+}
+}  // namespace tapstudy::analysis

@@ -1,0 +1,49 @@
+#include "protocols/tasks/read_axis_values.hpp"
+
+#include <algorithm>
+
+#include "core/error.hpp"
+#include "protocols/axes/presented_stimulus.hpp"
+namespace tapstudy::protocols {
+std::vector<std::string> axes_of(const Protocol& protocol, const std::string& stimulus) {
+  std::vector<std::string> names;
+  const auto found = std::ranges::find(protocol.stimuli, stimulus, &Stimulus::name);
+  if (found != protocol.stimuli.end()) {
+    for (const AxisRange& range : found->vary) {
+      names.emplace_back(range.axis->name);
+    }
+  }
+  return names;
+}
+
+std::string read_axis(MapReader& reader, const std::vector<std::string>& axes) {
+  return reader.word("axis", "axis of the stimuli", axes,
+                     axes.size() == 1 ? std::optional{axes.front()} : std::nullopt);
+}
+
+std::vector<double> presented_on_axis(MapReader& reader, const std::string& key,
+                                      const Protocol& protocol, const Block& block,
+                                      const ValuesOnAxis& asked) {
+  std::vector<double> values;
+  try {
+    for (const std::string& name : block.stimuli) {
+      if (!protocol.stimulus(name).is_complete()) {
+        return {};
+      }
+      values.clear();
+      for (const double value : asked.values) {
+        values.push_back(presented_values(protocol, protocol.stimulus(name), {{asked.axis, value}})
+                             .at(asked.axis));
+      }
+    }
+  } catch (const core::InvalidInput& error) {
+    reader.reject(key, error.what());
+    return {};
+  }
+  if (std::ranges::adjacent_find(values, std::greater_equal{}) != values.end()) {
+    reader.reject(key, "are not in increasing order, each once, as they are presented");
+    return {};
+  }
+  return values;
+}
+}  // namespace tapstudy::protocols

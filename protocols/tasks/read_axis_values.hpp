@@ -1,0 +1,20 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "protocols/protocol.hpp"
+#include "protocols/yaml/yaml_reader.hpp"
+namespace tapstudy::protocols {
+// Names of the axes along which a stimulus varies; none of one that there is not.
+std::vector<std::string> axes_of(const Protocol& protocol, const std::string& stimulus);
+
+// The key `axis`, which may be left out where there is one. Problems go to the reader.
+std::string read_axis(MapReader& reader, const std::vector<std::string>& axes);
+
+// These values of every stimulus of the block as they are presented: a table has its own. Empty,
+// and rejected under this key, if they cannot be presented or are not in increasing order then;
+// empty also if a stimulus was rejected.
+std::vector<double> presented_on_axis(MapReader& reader, const std::string& key,
+                                      const Protocol& protocol, const Block& block,
+                                      const ValuesOnAxis& asked);
+}  // namespace tapstudy::protocols

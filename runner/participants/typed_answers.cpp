@@ -1,0 +1,67 @@
+#include "runner/participants/typed_answers.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+namespace tapstudy::runner {
+namespace {
+// "= B".
+std::optional<std::string> option_after_equals(const std::string& word,
+                                               const std::vector<protocols::Option>& options) {
+  const auto option = word.starts_with('=')
+                          ? std::ranges::find(options, word.substr(1), &protocols::Option::label)
+                          : options.end();
+  return option == options.end() ? std::nullopt : std::optional{option->name};
+}
+}  // namespace
+
+std::string upper_case_without_spaces(const std::string& line) {
+  std::string word;
+  for (const char c : line) {
+    if (std::isspace(static_cast<unsigned char>(c)) == 0) {
+      word += static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+    }
+  }
+  return word;
+}
+
+std::optional<std::string> answer_typed(const std::string& line, const TrialPrompt& prompt,
+                                        const Exploration& exploration) {
+  if (prompt.answers.settings > 0) {
+    return upper_case_without_spaces(line) == "="
+               ? std::optional{fmt::format("{}", exploration.setting() + 1)}
+               : std::nullopt;
+  }
+  return prompt.answers_name_alternatives()
+             ? option_after_equals(upper_case_without_spaces(line), prompt.answers.options)
+             : answer_in(line, prompt.answers);
+}
+
+std::optional<int> settings_moved(const std::string& line) {
+  const std::string word = upper_case_without_spaces(line);
+  const bool is_up = word.find_first_not_of('+') == std::string::npos;
+  const bool is_down = word.find_first_not_of('-') == std::string::npos;
+  return word.empty() || !(is_up || is_down)
+             ? std::nullopt
+             : std::optional{(is_up ? 1 : -1) * static_cast<int>(word.size())};
+}
+
+std::string how_to_answer(const TrialPrompt& prompt) {
+  if (prompt.answers.settings > 0) {
+    return fmt::format("   + or -: change {}, ++ by more.   =: it is set.",
+                       prompt.alternative_labels.back());
+  }
+  return prompt.answers_name_alternatives()
+             ? fmt::format("   = {}: choose it.", prompt.answers.options.front().label)
+             : "";
+}
+
+std::string expected_among_alternatives(const TrialPrompt& prompt) {
+  if (prompt.answers.settings > 0) {
+    return fmt::format("+ or - to change {}, = when it is set", prompt.alternative_labels.back());
+  }
+  return prompt.answers_name_alternatives() ? "= and a label to choose it"
+                                            : expected_answer(prompt.answers) + " to answer";
+}
+}  // namespace tapstudy::runner

@@ -80,7 +80,7 @@ ReportTable practice_table(const std::vector<PracticeResult>& practice) {
          is_scored ? share(row.right.value()) : nothing(table.columns[3]),
          row.is_criterion_met
              ? Cell{*row.is_criterion_met ? "met" : "not met", {*row.is_criterion_met}}
-             : Cell{"none", {Value{}}}});
+             : Cell{"no criterion", {Value{}}}});
   }
   return table;
 }

@@ -18,7 +18,7 @@ const char* name_of(AnswerKind kind) {
     case AnswerKind::number:
       return "number";
     case AnswerKind::choice:
-      return "choice";
+      return "single choice";
     case AnswerKind::text:
       break;
   }

@@ -76,6 +76,12 @@ const std::vector<std::string>& nasa_tlx_languages() {
   return languages;
 }
 
+bool is_raw_tlx(const Form& form) {
+  return std::ranges::equal(form.items, names, {}, &FormItem::name) &&
+         std::ranges::all_of(form.items,
+                             [](const FormItem& item) { return item.kind == ItemKind::scale; });
+}
+
 Form nasa_tlx(const std::string& language) {
   const auto found = std::ranges::find(wordings, language, &Wording::language);
   const Wording& wording = found == wordings.end() ? wordings.front() : *found;

@@ -9,4 +9,7 @@ namespace tapstudy::protocols {
 // government. The others translate it; they are not validated versions.
 Form nasa_tlx(const std::string& language);  // English if it has no other wording
 const std::vector<std::string>& nasa_tlx_languages();
+// Whether the form asks these six scales and nothing else, in whatever words: its score is then the
+// mean of the six.
+bool is_raw_tlx(const Form& form);
 }  // namespace tapstudy::protocols

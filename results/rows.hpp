@@ -163,6 +163,41 @@ struct DeviationRow {
   int missed_catch_trials{};
 };
 
+// How the sessions of one participant went. Trials are presentations, practice aside; the loop's
+// are of every stored trial.
+struct ParticipantCourseRow {
+  std::string participant_id;
+  Mode mode{};
+  std::optional<std::string> exclusion_reason;  // unset: not excluded
+  int sessions{};
+  int answered{};
+  int interrupted{};
+  int repeated{};  // their answers do not count
+  int skipped{};
+  int timed_out{};
+  int given_up{};   // skipped or timed out, and not answered later
+  int corrected{};  // answers
+  int catch_trials{};
+  int catch_right{};
+  int form_items{};           // of questionnaires that were shown
+  int form_items_left_out{};  // of these
+  std::int64_t ticks{};
+  std::int64_t late{};
+  std::int64_t skipped_ticks{};
+  std::int64_t saturated{};
+  std::int64_t dropped_samples{};
+  double lateness_p999_s{};  // of the trial where it was largest
+  double worst_lateness_s{};
+  std::int64_t impacts{};
+  std::int64_t late_impacts{};
+  int masked_trials{};
+  std::optional<double> masking_low_db;  // RMS in dB FS; unset without masking noise
+  std::optional<double> masking_high_db;
+  std::int64_t masking_gaps{};
+  std::int64_t masking_cut_samples{};  // beyond full scale
+  int masking_lost{};                  // trials in which the card stopped
+};
+
 struct UnansweredTrial {
   int number{};
   std::string block;

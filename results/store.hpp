@@ -84,6 +84,8 @@ class Store {
   std::set<std::pair<std::string, std::string>> filled_forms(const std::string& participant_id);
   // Of participants of whom there is something to say.
   std::vector<DeviationRow> deviations();
+  // Of all participants, sorted by mode and index.
+  std::vector<ParticipantCourseRow> participant_courses();
   // By id: why.
   std::map<std::string, std::string> excluded_participants();
   // Of all participants and modes, including practice: the caller filters. Sorted by mode,
@@ -107,6 +109,10 @@ class Store {
  private:
   Store(Database database, std::optional<Journal> journal)
       : database_{std::move(database)}, journal_{std::move(journal)} {}
+  void add_presentations(ParticipantCourseRow& course);
+  void add_loop(ParticipantCourseRow& course);
+  void add_masking(ParticipantCourseRow& course);
+  void add_form_items(ParticipantCourseRow& course);
   void check_is_sound();
   void check_version();
   void check_schema();

@@ -4,17 +4,21 @@
 #include "analysis/blocks/html_parts.hpp"
 #include "analysis/report/html_style.hpp"
 #include "analysis/report/writers.hpp"
+#include "analysis/tables/sections.hpp"
 #include "core/print.hpp"
 namespace tapstudy::analysis {
 namespace {
 // Of the blocks, if there are several.
 void write_contents(std::ostream& out, const Summary& summary) {
-  if (summary.blocks.size() < 2) {
+  if (summary.blocks.size() + (summary.sections.empty() ? 0 : 1) < 2) {
     return;
   }
   out << "<nav class=contents aria-label=Blocks><ul>\n";
   for (const auto& block : summary.blocks) {
     core::print(out, "<li><a href=\"#block-{0}\">{0}</a></li>\n", escaped(block->block));
+  }
+  if (!summary.sections.empty()) {
+    out << "<li><a href=\"#study\">The study as a whole</a></li>\n";
   }
   out << "</ul></nav>\n";
 }
@@ -48,6 +52,10 @@ void write_html(std::ostream& out, const Summary& summary) {
                   escaped(block->question));
     }
     block->write_html(out);
+  }
+  if (!summary.sections.empty()) {
+    out << "<h2 id=\"study\">The study as a whole</h2>\n";
+    write_sections_html(out, summary.sections, "study");
   }
   core::print(out, "<h2>Methods</h2><p>{}</p>\n", escaped(methods(summary)));
   if (!summary.notes.empty()) {

@@ -16,6 +16,10 @@ void write_json(std::ostream& out, const Summary& summary) {
   for (const auto& block : summary.blocks) {
     json["blocks"].push_back(block->as_json());
   }
+  if (!summary.sections.empty()) {
+    json["study"] = Json::object();
+    add_sections(json["study"], summary.sections);
+  }
   if (summary.loop) {
     json["loop"] = {
         {"ticks", summary.loop->ticks},     {"late", summary.loop->late},

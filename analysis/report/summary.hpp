@@ -8,6 +8,7 @@
 
 #include "analysis/answer_tables/answer_table.hpp"
 #include "analysis/blocks/block_summary.hpp"
+#include "analysis/tables/sections.hpp"
 namespace tapstudy::analysis {
 struct LoopQuality {
   std::int64_t ticks{};
@@ -27,6 +28,7 @@ struct Summary {
   std::vector<std::string> deviations;  // participants, with what was not as planned
   int participants{};
   std::vector<std::shared_ptr<const BlockSummary>> blocks;
+  std::vector<ReportSection> sections;  // of the study as a whole
   std::optional<LoopQuality> loop;
   std::vector<std::pair<std::string, std::string>> provenance;
   std::string stated_methods{};  // in place of what methods() would say

@@ -24,5 +24,6 @@ void write_text(std::ostream& out, const Summary& summary) {
     }
     block->write_text(out);
   }
+  write_sections_text(out, summary.sections);
 }
 }  // namespace tapstudy::analysis

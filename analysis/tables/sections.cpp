@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/blocks/html_parts.hpp"
+#include "analysis/blocks/text_parts.hpp"
 #include "analysis/tables/table_writers.hpp"
 #include "core/print.hpp"
 namespace tapstudy::analysis {
@@ -39,6 +40,23 @@ void write_section(std::ostream& out, const ReportSection& section, const std::s
   out << "</section>\n";
 }
 }  // namespace
+
+void write_sections_text(std::ostream& out, const std::vector<ReportSection>& sections) {
+  for (const ReportSection& section : sections) {
+    if (!has_content(section)) {
+      continue;
+    }
+    core::print(out, "\n{}\n\n", section.title);
+    for (const ReportTable& table : section.tables) {
+      if (is_shown(table)) {
+        write_table_text(out, table);
+      }
+    }
+    for (const std::string& remark : section.remarks) {
+      out << wrapped(remark, 2);
+    }
+  }
+}
 
 void write_sections_html(std::ostream& out, const std::vector<ReportSection>& sections,
                          const std::string& anchor) {

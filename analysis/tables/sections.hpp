@@ -15,6 +15,8 @@ struct ReportSection {
   std::vector<std::string> remarks{};  // how it was computed, and what could not be
 };
 
+// Titles, tables and remarks; figures are left out.
+void write_sections_text(std::ostream& out, const std::vector<ReportSection>& sections);
 // A list of contents with links, then the sections. `anchor`: of the block, unlike that of others.
 void write_sections_html(std::ostream& out, const std::vector<ReportSection>& sections,
                          const std::string& anchor);

@@ -118,6 +118,9 @@ void write_files(const ReportOptions& options, const Summary& summary) {
           table_text(summary, table));
     }
   }
+  for (const analysis::CsvTable& table : analysis::csv_of(summary.sections)) {
+    add(table.name, table_text(summary, table));
+  }
   core::write_all_or_none(files, options.replace ? core::Existing::replaced : core::Existing::kept);
   for (const core::NewFile& file : files) {
     fmt::print("{}\n", file.name);

@@ -13,6 +13,7 @@
 #include "core/error.hpp"
 #include "runner/experiments/stored_protocol.hpp"
 #include "runner/experiments/study_design.hpp"
+#include "runner/experiments/study_sections.hpp"
 #include "runner/session/given_up_trials.hpp"
 namespace tapstudy::runner {
 namespace {
@@ -212,6 +213,7 @@ Summary summary_of_study(const std::vector<StudyStore>& stores, Mode mode) {
                                          fmt::join(directories, ", "), results::to_text(mode))};
   }
   Summary summary = analysis::summarise(design_of(protocol, mode), all.answers, all.visits);
+  summary.sections = study_sections(protocol, stores, mode);
   summary.provenance = provenance(study, all.sessions, mode);
   summary.unfinished = std::move(all.unfinished);
   summary.excluded = std::move(all.excluded);

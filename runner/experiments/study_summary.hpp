@@ -4,13 +4,8 @@
 
 #include "analysis/report/summary.hpp"
 #include "results/store.hpp"
+#include "runner/experiments/study_store.hpp"
 namespace tapstudy::runner {
-// A store of a study: of one rig, where there were several.
-struct StudyStore {
-  std::string directory;  // in messages
-  results::Store* store;
-};
-
 // What a study says of its participants of one mode; those who were excluded, practice and catch
 // trials are named, and left out of the results. Throws InvalidInput if there is no answer, two
 // stores are of different protocols, or a participant is in two of them.

@@ -1,16 +1,10 @@
 #include "runner/session/interludes.hpp"
 namespace tapstudy::runner {
-namespace {
-// No block can have these names.
-constexpr const char* at_begin = "session begin";
-constexpr const char* at_end = "session end";
-}  // namespace
-
 void Interludes::begin() {
   if (!has_begun_) {
     has_begun_ = true;
     read(parts_.protocol.instructions, "study");
-    ask(parts_.protocol.forms_before, at_begin);
+    ask(parts_.protocol.forms_before, asked_at_begin);
   }
 }
 
@@ -44,7 +38,7 @@ void Interludes::after_last_trial() {
   for (const protocols::Block& block : parts_.protocol.blocks) {
     ask(block.forms_after, block.name);
   }
-  ask(parts_.protocol.forms_after, at_end);
+  ask(parts_.protocol.forms_after, asked_at_end);
 }
 
 void Interludes::read(const std::string& text, const std::string& whose) {

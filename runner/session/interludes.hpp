@@ -11,6 +11,10 @@
 #include "runner/session/earlier_answers.hpp"
 #include "runner/session/session_states.hpp"
 namespace tapstudy::runner {
+// Where forms are asked that come after no block; no block can have these names.
+inline constexpr const char* asked_at_begin = "session begin";
+inline constexpr const char* asked_at_end = "session end";
+
 // What comes between the trials of a session: instructions, rests after every so many trials, and
 // questionnaires.
 class Interludes {

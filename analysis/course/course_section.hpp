@@ -1,0 +1,21 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "analysis/tables/sections.hpp"
+#include "results/rows.hpp"
+namespace tapstudy::analysis {
+// A participant's answers to the trials of a practice block, as first given.
+struct PracticeResult {
+  std::string participant_id;
+  std::string block;
+  Proportion right;                        // of the answers that are right or wrong
+  std::optional<bool> is_criterion_met{};  // unset: the block has none
+};
+
+// How the sessions went: tables course, exclusions, practice, loop_quality and masking, a row a
+// participant, in the order of the rows. Only counts and extremes of what is stored.
+ReportSection course_section(const std::vector<results::ParticipantCourseRow>& participants,
+                             const std::vector<PracticeResult>& practice);
+}  // namespace tapstudy::analysis

@@ -1,0 +1,117 @@
+// How the sessions of each participant went.
+#include "results/store.hpp"
+namespace tapstudy::results {
+namespace {
+std::optional<double> real_or_unset(Statement& row, int column) {
+  return row.is_null(column) ? std::nullopt : std::optional{row.real(column)};
+}
+
+int small(Statement& row, int column) {
+  return static_cast<int>(row.integer(column));
+}
+}  // namespace
+
+std::vector<ParticipantCourseRow> Store::participant_courses() {
+  Statement row{database_,
+                "SELECT participant_id, mode, exclusion_reason, "
+                "  (SELECT count(*) FROM session "
+                "    WHERE session.participant_id = participant.participant_id) "
+                "FROM participant LEFT JOIN excluded_participant USING (participant_id) "
+                "ORDER BY mode, participant_index"};
+  std::vector<ParticipantCourseRow> courses;
+  while (row.step()) {
+    ParticipantCourseRow course;
+    course.participant_id = row.text(0);
+    course.mode = mode_from(row.text(1));
+    course.exclusion_reason = row.is_null(2) ? std::nullopt : std::optional{row.text(2)};
+    course.sessions = small(row, 3);
+    courses.push_back(course);
+  }
+  for (ParticipantCourseRow& course : courses) {
+    add_presentations(course);
+    add_loop(course);
+    add_masking(course);
+    add_form_items(course);
+  }
+  return courses;
+}
+
+void Store::add_presentations(ParticipantCourseRow& course) {
+  Statement row{database_,
+                "WITH own AS (SELECT trial.* FROM trial JOIN session USING (session_id) "
+                "  WHERE participant_id = ? AND NOT is_practice) "
+                "SELECT count(*) FILTER (WHERE status = 'answered'), "
+                "  count(*) FILTER (WHERE status = 'interrupted'), "
+                "  count(*) FILTER (WHERE status = 'repeated'), "
+                "  count(*) FILTER (WHERE status = 'skipped'), "
+                "  count(*) FILTER (WHERE status = 'timed_out'), "
+                "  count(DISTINCT number) FILTER (WHERE status IN ('skipped', 'timed_out') "
+                "    AND number NOT IN (SELECT number FROM own WHERE status = 'answered')), "
+                "  count(*) FILTER (WHERE status = 'answered' AND supersedes IS NOT NULL), "
+                "  count(*) FILTER (WHERE status = 'answered' AND is_catch), "
+                "  count(*) FILTER (WHERE status = 'answered' AND is_catch AND is_correct) "
+                "FROM own LEFT JOIN current_response USING (trial_id)"};
+  row.bind(course.participant_id).step();
+  course.answered = small(row, 0);
+  course.interrupted = small(row, 1);
+  course.repeated = small(row, 2);
+  course.skipped = small(row, 3);
+  course.timed_out = small(row, 4);
+  course.given_up = small(row, 5);
+  course.corrected = small(row, 6);
+  course.catch_trials = small(row, 7);
+  course.catch_right = small(row, 8);
+}
+
+void Store::add_loop(ParticipantCourseRow& course) {
+  Statement row{database_,
+                "SELECT coalesce(sum(ticks), 0), coalesce(sum(late), 0), "
+                "  coalesce(sum(skipped), 0), coalesce(sum(saturated), 0), "
+                "  coalesce(sum(dropped_samples), 0), coalesce(max(lateness_p999_s), 0), "
+                "  coalesce(max(worst_lateness_s), 0), "
+                "  coalesce(sum((SELECT count(*) FROM event "
+                "    WHERE event.trial_id = trial.trial_id AND kind = 'impact')), 0), "
+                "  coalesce(sum((SELECT count(*) FROM event "
+                "    WHERE event.trial_id = trial.trial_id AND kind = 'late_impact')), 0) "
+                "FROM trial JOIN session USING (session_id) JOIN tick_statistics USING (trial_id) "
+                "WHERE participant_id = ?"};
+  row.bind(course.participant_id).step();
+  course.ticks = row.integer(0);
+  course.late = row.integer(1);
+  course.skipped_ticks = row.integer(2);
+  course.saturated = row.integer(3);
+  course.dropped_samples = row.integer(4);
+  course.lateness_p999_s = row.real(5);
+  course.worst_lateness_s = row.real(6);
+  course.impacts = row.integer(7);
+  course.late_impacts = row.integer(8);
+}
+
+void Store::add_masking(ParticipantCourseRow& course) {
+  Statement row{database_,
+                "SELECT count(DISTINCT trial_id) FILTER (WHERE kind = 'masking'), "
+                "  min(value) FILTER (WHERE kind = 'masking'), "
+                "  max(value) FILTER (WHERE kind = 'masking'), "
+                "  coalesce(sum(value) FILTER (WHERE kind = 'masking_underrun'), 0), "
+                "  coalesce(sum(value) FILTER (WHERE kind = 'masking_cut'), 0), "
+                "  count(DISTINCT trial_id) FILTER (WHERE kind = 'masking_lost') "
+                "FROM event JOIN trial USING (trial_id) JOIN session USING (session_id) "
+                "WHERE participant_id = ?"};
+  row.bind(course.participant_id).step();
+  course.masked_trials = small(row, 0);
+  course.masking_low_db = real_or_unset(row, 1);
+  course.masking_high_db = real_or_unset(row, 2);
+  course.masking_gaps = row.integer(3);
+  course.masking_cut_samples = row.integer(4);
+  course.masking_lost = small(row, 5);
+}
+
+void Store::add_form_items(ParticipantCourseRow& course) {
+  Statement row{database_,
+                "SELECT count(*), count(*) - count(answer) FROM form_answer "
+                "JOIN session USING (session_id) WHERE participant_id = ?"};
+  row.bind(course.participant_id).step();
+  course.form_items = small(row, 0);
+  course.form_items_left_out = small(row, 1);
+}
+}  // namespace tapstudy::results

@@ -1,0 +1,62 @@
+// What a report says of a study besides its blocks.
+#include <fmt/format.h>
+
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include "results/store.hpp"
+#include "support/processes.hpp"
+#include "support/texts.hpp"
+using namespace tapstudy;
+using Catch::Matchers::Contains;
+
+namespace {
+// Each participant marks every line of the task's load at a tenth of their session's id.
+void answer_forms(const std::string& study) {
+  results::Store store =
+      results::Store::open_or_create(study, results::Store::open_existing(study).study());
+  for (const results::SessionRow& session : store.sessions()) {
+    std::vector<results::FormAnswerRow> answers;
+    for (const char* scale : {"mental_demand", "physical_demand", "temporal_demand", "performance",
+                              "effort", "frustration"}) {
+      answers.push_back({session.id, 1.0, "load", "session end", scale,
+                         fmt::format("{:.1f}", 0.1 * static_cast<double>(session.id))});
+    }
+    answers.push_back({session.id, 1.0, "about", "session begin", "why", "because of a secret"});
+    store.add_form(answers);
+  }
+}
+}  // namespace
+
+TEST_CASE("a report has each participant's sessions and the load of the task",
+          "[end_to_end][report]") {
+  const testing::TempDirectory directory;
+  const std::string protocol = directory / "study.yaml";
+  testing::write(protocol, testing::contents(testing::shipped("paper/discrimination.yaml")) +
+                               "\nforms:\n  load: {shipped: nasa_tlx}\n"
+                               "  about:\n    title: You\n    items:\n"
+                               "      - {name: why, kind: text, question: \"Why?\"}\n"
+                               "forms_before: [about]\nforms_after: [load]\n");
+  const std::string study = directory / "study";
+  const auto simulated = testing::tapstudy(
+      {"simulate", protocol, "--participants", "4", "--seed", "1", "--out", study});
+  INFO(simulated.standard_error);
+  REQUIRE(simulated.exit_code == 0);
+  answer_forms(study);
+  const auto report = testing::tapstudy({"report", study, "--out", directory / "report"});
+  INFO(report.standard_error);
+  REQUIRE(report.exit_code == 0);
+  CHECK_THAT(report.standard_output, Contains("How the sessions went"));
+  CHECK_THAT(report.standard_output, !Contains("secret"));
+  const std::string text = testing::contents((directory / "report") + "/report.json");
+  CHECK_THAT(text, !Contains("secret"));
+  const auto json = nlohmann::json::parse(text).at("study");
+  REQUIRE(json.at("course").size() == 4);
+  CHECK(json.at("course").at(0).at("mode") == "simulated");
+  CHECK(json.at("course").at(0).at("answered") == 8);
+  const auto& load = json.at("questionnaire_scores").at(0);
+  CHECK(load.at("scored") == 4);
+  CHECK(load.at("mean").get<double>() == Approx(25.0));  // of 10, 20, 30 and 40
+  CHECK_THAT(testing::contents((directory / "report") + "/course.csv"),
+             Contains("participant,mode,sessions,answered"));
+}

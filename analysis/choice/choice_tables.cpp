@@ -2,7 +2,7 @@
 #include "analysis/choice/choice_summary.hpp"
 namespace tapstudy::analysis {
 std::vector<ReportTable> ChoiceSummary::report_tables() const {
-  ReportTable table{"choices",
+  ReportTable table{"votes",
                     "Choices",
                     {column("stimulus", "stimulus"), proportion_column("chosen", "chosen"),
                      interval_column("simultaneous 95 % CI (Goodman)", "goodman"),

@@ -26,11 +26,11 @@ ReportTable course_table(const Courses& participants) {
   ReportTable table{
       "course",
       "Sessions and presentations of trials, practice aside",
-      {column("participant", "participant"), column("mode", "mode"), column("sessions", "sessions"),
+      {column("participant", "participant"), column("", "mode"), column("sessions", "sessions"),
        column("answered", "answered"), column("interrupted", "interrupted"),
        column("repeated", "repeated"), column("skipped", "skipped"),
        column("timed out", "timed_out"), column("given up", "given_up"),
-       column("corrected", "corrected"), column("excluded", "is_excluded")}};
+       column("corrected", "corrected"), column("", "is_excluded")}};
   for (const ParticipantCourseRow& row : participants) {
     table.rows.push_back({word(row.participant_id), word(results::to_text(row.mode)),
                           count(row.sessions), count(row.answered), count(row.interrupted),

@@ -5,7 +5,7 @@
 namespace tapstudy::analysis {
 namespace {
 ReportTable matrix_table(const ConfusionMatrix& matrix) {
-  ReportTable table{"confusion", "Answers to each stimulus", {column("presented", "stimulus")}};
+  ReportTable table{"matrix", "Answers to each stimulus", {column("presented", "stimulus")}};
   for (const Item& response : matrix.responses) {
     table.columns.push_back(column(response.label, response.name));
   }

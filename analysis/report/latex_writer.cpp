@@ -13,6 +13,16 @@ std::string label_of(const std::string& block, const std::string& table) {
       label, [](unsigned char c) { return c > 127 || std::isalnum(c) == 0; }, '-');
   return label;
 }
+
+void write_tables(std::ostream& out, const std::string& block,
+                  const std::vector<ReportTable>& tables) {
+  for (const ReportTable& table : tables) {
+    if (!table.is_for_programs && !table.rows.empty()) {
+      out << '\n';
+      write_table_latex(out, table, label_of(block, table.name));
+    }
+  }
+}
 }  // namespace
 
 void write_latex(std::ostream& out, const Summary& summary) {
@@ -22,12 +32,10 @@ void write_latex(std::ostream& out, const Summary& summary) {
     core::print(out, "% {}\n", warning);
   }
   for (const auto& block : summary.blocks) {
-    for (const ReportTable& table : block->report_tables()) {
-      if (!table.is_for_programs && !table.rows.empty()) {
-        out << '\n';
-        write_table_latex(out, table, label_of(block->block, table.name));
-      }
-    }
+    write_tables(out, block->block, block->report_tables());
+  }
+  for (const ReportSection& section : summary.sections) {
+    write_tables(out, "", section.tables);
   }
 }
 }  // namespace tapstudy::analysis

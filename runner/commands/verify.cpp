@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <memory>
@@ -75,21 +76,37 @@ results::TaskRule rule_of(const results::StudyRow& study) {
           }};
 }
 
-void print_recomputed(const results::Recomputation& recomputed, const std::string& directory) {
+// What is wrong, or empty.
+std::string print_recomputed(const results::Recomputation& recomputed) {
   constexpr std::size_t max_printed = 20;
   const auto& differences = recomputed.differences;
   for (std::size_t i = 0; i < std::min(differences.size(), max_printed); ++i) {
     fmt::print("differs: {}\n", differences[i]);
-  }
-  if (!differences.empty()) {
-    throw results::StoreError{fmt::format(
-        "{}: {} values are not what their traces and answers give", directory, differences.size())};
   }
   fmt::print("recomputed       {} events from their traces, {} answers by their task's rule{}\n",
              recomputed.events, recomputed.answers,
              recomputed.unknown_blocks == 0 ? ""
                                             : fmt::format(" ({} of blocks that the protocol lacks)",
                                                           recomputed.unknown_blocks));
+  return differences.empty() ? ""
+                             : fmt::format("{} values are not what their traces and answers give",
+                                           differences.size());
+}
+
+// The journal against the database; likewise.
+std::string print_compared(const results::JournalEntries& in_store,
+                           const results::JournalEntries& in_journal) {
+  fmt::print("answers.journal  {} answers: every line follows from the one before\n",
+             in_journal.answers.size());
+  const auto stored = lines_of(in_store);
+  const auto journalled = lines_of(in_journal);
+  const int missing = print_missing(stored, journalled, "answers.journal") +
+                      print_missing(journalled, stored, "study.db");
+  if (missing > 0) {
+    return fmt::format("{} answers or actions are not the same in both", missing);
+  }
+  fmt::print("the two agree\n");
+  return "";
 }
 
 void verify(const VerifyOptions& options) {
@@ -98,19 +115,13 @@ void verify(const VerifyOptions& options) {
   const results::JournalEntries in_store = store.entries_for_journal();
   fmt::print("study.db         {} trials, {} answers, {} ticks: sound\n", store.trials().size(),
              in_store.answers.size(), recomputed.ticks);
-  print_recomputed(recomputed, options.directory);
-  const results::JournalEntries in_journal = results::read_journal(options.directory).entries;
-  fmt::print("answers.journal  {} answers: every line follows from the one before\n",
-             in_journal.answers.size());
-  const auto stored = lines_of(in_store);
-  const auto journalled = lines_of(in_journal);
-  const int missing = print_missing(stored, journalled, "answers.journal") +
-                      print_missing(journalled, stored, "study.db");
-  if (missing > 0) {
-    throw results::StoreError{fmt::format("{}: {} answers or actions are not the same in both",
-                                          options.directory, missing)};
+  std::vector<std::string> wrong{
+      print_recomputed(recomputed),
+      print_compared(in_store, results::read_journal(options.directory).entries)};
+  std::erase(wrong, "");
+  if (!wrong.empty()) {
+    throw results::StoreError{fmt::format("{}: {}", options.directory, fmt::join(wrong, "; "))};
   }
-  fmt::print("the two agree\n");
 }
 }  // namespace
 

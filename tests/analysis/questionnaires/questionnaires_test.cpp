@@ -98,7 +98,7 @@ TEST_CASE("the order in which participants came changes nothing", "[analysis][qu
   const auto json = json_of(answers);
   std::ranges::reverse(answers);
   CHECK(json_of(answers) == json);
-  std::ranges::rotate(answers, answers.begin() + 11);
+  std::rotate(answers.begin(), answers.begin() + 11, answers.end());
   CHECK(json_of(answers) == json);
 }
 

@@ -25,13 +25,14 @@ std::string participants_of(const NamedSummary& study) {
                                    number == 1 ? "" : "s", study.summary->modes);
 }
 
-Estimate estimate_of(const MainResult& result) {
+IntervalEstimate estimate_of(const MainResult& result) {
   return {result.estimate, result.range};
 }
 
 void add_rows(const MainResult& first, const MainResult& second, const NamedSummary& a,
               const NamedSummary& b, ReportTable& table) {
-  const Estimate difference = independent_difference(estimate_of(first), estimate_of(second));
+  const IntervalEstimate difference =
+      independent_difference(estimate_of(first), estimate_of(second));
   table.rows.push_back(
       {word(first.name), word(participants_of(a)), interval(first.estimate, first.range)});
   table.rows.push_back(

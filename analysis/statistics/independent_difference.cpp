@@ -2,7 +2,7 @@
 
 #include <cmath>
 namespace tapstudy::analysis {
-Estimate independent_difference(const Estimate& a, const Estimate& b) {
+IntervalEstimate independent_difference(const IntervalEstimate& a, const IntervalEstimate& b) {
   const double difference = b.value - a.value;
   return {difference,
           {difference - std::hypot(b.value - b.interval.low, a.interval.high - a.value),

@@ -9,25 +9,37 @@ namespace tapstudy::runner {
 namespace {
 using results::ParticipantCourseRow;
 
+using Answers = std::vector<results::JournalledAnswer>;
+
+// Of one block; no trials if it was not practised, or has no right answers.
+analysis::Proportion right_in(const protocols::Block& block, const Answers& answers) {
+  analysis::Proportion right;
+  for (const results::JournalledAnswer& answer : answers) {
+    const auto& is_correct = answer.response.is_correct;
+    if (answer.trial.is_practice && answer.trial.block == block.name && is_correct) {
+      ++right.trials;
+      right.successes += *is_correct ? 1 : 0;
+    }
+  }
+  return right;
+}
+
+bool is_practised(const protocols::Block& block, const Answers& answers) {
+  return std::ranges::any_of(answers, [&](const results::JournalledAnswer& answer) {
+    return answer.trial.is_practice && answer.trial.block == block.name;
+  });
+}
+
 void add_practice(const protocols::Protocol& protocol, const std::string& participant,
                   results::Store& store, std::vector<analysis::PracticeResult>& practice) {
-  const auto answers = store.answers_as_given(participant);
+  const Answers answers = store.answers_as_given(participant);
   const PracticeRecord record{answers};
   for (const protocols::Block& block : protocol.blocks) {
-    analysis::PracticeResult result{participant, block.name, {}};
-    bool has_answers = false;
-    for (const results::JournalledAnswer& answer : answers) {
-      if (answer.trial.is_practice && answer.trial.block == block.name) {
-        has_answers = true;
-        const auto& is_correct = answer.response.is_correct;
-        result.right.trials += is_correct ? 1 : 0;
-        result.right.successes += is_correct.value_or(false) ? 1 : 0;
+    if (is_practised(block, answers)) {
+      analysis::PracticeResult result{participant, block.name, right_in(block, answers)};
+      if (block.criterion) {
+        result.is_criterion_met = record.is_met(block);
       }
-    }
-    if (block.criterion) {
-      result.is_criterion_met = record.is_met(block);
-    }
-    if (has_answers) {
       practice.push_back(result);
     }
   }

@@ -33,7 +33,7 @@ TEST_CASE("two studies are compared by what their own reports say", "[end_to_end
   REQUIRE(rows.size() == 3);
   CHECK(rows[0]["estimate"].get<double>() == 4.0 / 6.0);
   CHECK(rows[1]["estimate"].get<double>() == 5.0 / 6.0);
-  for (const std::size_t i : {0, 1}) {
+  for (const std::size_t i : {0U, 1U}) {
     const auto own = block_in(directory / (i == 0 ? "first" : "second"))["accuracy"];
     CHECK(rows[i]["estimate_low"] == own["over_participants_95"][0]);
     CHECK(rows[i]["estimate_high"] == own["over_participants_95"][1]);

@@ -21,21 +21,24 @@ double share_of(const GivenAnswer& answer) {
   return share;
 }
 
-bool is_of(const GivenAnswer& answer, const Questionnaire& form) {
-  return answer.form == form.name &&
-         std::ranges::find(form.items, answer.item, &QuestionnaireItem::name) != form.items.end();
+// Adds what everybody answered to one item.
+void add_item(const std::string& item, const Questionnaire& form, const std::string& asked,
+              const std::vector<GivenAnswer>& answers, std::map<std::string, PartialScore>& sums) {
+  for (const GivenAnswer& answer : answers) {
+    if (answer.form == form.name && answer.asked == asked && answer.item == item) {
+      PartialScore& own = sums[answer.participant_id];
+      own.sum += answer.answer ? share_of(answer) : 0.0;
+      own.items += answer.answer ? 1 : 0;
+    }
+  }
 }
 }  // namespace
 
 FormScores scores_of(const Questionnaire& form, const std::string& asked,
                      const std::vector<GivenAnswer>& answers) {
   std::map<std::string, PartialScore> sums;
-  for (const GivenAnswer& answer : answers) {
-    if (answer.asked == asked && is_of(answer, form)) {
-      PartialScore& own = sums[answer.participant_id];
-      own.sum += answer.answer ? share_of(answer) : 0.0;
-      own.items += answer.answer ? 1 : 0;
-    }
+  for (const QuestionnaireItem& item : form.items) {  // in their order: sums are rounded
+    add_item(item.name, form, asked, answers, sums);
   }
   FormScores scores;
   for (const auto& [participant, own] : sums) {

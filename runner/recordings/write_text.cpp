@@ -60,7 +60,7 @@ void print_rayleigh(const analysis::RayleighFit& fit) {
 
 void print_sinusoid(const SinusoidLaw& law) {
   fmt::print(
-      "\nDecaying sinusoid: decay {:.4g} 1/s ({}), frequency {:.4g} Hz ({}); explains {:.0f} % of "
+      "\nDecaying sinusoid: decay {:.6g} 1/s ({}), frequency {:.6g} Hz ({}); explains {:.0f} % of "
       "the taps\n",
       law.decay_per_s.value, interval(law.decay_per_s), law.frequency_hz.value,
       interval(law.frequency_hz), 100.0 * law.explained);

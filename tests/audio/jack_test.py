@@ -8,56 +8,19 @@ import time
 import unittest
 from pathlib import Path
 
-import jack
 import numpy
+from jack_server import RATE_HZ, Recorder, environment_of, running_server, wait_until
 from scipy.signal import welch
 
 PROGRAM = os.environ["TAPSTUDY_PROGRAM"]
 SOURCE = Path(__file__).resolve().parents[2]
-RATE_HZ = 48000
 LEVEL_DB = -24.0
 RAMP_S = 0.05
 TRIALS = 8
 
 
-def wait_until(what, condition, patience_s=20):
-    end = time.monotonic() + patience_s
-    while not (result := condition()):
-        assert time.monotonic() < end, f"waited {patience_s} s for {what}"
-        time.sleep(0.01)
-    return result
-
-
 def rms_db(samples):
     return 10 * numpy.log10(numpy.mean(numpy.square(samples)))
-
-
-class Recorder:
-    """Records every audio output that appears, one channel each."""
-
-    def __init__(self, server):
-        self.client = jack.Client("recorder", no_start_server=True, servername=server)
-        self.ports = [self.client.inports.register(f"in_{channel}") for channel in range(2)]
-        self.blocks = []
-        self.client.set_process_callback(
-            lambda frames: self.blocks.append(numpy.array([port.get_array() for port in self.ports])))
-        self.client.activate()
-
-    def connect(self):
-        outputs = self.client.get_ports(name_pattern="^tapstudy", is_audio=True, is_output=True)
-        if len(outputs) < len(self.ports):
-            return False
-        try:
-            for output, port in zip(outputs, self.ports):
-                if not port.connections:
-                    self.client.connect(output, port)
-        except jack.JackError:  # a port is named before its client is activated
-            return False
-        return True
-
-    def heard(self):
-        self.client.close()
-        return numpy.concatenate(self.blocks, axis=1)
 
 
 class JackSession(unittest.TestCase):
@@ -66,12 +29,7 @@ class JackSession(unittest.TestCase):
     def setUpClass(cls):
         cls.directory = Path(tempfile.mkdtemp(prefix="tapstudy_jack_"))
         cls.addClassCleanup(shutil.rmtree, cls.directory)
-        cls.server = f"tapstudy_{os.getpid()}"
-        daemon = subprocess.Popen(
-            ["/usr/bin/jackd", "--no-realtime", "--name", cls.server, "-d", "dummy", "-r", str(RATE_HZ), "-p", "256"],
-            stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        cls.addClassCleanup(daemon.wait)
-        cls.addClassCleanup(daemon.terminate)
+        cls.server = cls.enterClassContext(running_server())
         cls.channels = cls.hear_a_session()
         sounding = numpy.flatnonzero(cls.channels[0])
         cls.noise = cls.channels[0][sounding[0]:sounding[-1] + 1]
@@ -87,17 +45,12 @@ class JackSession(unittest.TestCase):
         rig.write_text((SOURCE / "protocols/rigs/simulated_hand.yaml").read_text() +
                        '\naudio: {card: "plug:jack", gain_db: -4}\n')
 
-        def recorder():
-            try:
-                return Recorder(cls.server)
-            except jack.JackError:
-                return None
-        recording = wait_until("the server", recorder)
+        recording = Recorder.of(cls.server)
         session = subprocess.Popen(
             [PROGRAM, "run", protocol, "--rig", rig, "--participant", "P01", "--seed", "5", "--out",
              cls.directory / "study"],
             stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
-            env={**os.environ, "JACK_DEFAULT_SERVER": cls.server, "JACK_NO_START_SERVER": "1"})
+            env=environment_of(cls.server))
         wait_until("the program's outputs", recording.connect)
         said, _ = session.communicate("".join(f"{1 + trial % 4}\n" for trial in range(TRIALS)), timeout=60)
         assert session.returncode == 0, said
@@ -126,6 +79,33 @@ class JackSession(unittest.TestCase):
         around = slice(middle - width // 2, middle + width // 2)
         for noise in (self.noise, self.noise[::-1]):
             self.assertAlmostEqual(rms_db(noise[around]), LEVEL_DB - 6.0, delta=1.5)
+
+
+class StarvedCard(unittest.TestCase):
+    STALL_S = 0.4  # as in stalling_player
+    BUFFER_S = 0.08
+
+    @classmethod
+    def setUpClass(cls):
+        with running_server() as server:
+            recording = Recorder.of(server)
+            player = subprocess.Popen([os.environ["TAPSTUDY_STALLING_PLAYER"], "plug:jack"],
+                                      stdout=subprocess.PIPE, text=True, env=environment_of(server))
+            wait_until("the player's outputs", recording.connect)
+            cls.counted = int(player.communicate(timeout=60)[0])
+            level = recording.heard()[0]
+        sounding = numpy.flatnonzero(level)
+        silent = numpy.concatenate(([0], level[sounding[0]:sounding[-1]] == 0, [0]))
+        begins, ends = (numpy.flatnonzero(numpy.diff(silent) == step) for step in (1, -1))
+        cls.gaps_s = (ends - begins) / RATE_HZ
+
+    def test_as_many_underruns_are_counted_as_gaps_are_heard(self):
+        self.assertGreaterEqual(self.counted, 3)
+        self.assertEqual(self.counted, len(self.gaps_s))
+
+    def test_a_gap_lasts_what_the_stall_exceeds_the_buffer_by(self):
+        for gap_s in sorted(self.gaps_s)[-3:]:
+            self.assertAlmostEqual(gap_s, self.STALL_S - self.BUFFER_S, delta=0.05)
 
 
 if __name__ == "__main__":

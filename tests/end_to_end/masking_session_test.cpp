@@ -54,9 +54,10 @@ TEST_CASE("every trial of a session has its noise, and says so", "[end_to_end][a
   CHECK(testing::tapstudy({"verify", directory / "the_study"}).exit_code == 0);
 }
 
-TEST_CASE("a client of JACK hears the noise at its level, spectrum and ramps",
+TEST_CASE("a client of JACK hears the noise at its level, spectrum and ramps, and every under-run",
           "[end_to_end][audio]") {
   setenv("TAPSTUDY_PROGRAM", TAPSTUDY_PROGRAM, 1);
+  setenv("TAPSTUDY_STALLING_PLAYER", TAPSTUDY_STALLING_PLAYER, 1);
   const auto heard =
       testing::run_program({"/usr/bin/python3", "-B", testing::source("tests/audio/jack_test.py")});
   INFO(heard.standard_output << heard.standard_error);

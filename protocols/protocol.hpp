@@ -83,6 +83,15 @@ struct OrderConstraints {
 // (of equals the earliest), or the first.
 enum class Vote { majority, first };
 
+// The alternatives of a trial come one after the other: an interval lasts this long from its go
+// signal, and until it was tapped as often as must be. Nothing is rendered before, between and
+// after intervals.
+struct Intervals {
+  double seconds{};
+  double gap_seconds{0.5};  // before each
+  int max_replays{0};       // of all of them, as the participant likes
+};
+
 // What a participant must have done before an answer is taken, and how long it may take.
 struct ExploreLimits {
   int min_contacts{1};        // with the plate, or each alternative
@@ -90,6 +99,7 @@ struct ExploreLimits {
   double min_seconds{0.0};
   std::optional<double> max_seconds;
   AtLimit at_limit{AtLimit::requeue};
+  std::optional<Intervals> intervals{};  // nullopt: alternatives are switched freely
 };
 
 // Trials with a stimulus that nobody should mistake, at random places among a block's: they show

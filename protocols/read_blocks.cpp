@@ -37,6 +37,16 @@ std::vector<std::string> task_names() {
   return names;
 }
 
+void read_intervals(MapReader& explore, ExploreLimits& limits) {
+  explore.map("intervals", Presence::optional, [&](MapReader& reader) {
+    Intervals intervals;
+    intervals.seconds = reader.number("seconds", Range::positive(60.0));
+    intervals.gap_seconds = reader.number("gap_seconds", {0.0, 60.0}, intervals.gap_seconds);
+    intervals.max_replays = reader.integer("max_replays", 0, 100, intervals.max_replays);
+    limits.intervals = intervals;
+  });
+}
+
 // How often a real plate is touched is not measured.
 ExploreLimits read_explore(MapReader& block, Presented presented) {
   ExploreLimits limits;
@@ -58,6 +68,7 @@ ExploreLimits read_explore(MapReader& block, Presented presented) {
     }
     limits.at_limit = reader.one_of<AtLimit>(
         "at_limit", {{"requeue", AtLimit::requeue}, {"give_up", AtLimit::give_up}}, "requeue");
+    read_intervals(reader, limits);
   });
   return limits;
 }
@@ -125,6 +136,26 @@ void read_practice(MapReader& reader, Block& block) {
   });
   if (block.criterion && !block.is_practice) {
     reader.reject("criterion", "is for practice: it ends a block by how well it is answered");
+  }
+}
+
+// What is one after the other cannot be of one thing, nor be changed while it is felt.
+void check_intervals(MapReader& reader, const Block& block) {
+  if (!block.explore.intervals) {
+    return;
+  }
+  const auto trials = block.task->trials(block, {});
+  if (trials.empty()) {
+    return;
+  }
+  const bool is_of_several = trials.front().alternatives.size() > 1;
+  if (!is_of_several || block.task->settings(trials.front(), block)) {
+    reader.reject("explore",
+                  fmt::format("intervals: the alternatives of a {} block cannot come one after the "
+                              "other: {}",
+                              block.task->name(),
+                              is_of_several ? "the last is changed while it is felt"
+                                            : "a trial has only one"));
   }
 }
 
@@ -231,6 +262,7 @@ void check_block(MapReader& reader, const Block& block, const Protocol& protocol
   if (block.task != nullptr && !block.stimuli.empty()) {
     check_constraints(reader, block);
     check_labels_differ(reader, protocol, block);
+    check_intervals(reader, block);
     check_criterion(reader, block);
   }
   if (std::ranges::find(protocol.blocks, block.name, &Block::name) != protocol.blocks.end()) {

@@ -1,5 +1,6 @@
 #pragma once
 #include <optional>
+#include <string_view>
 #include <vector>
 
 #include "core/haptic_state.hpp"
@@ -10,6 +11,10 @@ namespace tapstudy::results {
 // a longer time: the impact is noted once more as late_impact. A tick with a fault yields no event.
 class TraceEvents {
  public:
+  // In SQL: other events of a trial do not follow from its ticks.
+  static constexpr std::string_view kinds =
+      "('switch', 'contact', 'impact', 'late_impact', 'release')";
+
   void add(const core::TraceSample& sample, std::vector<EventRow>& events);
 
  private:

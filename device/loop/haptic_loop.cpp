@@ -129,11 +129,14 @@ TickFault HapticLoop::fault_of_time(Nanoseconds woke_at, Nanoseconds elapsed) no
   return gives_up ? TickFault::too_late : TickFault::none;
 }
 
-void HapticLoop::take_requested_alternative() noexcept {
+void HapticLoop::take_requests() noexcept {
   const std::size_t wanted = requested_.load(std::memory_order_acquire);
-  if (wanted != current_ && !alternatives_[current_].is_touching()) {
+  const bool is_silence_wanted = silence_requested_.load(std::memory_order_acquire);
+  const bool is_change = wanted != current_ || is_silence_wanted != is_silent_;
+  if (is_change && !alternatives_[current_].is_touching()) {
     alternatives_[wanted].take_over_from(alternatives_[current_]);
     current_ = wanted;
+    is_silent_ = is_silence_wanted;
   }
 }
 
@@ -152,7 +155,7 @@ core::TraceSample HapticLoop::unread_sample(Nanoseconds now) const noexcept {
 }
 
 core::TraceSample HapticLoop::tick(Nanoseconds now, Nanoseconds elapsed) noexcept {
-  take_requested_alternative();
+  take_requests();
   core::TraceSample sample = unread_sample(now);
   core::HandState hand{as_vector(sample.position_m), as_vector(sample.velocity_m_s)};
   const double elapsed_s = 1e-9 * static_cast<double>(elapsed);
@@ -188,8 +191,10 @@ double HapticLoop::bridging_share(const DeviceDetail& detail, Nanoseconds elapse
 
 void HapticLoop::render(const core::HandState& hand, double share, double elapsed_s,
                         core::TraceSample& sample) noexcept {
-  const core::RenderedTick rendered =
+  // in silence the contact is followed all the same: force must not begin inside the plate
+  const core::RenderedTick followed =
       alternatives_[current_].tick(settings_.placement.to_plate(hand));
+  const core::RenderedTick rendered = is_silent_ ? core::RenderedTick{} : followed;
   const PassedForce passed =
       gate_.pass(core::Placement::force_to_device(rendered.force_n), hand, elapsed_s, share);
   sample.penetration_m = rendered.contact.penetration_m;

@@ -47,6 +47,11 @@ class HapticLoop {
   void request_alternative(std::size_t index) noexcept {
     requested_.store(index, std::memory_order_release);
   }
+  // May be called from any thread: renders nothing from the next tick without contact on, or
+  // renders again from such a tick on, so that force neither ends nor begins in contact.
+  void request_silence(bool is_silent) noexcept {
+    silence_requested_.store(is_silent, std::memory_order_release);
+  }
   // May be called from any thread: how often the finger has come down on an alternative.
   int contacts(std::size_t alternative) const noexcept {
     return contacts_.at(alternative).load(std::memory_order_acquire);
@@ -79,7 +84,7 @@ class HapticLoop {
   core::TraceSample tick(Nanoseconds now, Nanoseconds elapsed) noexcept;
   void render(const core::HandState& hand, double share, double elapsed_s,
               core::TraceSample& sample) noexcept;
-  void take_requested_alternative() noexcept;
+  void take_requests() noexcept;
   void note_lateness(Nanoseconds woke_at) noexcept;
 
   Device& device_;
@@ -89,9 +94,11 @@ class HapticLoop {
   TickClock& clock_;
   ForceGate gate_;
   std::atomic<std::size_t> requested_{0};
+  std::atomic<bool> silence_requested_{false};
   std::atomic<bool> has_beaten_{false};
   std::atomic<Nanoseconds> ticked_at_{0};
   std::size_t current_{0};
+  bool is_silent_{false};
   std::array<std::atomic<int>, max_alternatives> contacts_{};
   Nanoseconds start_{0};
   Nanoseconds deadline_{0};

@@ -74,12 +74,15 @@ std::vector<Column> columns_of_conduct() {
        " operator actions from the begin of the session"},
       {"kind", text, "",
        "contact, impact, late_impact, release, switch (to an alternative), setting (of the adjusted"
-       " alternative), masking (noise is played), masking_underrun, masking_cut, masking_lost,"
+       " alternative), interval (its go signal), interval_end, interval_replay (of all intervals), "
+       "masking"
+       " (noise is played), masking_underrun, masking_cut, masking_lost,"
        " untraced (no trace was kept)"},
       {"value", real, "",
-       "impact, late_impact: speed in m/s; switch: position of the alternative; setting: in the "
-       "unit of"
-       " the axis; masking: RMS level in dB of full scale; masking_underrun, masking_cut: count; "
+       "impact, late_impact: speed in m/s; switch, interval, interval_end: position of the"
+       " alternative; interval_replay: its number; setting: in the unit of the axis; masking: RMS "
+       "level in "
+       "dB of full scale; masking_underrun, masking_cut: count; "
        "otherwise 0"},
       {"position", integer, "", "Position of the alternative in its trial, from 0"},
       {"label", text, "", "What participants read; of an alternative its blind label"},

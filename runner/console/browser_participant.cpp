@@ -9,6 +9,11 @@
 namespace tapstudy::runner {
 namespace {
 constexpr std::chrono::milliseconds poll_interval{10};
+
+std::optional<IntervalState> intervals(const Exploration& exploration) {
+  const IntervalState* const state = exploration.intervals();
+  return state == nullptr ? std::nullopt : std::optional{*state};
+}
 }
 
 std::int64_t BrowserParticipant::show(Screen screen) {
@@ -78,22 +83,25 @@ void BrowserParticipant::get_ready(const TrialPrompt& prompt) {
 std::int64_t BrowserParticipant::show_trial(const TrialPrompt& prompt,
                                             const Exploration& exploration) {
   const std::size_t current = exploration.current();
-  return show(
-      {.kind = ScreenKind::trial,
-       .trial = TrialScreen{prompt, current, exploration.setting(), notice_, correction_state_},
-       .scene = context_.scene(current)});
+  return show({.kind = ScreenKind::trial,
+               .trial = TrialScreen{prompt, current, exploration.setting(), intervals(exploration),
+                                    notice_, correction_state_},
+               .scene = context_.scene(current)});
 }
 
 std::optional<std::string> BrowserParticipant::perform(const TrialPrompt& prompt,
                                                        Exploration& exploration) {
   constexpr double poll_s = 0.01;
   std::size_t current = exploration.current();
+  auto in_turn = intervals(exploration);
   std::int64_t number = show_trial(prompt, exploration);
   seen_at_ = std::chrono::steady_clock::now();
   while (exploration.is_running() && !stop_was_asked()) {
     pause_if_left();
     auto input = screens_.take(number);
-    const bool is_switched = exploration.current() != current;  // by the operator
+    // by the operator, or as intervals begin and end
+    const bool is_switched =
+        exploration.current() != current || intervals(exploration) != in_turn;
     if (!input && is_switched) {
       input = screens_.close();
     }
@@ -107,6 +115,7 @@ std::optional<std::string> BrowserParticipant::perform(const TrialPrompt& prompt
     if (input || is_switched || follow_correction()) {
       notice_.reset();
       current = exploration.current();
+      in_turn = intervals(exploration);
       number = show_trial(prompt, exploration);
     }
     exploration.pass_time(poll_s);
@@ -120,6 +129,8 @@ void BrowserParticipant::act_on(const ScreenInput& input, const TrialPrompt& pro
     correction_ = prompt.previous->correct(input.text);
   } else if (input.action == ScreenAction::adjust) {
     exploration.adjust(input.value);
+  } else if (input.action == ScreenAction::replay) {
+    exploration.replay();
   } else {
     exploration.switch_to(input.value);
   }

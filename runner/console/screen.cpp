@@ -30,11 +30,17 @@ const char* name(Message message) {
 }
 
 Json json_of(const TooEarly& notice) {
-  constexpr std::array reasons{"plate_untouched", "alternatives_untouched", "time"};
+  constexpr std::array reasons{"intervals", "plate_untouched", "alternatives_untouched", "time"};
   return {{"reason", reasons.at(static_cast<std::size_t>(notice.reason))},
           {"contacts", notice.min_contacts},
           {"labels", notice.labels},
           {"seconds", notice.min_seconds}};
+}
+
+Json json_of(const IntervalState& intervals) {
+  constexpr std::array phases{"gap", "open", "over"};
+  return {{"phase", phases.at(static_cast<std::size_t>(intervals.phase))},
+          {"replays_left", intervals.replays_left}};
 }
 
 Json json_of(const TrialScreen& trial) {
@@ -48,6 +54,7 @@ Json json_of(const TrialScreen& trial) {
       {"alternatives", trial.prompt.alternative_labels},
       {"current", trial.current},
       {"setting", trial.setting},
+      {"intervals", trial.intervals ? json_of(*trial.intervals) : Json{}},
       {"notice", trial.notice ? json_of(*trial.notice) : Json{}}};
 }
 
@@ -120,6 +127,10 @@ bool is_answer(const std::string& text, const TrialScreen& trial) {
                     *answer == std::to_string(trial.setting + 1));
 }
 
+bool can_replay(const IntervalState& intervals) {
+  return intervals.phase == IntervalState::Phase::over && intervals.replays_left > 0;
+}
+
 // A message that only says what happened is read and dismissed.
 bool can_be_dismissed(const Screen& screen) {
   return screen.kind == ScreenKind::message && screen.message != Message::operator_is_needed &&
@@ -133,7 +144,10 @@ bool accepts(const Screen& screen, const ScreenInput& input) {
       return screen.kind == ScreenKind::instructions || screen.kind == ScreenKind::rest ||
              screen.kind == ScreenKind::feedback || can_be_dismissed(screen);
     case ScreenAction::switch_to:
-      return screen.trial && input.value < screen.trial->prompt.alternative_labels.size();
+      return screen.trial && !screen.trial->intervals &&
+             input.value < screen.trial->prompt.alternative_labels.size();
+    case ScreenAction::replay:
+      return screen.trial && screen.trial->intervals && can_replay(*screen.trial->intervals);
     case ScreenAction::adjust:
       return screen.trial && input.value < screen.trial->prompt.answers.settings;
     case ScreenAction::answer:
@@ -151,9 +165,10 @@ bool accepts(const Screen& screen, const ScreenInput& input) {
 }
 
 ScreenInput parse_input(const std::string& text, std::int64_t& screen) {
-  static const std::array<std::pair<std::string, ScreenAction>, 7> actions{
+  static const std::array<std::pair<std::string, ScreenAction>, 8> actions{
       {{"go_on", ScreenAction::go_on},
        {"switch", ScreenAction::switch_to},
+       {"replay_intervals", ScreenAction::replay},
        {"adjust", ScreenAction::adjust},
        {"answer", ScreenAction::answer},
        {"correct", ScreenAction::correct},
@@ -173,7 +188,8 @@ ScreenInput parse_input(const std::string& text, std::int64_t& screen) {
     if (found->second == ScreenAction::answer || found->second == ScreenAction::correct) {
       return {found->second, 0, {}, json.at("value").get<std::string>()};
     }
-    const bool has_value = found->second != ScreenAction::go_on;
+    const bool has_value =
+        found->second != ScreenAction::go_on && found->second != ScreenAction::replay;
     const Json value = has_value ? json.at("value") : Json(0U);
     if (!value.is_number_unsigned()) {
       throw core::InvalidInput{"value is no number"};

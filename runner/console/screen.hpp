@@ -35,6 +35,7 @@ struct TrialScreen {
   TrialPrompt prompt;
   std::size_t current{};  // the alternative that is rendered
   std::size_t setting{};  // of the last alternative, where it has some
+  std::optional<IntervalState> intervals{};  // where alternatives come one after the other
   std::optional<TooEarly> notice;
   CorrectionState correction{CorrectionState::none};
 };
@@ -63,7 +64,7 @@ struct Screen {
 };
 
 // What the participant does with it.
-enum class ScreenAction { go_on, switch_to, adjust, answer, correct, confidence, form };
+enum class ScreenAction { go_on, switch_to, replay, adjust, answer, correct, confidence, form };
 struct ScreenInput {
   ScreenAction action{};
   std::size_t value{};

@@ -2,11 +2,13 @@
 #include <functional>
 
 #include "runner/participants/participant.hpp"
+#include "runner/participants/typed_intervals.hpp"
 #include "runner/terminal/line_input.hpp"
 namespace tapstudy::runner {
 // A person at the terminal. Questions go to stderr, answers come from the input: an answer as
 // protocols::answer_in takes it; in trials with several alternatives, a label to feel that one and
-// "= label" to choose it; where the last of them is set, "+" and "-" move it and "=" answers.
+// "= label" to choose it; where the last of them is set, "+" and "-" move it and "=" answers; where
+// they come one after the other, "again" replays them.
 // "quit" or end of input stops the session; a line that begins with a colon is the operator's.
 class ConsoleParticipant final : public Participant {
  public:
@@ -39,6 +41,9 @@ class ConsoleParticipant final : public Participant {
   // A script cannot be asked to tap first: its next line waits until the plate was touched.
   void let_script_wait(const TrialPrompt& prompt, std::size_t alternative,
                        Exploration& exploration) const;
+  // Or to hear out all intervals.
+  void let_script_attend(const TrialPrompt& prompt, Exploration& exploration);
+  bool passes_time_until(const std::function<bool()>& is_done, Exploration& exploration) const;
   std::optional<std::string> next_line(const TrialPrompt& prompt, Exploration& exploration);
   // "correct 2": whether the word was that.
   bool corrects(const std::string& line, const TrialPrompt& prompt, Exploration& exploration) const;
@@ -51,5 +56,6 @@ class ConsoleParticipant final : public Participant {
   LineInput& input_;
   std::function<void()> move_hand_;
   Obey obey_;
+  std::optional<TypedIntervals> intervals_;  // of the trial
 };
 }  // namespace tapstudy::runner

@@ -20,6 +20,8 @@ std::string to_text(const TooEarly& too_early) {
   const std::string times =
       too_early.min_contacts == 1 ? "" : fmt::format(" {} times", too_early.min_contacts);
   switch (too_early.reason) {
+    case TooEarly::Reason::intervals:
+      return "please feel each of them first: they come one after the other";
     case TooEarly::Reason::plate_untouched:
       return fmt::format("please tap the plate{} first", times);
     case TooEarly::Reason::alternatives_untouched:

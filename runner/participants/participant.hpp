@@ -32,7 +32,7 @@ struct TrialPrompt {
 
 // Why an answer would be too early.
 struct TooEarly {
-  enum class Reason { plate_untouched, alternatives_untouched, time };
+  enum class Reason { intervals, plate_untouched, alternatives_untouched, time };
   Reason reason{};
   int min_contacts{};
   std::vector<std::string> labels{};  // of the alternatives to touch

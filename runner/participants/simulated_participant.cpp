@@ -48,11 +48,16 @@ class SimulatedParticipant::Touch final : public protocols::SimulatedTouch {
         settings_{prompt.answers.settings},
         felt_(std::max<std::size_t>(1, prompt.alternative_labels.size())) {}
   void visit(std::size_t alternative) override {
+    if (exploration_.intervals() != nullptr) {
+      if (visits_[alternative]++ == presentations_) {
+        attend();
+      }
+      return;
+    }
     if (felt_.size() > 1) {
       exploration_.switch_to(alternative);
     }
-    const auto taps = self_.tap(exploration_, self_.person_.taps.taps_per_visit);
-    felt_.at(alternative).insert(felt_.at(alternative).end(), taps.begin(), taps.end());
+    tap(alternative);
   }
   std::size_t most_similar_stimulus(const std::vector<std::string>& stimuli) override {
     return self_.observer_.most_similar(felt_.front(), stimuli);
@@ -89,9 +94,31 @@ class SimulatedParticipant::Touch final : public protocols::SimulatedTouch {
   core::Rng& rng() override { return self_.hand_rng_; }
 
  private:
+  using Phase = IntervalState::Phase;
+  void tap(std::size_t alternative) {
+    const auto taps = self_.tap(exploration_, self_.person_.taps.taps_per_visit);
+    felt_.at(alternative).insert(felt_.at(alternative).end(), taps.begin(), taps.end());
+  }
+  // All intervals, in the order in which they come; as often as there are replays.
+  void attend() {
+    if (presentations_++ > 0) {
+      exploration_.replay();
+    }
+    while (exploration_.is_running() && exploration_.intervals()->phase != Phase::over) {
+      if (exploration_.intervals()->phase == Phase::open) {
+        tap(exploration_.current());
+      } else {
+        exploration_.pass_time(poll_s);
+      }
+    }
+  }
+
+  static constexpr double poll_s = 0.01;
   SimulatedParticipant& self_;
   Exploration& exploration_;
   std::size_t settings_;
+  std::map<std::size_t, int> visits_;  // asked for, of intervals
+  int presentations_{0};               // of all intervals
   // Noise is drawn with the first question: whoever asks for none leaves the stream as it was.
   SimulatedObserver::Percept percept(std::size_t alternative) {
     while (noise_.size() < felt_.size()) {

@@ -33,6 +33,7 @@ class AdjustedExploration final : public Exploration {
     }
   }
   std::size_t setting() const override { return setting_; }
+  void silence(bool is_silent) override { inner_.silence(is_silent); }
   void pass_time(double seconds) override { inner_.pass_time(seconds); }
   bool is_running() const override { return inner_.is_running(); }
   bool is_rendering() const override { return inner_.is_rendering(); }

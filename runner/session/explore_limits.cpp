@@ -22,6 +22,10 @@ std::optional<TooEarly> too_early(const TrialPrompt& prompt, const std::string& 
                                   const Exploration& exploration) {
   using Reason = TooEarly::Reason;
   const protocols::ExploreLimits& limits = prompt.block->explore;
+  const IntervalState* const intervals = exploration.intervals();
+  if (intervals != nullptr && intervals->phase != IntervalState::Phase::over) {
+    return TooEarly{Reason::intervals};
+  }
   if (prompt.alternative_labels.empty()) {
     if (exploration.contacts(0) < limits.min_contacts) {
       return TooEarly{Reason::plate_untouched, limits.min_contacts};

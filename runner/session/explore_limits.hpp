@@ -19,6 +19,8 @@ class LimitedExploration final : public Exploration {
   std::size_t current() const override { return inner_.current(); }
   void adjust(std::size_t setting) override { inner_.adjust(setting); }
   std::size_t setting() const override { return inner_.setting(); }
+  const IntervalState* intervals() const override { return inner_.intervals(); }
+  void replay() override { inner_.replay(); }
   void pass_time(double seconds) override {
     const double left_s = limits_.max_seconds ? *limits_.max_seconds - time_s() : seconds;
     inner_.pass_time(std::clamp(seconds, 0.0, std::max(0.0, left_s)));

@@ -13,6 +13,8 @@ class OperatedExploration final : public Exploration {
   std::size_t current() const override { return inner_.current(); }
   void adjust(std::size_t setting) override { inner_.adjust(setting); }
   std::size_t setting() const override { return inner_.setting(); }
+  const IntervalState* intervals() const override { return inner_.intervals(); }
+  void replay() override { inner_.replay(); }
   void pass_time(double seconds) override { inner_.pass_time(seconds); }
   // Called continually while anybody waits, so the operator's switches are made here.
   bool is_running() const override {

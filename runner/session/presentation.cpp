@@ -5,6 +5,7 @@
 
 #include "runner/session/adjusted_exploration.hpp"
 #include "runner/session/explore_limits.hpp"
+#include "runner/session/interval_exploration.hpp"
 #include "runner/session/operated_exploration.hpp"
 #include "runner/stimuli/trial_stimuli.hpp"
 #include "runner/terminal/logging.hpp"
@@ -85,16 +86,18 @@ Presentation present(const TrialInView& trial, const SessionParts& parts) {
   Presentation presentation;
   parts.states.enter(SessionState::exploring, trial.trial.number);
   parts.by.trial_begins(trial);
-  std::vector<results::EventRow> settings;
+  std::vector<results::EventRow> events;
   presentation.result = loop.run(stimuli.alternatives, [&](Exploration& exploration) {
-    AdjustedExploration adjusted{exploration, trial.trial, *trial.prompt.block, settings};
+    AdjustedExploration adjusted{exploration, trial.trial, *trial.prompt.block, events};
+    IntervalExploration in_turn{adjusted, trial.prompt.block->explore,
+                                trial.prompt.alternative_labels.size(), events};
     try {
-      ask(trial, adjusted, parts, presentation);
+      ask(trial, in_turn, parts, presentation);
     } catch (...) {
       presentation.failure = std::current_exception();
     }
   });
-  add_in_time(settings, presentation.result.trace.events);
+  add_in_time(events, presentation.result.trace.events);
   parts.by.trial_is_over(presentation.request);
   parts.by.force_is(loop.is_force_off() ? ForceState::off : ForceState::unknown);
   if (presentation.result.loop.stop == device::StopOutcome::unconfirmed) {

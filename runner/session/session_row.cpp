@@ -60,7 +60,12 @@ double simulated_trial_s(const protocols::Protocol& protocol, const protocols::B
   const double run_up_m = 0.5 * taps.hover_m;  // at half the speed on average
   const double tap_s =
       (taps.hover_m + run_up_m + taps.press_m) / taps.speed_m_s + taps.dwell_s + taps.pause_s;
-  return tap_s * taps.taps_per_visit * block.task->visits(block, taps);
+  const double taps_s = tap_s * taps.taps_per_visit * block.task->visits(block, taps);
+  if (const auto& intervals = block.explore.intervals) {
+    const int visits = block.task->visits(block, taps);
+    return visits * intervals->gap_seconds + std::max(taps_s, visits * intervals->seconds);
+  }
+  return taps_s;
 }
 
 void check_trial_length(const protocols::Protocol& protocol) {

@@ -2,6 +2,15 @@
 #include <cstddef>
 #include <functional>
 namespace tapstudy::runner {
+// Where a trial is whose alternatives come one after the other: before one of them, in its
+// interval, or behind the last.
+struct IntervalState {
+  enum class Phase { gap, open, over };
+  Phase phase{Phase::gap};
+  int replays_left{};
+  bool operator==(const IntervalState& other) const = default;
+};
+
 // What a participant can do while a trial's alternatives are rendered.
 class Exploration {
  public:
@@ -17,6 +26,12 @@ class Exploration {
   // Sets the last alternative, where it has settings, to one of them, from 0, and switches to it.
   virtual void adjust(std::size_t /*setting*/) {}
   virtual std::size_t setting() const { return 0; }
+  // Lets nothing be felt, or something again, from the next moment without contact on.
+  virtual void silence(bool /*is_silent*/) {}
+  // nullptr: alternatives are switched freely.
+  virtual const IntervalState* intervals() const { return nullptr; }
+  // All intervals once more, where the last is over and replays are left.
+  virtual void replay() {}
   // How often the finger has come down on an alternative, as it is set.
   virtual int contacts(std::size_t alternative) const = 0;
 };

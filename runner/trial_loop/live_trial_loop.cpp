@@ -20,6 +20,7 @@ class LiveExploration final : public Exploration {
     loop_.request_alternative(alternative);
   }
   std::size_t current() const override { return current_; }
+  void silence(bool is_silent) override { loop_.request_silence(is_silent); }
   void pass_time(double seconds) override {
     const auto until = std::chrono::steady_clock::now() + std::chrono::duration<double>{seconds};
     while (is_running() && std::chrono::steady_clock::now() < until) {

@@ -16,6 +16,7 @@ class VirtualExploration final : public Exploration {
     loop_.request_alternative(alternative);
   }
   std::size_t current() const override { return current_; }
+  void silence(bool is_silent) override { loop_.request_silence(is_silent); }
   void pass_time(double seconds) override {
     auto left = static_cast<std::int64_t>(std::llround(seconds / period_s_));
     while (left > 0 && is_running()) {

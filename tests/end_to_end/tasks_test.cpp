@@ -88,6 +88,59 @@ TEST_CASE("alternatives that are physically the same are told apart by chance in
   CHECK(first == Approx(0.5).margin(4.0 * 0.5 / std::sqrt(9.0 * 240.0)));
 }
 
+TEST_CASE("at the terminal alternatives come by themselves, and again where the protocol allows it",
+          "[end_to_end]") {
+  const TempDirectory directory;
+  const std::string file = directory / "study.yaml";
+  testing::write(
+      file,
+      testing::replaced(
+          testing::replaced(testing::contents(testing::source("tests/data/same_alternatives.yaml")),
+                            "stimuli: [family]\n",
+                            "stimuli: [family]\n    explore: {intervals: "
+                            "{seconds: 0.8, gap_seconds: 0.2, "
+                            "max_replays: 1}}\n"),
+          "repetitions: 240", "repetitions: 3"));
+  const auto result = session(directory, file, "A\nagain\nagain\n= A\n= B\nquit\n");
+  INFO(result.standard_error);
+  CHECK_THAT(result.standard_error,
+             Contains("come one after the other, for 0.8 s each") && Contains("now A: tap it") &&
+                 Contains("now B: tap it") && Contains("your answer, or again (left: 1)") &&
+                 Contains("please type = and a label to choose it, or quit") &&
+                 Contains("they do not come again"));
+  CHECK(sql(directory, "SELECT group_concat(response, '') FROM response") == "AB\n");
+  CHECK(sql(directory,
+            "SELECT group_concat(kind || round(value), ' ') FROM event WHERE trial_id = 1 AND "
+            "(kind LIKE 'interval%' OR kind = 'replay')") ==
+        "interval0.0 interval_end0.0 interval1.0 interval_end1.0 replay1.0 "
+        "interval0.0 interval_end0.0 interval1.0 interval_end1.0\n");
+  // nothing is felt out of an interval once the finger has left the plate
+  CHECK(sql(directory,
+            "SELECT count(*) FROM event AS felt WHERE kind = 'contact' AND (SELECT kind FROM event "
+            "AS told WHERE told.trial_id = felt.trial_id AND told.t_s < felt.t_s - 0.02 AND "
+            "(told.kind LIKE 'interval%') ORDER BY t_s DESC LIMIT 1) IS NOT 'interval'") == "0\n");
+  CHECK(testing::tapstudy({"verify", directory / "study"}).exit_code == 0);
+}
+
+TEST_CASE("intervals are refused where a trial has one alternative or one that is changed",
+          "[end_to_end]") {
+  const TempDirectory directory;
+  const std::string file = directory / "study.yaml";
+  const std::string text = testing::contents(testing::source("tests/data/every_task.yaml"));
+  for (const auto* const task : {"adjustment", "rating"}) {
+    const std::string free = "explore: {min_contacts: 0}";
+    std::string changed = text;
+    changed.replace(text.find(free, text.find(fmt::format("task: {}", task))), free.size(),
+                    "explore: {intervals: {seconds: 1}}");
+    testing::write(file, changed);
+    const auto result = testing::tapstudy({"check", file});
+    CAPTURE(task);
+    CHECK(result.exit_code == 2);
+    CHECK_THAT(result.standard_error,
+               Contains("explore: intervals: the alternatives of a " + std::string{task}));
+  }
+}
+
 TEST_CASE("a magnitude does not depend on the name of what was felt", "[end_to_end][slow]") {
   const TempDirectory directory;
   const std::string file = directory / "study.yaml";

@@ -8,7 +8,7 @@ import unittest
 from pathlib import Path
 
 import browser
-from program import PROGRAM, Session
+from program import PROGRAM, SOURCE, Session
 
 SHOTS = os.environ.get("TAPSTUDY_SHOTS")
 DISCRIMINATION = ["acrylic_two", "mdf_two", "acrylic_three", "mdf_three"]
@@ -303,6 +303,51 @@ class WholeSession(unittest.TestCase):
         self.assertEqual(answers["magnitude"], "12.5,13.5")  # and its correction
         self.assertEqual(answers["with_modulus"], "12.5")
         self.assertEqual(answers["rating"], "1")
+
+    def test_alternatives_come_by_themselves_and_once_more(self):
+        study = Path(tempfile.mkdtemp(prefix="tapstudy_intervals_"))
+        self.addCleanup(shutil.rmtree, study)
+        text = (SOURCE / "tests/data/same_alternatives.yaml").read_text()
+        before = text.split("blocks:\n")[0]
+        (study / "study.yaml").write_text(before + """blocks:
+  - name: triangle
+    task: odd_one_out
+    question: "Which is odd?"
+    stimuli: [one, other]
+    explore: {intervals: {seconds: 0.8, gap_seconds: 0.4, max_replays: 1}}
+""")
+        self.start(study / "study.yaml", width=375, height=800)
+        phase = lambda: self.driver.execute_script(
+            "const go = document.querySelector('.go'); return go && [go.dataset.phase, go.textContent]")
+        seen = []
+
+        def follow_until_over():
+            def is_over():
+                now = phase()
+                if now and (not seen or seen[-1] != now):
+                    seen.append(now)
+                return now and now[0] == "over"
+            browser.wait_until(self.driver, "the end of the intervals", is_over, 60)
+        self.next_trial(1)
+        browser.answer_by_keyboard(self.driver, 0)
+        browser.wait_for_status(self.driver, "one after the other")
+        self.check_screen("interval")
+        follow_until_over()
+        self.check_screen("intervals_over")
+        browser.find(self.driver, ".replay").click()
+        browser.wait_until(self.driver, "the replay", lambda: phase()[0] != "over")
+        follow_until_over()
+        self.assertFalse(browser.find(self.driver, ".replay").is_displayed())
+        now = [words for state, words in seen if state == "open"]
+        self.assertEqual(now, ["Now tap A.", "Now tap B.", "Now tap C."] * 2)
+        for number in range(1, 7):
+            if number > 1:
+                self.next_trial(number)
+                follow_until_over()
+            browser.answer_by_keyboard(self.driver, 1)
+        self.finish()
+        told = self.session.rows("SELECT kind, count(*) FROM event WHERE kind IN ('interval', 'interval_end', 'interval_replay') GROUP BY kind")
+        self.assertEqual(dict(told), {"interval": 21, "interval_end": 21, "interval_replay": 1})
 
     def test_a_page_that_vanishes_comes_back_to_the_same_question(self):
         self.start("protocols/paper/discrimination.yaml")

@@ -46,13 +46,19 @@ function setBusy(isBusy) {
 const send = (action, value) => outbox.send({ screen: screen.number, action, value });
 
 // What is neither an answer nor waits for one. A press that crossed a new screen of the same trial
-// is sent once more.
+// is sent once more, as soon as that screen is here.
+async function screenAfter(number) {
+  for (let waits = 0; waits < 20 && screen.number === number; waits += 1) {
+    await new Promise((resolve) => setTimeout(resolve, 50));
+  }
+}
 async function actBeside(action, value, failed) {
   const input = () => ({ screen: screen.number, action, value });
   const before = shown;
   try {
     const first = input();
     let verdict = await post(first);
+    if (!verdict.accepted) await screenAfter(first.screen);
     if (!verdict.accepted && shown === before && screen.number !== first.screen) verdict = await post(input());
     if (!verdict.accepted && shown === before) say(word("not_accepted", { why: verdict.why ?? "" }));
     return verdict.accepted;
@@ -62,6 +68,7 @@ async function actBeside(action, value, failed) {
   }
 }
 const feel = (alternative) => actBeside("switch", alternative, "not_switched");
+const replay = () => actBeside("replay_intervals", null, "not_switched");
 const adjust = (setting) => actBeside("adjust", setting, "not_switched");
 const correct = (text) => actBeside("correct", text, "correction_failed");
 
@@ -87,7 +94,7 @@ function settle() {
 
 function mount(key) {
   shown?.leave?.();
-  shown = (makers[screen.kind] ?? textScreen)(screen, { send, feel, adjust, correct, say });
+  shown = (makers[screen.kind] ?? textScreen)(screen, { send, feel, adjust, replay, correct, say });
   shown.key = key;
   byId("screen").replaceChildren(shown.element);
   window.scrollTo(0, 0);
@@ -95,9 +102,11 @@ function mount(key) {
   settle();
 }
 
-// A notice that came again is said again.
+// A notice that came again is said again. It stays as long as intervals go on by themselves.
 function showNotice(isNewScreen) {
   const text = noticeText(screen.trial?.notice);
+  const isBetween = ["gap", "open"].includes(screen.trial?.intervals?.phase);
+  if (isBetween && !isNewScreen && !text) return;
   if (isNewScreen || text || notice) say(text);
   notice = text;
 }

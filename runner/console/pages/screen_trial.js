@@ -2,6 +2,7 @@
 
 import { answerField, cardOf, otherAnswer } from "./answer_fields.js";
 import { el } from "./dom.js";
+import { goSignal, intervalCard, showInterval } from "./intervals.js";
 import { question } from "./question.js";
 import { newGroupName } from "./radio_cards.js";
 import { word } from "./words.js";
@@ -27,17 +28,29 @@ function hint(labels, { kind, modulus }) {
     el("span", { className: "keys" }, word("feel_keys", { keys }), kind === "setting" ? ` ${word("setting_keys", { label: labels.at(-1) })}` : ""));
 }
 
-function alternativeCards(labels, options, feel) {
+function alternativeCards(labels, options, makeCard) {
   const group = newGroupName();
-  const cards = labels.map((label, index) =>
-    alternativeCard({ label, index, option: options.indexOf(label), group, feel }));
+  const cards = labels.map((label, index) => makeCard({ label, index, option: options.indexOf(label), group }));
   return el("div", { className: "alternatives" }, ...cards);
 }
 
-function showCurrent(element, current) {
+// Freely: a button to feel each of them.
+function freely({ trial, feel }) {
+  const labels = trial.alternatives;
+  const cards = alternativeCards(labels, trial.answers.options, (card) => alternativeCard({ ...card, feel }));
+  return { body: [hint(labels, trial.answers), cards], show: showCurrent };
+}
+
+function showCurrent(element, { current }) {
   element.querySelectorAll(".feel").forEach((button, index) => {
     button.setAttribute("aria-pressed", String(index === current));
   });
+}
+
+// One after the other, by themselves.
+function inTurn({ trial, replay }) {
+  const cards = alternativeCards(trial.alternatives, trial.answers.options, intervalCard);
+  return { body: [goSignal(replay), cards], show: showInterval };
 }
 
 // The last answer, as long as it may be corrected.
@@ -48,31 +61,30 @@ function lastAnswer(answers, say, correct) {
     ...otherAnswer(answers, say, correct));
 }
 
-export function trialScreen({ trial }, { send, feel, adjust, correct, say }) {
+export function trialScreen({ trial }, { send, feel, adjust, replay, correct, say }) {
   const labels = trial.alternatives ?? [];
-  let current = trial.current;
+  let { current } = trial;
   const feelOther = (index) => { if (index !== current) feel(index); };
   const { answers } = trial;
+  const presented = trial.intervals ? inTurn({ trial, replay }) : freely({ trial, feel: feelOther });
   const field = answerField(answers, {
     isBesideAlternatives: labels.includes(answers.options[0]), label: labels.at(-1), setting: trial.setting, adjust, say,
   });
   const asked = question({
     title: trial.question,
     className: "trial",
-    body: labels.length > 0
-      ? [hint(labels, answers), alternativeCards(labels, answers.options, feelOther), ...field.body]
-      : field.body,
+    body: labels.length > 0 ? [...presented.body, ...field.body] : field.body,
     say,
     answerIn: field.answerIn,
     missing: field.missing,
     send: (value) => send("answer", value),
   });
   if (trial.previous) asked.element.append(lastAnswer(trial.previous, say, correct));
-  showCurrent(asked.element, current);
+  presented.show(asked.element, trial);
 
   function press(key) {
     const index = labels.findIndex((label, at) => letterOf(label, at) === key.toLowerCase());
-    if (index < 0) return field.press(asked.element, key);
+    if (index < 0 || trial.intervals) return field.press(asked.element, key);
     feelOther(index);
     return true;
   }
@@ -82,10 +94,11 @@ export function trialScreen({ trial }, { send, feel, adjust, correct, say }) {
   function update(screen) {
     current = screen.trial.current;
     field.update?.(screen.trial.setting);
-    if (!screen.trial.correction) return showCurrent(asked.element, current);
-    asked.element.querySelector(".previous")?.removeAttribute("open");
-    say(word(`correction_${screen.trial.correction}`));
-    showCurrent(asked.element, current);
+    if (screen.trial.correction) {
+      asked.element.querySelector(".previous")?.removeAttribute("open");
+      say(word(`correction_${screen.trial.correction}`));
+    }
+    presented.show(asked.element, screen.trial);
   }
   return { ...asked, press, update };
 }

@@ -225,6 +225,38 @@ TEST_CASE("a switch in the very tick of entry loses neither contact nor impact",
   CHECK(entry.impact);
 }
 
+TEST_CASE("silence begins and ends off the plate, and no force begins inside it",
+          "[device][loop][safety]") {
+  Bench bench;
+  device::HapticLoop loop = bench.loop();
+  loop.run_ticks(3);
+  loop.request_silence(true);
+  loop.run_ticks(3);
+  CHECK(bench.samples().back().touching);  // the finger is still in
+  bench.hand.height_m = 0.001;
+  loop.run_ticks(2);
+  bench.samples();
+  bench.hand.height_m = -0.002;
+  loop.run_ticks(3);
+  loop.request_silence(false);
+  loop.request_alternative(1);
+  loop.run_ticks(3);  // the finger is in, but has felt nothing
+  for (const core::TraceSample& sample : bench.samples()) {
+    CHECK_FALSE(sample.touching);
+    CHECK_FALSE(sample.impact);
+    CHECK(sample.force_n == std::array<double, 3>{});
+    CHECK(sample.alternative == 0);
+  }
+  CHECK(loop.contacts(0) == 1);
+  bench.hand.height_m = 0.001;
+  loop.run_ticks(2);
+  bench.hand.height_m = -0.002;
+  loop.run_ticks(2);
+  const core::TraceSample felt = bench.samples().back();
+  CHECK(felt.alternative == 1);
+  CHECK(felt.force_n[1] > 0.0);
+}
+
 TEST_CASE("samples that find no room are counted", "[device][loop]") {
   Bench bench{16};
   device::HapticLoop loop = bench.loop();

@@ -11,7 +11,7 @@ namespace {
 Screen trial_screen() {
   TrialPrompt prompt;
   prompt.answers.options = {{"mdf", "MDF"}, {"acrylic", "acrylic"}};
-  return {.kind = ScreenKind::trial, .trial = TrialScreen{prompt, 0, 0, {}}};
+  return {.kind = ScreenKind::trial, .trial = TrialScreen{.prompt = prompt, .notice = {}}};
 }
 const ScreenInput first{ScreenAction::answer, 0, {}, "1"};
 const ScreenInput second{ScreenAction::answer, 0, {}, "2"};
@@ -90,7 +90,7 @@ TEST_CASE("a setting is taken as one of those there are, and answered only as it
   prompt.alternative_labels = {"A", "B"};
   prompt.answers = {protocols::AnswerKind::setting};
   prompt.answers.settings = 5;
-  const Screen trial{.kind = ScreenKind::trial, .trial = TrialScreen{prompt, 1, 3, {}}};
+  const Screen trial{.kind = ScreenKind::trial, .trial = TrialScreen{.prompt = prompt, .current = 1, .setting = 3, .notice = {}}};
   CHECK(accepts(trial, {ScreenAction::adjust, 4}));
   CHECK_FALSE(accepts(trial, {ScreenAction::adjust, 5}));
   CHECK(accepts(trial, {ScreenAction::answer, 0, {}, "4"}));

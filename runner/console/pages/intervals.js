@@ -1,0 +1,32 @@
+// Alternatives that come one after the other: which one is to be tapped now.
+
+import { el } from "./dom.js";
+import { cardOf } from "./answer_fields.js";
+import { word } from "./words.js";
+
+export function intervalCard({ label, option, group }) {
+  const name = el("span", { className: "interval" }, word("interval", { label }));
+  if (option < 0) return el("div", { className: "alternative only-felt" }, name);
+  return el("div", { className: "alternative" }, name, cardOf({ group, option, label }));
+}
+
+// The line that says what to do, and the button for all of them once more.
+export function goSignal(replay) {
+  return el("div", { className: "go-signal" },
+    el("p", { className: "go", role: "status" }),
+    el("button", { type: "button", className: "replay", hidden: true, onclick: replay }));
+}
+
+export function showInterval(element, { intervals, alternatives, current }) {
+  const { phase, replays_left: left } = intervals;
+  const line = element.querySelector(".go");
+  const text = word(`interval_${phase}`, { label: alternatives[current] });
+  if (line.textContent !== text) line.textContent = text;
+  line.dataset.phase = phase;
+  element.querySelectorAll(".interval").forEach((name, at) => {
+    name.toggleAttribute("data-open", phase === "open" && at === current);
+  });
+  const button = element.querySelector(".replay");
+  button.hidden = phase !== "over" || left === 0;
+  button.textContent = word("replay", { count: left });
+}

@@ -1,0 +1,211 @@
+// How a person at the terminal explores and answers a trial.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "results/store_error.hpp"
+#include "runner/participants/console_participant.hpp"
+#include "runner/participants/typed_answers.hpp"
+#include "runner/terminal/say.hpp"
+#include "runner/terminal/stop_signal.hpp"
+namespace tapstudy::runner {
+namespace {
+constexpr double script_patience_s = 60.0;
+
+std::optional<std::size_t> index_of(const std::string& label,
+                                    const std::vector<std::string>& labels) {
+  const auto found = std::ranges::find(labels, label);
+  return found == labels.end() ? std::nullopt
+                               : std::optional{static_cast<std::size_t>(found - labels.begin())};
+}
+}  // namespace
+
+void ConsoleParticipant::get_ready(const TrialPrompt& prompt) {
+  move_hand_();
+  if (input_.forget_typed_ahead()) {
+    ask_to_stop();
+  }
+  say("\nTrial {} of {}{}. {}\n", prompt.number, prompt.total,
+      prompt.block->is_practice ? " (practice)" : "", prompt.block->question);
+  if (prompt.previous) {
+    say("  (correct and {}: what your last answer should have been)\n",
+        expected_answer(prompt.previous->answers));
+  }
+  const bool are_named = prompt.answers_name_alternatives();
+  const std::vector<protocols::Option>& options = prompt.answers.options;
+  for (std::size_t i = 0; !are_named && i < options.size(); ++i) {
+    say("  {}  {}\n", i + 1, options[i].label);
+  }
+  intervals_.emplace(prompt);
+  if (!prompt.alternative_labels.empty()) {
+    const std::string how = how_they_come(prompt);
+    say("{}{}\n",
+        how.empty() ? fmt::format("  {}: feel that one.", fmt::join(prompt.alternative_labels, ", "))
+                    : how,
+        how_to_answer(prompt));
+  }
+  if (prompt.answers.modulus) {
+    say("  {} is {}\n", prompt.alternative_labels.front(), *prompt.answers.modulus);
+  }
+}
+
+std::optional<std::string> ConsoleParticipant::next_line(const TrialPrompt& prompt,
+                                                         Exploration& exploration) {
+  while (true) {
+    say("> ");
+    const auto line = next_of_participant([&] {
+      intervals_->announce(exploration);
+      return exploration.is_running();
+    });
+    if (!line || asks_to_quit(*line)) {
+      return std::nullopt;
+    }
+    if (!corrects(*line, prompt, exploration)) {
+      return line;
+    }
+  }
+}
+
+bool ConsoleParticipant::corrects(const std::string& line, const TrialPrompt& prompt,
+                                  Exploration& exploration) const {
+  constexpr std::string_view command{"CORRECT"};
+  if (!prompt.previous || !upper_case_without_spaces(line).starts_with(command)) {
+    return false;
+  }
+  const std::string text = line.substr(std::min(line.size(), line.find_first_of("tT") + 1));
+  const auto answer = answer_in(text, prompt.previous->answers);
+  if (!answer) {
+    say("  please type correct and {}\n", expected_answer(prompt.previous->answers));
+    return true;
+  }
+  const std::shared_future<void> stored = prompt.previous->correct(text);
+  while (stored.wait_for(std::chrono::seconds{0}) != std::future_status::ready &&
+         exploration.is_running()) {
+    exploration.pass_time(0.01);
+  }
+  try {
+    stored.get();
+    say("  your last answer is now {}\n", label_of_answer(*answer, prompt.previous->answers));
+  } catch (const results::StoreError& error) {
+    say("  your last answer is not corrected: {}\n", error.what());
+  }
+  return true;
+}
+
+std::optional<std::string> ConsoleParticipant::perform(const TrialPrompt& prompt,
+                                                       Exploration& exploration) {
+  return prompt.alternative_labels.empty() ? answer_by_itself(prompt, exploration)
+                                           : answer_among_alternatives(prompt, exploration);
+}
+
+bool ConsoleParticipant::passes_time_until(const std::function<bool()>& is_done,
+                                           Exploration& exploration) const {
+  constexpr double step_s = 0.005;
+  if (input_.is_terminal() || !exploration.is_running() || stop_was_asked() || is_done()) {
+    return false;
+  }
+  exploration.pass_time(step_s);
+  return true;
+}
+
+void ConsoleParticipant::let_script_wait(const TrialPrompt& prompt, std::size_t alternative,
+                                         Exploration& exploration) const {
+  const protocols::ExploreLimits& limits = prompt.block->explore;
+  const auto is_done = [&] {
+    return exploration.contacts(alternative) >= limits.min_contacts &&
+           exploration.time_s() >= limits.min_seconds;
+  };
+  const double until_s = exploration.time_s() + script_patience_s + limits.min_seconds;
+  while (passes_time_until(is_done, exploration)) {
+    if (exploration.time_s() > until_s) {
+      say("  the plate was tapped {} of {} times in {:.0f} s: nobody is there\n",
+          exploration.contacts(alternative), limits.min_contacts, script_patience_s);
+      ask_to_stop();
+    }
+  }
+}
+
+void ConsoleParticipant::let_script_attend(const TrialPrompt& prompt, Exploration& exploration) {
+  const IntervalState* const state = exploration.intervals();
+  if (state == nullptr) {
+    return;
+  }
+  const double lasts_s = static_cast<double>(prompt.alternative_labels.size()) *
+                         (prompt.block->explore.intervals->seconds +
+                          prompt.block->explore.intervals->gap_seconds);
+  const double until_s = exploration.time_s() + script_patience_s + lasts_s;
+  const auto is_over = [&] { return state->phase == IntervalState::Phase::over; };
+  while (passes_time_until(is_over, exploration)) {
+    intervals_->announce(exploration);
+    if (exploration.time_s() > until_s) {
+      say("  an interval was not tapped in for {:.0f} s: nobody is there\n", script_patience_s);
+      ask_to_stop();
+    }
+  }
+}
+
+std::optional<std::string> ConsoleParticipant::answer_by_itself(const TrialPrompt& prompt,
+                                                                Exploration& exploration) {
+  while (const auto line = next_line(prompt, exploration)) {
+    if (auto answer = answer_typed(*line, prompt, exploration)) {
+      let_script_wait(prompt, 0, exploration);
+      return answer;
+    }
+    say("  please type {}, or quit\n", expected_answer(prompt.answers));
+  }
+  return std::nullopt;
+}
+
+std::optional<std::string> ConsoleParticipant::answer_among_alternatives(const TrialPrompt& prompt,
+                                                                         Exploration& exploration) {
+  const std::vector<std::string>& labels = prompt.alternative_labels;
+  while (const auto line = next_line(prompt, exploration)) {
+    let_script_attend(prompt, exploration);
+    if (auto answer = answer_typed(*line, prompt, exploration)) {
+      return answer;
+    }
+    if (replays(*line, exploration)) {
+      continue;
+    }
+    const auto alternative = index_of(upper_case_without_spaces(*line), labels);
+    if (alternative && exploration.intervals() == nullptr) {
+      exploration.switch_to(*alternative);
+      say("  now {} (takes effect once the finger is off the plate)\n", labels[*alternative]);
+      let_script_wait(prompt, *alternative, exploration);
+      continue;
+    }
+    if (adjusts(*line, prompt, exploration)) {
+      continue;
+    }
+    say("  please type {}{}, or quit\n",
+        exploration.intervals() == nullptr
+            ? fmt::format("{} to feel one, ", fmt::join(labels, ", "))
+            : "",
+        expected_among_alternatives(prompt));
+  }
+  return std::nullopt;
+}
+
+// As far as there are settings.
+bool ConsoleParticipant::adjusts(const std::string& line, const TrialPrompt& prompt,
+                                 Exploration& exploration) const {
+  const auto moved = settings_moved(line);
+  if (prompt.answers.settings == 0 || !moved) {
+    return false;
+  }
+  const auto last = static_cast<std::ptrdiff_t>(prompt.answers.settings) - 1;
+  const auto from = static_cast<std::ptrdiff_t>(exploration.setting());
+  const std::ptrdiff_t to = std::clamp<std::ptrdiff_t>(from + *moved, 0, last);
+  const std::string& label = prompt.alternative_labels.back();
+  if (to == from) {
+    say("  {} goes no further that way\n", label);
+    return true;
+  }
+  exploration.adjust(static_cast<std::size_t>(to));
+  say("  {} is changed (takes effect once the finger is off the plate){}\n", label,
+      to == from + *moved ? "" : fmt::format("; {} goes no further that way", label));
+  let_script_wait(prompt, prompt.alternative_labels.size() - 1, exploration);
+  return true;
+}
+}  // namespace tapstudy::runner

@@ -1,0 +1,45 @@
+#pragma once
+#include <cstddef>
+#include <vector>
+
+#include "protocols/protocol.hpp"
+#include "results/rows.hpp"
+#include "runner/trial_loop/exploration.hpp"
+namespace tapstudy::runner {
+// An exploration whose alternatives come one after the other, each in an interval of its own; with
+// nothing to feel in between. Nobody switches. Each go signal is an event `interval` and each end
+// an event `interval_end`, with the place of the alternative; each replay as `interval_replay`,
+// with its number. Without intervals in the limits nothing is changed.
+class IntervalExploration final : public Exploration {
+ public:
+  IntervalExploration(Exploration& inner, const protocols::ExploreLimits& limits,
+                      std::size_t alternatives, std::vector<results::EventRow>& events);
+  void switch_to(std::size_t alternative) override;
+  std::size_t current() const override { return inner_.current(); }
+  void adjust(std::size_t setting) override { inner_.adjust(setting); }
+  std::size_t setting() const override { return inner_.setting(); }
+  const IntervalState* intervals() const override { return limits_.intervals ? &state_ : nullptr; }
+  void replay() override;
+  void pass_time(double seconds) override;
+  // Called continually while anybody waits, so intervals begin and end here too.
+  bool is_running() const override;
+  bool is_rendering() const override { return inner_.is_rendering(); }
+  double time_s() const override { return inner_.time_s(); }
+  int contacts(std::size_t alternative) const override { return inner_.contacts(alternative); }
+
+ private:
+  void follow() const;
+  void begin_gap(std::size_t next) const;
+  void open() const;
+  void close() const;
+
+  Exploration& inner_;
+  const protocols::ExploreLimits& limits_;
+  std::size_t alternatives_;
+  std::vector<results::EventRow>& events_;
+  mutable IntervalState state_;
+  mutable std::size_t next_{0};  // or the one that is open
+  mutable double until_s_{0.0};  // of the gap or the interval
+  mutable int contacts_before_{0};
+};
+}  // namespace tapstudy::runner

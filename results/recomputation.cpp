@@ -38,12 +38,13 @@ std::vector<StoredTrial> stored_trials(Store& store) {
 
 std::vector<EventRow> stored_events(Store& store, std::int64_t trial_id) {
   std::vector<EventRow> events;
-  store.each_row(fmt::format("SELECT t_s, kind, value FROM event WHERE trial_id = {} AND kind IN {} "
-                             "ORDER BY rowid",
-                             trial_id, TraceEvents::kinds),
-                 [&](Statement& row) {
-                   events.push_back({row.real(0), row.text(1), row.real(2)});
-                 });
+  store.each_row(
+      fmt::format("SELECT t_s, kind, value FROM event WHERE trial_id = {} AND kind IN {} "
+                  "ORDER BY rowid",
+                  trial_id, TraceEvents::kinds),
+      [&](Statement& row) {
+        events.push_back({row.real(0), row.text(1), row.real(2)});
+      });
   return events;
 }
 

@@ -14,7 +14,7 @@ std::optional<IntervalState> intervals(const Exploration& exploration) {
   const IntervalState* const state = exploration.intervals();
   return state == nullptr ? std::nullopt : std::optional{*state};
 }
-}
+}  // namespace
 
 std::int64_t BrowserParticipant::show(Screen screen) {
   screen.progress = progress_;
@@ -100,8 +100,7 @@ std::optional<std::string> BrowserParticipant::perform(const TrialPrompt& prompt
     pause_if_left();
     auto input = screens_.take(number);
     // by the operator, or as intervals begin and end
-    const bool is_switched =
-        exploration.current() != current || intervals(exploration) != in_turn;
+    const bool is_switched = exploration.current() != current || intervals(exploration) != in_turn;
     if (!input && is_switched) {
       input = screens_.close();
     }

@@ -33,8 +33,8 @@ enum class CorrectionState { none, stored, failed };
 
 struct TrialScreen {
   TrialPrompt prompt;
-  std::size_t current{};  // the alternative that is rendered
-  std::size_t setting{};  // of the last alternative, where it has some
+  std::size_t current{};                     // the alternative that is rendered
+  std::size_t setting{};                     // of the last alternative, where it has some
   std::optional<IntervalState> intervals{};  // where alternatives come one after the other
   std::optional<TooEarly> notice;
   CorrectionState correction{CorrectionState::none};

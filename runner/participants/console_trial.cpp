@@ -41,8 +41,9 @@ void ConsoleParticipant::get_ready(const TrialPrompt& prompt) {
   if (!prompt.alternative_labels.empty()) {
     const std::string how = how_they_come(prompt);
     say("{}{}\n",
-        how.empty() ? fmt::format("  {}: feel that one.", fmt::join(prompt.alternative_labels, ", "))
-                    : how,
+        how.empty()
+            ? fmt::format("  {}: feel that one.", fmt::join(prompt.alternative_labels, ", "))
+            : how,
         how_to_answer(prompt));
   }
   if (prompt.answers.modulus) {
@@ -131,9 +132,9 @@ void ConsoleParticipant::let_script_attend(const TrialPrompt& prompt, Exploratio
   if (state == nullptr) {
     return;
   }
-  const double lasts_s = static_cast<double>(prompt.alternative_labels.size()) *
-                         (prompt.block->explore.intervals->seconds +
-                          prompt.block->explore.intervals->gap_seconds);
+  const double lasts_s =
+      static_cast<double>(prompt.alternative_labels.size()) *
+      (prompt.block->explore.intervals->seconds + prompt.block->explore.intervals->gap_seconds);
   const double until_s = exploration.time_s() + script_patience_s + lasts_s;
   const auto is_over = [&] { return state->phase == IntervalState::Phase::over; };
   while (passes_time_until(is_over, exploration)) {

@@ -16,10 +16,11 @@ void TypedIntervals::announce(const Exploration& exploration) {
   if (state->phase == Phase::open) {
     say("\n  now {}: tap it\n> ", labels_.at(exploration.current()));
   } else if (told_ && told_->phase == Phase::open) {
-    say("\n  stop{}\n> ", state->phase == Phase::gap ? "; the next one follows"
-                          : state->replays_left > 0
-                              ? fmt::format("; your answer, or again (left: {})", state->replays_left)
-                              : "; your answer");
+    say("\n  stop{}\n> ",
+        state->phase == Phase::gap ? "; the next one follows"
+        : state->replays_left > 0
+            ? fmt::format("; your answer, or again (left: {})", state->replays_left)
+            : "; your answer");
   }
   told_ = *state;
 }

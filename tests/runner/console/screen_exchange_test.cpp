@@ -90,7 +90,9 @@ TEST_CASE("a setting is taken as one of those there are, and answered only as it
   prompt.alternative_labels = {"A", "B"};
   prompt.answers = {protocols::AnswerKind::setting};
   prompt.answers.settings = 5;
-  const Screen trial{.kind = ScreenKind::trial, .trial = TrialScreen{.prompt = prompt, .current = 1, .setting = 3, .notice = {}}};
+  const Screen trial{
+      .kind = ScreenKind::trial,
+      .trial = TrialScreen{.prompt = prompt, .current = 1, .setting = 3, .notice = {}}};
   CHECK(accepts(trial, {ScreenAction::adjust, 4}));
   CHECK_FALSE(accepts(trial, {ScreenAction::adjust, 5}));
   CHECK(accepts(trial, {ScreenAction::answer, 0, {}, "4"}));

@@ -8,6 +8,7 @@ inline constexpr Range poissons_ratio{-1.0, 0.5, false, false};
 inline constexpr Range alpha_per_s{0.0, 1e6};
 inline constexpr Range beta_s{0.0, 1e3};
 inline constexpr Range damping_ratio{0.0, 100.0};
+inline constexpr Range spring_n_per_m{0.0, 1e12};
 inline constexpr Range edge_m{1e-4, 10.0};
 inline constexpr Range penalty_stiffness_n_per_m{0.0, 1e6, false};
 inline constexpr Range sinusoid_amplitude_n_s_per_m{0.0, 1000.0};

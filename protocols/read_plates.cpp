@@ -21,6 +21,22 @@ std::array<bool, 3> read_axes(MapReader& fixation) {
   return {has('x'), has('y'), has('z')};
 }
 
+// A region is constrained along some axes, or on springs.
+void read_hold(MapReader& reader, core::Fixation& fixation) {
+  if (!reader.has("springs_n_per_m")) {
+    fixation.constrained_axes = read_axes(reader);
+    return;
+  }
+  if (reader.has("axes")) {
+    reader.reject("axes", "not beside springs_n_per_m, whose axes of stiffness 0 are free");
+  }
+  const core::Vec3 springs_n_per_m = reader.numbers("springs_n_per_m", 3, allowed::spring_n_per_m);
+  if (springs_n_per_m.isZero(0.0)) {
+    reader.reject("springs_n_per_m", "holds nothing: every stiffness is 0");
+  }
+  fixation.springs_n_per_m = springs_n_per_m;
+}
+
 void read_place(MapReader& reader, bool is_box, core::Fixation& fixation) {
   if (!is_box) {
     fixation.at_m = reader.numbers("at_m", 3, coordinate_m);
@@ -74,7 +90,7 @@ core::Fixation read_fixation(MapReader& reader, bool is_box) {
   if (fixation.shape == RegionShape::disc || fixation.shape == RegionShape::ball) {
     fixation.radius_m = reader.number("radius_m", Range::positive(10.0));
   }
-  fixation.constrained_axes = read_axes(reader);
+  read_hold(reader, fixation);
   return fixation;
 }
 

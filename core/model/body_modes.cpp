@@ -48,7 +48,8 @@ SolvedBody solve_once(const BodySpec& body, const MeshSize& size, const Progress
   tell(progress, fmt::format("assembling {} tetrahedra", solved.mesh.tets.rows()));
   const FreeDofs dofs = free_dofs(constrained_dofs(solved.mesh, body.shape, body.fixations));
   const Material unit{1.0, 1.0, body.poissons_ratio, {}};
-  const StiffnessAndMass matrices = assemble(solved.mesh, unit, dofs);
+  const StiffnessAndMass matrices =
+      assemble(solved.mesh, unit, dofs, spring_supports(solved.mesh, body.shape, body.fixations));
   report.cost.assemble_s = watch.lap_s();
   const double turn = 2.0 * std::numbers::pi;
   const Modes modes = solve_modes(matrices, body.band_limit_rad_per_m / turn, progress);

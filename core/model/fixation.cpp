@@ -7,13 +7,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <string_view>
 
 #include "core/error.hpp"
 namespace tapstudy::core {
 namespace {
-constexpr int rim_points = 8;
 // A surface from a file has only its own points: the node nearest to a vertex fixation may be this
 // far off, as a fraction of the body's diagonal, because coordinates are typed with few digits.
 constexpr double vertex_reach = 1e-3;
@@ -41,7 +39,7 @@ bool is_on_side(const Vec3& node_m, Side side, const Bounds& body) {
   return std::abs(node_m[axis] - at) <= body.snap_m();
 }
 
-bool constrains_node(const Fixation& fixation, const Vec3& node_m, const Bounds& body) {
+bool selects_node(const Fixation& fixation, const Vec3& node_m, const Bounds& body) {
   const double snap_m = body.snap_m();
   switch (fixation.shape) {
     case RegionShape::vertex:
@@ -67,8 +65,8 @@ int nearest_corner(const TetMesh& mesh, const Vec3& at_m) {
   });
 }
 
-std::vector<Eigen::Index> constrained_nodes(const Fixation& fixation, const TetMesh& mesh,
-                                            const Shape& shape) {
+std::vector<Eigen::Index> selected_nodes(const Fixation& fixation, const TetMesh& mesh,
+                                         const Shape& shape) {
   const Bounds body = bounds(shape);
   std::vector<Eigen::Index> nodes;
   if (fixation.shape == RegionShape::vertex && std::holds_alternative<Solid>(shape)) {
@@ -80,7 +78,7 @@ std::vector<Eigen::Index> constrained_nodes(const Fixation& fixation, const TetM
     return nodes;
   }
   for (Eigen::Index node = 0; node < mesh.nodes_m.rows(); ++node) {
-    if (constrains_node(fixation, mesh.nodes_m.row(node).transpose(), body)) {
+    if (selects_node(fixation, mesh.nodes_m.row(node).transpose(), body)) {
       nodes.push_back(node);
     }
   }
@@ -119,72 +117,6 @@ double held_volume_m3(const TetMesh& mesh, const std::vector<bool>& is_held) {
   return volume_m3;
 }
 
-void add_on_faces(const Vec3& at_m, Face face, const Bounds& body, std::vector<Vec3>& points) {
-  if (face != Face::bottom) {
-    points.emplace_back(at_m.x(), at_m.y(), body.high_m.z());
-  }
-  if (face != Face::top) {
-    points.emplace_back(at_m.x(), at_m.y(), body.low_m.z());
-  }
-}
-
-void add_rim(const Fixation& disc, const Bounds& body, std::vector<Vec3>& points) {
-  for (int i = 0; i < rim_points; ++i) {
-    const double angle = 2.0 * std::numbers::pi * i / rim_points;
-    const Vec3 out{std::cos(angle), std::sin(angle), 0.0};
-    add_on_faces(disc.at_m + disc.radius_m * out, disc.face, body, points);
-  }
-}
-
-void add_corners(const Vec3& low_m, const Vec3& high_m, std::vector<Vec3>& points) {
-  for (int corner = 0; corner < 8; ++corner) {
-    points.emplace_back((corner & 1) == 0 ? low_m.x() : high_m.x(),
-                        (corner & 2) == 0 ? low_m.y() : high_m.y(),
-                        (corner & 4) == 0 ? low_m.z() : high_m.z());
-  }
-}
-
-std::vector<Vec3> wanted_points(const Fixation& fixation, const Bounds& body) {
-  std::vector<Vec3> points;
-  switch (fixation.shape) {
-    case RegionShape::disc:
-      add_on_faces(fixation.at_m, fixation.face, body, points);
-      add_rim(fixation, body, points);
-      break;
-    case RegionShape::vertex:
-      add_on_faces(fixation.at_m, fixation.face, body, points);
-      break;
-    case RegionShape::box:
-      add_corners(fixation.low_m.cwiseMax(body.low_m), fixation.high_m.cwiseMin(body.high_m),
-                  points);
-      break;
-    case RegionShape::ball:
-    case RegionShape::side:
-      break;
-  }
-  return points;
-}
-
-// Snaps points within rounding of a face onto it.
-Vec3 onto_faces(Vec3 point, const Bounds& body) {
-  for (Eigen::Index axis = 0; axis < 3; ++axis) {
-    for (const double face : {body.low_m[axis], body.high_m[axis]}) {
-      if (std::abs(point[axis] - face) <= body.snap_m()) {
-        point[axis] = face;
-      }
-    }
-  }
-  return point;
-}
-
-bool is_on_boundary(const Vec3& point, const Bounds& body) {
-  const bool is_inside =
-      ((point - body.low_m).array() >= 0.0).all() && ((body.high_m - point).array() >= 0.0).all();
-  const bool touches =
-      ((point - body.low_m).array() == 0.0).any() || ((body.high_m - point).array() == 0.0).any();
-  return is_inside && touches;
-}
-
 std::string_view name(Side side) {
   constexpr std::array<std::string_view, 6> names{"left", "right",  "front",
                                                   "back", "bottom", "top"};
@@ -210,41 +142,30 @@ std::string described(const Fixation& fixation) {
 }
 }  // namespace
 
-std::vector<Vec3> points_to_mesh(const std::vector<Fixation>& fixations, const Shape& shape) {
-  std::vector<Vec3> points;
-  if (!std::holds_alternative<Box>(shape)) {
-    return points;
+std::vector<Eigen::Index> nodes_of(const Fixation& fixation, const TetMesh& mesh,
+                                   const Shape& shape) {
+  std::vector<Eigen::Index> nodes = selected_nodes(fixation, mesh, shape);
+  if (nodes.empty()) {
+    const Bounds body = bounds(shape);
+    throw ModelError{fmt::format(
+        "fixation: the {} touches no node of the body (x from {:.4g} to {:.4g} m, y from {:.4g} "
+        "to {:.4g} m, z from {:.4g} to {:.4g} m)",
+        described(fixation), body.low_m.x(), body.high_m.x(), body.low_m.y(), body.high_m.y(),
+        body.low_m.z(), body.high_m.z())};
   }
-  const Bounds body = bounds(shape);
-  for (const Fixation& fixation : fixations) {
-    for (const Vec3& wanted : wanted_points(fixation, body)) {
-      const Vec3 point = onto_faces(wanted, body);
-      if (is_on_boundary(point, body)) {
-        points.push_back(point);
-      }
-    }
-  }
-  return points;
+  return nodes;
 }
 
 std::vector<bool> constrained_dofs(const TetMesh& mesh, const Shape& shape,
                                    const std::vector<Fixation>& fixations) {
   std::vector<bool> held(static_cast<std::size_t>(3 * mesh.nodes_m.rows()), false);
   for (const Fixation& fixation : fixations) {
-    const auto nodes = constrained_nodes(fixation, mesh, shape);
-    for (const Eigen::Index node : nodes) {
+    const auto nodes = nodes_of(fixation, mesh, shape);
+    for (const Eigen::Index node : fixation.springs_n_per_m ? std::vector<Eigen::Index>{} : nodes) {
       for (std::size_t axis = 0; axis < 3; ++axis) {
         const std::size_t dof = 3 * static_cast<std::size_t>(node) + axis;
         held[dof] = held[dof] || fixation.constrained_axes.at(axis);
       }
-    }
-    if (nodes.empty()) {
-      const Bounds body = bounds(shape);
-      throw ModelError{fmt::format(
-          "fixation: the {} touches no node of the body (x from {:.4g} to {:.4g} m, y from {:.4g} "
-          "to {:.4g} m, z from {:.4g} to {:.4g} m)",
-          described(fixation), body.low_m.x(), body.high_m.x(), body.low_m.y(), body.high_m.y(),
-          body.low_m.z(), body.high_m.z())};
     }
   }
   if (std::find(held.begin(), held.end(), false) == held.end()) {
@@ -272,7 +193,7 @@ std::vector<double> held_areas_m2(const TetMesh& mesh, const Shape& shape,
   std::vector<double> areas_m2;
   for (const Fixation& fixation : fixations) {
     std::vector<bool> is_held(static_cast<std::size_t>(mesh.nodes_m.rows()), false);
-    for (const Eigen::Index node : constrained_nodes(fixation, mesh, shape)) {
+    for (const Eigen::Index node : selected_nodes(fixation, mesh, shape)) {
       is_held[static_cast<std::size_t>(node)] = true;
     }
     const double area_m2 = held_area_m2(mesh, is_held);
@@ -282,13 +203,32 @@ std::vector<double> held_areas_m2(const TetMesh& mesh, const Shape& shape,
   return areas_m2;
 }
 
+std::vector<SpringSupport> spring_supports(const TetMesh& mesh, const Shape& shape,
+                                           const std::vector<Fixation>& fixations) {
+  std::vector<SpringSupport> supports;
+  for (const Fixation& fixation : fixations) {
+    if (fixation.springs_n_per_m) {
+      supports.push_back({nodes_of(fixation, mesh, shape), *fixation.springs_n_per_m});
+    }
+  }
+  return supports;
+}
+
+bool is_on_springs(const std::vector<Fixation>& fixations) {
+  return std::ranges::any_of(
+      fixations, [](const Fixation& fixation) { return fixation.springs_n_per_m.has_value(); });
+}
+
 std::string content_key(const Fixation& fixation) {
   const auto exact = [](const Vec3& v) {
     return fmt::format("{:a},{:a},{:a}", v.x(), v.y(), v.z());
   };
+  const std::string held = fixation.springs_n_per_m
+                               ? exact(*fixation.springs_n_per_m)
+                               : fmt::format("{}", fmt::join(fixation.constrained_axes, ""));
   return fmt::format("region{}({},{:a},{},{},{},{},{})", static_cast<int>(fixation.shape),
                      exact(fixation.at_m), fixation.radius_m, static_cast<int>(fixation.face),
                      exact(fixation.low_m), exact(fixation.high_m), static_cast<int>(fixation.side),
-                     fmt::join(fixation.constrained_axes, ""));
+                     held);
 }
 }  // namespace tapstudy::core

@@ -1,8 +1,10 @@
 #pragma once
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "core/model/elements/spring_support.hpp"
 #include "core/model/mesh/tet_mesh.hpp"
 #include "core/model/shape/shape.hpp"
 namespace tapstudy::core {
@@ -14,7 +16,8 @@ enum class Side { left, right, front, back, bottom, top };
 enum class RegionShape { vertex, disc, ball, box, side };
 
 // A boundary condition of the finite element model: a region of the body whose displacement is zero
-// along the constrained axes (a homogeneous Dirichlet condition).
+// along the constrained axes (a homogeneous Dirichlet condition), or that springs hold to the
+// ground (a Robin condition).
 //   vertex  a single node, as in the paper; under mesh refinement its frequencies never settle,
 //           because a point cannot hold a solid
 //   disc    of a plate: a screw's head, round at_m on its faces; does settle
@@ -30,6 +33,8 @@ struct Fixation {
   Vec3 high_m{Vec3::Zero()};                               // box
   Side side{Side::left};                                   // side
   std::array<bool, 3> constrained_axes{true, true, true};  // x y z
+  // Instead of constraints: of the whole region, along x y z; 0: free along that axis.
+  std::optional<Vec3> springs_n_per_m{};
 };
 
 // The points that a box's mesh must contain as nodes so that every fixation selects some:
@@ -37,11 +42,20 @@ struct Fixation {
 // lie on the plate. Surfaces from files keep their own points.
 std::vector<Vec3> points_to_mesh(const std::vector<Fixation>& fixations, const Shape& shape);
 
+// Those that the fixation holds. Throws ModelError if there are none.
+std::vector<Eigen::Index> nodes_of(const Fixation& fixation, const TetMesh& mesh,
+                                   const Shape& shape);
+
 // The constraints that the fixations put on a mesh. One flag a degree of freedom (x0 y0 z0 x1 …):
 // true where it is constrained.
 // Throws ModelError if a fixation touches no node or if nothing is left free.
 std::vector<bool> constrained_dofs(const TetMesh& mesh, const Shape& shape,
                                    const std::vector<Fixation>& fixations);
+
+// The springs among the fixations. Throws ModelError as nodes_of.
+std::vector<SpringSupport> spring_supports(const TetMesh& mesh, const Shape& shape,
+                                           const std::vector<Fixation>& fixations);
+bool is_on_springs(const std::vector<Fixation>& fixations);
 
 // False for points and lines: the frequencies of a solid held by them fall without end as its mesh
 // is refined.

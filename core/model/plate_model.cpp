@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "core/error.hpp"
 #include "core/model/modes/damping.hpp"
@@ -28,8 +29,13 @@ double kappa_rad_per_m(double frequency_hz, const Material& material) {
 }
 
 BodySpec body_of(const PlateSpec& plate) {
-  const Plate& geometry = plate;  // what a body shares with every material
-  return {geometry, plate.material.poissons_ratio,
+  Plate of_unit_material = plate;
+  for (Fixation& fixation : of_unit_material.fixations) {
+    if (fixation.springs_n_per_m) {
+      *fixation.springs_n_per_m /= plate.material.youngs_modulus_pa;
+    }
+  }
+  return {std::move(of_unit_material), plate.material.poissons_ratio,
           kappa_rad_per_m(plate.band_limit_hz, plate.material)};
 }
 

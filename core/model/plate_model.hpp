@@ -4,7 +4,8 @@ namespace tapstudy::core {
 // kappa of a frequency in a material: 2 pi f / sqrt(E / rho).
 double kappa_rad_per_m(double frequency_hz, const Material& material);
 
-// The unit-material body from which a plate's model is scaled, solved up to its band limit.
+// The unit-material body from which a plate's model is scaled, solved up to its band limit; of a
+// plate on springs the body of this Young's modulus.
 BodySpec body_of(const PlateSpec& plate);
 
 // Scales the body to a material: frequencies and mode shapes scaled, damping applied, modes above

@@ -22,6 +22,7 @@ struct Axis {
   AxisKind kind{};
   bool (*is_used_by)(const core::Technique& technique){};  // null: by all
   bool is_of_boxes{};                                      // other shapes cannot vary so
+  bool is_without_springs{};                               // plates on springs do not scale so
   // What the stimulus allows: what the study's own key allows, or less.
   Range (*allowed)(const PresentedStimulus& stimulus){};
   double (*value)(const PresentedStimulus& stimulus){};

@@ -123,54 +123,55 @@ bool has_sinusoid(const core::Technique& technique) {
 const std::vector<Axis>& axes() {
   using P = PresentedStimulus;
   static const std::vector<Axis> table{
-      {"youngs_modulus_pa", "Pa", AxisKind::scaled, vibrates, false,
+      {"youngs_modulus_pa", "Pa", AxisKind::scaled, vibrates, false, true,
        constant<allowed::youngs_modulus_pa>,
        [](const P& stimulus) { return stimulus.material->youngs_modulus_pa; },
        [](P& stimulus, double value) {
          change_material(stimulus, [&](Material& m) { m.youngs_modulus_pa = value; });
        }},
-      {"density_kg_per_m3", "kg/m³", AxisKind::scaled, vibrates, false,
+      {"density_kg_per_m3", "kg/m³", AxisKind::scaled, vibrates, false, false,
        constant<allowed::density_kg_per_m3>,
        [](const P& stimulus) { return stimulus.material->density_kg_per_m3; },
        [](P& stimulus, double value) {
          change_material(stimulus, [&](Material& m) { m.density_kg_per_m3 = value; });
        }},
-      {"damping_scale", "", AxisKind::scaled, vibrates, false, damping_factors,
+      {"damping_scale", "", AxisKind::scaled, vibrates, false, false, damping_factors,
        [](const P& /*stimulus*/) { return 1.0; },
        [](P& stimulus, double value) {
          change_material(stimulus,
                          [&](Material& m) { m.damping = core::scaled(m.damping, value); });
        }},
-      {"vibration_gain", "", AxisKind::scaled, scales_vibration, false, gains,
+      {"vibration_gain", "", AxisKind::scaled, scales_vibration, false, false, gains,
        [](const P& stimulus) { return stimulus.rendering.vibration_gain; },
        [](P& stimulus, double value) { stimulus.rendering.vibration_gain = value; }},
-      {"sinusoid_amplitude_n_s_per_m", "N s/m", AxisKind::scaled, has_sinusoid, false,
+      {"sinusoid_amplitude_n_s_per_m", "N s/m", AxisKind::scaled, has_sinusoid, false, false,
        constant<allowed::sinusoid_amplitude_n_s_per_m>,
        [](const P& stimulus) { return stimulus.rendering.sinusoid.amplitude_n_s_per_m; },
        [](P& stimulus, double value) { stimulus.rendering.sinusoid.amplitude_n_s_per_m = value; }},
-      {"sinusoid_decay_per_s", "1/s", AxisKind::scaled, has_sinusoid, false,
+      {"sinusoid_decay_per_s", "1/s", AxisKind::scaled, has_sinusoid, false, false,
        constant<allowed::sinusoid_decay_per_s>,
        [](const P& stimulus) { return stimulus.rendering.sinusoid.decay_per_s; },
        [](P& stimulus, double value) { stimulus.rendering.sinusoid.decay_per_s = value; }},
-      {"sinusoid_frequency_hz", "Hz", AxisKind::scaled, has_sinusoid, false, frequencies_hz,
+      {"sinusoid_frequency_hz", "Hz", AxisKind::scaled, has_sinusoid, false, false, frequencies_hz,
        [](const P& stimulus) { return stimulus.rendering.sinusoid.frequency_hz; },
        [](P& stimulus, double value) { stimulus.rendering.sinusoid.frequency_hz = value; }},
-      {"penalty_stiffness_n_per_m", "N/m", AxisKind::scaled, nullptr, false,
+      {"penalty_stiffness_n_per_m", "N/m", AxisKind::scaled, nullptr, false, false,
        constant<allowed::penalty_stiffness_n_per_m>,
        [](const P& stimulus) { return stimulus.rendering.penalty_stiffness_n_per_m; },
        [](P& stimulus, double value) { stimulus.rendering.penalty_stiffness_n_per_m = value; }},
-      {"poissons_ratio", "", AxisKind::tabled, vibrates, false, constant<allowed::poissons_ratio>,
+      {"poissons_ratio", "", AxisKind::tabled, vibrates, false, false,
+       constant<allowed::poissons_ratio>,
        [](const P& stimulus) { return stimulus.material->poissons_ratio; },
        [](P& stimulus, double value) {
          change_material(stimulus, [&](Material& m) { m.poissons_ratio = value; });
        }},
-      {"thickness_m", "m", AxisKind::tabled, vibrates, true, constant<allowed::edge_m>,
+      {"thickness_m", "m", AxisKind::tabled, vibrates, true, false, constant<allowed::edge_m>,
        [](const P& stimulus) { return box_of(stimulus).size_m.z(); },
        [](P& stimulus, double value) {
          change_plate(stimulus,
                       [&](Plate& plate) { std::get<core::Box>(plate.shape).size_m.z() = value; });
        }},
-      {"lateral_size_m", "m", AxisKind::tabled, vibrates, true, lateral_sizes_m,
+      {"lateral_size_m", "m", AxisKind::tabled, vibrates, true, false, lateral_sizes_m,
        [](const P& stimulus) { return box_of(stimulus).size_m.x(); }, set_lateral_size},
   };
   return table;
@@ -201,6 +202,9 @@ std::string refusal(const Axis& axis, const PresentedStimulus& stimulus) {
   }
   if (axis.is_of_boxes && !std::holds_alternative<core::Box>(stimulus.plate->shape)) {
     return "only a plate given by size_m has it, not one with a surface from a file";
+  }
+  if (axis.is_without_springs && core::is_on_springs(stimulus.plate->fixations)) {
+    return "a plate on springs does not scale with it (name stimuli of several materials instead)";
   }
   return {};
 }

@@ -65,8 +65,11 @@ core::PlateSpec plate_spec(const protocols::Protocol& protocol,
 core::BodySpec body_spec(const protocols::Protocol& protocol,
                          const protocols::PresentedStimulus& stimulus) {
   core::BodySpec body = core::body_of(plate_spec(protocol, stimulus));
+  const double youngs_modulus_pa = stimulus.material->youngs_modulus_pa;
   const auto may_share = [&](const protocols::Stimulus& other) {
     return other.technique->needs_model() && other.plate == stimulus.own_plate &&
+           (!core::is_on_springs(body.fixations) ||
+            other.material->youngs_modulus_pa == youngs_modulus_pa) &&
            std::ranges::count(poissons_ratios(protocol, other), body.poissons_ratio) > 0;
   };
   for (const protocols::Stimulus& other : protocol.stimuli) {

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <array>
+#include <iterator>
 #include <utility>
 
 #include "core/algebra/lapack.hpp"
@@ -154,17 +156,33 @@ void add_elements(const TetMesh& mesh, const Material& material, const Pattern& 
   }
 }
 
-// The number of rigid-body motions compatible with the constraints: the dimension of the null space
-// of the six motions restricted to the constrained degrees of freedom, lengths relative to the
-// body's.
-int free_rigid_motions(const TetMesh& mesh, const FreeDofs& dofs) {
+// One flag a degree of freedom: constrained, or on a spring.
+std::vector<bool> resisted_dofs(const FreeDofs& dofs, const std::vector<SpringSupport>& springs) {
+  std::vector<bool> resisted;
+  std::ranges::transform(dofs.position, std::back_inserter(resisted),
+                         [](int position) { return position < 0; });
+  for (const SpringSupport& support : springs) {
+    for (const Eigen::Index node : support.nodes) {
+      for (Eigen::Index axis = 0; axis < 3; ++axis) {
+        if (support.stiffness_n_per_m[axis] > 0.0) {
+          resisted[static_cast<std::size_t>(3 * node + axis)] = true;
+        }
+      }
+    }
+  }
+  return resisted;
+}
+
+// The number of rigid-body motions that nothing resists: the dimension of the null space of the six
+// motions restricted to the resisted degrees of freedom, lengths relative to the body's.
+int free_rigid_motions(const TetMesh& mesh, const std::vector<bool>& resisted) {
   const Eigen::RowVector3d middle = mesh.nodes_m.colwise().mean();
   const double size_m = (mesh.nodes_m.rowwise() - middle).rowwise().norm().maxCoeff();
   Eigen::Matrix<double, 6, 6> held = Eigen::Matrix<double, 6, 6>::Zero();
   for (Eigen::Index node = 0; node < mesh.nodes_m.rows(); ++node) {
     const Eigen::Vector3d arm = (mesh.nodes_m.row(node) - middle) / size_m;
     for (Eigen::Index axis = 0; axis < 3; ++axis) {
-      if (dofs.position[static_cast<std::size_t>(3 * node + axis)] < 0) {
+      if (resisted[static_cast<std::size_t>(3 * node + axis)]) {
         Eigen::Matrix<double, 6, 1> motion;
         motion << Eigen::Vector3d::Unit(axis), arm.cross(Eigen::Vector3d::Unit(axis));
         held += motion * motion.transpose();
@@ -198,7 +216,8 @@ FreeDofs free_dofs(const std::vector<bool>& held) {
   return dofs;
 }
 
-StiffnessAndMass assemble(const TetMesh& mesh, const Material& material, const FreeDofs& dofs) {
+StiffnessAndMass assemble(const TetMesh& mesh, const Material& material, const FreeDofs& dofs,
+                          const std::vector<SpringSupport>& springs) {
   check_material(material);
   const Pattern pattern{mesh, dofs};
   StiffnessAndMass matrices = pattern.empty_matrices();
@@ -208,7 +227,8 @@ StiffnessAndMass assemble(const TetMesh& mesh, const Material& material, const F
     add_elements<4>(mesh, material, pattern, matrices);
   }
   matrices.first_of_node = first_of_node(dofs);
-  matrices.rigid_body_modes = free_rigid_motions(mesh, dofs);
+  add_springs(mesh, springs, dofs, matrices.K);
+  matrices.rigid_body_modes = free_rigid_motions(mesh, resisted_dofs(dofs, springs));
   return matrices;
 }
 }  // namespace tapstudy::core

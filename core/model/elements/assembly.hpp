@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "core/model/elements/material.hpp"
+#include "core/model/elements/spring_support.hpp"
 #include "core/model/mesh/tet_mesh.hpp"
 namespace tapstudy::core {
 using SparseMatrix = Eigen::SparseMatrix<double>;
@@ -22,12 +23,14 @@ struct StiffnessAndMass {
   SparseMatrix M;  // kg
   // Start of each node's block of unknowns, and the end: blocks are kept together in ordering.
   std::vector<int> first_of_node{};
-  int rigid_body_modes{0};  // unconstrained rigid-body motions: 0 to 6
+  int rigid_body_modes{
+      0};  // rigid-body motions that neither constraints nor springs resist: 0 to 6
   auto stiffness() const { return K.selfadjointView<Eigen::Lower>(); }
   auto mass() const { return M.selfadjointView<Eigen::Lower>(); }
 };
 
-// Linear elasticity with consistent mass, for meshes of order 1 and 2.
-// Throws ModelError if a tetrahedron has no volume.
-StiffnessAndMass assemble(const TetMesh& mesh, const Material& material, const FreeDofs& dofs);
+// Linear elasticity with consistent mass, for meshes of order 1 and 2, and the springs that hold
+// the body to the ground. Throws ModelError if a tetrahedron has no volume.
+StiffnessAndMass assemble(const TetMesh& mesh, const Material& material, const FreeDofs& dofs,
+                          const std::vector<SpringSupport>& springs = {});
 }  // namespace tapstudy::core

@@ -21,6 +21,23 @@ using namespace tapstudy;
 namespace {
 constexpr const char* calculix = "/usr/bin/ccx";
 
+// To the ground, one for each node and axis: of supports that hold no whole triangle.
+std::string springs(const std::vector<core::SpringSupport>& supports, Eigen::Index elements) {
+  std::string text;
+  for (const core::SpringSupport& support : supports) {
+    for (const Eigen::Index node : support.nodes) {
+      for (Eigen::Index axis = 0; axis < 3; ++axis) {
+        const double share =
+            support.stiffness_n_per_m[axis] / static_cast<double>(support.nodes.size());
+        text += fmt::format(
+            "*ELEMENT, TYPE=SPRING1, ELSET=S{0}\n{0},{1}\n*SPRING, ELSET=S{0}\n{2}\n{3:.9e}\n",
+            ++elements, node + 1, axis + 1, share);
+      }
+    }
+  }
+  return text;
+}
+
 // CalculiX numbers a T10's nodes as we do, from 1.
 std::string input(const core::PlateSpec& spec, const core::TetMesh& mesh, const std::string& step) {
   std::ostringstream text;
@@ -49,6 +66,7 @@ std::string input(const core::PlateSpec& spec, const core::TetMesh& mesh, const 
       text << dof / 3 + 1 << ',' << dof % 3 + 1 << '\n';
     }
   }
+  text << springs(core::spring_supports(mesh, spec.shape, spec.fixations), mesh.tets.rows());
   text << "*STEP\n" << step << "\n*END STEP\n";
   return text.str();
 }
@@ -164,6 +182,10 @@ TEST_CASE("CalculiX finds the same frequencies on the same mesh", "[core][model]
   bodies[2].band_limit_hz = 4300.0;
   bodies[3].mesh.size.max_tet_volume_m3 = 1e-6;
   bodies[3].band_limit_hz = 1800.0;
+  bodies.push_back(bodies[0]);
+  for (core::Fixation& corner : bodies.back().fixations) {
+    corner.springs_n_per_m = core::Vec3{2e5, 3e5, 1e6};
+  }
   for (const core::PlateSpec& spec : bodies) {
     const core::PlateModel ours = core::build_plate_model(spec);
     const auto count = static_cast<int>(ours.modal.frequency_hz.size());

@@ -163,6 +163,20 @@ TEST_CASE("an axis that the technique or the plate does not have is refused at i
                         Contains(std::string{"technique '"} + technique + "' does not use it"));
 }
 
+TEST_CASE("Young's modulus does not vary on a plate with springs, density does",
+          "[protocols][axes]") {
+  const auto on_springs = [](const std::string& axis) {
+    return testing::replaced(testing::varied_study_text_with({axis}), "region: vertex,",
+                             "springs_n_per_m: [0, 0, 1e6], region: vertex,");
+  };
+  CHECK_THROWS_WITH(
+      protocols::parse_protocol(on_springs("youngs_modulus_pa: {from: 1e9, to: 2e9}"),
+                                "study.yaml"),
+      Contains("study.yaml:29:") && Contains("a plate on springs does not scale with it"));
+  CHECK_NOTHROW(protocols::parse_protocol(on_springs("density_kg_per_m3: {from: 1000, to: 2000}"),
+                                          "study.yaml"));
+}
+
 TEST_CASE("a body from a file has neither thickness nor edges", "[protocols][axes]") {
   const std::string text = testing::contents(testing::source("tests/data/every_key.yaml"));
   const std::string other =

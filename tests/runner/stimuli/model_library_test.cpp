@@ -2,6 +2,8 @@
 
 #include <catch2/catch.hpp>
 
+#include "core/model/plate_model.hpp"
+#include "protocols/axes/presented_stimulus.hpp"
 #include "protocols/read_protocol.hpp"
 #include "runner/stimuli/trial_stimuli.hpp"
 #include "support/texts.hpp"
@@ -37,6 +39,36 @@ TEST_CASE("materials of one Poisson's ratio share one solution", "[runner][stimu
   runner::ModelLibrary models{core::ModelCache{"", ""}};
   models.build_all(protocol);
   CHECK(models.bodies_solved() == 2);  // four stimuli, two plates
+}
+
+TEST_CASE("on springs each Young's modulus has a solution of its own, and each density has not",
+          "[runner][stimuli]") {
+  protocols::Protocol protocol = paper("discrimination.yaml");
+  protocols::Plate sprung = *protocol.stimuli.front().plate;
+  for (core::Fixation& fixation : sprung.fixations) {
+    fixation.springs_n_per_m = core::Vec3{1e5, 1e5, 1e5};
+  }
+  const auto plate = std::make_shared<const protocols::Plate>(sprung);
+  const std::array<std::array<double, 2>, 4> properties{
+      {{2e9, 600.0}, {2e9, 1200.0}, {4e9, 600.0}, {4e9, 1200.0}}};
+  for (std::size_t i = 0; i < properties.size(); ++i) {
+    protocols::Material material = *protocol.stimuli.at(i).material;
+    material.poissons_ratio = 0.3;
+    material.youngs_modulus_pa = properties.at(i).front();
+    material.density_kg_per_m3 = properties.at(i).back();
+    protocol.stimuli.at(i).material = std::make_shared<const protocols::Material>(material);
+    protocol.stimuli.at(i).plate = plate;
+  }
+  runner::ModelLibrary models{core::ModelCache{"", ""}};
+  models.build_all(protocol);
+  CHECK(models.bodies_solved() == 2);
+  for (const protocols::Stimulus& stimulus : protocol.stimuli) {
+    const Eigen::ArrayXd alone_hz =
+        core::build_plate_model({*plate, *stimulus.material, protocol.band_limit_hz})
+            .modal.frequency_hz;
+    const auto presented = protocols::stimulus_at(protocol, stimulus, {});
+    CHECK(models.plate_of(protocol, presented)->model().frequency_hz.isApprox(alone_hz, 1e-8));
+  }
 }
 
 TEST_CASE("a second library finds on disk what the first has solved", "[runner][stimuli]") {

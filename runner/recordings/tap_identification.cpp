@@ -7,11 +7,8 @@
 #include <numbers>
 
 #include "core/error.hpp"
-#include "core/model/plate_model.hpp"
 #include "protocols/read_protocol.hpp"
 #include "runner/recordings/speeds.hpp"
-#include "runner/stimuli/at_its_line.hpp"
-#include "runner/stimuli/model_library.hpp"
 namespace tapstudy::runner {
 namespace {
 using analysis::Band;
@@ -21,7 +18,6 @@ constexpr double default_low_hz = 10.0;
 constexpr double default_high_hz = 1000.0;
 constexpr double usable_rate_share = 0.4;  // of the rate; sensors' own filters begin above
 constexpr double max_rate_share = 0.47;
-constexpr double further_band = 1.25;  // of the model: its modes may move down into the band
 constexpr double min_explained = 0.5;
 
 Band band_for(const TapQuestion& question, double rate_hz, std::optional<double> band_limit_hz) {
@@ -167,7 +163,7 @@ class Identifier {
     }
     result_.sinusoid = sinusoid_law();
     if (protocol_) {
-      result_.model = model_comparison();
+      result_.model = compared_with_model();
     }
   }
 
@@ -225,30 +221,16 @@ class Identifier {
     return per_metre;
   }
 
-  ModelComparison model_comparison() {
-    const protocols::Stimulus& stimulus = protocol_->stimulus(result_.question.stimulus);
-    const protocols::PresentedStimulus presented = protocols::stimulus_with(*protocol_, stimulus);
-    ModelComparison model;
-    model.material = presented.material;
-    for (const auto& [name, material] : protocol_->materials) {
-      if (material == stimulus.material) {
-        model.material_name = name;
-      }
-    }
-    model.band_limit_hz = protocol_->band_limit_hz;
-    core::PlateSpec spec = plate_spec(*protocol_, presented);
-    spec.band_limit_hz = further_band * std::max(spec.band_limit_hz, result_.band.high_hz);
-    spec.material.damping = core::ConstantDamping{};  // only frequencies are compared
-    const core::PlateModel plate =
-        at_its_line(presented, [&] { return core::build_plate_model(spec, hook_); });
-    model.frequencies_hz.assign(plate.modal.frequency_hz.begin(), plate.modal.frequency_hz.end());
+  ModelComparison compared_with_model() {
     std::vector<Estimate> measured;
     for (const std::size_t i : result_.agreed) {
       measured.push_back(result_.modes[i].frequency_hz);
     }
-    if (!measured.empty() && !model.frequencies_hz.empty()) {
-      model.update = analysis::update_youngs_modulus(measured, model.frequencies_hz,
-                                                     model.material->youngs_modulus_pa);
+    ModelComparison model = compare_with_model(*protocol_, result_.question.stimulus, measured,
+                                               result_.band.high_hz, hook_);
+    if (model.is_on_springs && !model.springs) {
+      result_.remarks.emplace_back(
+          "how stiff the springs are cannot be told from these modes: the protocol's were kept");
     }
     return model;
   }

@@ -1,15 +1,13 @@
 #pragma once
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "analysis/modal_identification/decaying_sinusoid_fit.hpp"
-#include "analysis/modal_identification/model_matching.hpp"
 #include "analysis/modal_identification/rayleigh_fit.hpp"
 #include "analysis/modal_identification/tap_modes.hpp"
 #include "analysis/recordings/taps.hpp"
-#include "protocols/axes/presented_stimulus.hpp"
+#include "runner/recordings/model_comparison.hpp"
 #include "runner/terminal/progress.hpp"
 namespace tapstudy::runner {
 // What is asked of recordings of real taps.
@@ -42,15 +40,6 @@ struct SinusoidLaw {
   double explained{};                                     // of the taps' energy, on average
   std::optional<analysis::Estimate> amplitude_per_speed;  // SI unit of the quantity per m/s
   std::optional<double> amplitude_n_s_per_m;  // as the protocol's finger makes a force of it
-};
-
-// The model of the protocol's stimulus beside what was measured.
-struct ModelComparison {
-  std::shared_ptr<const protocols::Material> material;
-  std::string material_name;
-  std::vector<double> frequencies_hz;
-  double band_limit_hz{};
-  std::optional<analysis::ModelUpdate> update;  // unset: no mode has a partner
 };
 
 struct TapIdentification {

@@ -113,7 +113,8 @@ Json json_of(const SinusoidLaw& law) {
 Json json_of(const ModelComparison& model) {
   Json json{{"material", model.material_name}, {"frequencies_hz", model.frequencies_hz},
             {"youngs_modulus_pa", nullptr},    {"matched", Json::array()},
-            {"unmatched", Json::array()},      {"rival_pa", nullptr}};
+            {"unmatched", Json::array()},      {"rival_pa", nullptr},
+            {"spring_factor", nullptr}};
   if (!model.update) {
     return json;
   }
@@ -124,6 +125,9 @@ Json json_of(const ModelComparison& model) {
         {{"agreed_mode", one.measured}, {"model_mode", one.model}, {"misfit", one.misfit}});
   }
   json["unmatched"] = model.update->unmatched;
+  if (model.springs) {
+    json["spring_factor"] = json_of(model.springs->factor);
+  }
   if (model.update->rival_pa) {
     json["rival_pa"] = *model.update->rival_pa;
   }

@@ -83,6 +83,10 @@ void print_model(const TapIdentification& found, const ModelComparison& model) {
   const analysis::ModelUpdate& update = *model.update;
   fmt::print("  Young's modulus {:.4g} Pa ({}); before {:.4g} Pa\n", update.youngs_modulus_pa.value,
              interval(update.youngs_modulus_pa), model.material->youngs_modulus_pa);
+  if (model.springs) {
+    fmt::print("  springs {:.4g} ({}) times as stiff as the protocol's\n",
+               model.springs->factor.value, interval(model.springs->factor));
+  }
   fmt::print("  measured_hz  mode  model_hz   misfit after the update\n");
   for (const analysis::MatchedMode& one : update.matched) {
     fmt::print("  {:>11.3f}  {:>4}  {:>8.3f}  {:>+7.2f} %\n",
@@ -113,8 +117,11 @@ void print(const TapIdentification& found) {
   if (found.model) {
     print_model(found, *found.model);
   }
-  fmt::print(
-      "\nThe stiffness of a fixation is not identified: the model holds its points rigidly.\n");
+  if (found.model && !found.model->is_on_springs) {
+    fmt::print(
+        "\nThe model holds its fixations rigidly; their stiffness is identified where they are on "
+        "springs_n_per_m.\n");
+  }
   for (const std::string& remark : found.remarks) {
     fmt::print("  {}\n", remark);
   }

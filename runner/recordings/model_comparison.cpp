@@ -1,0 +1,86 @@
+#include "runner/recordings/model_comparison.hpp"
+
+#include <algorithm>
+
+#include "analysis/modal_identification/spring_update.hpp"
+#include "core/model/plate_model.hpp"
+#include "runner/stimuli/at_its_line.hpp"
+#include "runner/stimuli/model_library.hpp"
+namespace tapstudy::runner {
+namespace {
+constexpr double further_band = 1.25;  // of the model: its modes may move down into the band
+
+template <class Value>
+std::string name_of(const std::map<std::string, std::shared_ptr<const Value>>& all,
+                    const std::shared_ptr<const Value>& one) {
+  const auto found =
+      std::ranges::find_if(all, [&](const auto& entry) { return entry.second == one; });
+  return found == all.end() ? std::string{} : found->first;
+}
+
+core::PlateSpec on_springs(core::PlateSpec spec, double factor) {
+  for (core::Fixation& fixation : spec.fixations) {
+    if (fixation.springs_n_per_m) {
+      *fixation.springs_n_per_m *= factor;
+    }
+  }
+  return spec;
+}
+
+std::vector<double> frequencies_hz(const core::PlateSpec& spec,
+                                   const core::ProgressHook& progress) {
+  const core::PlateModel plate = core::build_plate_model(spec, progress);
+  return {plate.modal.frequency_hz.begin(), plate.modal.frequency_hz.end()};
+}
+
+void update_on_springs(const core::PlateSpec& spec, const std::vector<analysis::Estimate>& measured,
+                       const core::ProgressHook& progress, ModelComparison& model) {
+  const auto found = analysis::update_springs(
+      measured, [&](double factor) { return frequencies_hz(on_springs(spec, factor), progress); },
+      spec.material.youngs_modulus_pa);
+  if (!found) {
+    return;
+  }
+  model.update = found->model;
+  model.frequencies_hz = found->model_hz;
+  IdentifiedSprings springs{found->spring_factor, {}, {}};
+  const auto& fixations = on_springs(spec, found->spring_factor.value).fixations;
+  for (std::size_t i = 0; i < fixations.size(); ++i) {
+    if (fixations[i].springs_n_per_m) {
+      springs.springs_n_per_m.emplace_back(i + 1, *fixations[i].springs_n_per_m);
+    }
+  }
+  model.springs = std::move(springs);
+}
+}  // namespace
+
+ModelComparison compare_with_model(const protocols::Protocol& protocol, const std::string& stimulus,
+                                   const std::vector<analysis::Estimate>& measured_hz,
+                                   double high_hz, const core::ProgressHook& progress) {
+  const protocols::Stimulus& stated = protocol.stimulus(stimulus);
+  const protocols::PresentedStimulus presented = protocols::stimulus_with(protocol, stated);
+  ModelComparison model;
+  model.material = presented.material;
+  model.material_name = name_of(protocol.materials, stated.material);
+  model.band_limit_hz = protocol.band_limit_hz;
+  core::PlateSpec spec = plate_spec(protocol, presented);
+  spec.band_limit_hz = further_band * std::max(spec.band_limit_hz, high_hz);
+  spec.material.damping = core::ConstantDamping{};  // only frequencies are compared
+  model.is_on_springs = core::is_on_springs(spec.fixations);
+  at_its_line(presented, [&] {
+    model.frequencies_hz = frequencies_hz(spec, progress);
+    if (measured_hz.empty() || model.frequencies_hz.empty()) {
+      return;
+    }
+    model.update = analysis::update_youngs_modulus(measured_hz, model.frequencies_hz,
+                                                   spec.material.youngs_modulus_pa);
+    if (model.is_on_springs) {
+      update_on_springs(spec, measured_hz, progress, model);
+    }
+  });
+  if (model.springs) {
+    model.springs->plate_name = name_of(protocol.plates, stated.plate);
+  }
+  return model;
+}
+}  // namespace tapstudy::runner

@@ -1,0 +1,34 @@
+#pragma once
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "analysis/modal_identification/model_matching.hpp"
+#include "core/model/progress_hook.hpp"
+#include "protocols/axes/presented_stimulus.hpp"
+namespace tapstudy::runner {
+// Of a plate on springs: all of them by one factor.
+struct IdentifiedSprings {
+  analysis::Estimate factor;  // on the protocol's
+  std::string plate_name;
+  // By the number of the fixation, from 1: along x y z, updated.
+  std::vector<std::pair<std::size_t, core::Vec3>> springs_n_per_m;
+};
+
+// The model of the protocol's stimulus beside what was measured.
+struct ModelComparison {
+  std::shared_ptr<const protocols::Material> material;
+  std::string material_name;
+  std::vector<double> frequencies_hz;  // at the protocol's Young's modulus
+  double band_limit_hz{};
+  std::optional<analysis::ModelUpdate> update;  // unset: no mode has a partner
+  bool is_on_springs{false};
+  std::optional<IdentifiedSprings> springs;  // unset: rigid, or the modes do not tell
+};
+
+// Up to the protocol's band limit or high_hz. Throws ModelError if the model cannot be built.
+ModelComparison compare_with_model(const protocols::Protocol& protocol, const std::string& stimulus,
+                                   const std::vector<analysis::Estimate>& measured_hz,
+                                   double high_hz, const core::ProgressHook& progress);
+}  // namespace tapstudy::runner

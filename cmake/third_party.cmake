@@ -56,6 +56,12 @@ add_library(sndfile::sndfile INTERFACE IMPORTED)
 target_include_directories(sndfile::sndfile SYSTEM INTERFACE ${SNDFILE_INCLUDE})
 target_link_libraries(sndfile::sndfile INTERFACE ${SNDFILE_LIBRARY})
 
+find_path(SAMPLERATE_INCLUDE samplerate.h REQUIRED)
+find_library(SAMPLERATE_LIBRARY samplerate REQUIRED)
+add_library(samplerate::samplerate INTERFACE IMPORTED)
+target_include_directories(samplerate::samplerate SYSTEM INTERFACE ${SAMPLERATE_INCLUDE})
+target_link_libraries(samplerate::samplerate INTERFACE ${SAMPLERATE_LIBRARY})
+
 find_path(HDF5_INCLUDE hdf5.h PATH_SUFFIXES hdf5/serial REQUIRED)
 find_library(HDF5_LIBRARY NAMES hdf5_serial hdf5 REQUIRED)
 add_library(hdf5::hdf5 INTERFACE IMPORTED)

@@ -41,9 +41,10 @@ struct Stimulus {
   std::shared_ptr<const Plate> plate;
   std::shared_ptr<const Material> material;
   const core::Technique* technique{};
-  std::map<std::string, std::string> factors;  // factor → level, for reports
-  std::vector<AxisRange> vary{};               // each axis once
-  bool is_vary_refused{false};                 // while a file is read in which it was rejected
+  std::shared_ptr<const core::RecordedTaps> recording;  // where its technique plays one
+  std::map<std::string, std::string> factors;           // factor → level, for reports
+  std::vector<AxisRange> vary{};                        // each axis once
+  bool is_vary_refused{false};  // while a file is read in which it was rejected
   // False while a file is read in which one of these names was rejected.
   bool is_complete() const { return plate && material && technique != nullptr; }
 };
@@ -280,6 +281,7 @@ struct Protocol {
   core::Placement placement;
   std::map<std::string, std::shared_ptr<const Material>> materials;
   std::map<std::string, std::shared_ptr<const Plate>> plates;
+  std::map<std::string, std::shared_ptr<const core::RecordedTaps>> recordings;
   Points tapping_points_m;  // plate frame, at the placement's scale
   std::vector<Stimulus> stimuli;
   std::map<std::string, Form> forms;

@@ -59,9 +59,15 @@ void check_technique(MapReader& reader, const Stimulus& stimulus, const Protocol
   if (stimulus.technique == nullptr) {
     return;
   }
-  const std::string_view missing = stimulus.technique->missing(protocol.rendering);
+  core::RenderSettings settings = protocol.rendering;
+  settings.recorded_taps = stimulus.recording;
+  const std::string_view missing = stimulus.technique->missing(settings);
   if (!missing.empty()) {
     reader.reject("technique", fmt::format("'{}' needs {}", stimulus.technique->name, missing));
+  }
+  if (stimulus.recording && !stimulus.technique->has(core::recorded_transient)) {
+    reader.reject("recording",
+                  fmt::format("technique '{}' does not play it", stimulus.technique->name));
   }
 }
 
@@ -92,6 +98,10 @@ void read_stimuli(MapReader& top, Protocol& protocol) {
         named(protocol.materials, reader.word("material", "material", keys_of(protocol.materials)));
     stimulus.technique =
         core::find_technique(reader.word("technique", "technique", core::technique_names()));
+    if (reader.has("recording")) {
+      stimulus.recording = named(
+          protocol.recordings, reader.word("recording", "recording", keys_of(protocol.recordings)));
+    }
     reader.each_text("factors", Presence::optional,
                      [&](const std::string& factor, const std::string& level) {
                        stimulus.factors[factor] = level;

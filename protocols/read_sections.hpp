@@ -14,6 +14,7 @@ void read_materials(MapReader& top, Protocol& protocol);
 void read_points(MapReader& top, Protocol& protocol);
 // read_file: the bytes of a surface, by the name that the study gives it.
 void read_plates(MapReader& top, Protocol& protocol, const ReadFile& read_file);
+void read_recordings(MapReader& top, Protocol& protocol);
 void read_stimuli(MapReader& top, Protocol& protocol);
 // The axes of a stimulus whose other keys are read.
 std::vector<AxisRange> read_vary(MapReader& stimulus_reader, const Stimulus& stimulus,

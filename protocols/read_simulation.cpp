@@ -37,6 +37,9 @@ void read_observer(MapReader& reader, const Protocol& protocol, bool needs_refer
   observer.reality =
       core::find_technique(reader.word("reality", "technique", core::technique_names(),
                                        std::string{core::natural_vibration().name}));
+  if (observer.reality != nullptr && observer.reality->has(core::recorded_transient)) {
+    reader.reject("reality", "is one technique for all stimuli, which recordings are not");
+  }
   if (needs_reference) {
     observer.reference = reader.word("reference", "stimulus", stimulus_names(protocol));
   }

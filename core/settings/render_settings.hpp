@@ -1,4 +1,7 @@
 #pragma once
+#include <memory>
+
+#include "core/settings/recorded_taps.hpp"
 namespace tapstudy::core {
 // How the modes are integrated in time: by the exact recurrence of a damped oscillator, or by
 // Newmark's method with beta = 1/4, gamma = 1/2 (paper section 4.2.1).
@@ -26,9 +29,10 @@ struct RenderSettings {
   double penalty_stiffness_n_per_m{3000.0};  // k of eq. 1
   double release_height_m{5e-4};             // hysteresis: re-arms impacts above this
   double lateral_ratio{1.0};                 // of the plate's lateral scale to the placement's
-  double vibration_gain{1.0};                // factor on the plate's vibration force, eq. 17
+  double vibration_gain{1.0};                // factor on the vibration force, eq. 17 or recorded
   Integrator integrator{Integrator::exact};
   Finger finger;
   SinusoidShape sinusoid;
+  std::shared_ptr<const RecordedTaps> recorded_taps;  // of the stimulus; may be null
 };
 }  // namespace tapstudy::core

@@ -18,7 +18,8 @@ struct ForcePart {
   double (*added_stiffness_n_per_m)(const RenderSettings& settings){};
 };
 
-extern const ForcePart plate_vibration;    // plate_vibration_part.cpp
-extern const ForcePart coupled_vibration;  // coupled_vibration_part.cpp
-extern const ForcePart decaying_sinusoid;  // decaying_sinusoid_part.cpp
+extern const ForcePart plate_vibration;     // plate_vibration_part.cpp
+extern const ForcePart coupled_vibration;   // coupled_vibration_part.cpp
+extern const ForcePart decaying_sinusoid;   // decaying_sinusoid_part.cpp
+extern const ForcePart recorded_transient;  // recorded_transient_part.cpp
 }  // namespace tapstudy::core

@@ -18,6 +18,9 @@ const std::vector<Technique>& techniques() {
       {"fem-coupled+sinusoid",
        "a finger that stays on the vibrating plate, and the decaying sinusoid",
        {&coupled_vibration, &decaying_sinusoid}},
+      {"recorded",
+       "a measured transient at each impact, by its place and speed",
+       {&recorded_transient}},
   };
   return table;
 }

@@ -113,7 +113,7 @@ bool vibrates(const core::Technique& technique) {
   return technique.needs_model();
 }
 bool scales_vibration(const core::Technique& technique) {
-  return technique.has(core::plate_vibration);
+  return technique.has(core::plate_vibration) || technique.has(core::recorded_transient);
 }
 bool has_sinusoid(const core::Technique& technique) {
   return technique.has(core::decaying_sinusoid);

@@ -48,6 +48,7 @@ PresentedStimulus unvaried(const Protocol& protocol, const Stimulus& stimulus) {
                               {},
                               stimulus.plate};
   presented.rendering.lateral_ratio = stimulus.plate->lateral_ratio;
+  presented.rendering.recorded_taps = stimulus.recording;
   return presented;
 }
 }  // namespace

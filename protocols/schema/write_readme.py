@@ -31,6 +31,7 @@ EXAMPLES = {
         "rendering": ["protocols/paper/reality_finger.yaml"],
         "materials": [PAPER, EVERY_KEY],
         "plates": [PAPER, EVERY_KEY],
+        "recordings": [EVERY_KEY],
         "stimuli": [PAPER, EVERY_KEY],
         "forms": [EVERY_KEY],
         "display": [EVERY_KEY],

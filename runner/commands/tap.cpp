@@ -103,10 +103,12 @@ protocols::Protocol protocol_with_technique(const TapOptions& options) {
                                          options.technique,
                                          fmt::join(core::technique_names(), ", "))};
   }
-  if (const auto missing = technique->missing(protocol.rendering); !missing.empty()) {
-    throw core::InvalidInput{fmt::format("--technique: '{}' needs {}", options.technique, missing)};
-  }
   for (protocols::Stimulus& stimulus : protocol.stimuli) {
+    const auto settings = protocols::stimulus_with(protocol, stimulus).rendering;
+    if (const auto missing = technique->missing(settings); !missing.empty()) {
+      throw core::InvalidInput{
+          fmt::format("--technique: '{}' needs {}", options.technique, missing)};
+    }
     stimulus.technique = technique;
   }
   return protocol;

@@ -1,0 +1,31 @@
+#pragma once
+#include <vector>
+
+#include "core/settings/recorded_taps.hpp"
+#include "core/tick/added_force.hpp"
+namespace tapstudy::core {
+// Event-based playback (Kuchenbecker, Fiene & Niemeyer 2006): at each impact a measured transient,
+// of the tap whose place is nearest and, of several there, whose speed is; in proportion to the
+// impact's speed. A new impact ends the one before.
+class RecordedTransient final : public AddedForce {
+ public:
+  // Sampled at the rate of the loop; at least one tap.
+  RecordedTransient(std::vector<RecordedTap> taps, double gain)
+      : taps_{std::move(taps)}, gain_{gain} {}
+  void advance() noexcept override { ++tick_; }
+  void touch(const Contact& contact) noexcept override { at_m_ = contact.god_object_m.head<2>(); }
+  void impact(double speed_m_s) noexcept override;
+  void add_to(ForceParts& parts) const noexcept override;
+  void reset() noexcept override { played_ = nullptr; }
+
+ private:
+  bool is_nearer(const RecordedTap& one, const RecordedTap& other, double speed_m_s) const noexcept;
+
+  std::vector<RecordedTap> taps_;
+  double gain_;
+  Eigen::Vector2d at_m_{Eigen::Vector2d::Zero()};
+  const RecordedTap* played_{nullptr};
+  double scale_{0.0};
+  std::size_t tick_{0};  // since the impact
+};
+}  // namespace tapstudy::core

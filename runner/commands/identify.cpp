@@ -14,6 +14,7 @@ struct IdentifyOptions {
   TapQuestion question;
   std::string quantity{"acceleration"};
   std::string band;
+  std::string at;
   bool wants_json{false};
   std::string out;
 };
@@ -33,6 +34,29 @@ analysis::Band band_from(const std::string& text) {
   return band;
 }
 
+// "0.1,0.05"
+Eigen::Vector2d place_from(const std::string& text) {
+  Eigen::Vector2d at_m;
+  const char* const end = text.data() + text.size();
+  const auto [comma, x_error] = std::from_chars(text.data(), end, at_m.x());
+  const bool has_x = x_error == std::errc{} && comma != end && *comma == ',';
+  const auto [stopped, y_error] = std::from_chars(has_x ? comma + 1 : end, end, at_m.y());
+  const bool is_place = has_x && y_error == std::errc{} && stopped == end;
+  if (!is_place || !(at_m.lpNorm<Eigen::Infinity>() <= 10.0)) {
+    throw core::InvalidInput{fmt::format("--at '{}': must be X,Y in m, in the plate frame", text)};
+  }
+  return at_m;
+}
+
+void check_playback(const TapQuestion& question) {
+  if (question.protocol.empty() || question.speeds.empty() ||
+      question.quantity != analysis::Quantity::acceleration) {
+    throw core::InvalidInput{
+        "--at needs --speeds, and --protocol with --stimulus, whose finger makes forces of "
+        "accelerations (--quantity acceleration)"};
+  }
+}
+
 TapQuestion question_of(const IdentifyOptions& options) {
   TapQuestion question = options.question;
   if (question.recordings.empty()) {
@@ -44,6 +68,10 @@ TapQuestion question_of(const IdentifyOptions& options) {
   question.quantity = analysis::quantity_from(options.quantity);
   if (!options.band.empty()) {
     question.band = band_from(options.band);
+  }
+  if (!options.at.empty()) {
+    question.at_m = place_from(options.at);
+    check_playback(question);
   }
   return question;
 }
@@ -91,6 +119,8 @@ void add_identify(CommandParser& line) {
                         "Seconds after a tap's peak before it rings freely");
   command.option("--speeds", question.speeds,
                  "CSV with a column speed_m_s: the speed of each impact, in order");
+  command.option("--at", options->at,
+                 "X,Y of the place tapped, m: writes recordings.yaml for technique recorded");
   command.flag("--json", options->wants_json, "Output as JSON");
   command.on_run([options] { run_identify(*options); });
 }

@@ -50,6 +50,7 @@ class Identifier {
     if (!question.protocol.empty()) {
       protocol_ = protocols::read_protocol(question.protocol);
       static_cast<void>(protocol_->stimulus(question.stimulus));  // must be there
+      result_.finger_kg = protocol_->rendering.finger.mass_kg;
     }
   }
 
@@ -59,6 +60,7 @@ class Identifier {
       recordings.push_back(analysis::read_recording(file, result_.question.reading));
     }
     const auto slowest = std::ranges::min_element(recordings, {}, &analysis::Recording::rate_hz);
+    check_playback_rate(recordings);
     result_.band = band_for(result_.question, slowest->rate_hz,
                             protocol_ ? std::optional{protocol_->band_limit_hz} : std::nullopt);
     int impacts = 0;
@@ -74,6 +76,15 @@ class Identifier {
   }
 
  private:
+  void check_playback_rate(const std::vector<analysis::Recording>& recordings) const {
+    for (const analysis::Recording& recording : recordings) {
+      if (result_.question.at_m && recording.rate_hz != recordings.front().rate_hz) {
+        throw core::InvalidInput{fmt::format(
+            "--at: {} has {:g} samples a second, {} {:g}: all of one rate", recording.file,
+            recording.rate_hz, recordings.front().file, recordings.front().rate_hz)};
+      }
+    }
+  }
   // How many impacts it has; `before` are those of earlier recordings.
   int add(const analysis::Recording& recording, int before) {
     const analysis::FoundTaps found = analysis::find_taps(recording, result_.question.finding);
@@ -107,8 +118,8 @@ class Identifier {
     const Band wide{result_.band.low_hz,
                     std::max(result_.band.high_hz,
                              std::min(default_high_hz, usable_rate_share * recording.rate_hz))};
-    one.sinusoid =
-        analysis::fit_decaying_sinusoid(decay_between(recording, tap.onset, tap.end), wide);
+    one.whole = decay_between(recording, tap.onset, tap.end);
+    one.sinusoid = analysis::fit_decaying_sinusoid(one.whole, wide);
     result_.taps.push_back(std::move(one));
     return true;
   }

@@ -18,8 +18,9 @@ struct TapQuestion {
   double si_per_unit{1.0};  // from the recordings' unit to m/s², m/s or m
   analysis::TapFinding finding;
   std::optional<analysis::Band> band;  // unset: 10 Hz to the protocol's band limit or 1000 Hz
-  std::string speeds;    // CSV with a column speed_m_s, a row for each tap; may be empty
-  std::string protocol;  // with a stimulus, or both empty
+  std::string speeds;  // CSV with a column speed_m_s, a row for each tap; may be empty
+  std::optional<Eigen::Vector2d> at_m;  // where was tapped, plate frame: to be played back
+  std::string protocol;                 // with a stimulus, or both empty
   std::string stimulus;
 };
 
@@ -29,6 +30,7 @@ struct IdentifiedTap {
   analysis::Tap tap;
   double time_s{};            // of the impact
   analysis::FreeDecay decay;  // in the recording's unit, about its mean
+  analysis::FreeDecay whole;  // from the impact on
   analysis::TapModes modes;
   std::optional<analysis::FittedSinusoid> sinusoid;
   std::optional<double> speed_m_s;
@@ -52,6 +54,7 @@ struct TapIdentification {
   std::optional<SinusoidLaw> sinusoid;
   std::optional<ModelComparison> model;
   std::vector<std::string> remarks;
+  double finger_kg{};  // of the protocol; 0 without one
 };
 
 // Reads, finds the taps, identifies modes, damping, sinusoid and Young's modulus. Throws

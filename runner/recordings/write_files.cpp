@@ -10,6 +10,10 @@ void write_files(const std::string& directory, const TapIdentification& found) {
       return (std::filesystem::path{unfinished} / file).string();
     };
     core::write_new_file(in("identified.yaml"), [&](std::ostream& out) { out << yaml_of(found); });
+    if (found.question.at_m) {
+      core::write_new_file(in("recordings.yaml"),
+                           [&](std::ostream& out) { out << playback_of(found, found.finger_kg); });
+    }
     core::write_new_file(in("identified.json"),
                          [&](std::ostream& out) { out << json_of(found) << '\n'; });
     for (const NamedFigure& one : figures_of(found)) {

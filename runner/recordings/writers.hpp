@@ -16,6 +16,10 @@ std::string yaml_of(const TapIdentification& found);
 
 std::string json_of(const TapIdentification& found);
 
+// The taps as `recordings` of a protocol, of accelerations at one place with their speeds: forces
+// of `finger_kg` moving with the surface.
+std::string playback_of(const TapIdentification& found, double finger_kg);
+
 struct NamedFigure {
   std::string name;  // of its file
   analysis::Figure figure;
@@ -24,7 +28,7 @@ struct NamedFigure {
 // first.
 std::vector<NamedFigure> figures_of(const TapIdentification& found);
 
-// identified.yaml, identified.json and the figures, into a new directory. Throws InvalidInput if it
-// exists already or cannot be written.
+// identified.yaml, identified.json, recordings.yaml where a place was given, and the figures, into
+// a new directory. Throws InvalidInput if it exists already or cannot be written.
 void write_files(const std::string& directory, const TapIdentification& found);
 }  // namespace tapstudy::runner

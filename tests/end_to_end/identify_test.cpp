@@ -76,6 +76,7 @@ struct Case {
   std::string protocol = directory / "shelf.yaml";
   std::string recording = directory / "taps.csv";
   std::string out = directory / "identified";
+  std::vector<testing::PlantedMode> planted;
 
   // Modes of a material with this factor on Young's modulus, each damped by ratio_at.
   template <class RatioAt>
@@ -89,6 +90,7 @@ struct Case {
     }
     REQUIRE(modes.size() == 4);
     testing::write(recording, recording_text(modes));
+    planted = modes;
   }
   testing::ProgramResult identify(std::vector<std::string> more) const {
     more.insert(more.begin(), {"identify", recording, "--out", out, "--band", "15:350"});
@@ -116,6 +118,50 @@ std::string section(const std::string& yaml, const std::string& key) {
   return text;
 }
 }  // namespace
+
+TEST_CASE("recorded taps are played back by the technique that plays recordings",
+          "[end_to_end][identify][recorded]") {
+  Case played;
+  played.record(1.0, [](double) { return 0.02; });
+  const std::string speeds = played.directory / "speeds.csv";
+  testing::write(speeds, "speed_m_s\n0.2\n0.35\n0.3\n0.5\n0.25\n");
+  const std::vector<std::string> asked{"--protocol", played.protocol, "--stimulus",
+                                       "shelf",      "--at",          "0.1,0.05"};
+  const auto refused = played.identify(asked);
+  CHECK(refused.exit_code == 2);
+  CHECK_THAT(refused.standard_error, Contains("--at needs --speeds"));
+  auto with_speeds = asked;
+  with_speeds.insert(with_speeds.end(), {"--speeds", speeds});
+  REQUIRE(played.identify(with_speeds).exit_code == 0);
+
+  std::string study = testing::contents(played.out + "/recordings.yaml");
+  study = study.substr(study.find("recordings:")) + "tapping_points_m:";
+  study = testing::replaced(shelf, "tapping_points_m:", study);
+  study = testing::replaced(study, "technique: none}", "technique: recorded, recording: shelf}");
+  testing::write(played.protocol, study);
+  const protocols::Protocol protocol = protocols::read_protocol(played.protocol);
+  REQUIRE(protocol.stimulus("other").recording->taps.size() == 5);
+  const core::RecordedTap& tap = protocol.stimulus("other").recording->taps.front();
+  CHECK(tap.speed_m_s == 0.2);
+  // the onset is found to a few samples
+  double least = HUGE_VAL;
+  for (int shift = -3; shift <= 3; ++shift) {
+    double planted_n2 = 0.0;
+    double difference_n2 = 0.0;
+    for (int n = 3; n < 1000; ++n) {
+      const double planted_n = 0.02 * 0.2 * testing::ringing(played.planted, (n + shift) / rate_hz);
+      const double played_n = tap.force_n.at(static_cast<std::size_t>(n));
+      planted_n2 += planted_n * planted_n;
+      difference_n2 += (planted_n - played_n) * (planted_n - played_n);
+    }
+    least = std::min(least, std::sqrt(difference_n2 / planted_n2));
+  }
+  CHECK(least < 0.05);
+  const auto run =
+      testing::tapstudy({"tap", played.protocol, "--stimulus", "other", "--at", "0.1,0.05"});
+  INFO(run.standard_error);
+  CHECK(run.exit_code == 0);
+}
 
 TEST_CASE("how stiff a shelf's springs are is found with its Young's modulus",
           "[end_to_end][identify]") {

@@ -166,8 +166,8 @@ TEST_CASE("an axis that the technique or the plate does not have is refused at i
 TEST_CASE("Young's modulus does not vary on a plate with springs, density does",
           "[protocols][axes]") {
   const auto on_springs = [](const std::string& axis) {
-    return testing::replaced(testing::varied_study_text_with({axis}), "region: vertex,",
-                             "springs_n_per_m: [0, 0, 1e6], region: vertex,");
+    return testing::replaced(testing::varied_study_text_with({axis}), "region: disc,",
+                             "springs_n_per_m: [0, 0, 1e6], region: disc,");
   };
   CHECK_THROWS_WITH(
       protocols::parse_protocol(on_springs("youngs_modulus_pa: {from: 1e9, to: 2e9}"),

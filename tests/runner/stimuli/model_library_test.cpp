@@ -67,7 +67,7 @@ TEST_CASE("on springs each Young's modulus has a solution of its own, and each d
         core::build_plate_model({*plate, *stimulus.material, protocol.band_limit_hz})
             .modal.frequency_hz;
     const auto presented = protocols::stimulus_at(protocol, stimulus, {});
-    CHECK(models.plate_of(protocol, presented)->model().frequency_hz.isApprox(alone_hz, 1e-8));
+    CHECK(models.plate_of(protocol, presented)->model.frequency_hz.isApprox(alone_hz, 1e-8));
   }
 }
 

@@ -89,7 +89,7 @@ class Magnitude final : public PreferenceTask {
   int visits(const Block& block, const SimulatedTapSettings& taps) const override {
     return block.modulus ? 2 * taps.visits : 1;
   }
-  // A power of the felt amplitude: of vibration at 250 Hz the exponent is 0.6 (Stevens 1959).
+  // A power of the felt amplitude: of vibration at 250 Hz the exponent is 0.6 (Stevens 1968, 1975).
   std::string simulated_answer(const Block& block, const Simulation& simulation,
                                SimulatedTouch& touch) const override {
     constexpr double exponent = 0.6;

@@ -3,7 +3,13 @@ namespace tapstudy::runner {
 const std::vector<ClaimGroup>& claim_groups() {
   static const std::vector<ClaimGroup> groups{
       {"The plate model: Table 1", &mode_count},
+      {"The shape of the vibration: Figure 3", &mode_shapes},
       {"The feedback force: Figures 4 and 5", &feedback_forces},
+      {"The time of a step", &step_time},
+      {"The finger's mass", &finger_mass},
+      {"The finger's vibration", &finger_vibration},
+      {"Structure and material: Table 2", &discrimination},
+      {"Which technique is most real", &reality},
   };
   return groups;
 }

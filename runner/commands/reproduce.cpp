@@ -1,6 +1,9 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "runner/commands/commands.hpp"
 #include "runner/commands/seed.hpp"
@@ -12,6 +15,7 @@ struct ReproduceOptions {
   std::string out;
   std::string seed{"1"};
   bool is_quick{false};
+  std::vector<std::string> only;
 };
 
 void run_reproduce(const ReproduceOptions& options) {
@@ -20,7 +24,7 @@ void run_reproduce(const ReproduceOptions& options) {
   bench.seed = seed_from(options.seed, "--seed");
   make_room_for_reproduction(options.out);
   listen_for_stop();
-  const Reproduction reproduction = reproduce(bench);
+  const Reproduction reproduction = reproduce(bench, options.only);
   write_files(options.out, reproduction);
   print(reproduction);
   fmt::print("{0}/reproduction.html\n{0}/reproduction.json\n", options.out);
@@ -33,6 +37,9 @@ void add_reproduce(CommandParser& line) {
   command.option("--out", options->out,
                  "Write reproduction.html and reproduction.json into this directory",
                  Need::required);
+  command.repeatable(
+      "--only", options->only,
+      fmt::format("A group of claims alone: {}", fmt::join(claim_group_names(), ", ")));
   command.flag("--quick", options->is_quick,
                "With fewer simulated participants: less sure, and some five times sooner");
   command.option_with_default("--seed", options->seed, "Seed of all random streams");

@@ -1,8 +1,10 @@
 #pragma once
 #include <cstdint>
+#include <vector>
 
 #include "core/model/progress_hook.hpp"
 #include "runner/accuracy/trade.hpp"
+#include "runner/reproduction/routes.hpp"
 #include "runner/stimuli/model_library.hpp"
 namespace tapstudy::runner {
 // What all claims are measured with.
@@ -11,6 +13,7 @@ struct Bench {
   std::uint64_t seed{1};
   core::ProgressHook progress{};
   ModelLibrary models{};
+  std::vector<Route> plates{routes()};  // of Figures 4 and 5
   bool is_quick() const { return effort == Effort::quick; }
 };
 }  // namespace tapstudy::runner

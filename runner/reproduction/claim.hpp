@@ -40,6 +40,7 @@ std::string_view name(Verdict verdict);
 struct Drawing {
   std::string title;
   std::vector<std::string> svg;
+  bool is_open{true};  // else the reader unfolds it
 };
 
 struct Claim {

@@ -9,12 +9,15 @@ namespace tapstudy::runner {
 // Claims that are measured together. To add some: a file with a function, declared here, and a row
 // in claim_table.cpp.
 struct ClaimGroup {
+  std::string_view name;  // by which `reproduce --only` chooses it
   std::string_view title;
   std::vector<Claim> (*measure)(Bench& bench);
 };
 const std::vector<ClaimGroup>& claim_groups();
+std::vector<std::string> claim_group_names();
 
-std::vector<Claim> mode_count(Bench& bench);        // Table 1, section 5.1
+std::vector<Claim> plate_model(Bench& bench);       // Table 1
+std::vector<Claim> mode_count(Bench& bench);        // section 5.1
 std::vector<Claim> mode_shapes(Bench& bench);       // Figure 3
 std::vector<Claim> feedback_forces(Bench& bench);   // Figures 4 and 5
 std::vector<Claim> step_time(Bench& bench);         // section 5.1

@@ -13,6 +13,7 @@
 #include "runner/experiments/scratch_directory.hpp"
 #include "runner/experiments/simulated_study.hpp"
 #include "runner/reproduction/claim_table.hpp"
+#include "runner/reproduction/routes.hpp"
 #include "runner/reproduction/shipped_protocols.hpp"
 namespace tapstudy::runner {
 namespace {
@@ -41,12 +42,13 @@ struct Predicted {
 struct Simulated {
   std::string method;
   std::string file;
+  protocols::Protocol protocol;
   int participants{};
   std::vector<Predicted> by_noise;
 };
 
 Predicted predicted(const Bench& bench, const Simulated& study, double noise_db) {
-  protocols::Protocol protocol = shipped_protocol(study.file);
+  protocols::Protocol protocol = study.protocol;
   protocol.simulation.observer.noise_db = noise_db;
   const ScratchDirectory directory{bench.seed};
   simulate({study.file, directory.path(), study.participants, bench.seed, false,
@@ -66,8 +68,8 @@ Predicted predicted(const Bench& bench, const Simulated& study, double noise_db)
 }
 
 Simulated simulated(const Bench& bench, const std::string& method, const std::string& file,
-                    int participants) {
-  Simulated study{method, file, participants, {}};
+                    const protocols::Protocol& protocol, int participants) {
+  Simulated study{method, file, protocol, participants, {}};
   const std::vector<double> grid = bench.is_quick()
                                        ? std::vector{6.0, 9.0, 13.0}
                                        : std::vector{4.0, 6.0, 7.5, 9.0, 11.0, 13.0, 16.0, 20.0};
@@ -174,7 +176,7 @@ Claim table_of_observer(const Bench& bench, const ConfusionMatrix& table,
                         const std::vector<Simulated>& studies) {
   Claim claim{
       .name = "table_2_from_vibration",
-      .section = "5.2.1, Table 2",
+      .section = "section 5.2.1, Table 2",
       .statement = "Table 2 is what people answer who feel nothing but the rendered vibration.",
       .rule =
           "The observer's internal noise, its one free parameter, is fitted on two rows of "
@@ -186,8 +188,8 @@ Claim table_of_observer(const Bench& bench, const ConfusionMatrix& table,
   }
   claim.remarks.push_back(fmt::format(
       "The command simulates the protocol's own noise, {} dB; another is a line of the protocol, "
-      "simulation.observer.noise_db.",
-      shipped_protocol(studies.front().file).simulation.observer.noise_db));
+      "simulation.observer.noise_db. 5 mm thick: as recommended, with {}.",
+      studies.front().protocol.simulation.observer.noise_db, how_thin));
   return claim;
 }
 
@@ -202,7 +204,7 @@ Claim structure_well_material_less(const Bench& bench, const ConfusionMatrix& ta
   const analysis::Interval interval =
       analysis::wilson_interval(analysis::factor_accuracy(table, "material"));
   Claim claim{.name = "structure_well_material_two_thirds",
-              .section = "5.2.1",
+              .section = "section 5.2.1",
               .statement =
                   "Structure is told apart well, of material only two thirds of the answers "
                   "are right.",
@@ -235,7 +237,7 @@ Claim structure_well_material_less(const Bench& bench, const ConfusionMatrix& ta
 
 Claim better_than_guessing(const ConfusionMatrix& table) {
   Claim claim{.name = "better_than_guessing",
-              .section = "5.2.1 and 6",
+              .section = "sections 5.2.1 and 6",
               .statement = "Users can discriminate between structures and between materials.",
               .rule =
                   "Each is right more often than by guessing, one half: the exact binomial test, "
@@ -259,11 +261,14 @@ Claim better_than_guessing(const ConfusionMatrix& table) {
 std::vector<Claim> discrimination(Bench& bench) {
   const ConfusionMatrix table = printed_table();
   const int participants = bench.is_quick() ? 20 : 100;
+  const std::string printed = "protocols/paper/discrimination.yaml";
+  const std::string recommended = "protocols/recommended/discrimination.yaml";
+  const protocols::Protocol screwed = shipped_protocol(recommended);
   const std::vector<Simulated> studies{
-      simulated(bench, std::string{method::printed}, "protocols/paper/discrimination.yaml",
+      simulated(bench, std::string{method::printed}, printed, shipped_protocol(printed),
                 participants),
-      simulated(bench, std::string{method::recommended},
-                "protocols/recommended/discrimination.yaml", participants / 2)};
+      simulated(bench, std::string{method::recommended}, recommended, screwed, participants / 2),
+      simulated(bench, "5 mm thick", recommended, with_thin_plates(screwed), participants / 2)};
   return {structure_well_material_less(bench, table, studies),
           table_of_observer(bench, table, studies), better_than_guessing(table)};
 }

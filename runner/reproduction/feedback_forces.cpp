@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <string_view>
 
 #include "runner/devices/rigs.hpp"
 #include "runner/reproduction/claim_table.hpp"
@@ -108,7 +109,7 @@ void add(Claim& claim, const Taps& taps, const Question& question,
 
 Claim none_at_p1(const std::vector<Taps>& all) {
   Claim claim{.name = "p1_no_vibration",
-              .section = "5.1, Figures 4 and 5",
+              .section = "section 5.1, Figures 4 and 5",
               .statement =
                   "Tapped at P1, beside a fixed point, almost all of the force is the penalty "
                   "force and no vibration is seen, with two and with four fixations.",
@@ -121,7 +122,7 @@ Claim none_at_p1(const std::vector<Taps>& all) {
 
 Claim low_absent_at_p2(const std::vector<Taps>& all) {
   Claim claim{.name = "p2_low_modes_absent",
-              .section = "5.1, Figures 4 and 5",
+              .section = "section 5.1, Figures 4 and 5",
               .statement = "Tapped at P2, the middle, no low-frequency modes are seen.",
               .rule = visible_rule + band_rule};
   for (const Taps& taps : all) {
@@ -132,7 +133,7 @@ Claim low_absent_at_p2(const std::vector<Taps>& all) {
 
 Claim high_seen_at_p2(const std::vector<Taps>& all) {
   Claim claim{.name = "p2_high_modes_seen",
-              .section = "5.1, Figures 4 and 5",
+              .section = "section 5.1, Figures 4 and 5",
               .statement = "Tapped at P2, high-frequency modes are well seen.",
               .rule = visible_rule + band_rule};
   for (const Taps& taps : all) {
@@ -158,7 +159,7 @@ Measure aluminium_over_others(const Taps& taps, const char* fixations, const cha
 
 Claim most_in_aluminium(const std::vector<Taps>& all) {
   Claim claim{.name = "p2_most_in_aluminium",
-              .section = "5.1, Figures 4 and 5",
+              .section = "section 5.1, Figures 4 and 5",
               .statement = "At P2 they are seen most in aluminium.",
               .rule =
                   "Aluminium's vibration above 100 Hz is at least as large as that of the other "
@@ -175,7 +176,7 @@ Claim most_in_aluminium(const std::vector<Taps>& all) {
 
 Claim large_at_p3(const std::vector<Taps>& all) {
   Claim claim{.name = "p3_two_large",
-              .section = "5.1, Figure 4",
+              .section = "section 5.1, Figure 4",
               .statement =
                   "Tapped at P3, with two fixations, MDF and acrylic show a large vibration "
                   "of low-frequency modes.",
@@ -188,7 +189,7 @@ Claim large_at_p3(const std::vector<Taps>& all) {
 
 Claim smaller_in_aluminium(const std::vector<Taps>& all) {
   Claim claim{.name = "p3_two_smaller_in_aluminium",
-              .section = "5.1, Figure 4",
+              .section = "section 5.1, Figure 4",
               .statement =
                   "There the vibration of aluminium is smaller, because its Young's modulus "
                   "is larger.",
@@ -207,7 +208,7 @@ Claim smaller_in_aluminium(const std::vector<Taps>& all) {
 
 Claim low_absent_at_p3(const std::vector<Taps>& all) {
   Claim claim{.name = "p3_four_small",
-              .section = "5.1, Figure 5",
+              .section = "section 5.1, Figure 5",
               .statement =
                   "With four fixations P3 is near a fixed point too, and the vibration of "
                   "low-frequency modes is not well seen.",
@@ -221,7 +222,8 @@ Claim low_absent_at_p3(const std::vector<Taps>& all) {
 // The figures themselves: each route's whole force on one scale, and the vibration alone on
 // another.
 Drawing waveforms(const Taps& taps, const char* fixations) {
-  Drawing drawing{fmt::format("{}, {} fixations", taps.route.name, fixations), {}};
+  const bool is_open = std::string_view{fixations} == "two" && taps.route.aluminium == "aluminium";
+  Drawing drawing{fmt::format("{}, {} fixations", taps.route.name, fixations), {}, is_open};
   for (const std::string& material : taps.route.materials()) {
     for (const char* const point : {"P1", "P2", "P3"}) {
       drawing.svg.push_back(
@@ -234,7 +236,7 @@ Drawing waveforms(const Taps& taps, const char* fixations) {
 
 std::vector<Claim> feedback_forces(Bench& bench) {
   std::vector<Taps> all;
-  for (const Route& route : routes()) {
+  for (const Route& route : bench.plates) {
     all.push_back(taps_of(bench, route));
   }
   std::vector<Claim> claims{

@@ -8,8 +8,6 @@
 
 #include "analysis/modal_identification/decaying_sinusoid_fit.hpp"
 #include "core/placement.hpp"
-#include "core/tick/coupled_finger.hpp"
-#include "core/tick/modal_state.hpp"
 #include "runner/devices/rigs.hpp"
 #include "runner/experiments/scripted_tap.hpp"
 #include "runner/reproduction/claim_table.hpp"
@@ -23,55 +21,23 @@ constexpr double printed_hz = 250.0;
 constexpr double printed_decay_per_s = 600.0;
 constexpr double slowed_by = 2.0;  // of the finger's vibration
 constexpr double compared_s = 0.05;
-constexpr double pressed_m = 0.002;
 const char* const finger_protocol = "protocols/paper/reality_finger.yaml";
-
-// Acceleration of a real finger's tip, and of the plate below it, from the impact on [m/s²].
-struct Accelerations {
-  Eigen::VectorXd finger;
-  Eigen::VectorXd plate;
-};
-
-// The hand comes down at constant speed and stops 2 mm below the surface.
-Accelerations of_real_tap(const core::VibratingPlate& plate, const core::RenderSettings& settings,
-                          const Eigen::Vector2d& at_m, double speed_m_s) {
-  const double dt_s = settings.dt_s;
-  core::ModalState state{plate.model, settings.integrator, dt_s};
-  core::CoupledFinger finger{settings.finger, settings.penalty_stiffness_n_per_m, dt_s};
-  state.touch(plate.locator->locate(at_m.x(), at_m.y()), {0.0, 0.0, 1.0});
-  finger.begin(0.0, -speed_m_s, 0.0);
-  const auto ticks = static_cast<Eigen::Index>(std::lround(compared_s / dt_s));
-  Accelerations found{Eigen::VectorXd{ticks}, Eigen::VectorXd{ticks}};
-  double velocity_m_s = 0.0;
-  for (Eigen::Index i = 0; i < ticks; ++i) {
-    state.tick();
-    const core::SurfaceTick surface{state.previous_displacement_m(), state.displacement_m(),
-                                    state.compliance_m_per_n()};
-    const double hand_m = -std::min(pressed_m, speed_m_s * dt_s * static_cast<double>(i + 1));
-    const double contact_n = finger.tick(hand_m, surface);
-    state.push(-contact_n);
-    found.finger[i] = (contact_n - finger.force_on_hand_n()) / settings.finger.mass_kg;
-    found.plate[i] = (state.velocity_m_s() - velocity_m_s) / dt_s;
-    velocity_m_s = state.velocity_m_s();
-  }
-  return found;
-}
 
 double root_mean_square(const Eigen::VectorXd& values) {
   return values.norm() / std::sqrt(static_cast<double>(values.size()));
 }
 
-struct RealTap {
+struct TappedPlate {
   Route route;
   std::string stimulus;
   core::RenderSettings settings;
-  Accelerations found;
+  RealTap found;
 };
 
 // On P1, beside a fixed point, where the paper's users complained. Screws hold real plates.
-std::vector<RealTap> real_taps(Bench& bench) {
-  std::vector<RealTap> all;
-  for (const Route& route : routes()) {
+std::vector<TappedPlate> real_taps(Bench& bench) {
+  std::vector<TappedPlate> all;
+  for (const Route& route : bench.plates) {
     if (route.name == method::printed || route.aluminium != "aluminium") {
       continue;
     }
@@ -79,16 +45,15 @@ std::vector<RealTap> real_taps(Bench& bench) {
     for (const char* const name : {"mdf_two", "acrylic_two"}) {
       const auto stimulus = stimulus_with(protocol, protocol.stimulus(name));
       const auto plate = bench.models.plate_of(protocol, stimulus);
-      all.push_back(
-          {route, name, stimulus.rendering,
-           of_real_tap(*plate, stimulus.rendering, stimulus.plate->tapping_points_m.at("P1"),
-                       real_over_virtual_speed * tap_speed_m_s)});
+      all.push_back({route, name, stimulus.rendering,
+                     real_tap(plate.get(), stimulus.rendering,
+                              stimulus.plate->tapping_points_m.at("P1"), compared_s)});
     }
   }
   return all;
 }
 
-Method& method_of(Claim& claim, const RealTap& tap) {
+Method& method_of(Claim& claim, const TappedPlate& tap) {
   const std::string name = "real plates, " + tap.route.name;
   if (claim.methods.empty() || claim.methods.back().name != name) {
     claim.methods.push_back(
@@ -102,11 +67,11 @@ Method& method_of(Claim& claim, const RealTap& tap) {
   return claim.methods.back();
 }
 
-Claim plate_smaller(const std::vector<RealTap>& taps) {
+Claim plate_smaller(const std::vector<TappedPlate>& taps) {
   constexpr double printed_ratio = 100.0;
   Claim claim{
       .name = "plate_smaller_than_finger",
-      .section = "5.2.3",
+      .section = "section 5.2.3",
       .statement =
           "Of a tap on a fixed plate, the plate's vibration is at least 100 times "
           "smaller than the finger's.",
@@ -114,11 +79,11 @@ Claim plate_smaller(const std::vector<RealTap>& taps) {
           "Root mean square of the accelerations in the 50 ms after an impact on P1; of the "
           "plate below 300 Hz. A bare finger of 5.8 g, coupled to the plate by its pad, "
           "at 48 kHz and 0.9 m/s."};
-  for (const RealTap& tap : taps) {
+  for (const TappedPlate& tap : taps) {
     method_of(claim, tap)
-        .measures.push_back(
-            at_least(printed_ratio, tap.stimulus + " at P1: acceleration of finger over plate",
-                     root_mean_square(tap.found.finger) / root_mean_square(tap.found.plate)));
+        .measures.push_back(at_least(
+            printed_ratio, tap.stimulus + " at P1: acceleration of finger over plate",
+            root_mean_square(tap.found.finger_m_s2) / root_mean_square(tap.found.plate_m_s2)));
   }
   claim.remarks.emplace_back(
       "The command shows the same tap at the study's own rate and with its own finger.");
@@ -136,13 +101,13 @@ std::vector<Measure> needed(const core::Finger& finger) {
       shown("damping with which they decay by 1200 1/s", 2.0 * finger.mass_kg * decay, "N s/m")};
 }
 
-Claim twice_as_fast(const std::vector<RealTap>& taps) {
+Claim twice_as_fast(const std::vector<TappedPlate>& taps) {
   constexpr double tolerance = 1.5;  // either way
   const double hz = slowed_by * printed_hz;
   const double decay = slowed_by * printed_decay_per_s;
   Claim claim{
       .name = "finger_twice_as_fast",
-      .section = "5.2.3",
+      .section = "section 5.2.3",
       .statement =
           "The finger's acceleration after an impact is a decaying sinusoid twice as "
           "fast as 250 Hz with a decay of 600 1/s.",
@@ -150,9 +115,9 @@ Claim twice_as_fast(const std::vector<RealTap>& taps) {
           "The sinusoid nearest to the computed acceleration has 500 Hz and 1200 1/s within "
           "a factor of 1.5. The pad is as stiff as the contact spring, 3000 N/m; the paper "
           "gives no other."};
-  for (const RealTap& tap : taps) {
+  for (const TappedPlate& tap : taps) {
     const auto fitted =
-        analysis::fit_decaying_sinusoid({real_rate_hz, tap.found.finger}, {20.0, 2000.0});
+        analysis::fit_decaying_sinusoid({real_rate_hz, tap.found.finger_m_s2}, {20.0, 2000.0});
     const double found_hz = fitted ? fitted->frequency_hz : std::nan("");
     const double found_decay = fitted ? fitted->decay_per_s : std::nan("");
     Method& method = method_of(claim, tap);
@@ -212,7 +177,7 @@ Method sinusoid_by(Bench& bench, const std::string& name, const std::string& fil
 Claim sinusoid(Bench& bench) {
   Claim claim{
       .name = "sinusoid",
-      .section = "5.2.3",
+      .section = "section 5.2.3",
       .statement =
           "The added vibration is A exp(-600 t) sin(250 2π t), A proportional to the "
           "tapping velocity.",
@@ -232,7 +197,7 @@ Claim sinusoid(Bench& bench) {
 }  // namespace
 
 std::vector<Claim> finger_vibration(Bench& bench) {
-  const std::vector<RealTap> taps = real_taps(bench);
+  const std::vector<TappedPlate> taps = real_taps(bench);
   return {sinusoid(bench), plate_smaller(taps), twice_as_fast(taps)};
 }
 }  // namespace tapstudy::runner

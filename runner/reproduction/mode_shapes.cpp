@@ -89,7 +89,7 @@ void add(Bench& bench, const Shown& shown_plate, Claim& claim) {
 
 std::vector<Claim> mode_shapes(Bench& bench) {
   Claim claim{.name = "vibration_seen_from_above",
-              .section = "5, Figure 3",
+              .section = "section 5, Figure 3",
               .statement =
                   "After an impact the displacement spreads over the plate, large where it was "
                   "struck and small at the four corners that are held.",
@@ -99,7 +99,7 @@ std::vector<Claim> mode_shapes(Bench& bench) {
                   "the middle at least half of it."};
   add(bench, {std::string{method::printed}, "protocols/paper/plate_model.yaml", "aluminium"},
       claim);
-  for (const Route& route : routes()) {
+  for (const Route& route : bench.plates) {
     if (route.name != method::printed && route.aluminium == "aluminium") {
       add(bench, {route.name, route.file, route.aluminium + "_four"}, claim);
     }

@@ -3,10 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "core/error.hpp"
+#include "core/tick/coupled_finger.hpp"
+#include "core/tick/modal_state.hpp"
 #include "runner/devices/rigs.hpp"
 #include "runner/experiments/scripted_tap.hpp"
+#include "runner/reproduction/routes.hpp"
 namespace tapstudy::runner {
 namespace {
 constexpr double tapped_s = 0.4;  // long enough for the 0.16 s that feeling takes, after a bounce
@@ -16,6 +20,41 @@ const core::Technique& coupled_finger() {
   return *std::ranges::find(core::techniques(), alone, &core::Technique::parts);
 }
 }  // namespace
+
+RealTap real_tap(const core::VibratingPlate* plate, const core::RenderSettings& settings,
+                 const Eigen::Vector2d& at_m, double seconds) {
+  constexpr double pressed_m = 0.002;
+  constexpr double speed_m_s = real_over_virtual_speed * tap_speed_m_s;
+  const double dt_s = settings.dt_s;
+  std::optional<core::ModalState> state;
+  if (plate != nullptr) {
+    state.emplace(plate->model, settings.integrator, dt_s);
+    state->touch(plate->locator->locate(at_m.x(), at_m.y()), core::Vec3::UnitZ());
+  }
+  core::CoupledFinger finger{settings.finger, settings.penalty_stiffness_n_per_m, dt_s};
+  finger.begin(0.0, -speed_m_s, 0.0);
+  const auto ticks = static_cast<Eigen::Index>(std::lround(seconds / dt_s));
+  RealTap tap{Eigen::VectorXd{ticks}, Eigen::VectorXd::Zero(ticks), Eigen::VectorXd{ticks}};
+  double velocity_m_s = 0.0;
+  for (Eigen::Index i = 0; i < ticks; ++i) {
+    core::SurfaceTick surface;
+    if (state) {
+      state->tick();
+      surface = {state->previous_displacement_m(), state->displacement_m(),
+                 state->compliance_m_per_n()};
+    }
+    const double hand_m = -std::min(pressed_m, speed_m_s * dt_s * static_cast<double>(i + 1));
+    const double contact_n = finger.tick(hand_m, surface);
+    tap.force_n[i] = finger.force_on_hand_n();
+    tap.finger_m_s2[i] = (contact_n - tap.force_n[i]) / settings.finger.mass_kg;
+    if (state) {
+      state->push(-contact_n);
+      tap.plate_m_s2[i] = (state->velocity_m_s() - velocity_m_s) / dt_s;
+      velocity_m_s = state->velocity_m_s();
+    }
+  }
+  return tap;
+}
 
 protocols::Protocol with_real_finger(protocols::Protocol protocol) {
   protocol.rate_hz = real_rate_hz;

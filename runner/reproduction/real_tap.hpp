@@ -2,6 +2,7 @@
 #include <string>
 #include <vector>
 
+#include "core/tick/vibrating_plate.hpp"
 #include "protocols/rig.hpp"
 #include "runner/participants/touch_features.hpp"
 #include "runner/stimuli/model_library.hpp"
@@ -13,6 +14,17 @@ namespace tapstudy::runner {
 inline constexpr double real_rate_hz = 48'000.0;
 inline constexpr double real_finger_kg = 0.0058;
 inline constexpr double real_over_virtual_speed = 3.0;
+
+// One tap, 0.9 m/s, by a hand that comes down at constant speed and stops 2 mm below the surface,
+// from the impact on, a value for each tick.
+struct RealTap {
+  Eigen::VectorXd finger_m_s2;  // acceleration of its tip
+  Eigen::VectorXd plate_m_s2;   // and of the plate below it
+  Eigen::VectorXd force_n;      // of the finger on the hand
+};
+// With the settings of with_real_finger(). Without a plate the surface is rigid.
+RealTap real_tap(const core::VibratingPlate* plate, const core::RenderSettings& settings,
+                 const Eigen::Vector2d& at_m, double seconds);
 
 // The protocol with every stimulus as its real plate.
 protocols::Protocol with_real_finger(protocols::Protocol protocol);

@@ -28,7 +28,7 @@ struct Study {
 const std::vector<Study>& studies() {
   static const std::vector<Study> all{
       {"reality_vibration",
-       "5.2.2",
+       "section 5.2.2",
        "Of no vibration, the decaying sinusoid and the finite element vibration, all four "
        "participants "
        "chose the last as the most realistic.",
@@ -36,7 +36,7 @@ const std::vector<Study>& studies() {
        "decaying_sinusoid",
        {{"no_vibration", {0, 4}}, {"decaying_sinusoid", {0, 4}}, {"finite_elements", {4, 4}}}},
       {"reality_finger",
-       "5.2.3",
+       "section 5.2.3",
        "Of the finite element vibration, the decaying sinusoid and both, seven of ten participants "
        "chose both and three the finite element vibration.",
        "reality_finger.yaml",
@@ -53,19 +53,6 @@ struct World {
   protocols::Protocol real;
 };
 
-// Its plates replaced by one of 5 mm.
-protocols::Protocol thin(protocols::Protocol protocol) {
-  const auto plate =
-      shipped_protocol("protocols/recommended/forces_thin.yaml").plates.at("two_screws");
-  for (auto& [name, own] : protocol.plates) {
-    own = plate;
-  }
-  for (protocols::Stimulus& stimulus : protocol.stimuli) {
-    stimulus.plate = plate;
-  }
-  return protocol;
-}
-
 std::vector<World> worlds_of(const Study& study) {
   const std::string paper = "protocols/paper/" + study.file;
   const std::string ours = "protocols/recommended/" + study.file;
@@ -73,7 +60,8 @@ std::vector<World> worlds_of(const Study& study) {
   return {
       {std::string{method::printed}, paper, shipped_protocol(paper), with_real_finger(recommended)},
       {std::string{method::recommended}, ours, recommended, with_real_finger(recommended)},
-      {"5 mm thick", ours, thin(recommended), with_real_finger(thin(recommended))}};
+      {"5 mm thick", ours, with_thin_plates(recommended),
+       with_real_finger(with_thin_plates(recommended))}};
 }
 
 std::vector<FeltTap> taps_on(const protocols::Protocol& protocol, const std::string& stimulus,
@@ -202,6 +190,7 @@ Claim claim_of(const Study& study, Bench& bench) {
     felt = felt_in(world, study, bench);
     claim.methods.push_back(judged(world, study, felt, bench));
   }
+  claim.remarks.push_back(fmt::format("5 mm thick: as recommended, with {}.", how_thin));
   claim.remarks.emplace_back(
       "The sinusoid's amplitude A is not printed: the paper found it by cut and try. Beside the "
       "shipped "

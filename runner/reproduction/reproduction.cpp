@@ -1,9 +1,12 @@
 #include "runner/reproduction/reproduction.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <fstream>
 
+#include "core/error.hpp"
 #include "runner/build_info.hpp"
 #include "runner/terminal/progress.hpp"
 #include "runner/terminal/say.hpp"
@@ -20,23 +23,40 @@ std::string processor_name() {
   }
   return "an unknown processor";
 }
+
+std::vector<ClaimGroup> chosen(const std::vector<std::string>& only) {
+  if (only.empty()) {
+    return claim_groups();
+  }
+  std::vector<ClaimGroup> groups;
+  for (const std::string& name : only) {
+    const auto found = std::ranges::find(claim_groups(), name, &ClaimGroup::name);
+    if (found == claim_groups().end()) {
+      throw core::InvalidInput{fmt::format("--only: '{}' is no group of claims (one of: {})", name,
+                                           fmt::join(claim_group_names(), ", "))};
+    }
+    groups.push_back(*found);
+  }
+  return groups;
+}
 }  // namespace
 
-Reproduction reproduce(Bench& bench) {
+Reproduction reproduce(Bench& bench, const std::vector<std::string>& only) {
+  const std::vector<ClaimGroup> groups = chosen(only);
   Reproduction all;
   all.seed = bench.seed;
   all.effort = bench.effort;
+  all.only = only;
   all.program = fmt::format("tapstudy {} ({})", program_version(), git_hash());
   all.machine = processor_name();
-  const auto& groups = claim_groups();
   for (std::size_t i = 0; i < groups.size(); ++i) {
     stop_if_asked();
     say("{} of {}: {}\n", i + 1, groups.size(), groups[i].title);
     Progress progress{std::string{groups[i].title}};
     bench.progress = progress.hook();
     all.groups.push_back({std::string{groups[i].title}, groups[i].measure(bench)});
+    bench.progress = {};
   }
-  bench.progress = {};
   all.not_reproducible = not_reproducible();
   return all;
 }

@@ -20,5 +20,10 @@ struct Route {
 // aluminium (1 GPa), and with the metal's (70 GPa).
 const std::vector<Route>& routes();
 
+// A protocol with its plates 5 mm thick, meshed as in protocols/recommended/forces_thin.yaml.
+protocols::Protocol with_thin_plates(protocols::Protocol protocol);
+inline constexpr const char* how_thin =
+    "size_m: [0.6, 0.6, 0.005] and the mesh of protocols/recommended/forces_thin.yaml";
+
 inline constexpr double tap_speed_m_s = 0.3;  // the paper gives none
 }  // namespace tapstudy::runner

@@ -42,7 +42,11 @@ void write_files(const std::string& directory, const Reproduction& reproduction)
 }
 
 std::string command_of(const Reproduction& reproduction) {
-  return fmt::format("tapstudy reproduce{} --seed {} --out DIR",
+  std::string only;
+  for (const std::string& name : reproduction.only) {
+    only += " --only " + name;
+  }
+  return fmt::format("tapstudy reproduce{}{} --seed {} --out DIR", only,
                      reproduction.effort == Effort::quick ? " --quick" : "", reproduction.seed);
 }
 

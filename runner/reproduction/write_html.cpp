@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "analysis/blocks/html_parts.hpp"
 #include "analysis/report/html_style.hpp"
@@ -81,24 +82,39 @@ void write_claim(std::ostream& out, const Claim& claim) {
   write_findings(out, claim);
   out << "</details>\n";
   for (const Drawing& drawing : claim.drawings) {
-    core::print(out, "<h4>{}</h4>\n<div class=charts>\n", escaped(drawing.title));
+    core::print(out, "<details{}><summary>{}</summary>\n<div class=\"charts small\">\n",
+                drawing.is_open ? " open" : "", escaped(drawing.title));
     for (const std::string& svg : drawing.svg) {
       out << svg;
     }
-    out << "</div>\n";
+    out << "</div></details>\n";
   }
   out << "</section>\n";
+}
+
+// The methods of which it depends.
+std::string confirming(const Claim& claim) {
+  std::vector<std::string> names;
+  for (const Method& method : claim.methods) {
+    if (method.confirms()) {
+      names.push_back(method.name);
+    }
+  }
+  return claim.verdict() == Verdict::depends ? fmt::format("{}", fmt::join(names, "; ")) : "";
 }
 
 void write_overview(std::ostream& out, const Reproduction& reproduction) {
   out << "<div class=overview>";
   begin_table(out, "All claims",
-              "<th scope=col>claim</th><th scope=col>judgement</th><th scope=col>the paper</th>");
+              "<th scope=col>claim</th><th scope=col>judgement</th><th scope=col>if it depends, it "
+              "holds</th><th scope=col>the paper</th>");
   for (const MeasuredGroup& group : reproduction.groups) {
     for (const Claim& claim : group.claims) {
-      core::print(out, "<tr><th scope=row><a href=\"#{}\">{}</a></th><td>{}</td><td>{}</td></tr>\n",
+      core::print(out,
+                  "<tr><th scope=row><a href=\"#{}\">{}</a></th><td>{}</td><td>{}</td><td>{}</td>"
+                  "</tr>\n",
                   escaped(claim.name), escaped(claim.statement), verdict(claim),
-                  escaped(claim.section));
+                  escaped(confirming(claim)), escaped(claim.section));
     }
   }
   out << end_table << "</div>\n";

@@ -22,6 +22,7 @@ void run_reproduce(const ReproduceOptions& options) {
   Bench bench;
   bench.effort = options.is_quick ? Effort::quick : Effort::full;
   bench.seed = seed_from(options.seed, "--seed");
+  claim_groups_named(options.only);
   make_room_for_reproduction(options.out);
   listen_for_stop();
   const Reproduction reproduction = reproduce(bench, options.only);

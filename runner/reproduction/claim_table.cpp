@@ -1,4 +1,11 @@
 #include "runner/reproduction/claim_table.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "core/error.hpp"
 namespace tapstudy::runner {
 const std::vector<ClaimGroup>& claim_groups() {
   static const std::vector<ClaimGroup> groups{
@@ -21,6 +28,19 @@ std::vector<std::string> claim_group_names() {
     names.emplace_back(group.name);
   }
   return names;
+}
+
+std::vector<ClaimGroup> claim_groups_named(const std::vector<std::string>& names) {
+  std::vector<ClaimGroup> groups;
+  for (const std::string& name : names) {
+    const auto found = std::ranges::find(claim_groups(), name, &ClaimGroup::name);
+    if (found == claim_groups().end()) {
+      throw core::InvalidInput{fmt::format("--only: '{}' is no group of claims (one of: {})", name,
+                                           fmt::join(claim_group_names(), ", "))};
+    }
+    groups.push_back(*found);
+  }
+  return groups.empty() ? claim_groups() : groups;
 }
 
 const std::vector<NotReproducible>& not_reproducible() {

@@ -15,6 +15,8 @@ struct ClaimGroup {
 };
 const std::vector<ClaimGroup>& claim_groups();
 std::vector<std::string> claim_group_names();
+// All without names. Throws InvalidInput for a name that is of no group.
+std::vector<ClaimGroup> claim_groups_named(const std::vector<std::string>& names);
 
 std::vector<Claim> plate_model(Bench& bench);       // Table 1
 std::vector<Claim> mode_count(Bench& bench);        // section 5.1

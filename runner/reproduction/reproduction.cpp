@@ -1,12 +1,9 @@
 #include "runner/reproduction/reproduction.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
-#include <algorithm>
 #include <fstream>
 
-#include "core/error.hpp"
 #include "runner/build_info.hpp"
 #include "runner/terminal/progress.hpp"
 #include "runner/terminal/say.hpp"
@@ -23,26 +20,10 @@ std::string processor_name() {
   }
   return "an unknown processor";
 }
-
-std::vector<ClaimGroup> chosen(const std::vector<std::string>& only) {
-  if (only.empty()) {
-    return claim_groups();
-  }
-  std::vector<ClaimGroup> groups;
-  for (const std::string& name : only) {
-    const auto found = std::ranges::find(claim_groups(), name, &ClaimGroup::name);
-    if (found == claim_groups().end()) {
-      throw core::InvalidInput{fmt::format("--only: '{}' is no group of claims (one of: {})", name,
-                                           fmt::join(claim_group_names(), ", "))};
-    }
-    groups.push_back(*found);
-  }
-  return groups;
-}
 }  // namespace
 
 Reproduction reproduce(Bench& bench, const std::vector<std::string>& only) {
-  const std::vector<ClaimGroup> groups = chosen(only);
+  const std::vector<ClaimGroup> groups = claim_groups_named(only);
   Reproduction all;
   all.seed = bench.seed;
   all.effort = bench.effort;

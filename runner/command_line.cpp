@@ -18,6 +18,7 @@ ExitCode run_command_line(int argc, const char* const* argv) {
   add_modes(line);
   add_tap(line);
   add_trade(line);
+  add_reproduce(line);
   add_identify(line);
   add_devices(line);
   add_doctor(line);

@@ -12,6 +12,7 @@ void add_verify(CommandParser& line);
 void add_modes(CommandParser& line);
 void add_tap(CommandParser& line);
 void add_trade(CommandParser& line);
+void add_reproduce(CommandParser& line);
 void add_identify(CommandParser& line);
 void add_devices(CommandParser& line);
 void add_doctor(CommandParser& line);

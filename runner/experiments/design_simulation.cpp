@@ -1,41 +1,20 @@
 #include "runner/experiments/design_simulation.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <iterator>
 
 #include "analysis/statistics/quantiles.hpp"
 #include "core/rng.hpp"
 #include "results/store.hpp"
+#include "runner/experiments/scratch_directory.hpp"
 #include "runner/experiments/simulated_study.hpp"
 #include "runner/experiments/study_summary.hpp"
 #include "runner/terminal/stop_signal.hpp"
 namespace tapstudy::runner {
 namespace {
-namespace fs = std::filesystem;
 constexpr double alpha = 0.05;
-
-// RAII: removed with all it holds.
-class ScratchDirectory {
- public:
-  explicit ScratchDirectory(std::uint64_t seed)
-      : path_{fs::temp_directory_path() / fmt::format("tapstudy-{}-{:x}", ::getpid(), seed)} {}
-  ~ScratchDirectory() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  ScratchDirectory(const ScratchDirectory&) = delete;
-  ScratchDirectory& operator=(const ScratchDirectory&) = delete;
-  ScratchDirectory(ScratchDirectory&&) = delete;
-  ScratchDirectory& operator=(ScratchDirectory&&) = delete;
-  std::string path() const { return path_.string(); }
-
- private:
-  fs::path path_;
-};
 
 struct Found {
   std::string block;

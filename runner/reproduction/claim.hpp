@@ -1,0 +1,71 @@
+#pragma once
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "analysis/tables/chart.hpp"
+namespace tapstudy::runner {
+// A claim of the paper beside what tapstudy gets. The judgement is computed from the numbers:
+//   a measure holds if its value keeps its limit; one that is only shown always holds
+//   a method confirms the claim if all its measures hold
+//   a claim is true if every method confirms it, false if none does; else it depends on the method
+
+enum class Relation { at_least, at_most, shown };
+struct Measure {
+  std::string name;
+  double value{};  // NaN keeps no limit
+  std::string unit;
+  Relation relation{Relation::shown};
+  double limit{};  // in the same unit; 0 if only shown
+  bool holds() const;
+};
+Measure at_least(double limit, const std::string& name, double value, const std::string& unit = {});
+Measure at_most(double limit, const std::string& name, double value, const std::string& unit = {});
+Measure shown(const std::string& name, double value, const std::string& unit = {});
+std::string_view name(Relation relation);
+
+// One way to compute what the claim is about.
+struct Method {
+  std::string name;
+  std::string command;  // of tapstudy, that shows the numbers
+  std::vector<Measure> measures;
+  bool confirms() const;
+};
+
+enum class Verdict { confirmed, refuted, depends };
+// "true", "false", "depends"
+std::string_view name(Verdict verdict);
+
+// Drawn on the page below a heading of its own; `svg` is complete, with its caption.
+struct Drawing {
+  std::string title;
+  std::vector<std::string> svg;
+  bool is_open{true};  // else the reader unfolds it
+};
+
+struct Claim {
+  std::string name;       // of its place on the page and in JSON
+  std::string section;    // of the paper
+  std::string statement;  // in our words
+  std::string rule;       // when a measure holds, and why that limit
+  std::vector<Method> methods{};
+  std::vector<Measure> findings{};  // beside the judgement: what would give it, and the like
+  std::vector<std::string> remarks{};
+  std::vector<Drawing> drawings{};
+  Verdict verdict() const;
+  // By which methods, and for each of the others the measures that do not hold.
+  std::string reason() const;
+};
+
+// What no computation can show.
+struct NotReproducible {
+  std::string section;
+  std::string statement;
+  std::string why;
+};
+
+namespace method {
+inline constexpr std::string_view printed = "as printed";
+inline constexpr std::string_view recommended = "as recommended";
+}  // namespace method
+}  // namespace tapstudy::runner

@@ -1,0 +1,109 @@
+// Figure 3: the transition of the vibration's displacements, blue where small and red where large.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "analysis/figures/face_views.hpp"
+#include "analysis/tables/cells.hpp"
+#include "runner/reproduction/claim_table.hpp"
+#include "runner/reproduction/colour_svg.hpp"
+#include "runner/reproduction/routes.hpp"
+#include "runner/reproduction/shipped_protocols.hpp"
+namespace tapstudy::runner {
+namespace {
+constexpr double still = 5.0;  // %
+
+struct Shown {
+  std::string method;
+  std::string file;
+  std::string stimulus;
+};
+
+double magnitude(const analysis::ColourPanel& panel, std::size_t place) {
+  return std::abs(panel.values.at(place));
+}
+
+// The value nearest to a place on the face.
+std::size_t place_of(const analysis::ColourMap& map, const core::Vec3& at_m) {
+  const auto index = [](double at, double low, double high, std::size_t count) {
+    return static_cast<std::size_t>(
+        std::lround((at - low) / (high - low) * static_cast<double>(count - 1)));
+  };
+  return index(at_m.y(), map.low_y, map.high_y, map.rows) * map.columns +
+         index(at_m.x(), map.low_x, map.high_x, map.columns);
+}
+
+// [um]
+double largest_at(const analysis::ColourMap& map, const std::vector<std::size_t>& places) {
+  double most = 0.0;
+  for (const analysis::ColourPanel& panel : map.panels) {
+    for (const std::size_t place : places) {
+      most = std::max(most, magnitude(panel, place));
+    }
+  }
+  return most;
+}
+
+double largest(const analysis::ColourMap& map) {
+  std::vector<std::size_t> all(map.rows * map.columns);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    all[i] = i;
+  }
+  return largest_at(map, all);
+}
+
+// Of a strike on the middle.
+analysis::ColourMap struck(Bench& bench, const protocols::Protocol& protocol,
+                           const protocols::PresentedStimulus& stimulus) {
+  const auto plate = bench.models.plate_of(protocol, stimulus);
+  return analysis::map_of_strike(*plate, std::get<core::Box>(stimulus.plate->shape),
+                                 stimulus.rendering, {{0.0, 0.0}, tap_speed_m_s}, stimulus.name);
+}
+
+void add(Bench& bench, const Shown& shown_plate, Claim& claim) {
+  const protocols::Protocol protocol = shipped_protocol(shown_plate.file);
+  const auto stimulus = stimulus_with(protocol, protocol.stimulus(shown_plate.stimulus));
+  analysis::ColourMap map = struck(bench, protocol, stimulus);
+  std::vector<std::size_t> held;
+  for (const core::Fixation& fixation : stimulus.plate->fixations) {
+    held.push_back(place_of(map, fixation.at_m));
+  }
+  const double most_um = largest(map);
+  const double middle_um = largest_at(map, {place_of(map, core::Vec3::Zero())});
+  claim.methods.push_back({shown_plate.method,
+                           fmt::format("tapstudy tap {} --stimulus {} --at P2 --frames strike.svg",
+                                       shown_plate.file, shown_plate.stimulus),
+                           {shown("largest displacement", most_um, "µm"),
+                            at_most(still, "largest at the held corners",
+                                    100.0 * largest_at(map, held) / most_um, "% of the largest"),
+                            at_least(50.0, "largest where it was struck",
+                                     100.0 * middle_um / most_um, "% of the largest")}});
+  constexpr std::size_t frames = 6;
+  map.panels.resize(std::min(frames, map.panels.size()));
+  claim.drawings.push_back({fmt::format("{}: {}, red is {} µm", shown_plate.method,
+                                        shown_plate.stimulus, analysis::rounded(largest(map))),
+                            colour_svgs(map)});
+}
+}  // namespace
+
+std::vector<Claim> mode_shapes(Bench& bench) {
+  Claim claim{.name = "vibration_seen_from_above",
+              .section = "section 5, Figure 3",
+              .statement =
+                  "After an impact the displacement spreads over the plate, large where it was "
+                  "struck and small at the four corners that are held.",
+              .rule =
+                  "In the twelve ticks after a strike on the middle, the largest displacement of "
+                  "a held corner's upper face is at most 5 % of the largest anywhere, and that of "
+                  "the middle at least half of it."};
+  add(bench, {std::string{method::printed}, "protocols/paper/plate_model.yaml", "aluminium"},
+      claim);
+  for (const Route& route : bench.plates) {
+    if (route.name != method::printed && route.aluminium == "aluminium") {
+      add(bench, {route.name, route.file, route.aluminium + "_four"}, claim);
+    }
+  }
+  return {claim};
+}
+}  // namespace tapstudy::runner

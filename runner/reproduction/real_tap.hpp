@@ -1,0 +1,42 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "core/tick/vibrating_plate.hpp"
+#include "protocols/rig.hpp"
+#include "runner/participants/touch_features.hpp"
+#include "runner/stimuli/model_library.hpp"
+namespace tapstudy::runner {
+// What a real plate makes a finger feel, as far as tapstudy can compute it: a bare finger of 5.8 g,
+// coupled to the plate by its pad for as long as it touches (core/tick/coupled_finger.hpp), at
+// 48 kHz with the exact integrator, coming down three times as fast as on a virtual plate, for the
+// paper says that its users' hands moved around three times slower there.
+inline constexpr double real_rate_hz = 48'000.0;
+inline constexpr double real_finger_kg = 0.0058;
+inline constexpr double real_over_virtual_speed = 3.0;
+
+// One tap, 0.9 m/s, by a hand that comes down at constant speed and stops 2 mm below the surface,
+// from the impact on, a value for each tick.
+struct RealTap {
+  Eigen::VectorXd finger_m_s2;  // acceleration of its tip
+  Eigen::VectorXd plate_m_s2;   // and of the plate below it
+  Eigen::VectorXd force_n;      // of the finger on the hand
+};
+// With the settings of with_real_finger(). Without a plate the surface is rigid.
+RealTap real_tap(const core::VibratingPlate* plate, const core::RenderSettings& settings,
+                 const Eigen::Vector2d& at_m, double seconds);
+
+// The protocol with every stimulus as its real plate.
+protocols::Protocol with_real_finger(protocols::Protocol protocol);
+
+// The simulated hand's rig without limits: a real plate has none.
+protocols::Rig unlimited_rig();
+
+// The taps that a hand felt on a tapping point of a stimulus, one impact at this speed.
+std::vector<FeltTap> felt_tap(const protocols::Protocol& protocol, const std::string& stimulus,
+                              const std::string& point, double speed_m_s, ModelLibrary& models);
+
+// Level of one felt tap: the power of all its third octaves, early and late, in decibels above the
+// observer's threshold.
+double level_db(const FeltTap& tap);
+}  // namespace tapstudy::runner

@@ -1,0 +1,34 @@
+#include "runner/reproduction/routes.hpp"
+
+#include <memory>
+#include <variant>
+
+#include "runner/reproduction/claim.hpp"
+#include "runner/reproduction/shipped_protocols.hpp"
+namespace tapstudy::runner {
+const std::vector<Route>& routes() {
+  static const std::vector<Route> all{
+      {std::string{method::printed}, "protocols/paper/forces.yaml", "aluminium"},
+      {std::string{method::recommended}, "protocols/recommended/forces.yaml", "aluminium"},
+      {"5 mm thick", "protocols/recommended/forces_thin.yaml", "aluminium"},
+      {"5 mm thick, aluminium of 70 GPa", "protocols/recommended/forces_thin.yaml", "metal"},
+  };
+  return all;
+}
+
+protocols::Protocol with_thin_plates(protocols::Protocol protocol) {
+  const auto thin =
+      shipped_protocol("protocols/recommended/forces_thin.yaml").plates.begin()->second;
+  for (auto& [name, plate] : protocol.plates) {
+    protocols::Plate changed = *plate;
+    std::get<core::Box>(changed.shape).size_m.z() = std::get<core::Box>(thin->shape).size_m.z();
+    changed.mesh = thin->mesh;
+    const auto changed_plate = std::make_shared<const protocols::Plate>(changed);
+    for (protocols::Stimulus& stimulus : protocol.stimuli) {
+      stimulus.plate = stimulus.plate == plate ? changed_plate : stimulus.plate;
+    }
+    plate = changed_plate;
+  }
+  return protocol;
+}
+}  // namespace tapstudy::runner

@@ -1,0 +1,29 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "protocols/protocol.hpp"
+
+namespace tapstudy::runner {
+// The plates of Figures 4 and 5, six by each route: materials `mdf`, `acrylic` and an aluminium,
+// held at `two` or `four` points.
+struct Route {
+  std::string name;
+  std::string file;       // of the protocol, shipped
+  std::string aluminium;  // which of its materials that is
+  std::vector<std::string> materials() const { return {"mdf", "acrylic", aluminium}; }
+};
+
+// As printed: protocols/paper, plates of 5 cm, linear elements, single vertices held, Newmark.
+// As recommended: protocols/recommended, quadratic elements, screws' heads, the exact integrator.
+// 5 mm thick: as recommended, a tenth of the printed thickness; with the printed modulus of
+// aluminium (1 GPa), and with the metal's (70 GPa).
+const std::vector<Route>& routes();
+
+// A protocol with its plates 5 mm thick, meshed as in protocols/recommended/forces_thin.yaml.
+protocols::Protocol with_thin_plates(protocols::Protocol protocol);
+inline constexpr const char* how_thin =
+    "size_m: [0.6, 0.6, 0.005] and the mesh of protocols/recommended/forces_thin.yaml";
+
+inline constexpr double tap_speed_m_s = 0.3;  // the paper gives none
+}  // namespace tapstudy::runner

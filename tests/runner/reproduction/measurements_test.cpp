@@ -1,0 +1,173 @@
+// What claims are measured with: laws of the parts, and the commands that the claims name.
+#include <algorithm>
+#include <array>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <sstream>
+
+#include "core/error.hpp"
+#include "runner/reproduction/claim_table.hpp"
+#include "runner/reproduction/colour_svg.hpp"
+#include "runner/reproduction/real_tap.hpp"
+#include "runner/reproduction/shipped_protocols.hpp"
+#include "runner/reproduction/tap_force.hpp"
+#include "support/processes.hpp"
+#include "support/texts.hpp"
+using namespace tapstudy;
+using namespace tapstudy::runner;
+
+namespace {
+// The printed plates alone, which take no time to build.
+struct PrintedBench : Bench {
+  PrintedBench() {
+    plates.resize(1);
+    REQUIRE(plates.front().name == method::printed);
+  }
+};
+const Claim& claim_of(const std::vector<Claim>& claims, const std::string& name) {
+  return *std::ranges::find(claims, name, &Claim::name);
+}
+double value_of(const Method& method, const std::string& name) {
+  const auto found = std::ranges::find(method.measures, name, &Measure::name);
+  REQUIRE(found != method.measures.end());
+  return found->value;
+}
+// The program's name left out, paths made those of the sources.
+std::vector<std::string> arguments_of(const std::string& command) {
+  std::istringstream stream{command};
+  std::vector<std::string> words;
+  for (std::string word; stream >> word;) {
+    words.push_back(word.starts_with("protocols/") ? testing::source(word) : word);
+  }
+  REQUIRE(words.front() == "tapstudy");
+  words.erase(words.begin());
+  return words;
+}
+std::vector<core::TraceSample> trace_with(double frequency_hz, double amplitude_n) {
+  std::vector<core::TraceSample> trace;
+  for (int i = 0; i < 300; ++i) {
+    core::TraceSample sample{};
+    sample.t_ns = std::int64_t{1'000'000} * i;
+    sample.impact = i == 50;
+    sample.penalty_n = i < 50 ? 0.0 : 2.0;
+    sample.vibration_n =
+        i < 50 ? 0.0 : amplitude_n * std::sin(2.0 * std::numbers::pi * frequency_hz * 1e-3 * i);
+    trace.push_back(sample);
+  }
+  return trace;
+}
+}  // namespace
+
+TEST_CASE("the protocols within the program are the shipped files", "[runner][reproduction]") {
+  for (const std::string folder : {"paper", "recommended"}) {
+    for (const auto& entry : std::filesystem::directory_iterator{testing::shipped(folder)}) {
+      const std::string name = "protocols/" + folder + "/" + entry.path().filename().string();
+      INFO(name);
+      CHECK(shipped_text(name) == testing::contents(entry.path()));
+    }
+  }
+  CHECK_THROWS_AS(shipped_text("protocols/paper/none.yaml"), core::InvalidInput);
+}
+
+// 250 ticks from the impact on hold whole waves of these frequencies.
+TEST_CASE("a wave below 100 Hz is low-frequency vibration, one above is high",
+          "[runner][reproduction]") {
+  const double amplitude_n = 0.7;
+  const auto [hz, is_low] = GENERATE(std::pair{40.0, true}, std::pair{96.0, true},
+                                     std::pair{104.0, false}, std::pair{248.0, false});
+  const TapForce force = tap_force(trace_with(hz, amplitude_n), 1000.0);
+  INFO(hz);
+  CHECK((is_low ? force.low_n : force.high_n) == Approx(force.vibration_n).epsilon(1e-9));
+  CHECK((is_low ? force.high_n : force.low_n) < 1e-9);
+  CHECK(force.penalty_n == 2.0);
+  CHECK(force.t_s.front() == 0.0);
+  CHECK_THROWS_AS(tap_force({}, 1000.0), core::InvalidInput);
+}
+
+TEST_CASE("a map is red where it is largest in magnitude and blue where it rests",
+          "[runner][reproduction]") {
+  analysis::ColourMap map;
+  map.columns = 3;
+  map.rows = 1;
+  map.panels = {{"one", {0.0, 5.0, -2.0}}, {"two", {-1.0, 5.0, 0.0}}};
+  const std::vector<std::string> drawn = colour_svgs(map);  // every second value
+  REQUIRE(drawn.size() == 2);
+  CHECK(drawn[0].find("#2166c8\" d=\"M0 0h1v1h-1z\"") != std::string::npos);
+  map.panels[0].values[2] = -5.0;
+  CHECK(colour_svgs(map)[0].find("#cd182b\" d=\"M1 0h1v1h-1z\"") != std::string::npos);
+}
+
+TEST_CASE(
+    "the force on a finger takes away its speed, and a heavy plate is felt as a rigid surface",
+    "[runner][reproduction]") {
+  const protocols::Protocol protocol =
+      with_real_finger(shipped_protocol("protocols/paper/plate_model.yaml"));
+  const auto stimulus = stimulus_with(protocol, protocol.stimulus("aluminium"));
+  const RealTap rigid = real_tap(nullptr, stimulus.rendering, {0.0, 0.0}, 0.16);
+  CHECK(rigid.finger_m_s2.sum() / real_rate_hz == Approx(0.9).epsilon(1e-3));  // to rest
+  CHECK(rigid.plate_m_s2.isZero(0.0));
+
+  core::PlateSpec heavy = plate_spec(protocol, stimulus);
+  heavy.material.density_kg_per_m3 *= 1e4;
+  heavy.material.youngs_modulus_pa *= 1e4;  // the same frequencies
+  const core::VibratingPlate plate{core::build_plate_model(heavy).modal};
+  const core::VibratingPlate light{core::build_plate_model(plate_spec(protocol, stimulus)).modal};
+  const auto difference_n = [&](const core::VibratingPlate& felt) {
+    return (real_tap(&felt, stimulus.rendering, {0.0, 0.0}, 0.16).force_n - rigid.force_n).norm();
+  };
+  CHECK(difference_n(plate) == Approx(1e-4 * difference_n(light)).epsilon(0.05));
+}
+
+TEST_CASE("the mesh of a claim is the one that its command shows", "[runner][reproduction]") {
+  PrintedBench bench;
+  const std::vector<Claim> claims = plate_model(bench);
+  for (const auto& [name, measure, key] :
+       {std::tuple{"tetrahedra", "tetrahedra", "elements"},
+        std::tuple{"all_modes", "free degrees of freedom", "dof"}}) {
+    const Method& method = claim_of(claims, name).methods.front();
+    std::vector<std::string> arguments = arguments_of(method.command);
+    arguments.emplace_back("--json");
+    const auto shown_by = nlohmann::json::parse(testing::tapstudy(arguments).standard_output);
+    CHECK(value_of(method, measure) == shown_by[key].get<double>());
+  }
+}
+
+// NumPy's transform of what the command writes.
+TEST_CASE("the forces of a claim are those that its command writes", "[runner][reproduction]") {
+  const std::string shares = R"(
+import csv, sys
+import numpy
+rows = list(csv.DictReader(open(sys.argv[1])))
+first = next(i for i, row in enumerate(rows) if row["impact"] == "1")
+force = numpy.array([float(row["vibration_n"]) for row in rows[first:]])
+penalty = max(abs(float(row["penalty_n"])) for row in rows[first:])
+spectrum = numpy.fft.rfft(force)
+spectrum[numpy.fft.rfftfreq(len(force), 1e-3) >= 100.0] = 0.0
+low = numpy.fft.irfft(spectrum, len(force))
+print(*(repr(float(100.0 * abs(part).max() / penalty)) for part in (force, low, force - low)))
+)";
+  const testing::TempDirectory directory;
+  PrintedBench bench;
+  const std::vector<Claim> claims = feedback_forces(bench);
+  for (const auto& [name, part] : {std::pair{"p1_no_vibration", 0}, std::pair{"p3_two_large", 1},
+                                   std::pair{"p2_high_modes_seen", 2}}) {
+    const Method& method = claim_of(claims, name).methods.front();
+    const std::string file = directory / (std::string{name} + ".csv");
+    std::vector<std::string> arguments = arguments_of(method.command);
+    REQUIRE(arguments.back() == "tap.csv");
+    arguments.back() = file;
+    REQUIRE(testing::tapstudy(arguments).exit_code == 0);
+    const auto found = testing::run_program({"/usr/bin/python3", "-c", shares, file});
+    INFO(name << found.standard_error);
+    std::istringstream words{found.standard_output};
+    std::array<double, 3> expected{};
+    for (double& value : expected) {
+      words >> value;
+    }
+    CHECK(method.measures.front().value ==
+          Approx(expected.at(static_cast<std::size_t>(part))).epsilon(1e-9));
+  }
+}

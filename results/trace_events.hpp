@@ -11,9 +11,10 @@ namespace tapstudy::results {
 // a longer time: the impact is noted once more as late_impact. A tick with a fault yields no event.
 class TraceEvents {
  public:
-  // In SQL: other events of a trial do not follow from its ticks.
+  // In SQL, with what is noted where no tick was kept: a trial's other events do not follow from
+  // its ticks.
   static constexpr std::string_view kinds =
-      "('switch', 'contact', 'impact', 'late_impact', 'release')";
+      "('switch', 'contact', 'impact', 'late_impact', 'release', 'untraced')";
 
   void add(const core::TraceSample& sample, std::vector<EventRow>& events);
 

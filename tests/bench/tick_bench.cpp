@@ -61,6 +61,8 @@ ModalModel made_up_model(Eigen::Index modes, int side, int order = 1) {
 RenderSettings settings() {
   RenderSettings all;
   all.sinusoid.amplitude_n_s_per_m = 3.0;
+  all.recorded_taps = std::make_shared<const RecordedTaps>(
+      RecordedTaps{1.0 / all.dt_s, {{{0.0, 0.0}, 0.3, std::vector<double>(300, 0.1)}}});
   return all;
 }
 

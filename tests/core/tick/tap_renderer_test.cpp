@@ -23,6 +23,8 @@ bool has(const Technique& technique, const ForcePart& part) {
 RenderSettings settings() {
   RenderSettings all;
   all.sinusoid.amplitude_n_s_per_m = 3.0;
+  all.recorded_taps = std::make_shared<const RecordedTaps>(
+      RecordedTaps{1.0 / all.dt_s, {{{0.0, 0.0}, 0.3, {0.1, -0.1}}}});
   return all;
 }
 // A finger that goes straight in at 0.3 m/s and stays 2 mm deep.

@@ -43,7 +43,7 @@ FeltTaps::FeltTaps(const TapWindow& window)
                 {"decaying sinusoid"},
                 {"total"},
                 {"commanded"},
-                {"reported by the device"}}},
+                {"reported"}}},
       taps_at_(window.ticks(), 0),
       total_{window.ticks()},
       added_{window.ticks()},

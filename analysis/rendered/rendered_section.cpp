@@ -18,12 +18,20 @@ Cell quartiles_cell(const std::vector<double>& values) {
   return interval(of.median, {of.low, of.high});
 }
 
+// Stored in metres.
+Cell millimetres(const std::vector<double>& values_m) {
+  Cell cell = quartiles_cell(values_m);
+  const Quartiles of = quartiles(values_m);
+  cell.text = with_interval(1e3 * of.median, {1e3 * of.low, 1e3 * of.high});
+  return cell;
+}
+
 std::string first_modes(const RenderedModel& model) {
-  constexpr std::size_t shown = 4;
+  constexpr std::size_t shown = 3;
   std::string text;
   const std::size_t modes = model.frequencies_hz.size();
   for (std::size_t i = 0; i < std::min(shown, modes); ++i) {
-    text += fmt::format("{}{:.1f} ({} %)", i == 0 ? "" : ", ", model.frequencies_hz[i],
+    text += fmt::format("{}{:.0f} ({} %)", i == 0 ? "" : ", ", model.frequencies_hz[i],
                         rounded(100.0 * model.damping_ratios[i], 2));
   }
   return modes > shown ? text + " …" : text;
@@ -32,15 +40,31 @@ std::string first_modes(const RenderedModel& model) {
 ReportTable stimuli_table(const RenderedStudy& study) {
   ReportTable table{
       "rendered_stimuli",
-      "The stimuli, and the finite element models that rendered them",
-      {column("stimulus", "stimulus"), column("plate", "plate"), column("material", "material"),
-       column("fixation", "fixation"), column("technique", "technique"),
-       column("modes in band", "modes"), column("natural frequencies, Hz (damping)", "first_modes"),
+      "The stimuli",
+      {column("stimulus", "stimulus"), column("plate", "plate"), column("size", "size"),
+       column("fixation", "fixation"), column("technique", "technique")}};
+  for (const RenderedStimulus& stimulus : study.stimuli) {
+    table.rows.push_back({named(stimulus), word(stimulus.plate), word(stimulus.size),
+                          word(stimulus.fixation), word(stimulus.technique)});
+  }
+  return table;
+}
+
+ReportTable models_table(const RenderedStudy& study) {
+  ReportTable table{
+      "rendered_models",
+      "Materials and finite element models: modes in the band, frequencies (damping ratios)",
+      {column("stimulus", "stimulus"), column("material", "material"),
+       column("E, GPa", "youngs_modulus_pa"), column("kg/m³", "density_kg_per_m3"),
+       column("modes", "modes"), column("frequencies, Hz", "first_modes"),
        column("elements", "elements"), column("nodes", "nodes"), column("order", "order"),
        column("residual", "worst_residual")}};
   for (const RenderedStimulus& stimulus : study.stimuli) {
-    std::vector<Cell> row{named(stimulus), word(stimulus.plate), word(stimulus.material),
-                          word(stimulus.fixation), word(stimulus.technique)};
+    std::vector<Cell> row{
+        named(stimulus),
+        word(stimulus.material),
+        {rounded(1e-9 * stimulus.youngs_modulus_pa), {stimulus.youngs_modulus_pa}},
+        number(stimulus.density_kg_per_m3)};
     if (stimulus.model) {
       const RenderedModel& model = *stimulus.model;
       row.insert(row.end(), {count(static_cast<std::int64_t>(model.frequencies_hz.size())),
@@ -91,11 +115,11 @@ ReportTable taps_table(const RenderedStudy& study) {
 }
 
 ReportTable forces_table(const RenderedStudy& study) {
-  ReportTable table{"rendered_forces",
-                    "Parts of the force in these taps, while in contact",
-                    {column("stimulus", "stimulus"), column("part of the force", "part"),
-                     column("RMS, N", "rms_n"), column("largest peak, N", "largest_peak_n"),
-                     interval_column("peak of a tap, N (quartiles)", "peak_n")}};
+  ReportTable table{
+      "rendered_forces",
+      "Parts of the force in these taps, while in contact; peaks with quartiles",
+      {column("stimulus", "stimulus"), column("force", "part"), column("RMS, N", "rms_n"),
+       column("largest, N", "largest_peak_n"), interval_column("peak of a tap, N", "peak_n")}};
   for (std::size_t i = 0; i < study.stimuli.size(); ++i) {
     for (const ForceExtent& part : study.taps[i].all.extents()) {
       if (part.squares_n2 > 0.0) {
@@ -112,12 +136,12 @@ ReportTable points_table(const RenderedStudy& study) {
       "rendered_points",
       "Where it was tapped: each tap counts to the tapping point nearest to it",
       {column("stimulus", "stimulus"), column("point", "point"), column("taps", "taps"),
-       interval_column("distance from it, m (quartiles)", "distance_m")}};
+       interval_column("distance from it, mm (quartiles)", "distance_m")}};
   for (std::size_t i = 0; i < study.stimuli.size(); ++i) {
     for (const PointTaps& at : study.taps[i].points) {
       if (at.taps.taps() > 0) {
         table.rows.push_back({named(study.stimuli[i]), word(at.point), count(at.taps.taps()),
-                              quartiles_cell(at.distances_m)});
+                              millimetres(at.distances_m)});
       }
     }
   }
@@ -171,6 +195,11 @@ bool lacks_model(const RenderedStimulus& stimulus) {
   return stimulus.needs_model && !stimulus.model;
 }
 
+bool has_drawn_points(const StimulusTaps& stimulus) {
+  return std::ranges::any_of(
+      stimulus.points, [](const PointTaps& at) { return at.taps.taps() >= least_drawn_taps; });
+}
+
 void say_what_is_missing(const RenderedStudy& study, ReportSection& section) {
   if (study.traced_trials == 0) {
     section.remarks.emplace_back(
@@ -179,9 +208,19 @@ void say_what_is_missing(const RenderedStudy& study, ReportSection& section) {
     section.remarks.push_back(
         fmt::format("Traces are stored of {} of {} trials.", study.traced_trials, study.trials));
   }
+  if (std::ranges::any_of(study.taps, has_drawn_points)) {
+    section.remarks.emplace_back(
+        "Figures of forces: mean over taps with the standard deviation, so far as half of them "
+        "last; at the point where most is added to the contact spring, and for all other points "
+        "behind \"More figures\". Axes are those of all stimuli at a point. Spectra are of the "
+        "force "
+        "that is added, over the whole tap.");
+  }
   if (std::ranges::any_of(study.stimuli, lacks_model)) {
     section.remarks.emplace_back(
-        "Where modes are left out no model is cached on this machine: `modes` builds it.");
+        "Where modes are left out, no model of this version of the program is cached on this "
+        "machine: "
+        "`tapstudy check` of the protocol makes one.");
   }
   if (std::ranges::any_of(study.stimuli, &RenderedStimulus::varies)) {
     section.remarks.emplace_back(
@@ -194,7 +233,7 @@ void say_what_is_missing(const RenderedStudy& study, ReportSection& section) {
 ReportSection rendered_section(const RenderedStudy& study) {
   ReportSection section{"What was rendered"};
   section.name = "rendered";
-  section.tables = {stimuli_table(study), modes_table(study)};
+  section.tables = {stimuli_table(study), models_table(study), modes_table(study)};
   if (study.traced_trials > 0) {
     section.tables.insert(section.tables.end(),
                           {taps_table(study), forces_table(study), points_table(study),
@@ -205,7 +244,8 @@ ReportSection rendered_section(const RenderedStudy& study) {
         "A tap is what was felt for {:.0f} ms from its impact on, or until the next tap; an impact "
         "within {:.0f} ms after the finger came off is a rebound of the tap before. Taps are those "
         "of all trials whose answers count. Root mean squares are over the ticks in contact; the "
-        "total is before the limiter, the commanded force after it.",
+        "total is before the limiter, the commanded force after it; reported is what the device "
+        "says that it exerted.",
         1e3 * window.length_s, 1e3 * window.rebound_s));
   }
   say_what_is_missing(study, section);

@@ -22,7 +22,10 @@ struct RenderedStimulus {
   std::string name;
   std::string label;
   std::string plate;
+  std::string size;
   std::string material;
+  double youngs_modulus_pa{};
+  double density_kg_per_m3{};
   std::string fixation;
   std::string technique;
   bool needs_model{};
@@ -50,12 +53,13 @@ struct RenderedStudy {
 };
 
 // What was rendered: the stimuli and their models, and of every tap that counts the force after the
-// impact, its spectrum, speed and peak. Tables rendered_stimuli, rendered_modes, rendered_taps,
-// rendered_forces, rendered_points, rendered_waveforms, rendered_spectra.
+// impact, its spectrum, speed and peak. Tables rendered_stimuli, rendered_models, rendered_modes,
+// rendered_taps, rendered_forces, rendered_points, rendered_waveforms, rendered_spectra.
 ReportSection rendered_section(const RenderedStudy& study);
 
 // Those of rendered_section: of every stimulus the distribution of speed and peak force, and the
-// waveform and spectrum at the point with the most taps; the other points' are folded.
+// waveform and spectrum at the point where most is added to the contact spring; those at other
+// points are folded. Axes are the same for all stimuli at one point.
 void add_rendered_charts(const RenderedStudy& study, ReportSection& section);
 
 // Fewer taps are no mean to be drawn.

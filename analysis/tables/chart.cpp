@@ -109,7 +109,7 @@ std::vector<double> linear_ticks(const Interval& range) {
   }
   std::vector<double> found;
   for (double place = std::ceil(range.low / step); place * step <= range.high; place += 1.0) {
-    found.push_back(place * step);
+    found.push_back(place * step + 0.0);  // no -0
   }
   return found;
 }

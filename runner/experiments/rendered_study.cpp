@@ -1,7 +1,5 @@
 #include "runner/experiments/rendered_study.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <set>
 #include <unordered_map>
@@ -44,11 +42,11 @@ RenderedStimulus in_words(const Protocol& protocol, const Stimulus& stimulus,
                           const core::ModelCache& cache) {
   return {stimulus.name,
           stimulus.label,
-          fmt::format("{} ({})", name_in(protocol.plates, stimulus.plate),
-                      size_words(stimulus.plate->shape)),
-          fmt::format(
-              "{} (E = {:.3g} GPa, {:.4g} kg/m³)", name_in(protocol.materials, stimulus.material),
-              1e-9 * stimulus.material->youngs_modulus_pa, stimulus.material->density_kg_per_m3),
+          name_in(protocol.plates, stimulus.plate),
+          size_words(stimulus.plate->shape),
+          name_in(protocol.materials, stimulus.material),
+          stimulus.material->youngs_modulus_pa,
+          stimulus.material->density_kg_per_m3,
           fixation_words(stimulus.plate->fixations),
           std::string{stimulus.technique->name},
           stimulus.technique->needs_model(),

@@ -63,17 +63,18 @@ std::string region_words(const core::Fixation& fixation) {
   return "";
 }
 
+// Nothing of what is held along all axes.
 std::string hold_words(const core::Fixation& fixation) {
   if (fixation.springs_n_per_m) {
     const core::Vec3& springs = *fixation.springs_n_per_m;
-    return fmt::format("on springs of {:.3g}, {:.3g}, {:.3g} N/m", springs.x(), springs.y(),
+    return fmt::format(", on springs of {:.3g}, {:.3g}, {:.3g} N/m", springs.x(), springs.y(),
                        springs.z());
   }
   std::string axes;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     axes += fixation.constrained_axes[axis] ? std::string(1, "xyz"[axis]) : "";
   }
-  return axes == "xyz" ? "held" : axes + " held";
+  return axes == "xyz" ? "" : ", held along " + axes;
 }
 }  // namespace
 
@@ -87,7 +88,7 @@ std::string size_words(const core::Shape& shape) {
 std::string fixation_words(const std::vector<core::Fixation>& fixations) {
   std::vector<std::pair<std::string, int>> alike;
   for (const core::Fixation& fixation : fixations) {
-    const std::string words = region_words(fixation) + ", " + hold_words(fixation);
+    const std::string words = region_words(fixation) + hold_words(fixation);
     const auto found = std::ranges::find(alike, words, &std::pair<std::string, int>::first);
     if (found == alike.end()) {
       alike.emplace_back(words, 1);

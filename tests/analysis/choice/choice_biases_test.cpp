@@ -65,7 +65,7 @@ TEST_CASE("switches are counted from each stimulus to each, whatever their label
           "[analysis][choice]") {
   using Rows = std::vector<std::vector<std::int64_t>>;
   // a b c a, b c a, c a b, c b
-  CHECK(transitions(of_three().stimuli, four_trials()) == Rows{{0, 2, 0}, {0, 0, 2}, {2, 1, 0}});
+  CHECK(transitions(of_three().stimuli, four_trials()) == Rows{{0, 2, 0}, {0, 0, 2}, {3, 1, 0}});
 }
 
 TEST_CASE("the exact two-sided binomial probability is SciPy's", "[analysis][choice]") {

@@ -9,7 +9,7 @@
 #include "support/python_program.hpp"
 using namespace tapstudy;
 
-TEST_CASE("Sison and Glaz's intervals of choices are those of statsmodels", "[analysis]") {
+TEST_CASE("Sison and Glaz's intervals of choices are those of statsmodels", "[analysis][choice]") {
   const std::vector<std::vector<int>> choices{{7, 2, 1},        {10, 9, 8, 3},
                                               {30, 40, 50, 3},  {6, 4},
                                               {12, 0, 3},       {56, 72, 73, 59, 62, 87, 58},
@@ -30,7 +30,7 @@ TEST_CASE("Sison and Glaz's intervals of choices are those of statsmodels", "[an
 }
 
 TEST_CASE("Sison and Glaz's intervals of few and one-sided counts stay within 0 and 1",
-          "[analysis]") {
+          "[analysis][choice]") {
   for (const std::vector<int>& counts : {std::vector{1, 0}, {1, 1}, {0, 0, 3}, {5, 0}, {2, 1, 0}}) {
     const std::vector<analysis::Interval> found = analysis::sison_glaz_intervals(counts);
     double all = 0.0;

@@ -9,6 +9,7 @@
 #include "analysis/blocks/design.hpp"
 #include "analysis/statistics/proportion.hpp"
 #include "analysis/tables/cells.hpp"
+#include "analysis/tables/chart.hpp"
 #include "results/rows.hpp"
 namespace tapstudy::analysis {
 struct HypothesisResult {
@@ -29,10 +30,18 @@ struct MainResult {
   std::optional<double> p{};  // of the planned test, where there is one
 };
 
+// The alternatives of a trial as they were visited one after the other, by position from 0.
+struct VisitOrder {
+  std::int64_t trial_id{};
+  std::vector<int> positions;
+};
+
 // The rows of one block.
 struct BlockRows {
   std::vector<results::AnswerRow> answers;
   std::vector<results::VisitRow> visits;
+  std::vector<VisitOrder> orders{};  // of trials with several alternatives, where they are known
+  int missing_replies{};             // trials that were presented, and not answered later
 };
 
 // A separate CSV table: its file name suffix and its writer.
@@ -59,6 +68,8 @@ class BlockSummary {
   virtual std::vector<CsvTable> tables() const = 0;
   // Those for people.
   virtual std::vector<ReportTable> report_tables() const = 0;
+  // Its figures; marks within tables are none.
+  virtual std::vector<Chart> figures() const { return {}; }
   // Empty: the answers do not determine it.
   virtual std::vector<MainResult> main_results() const { return {}; }
 

@@ -20,12 +20,14 @@ void ChoiceSummary::write_html(std::ostream& out) const {
   }
   core::print(out,
               "</table></div>\n<p class=note>Intervals: 95 %, of all alternatives at once (Goodman "
-              "1965).</p>\n<p>All alternatives equally likely: {}.{}</p>\n",
+              "1965); in the tables also those of Sison and Glaz (1995).</p>\n<p>All alternatives "
+              "equally likely: {}.{}</p>\n",
               escaped(multinomial_words(*this)),
               has_repeated_choices
                   ? fmt::format(" Of {} choices each participant has one vote: {}.", choices.size(),
                                 words_of(vote))
                   : "");
   write_hypotheses_html(out, hypotheses);
+  write_sections_html(out, sections, block);
 }
 }  // namespace tapstudy::analysis

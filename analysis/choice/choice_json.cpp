@@ -14,6 +14,8 @@ nlohmann::ordered_json ChoiceSummary::as_json() const {
          {"chosen", analysis::as_json(result.chosen)},
          {"goodman_95",
           result.interval ? Json{result.interval->low, result.interval->high} : Json(nullptr)},
+         {"sison_glaz_95", result.sison_glaz ? Json{result.sison_glaz->low, result.sison_glaz->high}
+                                             : Json(nullptr)},
          {"visits", result.visits},
          {"dwell_s", result.dwell_s}});
   }
@@ -24,6 +26,7 @@ nlohmann::ordered_json ChoiceSummary::as_json() const {
   json["exact_multinomial_p"] = multinomial_p ? Json(*multinomial_p) : Json(nullptr);
   json["has_repeated_choices"] = has_repeated_choices;
   json["hypotheses"] = analysis::as_json(hypotheses);
+  add_sections(json, sections);
   return json;
 }
 }  // namespace tapstudy::analysis

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "analysis/statistics/simultaneous.hpp"
+#include "analysis/statistics/sison_glaz.hpp"
 #include "core/error.hpp"
 namespace tapstudy::analysis {
 namespace {
@@ -91,8 +92,10 @@ std::shared_ptr<BlockSummary> summarise_choice(const BlockDesign& design, const 
   }
   if (!votes.empty() && counts.size() > 1) {
     const std::vector<Interval> intervals = simultaneous_intervals(counts);
+    const std::vector<Interval> others = sison_glaz_intervals(counts);
     for (std::size_t i = 0; i < intervals.size(); ++i) {
       summary->alternatives[i].interval = intervals[i];
+      summary->alternatives[i].sison_glaz = others[i];
     }
   }
   if (summary->untested.empty()) {
@@ -101,6 +104,7 @@ std::shared_ptr<BlockSummary> summarise_choice(const BlockDesign& design, const 
   for (const PlannedHypothesis& planned : design.hypotheses) {
     summary->hypotheses.push_back(tested(*summary, planned));
   }
+  summary->sections = {choosing_section(design, rows)};
   return summary;
 }
 }  // namespace tapstudy::analysis

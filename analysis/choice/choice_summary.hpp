@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "analysis/blocks/block_summary.hpp"
+#include "analysis/tables/sections.hpp"
 namespace tapstudy::analysis {
 struct AlternativeResult {
   Item item;
@@ -13,6 +14,7 @@ struct AlternativeResult {
   std::optional<Interval> interval;  // 95 %, of all alternatives at once; unset without votes
   int visits{};
   double dwell_s{};
+  std::optional<Interval> sison_glaz{};  // the same by another method
 };
 
 // Several stimuli per trial, one of which is chosen, none correct: the frequency of each choice.
@@ -32,7 +34,12 @@ class ChoiceSummary final : public BlockSummary {
   Vote vote{Vote::majority};
   bool has_repeated_choices{};  // some participants chose several times
   std::string untested;         // why nothing is tested; empty: it is
+  std::vector<ReportSection> sections;
 };
+
+// Missing replies, choices by label and order of visits, switches between alternatives: tables
+// biases and transitions.
+ReportSection choosing_section(const BlockDesign& design, const BlockRows& rows);
 
 std::shared_ptr<BlockSummary> summarise_choice(const BlockDesign& design, const BlockRows& rows);
 }  // namespace tapstudy::analysis

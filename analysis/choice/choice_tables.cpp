@@ -6,13 +6,20 @@ std::vector<ReportTable> ChoiceSummary::report_tables() const {
                     "Choices",
                     {column("stimulus", "stimulus"), proportion_column("chosen", "chosen"),
                      interval_column("simultaneous 95 % CI (Goodman)", "goodman"),
-                     column("visits", "visits"), column("time there, s", "dwell_s")}};
+                     interval_column("(Sison and Glaz)", "sison_glaz"), column("visits", "visits"),
+                     column("time there, s", "dwell_s")}};
   for (const AlternativeResult& result : alternatives) {
     const Cell simultaneous = result.interval ? interval(result.chosen.value(), *result.interval)
                                               : nothing(table.columns[2]);
-    table.rows.push_back({word(result.item.label), proportion(result.chosen), simultaneous,
+    const Cell other = result.sison_glaz ? interval(result.chosen.value(), *result.sison_glaz)
+                                         : nothing(table.columns[3]);
+    table.rows.push_back({word(result.item.label), proportion(result.chosen), simultaneous, other,
                           count(result.visits), number(result.dwell_s)});
   }
-  return {table};
+  std::vector<ReportTable> tables{table};
+  for (const ReportSection& section : sections) {
+    tables.insert(tables.end(), section.tables.begin(), section.tables.end());
+  }
+  return tables;
 }
 }  // namespace tapstudy::analysis

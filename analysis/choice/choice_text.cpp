@@ -14,5 +14,6 @@ void ChoiceSummary::write_text(std::ostream& out) const {
     core::print(out, "  {} choices, one vote a participant: {}\n", choices.size(), words_of(vote));
   }
   write_hypotheses_text(out, hypotheses);
+  write_sections_text(out, sections);
 }
 }  // namespace tapstudy::analysis

@@ -133,6 +133,7 @@ ReportTable masking_table(const Courses& participants) {
 ReportSection course_section(const Courses& participants,
                              const std::vector<PracticeResult>& practice) {
   ReportSection section{"How the sessions went"};
+  section.name = "sessions";
   section.tables = {course_table(participants),    exclusions_table(participants),
                     attention_table(participants), practice_table(practice),
                     loop_table(participants),      masking_table(participants)};

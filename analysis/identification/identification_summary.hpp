@@ -38,6 +38,7 @@ class IdentificationSummary final : public BlockSummary {
   nlohmann::ordered_json as_json() const override;
   std::vector<CsvTable> tables() const override;
   std::vector<ReportTable> report_tables() const override;
+  std::vector<Chart> figures() const override;
   std::vector<MainResult> main_results() const override;
 
   ConfusionMatrix matrix;

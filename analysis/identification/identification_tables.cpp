@@ -28,4 +28,12 @@ std::vector<ReportTable> IdentificationSummary::report_tables() const {
   }
   return tables;
 }
+
+std::vector<Chart> IdentificationSummary::figures() const {
+  std::vector<Chart> charts;
+  for (const ReportSection& section : sections) {
+    charts.insert(charts.end(), section.charts.begin(), section.charts.end());
+  }
+  return charts;
+}
 }  // namespace tapstudy::analysis

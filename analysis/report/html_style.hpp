@@ -20,6 +20,7 @@ table{border-collapse:collapse}caption{text-align:left;color:#567;font-size:.85r
 figure{margin:0}figcaption{font-size:.85rem;color:#567}.chart{width:100%;height:auto}.chart text{font-size:11px;fill:currentColor}
 .chart path{fill:none}.chart .frame{stroke:#8796a5}.chart .line{stroke:#567;stroke-width:1.5}.chart .chance{stroke:#b0413e;stroke-dasharray:3 2}
 .chart .interval{stroke:#08519c;stroke-width:3}.chart circle{fill:#08519c;stroke:#08519c;fill-opacity:.8}.chart circle.open{fill:#fff;fill-opacity:1}
+.chart .band{fill:#c6dbef}.chart .mark{stroke:#b0413e}.charts .first{grid-column-start:1}details>summary{cursor:pointer;margin-top:1rem}
 .contents ul{display:flex;flex-wrap:wrap;gap:.2rem 1.2rem;padding:0;list-style:none}.contents a{color:#08519c}
 section>h3{font-size:1.1rem;border-top:1px solid #cdd6df;padding-top:.6rem}section .data~h3,section>h3~h3{font-size:1rem;border:0;padding:0}
 .note,.provenance{font-size:.85rem;color:#567}.provenance th{text-align:left;font-weight:500;padding-right:1rem;vertical-align:top}
@@ -27,6 +28,11 @@ section>h3{font-size:1.1rem;border-top:1px solid #cdd6df;padding-top:.6rem}secti
 @media (max-width:600px){table{display:block;overflow-x:auto}.accuracy td{white-space:normal;padding-right:.5rem}.accuracy th{padding-right:.5rem;overflow-wrap:anywhere}.accuracy th[scope=row]{min-width:5.5rem}.accuracy thead th{overflow-wrap:normal}
   .dot{width:72px}
   .matrix td{width:4rem;min-width:3.5rem;height:3rem}.matrix th{padding:.3rem}h1{font-size:1.3rem}}
+@media screen and (prefers-color-scheme:dark){:root{color-scheme:dark}body{background:#14191f;color:#dde5ec}
+  .simulated{background:#4a3a08;border-color:#d39e00}caption,figcaption,.matrix .total,.note,.provenance{color:#9fb0bf}
+  .matrix td{border-color:#14191f}.matrix td.correct{outline-color:#dde5ec}.contents a{color:#8ab8e6}section>h3{border-color:#3a4754}
+  .dot .axis{stroke:#3a4754}.dot .chance,.chart .chance,.chart .mark{stroke:#ef8a80}.dot .interval,.chart .interval{stroke:#6baed6}.dot circle{fill:#6baed6}
+  .chart .line{stroke:#b9c9d6}.chart .band{fill:#274a68}.chart circle{fill:#6baed6;stroke:#6baed6}.chart circle.open{fill:#14191f}}
 @media print{body{margin:0}.matrix td,.simulated{print-color-adjust:exact;-webkit-print-color-adjust:exact}}
 )css";
 }  // namespace tapstudy::analysis

@@ -1,4 +1,5 @@
 #pragma once
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -34,9 +35,16 @@ struct Summary {
   std::string stated_methods{};  // in place of what methods() would say
 };
 
+// What a report needs besides answers and visits; all of it may be unknown.
+struct Presentations {
+  std::vector<VisitOrder> orders{};
+  std::map<std::string, int> missing_replies{};  // by block
+};
+
 // All contents of a report, computed from the stored rows.
 Summary summarise(const StudyDesign& design, const std::vector<results::AnswerRow>& answers,
-                  const std::vector<results::VisitRow>& visits);
+                  const std::vector<results::VisitRow>& visits,
+                  const Presentations& presentations = {});
 // From a matrix alone, participants unknown; `task` is the one that such a matrix comes from.
 Summary summarise(const ConfusionMatrix& matrix, const std::string& title, std::string_view task,
                   const std::string& mode);

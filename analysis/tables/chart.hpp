@@ -30,10 +30,22 @@ struct Chart {
   };
   std::vector<Bar> bars{};
   std::vector<double> levels{};  // y of dashed lines across
+  struct BandPoint {
+    double x{};
+    Interval y;
+  };
+  std::vector<BandPoint> band{};  // an area, from point to point
+  std::vector<double> x_marks{};  // short lines at the lower edge
+  bool begins_row{};              // of the figures on a wide page
+  std::string name{};             // of its file; empty: from its caption
 };
 
 // What lies outside the ranges is drawn at their edge.
 std::string inline_svg(const Chart& chart);
+
+// The same figure as a file of its own, in light colours, its caption below. `mark`: whose data
+// these are, where they are not a study's; may be empty.
+std::string standalone_svg(const Chart& chart, const std::string& mark);
 
 // Round numbers within the range (1, 2 or 5 times a power of ten), at most six.
 std::vector<double> ticks(const Interval& range, bool is_logarithmic);

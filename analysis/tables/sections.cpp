@@ -20,6 +20,17 @@ bool has_content(const ReportSection& section) {
          !section.remarks.empty();
 }
 
+void write_charts(std::ostream& out, const std::vector<Chart>& charts) {
+  if (charts.empty()) {
+    return;
+  }
+  out << "<div class=charts>\n";
+  for (const Chart& chart : charts) {
+    out << inline_svg(chart);
+  }
+  out << "</div>\n";
+}
+
 void write_section(std::ostream& out, const ReportSection& section, const std::string& id) {
   core::print(out, "<section id=\"{}\"><h3>{}</h3>\n", escaped(id), escaped(section.title));
   for (const ReportTable& table : section.tables) {
@@ -27,12 +38,12 @@ void write_section(std::ostream& out, const ReportSection& section, const std::s
       write_table_html(out, table);
     }
   }
-  if (!section.charts.empty()) {
-    out << "<div class=charts>\n";
-    for (const Chart& chart : section.charts) {
-      out << inline_svg(chart);
-    }
-    out << "</div>\n";
+  write_charts(out, section.charts);
+  if (!section.folded_charts.empty()) {
+    core::print(out, "<details><summary>More figures ({})</summary>\n",
+                section.folded_charts.size());
+    write_charts(out, section.folded_charts);
+    out << "</details>\n";
   }
   for (const std::string& remark : section.remarks) {
     core::print(out, "<p class=note>{}</p>\n", escaped(remark));

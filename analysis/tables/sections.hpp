@@ -13,6 +13,8 @@ struct ReportSection {
   std::vector<ReportTable> tables{};  // those without rows are left out for people
   std::vector<Chart> charts{};
   std::vector<std::string> remarks{};  // how it was computed, and what could not be
+  std::vector<Chart> folded_charts{};  // shown on demand
+  std::string name{};                  // by which it is asked for, where it is of a whole study
 };
 
 // Titles, tables and remarks; figures are left out.

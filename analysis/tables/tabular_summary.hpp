@@ -17,6 +17,7 @@ class TabularSummary final : public BlockSummary {
   nlohmann::ordered_json as_json() const override;
   std::vector<CsvTable> tables() const override;  // TABLE.csv, a header of keys
   std::vector<ReportTable> report_tables() const override { return parts; }
+  std::vector<Chart> figures() const override { return charts; }
   std::vector<MainResult> main_results() const override { return main; }
 
   std::vector<ReportTable> parts;    // those without rows are left out for people

@@ -9,6 +9,8 @@
 #include <utility>
 
 #include "analysis/report/comparison.hpp"
+#include "analysis/report/figure_files.hpp"
+#include "analysis/report/selection.hpp"
 #include "analysis/report/writers.hpp"
 #include "analysis/statistics/counts_csv.hpp"
 #include "core/error.hpp"
@@ -33,6 +35,7 @@ struct ReportOptions {
   std::string time_unit;
   std::string out;
   std::string mode;
+  std::string only;
   bool replace{false};
 };
 
@@ -78,9 +81,9 @@ Summary summary_of_directories(const ReportOptions& options,
 }
 
 // As a row of a table has them: a comma within an answer is in quotes.
-std::vector<std::string> listed(const std::string& words) {
+std::vector<std::string> listed(const std::string& words, const std::string& option) {
   std::istringstream stream{words};
-  const analysis::CsvText csv = analysis::read_csv(stream, "--responses");
+  const analysis::CsvText csv = analysis::read_csv(stream, option);
   return csv.rows.empty() ? std::vector<std::string>{} : csv.rows.front().cells;
 }
 
@@ -96,9 +99,11 @@ std::string table_text(const Summary& summary, const analysis::CsvTable& table) 
 
 void write_files(const ReportOptions& options, const Summary& summary) {
   std::error_code error;
-  fs::create_directories(options.out, error);
-  if (!fs::is_directory(options.out, error)) {
-    throw core::InvalidInput{options.out + ": cannot be made a directory"};
+  const auto figure_files = analysis::figure_files(summary);
+  const fs::path folder = fs::path{options.out} / (figure_files.empty() ? "" : "figures");
+  fs::create_directories(folder, error);
+  if (!fs::is_directory(folder, error)) {
+    throw core::InvalidInput{folder.string() + ": cannot be made a directory"};
   }
   std::vector<core::NewFile> files;
   const auto add = [&](const std::string& name, std::string text) {
@@ -121,9 +126,16 @@ void write_files(const ReportOptions& options, const Summary& summary) {
   for (const analysis::CsvTable& table : analysis::csv_of(summary.sections)) {
     add(table.name, table_text(summary, table));
   }
+  for (const analysis::FigureFile& figure : figure_files) {
+    add("figures/" + figure.name, figure.svg);
+  }
   core::write_all_or_none(files, options.replace ? core::Existing::replaced : core::Existing::kept);
-  for (const core::NewFile& file : files) {
-    fmt::print("{}\n", file.name);
+  const std::size_t figures = figure_files.size();
+  for (std::size_t i = 0; i + figures < files.size(); ++i) {
+    fmt::print("{}\n", files[i].name);
+  }
+  if (figures > 0) {
+    fmt::print("{} ({} figures)\n", folder.string(), figures);
   }
 }
 
@@ -134,7 +146,7 @@ bool reads_columns(const ReportOptions& options) {
 
 TableOptions table_options(const ReportOptions& options) {
   TableOptions table = options.table;
-  table.responses = listed(options.responses);
+  table.responses = listed(options.responses, "--responses");
   if (!options.time_unit.empty()) {
     table.columns.time_unit_s = options.time_unit == "ms" ? 1e-3 : 1.0;
   }
@@ -184,7 +196,10 @@ void check_options(const ReportOptions& options) {
 
 void run_report(ReportOptions options) {
   check_options(options);
-  const Summary summary = summary_of(options);
+  Summary summary = summary_of(options);
+  if (!options.only.empty()) {
+    analysis::keep_only(summary, listed(options.only, "--only"));
+  }
   analysis::write_text(std::cout, summary);
   std::cout << std::endl;
   if (options.out.empty() && !options.directories.empty()) {
@@ -223,6 +238,9 @@ void add_report(CommandParser& line) {
   command.option("--out", options->out, "Output directory; default: the study's own");
   command.one_of("--mode", options->mode, {"real", "pilot", "simulated"},
                  "Which sessions: real, pilot or simulated");
+  command.option("--only", options->only,
+                 "Only these parts, comma-separated: names of blocks, sessions, questionnaires, "
+                 "rendered");
   command.flag("--replace", options->replace, "Replace an earlier report");
   command.on_run([options] { run_report(*options); });
 }

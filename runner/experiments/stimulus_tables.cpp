@@ -8,10 +8,8 @@
 #include <utility>
 
 #include "core/error.hpp"
-#include "core/model/plate_model.hpp"
-#include "protocols/axes/presented_stimulus.hpp"
 #include "results/export/columns.hpp"
-#include "runner/stimuli/model_library.hpp"
+#include "runner/experiments/cached_model.hpp"
 namespace tapstudy::runner {
 namespace {
 using protocols::Protocol;
@@ -59,17 +57,6 @@ Row row_of(const Stimulus& stimulus, const std::set<std::string>& factors) {
   return row;
 }
 
-template <class Named>
-std::string name_in(const std::map<std::string, std::shared_ptr<const Named>>& all,
-                    const std::shared_ptr<const Named>& wanted) {
-  for (const auto& [name, one] : all) {
-    if (one == wanted) {
-      return name;
-    }
-  }
-  return {};
-}
-
 results::Table stimuli_table(const Protocol& protocol) {
   std::vector<Column> columns = results::known_columns(
       "stimulus label technique youngs_modulus_pa density_kg_per_m3 poissons_ratio size_x_m "
@@ -89,18 +76,6 @@ results::Table stimuli_table(const Protocol& protocol) {
   }
   return results::table_of("stimuli", "A row a stimulus of the protocol.", std::move(columns),
                            std::move(rows));
-}
-
-// nullopt: not in the cache.
-std::optional<core::ModalModel> cached_model(const Protocol& protocol, const Stimulus& stimulus,
-                                             const core::ModelCache& cache) {
-  const protocols::PresentedStimulus presented = protocols::stimulus_with(protocol, stimulus);
-  const auto body = cache.find(core::content_key(body_spec(protocol, presented)));
-  if (!body) {
-    return std::nullopt;
-  }
-  const core::PlateSpec spec = plate_spec(protocol, presented);
-  return core::model_of(*body, spec.material, spec.band_limit_hz);
 }
 
 void add_modes(const std::string& stimulus, const core::ModalModel& model, std::vector<Row>& rows) {
@@ -159,7 +134,7 @@ StimulusTables stimulus_tables(const Protocol& protocol, const core::ModelCache&
       continue;
     }
     if (const auto model = cached_model(protocol, stimulus, cache)) {
-      add_modes(stimulus.name, *model, modes);
+      add_modes(stimulus.name, model->modal, modes);
     } else {
       without_model.push_back(stimulus.name);
     }

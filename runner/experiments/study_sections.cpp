@@ -3,7 +3,9 @@
 #include <algorithm>
 
 #include "analysis/course/course_section.hpp"
+#include "analysis/rendered/rendered_section.hpp"
 #include "runner/experiments/given_forms.hpp"
+#include "runner/experiments/rendered_study.hpp"
 #include "runner/session/practice_record.hpp"
 namespace tapstudy::runner {
 namespace {
@@ -66,6 +68,7 @@ std::vector<analysis::ReportSection> study_sections(const protocols::Protocol& p
                                                     results::Mode mode) {
   return {
       course(protocol, stores, mode),
-      analysis::questionnaires_section(questionnaires_of(protocol), given_answers(stores, mode))};
+      analysis::questionnaires_section(questionnaires_of(protocol), given_answers(stores, mode)),
+      analysis::rendered_section(rendered_study(protocol, stores, mode))};
 }
 }  // namespace tapstudy::runner

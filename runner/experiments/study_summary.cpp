@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/error.hpp"
+#include "runner/experiments/counted_answers.hpp"
 #include "runner/experiments/stored_protocol.hpp"
 #include "runner/experiments/study_design.hpp"
 #include "runner/experiments/study_sections.hpp"
@@ -111,20 +112,41 @@ struct StoredResults {
   std::vector<std::string> unfinished;
   std::vector<std::string> excluded;
   std::vector<std::string> deviations;
+  analysis::Presentations presentations;
 };
 
-std::vector<results::AnswerRow> counted_answers(results::Store& store, const Excluded& excluded,
-                                                Mode mode) {
-  std::vector<results::AnswerRow> answers = store.answers();
-  std::erase_if(answers, [&](const results::AnswerRow& answer) {
-    return answer.mode != mode || answer.is_practice || answer.is_catch ||
-           excluded.contains(answer.participant_id);
-  });
-  results::AlternativesOfTrials alternatives = store.alternatives();
-  for (results::AnswerRow& answer : answers) {
-    answer.alternatives = std::move(alternatives[answer.trial_id]);
+// Of trials with several alternatives. Settings of an adjusted alternative are not told apart.
+std::vector<analysis::VisitOrder> visit_orders(results::Store& store) {
+  std::vector<analysis::VisitOrder> orders;
+  store.each_row(
+      "SELECT trial_id, position FROM v_visits WHERE status = 'answered' AND EXISTS "
+      "(SELECT 1 FROM alternative AS second WHERE second.trial_id = v_visits.trial_id "
+      "AND second.position = 1) ORDER BY trial_id, visit",
+      [&](results::Statement& row) {
+        if (orders.empty() || orders.back().trial_id != row.integer(0)) {
+          orders.push_back({row.integer(0), {}});
+        }
+        orders.back().positions.push_back(static_cast<int>(row.integer(1)));
+      });
+  return orders;
+}
+
+std::map<std::string, int> missing_replies(results::Store& store, const Excluded& excluded,
+                                           const std::vector<results::SessionRow>& sessions,
+                                           Mode mode) {
+  std::set<std::string> participants;
+  for (const results::SessionRow& session : sessions) {
+    if (session.mode == mode && !excluded.contains(session.participant_id)) {
+      participants.insert(session.participant_id);
+    }
   }
-  return answers;
+  std::map<std::string, int> missing;
+  for (const std::string& participant : participants) {
+    for (const results::UnansweredTrial& trial : store.unanswered_trials(participant)) {
+      ++missing[trial.block];
+    }
+  }
+  return missing;
 }
 
 StoredResults stored_results(results::Store& store, const protocols::Protocol& protocol,
@@ -132,7 +154,7 @@ StoredResults stored_results(results::Store& store, const protocols::Protocol& p
   const Excluded excluded = store.excluded_participants();
   StoredResults found;
   found.sessions = store.sessions();
-  found.answers = counted_answers(store, excluded, mode);
+  found.answers = counted_answers(store, mode);
   found.visits = store.visits();
   std::erase_if(found.visits, [&](const results::VisitRow& visit) {
     return std::ranges::find(found.answers, visit.participant_id,
@@ -141,6 +163,8 @@ StoredResults stored_results(results::Store& store, const protocols::Protocol& p
   found.unfinished = unfinished(store, protocol, found.sessions, mode);
   found.excluded = excluded_of(excluded, found.sessions, mode);
   found.deviations = deviations_of(store, excluded, mode);
+  found.presentations = {visit_orders(store),
+                         missing_replies(store, excluded, found.sessions, mode)};
   return found;
 }
 
@@ -185,8 +209,16 @@ void append(StoredResults& all, StoredResults more) {
   for (const results::AnswerRow& answer : all.answers) {
     next_index = std::max(next_index, answer.participant_index + 1);
   }
+  std::int64_t last_trial_id = 0;  // ids of trials are those of their store
+  for (const results::AnswerRow& answer : all.answers) {
+    last_trial_id = std::max(last_trial_id, answer.trial_id);
+  }
   for (results::AnswerRow& answer : more.answers) {
     answer.participant_index += next_index;
+    answer.trial_id += last_trial_id;
+  }
+  for (analysis::VisitOrder& order : more.presentations.orders) {
+    order.trial_id += last_trial_id;
   }
   append(all.sessions, std::move(more.sessions));
   append(all.answers, std::move(more.answers));
@@ -194,6 +226,10 @@ void append(StoredResults& all, StoredResults more) {
   append(all.unfinished, std::move(more.unfinished));
   append(all.excluded, std::move(more.excluded));
   append(all.deviations, std::move(more.deviations));
+  append(all.presentations.orders, std::move(more.presentations.orders));
+  for (const auto& [block, missing] : more.presentations.missing_replies) {
+    all.presentations.missing_replies[block] += missing;
+  }
 }
 }  // namespace
 
@@ -212,7 +248,8 @@ Summary summary_of_study(const std::vector<StudyStore>& stores, Mode mode) {
     throw core::InvalidInput{fmt::format("{}: no answers of {} participants to report",
                                          fmt::join(directories, ", "), results::to_text(mode))};
   }
-  Summary summary = analysis::summarise(design_of(protocol, mode), all.answers, all.visits);
+  Summary summary =
+      analysis::summarise(design_of(protocol, mode), all.answers, all.visits, all.presentations);
   summary.sections = study_sections(protocol, stores, mode);
   summary.provenance = provenance(study, all.sessions, mode);
   summary.unfinished = std::move(all.unfinished);

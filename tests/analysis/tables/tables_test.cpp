@@ -110,6 +110,6 @@ TEST_CASE("a figure's marks lie where their values are", "[analysis][tables]") {
   chart.points = {{5.0, 0.5}, {20.0, 0.5}};
   const std::string svg = inline_svg(chart);
   CHECK_THAT(svg, Contains("aria-label=\"two &lt;marks&gt;\""));
-  CHECK_THAT(svg, Contains("cx=191.0 cy=95.0"));  // half way between 52 and 330, 10 and 180
-  CHECK_THAT(svg, Contains("cx=330.0 cy=95.0"));  // beyond the range: at its edge
+  CHECK_THAT(svg, Contains("cx=\"191.0\" cy=\"95.0\""));  // half way between 52 and 330, 10 and 180
+  CHECK_THAT(svg, Contains("cx=\"330.0\" cy=\"95.0\""));  // beyond the range: at its edge
 }

@@ -1,0 +1,67 @@
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "analysis/rendered/felt_taps.hpp"
+#include "analysis/tables/sections.hpp"
+namespace tapstudy::analysis {
+// What is known of the finite element model that rendered a stimulus.
+struct RenderedModel {
+  std::vector<double> frequencies_hz;  // of its modes in the band, ascending
+  std::vector<double> damping_ratios;
+  int order{};
+  int nodes{};
+  int tets{};
+  double worst_residual{};  // of the eigenpairs
+};
+
+// A stimulus in words, as the protocol has it.
+struct RenderedStimulus {
+  std::string name;
+  std::string label;
+  std::string plate;
+  std::string size;
+  std::string material;
+  double youngs_modulus_pa{};
+  double density_kg_per_m3{};
+  std::string fixation;
+  std::string technique;
+  bool needs_model{};
+  bool varies{};                         // the model is of its own values
+  std::optional<RenderedModel> model{};  // unset: none is cached, or none needed
+};
+
+// The taps nearest to one tapping point.
+struct PointTaps {
+  std::string point;
+  FeltTaps taps;
+  std::vector<double> distances_m;  // of each impact from the point, along the plate
+};
+
+struct StimulusTaps {
+  FeltTaps all;
+  std::vector<PointTaps> points;  // of the protocol, in its order
+};
+
+struct RenderedStudy {
+  std::vector<RenderedStimulus> stimuli;
+  std::vector<StimulusTaps> taps;  // as many
+  std::int64_t trials{};           // that count
+  std::int64_t traced_trials{};    // of these, with a trace
+};
+
+// What was rendered: the stimuli and their models, and of every tap that counts the force after the
+// impact, its spectrum, speed and peak. Tables rendered_stimuli, rendered_models, rendered_modes,
+// rendered_taps, rendered_forces, rendered_points, rendered_waveforms, rendered_spectra.
+ReportSection rendered_section(const RenderedStudy& study);
+
+// Those of rendered_section: of every stimulus the distribution of speed and peak force, and the
+// waveform and spectrum at the point where most is added to the contact spring; those at other
+// points are folded. Axes are the same for all stimuli at one point.
+void add_rendered_charts(const RenderedStudy& study, ReportSection& section);
+
+// Fewer taps are no mean to be drawn.
+inline constexpr std::int64_t least_drawn_taps = 3;
+}  // namespace tapstudy::analysis

@@ -1,0 +1,12 @@
+#pragma once
+#include <functional>
+#include <span>
+
+#include "results/store.hpp"
+namespace tapstudy::results {
+using TakeChunk = std::function<void(std::int64_t trial_id, std::span<const core::TraceSample>)>;
+
+// Every trace of a study in one pass, trials by id, each in order of time: one chunk (4096 ticks)
+// is held at a time. Throws StoreError if a chunk cannot be decoded.
+void each_trace_chunk(Store& store, const TakeChunk& take);
+}  // namespace tapstudy::results

@@ -1,0 +1,20 @@
+#include "runner/experiments/counted_answers.hpp"
+
+#include <map>
+#include <string>
+#include <utility>
+namespace tapstudy::runner {
+std::vector<results::AnswerRow> counted_answers(results::Store& store, results::Mode mode) {
+  const std::map<std::string, std::string> excluded = store.excluded_participants();
+  std::vector<results::AnswerRow> answers = store.answers();
+  std::erase_if(answers, [&](const results::AnswerRow& answer) {
+    return answer.mode != mode || answer.is_practice || answer.is_catch ||
+           excluded.contains(answer.participant_id);
+  });
+  results::AlternativesOfTrials alternatives = store.alternatives();
+  for (results::AnswerRow& answer : answers) {
+    answer.alternatives = std::move(alternatives[answer.trial_id]);
+  }
+  return answers;
+}
+}  // namespace tapstudy::runner

@@ -1,0 +1,145 @@
+#include "runner/experiments/rendered_study.hpp"
+
+#include <algorithm>
+#include <set>
+#include <unordered_map>
+
+#include "results/trace_stream.hpp"
+#include "runner/experiments/cached_model.hpp"
+#include "runner/experiments/counted_answers.hpp"
+#include "runner/experiments/rendered_words.hpp"
+#include "runner/stimuli/model_library.hpp"
+namespace tapstudy::runner {
+namespace {
+using analysis::RenderedModel;
+using analysis::RenderedStimulus;
+using analysis::RenderedStudy;
+using protocols::Protocol;
+using protocols::Stimulus;
+
+std::vector<double> listed(const Eigen::ArrayXd& values) {
+  return {values.begin(), values.end()};
+}
+
+std::optional<RenderedModel> model_of(const Protocol& protocol, const Stimulus& stimulus,
+                                      const core::ModelCache& cache) {
+  if (!stimulus.technique->needs_model()) {
+    return std::nullopt;
+  }
+  const std::optional<CachedModel> found = cached_model(protocol, stimulus, cache);
+  if (!found) {
+    return std::nullopt;
+  }
+  return RenderedModel{listed(found->modal.frequency_hz),
+                       listed(found->modal.damping_ratio),
+                       found->report.order,
+                       found->report.nodes,
+                       found->report.tets,
+                       found->report.worst_residual};
+}
+
+RenderedStimulus in_words(const Protocol& protocol, const Stimulus& stimulus,
+                          const core::ModelCache& cache) {
+  return {stimulus.name,
+          stimulus.label,
+          name_in(protocol.plates, stimulus.plate),
+          size_words(stimulus.plate->shape),
+          name_in(protocol.materials, stimulus.material),
+          stimulus.material->youngs_modulus_pa,
+          stimulus.material->density_kg_per_m3,
+          fixation_words(stimulus.plate->fixations),
+          std::string{stimulus.technique->name},
+          stimulus.technique->needs_model(),
+          !stimulus.vary.empty(),
+          model_of(protocol, stimulus, cache)};
+}
+
+// Puts the taps of a store's traces where they belong.
+class TapSorter {
+ public:
+  TapSorter(const Protocol& protocol, RenderedStudy& study)
+      : protocol_{protocol},
+        study_{study},
+        cutter_{{protocol.rate_hz}, [this](const analysis::Tap& tap) { sort(tap); }} {
+    for (std::size_t i = 0; i < study.stimuli.size(); ++i) {
+      places_[study.stimuli[i].name] = i;
+    }
+  }
+
+  void read(results::Store& store, results::Mode mode) {
+    std::unordered_map<std::int64_t, const results::AnswerRow*> counted;
+    const std::vector<results::AnswerRow> answers = counted_answers(store, mode);
+    for (const results::AnswerRow& answer : answers) {
+      counted[answer.trial_id] = &answer;
+      study_.trials += answer.ticks > 0 ? 1 : 0;
+    }
+    std::set<std::int64_t> traced;
+    results::each_trace_chunk(
+        store, [&](std::int64_t trial_id, std::span<const core::TraceSample> samples) {
+          const auto found = counted.find(trial_id);
+          if (found == counted.end()) {
+            return;
+          }
+          if (traced.insert(trial_id).second) {
+            cutter_.end_trial();
+            trial_ = found->second;
+          }
+          std::ranges::for_each(samples, [&](const auto& sample) { cutter_.add(sample); });
+        });
+    cutter_.end_trial();
+    study_.traced_trials += static_cast<std::int64_t>(traced.size());
+  }
+
+ private:
+  void sort(const analysis::Tap& tap) {
+    const auto& alternatives = trial_->alternatives;
+    if (alternatives.empty()) {
+      return;
+    }
+    // settings of an adjusted alternative follow the last one
+    const std::size_t position = std::min<std::size_t>(tap.alternative, alternatives.size() - 1);
+    const auto place = places_.find(alternatives[position].stimulus);
+    if (place == places_.end()) {
+      return;
+    }
+    analysis::StimulusTaps& taps = study_.taps[place->second];
+    taps.all.add(tap);
+    const core::HandState hand{{tap.position_m[0], tap.position_m[1], tap.position_m[2]}, {}};
+    const Eigen::Vector2d at_m = protocol_.placement.to_plate(hand).position_m.head<2>();
+    const auto distance_m = [&](const analysis::PointTaps& point) {
+      return (protocol_.tapping_points_m.at(point.point) - at_m).norm();
+    };
+    const auto nearest = std::ranges::min_element(taps.points, {}, distance_m);
+    if (nearest != taps.points.end()) {
+      nearest->taps.add(tap);
+      nearest->distances_m.push_back(distance_m(*nearest));
+    }
+  }
+
+  const Protocol& protocol_;
+  RenderedStudy& study_;
+  analysis::TapCutter cutter_;
+  std::unordered_map<std::string, std::size_t> places_;  // of stimuli, by name
+  const results::AnswerRow* trial_{};
+};
+}  // namespace
+
+analysis::RenderedStudy rendered_study(const Protocol& protocol,
+                                       const std::vector<StudyStore>& stores, results::Mode mode) {
+  const core::ModelCache cache = models_of_this_user();
+  const analysis::TapWindow window{protocol.rate_hz};
+  RenderedStudy study;
+  for (const Stimulus& stimulus : protocol.stimuli) {
+    study.stimuli.push_back(in_words(protocol, stimulus, cache));
+    analysis::StimulusTaps taps{analysis::FeltTaps{window}, {}};
+    for (const auto& [point, at_m] : protocol.tapping_points_m) {
+      taps.points.push_back({point, analysis::FeltTaps{window}, {}});
+    }
+    study.taps.push_back(std::move(taps));
+  }
+  for (const StudyStore& each : stores) {
+    TapSorter{protocol, study}.read(*each.store, mode);
+  }
+  return study;
+}
+}  // namespace tapstudy::runner

@@ -42,7 +42,7 @@ void add_reproduce(CommandParser& line) {
       "--only", options->only,
       fmt::format("A group of claims alone: {}", fmt::join(claim_group_names(), ", ")));
   command.flag("--quick", options->is_quick,
-               "With fewer simulated participants: less sure, and some five times sooner");
+               "With fewer simulated participants: less sure, and sooner");
   command.option_with_default("--seed", options->seed, "Seed of all random streams");
   command.on_run([options] { run_reproduce(*options); });
 }

@@ -3,18 +3,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <sstream>
 
-#include "analysis/statistics/count_table.hpp"
 #include "analysis/statistics/counts_csv.hpp"
-#include "core/rng.hpp"
 #include "results/store.hpp"
 #include "runner/experiments/scratch_directory.hpp"
 #include "runner/experiments/simulated_study.hpp"
 #include "runner/reproduction/claim_table.hpp"
 #include "runner/reproduction/routes.hpp"
 #include "runner/reproduction/shipped_protocols.hpp"
+#include "runner/reproduction/table_fit.hpp"
 namespace tapstudy::runner {
 namespace {
 using analysis::ConfusionMatrix;
@@ -31,12 +29,7 @@ ConfusionMatrix printed_table() {
 struct Predicted {
   double noise_db{};
   ConfusionMatrix answers;
-  // Of an answer; half an answer is added to each cell, so that none is impossible.
-  double probability(std::size_t stimulus, std::size_t response) const {
-    const auto cells = static_cast<double>(answers.responses.size());
-    return (static_cast<double>(answers.counts[stimulus][response]) + 0.5) /
-           (static_cast<double>(answers.row_total(stimulus)) + 0.5 * cells);
-  }
+  Probabilities probabilities() const { return probabilities_of(answers.counts); }
 };
 
 struct Simulated {
@@ -80,69 +73,10 @@ Simulated simulated(const Bench& bench, const std::string& method, const std::st
   return study;
 }
 
-using Rows = std::vector<std::size_t>;
-
-// Of the counts in these rows, up to a constant.
-double log_likelihood(const analysis::CountTable& counts, const Rows& rows,
-                      const Predicted& predicted) {
-  double sum = 0.0;
-  for (const std::size_t i : rows) {
-    for (std::size_t j = 0; j < counts[i].size(); ++j) {
-      sum += static_cast<double>(counts[i][j]) * std::log(predicted.probability(i, j));
-    }
-  }
-  return sum;
-}
-
 const Predicted& best(const ConfusionMatrix& table, const Rows& rows, const Simulated& study) {
   return *std::ranges::max_element(study.by_noise, {}, [&](const Predicted& one) {
-    return log_likelihood(table.counts, rows, one);
+    return log_likelihood(table.counts, rows, one.probabilities());
   });
-}
-
-double log_multinomial(const std::vector<std::int64_t>& counts) {
-  double sum = 0.0;
-  double total = 0.0;
-  for (const std::int64_t count : counts) {
-    sum -= std::lgamma(static_cast<double>(count) + 1.0);
-    total += static_cast<double>(count);
-  }
-  return sum + std::lgamma(total + 1.0);
-}
-
-double log_probability(const analysis::CountTable& counts, const Rows& rows,
-                       const Predicted& predicted) {
-  double sum = log_likelihood(counts, rows, predicted);
-  for (const std::size_t i : rows) {
-    sum += log_multinomial(counts[i]);
-  }
-  return sum;
-}
-
-// Of tables drawn from what is predicted, with the printed row totals, the share that is no more
-// probable than the printed one: the multinomial test by drawing.
-double p_value(const ConfusionMatrix& table, const Rows& rows, const Predicted& predicted,
-               std::uint64_t seed) {
-  constexpr int draws = 4000;
-  core::Rng rng{core::derived_seed(seed, core::Purpose::resampling)};
-  const double printed = log_probability(table.counts, rows, predicted);
-  int as_rare = 0;
-  for (int draw = 0; draw < draws; ++draw) {
-    analysis::CountTable drawn(table.counts.size(),
-                               std::vector<std::int64_t>(table.responses.size(), 0));
-    for (const std::size_t i : rows) {
-      for (std::int64_t answer = 0; answer < table.row_total(i); ++answer) {
-        double left = rng.uniform();
-        std::size_t j = 0;
-        while (j + 1 < table.responses.size() && left >= predicted.probability(i, j)) {
-          left -= predicted.probability(i, j++);
-        }
-        ++drawn[i][j];
-      }
-    }
-    as_rare += log_probability(drawn, rows, predicted) <= printed + 1e-9 ? 1 : 0;
-  }
-  return (as_rare + 1.0) / (draws + 1.0);
 }
 
 // Each half holds both materials and both structures.
@@ -167,7 +101,7 @@ Method cross_validated(const Bench& bench, const ConfusionMatrix& table, const S
         at_least(significance,
                  fmt::format("p of the rows {} and {} then", table.stimuli[judged[0]].name,
                              table.stimuli[judged[1]].name),
-                 p_value(table, judged, fitted, bench.seed)));
+                 multinomial_p(table.counts, judged, fitted.probabilities(), bench.seed)));
   }
   return method;
 }

@@ -10,7 +10,7 @@ inline constexpr const char* reproduction_style = R"css(
 .claim h4{font-size:1rem;margin:1rem 0 .3rem}code{font:.85rem ui-monospace,monospace;overflow-wrap:anywhere}
 .scroll{margin:.3rem 0 1rem}.data th,.data td,.data thead th{white-space:normal;text-align:left;vertical-align:top}
 .data .missed{color:#a32a2a}.overview th[scope=row]{min-width:11rem}
-.small{grid-template-columns:repeat(auto-fill,minmax(min(100%,13rem),1fr))}
+.small{grid-template-columns:repeat(auto-fill,minmax(min(100%,17rem),1fr))}
 .force .line{stroke:#1b2733;stroke-width:1.2}.force .alone{stroke:#08519c;stroke-width:1.2}
 .map{width:100%;height:auto}.map text{font-size:11px;fill:currentColor}
 details{margin:.5rem 0}summary{cursor:pointer;color:#08519c}

@@ -63,6 +63,7 @@ TEST_CASE("a reproduction replaces nothing, and says at once where it cannot be 
     const auto run = reproduced(taken);
     CHECK(run.exit_code == 2);
     CHECK_THAT(run.standard_error, Contains(name));
+    CHECK_THAT(run.standard_error, !Contains("1 of 1"));
     CHECK(testing::contents(std::filesystem::path{taken} / name) == "mine");
     CHECK(std::distance(std::filesystem::directory_iterator{taken}, {}) == 1);
   }

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <numeric>
 #include <sstream>
 
 #include "core/error.hpp"
@@ -13,8 +14,10 @@
 #include "runner/reproduction/colour_svg.hpp"
 #include "runner/reproduction/real_tap.hpp"
 #include "runner/reproduction/shipped_protocols.hpp"
+#include "runner/reproduction/table_fit.hpp"
 #include "runner/reproduction/tap_force.hpp"
 #include "support/processes.hpp"
+#include "support/python_program.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;
 using namespace tapstudy::runner;
@@ -96,6 +99,7 @@ TEST_CASE("a map is red where it is largest in magnitude and blue where it rests
   const std::vector<std::string> drawn = colour_svgs(map);  // every second value
   REQUIRE(drawn.size() == 2);
   CHECK(drawn[0].find("#2166c8\" d=\"M0 0h1v1h-1z\"") != std::string::npos);
+  CHECK(drawn[0].find("#cd182b") == std::string::npos);  // two fifths are not red
   map.panels[0].values[2] = -5.0;
   CHECK(colour_svgs(map)[0].find("#cd182b\" d=\"M1 0h1v1h-1z\"") != std::string::npos);
 }
@@ -119,6 +123,49 @@ TEST_CASE(
     return (real_tap(&felt, stimulus.rendering, {0.0, 0.0}, 0.16).force_n - rigid.force_n).norm();
   };
   CHECK(difference_n(plate) == Approx(1e-4 * difference_n(light)).epsilon(0.05));
+}
+
+TEST_CASE("levels add up in power", "[runner][reproduction]") {
+  FeltTap tap{};
+  CHECK(level_db(tap) == 0.0);
+  tap.level_db[3] = 20.0;
+  CHECK(level_db(tap) == Approx(20.0));
+  tap.level_db[20] = 20.0;
+  CHECK(level_db(tap) == Approx(10.0 * std::log10(1.0 + 99.0 + 99.0)));
+}
+
+// Every table of these totals, by its multinomial probability.
+TEST_CASE("the test by drawing agrees with that by enumeration", "[runner][reproduction]") {
+  const std::string enumerate = R"(
+import itertools
+from scipy.stats import multinomial
+def rows(n, p):
+  return [multinomial.pmf(c, n, p) for c in itertools.product(range(n + 1), repeat=len(p)) if sum(c) == n]
+first, second = [3, 1, 2], [0, 4, 1]
+p, q = [0.5, 0.2, 0.3], [0.3, 0.3, 0.4]
+observed = multinomial.pmf(first, 6, p) * multinomial.pmf(second, 5, q)
+out(sum(a * b for a in rows(6, p) for b in rows(5, q) if a * b <= observed * (1 + 1e-9)))
+out(sum(a for a in rows(6, p) if a <= multinomial.pmf(first, 6, p) * (1 + 1e-9)))
+)";
+  const std::vector<double> exact = testing::python_numbers(enumerate);
+  const analysis::CountTable counts{{3, 1, 2}, {0, 4, 1}};
+  const Probabilities probabilities{{0.5, 0.2, 0.3}, {0.3, 0.3, 0.4}};
+  const double four_errors = 4.0 * std::sqrt(0.25 / 4000.0);
+  CHECK(std::abs(multinomial_p(counts, {0, 1}, probabilities, 1) - exact.at(0)) < four_errors);
+  CHECK(std::abs(multinomial_p(counts, {0}, probabilities, 1) - exact.at(1)) < four_errors);
+}
+
+TEST_CASE("the likeliest probabilities of a table are its own shares", "[runner][reproduction]") {
+  const analysis::CountTable counts{{30, 10, 0}, {5, 5, 30}};
+  const Probabilities own = probabilities_of(counts);
+  for (const auto& row : own) {
+    CHECK(std::accumulate(row.begin(), row.end(), 0.0) == Approx(1.0));
+  }
+  CHECK(own[0][2] == Approx(0.5 / 41.5));
+  const Probabilities other = probabilities_of({{20, 20, 0}, {10, 5, 25}});
+  CHECK(log_likelihood(counts, {0, 1}, own) > log_likelihood(counts, {0, 1}, other));
+  CHECK(log_likelihood(counts, {0, 1}, own) ==
+        Approx(log_likelihood(counts, {0}, own) + log_likelihood(counts, {1}, own)));
 }
 
 TEST_CASE("the mesh of a claim is the one that its command shows", "[runner][reproduction]") {

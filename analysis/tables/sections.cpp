@@ -72,14 +72,15 @@ void write_sections_text(std::ostream& out, const std::vector<ReportSection>& se
 void write_sections_html(std::ostream& out, const std::vector<ReportSection>& sections,
                          const std::string& anchor) {
   const auto id_of = [&](std::size_t i) { return fmt::format("{}-{}", anchor, i + 1); };
-  out << "<nav class=contents aria-label=Contents><ul>\n";
+  const bool is_long = std::ranges::count_if(sections, has_content) > 1;
+  out << (is_long ? "<nav class=contents aria-label=Contents><ul>\n" : "");
   for (std::size_t i = 0; i < sections.size(); ++i) {
-    if (has_content(sections[i])) {
+    if (is_long && has_content(sections[i])) {
       core::print(out, "<li><a href=\"#{}\">{}</a></li>\n", escaped(id_of(i)),
                   escaped(sections[i].title));
     }
   }
-  out << "</ul></nav>\n";
+  out << (is_long ? "</ul></nav>\n" : "");
   for (std::size_t i = 0; i < sections.size(); ++i) {
     if (has_content(sections[i])) {
       write_section(out, sections[i], id_of(i));

@@ -19,7 +19,8 @@ struct ReportSection {
 
 // Titles, tables and remarks; figures are left out.
 void write_sections_text(std::ostream& out, const std::vector<ReportSection>& sections);
-// A list of contents with links, then the sections. `anchor`: of the block, unlike that of others.
+// A list of contents with links where there are several, then the sections. `anchor`: of the block,
+// unlike that of others.
 void write_sections_html(std::ostream& out, const std::vector<ReportSection>& sections,
                          const std::string& anchor);
 // Every table under its name, and "remarks".

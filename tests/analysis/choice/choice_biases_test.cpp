@@ -26,12 +26,13 @@ void add(BlockRows& rows, const std::string& order, char chosen, const std::vect
   rows.orders.push_back({answer.trial_id, visited});
 }
 
-BlockRows four_trials() {
+BlockRows five_trials() {
   BlockRows rows;
   add(rows, "abc", 'a', {0, 1, 2, 0});  // under A, visited first and last
   add(rows, "bca", 'b', {0, 1, 2});     // under A, visited first
   add(rows, "cab", 'b', {0, 1, 2});     // under C, visited last
   add(rows, "cab", 'c', {0, 2});        // under A; one was not visited
+  add(rows, "abc", 'a', {0, 1, 2});     // under A, visited first
   return rows;
 }
 
@@ -44,19 +45,19 @@ BlockDesign of_three() {
 }  // namespace
 
 TEST_CASE("a choice counts by its label, and by when it was visited", "[analysis][choice]") {
-  const ChoiceBiases biases = choice_biases(four_trials());
+  const ChoiceBiases biases = choice_biases(five_trials());
   CHECK(biases.labels == std::vector<std::string>{"A", "B", "C"});
-  CHECK(biases.chosen == std::vector<int>{3, 0, 1});
+  CHECK(biases.chosen == std::vector<int>{4, 0, 1});
   CHECK(biases.chance == Approx(1.0 / 3.0));
-  CHECK(biases.first_visited.successes == 2);
-  CHECK(biases.first_visited.trials == 3);
+  CHECK(biases.first_visited.successes == 3);
+  CHECK(biases.first_visited.trials == 4);
   CHECK(biases.last_visited.successes == 2);
-  // all of 3^4 sequences of labels by their counts
+  // all of 3^5 sequences of labels by their counts
   const auto expected = testing::python_numbers(
       "import itertools, math\n"
-      "weight = lambda c: math.factorial(4) / math.prod(map(math.factorial, c))\n"
-      "counts = [c for c in itertools.product(range(5), repeat=3) if sum(c) == 4]\n"
-      "out(sum(weight(c) for c in counts if weight(c) <= weight((3, 0, 1))) / 81)\n");
+      "weight = lambda c: math.factorial(5) / math.prod(map(math.factorial, c))\n"
+      "counts = [c for c in itertools.product(range(6), repeat=3) if sum(c) == 5]\n"
+      "out(sum(weight(c) for c in counts if weight(c) <= weight((4, 0, 1))) / 243)\n");
   REQUIRE(biases.labels_p);
   CHECK(*biases.labels_p == Approx(expected.at(0)));
 }
@@ -64,8 +65,8 @@ TEST_CASE("a choice counts by its label, and by when it was visited", "[analysis
 TEST_CASE("switches are counted from each stimulus to each, whatever their labels",
           "[analysis][choice]") {
   using Rows = std::vector<std::vector<std::int64_t>>;
-  // a b c a, b c a, c a b, c b
-  CHECK(transitions(of_three().stimuli, four_trials()) == Rows{{0, 2, 0}, {0, 0, 2}, {3, 1, 0}});
+  // a b c a, b c a, c a b, c b, a b c
+  CHECK(transitions(of_three().stimuli, five_trials()) == Rows{{0, 3, 0}, {0, 0, 3}, {3, 1, 0}});
 }
 
 TEST_CASE("the exact two-sided binomial probability is SciPy's", "[analysis][choice]") {
@@ -78,12 +79,12 @@ TEST_CASE("the exact two-sided binomial probability is SciPy's", "[analysis][cho
 }
 
 TEST_CASE("missing replies are said, and that none is", "[analysis][choice]") {
-  BlockRows rows = four_trials();
+  BlockRows rows = five_trials();
   std::ostringstream none;
   summarise_choice(of_three(), rows)->write_text(none);
-  CHECK_THAT(none.str(), Contains("No reply is missing of 4 trials"));
+  CHECK_THAT(none.str(), Contains("No reply is missing of 5 trials"));
   rows.missing_replies = 2;
   std::ostringstream some;
   summarise_choice(of_three(), rows)->write_text(some);
-  CHECK_THAT(some.str(), Contains("Missing replies: 2 of 6 trials"));
+  CHECK_THAT(some.str(), Contains("Missing replies: 2 of 7 trials"));
 }

@@ -194,3 +194,38 @@ TEST_CASE("a part that a report does not have is refused with those that it has"
   CHECK_THAT(html, Contains("How the sessions went") && Contains("SIMULATED") &&
                        !Contains("What was rendered"));
 }
+
+TEST_CASE("switches and biases in a report are those of the stored events",
+          "[end_to_end][choice]") {
+  const testing::TempDirectory directory;
+  const std::string study = simulated(directory, "paper/reality_finger.yaml");
+  REQUIRE(testing::tapstudy({"report", study}).exit_code == 0);
+  const auto compared = testing::run_program(
+      {"/usr/bin/python3", "-c",
+       "import collections, json, sqlite3, sys\n"
+       "db = sqlite3.connect(sys.argv[1] + '/study.db')\n"
+       "block = json.load(open(sys.argv[1] + '/report.json'))['blocks'][0]\n"
+       "pairs, first, last, labels, all = collections.Counter(), 0, 0, collections.Counter(), 0\n"
+       "for trial, response in db.execute('SELECT trial_id, response FROM current_response'):\n"
+       "  names, shown = zip(*db.execute('SELECT stimulus, label FROM alternative WHERE '\n"
+       "                                 'trial_id = ? ORDER BY position', (trial,)))\n"
+       "  seen = [names[int(p)] for (p,) in db.execute('SELECT value FROM event WHERE trial_id = ? "
+       "'\n"
+       "          \"AND kind = 'switch' ORDER BY t_s\", (trial,))]\n"
+       "  pairs.update(zip(seen, seen[1:]))\n"
+       "  labels[shown[names.index(response)]] += 1\n"
+       "  assert len(set(seen)) == 3\n"
+       "  all, first, last = all + 1, first + (seen[0] == response), last + (seen[-1] == "
+       "response)\n"
+       "assert sum(pairs.values()) > 10\n"
+       "for row in block['transitions']:\n"
+       "  for name in row:\n"
+       "    assert name == 'from' or row[name] == pairs[row['from'], name], row\n"
+       "said = {(row['chosen_was'], row['label']): row['chosen'] for row in block['biases']}\n"
+       "for label in 'ABC':\n"
+       "  assert said['under the label', label] == labels[label], said\n"
+       "assert said['visited first', None] == first and said['visited last', None] == last, said\n",
+       study});
+  INFO(compared.standard_error);
+  CHECK(compared.exit_code == 0);
+}

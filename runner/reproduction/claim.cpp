@@ -90,21 +90,19 @@ Verdict Claim::verdict() const {
   return confirming == std::ssize(methods) ? Verdict::confirmed : Verdict::depends;
 }
 
-std::string Claim::reason() const {
+std::vector<std::string> Claim::reasons() const {
   std::vector<std::string> confirming;
   std::vector<std::string> others;
   for (const Method& method : methods) {
     if (method.confirms()) {
       confirming.push_back(method.name);
     } else {
-      others.push_back(missed(method));
+      others.push_back(fmt::format("Does not hold {}.", missed(method)));
     }
   }
-  std::string words =
-      confirming.empty() ? "" : fmt::format("Holds {}.", fmt::join(confirming, ", "));
-  for (const std::string& other : others) {
-    words += fmt::format("{}Does not hold {}.", words.empty() ? "" : " ", other);
+  if (!confirming.empty()) {
+    others.insert(others.begin(), fmt::format("Holds {}.", fmt::join(confirming, "; ")));
   }
-  return words;
+  return others;
 }
 }  // namespace tapstudy::runner

@@ -53,8 +53,8 @@ struct Claim {
   std::vector<std::string> remarks{};
   std::vector<Drawing> drawings{};
   Verdict verdict() const;
-  // By which methods, and for each of the others the measures that do not hold.
-  std::string reason() const;
+  // By which methods it holds, and of each of the others the measures that do not.
+  std::vector<std::string> reasons() const;
 };
 
 // What no computation can show.

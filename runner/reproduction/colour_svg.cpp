@@ -60,7 +60,7 @@ std::vector<std::string> colour_svgs(const analysis::ColourMap& map) {
     std::string svg = fmt::format(
         "<figure><svg class=map viewBox=\"0 0 {} {}\" role=img shape-rendering=crispEdges "
         "aria-label=\"{}\">",
-        width, height, analysis::escaped(map.title + " after " + panel.title));
+        width, height, analysis::escaped(map.title + ", " + panel.title));
     const auto paths = squares(map, panel, most);
     for (std::size_t shade = 0; shade < shades; ++shade) {
       if (!paths.at(shade).empty()) {

@@ -61,6 +61,11 @@ analysis::ColourMap struck(Bench& bench, const protocols::Protocol& protocol,
                                  stimulus.rendering, {{0.0, 0.0}, tap_speed_m_s}, stimulus.name);
 }
 
+void keep_first(analysis::ColourMap& map) {
+  constexpr std::size_t panels = 6;
+  map.panels.resize(std::min(panels, map.panels.size()));
+}
+
 void add(Bench& bench, const Shown& shown_plate, Claim& claim) {
   const protocols::Protocol protocol = shipped_protocol(shown_plate.file);
   const auto stimulus = stimulus_with(protocol, protocol.stimulus(shown_plate.stimulus));
@@ -79,11 +84,17 @@ void add(Bench& bench, const Shown& shown_plate, Claim& claim) {
                                     100.0 * largest_at(map, held) / most_um, "% of the largest"),
                             at_least(50.0, "largest where it was struck",
                                      100.0 * middle_um / most_um, "% of the largest")}});
-  constexpr std::size_t frames = 6;
-  map.panels.resize(std::min(frames, map.panels.size()));
-  claim.drawings.push_back({fmt::format("{}: {}, red is {} µm", shown_plate.method,
+  keep_first(map);
+  claim.drawings.push_back({fmt::format("{}: {} after a strike, red is {} µm", shown_plate.method,
                                         shown_plate.stimulus, analysis::rounded(largest(map))),
                             colour_svgs(map)});
+  analysis::ColourMap modes = analysis::map_of_modes(*bench.models.plate_of(protocol, stimulus),
+                                                     std::get<core::Box>(stimulus.plate->shape),
+                                                     "mode of " + stimulus.name);
+  keep_first(modes);
+  claim.drawings.push_back(
+      {fmt::format("{}: the first mode shapes of {}", shown_plate.method, shown_plate.stimulus),
+       colour_svgs(modes), false});
 }
 }  // namespace
 

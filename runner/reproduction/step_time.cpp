@@ -1,11 +1,11 @@
 // Section 5.1: a step of the modal simulation takes 0.18 ms on average and no more than 0.22 ms.
 #include <fmt/format.h>
+#include <time.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "core/model/stopwatch.hpp"
 #include "core/techniques/make_renderer.hpp"
 #include "runner/accuracy/felt_force.hpp"
 #include "runner/reproduction/claim_table.hpp"
@@ -32,17 +32,23 @@ core::VibratingPlate plate_with_printed_modes(Bench& bench, protocols::Protocol 
   return core::VibratingPlate{core::model_of(*body, material, (1.0 + 1e-9) * last_hz)};
 }
 
+// Of this thread: while another program runs, none passes.
+double processor_time_s() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
 // Each tick by itself, in contact.
 double longest_tick_ms(const core::VibratingPlate& plate, const core::Shape& shape,
                        const core::RenderSettings& settings) {
   core::TapRenderer renderer =
       core::make_renderer(plate_alone(), settings, touched_shape(shape), &plate);
   double longest_s = 0.0;
-  core::Stopwatch watch;
   for (int tick = 0; tick < timed_ticks; ++tick) {
-    watch.lap_s();
+    const double start_s = processor_time_s();
     renderer.tick({core::Vec3{0.0, 0.0, -1e-4}, core::Vec3::Zero()});
-    longest_s = std::max(longest_s, watch.lap_s());
+    longest_s = std::max(longest_s, processor_time_s() - start_s);
   }
   return 1e3 * longest_s;
 }
@@ -56,13 +62,14 @@ Method timed(Bench& bench, const std::string& name, const std::string& file,
   const core::Shape& shape = stimulus.plate->shape;
   const double typical_ms =
       1e-6 * tick_ns(plate, shape, stimulus.rendering, {core::Vec3::Zero(), 0.3});
-  return {name,
-          fmt::format("tapstudy trade {} --stimulus {} --quick", file, stimulus_name),
-          {shown("modes", static_cast<double>(plate.model.frequency_hz.size())),
-           at_most(printed_mean_ms, "typical time of a tick", typical_ms, "ms"),
-           at_most(1e3 * protocol.rendering.dt_s, fmt::format("longest of {} ticks", timed_ticks),
-                   longest_tick_ms(plate, shape, stimulus.rendering), "ms"),
-           shown("times faster than printed", printed_mean_ms / typical_ms)}};
+  return {
+      name,
+      fmt::format("tapstudy trade {} --stimulus {} --quick", file, stimulus_name),
+      {shown("modes", static_cast<double>(plate.model.frequency_hz.size())),
+       at_most(printed_mean_ms, "typical time of a tick", typical_ms, "ms"),
+       at_most(printed_longest_ms, fmt::format("longest processor time of {} ticks", timed_ticks),
+               longest_tick_ms(plate, shape, stimulus.rendering), "ms"),
+       shown("times faster than printed", printed_mean_ms / typical_ms)}};
 }
 }  // namespace
 
@@ -76,7 +83,9 @@ std::vector<Claim> step_time(Bench& bench) {
                       printed_modes, printed_mean_ms, printed_longest_ms),
       .rule =
           "On this machine, which is another than the paper's, the median over batches of 1000 "
-          "ticks is at most the printed mean, and no tick is longer than the loop's period."};
+          "ticks is at most the printed mean, and no tick takes more of the processor's time than "
+          "the "
+          "printed maximum."};
   claim.methods.push_back(timed(bench, std::string{method::printed},
                                 "protocols/paper/plate_model.yaml", "aluminium", 4500.0));
   claim.methods.push_back(timed(bench, std::string{method::recommended},

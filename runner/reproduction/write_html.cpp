@@ -28,24 +28,20 @@ void begin_table(std::ostream& out, const std::string& label, const std::string&
 constexpr const char* end_table = "</tbody></table></div>\n";
 
 void write_measure(std::ostream& out, const Measure& measure) {
-  const bool is_judged = measure.relation != Relation::shown;
-  core::print(out, "<tr><th scope=row>{}</th><td>{}</td><td>{}</td><td{}>{}</td></tr>\n",
-              escaped(measure.name), with_unit(measure.value, measure),
-              is_judged
-                  ? fmt::format("{} {}", name(measure.relation), with_unit(measure.limit, measure))
-                  : "",
-              measure.holds() ? "" : " class=missed",
-              !is_judged        ? ""
-              : measure.holds() ? "holds"
-                                : "does not hold");
+  core::print(
+      out, "<tr><th scope=row>{}</th><td>{}</td><td{}>{}</td></tr>\n", escaped(measure.name),
+      with_unit(measure.value, measure), measure.holds() ? "" : " class=missed",
+      measure.relation == Relation::shown
+          ? ""
+          : fmt::format("{} {}: {}", name(measure.relation), with_unit(measure.limit, measure),
+                        measure.holds() ? "holds" : "does not hold"));
 }
 
 void write_method(std::ostream& out, const Method& method) {
   core::print(out, "<h4>{}: {}</h4>\n<p><code>{}</code></p>\n", escaped(method.name),
               method.confirms() ? "holds" : "does not hold", escaped(method.command));
   begin_table(out, method.name,
-              "<th scope=col>measure</th><th scope=col>value</th><th scope=col>must be</th><th "
-              "scope=col></th>");
+              "<th scope=col>measure</th><th scope=col>value</th><th scope=col>must be</th>");
   for (const Measure& measure : method.measures) {
     write_measure(out, measure);
   }
@@ -67,11 +63,13 @@ void write_findings(std::ostream& out, const Claim& claim) {
 }
 
 void write_claim(std::ostream& out, const Claim& claim) {
-  core::print(out,
-              "<section class=claim id=\"{}\"><h3>{} {}</h3>\n<p>The paper, {}. {}</p>\n<p "
-              "class=note>Judged: {}</p>\n",
-              escaped(claim.name), verdict(claim), escaped(claim.statement), escaped(claim.section),
-              escaped(claim.reason()), escaped(claim.rule));
+  core::print(out, "<section class=claim id=\"{}\"><h3>{} {}</h3>\n<p>The paper, {}.</p>\n<ul>\n",
+              escaped(claim.name), verdict(claim), escaped(claim.statement),
+              escaped(claim.section));
+  for (const std::string& reason : claim.reasons()) {
+    core::print(out, "<li>{}</li>\n", escaped(reason));
+  }
+  core::print(out, "</ul>\n<p class=note>Judged: {}</p>\n", escaped(claim.rule));
   for (const std::string& remark : claim.remarks) {
     core::print(out, "<p>{}</p>\n", escaped(remark));
   }

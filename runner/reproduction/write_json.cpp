@@ -32,7 +32,7 @@ Json as_json(const Claim& claim, const std::string& group) {
             {"section", claim.section},
             {"statement", claim.statement}};
   json["verdict"] = name(claim.verdict());
-  json["reason"] = claim.reason();
+  json["reasons"] = claim.reasons();
   json["rule"] = claim.rule;
   json["methods"] = Json::array();
   for (const Method& method : claim.methods) {

@@ -112,8 +112,8 @@ TEST_CASE("at the terminal alternatives come by themselves, and again where the 
   CHECK(sql(directory, "SELECT group_concat(response, '') FROM response") == "AB\n");
   CHECK(sql(directory,
             "SELECT group_concat(kind || round(value), ' ') FROM event WHERE trial_id = 1 AND "
-            "(kind LIKE 'interval%' OR kind = 'replay')") ==
-        "interval0.0 interval_end0.0 interval1.0 interval_end1.0 replay1.0 "
+            "kind LIKE 'interval%'") ==
+        "interval0.0 interval_end0.0 interval1.0 interval_end1.0 interval_replay1.0 "
         "interval0.0 interval_end0.0 interval1.0 interval_end1.0\n");
   // nothing is felt out of an interval once the finger has left the plate
   CHECK(sql(directory,

@@ -156,6 +156,21 @@ def wait_for_status(driver, words, patience_s=PATIENCE_S):
     wait_until(driver, f"the status “{words}”", lambda: words in find(driver, "#status").text, patience_s)
 
 
+def record_go_signals(driver):
+    """By the page itself: a look from outside now and then misses signals on a busy machine."""
+    driver.execute_script("""
+        const seen = window.goSignals = [];
+        const look = () => {
+          const go = document.querySelector(".go");
+          const now = [go?.dataset.phase ?? "", go?.textContent ?? ""];
+          if (JSON.stringify(now) !== JSON.stringify(seen.at(-1))) seen.push(now);
+        };
+        new MutationObserver(look).observe(
+            document.body, {subtree: true, childList: true, attributes: true, characterData: true});
+        look();""")
+    return lambda: driver.execute_script("return window.goSignals")
+
+
 def wait_for_view(driver, patience_s=PATIENCE_S):
     """What the plate is drawn with: "canvas" or "svg"."""
     return wait_until(driver, "the view", lambda: driver.execute_script(

@@ -317,17 +317,10 @@ class WholeSession(unittest.TestCase):
     explore: {intervals: {seconds: 0.8, gap_seconds: 0.4, max_replays: 1}}
 """)
         self.start(study / "study.yaml", width=375, height=800)
-        phase = lambda: self.driver.execute_script(
-            "const go = document.querySelector('.go'); return go && [go.dataset.phase, go.textContent]")
-        seen = []
+        phases = browser.record_go_signals(self.driver)
 
         def follow_until_over():
-            def is_over():
-                now = phase()
-                if now and (not seen or seen[-1] != now):
-                    seen.append(now)
-                return now and now[0] == "over"
-            browser.wait_until(self.driver, "the end of the intervals", is_over, 60)
+            browser.wait_until(self.driver, "the end of the intervals", lambda: phases()[-1][0] == "over", 60)
         self.next_trial(1)
         browser.answer_by_keyboard(self.driver, 0)
         browser.wait_for_status(self.driver, "one after the other")
@@ -335,10 +328,10 @@ class WholeSession(unittest.TestCase):
         follow_until_over()
         self.check_screen("intervals_over")
         browser.find(self.driver, ".replay").click()
-        browser.wait_until(self.driver, "the replay", lambda: phase()[0] != "over")
+        browser.wait_until(self.driver, "the replay", lambda: phases()[-1][0] != "over")
         follow_until_over()
         self.assertFalse(browser.find(self.driver, ".replay").is_displayed())
-        now = [words for state, words in seen if state == "open"]
+        now = [words for state, words in phases() if state == "open"]
         self.assertEqual(now, ["Now tap A.", "Now tap B.", "Now tap C."] * 2)
         for number in range(1, 7):
             if number > 1:

@@ -6,6 +6,8 @@
 #include "core/error.hpp"
 namespace tapstudy::core {
 namespace {
+namespace fs = std::filesystem;
+
 void write_file(const std::string& file, const Write& write) {
   std::ofstream stream{file, std::ios::binary};
   if (!stream) {
@@ -15,7 +17,7 @@ void write_file(const std::string& file, const Write& write) {
   stream.close();
   if (!stream) {
     std::error_code ignored;
-    std::filesystem::remove(file, ignored);
+    fs::remove(file, ignored);
     throw InvalidInput{file + ": writing failed (is the disk full?)"};
   }
 }
@@ -24,9 +26,38 @@ std::string unfinished(const std::string& file) {
   return file + ".unfinished";
 }
 
+// The folders that were not there before.
+class MadeFolders {
+ public:
+  void make_for(const std::string& file) {
+    const fs::path folder = fs::absolute(file).parent_path();
+    std::error_code error;
+    std::vector<fs::path> missing;
+    for (fs::path at = folder; !fs::exists(at, error) && at != at.root_path();
+         at = at.parent_path()) {
+      missing.push_back(at);
+    }
+    std::ranges::reverse(missing);
+    for (const fs::path& at : missing) {
+      if (!fs::create_directory(at, error)) {
+        throw InvalidInput{at.string() + ": cannot be made a directory: " + error.message()};
+      }
+      made_.push_back(at);
+    }
+  }
+  void remove() const {
+    std::error_code ignored;
+    std::ranges::for_each(made_.rbegin(), made_.rend(),
+                          [&](const fs::path& folder) { fs::remove(folder, ignored); });
+  }
+
+ private:
+  std::vector<fs::path> made_;
+};
+
 void finish(const std::string& file) {
   std::error_code error;
-  std::filesystem::rename(unfinished(file), file, error);
+  fs::rename(unfinished(file), file, error);
   if (error) {
     throw InvalidInput{file + ": cannot be replaced: " + error.message()};
   }
@@ -35,12 +66,11 @@ void finish(const std::string& file) {
 
 void check_is_new(const std::string& file) {
   std::error_code error;
-  if (std::filesystem::symlink_status(file, error).type() !=
-      std::filesystem::file_type::not_found) {
+  if (fs::symlink_status(file, error).type() != fs::file_type::not_found) {
     throw InvalidInput{file + ": exists already and is not overwritten"};
   }
-  const std::filesystem::path folder = std::filesystem::absolute(file).parent_path();
-  if (!std::filesystem::is_directory(folder, error)) {
+  const fs::path folder = fs::absolute(file).parent_path();
+  if (!fs::is_directory(folder, error)) {
     throw InvalidInput{file + ": cannot be written, there is no directory " + folder.string()};
   }
 }
@@ -56,18 +86,21 @@ void replace_file(const std::string& file, const Write& write) {
 }
 
 void write_all_or_none(const std::vector<NewFile>& files, Existing existing) {
-  if (existing == Existing::kept) {
-    std::ranges::for_each(files, check_is_new, &NewFile::name);
-  }
+  MadeFolders folders;
   try {
+    std::ranges::for_each(files, [&](const NewFile& file) { folders.make_for(file.name); });
+    if (existing == Existing::kept) {
+      std::ranges::for_each(files, check_is_new, &NewFile::name);
+    }
     for (const NewFile& file : files) {
       write_file(unfinished(file.name), [&](std::ostream& out) { out << file.text; });
     }
   } catch (const InvalidInput&) {
     for (const NewFile& file : files) {
       std::error_code ignored;
-      std::filesystem::remove(unfinished(file.name), ignored);
+      fs::remove(unfinished(file.name), ignored);
     }
+    folders.remove();
     throw;
   }
   std::ranges::for_each(files, finish, &NewFile::name);

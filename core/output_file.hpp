@@ -20,8 +20,8 @@ struct NewFile {
   std::string text;
 };
 enum class Existing { kept, replaced };
-// Writes files that belong together: all are on the disk before any appears under its name.
-// Throws InvalidInput, and leaves what was there, if one exists and is to be kept, or cannot be
-// written.
+// Writes files that belong together: all are on the disk before any appears under its name. Makes
+// the folders that they need. Throws InvalidInput, and leaves what was there and no more, if one
+// exists and is to be kept, or cannot be written.
 void write_all_or_none(const std::vector<NewFile>& files, Existing existing);
 }  // namespace tapstudy::core

@@ -4,19 +4,13 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <charconv>
 #include <iterator>
 #include <optional>
+
+#include "core/number_in.hpp"
 namespace tapstudy::protocols {
 namespace {
 constexpr std::size_t max_text = 5000;
-
-std::optional<double> number_in(const std::string& text) {
-  double number = 0.0;
-  const char* const end = text.data() + text.size();
-  const auto [stopped, error] = std::from_chars(text.data(), end, number);
-  return error == std::errc{} && stopped == end ? std::optional{number} : std::nullopt;
-}
 
 std::vector<std::string> names_of(const std::vector<Option>& options) {
   std::vector<std::string> names;
@@ -25,7 +19,7 @@ std::vector<std::string> names_of(const std::vector<Option>& options) {
 }
 
 std::string unless_within(const std::string& text, double low, double high, bool is_whole) {
-  const auto number = number_in(text);
+  const auto number = core::number_in<double>(text);
   const bool is_allowed = number && *number >= low && *number <= high &&
                           (!is_whole || *number == static_cast<double>(static_cast<int>(*number)));
   return is_allowed ? ""

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -11,6 +10,7 @@
 #include "analysis/participants/mean_proportion.hpp"
 #include "analysis/statistics/quantiles.hpp"
 #include "core/error.hpp"
+#include "core/number_in.hpp"
 namespace tapstudy::analysis {
 namespace {
 using results::AnswerRow;
@@ -25,16 +25,14 @@ double from_scale(const AdjustedAxis& axis, double value) {
 }
 
 double value_of(const BlockDesign& design, const AnswerRow& answer) {
-  double value = 0.0;
-  const char* const end = answer.response.data() + answer.response.size();
-  const auto read = std::from_chars(answer.response.data(), end, value);
-  const bool is_number = read.ec == std::errc{} && read.ptr == end && std::isfinite(value);
-  if (!is_number || (design.adjusted->is_logarithmic && value <= 0.0)) {
+  const auto value = core::number_in<double>(answer.response);
+  const bool is_number = value && std::isfinite(*value);
+  if (!is_number || (design.adjusted->is_logarithmic && *value <= 0.0)) {
     throw core::InvalidInput{fmt::format("block '{}', {} in trial {}: '{}' is no value of {}",
                                          design.name, answer.participant_id, answer.number,
                                          answer.response, design.adjusted->name)};
   }
-  return value;
+  return *value;
 }
 
 // The mean, on the axis's scale, of the settings of which this is so.

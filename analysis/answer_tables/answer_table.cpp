@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <limits>
@@ -13,6 +12,7 @@
 #include <utility>
 
 #include "core/error.hpp"
+#include "core/number_in.hpp"
 namespace tapstudy::analysis {
 namespace {
 constexpr std::size_t max_classes = 200;
@@ -104,14 +104,12 @@ class AnswerReader {
       return std::numeric_limits<double>::quiet_NaN();
     }
     const std::string& cell = row.cells[*places_.time];
-    double value = 0.0;
-    const char* const end = cell.data() + cell.size();
-    const auto [stopped, error] = std::from_chars(cell.data(), end, value);
-    if (error != std::errc{} || stopped != end || !(value >= 0.0 && std::isfinite(value))) {
+    const auto value = core::number_in<double>(cell);
+    if (!value || !(*value >= 0.0 && std::isfinite(*value))) {
       refuse(row.line, fmt::format("'{}' in column '{}' is not a time from 0", cell,
                                    header()[*places_.time]));
     }
-    return value * places_.time_unit_s;
+    return *value * places_.time_unit_s;
   }
 
   const NamedCsv& csv_;

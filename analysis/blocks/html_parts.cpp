@@ -33,8 +33,7 @@ std::string dot_plot(double share, const Interval& interval, double chance,
   return fmt::format(
       R"(<svg class=dot viewBox="0 0 200 16" role=img aria-label="{}">)"
       "<line class=axis x1=0 y1=8 x2=200 y2=8 /><line class=chance x1={:.1f} y1=0 x2={:.1f} y2=16 "
-      "/>"
-      "<line class=interval x1={:.1f} y1=8 x2={:.1f} y2=8 /><circle cx={:.1f} cy=8 r=4 /></svg>",
+      "/><line class=interval x1={:.1f} y1=8 x2={:.1f} y2=8 /><circle cx={:.1f} cy=8 r=4 /></svg>",
       escaped(alternative), 200 * chance, 200 * chance, 200 * interval.low, 200 * interval.high,
       200 * share);
 }

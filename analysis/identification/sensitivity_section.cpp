@@ -72,9 +72,8 @@ ReportSection sensitivity_section(const MatrixOfParticipants& counted) {
   section.tables.push_back(equivalent_table(matrix));
   section.remarks.emplace_back(
       "d' = z(hits) - z(false alarms) and c = -(z(hits) + z(false alarms)) / 2 with rates "
-      "corrected "
-      "by (k + 1/2) / (n + 1) (Hautus 1995); c above 0: the class is named too seldom. The "
-      "equivalent d' supposes an observer without preferences.");
+      "corrected by (k + 1/2) / (n + 1) (Hautus 1995); c above 0: the class is named too seldom. "
+      "The equivalent d' supposes an observer without preferences.");
   if (const std::string warning = independence_warning(counted); !warning.empty()) {
     section.remarks.push_back(warning);
   }

@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <map>
 
 #include "core/error.hpp"
+#include "core/number_in.hpp"
 namespace tapstudy::analysis {
 namespace {
 using results::AnswerRow;
@@ -16,16 +16,14 @@ using Value = std::optional<double>;
 using Logarithms = std::map<Value, std::map<std::string, std::vector<double>>>;
 
 double number_of(const BlockDesign& design, const AnswerRow& answer) {
-  double number = 0.0;
-  const char* const end = answer.response.data() + answer.response.size();
-  const auto read = std::from_chars(answer.response.data(), end, number);
-  if (read.ec != std::errc{} || read.ptr != end || !(number > 0.0) || !std::isfinite(number)) {
+  const auto number = core::number_in<double>(answer.response);
+  if (!number || !(*number > 0.0) || !std::isfinite(*number)) {
     throw core::InvalidInput{
         fmt::format("block '{}', {} in trial {}: a magnitude is a number above "
                     "0, not '{}'",
                     design.name, answer.participant_id, answer.number, answer.response)};
   }
-  return number;
+  return *number;
 }
 
 // What stands before it is the modulus.

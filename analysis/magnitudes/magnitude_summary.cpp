@@ -76,8 +76,7 @@ std::vector<std::string> remarks_on(const BlockDesign& design, const Magnitudes&
   if (!design.axis) {
     return {
         "Each participant's repeated estimates of a stimulus count as their geometric mean. There "
-        "is "
-        "no exponent: the stimuli have no values on an axis."};
+        "is no exponent: the stimuli have no values on an axis."};
   }
   std::vector<std::string> remarks{
       "Each participant's repeated estimates of a value count as their geometric mean. Exponents "

@@ -114,6 +114,12 @@ std::vector<double> logarithms(const std::vector<double>& values) {
   return logs;
 }
 
+std::vector<double> logarithms_of(const std::vector<Estimate>& estimates) {
+  std::vector<double> values;
+  std::ranges::transform(estimates, std::back_inserter(values), &Estimate::value);
+  return logarithms(values);
+}
+
 // Of ln factor, and what its t has of degrees of freedom.
 struct FactorError {
   double value{};
@@ -133,11 +139,7 @@ FactorError error_of(const Assignment& found, const std::vector<Estimate>& measu
 std::optional<ModelUpdate> update_youngs_modulus(const std::vector<Estimate>& measured_hz,
                                                  const std::vector<double>& model_hz,
                                                  double youngs_modulus_pa) {
-  std::vector<double> values;
-  for (const Estimate& one : measured_hz) {
-    values.push_back(one.value);
-  }
-  const std::vector<double> measured = logarithms(values);
+  const std::vector<double> measured = logarithms_of(measured_hz);
   const std::vector<double> model = logarithms(model_hz);
   const Matcher matcher{measured, model};
   const Assignment found = matcher.settled_from(0.0);
@@ -171,5 +173,11 @@ std::optional<ModelUpdate> update_youngs_modulus(const std::vector<Estimate>& me
     update.rival_pa = modulus(*rival);
   }
   return update;
+}
+
+double match_cost(const std::vector<Estimate>& measured_hz, const std::vector<double>& model_hz) {
+  const std::vector<double> measured = logarithms_of(measured_hz);
+  const std::vector<double> model = logarithms(model_hz);
+  return Matcher{measured, model}.settled_from(0.0).cost;
 }
 }  // namespace tapstudy::analysis

@@ -34,4 +34,8 @@ inline constexpr double max_match_difference = 0.15;
 std::optional<ModelUpdate> update_youngs_modulus(const std::vector<Estimate>& measured_hz,
                                                  const std::vector<double>& model_hz,
                                                  double youngs_modulus_pa);
+
+// The sum of squares of that assignment, with the cost of modes without a partner. The model may
+// have no modes.
+double match_cost(const std::vector<Estimate>& measured_hz, const std::vector<double>& model_hz);
 }  // namespace tapstudy::analysis

@@ -23,37 +23,19 @@ double step_log() {
 // Of ln(springs / E), relative to what was stated.
 class Profile {
  public:
-  Profile(const std::vector<Estimate>& measured_hz, const FrequenciesOnSprings& frequencies_hz,
-          double youngs_modulus_pa)
-      : measured_hz_{measured_hz},
-        frequencies_hz_{frequencies_hz},
-        youngs_modulus_pa_{youngs_modulus_pa} {}
+  Profile(const std::vector<Estimate>& measured_hz, const FrequenciesOnSprings& frequencies_hz)
+      : measured_hz_{measured_hz}, frequencies_hz_{frequencies_hz} {}
 
   std::vector<double> model_hz(double log_factor) const {
     return frequencies_hz_(std::exp(log_factor));
   }
-  std::optional<ModelUpdate> update(const std::vector<double>& model_hz) const {
-    return model_hz.empty() ? std::nullopt
-                            : update_youngs_modulus(measured_hz_, model_hz, youngs_modulus_pa_);
-  }
   double squares(const std::vector<double>& model_hz) const {
-    constexpr double alone = max_match_difference * max_match_difference;
-    const auto found = update(model_hz);
-    if (!found) {
-      return alone * static_cast<double>(measured_hz_.size());
-    }
-    double sum = alone * static_cast<double>(found->unmatched.size());
-    for (const MatchedMode& one : found->matched) {
-      const double residual = std::log1p(one.misfit);
-      sum += residual * residual;
-    }
-    return sum;
+    return match_cost(measured_hz_, model_hz);
   }
 
  private:
   const std::vector<Estimate>& measured_hz_;
   const FrequenciesOnSprings& frequencies_hz_;
-  double youngs_modulus_pa_;
 };
 
 // Logarithms of frequencies go over into one another evenly.
@@ -113,6 +95,19 @@ std::optional<Eigen::VectorXd> sensitivities(const Profile& profile, double log_
   return by_log;
 }
 
+double degrees_of_freedom(const Eigen::VectorXd& by_springs) {
+  return static_cast<double>(by_springs.size()) - 2.0;
+}
+
+// Of ln E and ln(springs / E): ln f is half of ln E, and by_springs of the other.
+Eigen::Matrix2d covariance_of(const Eigen::VectorXd& by_springs, double rms_misfit) {
+  const Eigen::Index modes = by_springs.size();
+  Eigen::MatrixX2d jacobian(modes, 2);
+  jacobian << Eigen::VectorXd::Constant(modes, 0.5), by_springs;
+  const double squares = rms_misfit * rms_misfit * static_cast<double>(modes);
+  return squares / degrees_of_freedom(by_springs) * (jacobian.transpose() * jacobian).inverse();
+}
+
 Estimate from_logarithm(double log_value, double log_error, double t) {
   const double value = std::exp(log_value);
   return {value,
@@ -125,15 +120,14 @@ Estimate from_logarithm(double log_value, double log_error, double t) {
 std::optional<SpringUpdate> update_springs(const std::vector<Estimate>& measured_hz,
                                            const FrequenciesOnSprings& frequencies_hz,
                                            double youngs_modulus_pa) {
-  const Profile profile{measured_hz, frequencies_hz, youngs_modulus_pa};
+  const Profile profile{measured_hz, frequencies_hz};
   const auto log_factor = best_log_factor(profile);
   if (!log_factor) {
     return std::nullopt;
   }
   SpringUpdate result;
-  result.relative_factor = std::exp(*log_factor);
   result.model_hz = profile.model_hz(*log_factor);
-  const auto update = profile.update(result.model_hz);
+  const auto update = update_youngs_modulus(measured_hz, result.model_hz, youngs_modulus_pa);
   if (!update || update->matched.size() < fewest_modes) {
     return std::nullopt;
   }
@@ -142,14 +136,8 @@ std::optional<SpringUpdate> update_springs(const std::vector<Estimate>& measured
   if (!by_springs) {
     return std::nullopt;
   }
-  const Eigen::Index modes = by_springs->size();
-  Eigen::MatrixX2d jacobian(modes, 2);  // by ln E and ln(springs / E)
-  jacobian << Eigen::VectorXd::Constant(modes, 0.5), *by_springs;
-  const double freedom = static_cast<double>(modes) - 2.0;
-  const double squares = update->rms_misfit * update->rms_misfit * static_cast<double>(modes);
-  const Eigen::Matrix2d covariance =
-      squares / freedom * (jacobian.transpose() * jacobian).inverse();
-  const double t = t_quantile(0.975, freedom);
+  const Eigen::Matrix2d covariance = covariance_of(*by_springs, update->rms_misfit);
+  const double t = t_quantile(0.975, degrees_of_freedom(*by_springs));
   const double log_modulus = std::log(update->youngs_modulus_pa.value);
   result.model.youngs_modulus_pa = from_logarithm(log_modulus, std::sqrt(covariance(0, 0)), t);
   result.spring_factor = from_logarithm(*log_factor + log_modulus - std::log(youngs_modulus_pa),

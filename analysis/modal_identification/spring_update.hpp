@@ -10,11 +10,10 @@ namespace tapstudy::analysis {
 using FrequenciesOnSprings = std::function<std::vector<double>(double factor)>;
 
 struct SpringUpdate {
-  ModelUpdate model;         // its modulus with the interval of both together
-  Estimate spring_factor;    // on the stiffness of all springs as stated
-  double relative_factor{};  // on springs over Young's modulus
-  std::vector<double>
-      model_hz;  // at the modulus given, with springs relative_factor times as stiff
+  ModelUpdate model;       // its modulus with the interval of both together
+  Estimate spring_factor;  // on the stiffness of all springs as stated
+  // At the modulus given, with springs over Young's modulus as found.
+  std::vector<double> model_hz;
 };
 
 // Springs and Young's modulus E together, by least squares of logarithms of frequencies: f is

@@ -114,8 +114,7 @@ std::vector<std::string> remarks_on(const BlockDesign& design, const PreferenceR
   }
   remarks.emplace_back(
       "Circular triads: A preferred to B, B to C, C to A; zeta is 1 without them, 0 with as many "
-      "as "
-      "there can be (Kendall & Babington Smith 1940). Without a bias the first position is "
+      "as there can be (Kendall & Babington Smith 1940). Without a bias the first position is "
       "preferred in half of the trials.");
   return remarks;
 }

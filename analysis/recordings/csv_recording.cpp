@@ -4,13 +4,13 @@
 
 #include <algorithm>
 #include <cctype>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <optional>
 
 #include "analysis/statistics/csv_rows.hpp"
 #include "core/error.hpp"
+#include "core/number_in.hpp"
 namespace tapstudy::analysis {
 namespace {
 constexpr double max_rate_difference = 0.01;
@@ -23,14 +23,7 @@ std::optional<double> number_in(std::string cell, bool has_decimal_comma) {
   if (has_decimal_comma) {
     std::ranges::replace(cell, ',', '.');
   }
-  double value{};
-  const char* const begin = cell.data() + (cell.starts_with('+') ? 1 : 0);
-  const char* const end = cell.data() + cell.size();
-  const auto [stopped, error] = std::from_chars(begin, end, value);
-  if (error != std::errc{} || stopped != end) {
-    return std::nullopt;
-  }
-  return value;
+  return core::number_in<double>(std::string_view{cell}.substr(cell.starts_with('+') ? 1 : 0));
 }
 
 std::string lower_case(std::string text) {
@@ -169,11 +162,9 @@ std::size_t named_column(const Table& table, const std::string& column) {
   if (found != table.headers().end()) {
     return static_cast<std::size_t>(found - table.headers().begin());
   }
-  std::size_t number = 0;
-  const char* const end = column.data() + column.size();
-  const auto [stopped, error] = std::from_chars(column.data(), end, number);
-  if (error == std::errc{} && stopped == end && number >= 1 && number <= table.columns()) {
-    return number - 1;
+  const auto number = core::number_in<std::size_t>(column);
+  if (number && *number >= 1 && *number <= table.columns()) {
+    return *number - 1;
   }
   refuse(table.file(), 1,
          fmt::format("--column '{}' is none of its columns ({})", column,

@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 #include <sndfile.h>
 
-#include <charconv>
 #include <cmath>
 #include <memory>
 
 #include "core/error.hpp"
+#include "core/number_in.hpp"
 namespace tapstudy::analysis {
 namespace {
 constexpr sf_count_t max_frames = 100'000'000;
@@ -24,14 +24,12 @@ int channel_from(const std::string& column, int channels, const std::string& fil
   }
   constexpr const char* prefix = "channel ";
   const std::string digits = column.starts_with(prefix) ? column.substr(8) : column;
-  int number = 0;
-  const char* const end = digits.data() + digits.size();
-  const auto [stopped, error] = std::from_chars(digits.data(), end, number);
-  if (error != std::errc{} || stopped != end || number < 1 || number > channels) {
+  const auto number = core::number_in<int>(digits);
+  if (!number || *number < 1 || *number > channels) {
     throw core::InvalidInput{fmt::format("{}: has {} channels (choose one by --column 1 ... {})",
                                          file, channels, channels)};
   }
-  return number - 1;
+  return *number - 1;
 }
 
 std::vector<double> samples_of(SNDFILE* sound, const SF_INFO& info, int channel) {

@@ -192,8 +192,7 @@ class TapFinder {
     if (impacts == 0) {
       return fmt::format(
           "{}: holds no tap: nowhere does the energy exceed the noise floor tenfold (at most "
-          "{:.1f} "
-          "times)",
+          "{:.1f} times)",
           recording_.file, loudest / energies_.floor);
     }
     return fmt::format("{}: holds no tap that can be used: {}", recording_.file,

@@ -13,15 +13,14 @@ Cell named(const RenderedStimulus& stimulus) {
 }
 
 // Shown with quartiles.
-Cell quartiles_cell(const std::vector<double>& values) {
-  const Quartiles of = quartiles(values);
+Cell quartiles_cell(const Quartiles& of) {
   return interval(of.median, {of.low, of.high});
 }
 
 // Stored in metres.
 Cell millimetres(const std::vector<double>& values_m) {
-  Cell cell = quartiles_cell(values_m);
   const Quartiles of = quartiles(values_m);
+  Cell cell = quartiles_cell(of);
   cell.text = with_interval(1e3 * of.median, {1e3 * of.low, 1e3 * of.high});
   return cell;
 }
@@ -107,8 +106,8 @@ ReportTable taps_table(const RenderedStudy& study) {
     const FeltTaps& taps = study.taps[i].all;
     if (taps.taps() > 0) {
       table.rows.push_back({named(study.stimuli[i]), count(taps.taps()),
-                            quartiles_cell(taps.speeds_m_s()),
-                            quartiles_cell(taps.commanded().peaks_n)});
+                            quartiles_cell(quartiles(taps.speeds_m_s())),
+                            quartiles_cell(quartiles(taps.commanded().peaks_n))});
     }
   }
   return table;
@@ -124,7 +123,7 @@ ReportTable forces_table(const RenderedStudy& study) {
     for (const ForceExtent& part : study.taps[i].all.extents()) {
       if (part.squares_n2 > 0.0) {
         table.rows.push_back({named(study.stimuli[i]), word(part.part), number(part.rms_n()),
-                              number(part.peak_n()), quartiles_cell(part.peaks_n)});
+                              number(part.peak_n()), quartiles_cell(quartiles(part.peaks_n))});
       }
     }
   }
@@ -213,14 +212,12 @@ void say_what_is_missing(const RenderedStudy& study, ReportSection& section) {
         "Figures of forces: mean over taps with the standard deviation, so far as half of them "
         "last; at the point where most is added to the contact spring, and for all other points "
         "behind \"More figures\". Axes are those of all stimuli at a point. Spectra are of the "
-        "force "
-        "that is added, over the whole tap.");
+        "force that is added, over the whole tap.");
   }
   if (std::ranges::any_of(study.stimuli, lacks_model)) {
     section.remarks.emplace_back(
         "Where modes are left out, no model of this version of the program is cached on this "
-        "machine: "
-        "`tapstudy check` of the protocol makes one.");
+        "machine: `tapstudy check` of the protocol makes one.");
   }
   if (std::ranges::any_of(study.stimuli, &RenderedStimulus::varies)) {
     section.remarks.emplace_back(

@@ -146,10 +146,9 @@ std::string methods(const Summary& summary) {
   text +=
       "Intervals of proportions are 95 % score intervals (Wilson 1927) where nothing else is said; "
       "those over participants hold for participants of whom these are a sample. Accuracy of "
-      "identification is tested by drawing the "
-      "orders of presentation again as the study drew them, choices by the exact binomial and "
-      "multinomial distributions, one vote a participant; other statistics state their methods "
-      "with their results. ";
+      "identification is tested by drawing the orders of presentation again as the study drew "
+      "them, choices by the exact binomial and multinomial distributions, one vote a participant; "
+      "other statistics state their methods with their results. ";
   if (summary.loop) {
     text += fmt::format(
         "The haptic loop made {} ticks; {} were late, {} were skipped, and {} force samples were "

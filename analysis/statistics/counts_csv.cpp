@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <span>
 
 #include "analysis/statistics/csv_rows.hpp"
 #include "core/error.hpp"
+#include "core/number_in.hpp"
 namespace tapstudy::analysis {
 namespace {
 constexpr std::size_t max_classes = 200;
@@ -32,22 +32,19 @@ const std::vector<CsvRow>& checked_rows(const std::vector<CsvRow>& rows, const s
   if (rows.size() < 2 || rows.front().cells.front() != "stimulus") {
     refuse(file, rows.empty() ? 1 : rows.front().line,
            "is neither a matrix (its header starts with 'stimulus', and there is a row for each) "
-           "nor a "
-           "table of answers (a row each, with columns for stimulus and response)");
+           "nor a table of answers (a row each, with columns for stimulus and response)");
   }
   return rows;
 }
 
 std::int64_t count_in(const std::string& cell, const std::string& file, int line) {
-  std::int64_t value{};
-  const char* const end = cell.data() + cell.size();
-  const auto [stopped, error] = std::from_chars(cell.data(), end, value);
-  if (error != std::errc{} || stopped != end || value < 0 || value > max_answers) {
+  const auto value = core::number_in<std::int64_t>(cell);
+  if (!value || *value < 0 || *value > max_answers) {
     refuse(file, line,
            fmt::format("'{}' is not a count (from 0 to {}; a factor's column is headed {}NAME)",
                        cell, max_answers, factor_mark));
   }
-  return value;
+  return *value;
 }
 
 std::vector<Item> stimuli_of(const std::vector<CsvRow>& lines, const std::string& file) {

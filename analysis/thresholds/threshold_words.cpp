@@ -49,8 +49,7 @@ std::vector<std::string> threshold_remarks(const BlockDesign& design,
           : "Deviance tests are not made for so many levels.");
   remarks.emplace_back(results.has_posteriors
                            ? "Bayesian thresholds: beta-binomial answers and the priors of Schuett "
-                             "et al. 2016, which "
-                             "limit the slope where the answers alone do not."
+                             "et al. 2016, which limit the slope where the answers alone do not."
                            : "Bayesian thresholds are not computed for so many levels.");
   return remarks;
 }

@@ -93,11 +93,10 @@ bool has_settled(const std::vector<RefinementRound>& rounds, double accuracy) {
 void check_can_settle(const std::vector<Fixation>& fixations) {
   for (std::size_t i = 0; i < fixations.size(); ++i) {
     if (!can_hold_a_solid(fixations[i])) {
-      throw ModelError{
-          fmt::format("mesh.accuracy: fixation {} is a point or a line, under which a solid's "
-                      "frequencies never "
-                      "settle (hold a disc, a side or a box, or leave accuracy out)",
-                      i + 1)};
+      throw ModelError{fmt::format(
+          "mesh.accuracy: fixation {} is a point or a line, under which a solid's frequencies "
+          "never settle (hold a disc, a side or a box, or leave accuracy out)",
+          i + 1)};
     }
   }
 }

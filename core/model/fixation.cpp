@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -96,10 +95,7 @@ double held_area_m2(const TetMesh& mesh, const std::vector<bool>& is_held) {
   for (Eigen::Index i = 0; i < mesh.surface.rows(); ++i) {
     const std::array<int, 3> corners{mesh.surface(i, 0), mesh.surface(i, 1), mesh.surface(i, 2)};
     if (holds_all(is_held, corners)) {
-      const auto edge = [&](std::size_t to) -> Vec3 {
-        return mesh.nodes_m.row(corners.at(to)) - mesh.nodes_m.row(corners.at(0));
-      };
-      area_m2 += 0.5 * edge(1).cross(edge(2)).norm();
+      area_m2 += triangle_area_m2(mesh, i);
     }
   }
   return area_m2;
@@ -192,10 +188,7 @@ std::vector<double> held_areas_m2(const TetMesh& mesh, const Shape& shape,
                                   const std::vector<Fixation>& fixations) {
   std::vector<double> areas_m2;
   for (const Fixation& fixation : fixations) {
-    std::vector<bool> is_held(static_cast<std::size_t>(mesh.nodes_m.rows()), false);
-    for (const Eigen::Index node : selected_nodes(fixation, mesh, shape)) {
-      is_held[static_cast<std::size_t>(node)] = true;
-    }
+    const std::vector<bool> is_held = mesh.marked(selected_nodes(fixation, mesh, shape));
     const double area_m2 = held_area_m2(mesh, is_held);
     areas_m2.push_back(area_m2 > 0.0 ? area_m2
                                      : std::pow(held_volume_m3(mesh, is_held), 2.0 / 3.0));

@@ -28,8 +28,7 @@ std::vector<Column> columns_of_context() {
       {"presented", text, "", "virtual (rendered by the device) or real (a plate was mounted)"},
       {"status", text, "",
        "answered; interrupted by a fault or a stop; repeated (its answer does not count); "
-       "timed_out;"
-       " skipped by the operator"},
+       "timed_out; skipped by the operator"},
       {"stimulus", text, "", "Name of the stimulus; in a trial missing if there were several"},
   };
 }
@@ -73,17 +72,14 @@ std::vector<Column> columns_of_conduct() {
        "Time of the event: from the first tick of the trial; of session events, questionnaires and"
        " operator actions from the begin of the session"},
       {"kind", text, "",
-       "contact, impact, late_impact, release, switch (to an alternative), setting (of the adjusted"
-       " alternative), interval (its go signal), interval_end, interval_replay (of all intervals), "
-       "masking"
-       " (noise is played), masking_underrun, masking_cut, masking_lost,"
-       " untraced (no trace was kept)"},
+       "contact, impact, late_impact, release, switch (to an alternative), setting (of the "
+       "adjusted alternative), interval (its go signal), interval_end, interval_replay (of all "
+       "intervals), masking (noise is played), masking_underrun, masking_cut, masking_lost, "
+       "untraced (no trace was kept)"},
       {"value", real, "",
-       "impact, late_impact: speed in m/s; switch, interval, interval_end: position of the"
-       " alternative; interval_replay: its number; setting: in the unit of the axis; masking: RMS "
-       "level in "
-       "dB of full scale; masking_underrun, masking_cut: count; "
-       "otherwise 0"},
+       "impact, late_impact: speed in m/s; switch, interval, interval_end: position of the "
+       "alternative; interval_replay: its number; setting: in the unit of the axis; masking: RMS "
+       "level in dB of full scale; masking_underrun, masking_cut: count; otherwise 0"},
       {"position", integer, "", "Position of the alternative in its trial, from 0"},
       {"label", text, "", "What participants read; of an alternative its blind label"},
       {"is_comparison", boolean, "", "The comparison, not the standard"},

@@ -7,8 +7,7 @@ namespace tapstudy::runner {
 void write_csv(std::ostream& out, const Trade& trade) {
   out << "order,elements,dof,band_limit_hz,modes,integrator,rate_hz,build_s,tick_ns,cost_s,"
          "frequency_error,missing_modes,extra_modes,level_error_db,decay_error_db,force_error,is_"
-         "on_front,is_inside_tolerance,is_"
-         "protocols\n";
+         "on_front,is_inside_tolerance,is_protocols\n";
   for (const Evaluation& one : trade.settings) {
     core::print(out,
                 "{},{},{},{},{},{},{},{:.6g},{:.6g},{:.6g},{:.9g},{},{},{:.9g},{:.9g},{:.9g},{:d},{"

@@ -2,9 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
-
 #include "core/error.hpp"
+#include "core/number_in.hpp"
 #include "runner/terminal/logging.hpp"
 namespace tapstudy::runner {
 namespace {
@@ -13,14 +12,12 @@ protocols::AxisValues parsed(const std::vector<std::string>& settings) {
   for (const std::string& setting : settings) {
     const auto sign = setting.find('=');
     const std::string name = setting.substr(0, sign);
-    const std::string number = sign == std::string::npos ? "" : setting.substr(sign + 1);
-    double value{};
-    const char* const end = number.data() + number.size();
-    const auto [stopped, error] = std::from_chars(number.data(), end, value);
-    if (name.empty() || error != std::errc{} || stopped != end) {
+    const auto value =
+        core::number_in<double>(sign == std::string::npos ? "" : setting.substr(sign + 1));
+    if (name.empty() || !value) {
       throw core::InvalidInput{fmt::format("--set: '{}' is not NAME=NUMBER", setting)};
     }
-    if (!values.emplace(name, value).second) {
+    if (!values.emplace(name, *value).second) {
       throw core::InvalidInput{fmt::format("--set: '{}' is set twice", name)};
     }
   }

@@ -126,8 +126,7 @@ void add_export(CommandParser& line) {
   command.one_of("--format", options->format, format_names(),
                  "csv (default): a directory of tidy tables and their data dictionary (CSV on the "
                  "Web); hdf5: one file of the same tables and all traces; bids: a dataset of the "
-                 "Brain Imaging "
-                 "Data Structure, without names, notes and questionnaires");
+                 "Brain Imaging Data Structure, without names, notes and questionnaires");
   command.flag("--traces", options->wants_traces,
                "csv: every tick too, a file a trial (about 200 bytes a tick); the other formats "
                "have them always");

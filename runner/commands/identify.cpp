@@ -1,10 +1,10 @@
 #include <fmt/format.h>
 
-#include <charconv>
 #include <filesystem>
 #include <memory>
 
 #include "core/error.hpp"
+#include "core/number_in.hpp"
 #include "runner/commands/commands.hpp"
 #include "runner/recordings/writers.hpp"
 #include "runner/terminal/progress.hpp"
@@ -21,31 +21,21 @@ struct IdentifyOptions {
 
 // "10:300"
 analysis::Band band_from(const std::string& text) {
-  analysis::Band band;
-  const char* const end = text.data() + text.size();
-  const auto [colon, low_error] = std::from_chars(text.data(), end, band.low_hz);
-  const bool has_low = low_error == std::errc{} && colon != end && *colon == ':';
-  const auto [stopped, high_error] = std::from_chars(has_low ? colon + 1 : end, end, band.high_hz);
-  const bool is_band = has_low && high_error == std::errc{} && stopped == end;
-  if (!is_band || !(band.low_hz > 0.0 && band.low_hz < band.high_hz && band.high_hz <= 1e5)) {
+  const auto [low_hz, high_hz] = core::two_numbers_in(text, ':').value_or(std::pair{0.0, 0.0});
+  if (!(low_hz > 0.0 && low_hz < high_hz && high_hz <= 1e5)) {
     throw core::InvalidInput{
         fmt::format("--band '{}': must be LOW:HIGH in Hz, 0 < LOW < HIGH <= 100000", text)};
   }
-  return band;
+  return {low_hz, high_hz};
 }
 
 // "0.1,0.05"
 Eigen::Vector2d place_from(const std::string& text) {
-  Eigen::Vector2d at_m;
-  const char* const end = text.data() + text.size();
-  const auto [comma, x_error] = std::from_chars(text.data(), end, at_m.x());
-  const bool has_x = x_error == std::errc{} && comma != end && *comma == ',';
-  const auto [stopped, y_error] = std::from_chars(has_x ? comma + 1 : end, end, at_m.y());
-  const bool is_place = has_x && y_error == std::errc{} && stopped == end;
-  if (!is_place || !(at_m.lpNorm<Eigen::Infinity>() <= 10.0)) {
+  const auto at_m = core::two_numbers_in(text, ',');
+  if (!at_m || !(std::abs(at_m->first) <= 10.0 && std::abs(at_m->second) <= 10.0)) {
     throw core::InvalidInput{fmt::format("--at '{}': must be X,Y in m, in the plate frame", text)};
   }
-  return at_m;
+  return {at_m->first, at_m->second};
 }
 
 void check_playback(const TapQuestion& question) {

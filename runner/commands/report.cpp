@@ -97,31 +97,8 @@ std::string table_text(const Summary& summary, const analysis::CsvTable& table) 
   return text.str();
 }
 
-fs::path made_folder(const fs::path& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (!fs::is_directory(folder, error)) {
-    throw core::InvalidInput{folder.string() + ": cannot be made a directory"};
-  }
-  return folder;
-}
-
-// An empty folder of figures is not left behind either.
-void write_into(const fs::path& folder, const std::vector<core::NewFile>& files,
-                core::Existing existing) {
-  try {
-    core::write_all_or_none(files, existing);
-  } catch (...) {
-    std::error_code error;
-    fs::remove(folder, error);  // only if nothing is in it
-    throw;
-  }
-}
-
 void write_files(const ReportOptions& options, const Summary& summary) {
   const auto figure_files = analysis::figure_files(summary);
-  const fs::path folder =
-      made_folder(fs::path{options.out} / (figure_files.empty() ? "" : "figures"));
   std::vector<core::NewFile> files;
   const auto add = [&](const std::string& name, std::string text) {
     files.push_back({(fs::path{options.out} / name).string(), std::move(text)});
@@ -146,13 +123,13 @@ void write_files(const ReportOptions& options, const Summary& summary) {
   for (const analysis::FigureFile& figure : figure_files) {
     add("figures/" + figure.name, figure.svg);
   }
-  write_into(folder, files, options.replace ? core::Existing::replaced : core::Existing::kept);
+  core::write_all_or_none(files, options.replace ? core::Existing::replaced : core::Existing::kept);
   const std::size_t figures = figure_files.size();
   for (std::size_t i = 0; i + figures < files.size(); ++i) {
     fmt::print("{}\n", files[i].name);
   }
   if (figures > 0) {
-    fmt::print("{} ({} figures)\n", folder.string(), figures);
+    fmt::print("{} ({} figures)\n", (fs::path{options.out} / "figures").string(), figures);
   }
 }
 

@@ -2,18 +2,15 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
-
 #include "core/error.hpp"
+#include "core/number_in.hpp"
 namespace tapstudy::runner {
 std::uint64_t seed_from(const std::string& text, const std::string& option) {
-  std::uint64_t seed{};
-  const char* const end = text.data() + text.size();
-  const auto [stopped, error] = std::from_chars(text.data(), end, seed);
-  if (error != std::errc{} || stopped != end) {
+  const auto seed = core::number_in<std::uint64_t>(text);
+  if (!seed) {
     throw core::InvalidInput{
         fmt::format("{}: '{}' is not a whole number from 0 to 2^64 - 1", option, text)};
   }
-  return seed;
+  return *seed;
 }
 }  // namespace tapstudy::runner

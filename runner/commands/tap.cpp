@@ -45,8 +45,7 @@ double seconds_of(const TraceSample& sample) {
 void write_csv(std::ostream& out, const std::vector<TraceSample>& trace) {
   out << "t_s,position_x_m,position_y_m,position_z_m,velocity_x_m_s,velocity_y_m_s,velocity_z_m_s,"
          "penetration_m,penalty_n,vibration_n,sinusoid_n,force_x_n,force_y_n,force_z_n,touching,"
-         "impact,"
-         "saturated\n";
+         "impact,saturated\n";
   for (const TraceSample& s : trace) {
     core::print(out,
                 "{:.6f},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},"

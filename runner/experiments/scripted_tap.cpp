@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <charconv>
 #include <cmath>
 #include <optional>
 #include <span>
 
 #include "core/error.hpp"
 #include "core/model/shape/top_height.hpp"
+#include "core/number_in.hpp"
 #include "device/hand/aimed_hand.hpp"
 #include "device/hand/simulated_hand.hpp"
 #include "device/loop/haptic_loop.hpp"
@@ -80,13 +80,6 @@ std::vector<core::Vec3> aims_of(const ScriptPath& path, const core::Shape& shape
   }
   return aims_m;
 }
-
-std::optional<double> number(const std::string& text) {
-  double value{};
-  const char* const end = text.data() + text.size();
-  const auto [stopped, error] = std::from_chars(text.data(), end, value);
-  return error == std::errc{} && stopped == end ? std::optional{value} : std::nullopt;
-}
 }  // namespace
 
 std::vector<core::TraceSample> trace_of(const ScriptedTap& tap, const protocols::Protocol& protocol,
@@ -130,10 +123,8 @@ Eigen::Vector2d point_on_plate(const std::string& text, const protocols::Plate& 
   if (named != plate.tapping_points_m.end()) {
     return named->second;
   }
-  const auto comma = text.find(',');
-  const auto x = number(text.substr(0, comma));
-  const auto y = comma == std::string::npos ? std::nullopt : number(text.substr(comma + 1));
-  if (!x || !y) {
+  const auto at_m = core::two_numbers_in(text, ',');
+  if (!at_m) {
     std::vector<std::string> names;
     for (const auto& [name, at] : plate.tapping_points_m) {
       names.push_back(name);
@@ -142,6 +133,6 @@ Eigen::Vector2d point_on_plate(const std::string& text, const protocols::Plate& 
         fmt::format("--at: '{}' is neither X,Y in metres nor a tapping point (one of: {})", text,
                     fmt::join(names, ", "))};
   }
-  return {*x, *y};
+  return {at_m->first, at_m->second};
 }
 }  // namespace tapstudy::runner

@@ -195,11 +195,10 @@ void SimulatedParticipant::refused(const TrialPrompt& prompt, const TooEarly& wh
 
 void SimulatedParticipant::timed_out(const TrialPrompt& prompt, bool is_presented_again) {
   if (is_presented_again) {  // it would take as long again, without end
-    throw core::InvalidInput{
-        fmt::format("trial {}: a simulated participant takes longer than the block's "
-                    "explore.max_seconds (lower "
-                    "simulation.taps.taps_per_visit or visits, or raise max_seconds)",
-                    prompt.number)};
+    throw core::InvalidInput{fmt::format(
+        "trial {}: a simulated participant takes longer than the block's explore.max_seconds "
+        "(lower simulation.taps.taps_per_visit or visits, or raise max_seconds)",
+        prompt.number)};
   }
 }
 

@@ -3,24 +3,22 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <fstream>
 
 #include "analysis/statistics/csv_rows.hpp"
 #include "core/error.hpp"
+#include "core/number_in.hpp"
 namespace tapstudy::runner {
 namespace {
 constexpr double max_speed_m_s = 100.0;
 
 double speed_in(const std::string& cell, const std::string& file, int line) {
-  double value{};
-  const char* const end = cell.data() + cell.size();
-  const auto [stopped, error] = std::from_chars(cell.data(), end, value);
-  if (error != std::errc{} || stopped != end || !(value > 0.0 && value < max_speed_m_s)) {
+  const auto value = core::number_in<double>(cell);
+  if (!value || !(*value > 0.0 && *value < max_speed_m_s)) {
     throw core::InvalidInput{fmt::format("{}:{}: '{}' is not a speed (above 0, below {} m/s)", file,
                                          line, cell, max_speed_m_s)};
   }
-  return value;
+  return *value;
 }
 }  // namespace
 

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "analysis/tables/cells.hpp"
 namespace tapstudy::runner {
@@ -13,8 +14,8 @@ std::string with_unit(double value, const std::string& unit) {
 }
 
 std::string missed(const Measure& measure) {
-  return fmt::format("{} is {}, not {} {}", measure.name, with_unit(measure.value, measure.unit),
-                     name(measure.relation), with_unit(measure.limit, measure.unit));
+  return fmt::format("{} is {}, not {}", measure.name, value_in_words(measure),
+                     limits_in_words(measure));
 }
 
 std::string missed(const Method& method) {
@@ -33,37 +34,43 @@ std::string missed(const Method& method) {
 }  // namespace
 
 bool Measure::holds() const {
-  switch (relation) {
-    case Relation::at_least:
-      return value >= limit;
-    case Relation::at_most:
-      return value <= limit;
-    case Relation::shown:
-      break;
-  }
-  return true;
+  return !is_judged() ||
+         (value >= at_least.value_or(-HUGE_VAL) && value <= at_most.value_or(HUGE_VAL));
 }
 
 Measure at_least(double limit, const std::string& name, double value, const std::string& unit) {
-  return {name, value, unit, Relation::at_least, limit};
+  return {name, value, unit, limit, {}};
 }
 Measure at_most(double limit, const std::string& name, double value, const std::string& unit) {
-  return {name, value, unit, Relation::at_most, limit};
+  return {name, value, unit, {}, limit};
+}
+Measure within(double low, double high, const std::string& name, double value,
+               const std::string& unit) {
+  return {name, value, unit, low, high};
 }
 Measure shown(const std::string& name, double value, const std::string& unit) {
   return {name, value, unit};
 }
 
-std::string_view name(Relation relation) {
-  switch (relation) {
-    case Relation::at_least:
-      return "at least";
-    case Relation::at_most:
-      return "at most";
-    case Relation::shown:
-      break;
+double difference_percent(double value, double printed) {
+  return 100.0 * std::abs(value / printed - 1.0);
+}
+
+std::string value_in_words(const Measure& measure) {
+  return with_unit(measure.value, measure.unit);
+}
+
+std::string limits_in_words(const Measure& measure) {
+  const auto& low = measure.at_least;
+  const auto& high = measure.at_most;
+  if (low && high) {
+    return fmt::format("between {} and {}", analysis::rounded(*low),
+                       with_unit(*high, measure.unit));
   }
-  return "shown";
+  if (low) {
+    return "at least " + with_unit(*low, measure.unit);
+  }
+  return high ? "at most " + with_unit(*high, measure.unit) : "";
 }
 
 bool Method::confirms() const {

@@ -1,4 +1,5 @@
 #pragma once
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -6,23 +7,28 @@
 #include "analysis/tables/chart.hpp"
 namespace tapstudy::runner {
 // A claim of the paper beside what tapstudy gets. The judgement is computed from the numbers:
-//   a measure holds if its value keeps its limit; one that is only shown always holds
+//   a measure holds if its value lies within its limits; one without is only shown, and holds
 //   a method confirms the claim if all its measures hold
 //   a claim is true if every method confirms it, false if none does; else it depends on the method
 
-enum class Relation { at_least, at_most, shown };
 struct Measure {
   std::string name;
-  double value{};  // NaN keeps no limit
+  double value{};  // NaN lies within no limit
   std::string unit;
-  Relation relation{Relation::shown};
-  double limit{};  // in the same unit; 0 if only shown
+  std::optional<double> at_least{};  // in the same unit
+  std::optional<double> at_most{};
+  bool is_judged() const { return at_least || at_most; }
   bool holds() const;
 };
 Measure at_least(double limit, const std::string& name, double value, const std::string& unit = {});
 Measure at_most(double limit, const std::string& name, double value, const std::string& unit = {});
+Measure within(double low, double high, const std::string& name, double value,
+               const std::string& unit = {});
 Measure shown(const std::string& name, double value, const std::string& unit = {});
-std::string_view name(Relation relation);
+double difference_percent(double value, double printed);
+// "1.25 mm"; and of a measure that is judged "at least 1.5 mm", "between 1 and 2 mm".
+std::string value_in_words(const Measure& measure);
+std::string limits_in_words(const Measure& measure);
 
 // One way to compute what the claim is about.
 struct Method {

@@ -47,16 +47,14 @@ const std::vector<NotReproducible>& not_reproducible() {
   static const std::vector<NotReproducible> list{
       {"Table 1", "Frequencies and damping of the real plates.",
        "The damping ratios were fitted by eye to recordings that are not published. `identify` "
-       "finds "
-       "them in recordings of real taps."},
+       "finds them in recordings of real taps."},
       {"Figure 2", "The mesh itself.",
        "It is drawn, not listed; the settings of TetGen are not given, and a mesh of its numbers "
-       "of "
-       "elements and nodes did not come out of any setting tried."},
+       "of elements and nodes did not come out of any setting tried."},
       {"Figures 4 and 5", "The waveforms tick by tick.",
        "Neither the speed of the taps nor the places P1, P2 and P3 are given, nor which corners "
-       "two "
-       "fixations hold. The figures are made with taps of 0.3 m/s, on which shapes do not depend."},
+       "two fixations hold. The figures are made with taps of 0.3 m/s, on which shapes do not "
+       "depend."},
       {"section 5", "With 58 g the feeling is similar to that of real plates.",
        "It is what users said. What can be computed is how far levels lie apart, above."},
       {"section 5.2.1", "Which plate people take a virtual one for.",
@@ -68,8 +66,7 @@ const std::vector<NotReproducible>& not_reproducible() {
        "The haptic pointer moved around three times slower than the fingers that tap real "
        "plates.",
        "Speed is an input of the simulated hand. In studies with people tapstudy stores the speed "
-       "of "
-       "each impact on virtual plates; taps on real ones have to be measured."},
+       "of each impact on virtual plates; taps on real ones have to be measured."},
       {"section 5", "The device presents vibration of up to 300 Hz.",
        "It is a property of the SPIDAR-G6, which a program cannot know: a rig file states it."},
   };

@@ -158,13 +158,13 @@ Claim structure_well_material_less(const Bench& bench, const ConfusionMatrix& ta
   for (const Simulated& study : studies) {
     const Predicted& fitted = best(table, all_rows, study);
     const double material = 100.0 * share(fitted.answers, "material");
-    claim.methods.push_back({"simulated, " + study.method,
-                             command(study, bench),
-                             {shown("noise fitted on all rows", fitted.noise_db, "dB"),
-                              at_least(100.0 * well, "structure right",
-                                       100.0 * share(fitted.answers, "structure"), "%"),
-                              at_least(100.0 * interval.low, "material right", material, "%"),
-                              at_most(100.0 * interval.high, "material right", material, "%")}});
+    claim.methods.push_back(
+        {"simulated, " + study.method,
+         command(study, bench),
+         {shown("noise fitted on all rows", fitted.noise_db, "dB"),
+          at_least(100.0 * well, "structure right", 100.0 * share(fitted.answers, "structure"),
+                   "%"),
+          within(100.0 * interval.low, 100.0 * interval.high, "material right", material, "%")}});
   }
   return claim;
 }
@@ -186,8 +186,7 @@ Claim better_than_guessing(const ConfusionMatrix& table) {
   claim.methods.push_back(std::move(method));
   claim.remarks.emplace_back(
       "The test takes 80 answers of ten people for independent, because Table 2 does not say whose "
-      "they "
-      "are: with people who differ, p is larger.");
+      "they are: with people who differ, p is larger.");
   return claim;
 }
 }  // namespace

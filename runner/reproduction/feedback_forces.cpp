@@ -17,8 +17,7 @@ constexpr double visible = 2.0;  // % of the largest penalty force: the stroke o
 constexpr double large = 5.0;    // %
 const std::string visible_rule =
     "Vibration is seen in a figure of the whole force if it reaches 2 % of the largest penalty "
-    "force, "
-    "as much as the stroke of a printed curve. ";
+    "force, as much as the stroke of a printed curve. ";
 const std::string band_rule =
     "Low-frequency modes are those below 100 Hz, a third of the band, high-frequency ones those "
     "above.";
@@ -55,11 +54,6 @@ Taps taps_of(Bench& bench, const Route& route) {
   return taps;
 }
 
-std::string command(const Route& route, const std::string& stimulus, const char* point) {
-  return fmt::format("tapstudy tap {} --stimulus {} --at {} --csv tap.csv", route.file, stimulus,
-                     point);
-}
-
 enum class Part { whole, low, high };
 double share(const TapForce& force, Part part) {
   const double peak_n = part == Part::whole ? force.vibration_n
@@ -73,20 +67,23 @@ const char* words(Part part) {
                              : "vibration above 100 Hz";
 }
 
-// One measure for each plate.
+// How much of a part of the vibration is seen at a point of the plates.
 struct Question {
   const char* point;
   std::vector<const char*> fixations;
   Part part;
   Measure (*limited)(double, const std::string&, double, const std::string&);
   double limit;
+  bool with_aluminium{true};
 };
 
-std::vector<Measure> measures(const Taps& taps, const std::vector<std::string>& materials,
-                              const Question& question) {
+std::vector<Measure> measures(const Taps& taps, const Question& question) {
   std::vector<Measure> all;
   for (const char* const fixations : question.fixations) {
-    for (const std::string& material : materials) {
+    for (const std::string& material : taps.route.materials()) {
+      if (material == taps.route.aluminium && !question.with_aluminium) {
+        continue;
+      }
       all.push_back(question.limited(
           question.limit,
           fmt::format("{}_{} at {}: {}", material, fixations, question.point, words(question.part)),
@@ -96,50 +93,64 @@ std::vector<Measure> measures(const Taps& taps, const std::vector<std::string>& 
   return all;
 }
 
-void add(Claim& claim, const Taps& taps, const Question& question,
-         std::vector<std::string> materials = {}) {
-  if (materials.empty()) {
-    materials = taps.route.materials();
+Claim seen(const std::vector<Taps>& all, Claim claim, const Question& question) {
+  for (const Taps& taps : all) {
+    const std::string tapped = taps.route.materials().front() + "_" + question.fixations.front();
+    claim.methods.push_back({taps.route.name, tap_command(taps.route.file, tapped, question.point),
+                             measures(taps, question)});
   }
-  claim.methods.push_back(
-      {taps.route.name,
-       command(taps.route, materials.front() + "_" + question.fixations.front(), question.point),
-       measures(taps, materials, question)});
+  return claim;
 }
 
 Claim none_at_p1(const std::vector<Taps>& all) {
-  Claim claim{.name = "p1_no_vibration",
-              .section = "section 5.1, Figures 4 and 5",
-              .statement =
-                  "Tapped at P1, beside a fixed point, almost all of the force is the penalty "
-                  "force and no vibration is seen, with two and with four fixations.",
-              .rule = visible_rule};
-  for (const Taps& taps : all) {
-    add(claim, taps, {"P1", {"two", "four"}, Part::whole, at_most, visible});
-  }
-  return claim;
+  return seen(
+      all,
+      {.name = "p1_no_vibration",
+       .section = "section 5.1, Figures 4 and 5",
+       .statement = "Tapped at P1, beside a fixed point, almost all of the force is the penalty "
+                    "force and no vibration is seen, with two and with four fixations.",
+       .rule = visible_rule},
+      {"P1", {"two", "four"}, Part::whole, at_most, visible});
 }
 
 Claim low_absent_at_p2(const std::vector<Taps>& all) {
-  Claim claim{.name = "p2_low_modes_absent",
-              .section = "section 5.1, Figures 4 and 5",
-              .statement = "Tapped at P2, the middle, no low-frequency modes are seen.",
-              .rule = visible_rule + band_rule};
-  for (const Taps& taps : all) {
-    add(claim, taps, {"P2", {"two", "four"}, Part::low, at_most, visible});
-  }
-  return claim;
+  return seen(all,
+              {.name = "p2_low_modes_absent",
+               .section = "section 5.1, Figures 4 and 5",
+               .statement = "Tapped at P2, the middle, no low-frequency modes are seen.",
+               .rule = visible_rule + band_rule},
+              {"P2", {"two", "four"}, Part::low, at_most, visible});
 }
 
 Claim high_seen_at_p2(const std::vector<Taps>& all) {
-  Claim claim{.name = "p2_high_modes_seen",
-              .section = "section 5.1, Figures 4 and 5",
-              .statement = "Tapped at P2, high-frequency modes are well seen.",
-              .rule = visible_rule + band_rule};
-  for (const Taps& taps : all) {
-    add(claim, taps, {"P2", {"two", "four"}, Part::high, at_least, visible});
-  }
-  return claim;
+  return seen(all,
+              {.name = "p2_high_modes_seen",
+               .section = "section 5.1, Figures 4 and 5",
+               .statement = "Tapped at P2, high-frequency modes are well seen.",
+               .rule = visible_rule + band_rule},
+              {"P2", {"two", "four"}, Part::high, at_least, visible});
+}
+
+Claim large_at_p3(const std::vector<Taps>& all) {
+  return seen(
+      all,
+      {.name = "p3_two_large",
+       .section = "section 5.1, Figure 4",
+       .statement = "Tapped at P3, with two fixations, MDF and acrylic show a large vibration of "
+                    "low-frequency modes.",
+       .rule = "Large is 5 % of the largest penalty force. " + band_rule},
+      {"P3", {"two"}, Part::low, at_least, large, false});
+}
+
+Claim low_absent_at_p3(const std::vector<Taps>& all) {
+  return seen(
+      all,
+      {.name = "p3_four_small",
+       .section = "section 5.1, Figure 5",
+       .statement = "With four fixations P3 is near a fixed point too, and the vibration of "
+                    "low-frequency modes is not well seen.",
+       .rule = visible_rule + band_rule},
+      {"P3", {"four"}, Part::low, at_most, visible});
 }
 
 // Aluminium's peak over the larger, or smaller, of the other two.
@@ -165,24 +176,12 @@ Claim most_in_aluminium(const std::vector<Taps>& all) {
                   "Aluminium's vibration above 100 Hz is at least as large as that of the other "
                   "two, with two and with four fixations."};
   for (const Taps& taps : all) {
-    Method method{taps.route.name, command(taps.route, taps.route.aluminium + "_two", "P2"), {}};
+    Method method{
+        taps.route.name, tap_command(taps.route.file, taps.route.aluminium + "_two", "P2"), {}};
     for (const char* const fixations : {"two", "four"}) {
       method.measures.push_back(aluminium_over_others(taps, fixations, "P2", Part::high, true));
     }
     claim.methods.push_back(std::move(method));
-  }
-  return claim;
-}
-
-Claim large_at_p3(const std::vector<Taps>& all) {
-  Claim claim{.name = "p3_two_large",
-              .section = "section 5.1, Figure 4",
-              .statement =
-                  "Tapped at P3, with two fixations, MDF and acrylic show a large vibration "
-                  "of low-frequency modes.",
-              .rule = "Large is 5 % of the largest penalty force. " + band_rule};
-  for (const Taps& taps : all) {
-    add(claim, taps, {"P3", {"two"}, Part::low, at_least, large}, {"mdf", "acrylic"});
   }
   return claim;
 }
@@ -198,7 +197,7 @@ Claim smaller_in_aluminium(const std::vector<Taps>& all) {
                   "its Young's modulus at least as large."};
   for (const Taps& taps : all) {
     claim.methods.push_back({taps.route.name,
-                             command(taps.route, taps.route.aluminium + "_two", "P3"),
+                             tap_command(taps.route.file, taps.route.aluminium + "_two", "P3"),
                              {aluminium_over_others(taps, "two", "P3", Part::whole, false),
                               at_least(1.0, "Young's modulus over the smaller of MDF and acrylic",
                                        taps.aluminium_pa / taps.least_modulus_pa)}});
@@ -206,21 +205,7 @@ Claim smaller_in_aluminium(const std::vector<Taps>& all) {
   return claim;
 }
 
-Claim low_absent_at_p3(const std::vector<Taps>& all) {
-  Claim claim{.name = "p3_four_small",
-              .section = "section 5.1, Figure 5",
-              .statement =
-                  "With four fixations P3 is near a fixed point too, and the vibration of "
-                  "low-frequency modes is not well seen.",
-              .rule = visible_rule + band_rule};
-  for (const Taps& taps : all) {
-    add(claim, taps, {"P3", {"four"}, Part::low, at_most, visible});
-  }
-  return claim;
-}
-
-// The figures themselves: each route's whole force on one scale, and the vibration alone on
-// another.
+// The figures: of each route the whole force on one scale, the vibration alone on another.
 Drawing waveforms(const Taps& taps, const char* fixations) {
   const bool is_open = std::string_view{fixations} == "two" && taps.route.aluminium == "aluminium";
   Drawing drawing{fmt::format("{}, {} fixations", taps.route.name, fixations), {}, is_open};
@@ -246,11 +231,10 @@ std::vector<Claim> feedback_forces(Bench& bench) {
     claims.front().drawings.push_back(waveforms(taps, "two"));
     claims.front().drawings.push_back(waveforms(taps, "four"));
   }
-  claims.front().remarks.push_back(
-      fmt::format("Every tap is by the simulated hand at {} m/s, for which the paper gives no "
-                  "number; vibration and "
-                  "penalty force both grow with the speed, so their ratio hardly depends on it.",
-                  tap_speed_m_s));
+  claims.front().remarks.push_back(fmt::format(
+      "Every tap is by the simulated hand at {} m/s, for which the paper gives no number; "
+      "vibration and penalty force both grow with the speed, so their ratio hardly depends on it.",
+      tap_speed_m_s));
   return claims;
 }
 }  // namespace tapstudy::runner

@@ -126,10 +126,7 @@ template <class Measures>
 void add(Claim& claim, const std::vector<Levels>& all, const Measures& measures) {
   for (const Levels& levels : all) {
     if (claim.methods.empty() || claim.methods.back().name != levels.method) {
-      claim.methods.push_back({levels.method,
-                               fmt::format("tapstudy tap {} --stimulus {} --at P3 --csv tap.csv",
-                                           levels.file, levels.plate),
-                               {}});
+      claim.methods.push_back({levels.method, tap_command(levels.file, levels.plate, "P3"), {}});
     }
     for (const Measure& measure : measures(levels)) {
       claim.methods.back().measures.push_back(measure);
@@ -139,12 +136,10 @@ void add(Claim& claim, const std::vector<Levels>& all, const Measures& measures)
 
 const std::string level_rule =
     "A real tap is a bare finger of 5.8 g, coupled to the plate at 48 kHz, three times as fast; "
-    "levels "
-    "are means of P1, P2 and P3, of the 0.16 s after an impact. Of all of a real tap: the power in "
-    "third "
-    "octaves from 20 to 320 Hz, after the contact spring is taken out. Of the plate's part: the "
-    "power of "
-    "the difference in force from the same tap on a rigid surface, beside the vibration force. ";
+    "levels are means of P1, P2 and P3, of the 0.16 s after an impact. Of all of a real tap: the "
+    "power in third octaves from 20 to 320 Hz, after the contact spring is taken out. Of the "
+    "plate's part: the power of the difference in force from the same tap on a rigid surface, "
+    "beside the vibration force. ";
 
 Claim too_small(const std::vector<Levels>& all) {
   Claim claim{.name = "light_finger_too_weak",
@@ -168,12 +163,11 @@ Claim similar(const std::vector<Levels>& all) {
   add(claim, all, [](const Levels& levels) {
     const std::string name = levels.plate + ": 58 g over a real tap";
     const double db = levels.heavy_over_real_db;
-    return std::vector{at_least(-similar_db, name, db, "dB"), at_most(similar_db, name, db, "dB")};
+    return std::vector{within(-similar_db, similar_db, name, db, "dB")};
   });
   claim.remarks.emplace_back(
       "All of a real tap holds the vibration of the finger itself on its pad, which the virtual "
-      "ones have "
-      "not: see the finger's vibration below.");
+      "ones have not: see the finger's vibration below.");
   return claim;
 }
 
@@ -191,9 +185,8 @@ Claim three_times_slower() {
           "times slower is taken from the paper."};
   claim.methods.push_back(
       {"equation 14",
-       "tapstudy tap protocols/paper/forces.yaml --stimulus mdf_two --at P3 --speed 0.3",
-       {at_least(2.4, "virtual over real momentum", momentum),
-        at_most(3.6, "virtual over real momentum", momentum)}});
+       tap_command("protocols/paper/forces.yaml", "mdf_two", "P3", "--speed 0.3"),
+       {within(2.4, 3.6, "virtual over real momentum", momentum)}});
   return claim;
 }
 }  // namespace

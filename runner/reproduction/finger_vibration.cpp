@@ -58,10 +58,11 @@ Method& method_of(Claim& claim, const TappedPlate& tap) {
   if (claim.methods.empty() || claim.methods.back().name != name) {
     claim.methods.push_back(
         {name,
-         fmt::format(
-             "tapstudy tap {} --stimulus {} --at P1 --technique {} --csv tap.csv", tap.route.file,
-             tap.stimulus,
-             with_real_finger(shipped_protocol(tap.route.file)).stimuli.front().technique->name),
+         tap_command(tap.route.file, tap.stimulus, "P1",
+                     fmt::format("--technique {} --csv tap.csv",
+                                 with_real_finger(shipped_protocol(tap.route.file))
+                                     .stimuli.front()
+                                     .technique->name)),
          {}});
   }
   return claim.methods.back();
@@ -122,13 +123,9 @@ Claim twice_as_fast(const std::vector<TappedPlate>& taps) {
     const double found_decay = fitted ? fitted->decay_per_s : std::nan("");
     Method& method = method_of(claim, tap);
     method.measures.push_back(
-        at_least(hz / tolerance, tap.stimulus + ": frequency", found_hz, "Hz"));
+        within(hz / tolerance, hz * tolerance, tap.stimulus + ": frequency", found_hz, "Hz"));
     method.measures.push_back(
-        at_most(hz * tolerance, tap.stimulus + ": frequency", found_hz, "Hz"));
-    method.measures.push_back(
-        at_least(decay / tolerance, tap.stimulus + ": decay", found_decay, "1/s"));
-    method.measures.push_back(
-        at_most(decay * tolerance, tap.stimulus + ": decay", found_decay, "1/s"));
+        within(decay / tolerance, decay * tolerance, tap.stimulus + ": decay", found_decay, "1/s"));
   }
   claim.findings = needed(taps.front().settings.finger);
   return claim;
@@ -167,10 +164,9 @@ Method sinusoid_by(Bench& bench, const std::string& name, const std::string& fil
   }
   const double ratio = (fast.at(1) / fast_m_s) / (slow.at(1) / slow_m_s);
   return {name,
-          fmt::format("tapstudy tap {} --stimulus {} --at P3 --csv tap.csv", file, stimulus),
+          tap_command(file, stimulus, "P3"),
           {at_most(1.0, "largest difference from the printed formula", 100.0 * worst, "% of A"),
-           at_least(0.99, "amplitude over speed, of twice the speed over once", ratio),
-           at_most(1.01, "amplitude over speed, of twice the speed over once", ratio),
+           within(0.99, 1.01, "amplitude over speed, of twice the speed over once", ratio),
            shown("amplitude A per speed, not printed", amplitude, "N s/m")}};
 }
 
@@ -189,8 +185,7 @@ Claim sinusoid(Bench& bench) {
                                       "protocols/recommended/reality_finger.yaml"));
   claim.remarks.push_back(
       fmt::format("At 1 kHz a wave of {} Hz has four ticks, and its amplitude falls by a factor of "
-                  "{:.2g} in each of "
-                  "them: the device is given one swing.",
+                  "{:.2g} in each of them: the device is given one swing.",
                   printed_hz, std::exp(1e-3 * printed_decay_per_s)));
   return claim;
 }

@@ -45,14 +45,6 @@ double modes_in_band(Bench& bench, const protocols::Protocol& protocol, const st
   return static_cast<double>(bench.models.plate_of(protocol, stimulus)->model.frequency_hz.size());
 }
 
-std::string modes_command(const Held& held) {
-  return fmt::format("tapstudy modes {} --stimulus {}", held.file, held.stimuli.front());
-}
-
-double missed_by(double value, double printed) {
-  return 100.0 * std::abs(value / printed - 1.0);
-}
-
 // Of linear elements as `trade` measures them, in the protocol's band and at its rate: the coarsest
 // mesh it tries.
 Measure error_of_linear_elements(const Bench& bench, const protocols::Protocol& protocol,
@@ -180,12 +172,11 @@ void add_what_would_give_it(Bench& bench, Claim& claim) {
     sought_mm.push_back(
         fmt::format("{} mm of {}", analysis::rounded(1e3 * found.thickness_m, 2), of.material));
   }
-  claim.remarks.push_back(fmt::format(
-      "55 modes would lie below 300 Hz with plates of another thickness than the 50 mm of Table 1: "
-      "{}. Some of what Figures 4 and 5 show also comes out with 5 mm only, so that 0.05 m may be "
-      "a "
-      "misprint.",
-      fmt::join(sought_mm, ", ")));
+  claim.remarks.push_back(
+      fmt::format("55 modes would lie below 300 Hz with plates of another thickness than the 50 mm "
+                  "of Table 1: {}. Some of what Figures 4 and 5 show also comes out with 5 mm "
+                  "only, so that 0.05 m may be a misprint.",
+                  fmt::join(sought_mm, ", ")));
   claim.drawings.push_back(std::move(drawing));
 }
 
@@ -198,12 +189,12 @@ Claim modes_below_band_limit(Bench& bench) {
                   "nearest to 55 differs from it by no more than 10 %."};
   for (const Held& held : held_at_four(bench.plates)) {
     const protocols::Protocol protocol = shipped_protocol(held.file);
-    Method method{held.method, modes_command(held), {}};
+    Method method{held.method, modes_command(held.file, held.stimuli.front()), {}};
     double nearest = HUGE_VAL;
     for (const std::string& name : held.stimuli) {
       const double count = modes_in_band(bench, protocol, name);
       method.measures.push_back(shown("modes of " + name, count));
-      nearest = std::min(nearest, missed_by(count, printed_in_band));
+      nearest = std::min(nearest, difference_percent(count, printed_in_band));
     }
     method.measures.push_back(
         at_most(100.0 * similar_count, "least difference from 55", nearest, "%"));

@@ -76,14 +76,14 @@ void add(Bench& bench, const Shown& shown_plate, Claim& claim) {
   }
   const double most_um = largest(map);
   const double middle_um = largest_at(map, {place_of(map, core::Vec3::Zero())});
-  claim.methods.push_back({shown_plate.method,
-                           fmt::format("tapstudy tap {} --stimulus {} --at P2 --frames strike.svg",
-                                       shown_plate.file, shown_plate.stimulus),
-                           {shown("largest displacement", most_um, "µm"),
-                            at_most(still, "largest at the held corners",
-                                    100.0 * largest_at(map, held) / most_um, "% of the largest"),
-                            at_least(50.0, "largest where it was struck",
-                                     100.0 * middle_um / most_um, "% of the largest")}});
+  claim.methods.push_back(
+      {shown_plate.method,
+       tap_command(shown_plate.file, shown_plate.stimulus, "P2", "--frames strike.svg"),
+       {shown("largest displacement", most_um, "µm"),
+        at_most(still, "largest at the held corners", 100.0 * largest_at(map, held) / most_um,
+                "% of the largest"),
+        at_least(50.0, "largest where it was struck", 100.0 * middle_um / most_um,
+                 "% of the largest")}});
   keep_first(map);
   claim.drawings.push_back({fmt::format("{}: {} after a strike, red is {} µm", shown_plate.method,
                                         shown_plate.stimulus, analysis::rounded(largest(map))),

@@ -2,10 +2,9 @@
 // modes.
 #include <fmt/format.h>
 
-#include <cmath>
-
 #include "core/model/mesh/tetgen_mesher.hpp"
 #include "runner/reproduction/claim_table.hpp"
+#include "runner/reproduction/routes.hpp"
 #include "runner/reproduction/shipped_protocols.hpp"
 namespace tapstudy::runner {
 namespace {
@@ -20,14 +19,6 @@ const core::ModelReport& report_of(Bench& bench, const protocols::Protocol& prot
   return bench.models.body_of(protocol, stimulus_with(protocol, protocol.stimulus(plate)))->report;
 }
 
-std::string command() {
-  return fmt::format("tapstudy modes {} --stimulus {}", file, plate);
-}
-
-double missed_by(double value, double printed) {
-  return 100.0 * std::abs(value / printed - 1.0);
-}
-
 Claim tetrahedra(Bench& bench) {
   const core::ModelReport& report = report_of(bench, shipped_protocol(file));
   Claim claim{
@@ -35,11 +26,11 @@ Claim tetrahedra(Bench& bench) {
       .section = "Table 1",
       .statement = "The plate is meshed with 443 linear tetrahedra.",
       .rule = "The count differs by no more than 1 %: a mesh of another version of TetGen."};
-  claim.methods.push_back(
-      {std::string{method::printed},
-       command(),
-       {shown("tetrahedra", report.tets), at_most(100.0 * same_count, "difference from 443",
-                                                  missed_by(report.tets, printed_tets), "%")}});
+  claim.methods.push_back({std::string{method::printed},
+                           modes_command(file, plate),
+                           {shown("tetrahedra", report.tets),
+                            at_most(100.0 * same_count, "difference from 443",
+                                    difference_percent(report.tets, printed_tets), "%")}});
   return claim;
 }
 
@@ -70,18 +61,16 @@ Claim all_modes(Bench& bench) {
       .statement = "Fixed at its four bottom corners the model has 267 modes.",
       .rule = "As many modes as free degrees of freedom, with no more than 1 % difference."};
   claim.methods.push_back({std::string{method::printed},
-                           command(),
+                           modes_command(file, plate),
                            {shown("free degrees of freedom", report.dofs),
                             at_most(100.0 * same_count, "difference from 267",
-                                    missed_by(report.dofs, printed_modes), "%")}});
+                                    difference_percent(report.dofs, printed_modes), "%")}});
   claim.findings = meshes_of(*protocol.stimulus(plate).plate);
   const double nodes = (printed_modes + corner_constraints) / 3.0;
   claim.remarks.push_back(
       fmt::format("267 modes and four fixed vertices are {:.0f} vertices, with 443 tetrahedra "
-                  "{:.1f} of these a "
-                  "vertex; a flat mesh with hardly a vertex inside has about {:.1f}. One of the "
-                  "two numbers is of "
-                  "another mesh.",
+                  "{:.1f} of these a vertex; a flat mesh with hardly a vertex inside has about "
+                  "{:.1f}. One of the two numbers is of another mesh.",
                   nodes, printed_tets / nodes, static_cast<double>(report.tets) / report.nodes));
   return claim;
 }
@@ -99,11 +88,9 @@ Claim modulus_of_aluminium() {
               .rule = "Aluminium's Young's modulus is that of the metal, 70 GPa, within 10 %."};
   claim.methods.push_back(
       {std::string{method::printed},
-       "tapstudy modes protocols/paper/forces.yaml --stimulus aluminium_four",
-       {at_least((1.0 - tolerance) * metal_gpa, "Young's modulus of aluminium in Table 1",
-                 modulus_gpa, "GPa"),
-        at_most((1.0 + tolerance) * metal_gpa, "Young's modulus of aluminium in Table 1",
-                modulus_gpa, "GPa")}});
+       modes_command("protocols/paper/forces.yaml", "aluminium_four"),
+       {within((1.0 - tolerance) * metal_gpa, (1.0 + tolerance) * metal_gpa,
+               "Young's modulus of aluminium in Table 1", modulus_gpa, "GPa")}});
   return claim;
 }
 }  // namespace

@@ -30,8 +30,7 @@ const std::vector<Study>& studies() {
       {"reality_vibration",
        "section 5.2.2",
        "Of no vibration, the decaying sinusoid and the finite element vibration, all four "
-       "participants "
-       "chose the last as the most realistic.",
+       "participants chose the last as the most realistic.",
        "reality_vibration.yaml",
        "decaying_sinusoid",
        {{"no_vibration", {0, 4}}, {"decaying_sinusoid", {0, 4}}, {"finite_elements", {4, 4}}}},
@@ -161,12 +160,8 @@ Method judged(const World& world, const Study& study, const Felt& felt, const Be
     method.measures.push_back(shown(fmt::format("{}: distance to the real plate", stimulus),
                                     distance(felt, i, simulation.observer.noise_db),
                                     "squared noise"));
-    if (interval.low > 0.0) {
-      method.measures.push_back(at_least(100.0 * interval.low, name, 100.0 * found[i], "%"));
-    }
-    if (interval.high < 1.0) {
-      method.measures.push_back(at_most(100.0 * interval.high, name, 100.0 * found[i], "%"));
-    }
+    method.measures.push_back(
+        within(100.0 * interval.low, 100.0 * interval.high, name, 100.0 * found[i], "%"));
   }
   return method;
 }
@@ -197,10 +192,8 @@ Claim claim_of(const Study& study, Bench& bench) {
   claim.remarks.push_back(fmt::format("5 mm thick: as recommended, with {}.", how_thin));
   claim.remarks.emplace_back(
       "The sinusoid's amplitude A is not printed: the paper found it by cut and try. Beside the "
-      "shipped "
-      "protocols' 3 N s/m it is set to that of 0.1 to 30 N s/m which is nearest to the real plate; "
-      "30 "
-      "N s/m are 9 N in a tap of 0.3 m/s, about what a device exerts.");
+      "shipped protocols' 3 N s/m it is set to that of 0.1 to 30 N s/m which is nearest to the "
+      "real plate; 30 N s/m are 9 N in a tap of 0.3 m/s, about what a device exerts.");
   return claim;
 }
 }  // namespace

@@ -1,5 +1,7 @@
 #include "runner/reproduction/routes.hpp"
 
+#include <fmt/format.h>
+
 #include <memory>
 #include <variant>
 
@@ -14,6 +16,15 @@ const std::vector<Route>& routes() {
       {"5 mm thick, aluminium of 70 GPa", "protocols/recommended/forces_thin.yaml", "metal"},
   };
   return all;
+}
+
+std::string modes_command(const std::string& file, const std::string& stimulus) {
+  return fmt::format("tapstudy modes {} --stimulus {}", file, stimulus);
+}
+
+std::string tap_command(const std::string& file, const std::string& stimulus,
+                        const std::string& point, const std::string& options) {
+  return fmt::format("tapstudy tap {} --stimulus {} --at {} {}", file, stimulus, point, options);
 }
 
 protocols::Protocol with_thin_plates(protocols::Protocol protocol) {

@@ -25,5 +25,10 @@ protocols::Protocol with_thin_plates(protocols::Protocol protocol);
 inline constexpr const char* how_thin =
     "size_m: [0.6, 0.6, 0.005] and the mesh of protocols/recommended/forces_thin.yaml";
 
+// The command that shows a plate's modes; that taps it at a named point, with what is asked beside.
+std::string modes_command(const std::string& file, const std::string& stimulus);
+std::string tap_command(const std::string& file, const std::string& stimulus,
+                        const std::string& point, const std::string& options = "--csv tap.csv");
+
 inline constexpr double tap_speed_m_s = 0.3;  // the paper gives none
 }  // namespace tapstudy::runner

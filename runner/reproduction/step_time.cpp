@@ -74,26 +74,23 @@ Method timed(Bench& bench, const std::string& name, const std::string& file,
 }  // namespace
 
 std::vector<Claim> step_time(Bench& bench) {
-  Claim claim{
-      .name = "step_time",
-      .section = "section 5.1",
-      .statement =
-          fmt::format("A step of the simulation with {} modes takes {} ms on average and less "
-                      "than {} ms, so that the loop keeps 1 ms.",
-                      printed_modes, printed_mean_ms, printed_longest_ms),
-      .rule =
-          "On this machine, which is another than the paper's, the median over batches of 1000 "
-          "ticks is at most the printed mean, and no tick takes more of the processor's time than "
-          "the "
-          "printed maximum."};
+  Claim claim{.name = "step_time",
+              .section = "section 5.1",
+              .statement = fmt::format(
+                  "A step of the simulation with {} modes takes {} ms on average and less "
+                  "than {} ms, so that the loop keeps 1 ms.",
+                  printed_modes, printed_mean_ms, printed_longest_ms),
+              .rule =
+                  "On this machine, which is another than the paper's, the median over batches of "
+                  "1000 ticks is at most the printed mean, and no tick takes more of the "
+                  "processor's time than the printed maximum."};
   claim.methods.push_back(timed(bench, std::string{method::printed},
                                 "protocols/paper/plate_model.yaml", "aluminium", 4500.0));
   claim.methods.push_back(timed(bench, std::string{method::recommended},
                                 "protocols/recommended/forces.yaml", "aluminium_four", 1400.0));
   claim.remarks.emplace_back(
       "The command measures the same tick with the modes that the study's own band holds. Times "
-      "are "
-      "measured anew each time; a busy machine has longer ones.");
+      "are measured anew each time; a busy machine has longer ones.");
   return {claim};
 }
 }  // namespace tapstudy::runner

@@ -3,7 +3,6 @@
 
 #include "analysis/blocks/html_parts.hpp"
 #include "analysis/report/html_style.hpp"
-#include "analysis/tables/cells.hpp"
 #include "core/print.hpp"
 #include "runner/reproduction/page_style.hpp"
 #include "runner/reproduction/writers.hpp"
@@ -15,10 +14,6 @@ std::string verdict(const Claim& claim) {
   return fmt::format("<span class=\"verdict {0}\">{0}</span>", name(claim.verdict()));
 }
 
-std::string with_unit(double value, const Measure& measure) {
-  return escaped(analysis::rounded(value) + (measure.unit.empty() ? "" : " " + measure.unit));
-}
-
 void begin_table(std::ostream& out, const std::string& label, const std::string& headings) {
   core::print(out,
               "<div class=scroll tabindex=0 role=region aria-label=\"{}\"><table class=data><thead>"
@@ -28,13 +23,12 @@ void begin_table(std::ostream& out, const std::string& label, const std::string&
 constexpr const char* end_table = "</tbody></table></div>\n";
 
 void write_measure(std::ostream& out, const Measure& measure) {
-  core::print(
-      out, "<tr><th scope=row>{}</th><td>{}</td><td{}>{}</td></tr>\n", escaped(measure.name),
-      with_unit(measure.value, measure), measure.holds() ? "" : " class=missed",
-      measure.relation == Relation::shown
-          ? ""
-          : fmt::format("{} {}: {}", name(measure.relation), with_unit(measure.limit, measure),
-                        measure.holds() ? "holds" : "does not hold"));
+  core::print(out, "<tr><th scope=row>{}</th><td>{}</td><td{}>{}</td></tr>\n",
+              escaped(measure.name), escaped(value_in_words(measure)),
+              measure.holds() ? "" : " class=missed",
+              measure.is_judged() ? fmt::format("{}: {}", escaped(limits_in_words(measure)),
+                                                measure.holds() ? "holds" : "does not hold")
+                                  : "");
 }
 
 void write_method(std::ostream& out, const Method& method) {
@@ -57,7 +51,7 @@ void write_findings(std::ostream& out, const Claim& claim) {
               "<th scope=col>what</th><th scope=col>value</th>");
   for (const Measure& finding : claim.findings) {
     core::print(out, "<tr><th scope=row>{}</th><td>{}</td></tr>\n", escaped(finding.name),
-                with_unit(finding.value, finding));
+                escaped(value_in_words(finding)));
   }
   out << end_table;
 }

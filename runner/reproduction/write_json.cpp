@@ -12,8 +12,8 @@ Json number(double value) {
 
 Json as_json(const Measure& measure) {
   Json json{{"name", measure.name}, {"value", number(measure.value)}, {"unit", measure.unit}};
-  json["relation"] = name(measure.relation);
-  json["limit"] = measure.relation == Relation::shown ? Json(nullptr) : number(measure.limit);
+  json["at_least"] = number(measure.at_least.value_or(std::nan("")));
+  json["at_most"] = number(measure.at_most.value_or(std::nan("")));
   json["holds"] = measure.holds();
   return json;
 }

@@ -24,13 +24,11 @@ inline constexpr const char* paper_title =
     "Haptic Rendering based on Finite Element Simulation of Vibration";
 inline constexpr const char* introduction =
     "Each claim of \"Haptic Rendering based on Finite Element Simulation of Vibration\" is "
-    "computed "
-    "by the printed method and by the one that tapstudy recommends, where they differ. Below each "
-    "claim are its numbers, and the command that shows them.";
+    "computed by the printed method and by the one that tapstudy recommends, where they differ. "
+    "Below each claim are its numbers, and the command that shows them.";
 inline constexpr const char* judging_rule =
     "A claim is true if it holds by every method, false if by none; else it depends on the method. "
-    "It "
-    "holds by a method if every measure keeps its limit.";
+    "It holds by a method if every measure keeps its limit.";
 inline constexpr const char* simulated_note =
     "What is said of people here is said of simulated observers, never of people.";
 // The command line that makes the same again.

@@ -1,7 +1,6 @@
 #include "runner/terminal/operator_at_terminal.hpp"
 
-#include <charconv>
-
+#include "core/number_in.hpp"
 #include "runner/terminal/exit_code.hpp"
 #include "runner/terminal/operator_prompt.hpp"
 #include "runner/terminal/say.hpp"
@@ -33,10 +32,9 @@ double OperatorAtTerminal::how_much(const std::string& task, double max,
   while (true) {
     say("{}: ", task);
     const std::string line = next_line(keep_waiting);
-    double value = 0.0;
-    const auto [end, error] = std::from_chars(line.data(), line.data() + line.size(), value);
-    if (error == std::errc{} && end == line.data() + line.size() && value > 0.0 && value <= max) {
-      return value;
+    const auto value = core::number_in<double>(line);
+    if (value && *value > 0.0 && *value <= max) {
+      return *value;
     }
     say("  please type a number above 0, at most {}\n", max);
   }

@@ -37,10 +37,9 @@ TEST_CASE("a reproduction fits the schema that is shipped, and every verdict its
     for (const auto& method : claim["methods"]) {
       bool confirms = true;
       for (const auto& measure : method["measures"]) {
-        const std::string relation = measure["relation"];
         const bool holds =
-            relation == "shown" || (relation == "at least" ? measure["value"] >= measure["limit"]
-                                                           : measure["value"] <= measure["limit"]);
+            (measure["at_least"].is_null() || measure["value"] >= measure["at_least"]) &&
+            (measure["at_most"].is_null() || measure["value"] <= measure["at_most"]);
         CHECK(measure["holds"] == holds);
         confirms = confirms && holds;
       }

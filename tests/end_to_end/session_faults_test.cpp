@@ -99,15 +99,13 @@ TEST_CASE("a file that may grow no further is one error, and loses no answer",
 TEST_CASE("verify compares what is stored twice, and a report is made from either",
           "[end_to_end][store]") {
   const TempDirectory directory;
-  const auto result =
-      shell(directory,
-            "tapstudy simulate $study --participants 2 --seed 1 --out $out >/dev/null 2>&1\n"
-            "tapstudy verify $out && cp -r $out other && rm other/study.db\n"
-            "tapstudy report $out --out one >/dev/null && tapstudy report other --out two "
-            ">/dev/null && rm */*_exploration.csv */loop_quality.csv */rendered_*.csv && diff "
-            "<(cat one/*.csv) "
-            "<(cat two/*.csv) && "
-            "echo same");  // taps and ticks are in the database alone
+  const auto result = shell(
+      directory,
+      "tapstudy simulate $study --participants 2 --seed 1 --out $out >/dev/null 2>&1\n"
+      "tapstudy verify $out && cp -r $out other && rm other/study.db\n"
+      "tapstudy report $out --out one >/dev/null && tapstudy report other --out two >/dev/null && "
+      "rm */*_exploration.csv */loop_quality.csv */rendered_*.csv && diff <(cat one/*.csv) <(cat "
+      "two/*.csv) && echo same");  // taps and ticks are in the database alone
   INFO(result.standard_error);
   CHECK_THAT(result.standard_output, Contains("the two agree") && Contains("same\n"));
   CHECK_THAT(result.standard_error, Contains("made from answers.journal alone"));

@@ -45,8 +45,7 @@ TEST_CASE("a session asks every question and stores every answer", "[end_to_end]
              Catch::Matchers::StartsWith("pilot|5|simulated_hand|SCHED_"));
   CHECK(sql(directory,
             "SELECT doctor ->> '$.idle.count' BETWEEN 490 AND 510, length(doctor ->> '$.verdict') "
-            "> 20 "
-            "FROM session") == "1|1\n");
+            "> 20 FROM session") == "1|1\n");
   CHECK(sql(directory, "SELECT sum(dropped_samples) FROM tick_statistics") == "0\n");
   CHECK(sql(directory, "PRAGMA integrity_check") == "ok\n");
 }
@@ -132,8 +131,8 @@ TEST_CASE("Ctrl-C in a session keeps what was answered and says how to go on",
   // in the foreground: else the whole process group is told too, and a second signal ends at once
   const std::string script =
       "(echo 1; sleep 7) | /usr/bin/timeout --foreground --preserve-status -s INT 5 \"$0\" run "
-      "\"$1\" "
-      "--participant P01 --seed 5 --out \"$2\" 2>\"$3\"; echo $?; kill $(jobs -p) 2>/dev/null";
+      "\"$1\" --participant P01 --seed 5 --out \"$2\" 2>\"$3\"; echo $?; kill $(jobs -p) "
+      "2>/dev/null";
   const auto result = testing::run_program({"/bin/bash", "-c", "set -o pipefail; " + script,
                                             TAPSTUDY_PROGRAM, paper("discrimination.yaml"),
                                             directory / "the_study", directory / "said"});

@@ -152,9 +152,9 @@ TEST_CASE(
   INFO(result.standard_error);
   REQUIRE(result.exit_code == 0);                                // the trial was repeated
   CHECK(laboratory.report["without_force_while_stopped"] > 50);  // every 5 ms, for a second
-  CHECK(laboratory.sql("SELECT status, fault LIKE '%stood still%' OR fault LIKE '%stalled%' FROM "
-                       "trial JOIN tick_statistics "
-                       "USING (trial_id) WHERE number = 1 ORDER BY attempt LIMIT 1") ==
+  CHECK(laboratory.sql(
+            "SELECT status, fault LIKE '%stood still%' OR fault LIKE '%stalled%' FROM trial JOIN "
+            "tick_statistics USING (trial_id) WHERE number = 1 ORDER BY attempt LIMIT 1") ==
         "interrupted|1\n");
   CHECK(laboratory.sql("SELECT count(*) FROM response") == "4\n");
 }

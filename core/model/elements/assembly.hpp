@@ -23,8 +23,8 @@ struct StiffnessAndMass {
   SparseMatrix M;  // kg
   // Start of each node's block of unknowns, and the end: blocks are kept together in ordering.
   std::vector<int> first_of_node{};
-  int rigid_body_modes{
-      0};  // rigid-body motions that neither constraints nor springs resist: 0 to 6
+  // Rigid-body motions that neither constraints nor springs resist: 0 to 6.
+  int rigid_body_modes{0};
   auto stiffness() const { return K.selfadjointView<Eigen::Lower>(); }
   auto mass() const { return M.selfadjointView<Eigen::Lower>(); }
 };

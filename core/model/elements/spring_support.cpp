@@ -1,6 +1,5 @@
 #include "core/model/elements/spring_support.hpp"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 
 #include "core/model/elements/assembly.hpp"
@@ -22,18 +21,8 @@ Eigen::MatrixXd products_per_area(Eigen::Index nodes) {
   return products / 180.0;
 }
 
-double area_m2(const TetMesh& mesh, Eigen::Index triangle) {
-  const auto corner = [&](Eigen::Index i) -> Eigen::Vector3d {
-    return mesh.nodes_m.row(mesh.surface(triangle, i));
-  };
-  return 0.5 * (corner(1) - corner(0)).cross(corner(2) - corner(0)).norm();
-}
-
 std::vector<Eigen::Index> triangles_of(const TetMesh& mesh, const SpringSupport& support) {
-  std::vector<bool> is_held(static_cast<std::size_t>(mesh.nodes_m.rows()), false);
-  for (const Eigen::Index node : support.nodes) {
-    is_held[static_cast<std::size_t>(node)] = true;
-  }
+  const std::vector<bool> is_held = mesh.marked(support.nodes);
   std::vector<Eigen::Index> triangles;
   for (Eigen::Index i = 0; i < mesh.surface.rows(); ++i) {
     if (std::ranges::all_of(mesh.surface.row(i),
@@ -71,12 +60,12 @@ void add_foundation(const TetMesh& mesh, const std::vector<Eigen::Index>& triang
                     const Coupling& coupling) {
   double whole_m2 = 0.0;
   for (const Eigen::Index triangle : triangles) {
-    whole_m2 += area_m2(mesh, triangle);
+    whole_m2 += triangle_area_m2(mesh, triangle);
   }
   const Eigen::Index nodes = mesh.surface.cols();
   const Eigen::MatrixXd products = products_per_area(nodes);
   for (const Eigen::Index triangle : triangles) {
-    const double share = area_m2(mesh, triangle) / whole_m2;
+    const double share = triangle_area_m2(mesh, triangle) / whole_m2;
     for (Eigen::Index i = 0; i < nodes; ++i) {
       for (Eigen::Index j = 0; j < nodes; ++j) {
         coupling.add(mesh.surface(triangle, i), mesh.surface(triangle, j), share * products(i, j));

@@ -32,6 +32,21 @@ void write_elements(std::ostream& out, const TetMesh& mesh) {
 }
 }  // namespace
 
+std::vector<bool> TetMesh::marked(const std::vector<Eigen::Index>& nodes) const {
+  std::vector<bool> is_marked(static_cast<std::size_t>(nodes_m.rows()), false);
+  for (const Eigen::Index node : nodes) {
+    is_marked[static_cast<std::size_t>(node)] = true;
+  }
+  return is_marked;
+}
+
+double triangle_area_m2(const TetMesh& mesh, Eigen::Index triangle) {
+  const auto corner = [&](Eigen::Index i) -> Eigen::Vector3d {
+    return mesh.nodes_m.row(mesh.surface(triangle, i));
+  };
+  return 0.5 * (corner(1) - corner(0)).cross(corner(2) - corner(0)).norm();
+}
+
 double tet_volume_m3(const TetMesh& mesh, Eigen::Index tet) {
   const auto corner = [&](Eigen::Index i) -> Eigen::Vector3d {
     return mesh.nodes_m.row(mesh.tets(tet, i));

@@ -2,6 +2,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <string>
+#include <vector>
 namespace tapstudy::core {
 // End corners of a tetrahedron's edges, in the order of the mid-side nodes; the first three are the
 // edges of a triangle.
@@ -17,9 +18,12 @@ struct TetMesh {
   Indices tets;     // 4 or 10 nodes per row, positive volume
   Indices surface;  // 3 or 6 nodes per row: corners, outward counter-clockwise, then mid-side nodes
                     // of the edges 01 12 20
+  // Whether each node of the mesh is one of these.
+  std::vector<bool> marked(const std::vector<Eigen::Index>& nodes) const;
   int order() const { return tets.cols() == 10 ? 2 : 1; }
 };
 
+double triangle_area_m2(const TetMesh& mesh, Eigen::Index triangle);  // of the surface
 double tet_volume_m3(const TetMesh& mesh, Eigen::Index tet);
 double volume_m3(const TetMesh& mesh);
 

@@ -79,8 +79,7 @@ TEST_CASE("the psi method is QUEST+ with guess and lapse rate fixed", "[protocol
   const std::string common =
       "function: cumulative_gaussian, stimulus: {min: -2, max: 2, count: 17}, threshold: {min: -1, "
       "max: 1, count: 9}, slope: {values: [1, 2, 4], prior: normal, mean: 2, sd: 1}, stop: "
-      "{trials: "
-      "30}";
+      "{trials: 30}";
   const auto psi =
       testing::procedure_of("psi: {guess: 0.25, lapse: 0.03, " + common + "}")->start(1);
   const auto general =

@@ -28,9 +28,8 @@ const std::string staircase =
     "first_step: 0.5, min_step: 0.1, stop: {reversals: 8, trials: 40}, estimate_reversals: 4}";
 const std::string psi =
     "psi: {function: logistic, stimulus: {min: -3, max: 3, count: 13}, threshold: {min: -2, max: "
-    "2, "
-    "count: 9}, slope: {min: 0.5, max: 4, count: 4, spacing: log}, guess: 0.5, lapse: 0.02, stop: "
-    "{trials: 25}}";
+    "2, count: 9}, slope: {min: 0.5, max: 4, count: 4, spacing: log}, guess: 0.5, lapse: 0.02, "
+    "stop: {trials: 25}}";
 const std::string quest_plus =
     "quest_plus: {function: logistic, stimulus: {min: -3, max: 3, count: 13}, threshold: {min: -2, "
     "max: 2, count: 9, prior: normal, mean: 0, sd: 1}, slope: {values: [1, 2]}, guess: {values: "

@@ -66,6 +66,11 @@ TEST_CASE("a measure holds up to its limit; what is no number keeps none",
   CHECK_FALSE(at_least(beyond, "m", limit).holds());
   CHECK_FALSE(at_most(limit, "m", std::nan("")).holds());
   CHECK_FALSE(at_least(limit, "m", std::nan("")).holds());
+  CHECK(within(limit, beyond, "m", limit).holds());
+  CHECK(within(limit, beyond, "m", beyond).holds());
+  CHECK_FALSE(within(limit, beyond, "m", 0.0).holds());
+  CHECK_FALSE(within(limit, beyond, "m", 0.2).holds());
+  CHECK_FALSE(within(limit, beyond, "m", std::nan("")).holds());
   CHECK(shown("m", std::nan("")).holds());
 }
 
@@ -111,7 +116,7 @@ TEST_CASE("the page and JSON say the same", "[runner][reproduction]") {
   CHECK(json["seed"].get<std::uint64_t>() == reproduction.seed);
   CHECK(claim["findings"][0]["value"] == 12345.678);
   CHECK(claim["methods"][0]["measures"][2]["holds"] == false);
-  CHECK(claim["methods"][0]["measures"][1]["limit"].is_null());
+  CHECK(claim["methods"][0]["measures"][1]["at_least"].is_null());
 }
 
 TEST_CASE("the page needs nothing beside it", "[runner][reproduction]") {

@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <map>
 
 #include "core/error.hpp"
+#include "core/number_in.hpp"
 namespace tapstudy::analysis {
 namespace {
 using results::AnswerRow;
@@ -14,16 +14,14 @@ using results::AnswerRow;
 using RatingsByStimulus = std::vector<std::vector<double>>;
 
 int step_of(const BlockDesign& design, const AnswerRow& answer) {
-  int step = 0;
-  const char* const end = answer.response.data() + answer.response.size();
-  const auto read = std::from_chars(answer.response.data(), end, step);
-  if (read.ec != std::errc{} || read.ptr != end || step < 1 || step > design.steps) {
+  const auto step = core::number_in<int>(answer.response);
+  if (!step || *step < 1 || *step > design.steps) {
     throw core::InvalidInput{fmt::format(
         "block '{}', {} in trial {}: a rating is a whole number "
         "from 1 to {}, not '{}'",
         design.name, answer.participant_id, answer.number, design.steps, answer.response)};
   }
-  return step;
+  return *step;
 }
 
 std::size_t stimulus_of(const BlockDesign& design, const AnswerRow& answer) {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "analysis/rated/friedman_table.hpp"
 #include "analysis/rated/rating_results.hpp"
 #include "analysis/statistics/sign_test.hpp"
 #include "analysis/tables/tabular_summary.hpp"
@@ -29,20 +30,6 @@ ReportTable stimuli_table(const BlockDesign& design, const RatingResults& result
         results.friedman ? number(results.friedman->mean_ranks[i]) : nothing(table.columns[2])};
     std::ranges::transform(of.counts, std::back_inserter(row), count);
     table.rows.push_back(row);
-  }
-  return table;
-}
-
-ReportTable friedman_table(const RatingResults& results) {
-  ReportTable table{
-      "friedman",
-      "Friedman's test over participants",
-      {column("participants", "participants"), column("chi squared", "chi_squared"),
-       column("df", "degrees_of_freedom"), column("p", "p"), column("Kendall's W", "kendalls_w")}};
-  if (const auto& test = results.friedman) {
-    table.rows.push_back({count(static_cast<std::int64_t>(results.participants.size())),
-                          number(test->chi_squared), number(test->degrees_of_freedom),
-                          probability(test->p), number(test->kendalls_w)});
   }
   return table;
 }
@@ -150,8 +137,9 @@ HypothesisResult tested(const BlockDesign& design, const RatingResults& results,
 std::shared_ptr<BlockSummary> summarise_ratings(const BlockDesign& design, const BlockRows& rows) {
   const RatingResults results = rating_results(design, rows.answers);
   auto summary = std::make_shared<TabularSummary>(design);
-  summary->parts = {stimuli_table(design, results), friedman_table(results), pairs_table(results),
-                    participants_table(results)};
+  summary->parts = {stimuli_table(design, results),
+                    friedman_table(results.friedman, results.participants.size()),
+                    pairs_table(results), participants_table(results)};
   summary->remarks = remarks_on(results);
   for (const PlannedHypothesis& planned : design.hypotheses) {
     summary->hypotheses.push_back(tested(design, results, planned));

@@ -8,6 +8,7 @@
 #include "analysis/identification/identification_summary.hpp"
 #include "analysis/magnitudes/magnitude_summary.hpp"
 #include "analysis/preferences/preference_summary.hpp"
+#include "analysis/rankings/ranking_summary.hpp"
 #include "analysis/rated/rating_summary.hpp"
 #include "analysis/thresholds/threshold_summary.hpp"
 #include "core/error.hpp"
@@ -17,7 +18,8 @@ const std::vector<Statistic>& statistics() {
       {"confusion", summarise_identification}, {"choices", summarise_choice},
       {"psychometric", summarise_thresholds},  {"discrimination", summarise_discrimination},
       {"paired", summarise_preferences},       {"ratings", summarise_ratings},
-      {"magnitudes", summarise_magnitudes},    {"adjustments", summarise_adjustments}};
+      {"magnitudes", summarise_magnitudes},    {"adjustments", summarise_adjustments},
+      {"rankings", summarise_rankings}};
   return table;
 }
 

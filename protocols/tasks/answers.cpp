@@ -1,10 +1,12 @@
 #include "protocols/tasks/answers.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
+
+#include "core/number_in.hpp"
 namespace tapstudy::protocols {
 namespace {
 constexpr std::size_t max_characters = 20;  // of a number
@@ -15,20 +17,12 @@ std::string trimmed(const std::string& text) {
   return first == std::string::npos ? std::string{} : text.substr(first, last - first + 1);
 }
 
-template <class Number>
-std::optional<Number> number_in(const std::string& text) {
-  Number number{};
-  const char* const end = text.data() + text.size();
-  const auto [stopped, error] = std::from_chars(text.data(), end, number);
-  return error == std::errc{} && stopped == end ? std::optional{number} : std::nullopt;
-}
-
 // Digits with at most one point: no sign, no exponent, no "inf".
 std::optional<std::string> number_above_0(const std::string& text) {
   if (text.size() > max_characters || text.find_first_not_of("0123456789.") != std::string::npos) {
     return std::nullopt;
   }
-  const auto number = number_in<double>(text);
+  const auto number = core::number_in<double>(text);
   return number && *number > 0.0 && std::isfinite(*number)
              ? std::optional{fmt::format("{}", *number)}
              : std::nullopt;
@@ -36,13 +30,36 @@ std::optional<std::string> number_above_0(const std::string& text) {
 
 // From 1.
 std::optional<std::size_t> place_in(const std::string& text, std::size_t count) {
-  const auto place = number_in<std::size_t>(text);
+  const auto place = core::number_in<std::size_t>(text);
   return place && *place >= 1 && *place <= count ? place : std::nullopt;
 }
 
 std::optional<std::string> option_at(const std::string& text, const std::vector<Option>& options) {
   const auto place = place_in(text, options.size());
   return place ? std::optional{options[*place - 1].name} : std::nullopt;
+}
+
+std::vector<std::string> words_in(const std::string& text, const char* separators) {
+  std::vector<std::string> words;
+  for (auto from = text.find_first_not_of(separators); from != std::string::npos;) {
+    const auto to = std::min(text.find_first_of(separators, from), text.size());
+    words.push_back(text.substr(from, to - from));
+    from = text.find_first_not_of(separators, to);
+  }
+  return words;
+}
+
+std::optional<std::string> order_of(const std::string& text, const std::vector<Option>& options) {
+  std::vector<std::string> names;
+  for (const std::string& word : words_in(text, " ,")) {
+    const auto name = option_at(word, options);
+    if (!name || std::ranges::find(names, *name) != names.end()) {
+      return std::nullopt;
+    }
+    names.push_back(*name);
+  }
+  return names.size() == options.size() ? std::optional{fmt::format("{}", fmt::join(names, " "))}
+                                        : std::nullopt;
 }
 
 std::optional<std::string> setting_at(const std::string& text, std::size_t settings) {
@@ -60,6 +77,8 @@ std::optional<std::string> answer_in(const std::string& text, const Answers& ans
       return number_above_0(word);
     case AnswerKind::setting:
       return setting_at(word, answers.settings);
+    case AnswerKind::order:
+      return order_of(word, answers.options);
   }
   return std::nullopt;
 }
@@ -73,12 +92,27 @@ std::string expected_answer(const Answers& answers) {
                          max_characters);
     case AnswerKind::setting:
       return fmt::format("a number from 1 to {}", answers.settings);
+    case AnswerKind::order:
+      return fmt::format("all numbers from 1 to {} in order, with spaces between",
+                         answers.options.size());
   }
   return {};
 }
 
+std::vector<std::string> names_in_order(const std::string& answer) {
+  return words_in(answer, " ");
+}
+
 std::string label_of_answer(const std::string& answer, const Answers& answers) {
-  const auto option = std::ranges::find(answers.options, answer, &Option::name);
-  return option == answers.options.end() ? answer : option->label;
+  const auto label = [&](const std::string& name) {
+    const auto option = std::ranges::find(answers.options, name, &Option::name);
+    return option == answers.options.end() ? name : option->label;
+  };
+  if (answers.kind != AnswerKind::order) {
+    return label(answer);
+  }
+  std::vector<std::string> labels;
+  std::ranges::transform(names_in_order(answer), std::back_inserter(labels), label);
+  return fmt::format("{}", fmt::join(labels, " "));
 }
 }  // namespace tapstudy::protocols

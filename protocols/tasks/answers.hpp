@@ -9,7 +9,8 @@ namespace tapstudy::protocols {
 //   option  one of the options
 //   number  any number above 0
 //   setting where the last alternative was set to: the place of its setting, from 1
-enum class AnswerKind { option, number, setting };
+//   order   all options, the first of the order first
+enum class AnswerKind { option, number, setting, order };
 
 // The answers that a trial takes. Each is given as a text, the same at the terminal, from a page
 // and in a correction.
@@ -22,11 +23,14 @@ struct Answers {
 };
 
 // The answer that a text gives: an option's name where the text is its place, from 1; a number
-// above 0 in decimal notation, at most 20 characters, in its shortest form; a setting's place.
-// Spaces around it do not matter. nullopt: the text is no answer.
+// above 0 in decimal notation, at most 20 characters, in its shortest form; a setting's place; all
+// options' names with a space between, where the text has all their places, with spaces or commas
+// between. Spaces around it do not matter. nullopt: the text is no answer.
 std::optional<std::string> answer_in(const std::string& text, const Answers& answers);
 // What answer_in takes: "a number from 1 to 4".
 std::string expected_answer(const Answers& answers);
-// An answer as people read it: an option's label.
+// The names in an answer that is an order.
+std::vector<std::string> names_in_order(const std::string& answer);
+// An answer as people read it: an option's label, of an order all.
 std::string label_of_answer(const std::string& answer, const Answers& answers);
 }  // namespace tapstudy::protocols

@@ -22,20 +22,8 @@ class Choice final : public PreferenceTask {
     }
   }
 
-  // The blind labels are drawn anew for each trial: a label has no history.
   std::vector<PlannedTrial> trials(const Block& block, const Draw& draw) const override {
-    core::Rng rng{
-        core::derived_seed(draw.participant_seed, core::Purpose::labels, draw.block_index)};
-    std::vector<PlannedTrial> all;
-    for (int repetition = 1; repetition <= block.repetitions; ++repetition) {
-      std::vector<Alternative> alternatives;
-      for (const std::string& stimulus : block.stimuli) {
-        alternatives.push_back({stimulus});
-      }
-      rng.shuffle(alternatives);
-      all.push_back({0, block.name, this, block.is_practice, repetition, alternatives});
-    }
-    return all;
+    return trials_of_all(*this, block, draw);
   }
   std::size_t trials_per_repetition(const Block& /*block*/) const override { return 1; }
 

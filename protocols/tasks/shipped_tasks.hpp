@@ -16,6 +16,8 @@ const Task& abx();
 const Task& match_to_sample();
 // Which of two? All pairs of the stimuli.
 const Task& paired();
+// All of three to eight in order.
+const Task& ranking();
 // One stimulus, on a scale of steps.
 const Task& rating();
 // One stimulus, by a number; beside one whose number is told, or by itself.

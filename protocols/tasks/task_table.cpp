@@ -3,9 +3,10 @@
 #include "protocols/tasks/shipped_tasks.hpp"
 namespace tapstudy::protocols {
 const std::vector<const Task*>& tasks() {
-  static const std::vector<const Task*> table{
-      &identification(), &choice(), &comparison(), &same_different(),  &odd_one_out(), &abx(),
-      &paired(),         &rating(), &magnitude(),  &match_to_sample(), &adjustment()};
+  static const std::vector<const Task*> table{&identification(), &choice(),          &comparison(),
+                                              &same_different(), &odd_one_out(),     &abx(),
+                                              &paired(),         &ranking(),         &rating(),
+                                              &magnitude(),      &match_to_sample(), &adjustment()};
   return table;
 }
 

@@ -5,7 +5,7 @@
 namespace tapstudy::runner {
 nlohmann::ordered_json answers_json(const protocols::Answers& answers) {
   using Json = nlohmann::ordered_json;
-  constexpr std::array kinds{"option", "number", "setting"};
+  constexpr std::array kinds{"option", "number", "setting", "order"};
   Json labels = Json::array();
   for (const protocols::Option& option : answers.options) {
     labels.push_back(option.label);

@@ -1,6 +1,7 @@
 #include "runner/participants/typed_answers.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cctype>
@@ -13,6 +14,31 @@ std::optional<std::string> option_after_equals(const std::string& word,
                           ? std::ranges::find(options, word.substr(1), &protocols::Option::label)
                           : options.end();
   return option == options.end() ? std::nullopt : std::optional{option->name};
+}
+
+// "= C A B": labels of alternatives are single letters.
+std::optional<std::string> order_after_equals(const std::string& word,
+                                              const protocols::Answers& answers) {
+  if (!word.starts_with('=')) {
+    return std::nullopt;
+  }
+  std::string places;
+  for (const char letter : word.substr(1)) {
+    const auto option =
+        std::ranges::find(answers.options, std::string{letter}, &protocols::Option::label);
+    places += fmt::format("{} ", option - answers.options.begin() + 1);
+  }
+  return answer_in(places, answers);
+}
+
+bool is_order(const TrialPrompt& prompt) {
+  return prompt.answers.kind == protocols::AnswerKind::order;
+}
+
+std::optional<std::string> labels_after_equals(const std::string& word,
+                                               const protocols::Answers& answers) {
+  return answers.kind == protocols::AnswerKind::order ? order_after_equals(word, answers)
+                                                      : option_after_equals(word, answers.options);
 }
 }  // namespace
 
@@ -34,7 +60,7 @@ std::optional<std::string> answer_typed(const std::string& line, const TrialProm
                : std::nullopt;
   }
   return prompt.answers_name_alternatives()
-             ? option_after_equals(upper_case_without_spaces(line), prompt.answers.options)
+             ? labels_after_equals(upper_case_without_spaces(line), prompt.answers)
              : answer_in(line, prompt.answers);
 }
 
@@ -52,16 +78,22 @@ std::string how_to_answer(const TrialPrompt& prompt) {
     return fmt::format("   + or -: change {}, ++ by more.   =: it is set.",
                        prompt.alternative_labels.back());
   }
-  return prompt.answers_name_alternatives()
-             ? fmt::format("   = {}: choose it.", prompt.answers.options.front().label)
-             : "";
+  if (!prompt.answers_name_alternatives()) {
+    return "";
+  }
+  return is_order(prompt)
+             ? fmt::format("   = {}: your order, the first one first.",
+                           fmt::join(prompt.alternative_labels, " "))
+             : fmt::format("   = {}: choose it.", prompt.answers.options.front().label);
 }
 
 std::string expected_among_alternatives(const TrialPrompt& prompt) {
   if (prompt.answers.settings > 0) {
     return fmt::format("+ or - to change {}, = when it is set", prompt.alternative_labels.back());
   }
-  return prompt.answers_name_alternatives() ? "= and a label to choose it"
-                                            : expected_answer(prompt.answers) + " to answer";
+  if (!prompt.answers_name_alternatives()) {
+    return expected_answer(prompt.answers) + " to answer";
+  }
+  return is_order(prompt) ? "= and all labels in order" : "= and a label to choose it";
 }
 }  // namespace tapstudy::runner

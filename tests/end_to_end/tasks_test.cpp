@@ -87,6 +87,49 @@ TEST_CASE("alternatives that are physically the same are told apart by chance in
                     "JOIN alternative USING (trial_id) JOIN trial USING (trial_id) "
                     "WHERE block = 'paired' AND position = 0"));
   CHECK(first == Approx(0.5).margin(4.0 * 0.5 / std::sqrt(9.0 * 240.0)));
+  std::istringstream ranked_first{
+      sql(directory,
+          "SELECT avg(position = 0), avg(stimulus = 'one'), count(*) FROM current_response "
+          "JOIN alternative USING (trial_id) JOIN trial USING (trial_id) "
+          "WHERE block = 'ranking' AND response LIKE stimulus || ' %'")};
+  double by_label = 0.0;
+  double by_stimulus = 0.0;
+  double rankings = 0.0;
+  ranked_first >> by_label >> by_stimulus >> rankings;
+  REQUIRE(rankings == 9.0 * 230.0);
+  const double margin = 4.0 * std::sqrt(2.0 / 9.0 / rankings);
+  CHECK(by_label == Approx(1.0 / 3.0).margin(margin));
+  CHECK(by_stimulus == Approx(1.0 / 3.0).margin(margin));
+}
+
+TEST_CASE("a ranking is typed as labels in order, and corrected as their places", "[end_to_end]") {
+  const TempDirectory directory;
+  std::string text = testing::contents(testing::source("tests/data/every_task.yaml"));
+  const auto first = text.find("blocks:\n") + std::string_view{"blocks:\n"}.size();
+  const auto block = text.find("  - {name: ranking");
+  text.erase(first, block - first);
+  const auto rest = text.find('\n', first) + 1;
+  text.erase(rest, text.find("simulation:") - rest);
+  testing::write(directory / "study.yaml", text);
+  const auto result = session(directory, directory / "study.yaml",
+                              "A\n= A\nB\nC\n= A B\n= A B B\nD\n= c a b\n"
+                              "A\nB\nC\ncorrect 1 2\ncorrect 2 1 3\n= A B C\n");
+  INFO(result.standard_error);
+  CHECK(result.exit_code == 0);
+  CHECK_THAT(result.standard_error,
+             Contains("= A B C: your order, the first one first.") &&
+                 Contains("please type A, B, C to feel one, = and all labels in order, or quit") &&
+                 Contains("please type correct and all numbers from 1 to 3 in order") &&
+                 Contains("your last answer is now B A C"));
+  const auto stimuli_of = [&](const std::string& labels) {
+    return sql(directory,
+               "SELECT group_concat(stimulus, ' ') FROM (SELECT stimulus FROM alternative WHERE "
+               "trial_id = 1 ORDER BY instr('" +
+                   labels + "', label))");
+  };
+  CHECK(sql(directory, "SELECT response FROM response WHERE trial_id = 1 ORDER BY rowid") ==
+        stimuli_of("CAB") + stimuli_of("BAC"));
+  CHECK(sql(directory, "SELECT count(*) FROM current_response") == "2\n");
 }
 
 TEST_CASE("at the terminal alternatives come by themselves, and again where the protocol allows it",
@@ -98,9 +141,8 @@ TEST_CASE("at the terminal alternatives come by themselves, and again where the 
       testing::replaced(
           testing::replaced(testing::contents(testing::source("tests/data/same_alternatives.yaml")),
                             "stimuli: [family]\n",
-                            "stimuli: [family]\n    explore: {intervals: "
-                            "{seconds: 0.8, gap_seconds: 0.2, "
-                            "max_replays: 1}}\n"),
+                            "stimuli: [family]\n    explore: {intervals: {seconds: 0.8, "
+                            "gap_seconds: 0.2, max_replays: 1}}\n"),
           "repetitions: 240", "repetitions: 3"));
   const auto result = session(directory, file, "A\nagain\nagain\n= A\n= B\nquit\n");
   INFO(result.standard_error);

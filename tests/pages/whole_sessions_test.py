@@ -268,18 +268,40 @@ class WholeSession(unittest.TestCase):
         confirm = lambda driver, _: browser.press(driver, browser.Keys.ENTER) if by_keys else browser.find(driver, "#confirm").click()
         self.answer_until_accepted(confirm, None)
 
+    def rank(self, by_keys):
+        """C A B by keys, C B A by mouse after a change of mind; the first is corrected to B C A."""
+        def press(labels, within=".trial > fieldset"):
+            for label in labels:
+                browser.find_all(self.driver, f"{within} .in-order")["ABC".index(label)].click()
+        if browser.find_all(self.driver, ".previous .in-order"):
+            browser.find(self.driver, ".previous summary").click()
+            press("BCA", ".previous")
+            self.check_screen("ranking_corrected")
+            browser.find(self.driver, ".previous > button").click()
+            browser.wait_for_status(self.driver, "is corrected")
+        if by_keys:
+            browser.press(self.driver, "3", "1")
+            browser.press(self.driver, browser.Keys.ENTER)
+            browser.wait_for_status(self.driver, "put all of them in order")
+            self.check_screen("ranking")
+            browser.press(self.driver, "2")
+        else:
+            press("CABAA")
+        confirm = lambda driver, _: browser.press(driver, browser.Keys.ENTER) if by_keys else browser.find(driver, "#confirm").click()
+        self.answer_until_accepted(confirm, None)
+
     def test_every_task_is_answered_by_mouse_and_by_keyboard(self):
         self.start("tests/data/every_task.yaml", width=375, height=800)
         alternatives = {"comparison": 2, "same_different": 2, "odd_one_out": 3, "abx": 3, "match_to_sample": 4, "adjustment": 14,
-                        "paired": 2, "with_modulus": 2}
+                        "paired": 2, "ranking": 3, "with_modulus": 2}
         shown = set()
-        for number in range(1, 34):
+        for number in range(1, 36):
             screen = self.next_trial(number)
             feels = browser.find_all(self.driver, ".feel")
             by_keys = number % 2 == 0
             for index in range(len(feels)):
                 (browser.feel_by_keyboard if by_keys else browser.feel_by_mouse)(self.driver, index)
-            if len(feels) not in shown or not feels or number > 31:
+            if len(feels) not in shown or not feels or number > 33:
                 self.check_screen(f"task_{number}")
                 shown.add(len(feels))
             if browser.has_number_field(self.driver):
@@ -287,6 +309,8 @@ class WholeSession(unittest.TestCase):
             elif browser.find_all(self.driver, ".move"):
                 self.check_screen(f"adjustment_{number}")
                 self.adjust(by_keys)
+            elif browser.find_all(self.driver, ".trial > fieldset .in-order"):
+                self.rank(by_keys)
             else:
                 self.answer_until_accepted(browser.answer_by_keyboard if by_keys else browser.answer_by_mouse, 0)
         self.finish()
@@ -303,6 +327,12 @@ class WholeSession(unittest.TestCase):
         self.assertEqual(answers["magnitude"], "12.5,13.5")  # and its correction
         self.assertEqual(answers["with_modulus"], "12.5")
         self.assertEqual(answers["rating"], "1")
+        wanted = [list(order) for order in ("CAB", "BCA", "CBA")]  # the first, its correction, the second
+        ranked = self.session.rows("SELECT trial_id, response FROM response JOIN trial USING (trial_id) "
+                                   "WHERE block = 'ranking' ORDER BY response.rowid")
+        labels = [[self.session.rows(f"SELECT label FROM alternative WHERE trial_id = {trial} AND stimulus = '{name}'")[0][0]
+                   for name in response.split()] for trial, response in ranked]
+        self.assertEqual(sorted(labels), sorted(wanted))
 
     def test_alternatives_come_by_themselves_and_once_more(self):
         study = Path(tempfile.mkdtemp(prefix="tapstudy_intervals_"))

@@ -65,6 +65,17 @@ TEST_CASE("an option is read from its place and told by its label", "[protocols]
   }
 }
 
+TEST_CASE("an order names every option once, by its place", "[protocols][tasks]") {
+  const Answers answers{AnswerKind::order, {{"A", "A"}, {"B", "B"}, {"C", "sea"}}};
+  CHECK(answer_in("3 1 2", answers) == "C A B");
+  CHECK(answer_in(" 3,1, 2 ", answers) == "C A B");
+  CHECK(label_of_answer("C A B", answers) == "sea A B");
+  for (const char* const text : {"", "1", "1 2", "1 2 2", "1 2 4", "1 2 3 1", "123", "A B C"}) {
+    CAPTURE(text);
+    CHECK_FALSE(answer_in(text, answers));
+  }
+}
+
 TEST_CASE("a setting is answered by its place, and nothing else is one", "[protocols][tasks]") {
   Answers answers{AnswerKind::setting};
   answers.settings = 12;

@@ -1,8 +1,9 @@
-// What a trial's answers are given by: cards to pick one of the options, a field for a number, or
-// buttons that change an alternative. The text that is sent is an option's place, the number, or the
-// setting's place.
+// What a trial's answers are given by: cards to pick one of the options, a field for a number,
+// buttons that change an alternative, or the options to be put in order. The text that is sent is an
+// option's place, the number, the setting's place, or all options' places in order.
 
 import { el } from "./dom.js";
+import { orderOf } from "./order_field.js";
 import { newGroupName, pickedValue, pickNumber, radioCard } from "./radio_cards.js";
 import { word } from "./words.js";
 
@@ -103,7 +104,21 @@ function settingField({ settings }, { label, setting, adjust, say }) {
   };
 }
 
-const makers = { option: optionField, number: numberField, setting: settingField };
+function orderField({ options }) {
+  const order = orderOf(options);
+  return {
+    body: order.body,
+    answerIn: order.answer,
+    missing: word("order_incomplete"),
+    press: (element, key) => {
+      const isPlace = /^[1-9]$/.test(key) && Number(key) <= options.length;
+      if (isPlace) order.toggle(Number(key) - 1);
+      return isPlace;
+    },
+  };
+}
+
+const makers = { option: optionField, number: numberField, setting: settingField, order: orderField };
 
 // {body, answerIn(element), missing, press(element, key)}, of a setting also update(setting).
 // trial: {isBesideAlternatives, label, setting, adjust, say}
@@ -115,6 +130,11 @@ export function otherAnswer({ kind, options }, say, send) {
     const buttons = options.map((label, index) =>
       el("button", { type: "button", onclick: () => send(placeOf(index)) }, label));
     return [el("div", { className: "options" }, ...buttons)];
+  }
+  if (kind === "order") {
+    const order = orderOf(options);
+    const give = () => (order.answer() === null ? say(word("order_incomplete")) : send(order.answer()));
+    return [...order.body, el("button", { type: "button", onclick: give }, word("confirm"))];
   }
   const input = numberInput("number-correction");
   const give = () => {

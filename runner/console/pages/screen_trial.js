@@ -19,7 +19,7 @@ function alternativeCard({ label, index, option, group, feel }) {
   return el("div", { className: "alternative" }, button, choose);
 }
 
-const hints = { option: "feel_hint", number: "feel_hint_number", setting: "feel_hint_setting" };
+const hints = { option: "feel_hint", number: "feel_hint_number", setting: "feel_hint_setting", order: "feel_hint_order" };
 
 function hint(labels, { kind, modulus }) {
   const keys = labels.map((label, index) => letterOf(label, index).toUpperCase()).join(", ");
@@ -28,16 +28,17 @@ function hint(labels, { kind, modulus }) {
     el("span", { className: "keys" }, word("feel_keys", { keys }), kind === "setting" ? ` ${word("setting_keys", { label: labels.at(-1) })}` : ""));
 }
 
-function alternativeCards(labels, options, makeCard) {
+function alternativeCards(labels, { kind, options }, makeCard) {
   const group = newGroupName();
-  const cards = labels.map((label, index) => makeCard({ label, index, option: options.indexOf(label), group }));
+  const optionOf = (label) => (kind === "option" ? options.indexOf(label) : -1);
+  const cards = labels.map((label, index) => makeCard({ label, index, option: optionOf(label), group }));
   return el("div", { className: "alternatives" }, ...cards);
 }
 
 // Freely: a button to feel each of them.
 function freely({ trial, feel }) {
   const labels = trial.alternatives;
-  const cards = alternativeCards(labels, trial.answers.options, (card) => alternativeCard({ ...card, feel }));
+  const cards = alternativeCards(labels, trial.answers, (card) => alternativeCard({ ...card, feel }));
   return { body: [hint(labels, trial.answers), cards], show: showCurrent };
 }
 
@@ -49,7 +50,7 @@ function showCurrent(element, { current }) {
 
 // One after the other, by themselves.
 function inTurn({ trial, replay }) {
-  const cards = alternativeCards(trial.alternatives, trial.answers.options, intervalCard);
+  const cards = alternativeCards(trial.alternatives, trial.answers, intervalCard);
   return { body: [goSignal(replay), cards], show: showInterval };
 }
 

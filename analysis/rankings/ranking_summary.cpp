@@ -1,0 +1,104 @@
+#include "analysis/rankings/ranking_summary.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "analysis/rankings/ranking_results.hpp"
+#include "analysis/rated/friedman_table.hpp"
+#include "analysis/tables/tabular_summary.hpp"
+namespace tapstudy::analysis {
+namespace {
+double mean_place(const std::vector<int>& counts) {
+  double sum = 0.0;
+  double all = 0.0;
+  for (std::size_t place = 0; place < counts.size(); ++place) {
+    sum += counts[place] * static_cast<double>(place + 1);
+    all += counts[place];
+  }
+  return sum / all;
+}
+
+ReportTable stimuli_table(const RankingResults& results) {
+  const Column of_worth = interval_column("log worth (95 % CI)", "log_worth");
+  ReportTable table{"stimuli",
+                    "Places of each stimulus; 1 is the best",
+                    {column("stimulus", "stimulus"), column("mean place", "mean_place"), of_worth}};
+  for (std::size_t place = 1; place <= results.stimuli.size(); ++place) {
+    table.columns.push_back(column(fmt::format("{}", place), fmt::format("place_{}", place)));
+  }
+  for (std::size_t i = 0; results.rankings > 0 && i < results.stimuli.size(); ++i) {
+    const auto& worths = results.worths;
+    std::vector<Cell> row{
+        word(results.stimuli[i]), number(mean_place(results.places[i])),
+        worths ? interval(worths->values[static_cast<Eigen::Index>(i)], worths->intervals[i])
+               : nothing(of_worth)};
+    std::ranges::transform(results.places[i], std::back_inserter(row), count);
+    table.rows.push_back(row);
+  }
+  return table;
+}
+
+ReportTable pairs_table(const RankingResults& results) {
+  const Column of_difference = interval_column("log worth, difference (95 % CI)", "difference");
+  ReportTable table{"pairs",
+                    "Pairs of stimuli: Wilcoxon signed-rank tests of participants' mean places",
+                    {column("first", "first"), column("second", "second"), of_difference,
+                     column("p", "p"), column("by Holm", "p_holm"), column("exact", "is_exact")}};
+  for (const PairwiseTest& pair : results.pairwise) {
+    Cell of_worths = nothing(of_difference);
+    if (results.worths) {
+      const ScaleDifference worths =
+          difference(*results.worths, static_cast<Eigen::Index>(pair.first),
+                     static_cast<Eigen::Index>(pair.second));
+      of_worths = interval(worths.value, worths.interval);
+    }
+    table.rows.push_back({word(results.stimuli[pair.first]), word(results.stimuli[pair.second]),
+                          of_worths, probability(pair.test.p), probability(pair.adjusted_p),
+                          flag(pair.test.is_exact)});
+  }
+  return table;
+}
+
+ReportTable participants_table(const RankingResults& results) {
+  ReportTable table{"participants",
+                    "Mean places of each participant",
+                    {column("participant", "participant_id"), column("stimulus", "stimulus"),
+                     column("mean place", "mean_place")}};
+  table.is_for_programs = true;
+  for (std::size_t person = 0; person < results.participants.size(); ++person) {
+    for (std::size_t i = 0; i < results.stimuli.size(); ++i) {
+      table.rows.push_back({word(results.participants[person]), word(results.stimuli[i]),
+                            number(results.mean_places[person][i])});
+    }
+  }
+  return table;
+}
+
+std::vector<std::string> remarks_on(const RankingResults& results) {
+  if (results.rankings == 0) {
+    return {"There are no answers."};
+  }
+  return {
+      results.no_worths.empty()
+          ? "Worths by Plackett and Luce: each place goes to one of the stimuli that are left in "
+            "proportion to its worth. Natural logarithms, mean 0, by maximum likelihood; intervals "
+            "of plus or minus 1.96 standard errors take all rankings as independent."
+          : "There are no worths: " + results.no_worths + ".",
+      results.no_tests.empty()
+          ? "Tests take the mean of each participant's places of a stimulus. Two-sided p of pairs, "
+            "and the same adjusted for their number (Holm 1979)."
+          : "Not tested: " + results.no_tests + "."};
+}
+}  // namespace
+
+std::shared_ptr<BlockSummary> summarise_rankings(const BlockDesign& design, const BlockRows& rows) {
+  const RankingResults results = ranking_results(design, rows.answers);
+  auto summary = std::make_shared<TabularSummary>(design);
+  summary->parts = {stimuli_table(results),
+                    friedman_table(results.friedman, results.participants.size()),
+                    pairs_table(results), participants_table(results)};
+  summary->remarks = remarks_on(results);
+  return summary;
+}
+}  // namespace tapstudy::analysis

@@ -1,0 +1,9 @@
+#pragma once
+#include <optional>
+
+#include "analysis/ratings/friedman.hpp"
+#include "analysis/tables/cells.hpp"
+namespace tapstudy::analysis {
+// "friedman": one row, none without a test.
+ReportTable friedman_table(const std::optional<FriedmanTest>& test, std::size_t participants);
+}  // namespace tapstudy::analysis

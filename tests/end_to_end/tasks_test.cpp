@@ -102,6 +102,22 @@ TEST_CASE("alternatives that are physically the same are told apart by chance in
   CHECK(by_stimulus == Approx(1.0 / 3.0).margin(margin));
 }
 
+TEST_CASE("who feels almost without noise ranks first what is the reference itself",
+          "[end_to_end]") {
+  const TempDirectory directory;
+  const std::string text =
+      testing::contents(testing::source("protocols/examples/techniques_compared.yaml"));
+  testing::write(directory / "study.yaml",
+                 testing::replaced(text, "observer: {reference: finite_elements}",
+                                   "observer: {reference: finite_elements, noise_db: 0.01}"));
+  REQUIRE(testing::tapstudy({"simulate", directory / "study.yaml", "--participants", "3", "--seed",
+                             "4", "--out", directory / "study"})
+              .exit_code == 0);
+  CHECK(sql(directory,
+            "SELECT count(*), sum(response LIKE 'finite_elements %') FROM current_response "
+            "JOIN trial USING (trial_id) WHERE block = 'ranking'") == "6 6\n");
+}
+
 TEST_CASE("a ranking is typed as labels in order, and corrected as their places", "[end_to_end]") {
   const TempDirectory directory;
   std::string text = testing::contents(testing::source("tests/data/every_task.yaml"));

@@ -43,6 +43,10 @@ Marginal summary(const GridAxis& axis, const std::vector<double>& marginal, doub
     variance += marginal[i] * std::pow(axis.centre(i) - result.mean, 2.0);
   }
   result.standard_deviation = std::sqrt(variance);
+  for (std::size_t i = 0; axis.cells > 1 && i < marginal.size(); ++i) {
+    result.at.push_back(axis.centre(i));
+    result.density.push_back(marginal[i] / axis.cell());
+  }
   result.median = quantile_on(axis, marginal, 0.5);
   result.credible = {quantile_on(axis, marginal, 0.5 * (1.0 - confidence)),
                      quantile_on(axis, marginal, 0.5 * (1.0 + confidence))};

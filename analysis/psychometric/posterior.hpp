@@ -10,6 +10,10 @@ struct Marginal {
   double standard_deviation{};
   double median{};
   Interval credible;  // equal tails
+  // The middles of the grid's cells, ascending, and the density there: its sum times the distance
+  // of two of them is 1. Of a fixed parameter empty.
+  std::vector<double> at{};
+  std::vector<double> density{};
 };
 
 struct PosteriorEstimates {

@@ -86,17 +86,64 @@ Chart track_chart(const ParticipantThreshold& person, const Interval& range, boo
   chart.line = chart.points;
   return chart;
 }
+// Over a logarithmic axis the area below the curve is 1 per decade.
+Chart posterior_chart(const ParticipantThreshold& person, const PosteriorEstimates& posterior,
+                      const Interval& range) {
+  const Marginal& marginal = posterior.position;
+  const double most = *std::ranges::max_element(marginal.density);
+  Chart chart{
+      fmt::format("{}: posterior of the threshold, with its 95 % credible interval",
+                  person.participant_id),
+      fmt::format("Posterior density of the threshold of {}, median {}", person.participant_id,
+                  with_interval(posterior.threshold, posterior.threshold_interval)),
+      "threshold",
+      "density per decade",
+      range,
+      {0.0, 1.05 * most},
+      true};
+  for (std::size_t i = 0; i < marginal.at.size(); ++i) {
+    const double threshold = std::pow(10.0, marginal.at[i]);
+    if (threshold >= range.low && threshold <= range.high) {
+      chart.line.push_back({threshold, marginal.density[i]});
+    }
+  }
+  chart.bars = {{0.02 * most, posterior.threshold_interval}};
+  return chart;
+}
+
+// From the lowest to the highest threshold that is not negligible.
+Interval range_of_posteriors(const ThresholdResults& results) {
+  constexpr double negligible = 1e-3;
+  std::vector<double> thresholds;
+  for (const ParticipantThreshold& person : results.participants) {
+    if (person.posterior) {
+      const Marginal& marginal = person.posterior->position;
+      const double most = *std::ranges::max_element(marginal.density);
+      for (std::size_t i = 0; i < marginal.at.size(); ++i) {
+        if (marginal.density[i] > negligible * most) {
+          thresholds.push_back(std::pow(10.0, marginal.at[i]));
+        }
+      }
+    }
+  }
+  return thresholds.empty() ? Interval{} : range_of(thresholds, true);
+}
 }  // namespace
 
 std::vector<Chart> threshold_charts(const BlockDesign& design, const ThresholdResults& results) {
   const std::vector<double> levels = levels_of(results);
   const bool is_logarithmic = std::ranges::all_of(levels, [](double level) { return level > 0.0; });
   const Interval range = range_of(levels, is_logarithmic);
+  const Interval thresholds = range_of_posteriors(results);
   std::vector<Chart> charts;
   for (const ParticipantThreshold& person : results.participants) {
     if (!person.track.empty()) {
       charts.push_back(function_chart(person, design, range, is_logarithmic));
+      charts.back().begins_row = true;
       charts.push_back(track_chart(person, range, is_logarithmic));
+      if (person.posterior) {
+        charts.push_back(posterior_chart(person, *person.posterior, thresholds));
+      }
     }
   }
   return charts;

@@ -203,3 +203,25 @@ TEST_CASE("a free guess rate is found", "[analysis][psychometric]") {
   CHECK(posterior.estimates->guess.median == Approx(0.2).margin(0.03));
   CHECK(posterior.estimates->lapse.median == Approx(0.02).margin(0.02));
 }
+
+TEST_CASE("the area below a posterior's density is 1, and 0.95 within its interval",
+          "[analysis][psychometric]") {
+  const auto posterior =
+      analysis::psychometric_posterior({PsychometricShape::logistic}, yes_no_levels);
+  REQUIRE(posterior.estimates);
+  const analysis::Marginal& marginal = posterior.estimates->position;
+  REQUIRE(marginal.at.size() > 10);
+  REQUIRE(marginal.at.size() == marginal.density.size());
+  const double cell = marginal.at[1] - marginal.at[0];
+  double area = 0.0;
+  double within = 0.0;
+  for (std::size_t i = 0; i < marginal.at.size(); ++i) {
+    const double overlap = std::min(marginal.at[i] + 0.5 * cell, marginal.credible.high) -
+                           std::max(marginal.at[i] - 0.5 * cell, marginal.credible.low);
+    area += marginal.density[i] * cell;
+    within += marginal.density[i] * std::max(0.0, overlap);
+  }
+  CHECK(area == Approx(1.0));
+  CHECK(within == Approx(0.95).margin(1e-9));
+  CHECK(posterior.estimates->guess.density.empty());  // known
+}

@@ -62,6 +62,13 @@ add_library(samplerate::samplerate INTERFACE IMPORTED)
 target_include_directories(samplerate::samplerate SYSTEM INTERFACE ${SAMPLERATE_INCLUDE})
 target_link_libraries(samplerate::samplerate INTERFACE ${SAMPLERATE_LIBRARY})
 
+# Without the flags of threads that GLib's users also get: they are not those of the precompiled header.
+find_package(PkgConfig REQUIRED)
+pkg_check_modules(LIBRSVG REQUIRED librsvg-2.0 cairo-pdf)
+add_library(librsvg::librsvg INTERFACE IMPORTED)
+target_include_directories(librsvg::librsvg SYSTEM INTERFACE ${LIBRSVG_INCLUDE_DIRS})
+target_link_libraries(librsvg::librsvg INTERFACE ${LIBRSVG_LINK_LIBRARIES})
+
 find_path(HDF5_INCLUDE hdf5.h PATH_SUFFIXES hdf5/serial REQUIRED)
 find_library(HDF5_LIBRARY NAMES hdf5_serial hdf5 REQUIRED)
 add_library(hdf5::hdf5 INTERFACE IMPORTED)

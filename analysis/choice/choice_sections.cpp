@@ -9,19 +9,19 @@ ReportTable biases_table(const ChoiceBiases& biases) {
       "biases",
       "Choices by label and by order of visits, all trials",
       {column("chosen was", "chosen_was"), column("label", "label"),
-       proportion_column("of trials", "chosen"), column("by chance", "chance"), column("p", "p")}};
+       counted_column("of trials", "chosen"), column("by chance", "chance"), column("p", "p")}};
   std::int64_t trials = 0;
   for (const int chosen : biases.chosen) {
     trials += chosen;
   }
   for (std::size_t i = 0; i < biases.labels.size(); ++i) {
     table.rows.push_back({word("under the label"), word(biases.labels[i]),
-                          proportion({biases.chosen[i], trials}), share(biases.chance),
+                          counted({biases.chosen[i], trials}), share(biases.chance),
                           i == 0 ? probability(biases.labels_p) : nothing(table.columns[4], "")});
   }
   const auto add_visited = [&](const char* what, const Proportion& chosen) {
     if (chosen.trials > 0) {
-      table.rows.push_back({word(what), nothing(table.columns[1], ""), proportion(chosen),
+      table.rows.push_back({word(what), nothing(table.columns[1], ""), counted(chosen),
                             share(biases.chance),
                             probability(binomial_two_sided_p(chosen, biases.chance))});
     }

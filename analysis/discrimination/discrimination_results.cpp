@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <ranges>
 #include <set>
 
 #include "analysis/statistics/distributions.hpp"
@@ -140,7 +141,7 @@ DiscriminationResults discrimination_results(const BlockDesign& design,
                                              const std::vector<AnswerRow>& answers) {
   check(design);
   std::map<std::string, Counts> people;
-  std::map<std::string, Proportion> pairs;
+  std::map<std::string, std::map<std::string, Proportion>> pairs;  // by stimuli, then participant
   DiscriminationResults results;
   results.model = find_decision_model(design.decision_model);
   for (const AnswerRow& answer : answers) {
@@ -151,14 +152,15 @@ DiscriminationResults discrimination_results(const BlockDesign& design,
     if (!answer.alternatives.empty()) {
       add(is_of_different(answer) ? counts.correct_of_different : counts.correct_of_same,
           *answer.is_correct);
-      add(pairs[stimuli_of(answer)], *answer.is_correct);
+      add(pairs[stimuli_of(answer)][answer.participant_id], *answer.is_correct);
     }
   }
   for (const auto& [name, counts] : people) {
     results.participants.push_back(participant_of(design, name, counts, results.model));
   }
   for (const auto& [stimuli, correct] : pairs) {
-    results.pairs.push_back({stimuli, correct});
+    const auto shares = correct | std::views::values;
+    results.pairs.push_back({stimuli, {shares.begin(), shares.end()}});
   }
   results.mean_d_prime = mean_d_prime(results.participants);
   if (design.premise.empty()) {

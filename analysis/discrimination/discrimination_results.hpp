@@ -43,8 +43,8 @@ struct AccuracyTest {
 struct DiscriminationResults {
   std::vector<ParticipantDiscrimination> participants;  // by name
   struct Pair {
-    std::string stimuli;  // names, joined
-    Proportion correct;
+    std::string stimuli;              // names, joined
+    std::vector<Proportion> correct;  // of each participant
   };
   std::vector<Pair> pairs;                       // by name
   Proportion correct;                            // of all answers

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 
+#include "analysis/blocks/pooled_proportion.hpp"
 #include "analysis/discrimination/discrimination_results.hpp"
 #include "analysis/tables/tabular_summary.hpp"
 namespace tapstudy::analysis {
@@ -42,11 +44,13 @@ ReportTable all_table(const BlockDesign& design, const DiscriminationResults& re
                     {proportion_column("correct", "correct"), column("chance", "chance"),
                      column("participants with d'", "participants"),
                      interval_column("mean of their d' (95 % CI)", "mean_d_prime")}};
-  if (results.correct.trials > 0) {
+  if (!results.participants.empty()) {
+    std::vector<Proportion> correct;
+    std::ranges::transform(results.participants, std::back_inserter(correct),
+                           &ParticipantDiscrimination::correct);
     const auto& mean = results.mean_d_prime;
     table.rows.push_back(
-        {proportion(results.correct), share(design.guess_rate),
-         count(mean ? mean->participants : 0),
+        {pooled_proportion(correct), share(design.guess_rate), count(mean ? mean->participants : 0),
          mean ? interval(mean->mean, mean->interval) : nothing(table.columns.back())});
   }
   return table;
@@ -57,7 +61,7 @@ ReportTable pairs_table(const DiscriminationResults& results) {
                     "Stimuli that were presented together",
                     {column("stimuli", "stimuli"), proportion_column("correct", "correct")}};
   for (const DiscriminationResults::Pair& pair : results.pairs) {
-    table.rows.push_back({word(pair.stimuli), proportion(pair.correct)});
+    table.rows.push_back({word(pair.stimuli), pooled_proportion(pair.correct)});
   }
   return table;
 }

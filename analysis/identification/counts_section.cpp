@@ -61,9 +61,7 @@ void add_group(const IdentificationData& data, const Grouping& grouping, ReportT
     }
     const auto over = mean_proportion(counts.right[level]);
     shares.rows.push_back(
-        {word(grouping.name), word(grouping.levels[level]),
-         Cell{fmt::format("{} = {}", fraction(all), percent(all)),
-              {all.successes, all.trials, all.value()}},
+        {word(grouping.name), word(grouping.levels[level]), counted(all),
          over ? Cell{percent_range(over->interval), {over->interval.low, over->interval.high}}
               : nothing(shares.columns.back())});
     add_cells(data, grouping.name, grouping.levels[level], counts.of_level[level], cells);
@@ -76,7 +74,7 @@ ReportSection counts_section(const IdentificationData& data) {
                      "Right answers by what was presented",
                      {column("by", "by"),
                       column("", "level"),
-                      {"right", {"right", "right_of", "right_share"}},
+                      counted_column("right", "right"),
                       {"95 % CI over participants", {"interval_low", "interval_high"}}}};
   shares.columns[1].heading = "level";
   ReportTable cells{"group_counts",

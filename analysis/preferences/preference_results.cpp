@@ -93,18 +93,20 @@ PreferenceResults preference_results(const BlockDesign& design,
                                      const std::vector<AnswerRow>& answers) {
   PreferenceResults results;
   results.counts = no_counts(design);
-  std::map<std::string, PairedCounts> people;
+  std::map<std::string, ParticipantPreferences> people;
   for (const AnswerRow& answer : answers) {
     const Comparison comparison = comparison_of(design, answer);
-    PairedCounts& own = people.try_emplace(answer.participant_id, no_counts(design)).first->second;
-    ++own.wins(comparison.preferred, comparison.other);
+    ParticipantPreferences& own =
+        people.try_emplace(answer.participant_id, answer.participant_id, no_counts(design))
+            .first->second;
+    ++own.counts.wins(comparison.preferred, comparison.other);
     ++results.counts.wins(comparison.preferred, comparison.other);
-    ++results.first_position.trials;
-    results.first_position.successes += comparison.is_first ? 1 : 0;
+    ++own.first_position.trials;
+    own.first_position.successes += comparison.is_first ? 1 : 0;
   }
-  for (const auto& [name, counts] : people) {
-    results.participants.push_back({name, counts, {}, ""});
-    judge_consistency(results.participants.back());
+  for (auto& [name, person] : people) {
+    judge_consistency(person);
+    results.participants.push_back(std::move(person));
   }
   add_scales(results);
   return results;

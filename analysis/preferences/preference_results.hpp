@@ -12,6 +12,7 @@ namespace tapstudy::analysis {
 struct ParticipantPreferences {
   std::string participant_id;
   PairedCounts counts;                     // in the order of the block's stimuli
+  Proportion first_position;               // preferred what stood at position 0
   std::optional<Consistency> consistency;  // by the more frequent answer to each pair
   std::string no_consistency;              // why there is none; empty: there is
 };
@@ -19,7 +20,6 @@ struct ParticipantPreferences {
 struct PreferenceResults {
   std::vector<ParticipantPreferences> participants;  // by name
   PairedCounts counts;                               // of all
-  Proportion first_position;                         // preferred what stood at position 0
   std::optional<PreferenceScale> bradley_terry;
   std::optional<PreferenceScale> thurstone;
   std::string no_scale;  // why there is none; empty: there is

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 
+#include "analysis/blocks/pooled_proportion.hpp"
 #include "analysis/preferences/preference_results.hpp"
 #include "analysis/statistics/sign_test.hpp"
 #include "analysis/tables/tabular_summary.hpp"
@@ -20,8 +22,12 @@ ReportTable scale_table(const BlockDesign& design, const PreferenceResults& resu
   for (std::size_t i = 0; i < design.stimuli.size(); ++i) {
     const auto item = static_cast<Eigen::Index>(i);
     const bool has_scale = results.no_scale.empty();
+    std::vector<Proportion> people;
+    for (const ParticipantPreferences& person : results.participants) {
+      people.push_back(preferred(person.counts, item));
+    }
     table.rows.push_back(
-        {word(design.stimuli[i].name), proportion(preferred(results.counts, item)),
+        {word(design.stimuli[i].name), pooled_proportion(people),
          has_scale
              ? interval(results.bradley_terry->values[item], results.bradley_terry->intervals[i])
              : nothing(bradley),
@@ -89,8 +95,11 @@ ReportTable participants_table(const BlockDesign& design, const PreferenceResult
 ReportTable position_table(const PreferenceResults& results) {
   ReportTable table{
       "position", "First position", {proportion_column("preferred the first", "first_preferred")}};
-  if (results.first_position.trials > 0) {
-    table.rows.push_back({proportion(results.first_position)});
+  if (!results.participants.empty()) {
+    std::vector<Proportion> people;
+    std::ranges::transform(results.participants, std::back_inserter(people),
+                           &ParticipantPreferences::first_position);
+    table.rows.push_back({pooled_proportion(people)});
   }
   return table;
 }

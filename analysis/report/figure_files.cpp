@@ -21,7 +21,7 @@ class Namer {
     for (int number = 2; !taken_.insert(name).second; ++number) {
       name = fmt::format("{}_{}", file_word(wanted), number);
     }
-    return name + ".svg";
+    return name;
   }
 
  private:

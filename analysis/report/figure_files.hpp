@@ -5,7 +5,7 @@
 #include "analysis/report/summary.hpp"
 namespace tapstudy::analysis {
 struct FigureFile {
-  std::string name;  // letters, digits, - and _, then .svg; unlike all others
+  std::string name;  // letters, digits, - and _; unlike all others
   std::string svg;
 };
 // Every figure of a report as a file of its own, those behind "More figures" too. Marks within

@@ -68,6 +68,12 @@ Cell proportion(const Proportion& proportion) {
       {proportion.successes, proportion.trials, proportion.value(), interval.low, interval.high}};
 }
 
+Cell counted(const Proportion& proportion) {
+  return {fmt::format("{} = {}", fraction(proportion), percent(proportion)),
+          {proportion.successes, proportion.trials,
+           proportion.trials == 0 ? Value{} : Value{proportion.value()}}};
+}
+
 Cell nothing(const Column& column, const std::string& text) {
   return {text, std::vector<Value>(column.keys.size())};
 }
@@ -78,6 +84,10 @@ Column column(const std::string& heading, const std::string& key) {
 
 Column interval_column(const std::string& heading, const std::string& key) {
   return {heading, {key, key + "_low", key + "_high"}};
+}
+
+Column counted_column(const std::string& heading, const std::string& key) {
+  return {heading, {key, key + "_of", key + "_share"}};
 }
 
 Column proportion_column(const std::string& heading, const std::string& key) {

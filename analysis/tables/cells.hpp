@@ -46,9 +46,12 @@ Cell probability(const std::optional<double>& p);
 Cell interval(double value, const Interval& interval);
 // Values: successes, trials, their ratio and its 95 % score interval.
 Cell proportion(const Proportion& proportion);
+// Values: successes, trials, their ratio. "43/80 = 54 %"
+Cell counted(const Proportion& proportion);
 Cell nothing(const Column& column, const std::string& text = "–");
 
 Column column(const std::string& heading, const std::string& key);
 Column interval_column(const std::string& heading, const std::string& key);
+Column counted_column(const std::string& heading, const std::string& key);
 Column proportion_column(const std::string& heading, const std::string& key);
 }  // namespace tapstudy::analysis

@@ -2,6 +2,8 @@
 
 #include <cmath>
 #include <map>
+
+#include "analysis/blocks/pooled_proportion.hpp"
 namespace tapstudy::analysis {
 namespace {
 // A level in the axis's own unit.
@@ -132,17 +134,15 @@ ReportTable levels_over_participants(const ThresholdResults& results) {
                     "Levels, answers of all participants together (not a fit)",
                     {column("level", "level"), column("participants", "participants"),
                      proportion_column("correct", "correct")}};
-  std::map<double, Proportion> answers;
-  std::map<double, int> people;
+  std::map<double, std::vector<Proportion>> answers;
   for (const ParticipantThreshold& person : results.participants) {
     for (const Level& level : person.levels) {
-      answers[level.value].successes += level.answers.successes;
-      answers[level.value].trials += level.answers.trials;
-      ++people[level.value];
+      answers[level.value].push_back(level.answers);
     }
   }
   for (const auto& [level, correct] : answers) {
-    table.rows.push_back({number(level), count(people[level]), proportion(correct)});
+    table.rows.push_back({number(level), count(static_cast<std::int64_t>(correct.size())),
+                          pooled_proportion(correct)});
   }
   return table;
 }

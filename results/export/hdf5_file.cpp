@@ -83,6 +83,7 @@ struct Hdf5File::Shape {
 };
 
 Hdf5File::Hdf5File(const std::string& file) : file_{file}, handle_{std::make_unique<Handle>()} {
+  H5dont_atexit();  // where it would crash over a file that it could not finish
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // errors are told once, by us
   handle_->id = H5Fcreate(file.c_str(), H5F_ACC_EXCL, H5P_DEFAULT, H5P_DEFAULT);
   if (handle_->id < 0) {

@@ -8,6 +8,7 @@
 #include <sstream>
 #include <utility>
 
+#include "analysis/figures/pdf_of_svg.hpp"
 #include "analysis/report/comparison.hpp"
 #include "analysis/report/figure_files.hpp"
 #include "analysis/report/selection.hpp"
@@ -121,15 +122,17 @@ void write_files(const ReportOptions& options, const Summary& summary) {
     add(table.name, table_text(summary, table));
   }
   for (const analysis::FigureFile& figure : figure_files) {
-    add("figures/" + figure.name, figure.svg);
+    add("figures/" + figure.name + ".svg", figure.svg);
+    add("figures/" + figure.name + ".pdf", analysis::pdf_of_svg(figure.svg));
   }
   core::write_all_or_none(files, options.replace ? core::Existing::replaced : core::Existing::kept);
   const std::size_t figures = figure_files.size();
-  for (std::size_t i = 0; i + figures < files.size(); ++i) {
+  for (std::size_t i = 0; i + 2 * figures < files.size(); ++i) {
     fmt::print("{}\n", files[i].name);
   }
   if (figures > 0) {
-    fmt::print("{} ({} figures)\n", (fs::path{options.out} / "figures").string(), figures);
+    fmt::print("{} ({} figures, each as SVG and as PDF)\n",
+               (fs::path{options.out} / "figures").string(), figures);
   }
 }
 

@@ -166,16 +166,18 @@ TEST_CASE("figures are files of their own, and say that they are simulated",
   const testing::TempDirectory directory;
   const std::string study = simulated(directory, "paper/discrimination.yaml");
   REQUIRE(testing::tapstudy({"report", study}).exit_code == 0);
-  const auto parsed =
-      testing::run_program({"/usr/bin/python3", "-c",
-                            "import glob, sys, xml.etree.ElementTree as tree\n"
-                            "files = glob.glob(sys.argv[1] + '/figures/*.svg')\n"
-                            "html = open(sys.argv[1] + '/report.html').read()\n"
-                            "assert len(files) == html.count('<figure') > 10, len(files)\n"
-                            "for file in files:\n"
-                            "  text = ''.join(tree.parse(file).getroot().itertext())\n"
-                            "  assert 'simulated:' in text and 'font:' in text, file\n",
-                            study});
+  const auto parsed = testing::run_program(
+      {"/usr/bin/python3", "-c",
+       "import glob, sys, xml.etree.ElementTree as tree\n"
+       "files = glob.glob(sys.argv[1] + '/figures/*.svg')\n"
+       "pdf = {file[:-4] for file in glob.glob(sys.argv[1] + '/figures/*.pdf')}\n"
+       "assert pdf == {file[:-4] for file in files}\n"
+       "html = open(sys.argv[1] + '/report.html').read()\n"
+       "assert len(files) == html.count('<figure') > 10, len(files)\n"
+       "for file in files:\n"
+       "  text = ''.join(tree.parse(file).getroot().itertext())\n"
+       "  assert 'simulated:' in text and 'font:' in text, file\n",
+       study});
   INFO(parsed.standard_error);
   CHECK(parsed.exit_code == 0);
 }

@@ -5,6 +5,7 @@
 #include "support/messy_study.hpp"
 using namespace tapstudy;
 using Catch::Matchers::Contains;
+using Catch::Matchers::EndsWith;
 using testing::TempDirectory;
 namespace fs = std::filesystem;
 namespace messy = testing::messy_study;
@@ -43,10 +44,11 @@ TEST_CASE("an HDF5 file is there whole or not at all", "[results][export]") {
   for (const int blocks : {0, 10, 100, whole / 2, whole - 1}) {  // of 512 bytes: a full disk
     CAPTURE(blocks);
     const auto run = testing::run_program(
-        {"/bin/sh", "-c", "(ulimit -f " + std::to_string(blocks) + "; exec \"$@\" 2>&1) | cat",
+        {"/bin/sh", "-c",
+         "{ (ulimit -f " + std::to_string(blocks) + "; exec \"$@\" 2>&1); echo code $?; } | cat",
          "sh", TAPSTUDY_PROGRAM, "export", study, "--format", "hdf5", "--out",
          directory / "out.h5"});
-    CHECK_THAT(run.standard_output, Contains("out.h5"));
+    CHECK_THAT(run.standard_output, Contains("out.h5") && EndsWith("code 2\n"));
     CHECK_THAT(run.standard_output, Contains("cannot be written") || Contains("disk full"));
     CHECK(std::distance(fs::directory_iterator{directory.path()}, fs::directory_iterator{}) == 3);
   }

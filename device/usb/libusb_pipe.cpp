@@ -15,6 +15,7 @@ constexpr std::size_t max_packet_bytes = 512;
 constexpr int max_stale_replies = 16;
 constexpr timeval one_wait{0, 10'000};
 constexpr std::chrono::seconds max_wait{1};
+constexpr int looks_after_it = 5;  // the process may have been suspended for so long
 
 UsbOutcome outcome_of(int error) noexcept {
   switch (error) {
@@ -90,7 +91,8 @@ class Transfer {
   // transfer.
   UsbOutcome wait(libusb_context* context) noexcept {
     const auto give_up = std::chrono::steady_clock::now() + max_wait;
-    while (is_under_way() && std::chrono::steady_clock::now() < give_up) {
+    int looks = looks_after_it;
+    while (is_under_way() && (std::chrono::steady_clock::now() < give_up || --looks >= 0)) {
       timeval patience = one_wait;
       libusb_handle_events_timeout_completed(context, &patience, &has_ended_);
     }

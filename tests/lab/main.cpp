@@ -28,6 +28,7 @@
 #include <vector>
 
 #include "lab/mocked_board.hpp"
+#include "lab/processes.hpp"
 using namespace tapstudy;
 using lab::MockedBoard;
 
@@ -129,6 +130,7 @@ class Lab {
   void start() {
     child_ = fork();
     if (child_ == 0) {
+      prctl(PR_SET_PDEATHSIG, SIGKILL);  // nothing answers it any more
       dup2(keyboard_.ends[0], STDIN_FILENO);
       dup2(screen_.ends[1], STDERR_FILENO);
       if (options_.is_forbidden) {
@@ -204,23 +206,25 @@ class Lab {
         [is_on](testing::SimulatedSpidar& spidar) { spidar.switch_amplifier(is_on); });
   }
 
-  // As Ctrl-Z does.
+  // As Ctrl-Z does, but not while the program waits for the mocked kernel: its guardian, which
+  // shares the connection, would read that answer.
   void suspend_for_a_while() {
-    kill(child_, SIGSTOP);
+    constexpr int patience = 1000;
+    for (int i = 0; i < patience; ++i) {
+      kill(child_, SIGSTOP);
+      std::this_thread::sleep_for(std::chrono::milliseconds{1});
+      if (lab::is_at_rest(child_)) {
+        break;
+      }
+      kill(child_, SIGCONT);
+      std::this_thread::sleep_for(std::chrono::microseconds{1300});
+    }
     std::this_thread::sleep_for(std::chrono::seconds{1});
     without_force_while_stopped_ = boards_.front()->log().requests_without_force_at_the_end;
     kill(child_, SIGCONT);
   }
 
-  // tapstudy's youngest child.
-  pid_t guardian() const {
-    std::ifstream children{"/proc/" + std::to_string(child_) + "/task/" + std::to_string(child_) +
-                           "/children"};
-    pid_t youngest = -1;
-    while (children >> youngest) {
-    }
-    return youngest;
-  }
+  pid_t guardian() const { return lab::youngest_child(child_); }
 
   // The plate's face lies in the middle; up is +y in the frame of the maker.
   void after_exchange(int board, int exchange) {

@@ -3,6 +3,7 @@ import http.client
 import json
 import re
 import socket
+import time
 
 NETWORK = (OSError, http.client.HTTPException)  # where the program has gone, or cut the connection
 PAGE = {"X-Tapstudy": "1"}  # what forms of other sites cannot send
@@ -39,13 +40,14 @@ def open_stream(url, buffer_bytes=None):
         raise
 
 
-def next_trial_screen(url):
-    """The number of the screen that asks a trial's question; raises OSError if the stream ends."""
+def next_trial_screen(url, patience_s=20):
+    """The number of the screen that asks a trial's question; raises OSError if none comes."""
+    end = time.monotonic() + patience_s
     with open_stream(url) as connection:
         text = b""
         while not (found := re.search(rb'"number":(\d+),"language":"\w+","kind":"trial"', text)):
             part = connection.recv(65536)
-            if not part:
-                raise OSError("the stream ended")
+            if not part or time.monotonic() > end:
+                raise OSError("no trial's screen came")
             text += part
     return int(found.group(1))

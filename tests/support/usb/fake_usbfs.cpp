@@ -175,6 +175,12 @@ int FakeUsbfs::discard(const void* urb) {
   return -EINVAL;
 }
 
+void FakeUsbfs::forget_transfers() {
+  waiting_.clear();
+  not_taken_.clear();
+  done_.clear();
+}
+
 int FakeUsbfs::bulk(const usbdevfs_bulktransfer& transfer) {
   if (is_gone_) {
     return -ENODEV;
@@ -208,8 +214,10 @@ int FakeUsbfs::ioctl(unsigned long request, void* argument) {
       return clear_halt();
     case static_cast<unsigned>(USBDEVFS_GETDRIVER):
       return -ENODATA;
-    case static_cast<unsigned>(USBDEVFS_CLAIMINTERFACE):
     case static_cast<unsigned>(USBDEVFS_RELEASEINTERFACE):
+      forget_transfers();  // as the kernel does
+      [[fallthrough]];
+    case static_cast<unsigned>(USBDEVFS_CLAIMINTERFACE):
     case static_cast<unsigned>(USBDEVFS_SETINTERFACE):
     case static_cast<unsigned>(USBDEVFS_RESET):
       return is_gone_ ? -ENODEV : 0;

@@ -68,6 +68,7 @@ class FakeUsbfs {
   void complete(usbdevfs_urb* urb, int status, int length);
   int reap(void** urb);
   int discard(const void* urb);
+  void forget_transfers();
   int bulk(const usbdevfs_bulktransfer& transfer);
   Trouble trouble_now();
 

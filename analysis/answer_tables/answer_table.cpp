@@ -9,6 +9,7 @@
 #include <limits>
 #include <set>
 #include <span>
+#include <unordered_map>
 #include <utility>
 
 #include "core/error.hpp"
@@ -22,11 +23,14 @@ bool is_missing(const std::string& cell) {
   return std::ranges::find(missing_values, cell) != missing_values.end();
 }
 
-// An answer and where it was read.
-struct ReadAnswer {
-  results::AnswerRow row;
-  std::string where;
+// Where an answer was read.
+struct Origin {
+  const NamedCsv* csv{};
+  int line{};
 };
+std::string to_text(const Origin& origin) {
+  return fmt::format("{}:{}", origin.csv->file, origin.line);
+}
 
 // Reads one file.
 class AnswerReader {
@@ -34,7 +38,8 @@ class AnswerReader {
   AnswerReader(const NamedCsv& csv, const AnswerReading& reading)
       : csv_{csv},
         reading_{reading},
-        places_{find_columns(header(), reading.columns, where(csv.text.rows.front().line))} {
+        places_{
+            find_columns(header(), reading.columns, to_text({&csv, csv.text.rows.front().line}))} {
     for (const RowCondition& condition : reading.conditions) {
       const auto found = std::ranges::find(header(), condition.column);
       if (found == header().end()) {
@@ -46,9 +51,8 @@ class AnswerReader {
   }
 
   bool names_participants() const { return places_.participant.has_value(); }
-  // A row without an answer has an empty response.
-  std::vector<ReadAnswer> answers() const {
-    std::vector<ReadAnswer> found;
+  // To the table, with the origins of its answers.
+  void add_to(AnswerTable& table, std::vector<Origin>& origins) const {
     for (const CsvRow& row : std::span{csv_.text.rows}.subspan(1)) {
       if (row.cells.size() != header().size()) {
         refuse(row.line,
@@ -57,17 +61,21 @@ class AnswerReader {
       if (std::ranges::all_of(conditions_, [&](const auto& condition) {
             return row.cells[condition.first] == condition.second;
           })) {
-        found.push_back({answer_of(row), where(row.line)});
+        ++table.rows;
+        if (is_missing(row.cells[places_.response])) {
+          ++table.unanswered;
+        } else {
+          table.answers.push_back(answer_of(row));
+          origins.push_back({&csv_, row.line});
+        }
       }
     }
-    return found;
   }
 
  private:
   const std::vector<std::string>& header() const { return csv_.text.rows.front().cells; }
-  std::string where(int line) const { return fmt::format("{}:{}", csv_.file, line); }
   [[noreturn]] void refuse(int line, const std::string& what) const {
-    throw core::InvalidInput{fmt::format("{}: {}", where(line), what)};
+    throw core::InvalidInput{fmt::format("{}: {}", to_text({&csv_, line}), what)};
   }
 
   results::AnswerRow answer_of(const CsvRow& row) const {
@@ -77,9 +85,6 @@ class AnswerReader {
                                                 : std::filesystem::path{csv_.file}.stem().string();
     answer.stimulus = row.cells[places_.stimulus];
     const std::string& cell = row.cells[places_.response];
-    if (is_missing(cell)) {
-      return answer;
-    }
     if (answer.stimulus.empty() || answer.participant_id.empty()) {
       refuse(row.line, fmt::format("has an answer, '{}', but no {}", cell,
                                    answer.stimulus.empty() ? "stimulus" : "participant"));
@@ -128,34 +133,38 @@ std::vector<Item> items_of(const std::set<std::string>& names) {
 
 // Which number each trial has for its participant, and each presentation of a stimulus.
 void count_on(std::vector<results::AnswerRow>& answers) {
-  std::map<std::string, std::map<std::string, int>> presented;
-  std::map<std::string, int> trials;
-  std::map<std::string, int> indices;
+  struct Counts {
+    int index{};
+    int trials{};
+    std::unordered_map<std::string, int> presented;  // of each stimulus
+  };
+  std::unordered_map<std::string, Counts> people;
   std::int64_t id = 0;
   for (results::AnswerRow& answer : answers) {
-    const std::string& person = answer.participant_id;
+    const auto index = static_cast<int>(people.size());
+    Counts& person = people.try_emplace(answer.participant_id, Counts{index, 0, {}}).first->second;
     answer.trial_id = ++id;
-    answer.number = ++trials[person];
-    answer.repetition = ++presented[person][answer.stimulus];
-    answer.participant_index =
-        indices.try_emplace(person, static_cast<int>(indices.size())).first->second;
+    answer.number = ++person.trials;
+    answer.repetition = ++person.presented[answer.stimulus];
+    answer.participant_index = person.index;
   }
 }
 
-void check_responses(const std::vector<ReadAnswer>& answers,
-                     const std::set<std::string>& responses) {
-  for (const ReadAnswer& answer : answers) {
-    if (!responses.contains(answer.row.response)) {
+void check_responses(const std::vector<results::AnswerRow>& answers,
+                     const std::vector<Origin>& origins, const std::set<std::string>& responses) {
+  for (std::size_t i = 0; i < answers.size(); ++i) {
+    const std::string& response = answers[i].response;
+    if (!responses.contains(response)) {
       throw core::InvalidInput{fmt::format(
           "{}: response '{}' is no stimulus (if it can be answered, name it with --responses; if "
           "it stands for a stimulus, say --responses '{}=STIMULUS')",
-          answer.where, answer.row.response, answer.row.response)};
+          to_text(origins[i]), response, response)};
     }
   }
   if (responses.size() > max_classes) {
     throw core::InvalidInput{
         fmt::format("{}: names {} different stimuli and responses (at most {})",
-                    answers.front().where, responses.size(), max_classes)};
+                    to_text(origins.front()), responses.size(), max_classes)};
   }
 }
 }  // namespace
@@ -163,39 +172,39 @@ void check_responses(const std::vector<ReadAnswer>& answers,
 AnswerTable read_answers(const std::vector<NamedCsv>& files, const AnswerReading& reading) {
   AnswerTable table;
   table.are_participants_known = files.size() > 1;
-  std::vector<ReadAnswer> answers;
+  std::vector<Origin> origins;
+  std::size_t lines = 0;
+  for (const NamedCsv& csv : files) {
+    lines += csv.text.rows.size();
+  }
+  table.answers.reserve(lines);
+  origins.reserve(lines);
   for (const NamedCsv& csv : files) {
     if (csv.text.rows.empty()) {
       throw core::InvalidInput{fmt::format("{}: is empty", csv.file)};
     }
     const AnswerReader reader{csv, reading};
     table.are_participants_known |= reader.names_participants();
-    for (ReadAnswer& answer : reader.answers()) {
-      answers.push_back(std::move(answer));
-    }
+    reader.add_to(table, origins);
   }
-  table.rows = answers.size();
-  table.unanswered =
-      std::erase_if(answers, [](const ReadAnswer& answer) { return answer.row.response.empty(); });
-  if (answers.empty()) {
+  if (table.answers.empty()) {
     throw core::InvalidInput{fmt::format("{}: holds no answers", files.front().file)};
   }
   std::set<std::string> stimuli;
-  for (const ReadAnswer& answer : answers) {
-    stimuli.insert(answer.row.stimulus);
+  for (const results::AnswerRow& answer : table.answers) {
+    stimuli.insert(answer.stimulus);
   }
   std::set<std::string> responses = stimuli;
   for (const auto& [given, meaning] : reading.responses) {
     responses.insert(meaning);
   }
-  check_responses(answers, responses);
+  check_responses(table.answers, origins, responses);
   table.stimuli = items_of(stimuli);
   table.responses = items_of(responses);
-  for (ReadAnswer& answer : answers) {
-    if (answer.row.mode != results::Mode::real) {
-      table.modes.insert(results::to_text(answer.row.mode));
+  for (const results::AnswerRow& answer : table.answers) {
+    if (answer.mode != results::Mode::real) {
+      table.modes.insert(results::to_text(answer.mode));
     }
-    table.answers.push_back(std::move(answer.row));
   }
   count_on(table.answers);
   return table;

@@ -68,7 +68,10 @@ class CsvReader {
   // A device such as /dev/zero has no line ends.
   bool next_line(std::istream& text, std::string& line) {
     line.clear();
-    for (char c = 0; text.get(c);) {
+    using Traits = std::istream::traits_type;
+    std::streambuf& from = *text.rdbuf();
+    for (int next = from.sbumpc(); next != Traits::eof(); next = from.sbumpc()) {
+      const char c = Traits::to_char_type(next);
       if (++size_ > max_csv_bytes) {
         throw core::InvalidInput{
             fmt::format("{}: is larger than {} MB", file_, max_csv_bytes / 1'000'000)};

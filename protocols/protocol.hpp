@@ -124,19 +124,20 @@ enum class Presented { virtual_plates, real_plates };
 
 // A comparison that differs from its standard along an axis of their family, by a level that
 // procedures choose: a fraction of the standard, or a difference in the axis's unit.
+enum class Side { above, below, either };  // of the standard; levels have a sign on `either` only
 struct Comparison {
   std::string axis;
   double standard{};
   bool is_fraction{true};
-  bool is_below{false};
+  Side side{Side::above};
   bool is_standard_right{false};                             // what is asked for is the standard
   std::vector<std::shared_ptr<const TrackSettings>> tracks;  // interleaved; at least one
   double value_at(double level) const {
     const double difference = is_fraction ? level * standard : level;
-    return is_below ? standard - difference : standard + difference;
+    return side == Side::below ? standard - difference : standard + difference;
   }
   double level_of(double value) const {
-    const double difference = is_below ? standard - value : value - standard;
+    const double difference = side == Side::below ? standard - value : value - standard;
     return is_fraction ? difference / standard : difference;
   }
 };

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <exception>
 #include <iostream>
+#include <new>
 
 #include "core/bounded_child.hpp"
 #include "core/error.hpp"
@@ -68,7 +69,9 @@ int main(int argc, char** argv) {
     check_results_arrived();
     return static_cast<int>(code);
   } catch (const std::exception& error) {
-    std::fputs(error.what(), stderr);  // which may be closed: nothing more can be done then
+    const bool lacks_memory = dynamic_cast<const std::bad_alloc*>(&error) != nullptr;
+    // which may be closed: nothing more can be done then
+    std::fputs(lacks_memory ? "not enough memory for so much" : error.what(), stderr);
     std::fputs("\n", stderr);
     return static_cast<int>(code_of(error));
   }

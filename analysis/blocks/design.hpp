@@ -28,7 +28,8 @@ struct VariedAxis {
   std::string name;   // ends in its unit
   double standard{};  // not 0 where levels are fractions
   bool is_fraction{true};
-  bool is_below{};  // comparisons lie below the standard; levels are positive either way
+  bool is_below{};          // comparisons lie below the standard; their levels are positive too
+  bool is_smaller_asked{};  // the answer names the alternative that has less of it
   double level_of(double value) const {
     const double difference = is_below ? standard - value : value - standard;
     return is_fraction ? difference / standard : difference;

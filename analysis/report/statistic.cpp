@@ -5,6 +5,7 @@
 #include "analysis/adjustments/adjustment_summary.hpp"
 #include "analysis/choice/choice_summary.hpp"
 #include "analysis/discrimination/discrimination_summary.hpp"
+#include "analysis/equality/equality_summary.hpp"
 #include "analysis/identification/identification_summary.hpp"
 #include "analysis/magnitudes/magnitude_summary.hpp"
 #include "analysis/preferences/preference_summary.hpp"
@@ -19,7 +20,7 @@ const std::vector<Statistic>& statistics() {
       {"psychometric", summarise_thresholds},  {"discrimination", summarise_discrimination},
       {"paired", summarise_preferences},       {"ratings", summarise_ratings},
       {"magnitudes", summarise_magnitudes},    {"adjustments", summarise_adjustments},
-      {"rankings", summarise_rankings}};
+      {"rankings", summarise_rankings},        {"equality", summarise_equality}};
   return table;
 }
 

@@ -9,6 +9,7 @@
 #include <map>
 #include <thread>
 
+#include "analysis/thresholds/comparison_level.hpp"
 #include "core/error.hpp"
 namespace tapstudy::analysis {
 namespace {
@@ -19,30 +20,6 @@ constexpr std::uint64_t draws_seed = 1;
 // Levels of all participants together; the time of either grows with them.
 constexpr std::size_t max_levels_with_tests_of_fit = 60;
 constexpr std::size_t max_levels_with_posteriors = 40;
-
-// Values of one stimulus differ in their last digits, where they are products.
-double to_nine_digits(double level) {
-  if (level == 0.0 || !std::isfinite(level)) {
-    return level;
-  }
-  const double unit = std::pow(10.0, std::floor(std::log10(std::abs(level))) - 8.0);
-  return std::round(level / unit) * unit;
-}
-
-std::optional<double> level_of(const BlockDesign& design, const AnswerRow& answer) {
-  const auto comparison =
-      std::ranges::find_if(answer.alternatives, &results::AlternativeRow::is_comparison);
-  if (comparison == answer.alternatives.end()) {
-    return std::nullopt;
-  }
-  const auto value = comparison->axis_values.find(design.axis->name);
-  if (value == comparison->axis_values.end()) {
-    throw core::InvalidInput{
-        fmt::format("block '{}': the comparison of {} in trial {} has no value of '{}'",
-                    design.name, answer.participant_id, answer.number, design.axis->name)};
-  }
-  return to_nine_digits(design.axis->level_of(value->second));
-}
 
 void add(Proportion& counted, bool is_success) {
   ++counted.trials;
@@ -55,7 +32,7 @@ void add_answer(ParticipantThreshold& person, const BlockDesign& design, const A
         fmt::format("block '{}': the answer of {} to trial {} is neither right nor wrong",
                     design.name, answer.participant_id, answer.number)};
   }
-  const std::optional<double> level = level_of(design, answer);
+  const std::optional<double> level = comparison_level(design, answer);
   if (!level) {
     add(person.false_alarms, !*answer.is_correct);
     return;
@@ -63,11 +40,7 @@ void add_answer(ParticipantThreshold& person, const BlockDesign& design, const A
   const int number = static_cast<int>(person.track.size()) + 1;
   person.track.push_back({number, *level, *answer.is_correct});
   add(person.correct, *answer.is_correct);
-  auto at = std::ranges::lower_bound(person.levels, *level, {}, &Level::value);
-  if (at == person.levels.end() || at->value != *level) {
-    at = person.levels.insert(at, {*level, {}});
-  }
-  add(at->answers, *answer.is_correct);
+  count_at(person.levels, *level, *answer.is_correct);
 }
 
 std::vector<ParticipantThreshold> people_of(const BlockDesign& design,

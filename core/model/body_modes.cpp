@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <new>
 #include <numbers>
 
 #include "core/error.hpp"
@@ -178,9 +179,13 @@ std::string content_key(const BodySpec& body) {
 }
 
 SolvedBody solve_body(const BodySpec& body, const ProgressHook& progress) {
-  SolvedBody solved =
-      body.mesh.accuracy ? refine(body, progress) : solve_once(body, body.mesh.size, progress);
-  keep_touchable_part(body.shape, solved);
-  return solved;
+  try {
+    SolvedBody solved =
+        body.mesh.accuracy ? refine(body, progress) : solve_once(body, body.mesh.size, progress);
+    keep_touchable_part(body.shape, solved);
+    return solved;
+  } catch (const std::bad_alloc&) {
+    throw ModelError{"modes: not enough memory for so fine a mesh (choose larger elements)"};
+  }
 }
 }  // namespace tapstudy::core

@@ -13,6 +13,9 @@ constexpr const char* comparison_key = "the greatest comparison";
 class ComparisonTask final : public DiscriminationTask {
  public:
   std::string_view name() const override { return "comparison"; }
+  std::string_view statistic(const Block& block) const override {
+    return is_on_either_side(block) ? "equality" : DiscriminationTask::statistic(block);
+  }
   std::string_view decision_model(const Block& /*block*/) const override { return "forced_choice"; }
 
   void read(MapReader& reader, const Protocol& protocol, Block& block) const override {
@@ -26,13 +29,27 @@ class ComparisonTask final : public DiscriminationTask {
     if (is_standard_right && block.alternatives > 2) {
       reader.reject("right", "the standard is one of two alternatives only");
     }
+    if (is_on_either_side(block) && block.alternatives > 2) {
+      reader.reject("alternatives", "are two where comparisons lie on either side of the standard");
+    }
   }
   Answers answers(const Block& block, const Protocol& /*protocol*/) const override {
     return one_of(blind_options(static_cast<std::size_t>(block.alternatives)));
   }
+  // Of a comparison that equals its standard neither answer is right.
   std::optional<bool> is_correct(const PlannedTrial& trial, const Block& block,
                                  const std::string& response) const override {
-    return labelled(trial, response).is_comparison != block.comparison->is_standard_right;
+    const bool is_judged_greater = judged_greater(trial, block, response);
+    if (!is_on_either_side(block)) {
+      return is_judged_greater;
+    }
+    const double level = level_of_comparison(trial, *block.comparison);
+    return level == 0.0 ? std::nullopt : std::optional{is_judged_greater == (level > 0.0)};
+  }
+  // On either side procedures follow how often the comparison is judged greater, from 0 to 1.
+  std::optional<std::size_t> outcome(const PlannedTrial& trial, const Block& block,
+                                     const std::string& response) const override {
+    return judged_greater(trial, block, response) ? 1 : 0;
   }
 
   // Which way to look for is known from practice.
@@ -60,6 +77,7 @@ class ComparisonTask final : public DiscriminationTask {
 
  protected:
   bool needs_procedure() const override { return true; }
+  Sides sides() const override { return Sides::one_or_both; }
   std::vector<Layout> layouts(const Block& block) const override {
     const auto alternatives = static_cast<std::size_t>(block.alternatives);
     std::vector<Layout> ways(alternatives, Layout(alternatives, false));
@@ -67,6 +85,20 @@ class ComparisonTask final : public DiscriminationTask {
       ways[place][place] = true;
     }
     return ways;
+  }
+
+ private:
+  static bool is_on_either_side(const Block& block) {
+    return block.comparison && block.comparison->side == Side::either;
+  }
+  // On one side: answered right.
+  static bool judged_greater(const PlannedTrial& trial, const Block& block,
+                             const std::string& response) {
+    return labelled(trial, response).is_comparison != block.comparison->is_standard_right;
+  }
+  static double level_of_comparison(const PlannedTrial& trial, const Comparison& comparison) {
+    const auto varied = std::ranges::find_if(trial.alternatives, &Alternative::is_comparison);
+    return comparison.level_of(varied->values.at(comparison.axis));
   }
 };
 }  // namespace

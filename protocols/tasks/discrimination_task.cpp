@@ -1,7 +1,6 @@
 #include "protocols/tasks/discrimination_task.hpp"
 
 #include "protocols/read_sections.hpp"
-#include "protocols/tasks/read_comparison.hpp"
 namespace tapstudy::protocols {
 namespace {
 std::size_t observations(const Comparison& comparison) {
@@ -15,7 +14,7 @@ std::size_t observations(const Comparison& comparison) {
 
 void DiscriminationTask::read(MapReader& reader, const Protocol& protocol, Block& block) const {
   if (reader.has("procedures") || needs_procedure()) {
-    block.comparison = read_comparison(reader, protocol, block);
+    block.comparison = read_comparison(reader, protocol, block, sides());
     if (reader.has("repetitions")) {
       reader.reject("repetitions", "is what the procedures make it");
     }

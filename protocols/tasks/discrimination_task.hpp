@@ -1,4 +1,5 @@
 #pragma once
+#include "protocols/tasks/read_comparison.hpp"
 #include "protocols/tasks/task_parts.hpp"
 namespace tapstudy::protocols {
 // Alternatives under blind labels, each the standard or a comparison: the members of a family at
@@ -37,6 +38,7 @@ class DiscriminationTask : public Task {
   using Layout = std::vector<bool>;
   virtual std::vector<Layout> layouts(const Block& block) const = 0;
   virtual bool needs_procedure() const { return false; }
+  virtual Sides sides() const { return Sides::one; }
   // Trials in which no comparison stands beside a standard, for each that has both.
   virtual int empty_trials_per_observation() const { return 0; }
 

@@ -45,8 +45,9 @@ void check_track(MapReader& reader, const Protocol& protocol, const Stimulus& fa
     return;
   }
   const auto [low, high] = track.ranges().front();
-  if (low < 0.0) {
-    reader.reject(fmt::format("may ask for the level {}: levels are at least 0", low));
+  if (low < 0.0 && comparison.side != Side::either) {
+    reader.reject(fmt::format(
+        "may ask for the level {}: levels are at least 0 (or comparison: either)", low));
     return;
   }
   for (const double level : {low, high}) {
@@ -78,7 +79,7 @@ void read_tracks(MapReader& reader, const Protocol& protocol, const Stimulus* us
 }  // namespace
 
 std::optional<Comparison> read_comparison(MapReader& reader, const Protocol& protocol,
-                                          const Block& block) {
+                                          const Block& block, Sides sides) {
   Comparison comparison;
   const Stimulus* const family = family_of(protocol, block);
   const std::vector<std::string> axes =
@@ -94,8 +95,12 @@ std::optional<Comparison> read_comparison(MapReader& reader, const Protocol& pro
   comparison.standard = reader.number("standard", {-any, any}, own);
   comparison.is_fraction =
       reader.one_of<bool>("level", {{"fraction", true}, {"difference", false}}, "fraction");
-  comparison.is_below =
-      reader.one_of<bool>("comparison", {{"above", false}, {"below", true}}, "above");
+  comparison.side = reader.one_of<Side>(
+      "comparison", {{"above", Side::above}, {"below", Side::below}, {"either", Side::either}},
+      "above");
+  if (comparison.side == Side::either && sides == Sides::one) {
+    reader.reject("comparison", "lies on one side of the standard: above or below");
+  }
   const bool is_usable = is_known && check_value(reader, "standard", protocol, *family,
                                                  comparison.axis, comparison.standard);
   if (is_usable && comparison.is_fraction && comparison.standard <= 0.0) {

@@ -70,13 +70,26 @@ void warn_of_guess_rate(const protocols::TrackSettings& track, double of_task) {
   }
 }
 
+const char* words(protocols::Side side) {
+  switch (side) {
+    case protocols::Side::above:
+      return "above";
+    case protocols::Side::below:
+      return "below";
+    case protocols::Side::either:
+      break;
+  }
+  return "on either side";
+}
+
 void print_procedures(const protocols::Comparison& comparison, double guess_rate) {
   for (const auto& track : comparison.tracks) {
     const auto [low, high] = track->ranges().front();
     fmt::print("    at most {} trials of {}: {} against {:.6g}, from {:.6g} to {:.6g}\n",
-               track->max_trials(), comparison.axis, comparison.is_below ? "below" : "above",
-               comparison.standard, comparison.value_at(low), comparison.value_at(high));
-    warn_of_guess_rate(*track, guess_rate);
+               track->max_trials(), comparison.axis, words(comparison.side), comparison.standard,
+               comparison.value_at(low), comparison.value_at(high));
+    const bool starts_from_0 = comparison.side == protocols::Side::either;
+    warn_of_guess_rate(*track, starts_from_0 ? 0.0 : guess_rate);
   }
 }
 

@@ -77,7 +77,8 @@ void add_discrimination(const protocols::Block& block, const protocols::Protocol
   if (block.comparison) {
     const protocols::Comparison& comparison = *block.comparison;
     part.axis = analysis::VariedAxis{comparison.axis, comparison.standard, comparison.is_fraction,
-                                     comparison.is_below};
+                                     comparison.side == protocols::Side::below,
+                                     comparison.is_standard_right};
   }
 }
 

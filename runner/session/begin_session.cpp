@@ -38,6 +38,7 @@ void resume(const results::SessionRow& earlier, const protocols::Protocol& proto
         "one; resume with the version that began the session"};
   }
   session.row.resumes = earlier.id;
+  session.resumed_since_utc = earlier.started_utc;
   const auto as_given = store.answers_as_given(earlier.participant_id);
   session.earlier = {store.filled_forms(earlier.participant_id), PracticeRecord{as_given},
                      as_given};

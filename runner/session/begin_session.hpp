@@ -28,6 +28,7 @@ struct BegunSession {
   protocols::Schedule schedule;
   std::set<int> done;  // numbers of trials that are answered already
   EarlierAnswers earlier{};
+  std::string resumed_since_utc{};  // when the session began that is gone on with; empty: none
 };
 
 // Starts a new session, or resumes the participant's last one with its trial order; seed and order

@@ -19,6 +19,7 @@
 #include "runner/terminal/logging.hpp"
 #include "runner/terminal/no_flow_control.hpp"
 #include "runner/terminal/operator_prompt.hpp"
+#include "runner/terminal/say.hpp"
 #include "runner/terminal/session_lock.hpp"
 #include "runner/terminal/stop_signal.hpp"
 namespace tapstudy::runner {
@@ -55,6 +56,15 @@ SessionLock lock_of(const LiveSession& live) {
           fmt::format("participant '{}' is in a session of this study right now", id)};
 }
 
+void say_what_was_found(const BegunSession& session) {
+  if (session.resumed_since_utc.empty()) {
+    return;
+  }
+  const std::size_t done = session.done.size();
+  say("participant {} goes on with the session begun {}: {} of {} trials are done, {} left\n",
+      session.row.participant_id, session.resumed_since_utc, done, session.schedule.size(),
+      session.schedule.size() - done);
+}
 }  // namespace
 
 LiveOutcome run_live_session(const LiveSession& live) {
@@ -82,6 +92,7 @@ LiveOutcome run_live_session(const LiveSession& live) {
       request_of(live), live.protocol, live.rig,
       run_preflight(live.rig, *device, settings.period, inhibitor ? inhibitor->outcome() : ""),
       store);
+  say_what_was_found(session);
   device->begin_session(session.row.seed);
   const auto masking = masking_player(std::move(card), live.protocol, live.rig, session.row.seed);
   LiveTrials{{live, settings, models, device_request, input, ask_operator, masking.get(), markers,

@@ -1,7 +1,12 @@
 // A session that tells others what it does.
 #include <fmt/format.h>
+#include <unistd.h>
 
+#include <algorithm>
 #include <catch2/catch.hpp>
+#include <cstring>
+#include <iomanip>
+#include <sstream>
 
 #include "support/processes.hpp"
 #include "support/texts.hpp"
@@ -10,14 +15,20 @@ using Catch::Matchers::Contains;
 using testing::TempDirectory;
 
 namespace {
-testing::ProgramResult session(const TempDirectory& directory, const std::string& markers) {
+constexpr const char* answers = "1\n2\n3\n4\n1\n2\n3\n4\n";
+
+std::vector<std::string> session_line(const TempDirectory& directory, const std::string& markers) {
   testing::write(directory / "rig.yaml",
                  testing::contents(testing::shipped("rigs/simulated_hand.yaml")) +
                      "\nmarkers: " + markers + "\n");
-  return testing::tapstudy(
-      {"run", testing::shipped("paper/discrimination.yaml").string(), "--participant", "P01",
-       "--seed", "5", "--out", directory / "the_study", "--rig", directory / "rig.yaml"},
-      "1\n2\n3\n4\n1\n2\n3\n4\n");
+  return {"run",           testing::shipped("paper/discrimination.yaml").string(),
+          "--participant", "P01",
+          "--seed",        "5",
+          "--out",         directory / "the_study",
+          "--rig",         directory / "rig.yaml"};
+}
+testing::ProgramResult session(const TempDirectory& directory, const std::string& markers) {
+  return testing::tapstudy(session_line(directory, markers), answers);
 }
 // Python rounds as IEEE 754 asks; sqlite3's printf does not.
 std::string stored_changes(const TempDirectory& directory) {
@@ -41,6 +52,33 @@ TEST_CASE("the lines of a session are the rows of its changes of state",
   const std::string lines = testing::contents(directory / "markers.tsv");
   CHECK(std::ranges::count(lines, '\n') == 1 + 3 * 8 + 1);
   CHECK(lines == stored_changes(directory));
+}
+
+TEST_CASE("liblo's own oscdump reads the changes of state that are stored",
+          "[end_to_end][markers][threads]") {
+  const TempDirectory directory;
+  const std::string port = std::to_string(20'000 + getpid() % 20'000);
+  std::vector<std::string> line{
+      "/bin/sh",
+      "-c",
+      "oscdump -L $0 >$1 & reader=$!; shift; sleep 0.5; \"$@\"; sleep 0.5; kill $reader",
+      port,
+      directory / "dump",
+      TAPSTUDY_PROGRAM};
+  std::ranges::copy(session_line(directory, "{osc: {port: " + port + "}}"),
+                    std::back_inserter(line));
+  const auto run = testing::run_program(line, answers);
+  INFO(run.standard_error);
+  std::istringstream dump{testing::contents(directory / "dump")};
+  std::string read;
+  for (std::string time, address, types, t_s, number, detail;
+       dump >> time >> address >> types >> t_s >> number >> std::quoted(detail);) {
+    CHECK(types == "dis");
+    read += fmt::format("{}\t{}\t{}\t{}\n", t_s, address.substr(std::strlen("/tapstudy/")), number,
+                        detail);
+  }
+  CHECK(std::ranges::count(read, '\n') == 1 + 3 * 8 + 1);
+  CHECK(read == stored_changes(directory));
 }
 
 TEST_CASE("a session whose markers nobody reads goes on, and says so once",

@@ -62,6 +62,9 @@ TEST_CASE("a stopped session keeps its answers and is resumed at the next trial"
   const auto resumed = session(directory, "discrimination.yaml", "4\n4\n4\n4\n4\n", {"--resume"});
   INFO(resumed.standard_error);
   CHECK(resumed.exit_code == 0);
+  CHECK_THAT(resumed.standard_error,
+             Contains("participant P01 goes on with the session begun 20") &&
+                 Contains("3 of 8 trials are done, 5 left"));
   CHECK(sql(directory,
             "SELECT count(DISTINCT number), count(*) FROM trial "
             "WHERE status = 'answered'") == "8|8\n");

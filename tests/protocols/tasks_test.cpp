@@ -7,6 +7,7 @@
 #include "protocols/schedule.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;
+using Catch::Matchers::Contains;
 
 namespace {
 protocols::Protocol every_task() {
@@ -109,4 +110,50 @@ TEST_CASE("only trials that present a comparison beside a standard tell a proced
             (layout == "SC" || layout == "CS" ? std::optional<std::size_t>{1} : std::nullopt));
     }
   }
+}
+
+TEST_CASE("on either side the greater one is right, and procedures hear what was judged greater",
+          "[protocols][tasks]") {
+  const protocols::Protocol protocol =
+      protocols::read_protocol(testing::source("protocols/examples/stiffness_equality.yaml"));
+  const protocols::Block& block = protocol.blocks.front();
+  CHECK(block.task->statistic(block) == "equality");
+  protocols::PlannedTrial trial = make_schedule(protocol, 3, 0).front();
+  const bool is_first = trial.alternatives[0].is_comparison;
+  const std::string comparison = is_first ? "A" : "B";
+  const std::string standard = is_first ? "B" : "A";
+  for (const double level : {-0.4, 0.0, 0.66}) {
+    CAPTURE(level);
+    trial.alternatives[is_first ? 0 : 1].values = {
+        {block.comparison->axis, block.comparison->value_at(level)}};
+    const auto right = [&](const std::string& answer) {
+      return block.task->is_correct(trial, block, answer);
+    };
+    CHECK(right(comparison) == (level == 0.0 ? std::nullopt : std::optional{level > 0.0}));
+    CHECK(right(standard) == (level == 0.0 ? std::nullopt : std::optional{level < 0.0}));
+    CHECK(block.task->outcome(trial, block, comparison) == 1);
+    CHECK(block.task->outcome(trial, block, standard) == 0);
+  }
+}
+
+TEST_CASE("comparisons on either side are of two alternatives, and of the task comparison alone",
+          "[protocols][tasks]") {
+  const std::string text =
+      testing::contents(testing::source("protocols/examples/stiffness_equality.yaml"));
+  const testing::TempDirectory directory;
+  const auto said = [&](const std::string& from, const std::string& to) {
+    testing::write(directory / "study.yaml", testing::replaced(text, from, to));
+    try {
+      protocols::read_protocol(directory / "study.yaml");
+    } catch (const std::exception& error) {
+      return std::string{error.what()};
+    }
+    return std::string{};
+  };
+  CHECK_THAT(said("comparison: either", "comparison: above"),
+             Contains("levels are at least 0 (or comparison: either)"));
+  CHECK_THAT(said("comparison: either", "comparison: either\n    alternatives: 3"),
+             Contains("alternatives") && Contains("are two"));
+  CHECK_THAT(said("task: comparison", "task: abx"), Contains("one side of the standard"));
+  CHECK_THAT(said("[-0.5,", "[-0.9, -0.5,"), Contains("may ask for the level -0.9"));
 }

@@ -1,0 +1,90 @@
+#include "analysis/equality/equality_results.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "analysis/statistics/distributions.hpp"
+#include "analysis/thresholds/comparison_level.hpp"
+#include "core/error.hpp"
+namespace tapstudy::analysis {
+namespace {
+using results::AlternativeRow;
+using results::AnswerRow;
+constexpr double max_rate = 0.1;
+constexpr std::uint64_t test_seed = 1;
+
+bool is_judged_greater(const BlockDesign& design, const AnswerRow& answer) {
+  const auto named =
+      std::ranges::find(answer.alternatives, answer.response, &AlternativeRow::label);
+  if (named == answer.alternatives.end()) {
+    throw core::InvalidInput{
+        fmt::format("block '{}': '{}', the answer of {} to trial {}, names no "
+                    "alternative",
+                    design.name, answer.response, answer.participant_id, answer.number)};
+  }
+  return named->is_comparison != design.axis->is_smaller_asked;
+}
+
+void estimate(ParticipantEquality& person) {
+  const PsychometricModel model = equality_model();
+  const double quartile = normal_quantile(0.75);
+  try {
+    const PsychometricFit fit = fit_psychometric(model, person.levels);
+    if (!fit.curve) {
+      person.no_estimate = explanation(fit.outcome);
+      return;
+    }
+    const PsychometricIntervals intervals = profile_intervals(model, person.levels);
+    person.estimate = {*fit.curve,
+                       intervals.threshold,
+                       quartile / fit.curve->slope,
+                       {quartile / intervals.slope.high, quartile / intervals.slope.low}};
+  } catch (const core::InvalidInput& error) {  // too few levels
+    person.no_estimate = error.what();
+  }
+}
+
+void add_means(EqualityResults& results) {
+  std::vector<double> equalities;
+  std::vector<double> log_jnds;
+  for (const ParticipantEquality& person : results.participants) {
+    if (person.estimate) {
+      equalities.push_back(person.estimate->curve.threshold);
+      log_jnds.push_back(std::log10(person.estimate->jnd));
+    }
+  }
+  if (equalities.size() > 1) {
+    results.equality = paired_contrast(equalities, test_seed);
+    results.log_jnd = paired_contrast(log_jnds, test_seed);
+  }
+}
+}  // namespace
+
+PsychometricModel equality_model() {
+  return {core::PsychometricShape::cumulative_gaussian, {0.0, max_rate}, {0.0, max_rate}};
+}
+
+EqualityResults equality_results(const BlockDesign& design, const std::vector<AnswerRow>& answers) {
+  if (!design.axis) {
+    throw core::InvalidInput{fmt::format("block '{}': has no axis", design.name)};
+  }
+  std::map<std::string, ParticipantEquality> people;
+  for (const AnswerRow& answer : answers) {
+    ParticipantEquality& person = people[answer.participant_id];
+    person.participant_id = answer.participant_id;
+    if (const auto level = comparison_level(design, answer)) {
+      count_at(person.levels, *level, is_judged_greater(design, answer));
+    }
+  }
+  EqualityResults results;
+  for (auto& [name, person] : people) {
+    estimate(person);
+    results.participants.push_back(std::move(person));
+  }
+  add_means(results);
+  return results;
+}
+}  // namespace tapstudy::analysis

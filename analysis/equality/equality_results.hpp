@@ -1,0 +1,44 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "analysis/blocks/block_summary.hpp"
+#include "analysis/participants/paired_contrast.hpp"
+#include "analysis/psychometric/inference.hpp"
+namespace tapstudy::analysis {
+// Comparisons on either side of a standard: how often they are judged greater, from never to
+// always. Levels are VariedAxis::level_of, below the standard negative.
+
+// psi is a cumulative Gaussian with guess and lapse rates up to 0.1 (Wichmann & Hill 2001a), its
+// mean the point of subjective equality (PSE), 0.6745 of its standard deviation the just
+// noticeable difference (JND): half of the distance from F = 0.25 to F = 0.75.
+struct EqualityEstimate {
+  PsychometricCurve curve;
+  Interval equality;  // 95 %, by profile likelihood; of levels
+  double jnd{};       // a level
+  Interval jnd_interval;
+};
+
+struct ParticipantEquality {
+  std::string participant_id;
+  std::vector<Level> levels;  // judged greater, from low to high
+  std::optional<EqualityEstimate> estimate;
+  std::string no_estimate;  // why there is none; empty: there is
+};
+
+struct EqualityResults {
+  std::vector<ParticipantEquality> participants;  // by name
+  // Over participants with an estimate, each as one: of PSEs, whose distance from the standard is
+  // tested; and of log10 JNDs. Unset for fewer than two.
+  std::optional<PairedContrast> equality;
+  std::optional<PairedContrast> log_jnd;
+};
+
+PsychometricModel equality_model();
+
+// Throws InvalidInput where the block has no axis, a comparison has no value on it, or an answer
+// names no alternative.
+EqualityResults equality_results(const BlockDesign& design,
+                                 const std::vector<results::AnswerRow>& answers);
+}  // namespace tapstudy::analysis

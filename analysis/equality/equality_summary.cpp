@@ -1,0 +1,193 @@
+#include "analysis/equality/equality_summary.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "analysis/equality/equality_results.hpp"
+#include "analysis/tables/tabular_summary.hpp"
+namespace tapstudy::analysis {
+namespace {
+constexpr int points_of_curve = 60;
+
+double value_at(const VariedAxis& axis, double level) {
+  return axis.standard + (axis.is_fraction ? level * axis.standard : level);
+}
+Interval values_at(const VariedAxis& axis, const Interval& levels) {
+  return {value_at(axis, levels.low), value_at(axis, levels.high)};
+}
+double from_log(double log) {
+  return std::pow(10.0, log);
+}
+
+std::vector<Column> estimate_columns(const VariedAxis& axis) {
+  const std::string of_standard = axis.is_fraction ? ", of the standard" : ", " + axis.name;
+  return {interval_column(axis.name + " at equality (95 % CI)", "equality"),
+          interval_column("constant error" + of_standard, "constant_error"),
+          interval_column("just noticeable difference" + of_standard, "jnd")};
+}
+
+ReportTable participants_table(const VariedAxis& axis, const EqualityResults& results) {
+  ReportTable table{"participants",
+                    "Points of subjective equality and just noticeable differences",
+                    {column("participant", "participant_id")}};
+  std::ranges::copy(estimate_columns(axis), std::back_inserter(table.columns));
+  for (const ParticipantEquality& person : results.participants) {
+    std::vector<Cell> row{word(person.participant_id)};
+    if (const auto& of = person.estimate) {
+      row.push_back(interval(value_at(axis, of->curve.threshold), values_at(axis, of->equality)));
+      row.push_back(interval(of->curve.threshold, of->equality));
+      row.push_back(interval(of->jnd, of->jnd_interval));
+    } else {
+      std::ranges::transform(estimate_columns(axis), std::back_inserter(row),
+                             [](const Column& missing) { return nothing(missing); });
+    }
+    table.rows.push_back(row);
+  }
+  return table;
+}
+
+Cell mean_cell(double mean, const std::optional<Interval>& range) {
+  return range ? interval(mean, *range) : Cell{rounded(mean), {Value{mean}, Value{}, Value{}}};
+}
+
+ReportTable over_participants_table(const BlockDesign& design, const EqualityResults& results) {
+  const VariedAxis& axis = *design.axis;
+  ReportTable table{"over_participants",
+                    "Over participants: mean of the PSEs, geometric mean of the JNDs",
+                    {column("participants", "participants")}};
+  std::ranges::copy(estimate_columns(axis), std::back_inserter(table.columns));
+  table.columns.push_back(column("no constant error", "p"));
+  if (results.equality) {
+    const auto map = [](const std::optional<Interval>& range, auto to) {
+      return range ? std::optional{Interval{to(range->low), to(range->high)}} : std::nullopt;
+    };
+    const auto to_value = [&](double level) { return value_at(axis, level); };
+    const PairedContrast& equality = *results.equality;
+    table.rows.push_back(
+        {count(equality.participants),
+         mean_cell(to_value(equality.mean), map(equality.interval, to_value)),
+         mean_cell(equality.mean, equality.interval),
+         mean_cell(from_log(results.log_jnd->mean), map(results.log_jnd->interval, from_log)),
+         probability(design.premise.empty() ? std::optional{equality.p} : std::nullopt)});
+  }
+  return table;
+}
+
+ReportTable levels_table(const VariedAxis& axis, const EqualityResults& results) {
+  ReportTable table{
+      "levels",
+      "Comparisons that were judged greater",
+      {column("participant", "participant_id"), column("level", "level"),
+       column(axis.name, "value"), proportion_column("judged greater", "judged_greater")}};
+  table.is_for_programs = true;
+  for (const ParticipantEquality& person : results.participants) {
+    for (const Level& level : person.levels) {
+      table.rows.push_back({word(person.participant_id), number(level.value, 9),
+                            number(value_at(axis, level.value), 9), proportion(level.answers)});
+    }
+  }
+  return table;
+}
+
+std::vector<std::string> remarks_on(const BlockDesign& design, const EqualityResults& results) {
+  if (results.participants.empty()) {
+    return {"There are no answers."};
+  }
+  std::vector<std::string> remarks{
+      fmt::format("The standard is {:.6g}. A cumulative Gaussian of how often the comparison is "
+                  "judged greater, by maximum likelihood, guess and lapse rate from 0 to 0.1; "
+                  "intervals by profile likelihood. At equality it is at 50 %; the just noticeable "
+                  "difference is half of the distance from 25 to 75 %, without guesses and lapses.",
+                  design.axis->standard)};
+  for (const ParticipantEquality& person : results.participants) {
+    if (!person.estimate) {
+      remarks.push_back(fmt::format("{} has no point of equality: {}.", person.participant_id,
+                                    person.no_estimate));
+    }
+  }
+  if (!results.equality) {
+    remarks.emplace_back("No mean over participants: it takes two with a point of equality.");
+  } else {
+    remarks.push_back(
+        design.premise.empty()
+            ? "Means over participants with intervals by Student's t; p: two-sided, by exchanging "
+              "the signs of the participants' constant errors."
+            : "Means over participants with intervals by Student's t. Not tested: " +
+                  design.premise + ".");
+  }
+  return remarks;
+}
+
+Chart chart_of(const ParticipantEquality& person, const Interval& range) {
+  Chart chart{fmt::format("{}: comparison judged greater; areas by trials", person.participant_id),
+              fmt::format("Psychometric function of {}", person.participant_id),
+              "level, 0: the standard",
+              "judged greater",
+              range,
+              {0.0, 1.0}};
+  std::int64_t most = 1;
+  for (const Level& level : person.levels) {
+    most = std::max(most, level.answers.trials);
+  }
+  for (const Level& level : person.levels) {
+    chart.points.push_back({level.value, level.answers.value(),
+                            static_cast<double>(level.answers.trials) / static_cast<double>(most)});
+  }
+  chart.levels = {0.5};
+  if (!person.estimate) {
+    return chart;
+  }
+  const PsychometricCurve& curve = person.estimate->curve;
+  for (int i = 0; i <= points_of_curve; ++i) {
+    const double x = range.low + (range.high - range.low) * i / points_of_curve;
+    chart.line.push_back({x, core::proportion(equality_model().shape, x, curve.threshold,
+                                              curve.slope, curve.guess, curve.lapse)});
+  }
+  chart.bars = {{0.5 * (1.0 + curve.guess - curve.lapse), person.estimate->equality}};
+  chart.alternative +=
+      ", equality at the level " + with_interval(curve.threshold, person.estimate->equality);
+  return chart;
+}
+
+std::vector<Chart> charts_of(const EqualityResults& results) {
+  std::vector<double> levels;
+  for (const ParticipantEquality& person : results.participants) {
+    std::ranges::transform(person.levels, std::back_inserter(levels), &Level::value);
+  }
+  std::vector<Chart> charts;
+  for (const ParticipantEquality& person : results.participants) {
+    if (!person.levels.empty()) {
+      charts.push_back(chart_of(person, range_of(levels, false)));
+    }
+  }
+  return charts;
+}
+}  // namespace
+
+std::shared_ptr<BlockSummary> summarise_equality(const BlockDesign& design, const BlockRows& rows) {
+  const EqualityResults results = equality_results(design, rows.answers);
+  const VariedAxis& axis = *design.axis;
+  auto summary = std::make_shared<TabularSummary>(design);
+  summary->parts = {participants_table(axis, results), over_participants_table(design, results),
+                    levels_table(axis, results)};
+  summary->charts = charts_of(results);
+  summary->remarks = remarks_on(design, results);
+  if (results.equality && results.equality->interval) {
+    summary->main = {{"point of subjective equality, " + axis.name,
+                      value_at(axis, results.equality->mean),
+                      values_at(axis, *results.equality->interval),
+                      design.premise.empty() ? std::optional{results.equality->p} : std::nullopt}};
+  }
+  for (const PlannedHypothesis& planned : design.hypotheses) {
+    summary->hypotheses.push_back({planned,
+                                   "points of equality are estimated; no test counts right answers",
+                                   {},
+                                   design.guess_rate,
+                                   {},
+                                   0.0});
+  }
+  return summary;
+}
+}  // namespace tapstudy::analysis

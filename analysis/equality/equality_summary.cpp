@@ -21,18 +21,18 @@ double from_log(double log) {
   return std::pow(10.0, log);
 }
 
-std::vector<Column> estimate_columns(const VariedAxis& axis) {
-  const std::string of_standard = axis.is_fraction ? ", of the standard" : ", " + axis.name;
-  return {interval_column(axis.name + " at equality (95 % CI)", "equality"),
-          interval_column("constant error" + of_standard, "constant_error"),
-          interval_column("just noticeable difference" + of_standard, "jnd")};
+std::vector<Column> estimate_columns() {
+  return {interval_column("PSE (95 % CI)", "equality"),
+          interval_column("constant error", "constant_error"), interval_column("JND", "jnd")};
 }
 
 ReportTable participants_table(const VariedAxis& axis, const EqualityResults& results) {
   ReportTable table{"participants",
-                    "Points of subjective equality and just noticeable differences",
+                    fmt::format("Points of subjective equality (PSE, {}), constant errors and just "
+                                "noticeable differences (JND){}",
+                                axis.name, axis.is_fraction ? " as fractions of the standard" : ""),
                     {column("participant", "participant_id")}};
-  std::ranges::copy(estimate_columns(axis), std::back_inserter(table.columns));
+  std::ranges::copy(estimate_columns(), std::back_inserter(table.columns));
   for (const ParticipantEquality& person : results.participants) {
     std::vector<Cell> row{word(person.participant_id)};
     if (const auto& of = person.estimate) {
@@ -40,7 +40,7 @@ ReportTable participants_table(const VariedAxis& axis, const EqualityResults& re
       row.push_back(interval(of->curve.threshold, of->equality));
       row.push_back(interval(of->jnd, of->jnd_interval));
     } else {
-      std::ranges::transform(estimate_columns(axis), std::back_inserter(row),
+      std::ranges::transform(estimate_columns(), std::back_inserter(row),
                              [](const Column& missing) { return nothing(missing); });
     }
     table.rows.push_back(row);
@@ -57,7 +57,7 @@ ReportTable over_participants_table(const BlockDesign& design, const EqualityRes
   ReportTable table{"over_participants",
                     "Over participants: mean of the PSEs, geometric mean of the JNDs",
                     {column("participants", "participants")}};
-  std::ranges::copy(estimate_columns(axis), std::back_inserter(table.columns));
+  std::ranges::copy(estimate_columns(), std::back_inserter(table.columns));
   table.columns.push_back(column("no constant error", "p"));
   if (results.equality) {
     const auto map = [](const std::optional<Interval>& range, auto to) {

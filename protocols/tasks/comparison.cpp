@@ -5,8 +5,8 @@
 #include "protocols/yaml/yaml_reader.hpp"
 namespace tapstudy::protocols {
 namespace {
-constexpr const char* standard_key = "the standard";
-constexpr const char* comparison_key = "the greatest comparison";
+constexpr const char* least_key = "the least";
+constexpr const char* greatest_key = "the greatest";
 
 // m-alternative forced choice: one alternative differs from the others, which? Or, where the
 // standard is asked for, which of two is the standard?
@@ -56,10 +56,12 @@ class ComparisonTask final : public DiscriminationTask {
   std::vector<Remembered> remembered(const Block& block,
                                      const Simulation& /*simulation*/) const override {
     const Comparison& comparison = *block.comparison;
-    const double most = comparison.value_at(comparison.tracks.front()->ranges().front().second);
+    const auto [low, high] = comparison.tracks.front()->ranges().front();
+    const double least = is_on_either_side(block) ? comparison.value_at(low) : comparison.standard;
     const std::string& family = block.stimuli.front();
-    return {{block.name + standard_key, family, {{comparison.axis, comparison.standard}}, false},
-            {block.name + comparison_key, family, {{comparison.axis, most}}, false}};
+    return {
+        {block.name + least_key, family, {{comparison.axis, least}}, false},
+        {block.name + greatest_key, family, {{comparison.axis, comparison.value_at(high)}}, false}};
   }
   std::string simulated_answer(const Block& block, const Simulation& simulation,
                                SimulatedTouch& touch) const override {
@@ -67,8 +69,7 @@ class ComparisonTask final : public DiscriminationTask {
     visit_all(alternatives, simulation, touch);
     std::vector<double> positions;
     for (std::size_t i = 0; i < alternatives; ++i) {
-      positions.push_back(
-          touch.position(i, block.name + standard_key, block.name + comparison_key));
+      positions.push_back(touch.position(i, block.name + least_key, block.name + greatest_key));
     }
     const auto picked = block.comparison->is_standard_right ? std::ranges::min_element(positions)
                                                             : std::ranges::max_element(positions);

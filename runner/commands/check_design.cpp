@@ -162,6 +162,10 @@ void print_languages(const protocols::Protocol& protocol) {
 }  // namespace
 
 void print_design(const protocols::Protocol& protocol, int participants) {
+  if (protocol.blocks.empty()) {
+    fmt::print("{}\n\n  no blocks, so no session: for tap, modes and trade\n", protocol.title);
+    return;
+  }
   print_blocks(protocol, participants);
   if (protocol.masking) {
     fmt::print("\nmasking\n  {}\n", described(*protocol.masking));

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <ranges>
 #include <set>
+#include <utility>
 
 #include "analysis/statistics/distributions.hpp"
 #include "analysis/statistics/quantiles.hpp"
@@ -159,8 +159,11 @@ DiscriminationResults discrimination_results(const BlockDesign& design,
     results.participants.push_back(participant_of(design, name, counts, results.model));
   }
   for (const auto& [stimuli, correct] : pairs) {
-    const auto shares = correct | std::views::values;
-    results.pairs.push_back({stimuli, {shares.begin(), shares.end()}});
+    DiscriminationResults::Pair pair{stimuli, {}};
+    for (const auto& [name, of_participant] : correct) {
+      pair.correct.push_back(of_participant);
+    }
+    results.pairs.push_back(std::move(pair));
   }
   results.mean_d_prime = mean_d_prime(results.participants);
   if (design.premise.empty()) {

@@ -4,6 +4,7 @@
 #include <librsvg/rsvg.h>
 
 #include <memory>
+#include <vector>
 
 #include "core/error.hpp"
 namespace tapstudy::analysis {
@@ -33,8 +34,8 @@ cairo_status_t append(void* pdf, const unsigned char* data, unsigned int length)
 
 std::string pdf_of_svg(const std::string& svg) {
   GError* error = nullptr;
-  const Owned<RsvgHandle> handle{
-      rsvg_handle_new_from_data(reinterpret_cast<const guint8*>(svg.data()), svg.size(), &error)};
+  const std::vector<guint8> bytes(svg.begin(), svg.end());
+  const Owned<RsvgHandle> handle{rsvg_handle_new_from_data(bytes.data(), bytes.size(), &error)};
   RsvgRectangle page{};
   if (!handle ||
       rsvg_handle_get_intrinsic_size_in_pixels(handle.get(), &page.width, &page.height) == FALSE) {

@@ -96,9 +96,11 @@ PreferenceResults preference_results(const BlockDesign& design,
   std::map<std::string, ParticipantPreferences> people;
   for (const AnswerRow& answer : answers) {
     const Comparison comparison = comparison_of(design, answer);
-    ParticipantPreferences& own =
-        people.try_emplace(answer.participant_id, answer.participant_id, no_counts(design))
-            .first->second;
+    ParticipantPreferences& own = people[answer.participant_id];
+    if (own.participant_id.empty()) {
+      own.participant_id = answer.participant_id;
+      own.counts = no_counts(design);
+    }
     ++own.counts.wins(comparison.preferred, comparison.other);
     ++results.counts.wins(comparison.preferred, comparison.other);
     ++own.first_position.trials;

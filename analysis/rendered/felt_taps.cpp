@@ -61,7 +61,7 @@ void FeltTaps::add_extents(const FeltTick& tick, std::array<double, 6>& peaks_n)
   }
 }
 
-void FeltTaps::add_spectrum(const Tap& tap) {
+void FeltTaps::add_spectrum(const FeltTap& tap) {
   std::vector<double> force(window_.ticks(), 0.0);
   std::ranges::transform(tap.ticks, force.begin(), added_n);
   std::vector<std::complex<double>> transformed;
@@ -72,7 +72,7 @@ void FeltTaps::add_spectrum(const Tap& tap) {
   }
 }
 
-void FeltTaps::add(const Tap& tap) {
+void FeltTaps::add(const FeltTap& tap) {
   std::array<double, 6> peaks_n{};
   speeds_m_s_.push_back(tap.speed_m_s);
   for (std::size_t k = 0; k < tap.ticks.size(); ++k) {

@@ -37,7 +37,7 @@ struct ForceExtent {
 class FeltTaps {
  public:
   explicit FeltTaps(const TapWindow& window);
-  void add(const Tap& tap);
+  void add(const FeltTap& tap);
 
   std::int64_t taps() const { return taps_at_.empty() ? 0 : taps_at_.front(); }
   const TapWindow& window() const { return window_; }
@@ -63,7 +63,7 @@ class FeltTaps {
 
  private:
   void add_extents(const FeltTick& tick, std::array<double, 6>& peaks_n);
-  void add_spectrum(const Tap& tap);
+  void add_spectrum(const FeltTap& tap);
 
   TapWindow window_;
   std::vector<double> speeds_m_s_;

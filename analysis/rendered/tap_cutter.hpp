@@ -16,7 +16,7 @@ struct FeltTick {
 
 // A tap as it was felt. ticks[k] is k periods of the loop after the impact: where ticks were
 // skipped the force of the tick before, which the device held. Out of contact forces are zero.
-struct Tap {
+struct FeltTap {
   std::array<double, 3> position_m{};  // of the hand at the impact, device frame
   double speed_m_s{};                  // along the normal, towards the plate
   std::uint8_t alternative{};          // that was rendered, from 0
@@ -35,7 +35,7 @@ struct TapWindow {
 // its window, at the next tap, at a switch to another alternative, at a fault and with its trial.
 class TapCutter {
  public:
-  using Take = std::function<void(const Tap&)>;
+  using Take = std::function<void(const FeltTap&)>;
   TapCutter(const TapWindow& window, Take take);
   // Samples of one trial, in order.
   void add(const core::TraceSample& sample);
@@ -49,7 +49,7 @@ class TapCutter {
 
   TapWindow window_;
   Take take_;
-  Tap tap_;                    // without ticks: none is under way
+  FeltTap tap_;                // without ticks: none is under way
   std::int64_t impact_ns_{};   // of the tap
   std::int64_t release_ns_{};  // the first tick without contact since the last one in contact
   bool was_touching_{};

@@ -60,7 +60,7 @@ class TapSorter {
   TapSorter(const Protocol& protocol, RenderedStudy& study)
       : protocol_{protocol},
         study_{study},
-        cutter_{{protocol.rate_hz}, [this](const analysis::Tap& tap) { sort(tap); }} {
+        cutter_{{protocol.rate_hz}, [this](const analysis::FeltTap& tap) { sort(tap); }} {
     for (std::size_t i = 0; i < study.stimuli.size(); ++i) {
       places_[study.stimuli[i].name] = i;
     }
@@ -91,7 +91,7 @@ class TapSorter {
   }
 
  private:
-  void sort(const analysis::Tap& tap) {
+  void sort(const analysis::FeltTap& tap) {
     const auto& alternatives = trial_->alternatives;
     if (alternatives.empty()) {
       return;

@@ -77,24 +77,24 @@ bool Method::confirms() const {
   return std::ranges::all_of(measures, &Measure::holds);
 }
 
-std::string_view name(Verdict verdict) {
+std::string_view name(ClaimVerdict verdict) {
   switch (verdict) {
-    case Verdict::confirmed:
+    case ClaimVerdict::confirmed:
       return "true";
-    case Verdict::refuted:
+    case ClaimVerdict::refuted:
       return "false";
-    case Verdict::depends:
+    case ClaimVerdict::depends:
       break;
   }
   return "depends";
 }
 
-Verdict Claim::verdict() const {
+ClaimVerdict Claim::verdict() const {
   const auto confirming = std::ranges::count_if(methods, &Method::confirms);
   if (confirming == 0) {
-    return Verdict::refuted;
+    return ClaimVerdict::refuted;
   }
-  return confirming == std::ssize(methods) ? Verdict::confirmed : Verdict::depends;
+  return confirming == std::ssize(methods) ? ClaimVerdict::confirmed : ClaimVerdict::depends;
 }
 
 std::vector<std::string> Claim::reasons() const {

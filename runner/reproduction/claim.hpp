@@ -38,9 +38,9 @@ struct Method {
   bool confirms() const;
 };
 
-enum class Verdict { confirmed, refuted, depends };
+enum class ClaimVerdict { confirmed, refuted, depends };
 // "true", "false", "depends"
-std::string_view name(Verdict verdict);
+std::string_view name(ClaimVerdict verdict);
 
 // Drawn on the page below a heading of its own; `svg` is complete, with its caption.
 struct Drawing {
@@ -58,7 +58,7 @@ struct Claim {
   std::vector<Measure> findings{};  // beside the judgement: what would give it, and the like
   std::vector<std::string> remarks{};
   std::vector<Drawing> drawings{};
-  Verdict verdict() const;
+  ClaimVerdict verdict() const;
   // By which methods it holds, and of each of the others the measures that do not.
   std::vector<std::string> reasons() const;
 };

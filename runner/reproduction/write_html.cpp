@@ -92,7 +92,7 @@ std::string confirming(const Claim& claim) {
       names.push_back(method.name);
     }
   }
-  return claim.verdict() == Verdict::depends ? fmt::format("{}", fmt::join(names, "; ")) : "";
+  return claim.verdict() == ClaimVerdict::depends ? fmt::format("{}", fmt::join(names, "; ")) : "";
 }
 
 void write_overview(std::ostream& out, const Reproduction& reproduction) {

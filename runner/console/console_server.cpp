@@ -7,6 +7,7 @@
 
 #include <chrono>
 #include <cstring>
+#include <future>
 #include <thread>
 #include <vector>
 
@@ -85,6 +86,12 @@ std::optional<std::string> body_of(mg_connection* connection) {
     have += static_cast<std::size_t>(count);
   }
   return body;
+}
+
+// The library's threads have 100 kB of stack, which parsers and exceptions can exceed.
+template <class Work>
+Reply on_full_stack(Work work) {
+  return std::async(std::launch::async, std::move(work)).get();
 }
 
 class OpenPage {
@@ -231,7 +238,7 @@ int ConsoleServer::serve(mg_connection* connection, Role role, const std::string
     return 200;
   }
   if (method == "GET") {
-    return send(connection, api_.get(role, path));
+    return send(connection, on_full_stack([&] { return api_.get(role, path); }));
   }
   if (method != "POST" || header(connection, "X-Tapstudy") != "1") {
     return send(connection, refusal(405));
@@ -241,7 +248,8 @@ int ConsoleServer::serve(mg_connection* connection, Role role, const std::string
   }
   if (path == "input") {
     const auto body = body_of(connection);
-    return send(connection, body ? api_.post_input(role, *body) : refusal(413));
+    return send(connection,
+                body ? on_full_stack([&] { return api_.post_input(role, *body); }) : refusal(413));
   }
   return send(connection, refusal(405));
 }

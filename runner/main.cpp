@@ -70,8 +70,8 @@ int main(int argc, char** argv) {
     return static_cast<int>(code);
   } catch (const std::exception& error) {
     const bool lacks_memory = dynamic_cast<const std::bad_alloc*>(&error) != nullptr;
-    // which may be closed: nothing more can be done then
-    std::fputs(lacks_memory ? "not enough memory for so much" : error.what(), stderr);
+    // where standard error is closed, nothing more can be done
+    std::fputs(lacks_memory ? "not enough memory" : error.what(), stderr);
     std::fputs("\n", stderr);
     return static_cast<int>(code_of(error));
   }

@@ -8,11 +8,6 @@
 #include "analysis/tables/tabular_summary.hpp"
 namespace tapstudy::analysis {
 namespace {
-Cell mean_cell(const MeanOfSettings& of) {
-  return of.interval ? interval(of.mean, *of.interval)
-                     : Cell{rounded(of.mean), {Value{of.mean}, Value{}, Value{}}};
-}
-
 // What is estimated over participants, a row each.
 struct Estimate {
   std::string name;
@@ -45,7 +40,7 @@ ReportTable estimates_table(const AdjustedAxis& axis, const AdjustmentResults& r
       continue;
     }
     const auto& drawn = row.of->bootstrap;
-    table.rows.push_back({word(row.name), word(row.unit), mean_cell(*row.of),
+    table.rows.push_back({word(row.name), word(row.unit), interval(row.of->mean, row.of->interval),
                           drawn ? interval(row.of->mean, *drawn) : nothing(table.columns[3]),
                           count(row.of->participants),
                           probability(row.test ? std::optional{row.test->p} : std::nullopt)});

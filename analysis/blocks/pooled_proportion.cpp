@@ -9,16 +9,12 @@ Cell pooled_proportion(const std::vector<Proportion>& participants) {
   if (participants.size() == 1) {
     return proportion(participants.front());
   }
-  Proportion all;
-  for (const Proportion& of : participants) {
-    all.successes += of.successes;
-    all.trials += of.trials;
-  }
+  const Proportion all = sum(participants);
   if (all.trials == 0) {
     return proportion(all);
   }
   Cell cell = counted(all);
-  if (const auto over = mean_proportion(participants)) {
+  if (const auto over = beta_binomial_mean(participants)) {
     cell.text += fmt::format(" (95 % CI {})", percent_range(over->interval));
     cell.values.insert(cell.values.end(), {over->interval.low, over->interval.high});
   } else {

@@ -25,6 +25,10 @@ std::string percent(const Proportion& proportion) {
   return proportion.trials == 0 ? "–" : fmt::format("{:.0f} %", 100.0 * proportion.value());
 }
 
+std::string fraction_and_percent(const Proportion& proportion) {
+  return fmt::format("{} = {}", fraction(proportion), percent(proportion));
+}
+
 std::string with_interval(const Proportion& proportion) {
   if (proportion.trials == 0) {
     return "no answers";

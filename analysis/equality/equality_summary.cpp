@@ -6,11 +6,10 @@
 #include <cmath>
 
 #include "analysis/equality/equality_results.hpp"
+#include "analysis/tables/psychometric_chart.hpp"
 #include "analysis/tables/tabular_summary.hpp"
 namespace tapstudy::analysis {
 namespace {
-constexpr int points_of_curve = 60;
-
 double value_at(const VariedAxis& axis, double level) {
   return axis.standard + (axis.is_fraction ? level * axis.standard : level);
 }
@@ -48,10 +47,6 @@ ReportTable participants_table(const VariedAxis& axis, const EqualityResults& re
   return table;
 }
 
-Cell mean_cell(double mean, const std::optional<Interval>& range) {
-  return range ? interval(mean, *range) : Cell{rounded(mean), {Value{mean}, Value{}, Value{}}};
-}
-
 ReportTable over_participants_table(const BlockDesign& design, const EqualityResults& results) {
   const VariedAxis& axis = *design.axis;
   ReportTable table{"over_participants",
@@ -67,9 +62,9 @@ ReportTable over_participants_table(const BlockDesign& design, const EqualityRes
     const PairedContrast& equality = *results.equality;
     table.rows.push_back(
         {count(equality.participants),
-         mean_cell(to_value(equality.mean), map(equality.interval, to_value)),
-         mean_cell(equality.mean, equality.interval),
-         mean_cell(from_log(results.log_jnd->mean), map(results.log_jnd->interval, from_log)),
+         interval(to_value(equality.mean), map(equality.interval, to_value)),
+         interval(equality.mean, equality.interval),
+         interval(from_log(results.log_jnd->mean), map(results.log_jnd->interval, from_log)),
          probability(design.premise.empty() ? std::optional{equality.p} : std::nullopt)});
   }
   return table;
@@ -127,24 +122,13 @@ Chart chart_of(const ParticipantEquality& person, const Interval& range) {
               "judged greater",
               range,
               {0.0, 1.0}};
-  std::int64_t most = 1;
-  for (const Level& level : person.levels) {
-    most = std::max(most, level.answers.trials);
-  }
-  for (const Level& level : person.levels) {
-    chart.points.push_back({level.value, level.answers.value(),
-                            static_cast<double>(level.answers.trials) / static_cast<double>(most)});
-  }
+  chart.points = level_points(person.levels);
   chart.levels = {0.5};
   if (!person.estimate) {
     return chart;
   }
   const PsychometricCurve& curve = person.estimate->curve;
-  for (int i = 0; i <= points_of_curve; ++i) {
-    const double x = range.low + (range.high - range.low) * i / points_of_curve;
-    chart.line.push_back({x, core::proportion(equality_model().shape, x, curve.threshold,
-                                              curve.slope, curve.guess, curve.lapse)});
-  }
+  chart.line = curve_points(chart, equality_model().shape, curve);
   chart.bars = {{0.5 * (1.0 + curve.guess - curve.lapse), person.estimate->equality}};
   chart.alternative +=
       ", equality at the level " + with_interval(curve.threshold, person.estimate->equality);

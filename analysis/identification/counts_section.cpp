@@ -51,15 +51,11 @@ void add_group(const IdentificationData& data, const Grouping& grouping, ReportT
                ReportTable& cells) {
   const GroupCounts counts = counted(data, grouping);
   for (std::size_t level = 0; level < grouping.levels.size(); ++level) {
-    Proportion all;
-    for (const Proportion& of : counts.right[level]) {
-      all.successes += of.successes;
-      all.trials += of.trials;
-    }
+    const Proportion all = sum(counts.right[level]);
     if (all.trials == 0) {
       continue;
     }
-    const auto over = mean_proportion(counts.right[level]);
+    const auto over = beta_binomial_mean(counts.right[level]);
     shares.rows.push_back(
         {word(grouping.name), word(grouping.levels[level]), counted(all),
          over ? Cell{percent_range(over->interval), {over->interval.low, over->interval.high}}

@@ -13,7 +13,7 @@ std::string with_interval(const Proportion& pooled, const std::optional<MeanProp
   if (pooled.trials == 0) {
     return "no answers";
   }
-  const std::string counted = fmt::format("{} = {}", fraction(pooled), percent(pooled));
+  const std::string counted = fraction_and_percent(pooled);
   return over ? fmt::format("{} (95 % CI over {} participants {})", counted, over->participants,
                             percent_range(over->interval))
               : fmt::format("{} ({} if answers are independent)", counted,

@@ -68,11 +68,7 @@ std::vector<Proportion> answered(const std::vector<Proportion>& participants) {
 
 // Of all answers, with its negative log likelihood.
 Minimum pooled_share(const std::vector<Proportion>& people) {
-  Proportion all;
-  for (const Proportion& of : people) {
-    all.successes += of.successes;
-    all.trials += of.trials;
-  }
+  const Proportion all = sum(people);
   return {all.value(), -profile_at(people, all.value()).log_likelihood};
 }
 
@@ -149,7 +145,7 @@ std::optional<Interval> bca_interval(const std::vector<double>& values, int draw
   return Interval{quantile(means, level(-z)), quantile(means, level(z))};
 }
 
-std::optional<MeanProportion> mean_proportion(const std::vector<Proportion>& participants) {
+std::optional<BetaBinomialMean> beta_binomial_mean(const std::vector<Proportion>& participants) {
   const std::vector<Proportion> people = answered(participants);
   if (people.size() < 2) {
     return std::nullopt;
@@ -159,15 +155,19 @@ std::optional<MeanProportion> mean_proportion(const std::vector<Proportion>& par
   // without correlation it is the share of all answers
   const Minimum pooled = pooled_share(people);
   best = pooled.value <= best.value + indistinguishable ? pooled : best;
-  MeanProportion result;
-  result.participants = static_cast<int>(people.size());
-  result.mean = best.at;
   const double eta = profile_at(people, best.at).eta;
-  result.intraclass_correlation = eta * eta;
-  result.interval = profile_interval(people, best.at, -best.value);
+  return BetaBinomialMean{static_cast<int>(people.size()), best.at, eta * eta,
+                          profile_interval(people, best.at, -best.value)};
+}
+
+std::optional<MeanProportion> mean_proportion(const std::vector<Proportion>& participants) {
+  const auto model = beta_binomial_mean(participants);
+  if (!model) {
+    return std::nullopt;
+  }
   std::vector<double> shares;
-  std::ranges::transform(people, std::back_inserter(shares), &Proportion::value);
-  result.mean_of_shares = mean_of(shares);
+  std::ranges::transform(answered(participants), std::back_inserter(shares), &Proportion::value);
+  MeanProportion result{*model, mean_of(shares), {}, {}};
   if (!are_equal(shares)) {
     result.t = within_shares(t_interval(shares));
     result.bootstrap = bca_interval(shares, bootstrap_draws, bootstrap_seed);

@@ -8,20 +8,25 @@ namespace tapstudy::analysis {
 // The share of right answers over participants who differ, of whom those at hand are a sample.
 // Answers of one participant are not independent of one another, so that the score interval of all
 // answers pooled is too short.
-struct MeanProportion {
-  int participants{};                 // with answers
-  double mean{};                      // of the beta-binomial distribution, by maximum likelihood
-  double intraclass_correlation{};    // of the same; 0: participants do not differ
-  Interval interval;                  // 95 %, profile likelihood, see below
-  double mean_of_shares{};            // of the participants' shares
-  std::optional<Interval> t;          // 95 %, of that; unset if all shares are equal
-  std::optional<Interval> bootstrap;  // 95 %, of that, by bca_interval; unset likewise
+struct BetaBinomialMean {
+  int participants{};               // with answers
+  double mean{};                    // of the distribution, by maximum likelihood
+  double intraclass_correlation{};  // of the same; 0: participants do not differ
+  Interval interval;                // 95 %, profile likelihood, see below
 };
 // k_i right of n_i are beta-binomial with one mean and one intra-class correlation (Williams 1975).
 // The interval holds the means whose profile likelihood is 2 (l_max - l(mean)) <= t^2, with t the
 // 97.5 % quantile of Student's t with participants - 1 degrees of freedom in place of the normal
 // one: that keeps its coverage with few participants. Throws InvalidInput for counts that are not
 // possible; unset for fewer than two participants with answers.
+std::optional<BetaBinomialMean> beta_binomial_mean(const std::vector<Proportion>& participants);
+
+// The same with the mean of the participants' shares.
+struct MeanProportion : BetaBinomialMean {
+  double mean_of_shares{};
+  std::optional<Interval> t;          // 95 %, of that mean; unset if all shares are equal
+  std::optional<Interval> bootstrap;  // 95 %, of that mean, by bca_interval; unset likewise
+};
 std::optional<MeanProportion> mean_proportion(const std::vector<Proportion>& participants);
 
 // The 95 % interval of a mean by the bootstrap, corrected for bias and acceleration (Efron 1987;

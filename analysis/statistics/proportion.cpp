@@ -37,6 +37,15 @@ void each_outcome(std::vector<int>& counts, std::size_t place, int left,
 }
 }  // namespace
 
+Proportion sum(const std::vector<Proportion>& parts) {
+  Proportion all;
+  for (const Proportion& part : parts) {
+    all.successes += part.successes;
+    all.trials += part.trials;
+  }
+  return all;
+}
+
 Interval wilson_interval(const Proportion& proportion) {
   const double z = boost::math::quantile(boost::math::normal{}, 0.975);
   const auto n = static_cast<double>(proportion.trials);

@@ -17,6 +17,8 @@ struct Proportion {
   }
 };
 
+Proportion sum(const std::vector<Proportion>& parts);
+
 // The 95 % score interval of a proportion (Wilson 1927). trials > 0.
 Interval wilson_interval(const Proportion& proportion);
 

@@ -57,6 +57,10 @@ Cell interval(double value, const Interval& interval) {
   return {with_interval(value, interval), {value, interval.low, interval.high}};
 }
 
+Cell interval(double value, const std::optional<Interval>& range) {
+  return range ? interval(value, *range) : Cell{rounded(value), {value, Value{}, Value{}}};
+}
+
 Cell proportion(const Proportion& proportion) {
   if (proportion.trials == 0) {
     return {with_interval(proportion),
@@ -69,7 +73,7 @@ Cell proportion(const Proportion& proportion) {
 }
 
 Cell counted(const Proportion& proportion) {
-  return {fmt::format("{} = {}", fraction(proportion), percent(proportion)),
+  return {fraction_and_percent(proportion),
           {proportion.successes, proportion.trials,
            proportion.trials == 0 ? Value{} : Value{proportion.value()}}};
 }

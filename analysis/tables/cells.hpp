@@ -44,6 +44,8 @@ Cell number(const std::optional<double>& value);  // "–" if unset
 Cell share(double value);                         // "54 %"
 Cell probability(const std::optional<double>& p);
 Cell interval(double value, const Interval& interval);
+// Of one that may have no interval.
+Cell interval(double value, const std::optional<Interval>& interval);
 // Values: successes, trials, their ratio and its 95 % score interval.
 Cell proportion(const Proportion& proportion);
 // Values: successes, trials, their ratio. "43/80 = 54 %"

@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/tables/psychometric_chart.hpp"
 #include "analysis/thresholds/threshold_tables.hpp"
 namespace tapstudy::analysis {
 namespace {
-constexpr int points_of_curve = 60;
-
 std::vector<double> levels_of(const ThresholdResults& results) {
   std::vector<double> levels;
   for (const ParticipantThreshold& person : results.participants) {
@@ -16,22 +15,6 @@ std::vector<double> levels_of(const ThresholdResults& results) {
     }
   }
   return levels;
-}
-
-std::vector<ChartPoint> curve_points(const Chart& chart, const PsychometricCurve& curve) {
-  std::vector<ChartPoint> line;
-  for (int i = 0; i <= points_of_curve; ++i) {
-    const double along = static_cast<double>(i) / points_of_curve;
-    const double x =
-        chart.is_x_logarithmic
-            ? chart.x_range.low * std::pow(chart.x_range.high / chart.x_range.low, along)
-            : chart.x_range.low + along * (chart.x_range.high - chart.x_range.low);
-    if (x >= 0.0) {
-      line.push_back({x, core::proportion(core::PsychometricShape::weibull, x, curve.threshold,
-                                          curve.slope, curve.guess, curve.lapse)});
-    }
-  }
-  return line;
 }
 
 Chart function_chart(const ParticipantThreshold& person, const BlockDesign& design,
@@ -43,14 +26,7 @@ Chart function_chart(const ParticipantThreshold& person, const BlockDesign& desi
               range,
               {0.0, 1.0},
               is_logarithmic};
-  std::int64_t most = 1;
-  for (const Level& level : person.levels) {
-    most = std::max(most, level.answers.trials);
-  }
-  for (const Level& level : person.levels) {
-    chart.points.push_back({level.value, level.answers.value(),
-                            static_cast<double>(level.answers.trials) / static_cast<double>(most)});
-  }
+  chart.points = level_points(person.levels);
   chart.levels = {design.guess_rate};
   chart.alternative = fmt::format("Psychometric function of {}: {} correct of {} at {} levels, ",
                                   person.participant_id, person.correct.successes,
@@ -59,7 +35,7 @@ Chart function_chart(const ParticipantThreshold& person, const BlockDesign& desi
     chart.alternative += "no threshold";
     return chart;
   }
-  chart.line = curve_points(chart, person.estimate->curve);
+  chart.line = curve_points(chart, core::PsychometricShape::weibull, person.estimate->curve);
   const Interval& interval = person.estimate->intervals.threshold;
   chart.bars = {{person.estimate->proportion_at_threshold, interval}};
   chart.alternative += "threshold " + with_interval(person.estimate->curve.threshold, interval);

@@ -1,17 +1,14 @@
 #include "protocols/protocol.hpp"
-#include "protocols/tasks/preference_task.hpp"
 #include "protocols/tasks/shipped_tasks.hpp"
+#include "protocols/tasks/whole_set_task.hpp"
 #include "protocols/yaml/yaml_reader.hpp"
 namespace tapstudy::protocols {
 namespace {
-class Choice final : public PreferenceTask {
+class Choice final : public WholeSetTask {
  public:
   std::string_view name() const override { return "choice"; }
   std::string_view statistic(const Block& /*block*/) const override { return "choices"; }
   std::optional<Claim> claim() const override { return Claim::chosen_above_chance; }
-  bool uses_order() const override { return false; }
-  bool can_present_real_plates() const override { return false; }
-  bool is_random(const Block& /*block*/) const override { return true; }
   std::string_view success() const override { return "choose the expected one"; }
 
   void read(MapReader& reader, const Protocol& /*protocol*/, Block& block) const override {
@@ -22,11 +19,6 @@ class Choice final : public PreferenceTask {
     }
   }
 
-  std::vector<PlannedTrial> trials(const Block& block, const Draw& draw) const override {
-    return trials_of_all(*this, block, draw);
-  }
-  std::size_t trials_per_repetition(const Block& /*block*/) const override { return 1; }
-
   Answers answers(const Block& block, const Protocol& /*protocol*/) const override {
     return one_of(blind_options(block.stimuli.size()));
   }
@@ -34,13 +26,7 @@ class Choice final : public PreferenceTask {
                        const std::string& answer) const override {
     return labelled(trial, answer).stimulus;
   }
-  std::vector<std::string> alternative_labels(const PlannedTrial& trial) const override {
-    return blind_labels(trial);
-  }
 
-  int visits(const Block& block, const SimulatedTapSettings& taps) const override {
-    return taps.visits * static_cast<int>(block.stimuli.size());
-  }
   std::string simulated_answer(const Block& block, const Simulation& simulation,
                                SimulatedTouch& touch) const override {
     visit_all(block.stimuli.size(), simulation, touch);

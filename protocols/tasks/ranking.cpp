@@ -5,8 +5,8 @@
 #include <iterator>
 #include <utility>
 
-#include "protocols/tasks/preference_task.hpp"
 #include "protocols/tasks/shipped_tasks.hpp"
+#include "protocols/tasks/whole_set_task.hpp"
 #include "protocols/yaml/yaml_reader.hpp"
 namespace tapstudy::protocols {
 namespace {
@@ -18,15 +18,12 @@ std::string with_spaces(const std::vector<std::string>& words) {
 }
 
 // All stimuli under blind labels, felt as often as wanted; the answer is their order.
-class Ranking final : public PreferenceTask {
+class Ranking final : public WholeSetTask {
  public:
   std::string_view name() const override { return "ranking"; }
   std::string_view statistic(const Block& /*block*/) const override { return "rankings"; }
   std::optional<Claim> claim() const override { return std::nullopt; }
   bool has_chance_level() const override { return false; }
-  bool uses_order() const override { return false; }
-  bool can_present_real_plates() const override { return false; }
-  bool is_random(const Block& /*block*/) const override { return true; }
   std::string_view success() const override { return {}; }
 
   void read(MapReader& reader, const Protocol& /*protocol*/, Block& block) const override {
@@ -39,11 +36,6 @@ class Ranking final : public PreferenceTask {
       reader.reject("explore", "visit_all cannot be false: a ranking is of stimuli that were felt");
     }
   }
-  std::vector<PlannedTrial> trials(const Block& block, const Draw& draw) const override {
-    return trials_of_all(*this, block, draw);
-  }
-  std::size_t trials_per_repetition(const Block& /*block*/) const override { return 1; }
-
   Answers answers(const Block& block, const Protocol& /*protocol*/) const override {
     return {AnswerKind::order, blind_options(block.stimuli.size())};
   }
@@ -55,12 +47,6 @@ class Ranking final : public PreferenceTask {
       stimuli.push_back(labelled(trial, label).stimulus);
     }
     return with_spaces(stimuli);
-  }
-  std::vector<std::string> alternative_labels(const PlannedTrial& trial) const override {
-    return blind_labels(trial);
-  }
-  int visits(const Block& block, const SimulatedTapSettings& taps) const override {
-    return taps.visits * static_cast<int>(block.stimuli.size());
   }
   // The one nearest to the reference first.
   std::string simulated_answer(const Block& block, const Simulation& simulation,

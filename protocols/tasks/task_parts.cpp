@@ -58,20 +58,6 @@ Answers one_of(std::vector<Option> options) {
   return {AnswerKind::option, std::move(options)};
 }
 
-std::vector<PlannedTrial> trials_of_all(const Task& task, const Block& block, const Draw& draw) {
-  core::Rng rng{core::derived_seed(draw.participant_seed, core::Purpose::labels, draw.block_index)};
-  std::vector<PlannedTrial> all;
-  for (int repetition = 1; repetition <= block.repetitions; ++repetition) {
-    std::vector<Alternative> alternatives;
-    for (const std::string& stimulus : block.stimuli) {
-      alternatives.push_back({stimulus});
-    }
-    rng.shuffle(alternatives);
-    all.push_back({0, block.name, &task, block.is_practice, repetition, alternatives});
-  }
-  return all;
-}
-
 const Alternative& labelled(const PlannedTrial& trial, const std::string& label) {
   for (std::size_t i = 0; i < trial.alternatives.size(); ++i) {
     if (blind_label(i) == label) {

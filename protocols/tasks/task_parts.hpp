@@ -11,10 +11,6 @@ std::vector<Option> blind_options(std::size_t count);
 // The answers of a trial in which one of these is picked.
 Answers one_of(std::vector<Option> options);
 
-// A trial for each repetition, in which all of the block's stimuli are alternatives. Which of them
-// has which label is drawn anew for each: a label has no history.
-std::vector<PlannedTrial> trials_of_all(const Task& task, const Block& block, const Draw& draw);
-
 // The alternative that a blind label names. Throws InvalidInput if none has it.
 const Alternative& labelled(const PlannedTrial& trial, const std::string& label);
 

@@ -61,7 +61,12 @@ TEST_CASE("liblo's own oscdump reads the changes of state that are stored",
   std::vector<std::string> line{
       "/bin/sh",
       "-c",
-      "oscdump -L $0 >$1 & reader=$!; shift; sleep 0.5; \"$@\"; sleep 0.5; kill $reader",
+      "oscdump -L $0 >$1 & reader=$!; dump=$1; shift\n"
+      "hexadecimal=$(printf ':%04X ' $0)\n"
+      "for i in $(seq 300); do grep -q $hexadecimal /proc/net/udp* && break; sleep 0.1; done\n"
+      "\"$@\"\n"
+      "for i in $(seq 100); do grep -q /tapstudy/ended $dump && break; sleep 0.1; done\n"
+      "kill $reader",
       port,
       directory / "dump",
       TAPSTUDY_PROGRAM};

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/model/beam.hpp"
 #include "core/model/shape/top_height.hpp"
 #include "protocols/read_sections.hpp"
 namespace tapstudy::protocols {
@@ -64,6 +65,10 @@ void check_technique(MapReader& reader, const Stimulus& stimulus, const Protocol
   const std::string_view missing = stimulus.technique->missing(settings);
   if (!missing.empty()) {
     reader.reject("technique", fmt::format("'{}' needs {}", stimulus.technique->name, missing));
+  }
+  if (stimulus.technique->needs_beam() && stimulus.plate && !core::beam_of(*stimulus.plate)) {
+    reader.reject("technique",
+                  fmt::format("'{}' is for {}", stimulus.technique->name, core::what_a_beam_is));
   }
   if (stimulus.recording && !stimulus.technique->has(core::recorded_transient)) {
     reader.reject("recording",

@@ -40,6 +40,9 @@ void read_observer(MapReader& reader, const Protocol& protocol, bool needs_refer
   if (observer.reality != nullptr && observer.reality->has(core::recorded_transient)) {
     reader.reject("reality", "is one technique for all stimuli, which recordings are not");
   }
+  if (observer.reality != nullptr && observer.reality->needs_beam()) {
+    reader.reject("reality", "is the vibration of plates of any shape, which beams are not");
+  }
   if (needs_reference) {
     observer.reference = reader.word("reference", "stimulus", stimulus_names(protocol));
   }

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "core/error.hpp"
+#include "core/model/beam.hpp"
 #include "core/model/mesh/tetgen_mesher.hpp"
 #include "core/model/modes/modal_solver.hpp"
 #include "core/model/stopwatch.hpp"
@@ -175,10 +176,14 @@ std::string content_key(const BodySpec& body) {
   for (const Fixation& fixation : body.fixations) {
     key += " " + content_key(fixation);
   }
+  key += body.theory == Theory::beam ? " as a beam" : "";
   return key;
 }
 
 SolvedBody solve_body(const BodySpec& body, const ProgressHook& progress) {
+  if (body.theory == Theory::beam) {
+    return {{}, {}, beam_modes(body)};
+  }
   try {
     SolvedBody solved =
         body.mesh.accuracy ? refine(body, progress) : solve_once(body, body.mesh.size, progress);

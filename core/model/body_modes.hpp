@@ -20,14 +20,14 @@ struct BodyModes {
   ModelReport report;
 };
 
-// The complete solution, for figures and export.
+// The complete solution, for figures and export; of a beam, mesh and displacement are empty.
 struct SolvedBody {
   TetMesh mesh;
   Eigen::MatrixXd displacement;  // row 3 i + a: node i, axis a; one column per mode
   BodyModes modes;
 };
 
-// Mesh, matrices, modes (paper sections 4.2.1 and 4.2.2).
+// Mesh, matrices, modes (paper sections 4.2.1 and 4.2.2); or beam_modes.
 // Throws ModelError if the model cannot be built or the accuracy cannot be reached.
 SolvedBody solve_body(const BodySpec& body, const ProgressHook& progress = {});
 }  // namespace tapstudy::core

@@ -13,11 +13,16 @@ struct Meshing {
   std::optional<double> accuracy{};
 };
 
+// By which a body's modes are found: elasticity, by finite elements; or that of Euler-Bernoulli
+// beams, in closed form (core/model/beam.hpp).
+enum class Theory { solid, beam };
+
 // A plate, or any other body, without its material: shape, mesh settings and boundary conditions.
 struct Plate {
   Shape shape;
   Meshing mesh;
   std::vector<Fixation> fixations;
+  Theory theory{Theory::solid};
 };
 
 // A plate of a given material, with the frequency band that its model must cover.

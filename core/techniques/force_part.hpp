@@ -8,7 +8,7 @@
 namespace tapstudy::core {
 // A force component that techniques add to the penalty force: requirements and factory (set-up).
 struct ForcePart {
-  bool needs_model{};  // a plate's modal model, from a finite element solution
+  bool needs_model{};  // a plate's modal model
   // The missing setting, as protocol key and allowed values; empty if complete.
   std::string_view (*missing)(const RenderSettings& settings){};
   // plate is non-null if a model is needed; it must outlive the returned object.

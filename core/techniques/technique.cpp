@@ -18,6 +18,10 @@ const std::vector<Technique>& techniques() {
       {"fem-coupled+sinusoid",
        "a finger that stays on the vibrating plate, and the decaying sinusoid",
        {&coupled_vibration, &decaying_sinusoid}},
+      {"beam",
+       "the vibration of a plate held by its end, by the theory of beams",
+       {&plate_vibration},
+       Theory::beam},
       {"recorded",
        "a measured transient at each impact, by its place and speed",
        {&recorded_transient}},
@@ -65,6 +69,8 @@ std::vector<std::string> technique_names() {
 
 const Technique& natural_vibration() {
   const std::vector<const ForcePart*> alone{&plate_vibration};
-  return *std::ranges::find(techniques(), alone, &Technique::parts);
+  return *std::ranges::find_if(techniques(), [&](const Technique& technique) {
+    return technique.parts == alone && technique.theory == Theory::solid;
+  });
 }
 }  // namespace tapstudy::core

@@ -3,6 +3,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/model/plate.hpp"
 #include "core/techniques/force_part.hpp"
 namespace tapstudy::core {
 // A rendering technique: the components added to the penalty force of the contact spring. The
@@ -11,8 +12,10 @@ struct Technique {
   std::string_view name;  // in protocols, stores and reports
   std::string_view summary;
   std::vector<const ForcePart*> parts;
+  Theory theory{Theory::solid};  // of the model
 
   bool needs_model() const;
+  bool needs_beam() const { return needs_model() && theory == Theory::beam; }
   bool has(const ForcePart& part) const;
   // Beside the contact spring's, of a slow press.
   double added_stiffness_n_per_m(const RenderSettings& settings) const;

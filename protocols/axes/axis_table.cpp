@@ -112,6 +112,9 @@ Range lateral_sizes_m(const PresentedStimulus& stimulus) {
 bool vibrates(const core::Technique& technique) {
   return technique.needs_model();
 }
+bool vibrates_as_a_solid(const core::Technique& technique) {
+  return technique.needs_model() && !technique.needs_beam();
+}
 bool scales_vibration(const core::Technique& technique) {
   return technique.has(core::plate_vibration) || technique.has(core::recorded_transient);
 }
@@ -159,7 +162,7 @@ const std::vector<Axis>& axes() {
        constant<allowed::penalty_stiffness_n_per_m>,
        [](const P& stimulus) { return stimulus.rendering.penalty_stiffness_n_per_m; },
        [](P& stimulus, double value) { stimulus.rendering.penalty_stiffness_n_per_m = value; }},
-      {"poissons_ratio", "", AxisKind::tabled, vibrates, false, false,
+      {"poissons_ratio", "", AxisKind::tabled, vibrates_as_a_solid, false, false,
        constant<allowed::poissons_ratio>,
        [](const P& stimulus) { return stimulus.material->poissons_ratio; },
        [](P& stimulus, double value) {

@@ -230,9 +230,9 @@ class Tradeoff {
 
 Trade measure_trade(const protocols::Protocol& protocol, const protocols::Stimulus& stimulus,
                     const Tolerance& tolerance, Effort effort, const core::ProgressHook& progress) {
-  if (!stimulus.technique->needs_model()) {
+  if (!stimulus.technique->needs_model() || stimulus.technique->needs_beam()) {
     throw core::InvalidInput{
-        fmt::format("stimulus '{}': technique '{}' has no model to trade accuracy of",
+        fmt::format("stimulus '{}': technique '{}' has no finite elements to trade accuracy of",
                     stimulus.name, stimulus.technique->name)};
   }
   Tradeoff tradeoff{protocol, stimulus, effort, progress};

@@ -82,16 +82,34 @@ void print_refinement(const core::ModelReport& report) {
   }
 }
 
-void print_table(const protocols::PresentedStimulus& stimulus, const protocols::Protocol& protocol,
-                 const core::PlateModel& plate) {
-  const core::ModelReport& report = plate.body.modes.report;
+void print_solution(const std::string& name, const core::ModelReport& report) {
   fmt::print(
       "{}: {} nodes, {} {} tetrahedra, {} free degrees of freedom\n"
       "  {:.3f} s (mesh {:.3f}, assemble {:.3f}, factor {:.3f}, iterate {:.3f}), {:.0f} MB at "
       "most\n\n",
-      stimulus.name, report.nodes, report.tets, report.order == 2 ? "quadratic" : "linear",
-      report.dofs, report.cost.total_s(), report.cost.mesh_s, report.cost.assemble_s,
-      report.cost.factor_s, report.cost.iterate_s, 1e-6 * peak_memory_bytes());
+      name, report.nodes, report.tets, report.order == 2 ? "quadratic" : "linear", report.dofs,
+      report.cost.total_s(), report.cost.mesh_s, report.cost.assemble_s, report.cost.factor_s,
+      report.cost.iterate_s, 1e-6 * peak_memory_bytes());
+}
+
+void print_completeness(const core::ModelReport& report, double band_limit_hz) {
+  fmt::print("\n  {} below {} Hz by the inertia of K - sigma M", report.counted_in_band,
+             band_limit_hz);
+  if (report.rigid_body_modes > 0) {
+    fmt::print(", {} of them motions of the rigid body, left out", report.rigid_body_modes);
+  }
+  fmt::print("; worst residual {:.1e}\n", report.worst_residual);
+}
+
+void print_table(const protocols::PresentedStimulus& stimulus, const protocols::Protocol& protocol,
+                 const core::PlateModel& plate) {
+  const core::ModelReport& report = plate.body.modes.report;
+  const bool is_beam = stimulus.technique->needs_beam();
+  if (is_beam) {
+    fmt::print("{}: an Euler-Bernoulli beam, in closed form\n\n", stimulus.name);
+  } else {
+    print_solution(stimulus.name, report);
+  }
   for (const auto& [name, value] : stimulus.values) {
     fmt::print("  {} {}\n", name, value);
   }
@@ -101,12 +119,9 @@ void print_table(const protocols::PresentedStimulus& stimulus, const protocols::
     fmt::print("  {:>4}  {:>12.3f}  {:>13.4f}\n", i + 1, plate.modal.frequency_hz[i],
                plate.modal.damping_ratio[i]);
   }
-  fmt::print("\n  {} below {} Hz by the inertia of K - sigma M", report.counted_in_band,
-             protocol.band_limit_hz);
-  if (report.rigid_body_modes > 0) {
-    fmt::print(", {} of them motions of the rigid body, left out", report.rigid_body_modes);
+  if (!is_beam) {
+    print_completeness(report, protocol.band_limit_hz);
   }
-  fmt::print("; worst residual {:.1e}\n", report.worst_residual);
 }
 
 std::vector<std::string> outputs(const ModesOptions& options) {
@@ -140,6 +155,10 @@ void run_modes(const ModesOptions& options) {
   const protocols::PresentedStimulus stimulus =
       member_set_to(options.settings, protocol, protocol.stimulus(options.stimulus));
   const core::PlateSpec spec = plate_spec(protocol, stimulus);
+  if (stimulus.technique->needs_beam() && !(options.mesh_out.empty() && options.vtu.empty())) {
+    throw core::InvalidInput{fmt::format(
+        "--mesh-out, --vtu: stimulus '{}' is a beam, which has no mesh", options.stimulus)};
+  }
   for (const std::string& file : outputs(options)) {
     core::check_is_new(file);
   }

@@ -59,7 +59,9 @@ core::ModelCache models_of_this_user() {
 
 core::PlateSpec plate_spec(const protocols::Protocol& protocol,
                            const protocols::PresentedStimulus& stimulus) {
-  return {*stimulus.plate, *stimulus.material, protocol.band_limit_hz};
+  core::PlateSpec spec{*stimulus.plate, *stimulus.material, protocol.band_limit_hz};
+  spec.theory = stimulus.technique->theory;
+  return spec;
 }
 
 core::BodySpec body_spec(const protocols::Protocol& protocol,
@@ -67,7 +69,8 @@ core::BodySpec body_spec(const protocols::Protocol& protocol,
   core::BodySpec body = core::body_of(plate_spec(protocol, stimulus));
   const double youngs_modulus_pa = stimulus.material->youngs_modulus_pa;
   const auto may_share = [&](const protocols::Stimulus& other) {
-    return other.technique->needs_model() && other.plate == stimulus.own_plate &&
+    return other.technique->needs_model() && other.technique->theory == body.theory &&
+           other.plate == stimulus.own_plate &&
            (!core::is_on_springs(body.fixations) ||
             other.material->youngs_modulus_pa == youngs_modulus_pa) &&
            std::ranges::count(poissons_ratios(protocol, other), body.poissons_ratio) > 0;

@@ -8,7 +8,9 @@
 
 #include "core/error.hpp"
 #include "core/output_file.hpp"
+#include "results/export/bids_events.hpp"
 #include "results/export/bids_labels.hpp"
+#include "results/export/bids_phenotype.hpp"
 #include "results/export/bids_sidecars.hpp"
 #include "results/export/columns.hpp"
 #include "results/export/gzip_file.hpp"
@@ -106,7 +108,9 @@ class Dataset {
   void write() {
     write_text(root_ / "dataset_description.json", dataset_description(study_->provenance));
     write_participants();
+    write_phenotypes();
     write_behaviour();
+    write_events();
     write_tasks();
     for (const std::int64_t trial : study_->trials) {
       write_recording(trial);
@@ -141,6 +145,21 @@ class Dataset {
     std::ranges::transform(own, std::back_inserter(described),
                            [](const Column& column) { return DescribedColumn{column}; });
     write_text(root_ / "participants.json", table_sidecar(described));
+  }
+
+  void write_phenotypes() {
+    for (const Phenotype& tool : phenotypes(*store_, study_->forms, labels_.participants.by_name)) {
+      make_directories(root_ / "phenotype");
+      write_text(root_ / "phenotype" / (tool.name + ".tsv"), tool.table);
+      write_text(root_ / "phenotype" / (tool.name + ".json"), tool.sidecar);
+    }
+  }
+
+  void write_events() {
+    for (const BlockEvents& events : events_of_blocks(*store_)) {
+      const Place where = place(events.participant, events.session, events.block);
+      write_text(where.directory / (where.prefix + "_events.tsv"), events.table);
+    }
   }
 
   static std::string header() {
@@ -192,6 +211,7 @@ class Dataset {
           task_sidecar(label, text == study_->blocks.end() ? BlockText{block, {}, {}, {}} : *text,
                        described_behaviour(text == study_->blocks.end() ? std::vector<Level>{}
                                                                         : text->levels)));
+      write_text(root_ / fmt::format("task-{}_events.json", label), table_sidecar(event_columns()));
     }
   }
 
@@ -243,8 +263,9 @@ class Dataset {
         "column\n"
         "recording of _beh.tsv names it. Its time zero is the trial's first tick; t_ns is the "
         "time\n"
-        "measured, also where ticks were skipped.\n"
-        "Operators' notes, reasons of exclusion and questionnaires are left out.\n",
+        "measured, also where ticks were skipped. Each _events.tsv has the changes of the\n"
+        "session's state, with times from its begin. phenotype/ has the questionnaires.\n"
+        "Operators' notes, reasons of exclusion and answers in free text are left out.\n",
         study_->provenance.title, study_->provenance.program);
     for (const std::string& note : labels_.participants.notes) {
       text += "Participants: " + note + ".\n";

@@ -44,6 +44,13 @@ std::string table_sidecar(const std::vector<DescribedColumn>& columns) {
   return text_of(json);
 }
 
+std::string phenotype_sidecar(const std::string& tool,
+                              const std::vector<DescribedColumn>& columns) {
+  Json json{{"MeasurementToolMetadata", {{"Description", tool}}}};
+  add_columns(json, columns);
+  return text_of(json);
+}
+
 std::string task_sidecar(const std::string& task, const BlockText& block,
                          const std::vector<DescribedColumn>& columns) {
   Json json{{"TaskName", task}, {"TaskDescription", block.question}};

@@ -18,12 +18,26 @@ struct BlockText {
   std::vector<Level> levels;  // its stimuli
 };
 
+// A questionnaire, and what can be answered to its items.
+struct ItemText {
+  std::string name;
+  std::string question;
+  std::vector<Level> levels;  // answers that have a meaning; empty: a number or a text
+  bool is_free_text{};
+};
+struct FormText {
+  std::string name;
+  std::string title;
+  std::vector<ItemText> items;
+};
+
 // What an export holds, whatever its format.
 struct StudyExport {
   Provenance provenance;
   std::string protocol_text;
   std::vector<BlockText> blocks;
   std::vector<Table> tables;
+  std::vector<FormText> forms;
   std::vector<std::int64_t> trials;  // whose traces are written: each must have one
 };
 
@@ -42,7 +56,8 @@ void write_csv_files(const std::string& directory, Store& store, const StudyExpo
 void write_hdf5_file(const std::string& name, Store& store, const StudyExport& study);
 
 // Fills a directory with a dataset of the Brain Imaging Data Structure (BIDS 1.8, behaviour):
-// participants.tsv, sub-*/[ses-*/]beh/*_beh.tsv with a row a trial, *_physio.tsv.gz with each
+// participants.tsv, phenotype/*.tsv with a row a participant, sub-*/[ses-*/]beh/*_beh.tsv with a
+// row a trial, *_events.tsv with a row a change of the session's state, *_physio.tsv.gz with each
 // trial's trace, JSON beside them. Names that are no labels do not appear (bids_labels.hpp), nor do
 // notes, reasons and free text. Errors as above.
 void write_bids_dataset(const std::string& directory, Store& store, const StudyExport& study);

@@ -46,6 +46,34 @@ std::vector<results::BlockText> block_texts(const protocols::Protocol& protocol)
   return texts;
 }
 
+// What answers that are not their own text mean.
+std::vector<results::Level> levels_of(const protocols::FormItem& item) {
+  std::vector<results::Level> levels;
+  for (const protocols::Option& option : item.options) {
+    levels.emplace_back(option.name, option.label);
+  }
+  if (item.kind == protocols::ItemKind::likert) {
+    levels = {{"1", item.low}, {std::to_string(item.steps), item.high}};
+  } else if (item.kind == protocols::ItemKind::scale) {
+    levels = {{"0", item.low}, {"1", item.high}};
+  }
+  std::erase_if(levels, [](const results::Level& level) { return level.second.empty(); });
+  return levels;
+}
+
+std::vector<results::FormText> form_texts(const protocols::Protocol& protocol) {
+  std::vector<results::FormText> texts;
+  for (const auto& [name, form] : protocol.forms) {
+    results::FormText text{name, form.title, {}};
+    for (const protocols::FormItem& item : form.items) {
+      text.items.push_back(
+          {item.name, item.question, levels_of(item), item.kind == protocols::ItemKind::text});
+    }
+    texts.push_back(std::move(text));
+  }
+  return texts;
+}
+
 results::StudyExport study_export(results::Store& store, bool has_tables) {
   const results::StudyRow study = store.study();
   const protocols::Protocol protocol = stored_protocol(study);
@@ -63,6 +91,7 @@ results::StudyExport study_export(results::Store& store, bool has_tables) {
           study.protocol_text,
           block_texts(protocol),
           std::move(tables),
+          form_texts(protocol),
           {}};
 }
 
@@ -126,7 +155,7 @@ void add_export(CommandParser& line) {
   command.one_of("--format", options->format, format_names(),
                  "csv (default): a directory of tidy tables and their data dictionary (CSV on the "
                  "Web); hdf5: one file of the same tables and all traces; bids: a dataset of the "
-                 "Brain Imaging Data Structure, without names, notes and questionnaires");
+                 "Brain Imaging Data Structure, without names, notes and free text");
   command.flag("--traces", options->wants_traces,
                "csv: every tick too, a file a trial (about 200 bytes a tick); the other formats "
                "have them always");

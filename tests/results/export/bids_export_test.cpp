@@ -48,6 +48,7 @@ TEST_CASE("pandas reads of a BIDS dataset what is in the store", "[results][expo
   INFO(read.standard_error);
   CHECK(read.exit_code == 0);
   CHECK_THAT(read.standard_output, Contains("recordings"));
+  CHECK_THAT(read.standard_output, !Contains(" 0 answers") && !Contains(" 0 events"));
 }
 
 TEST_CASE("names of people and what they wrote stay out of a BIDS dataset", "[results][export]") {

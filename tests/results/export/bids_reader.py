@@ -51,7 +51,43 @@ def main(study, dataset):
             recordings += 1
         trials += len(table)
     assert trials == database.execute("SELECT count(*) FROM trial").fetchone()[0]
-    print(trials, "trials", recordings, "recordings")
+    labels = dict(zip([row[0] for row in database.execute(
+        "SELECT participant_id FROM v_sessions GROUP BY participant_id ORDER BY min(session_id)")],
+        participants["participant_id"]))
+    print(trials, "trials", recordings, "recordings",
+          compared_answers(database, dataset, labels), "answers",
+          compared_events(database, dataset), "events")
+
+
+def compared_answers(database, dataset, labels):
+    """Of the forms of every_screen.yaml, whose only free text is 'remarks'."""
+    compared = 0
+    for form, asked in (("about", "session begin"), ("rating", "main")):
+        table = pandas.read_csv(f"{dataset}/phenotype/{form}.tsv", sep="\t", dtype=str,
+                                keep_default_na=False).set_index("participant_id")
+        described = json.load(open(f"{dataset}/phenotype/{form}.json"))
+        assert "remarks" not in table.columns
+        assert set(described) == {"MeasurementToolMetadata", *table.columns}, described
+        for person, item, answer in database.execute(
+                "SELECT participant_id, item, answer FROM form_answer JOIN v_sessions "
+                "USING (session_id) WHERE form = ? AND asked = ? AND item <> 'remarks'", (form, asked)):
+            assert table.loc[labels[person], item] == (answer or "n/a"), (person, item, answer)
+            compared += 1
+    assert described["real"]["Levels"] == {"1": "not at all", "5": "fully"}
+    return compared
+
+
+def compared_events(database, dataset):
+    read = sorted(
+        (row["onset"], row["trial_type"], row["trial"])
+        for file in glob.glob(f"{dataset}/sub-*/**/*_events.tsv", recursive=True)
+        for row in pandas.read_csv(file, sep="\t", na_values="n/a", float_precision="round_trip")
+        .fillna({"trial": -1}).to_dict("records"))
+    stored = sorted(database.execute(
+        "SELECT t_s, state, coalesce(number, -1) FROM session_event WHERE session_id IN "
+        "(SELECT session_id FROM trial)"))
+    assert read == stored
+    return len(read)
 
 
 main(*sys.argv[1:])

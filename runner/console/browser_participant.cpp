@@ -22,14 +22,20 @@ std::int64_t BrowserParticipant::show(Screen screen) {
 }
 
 ScreenInput BrowserParticipant::answer_to(Screen screen) {
+  return answer_before(std::chrono::steady_clock::time_point::max(), std::move(screen)).value();
+}
+
+std::optional<ScreenInput> BrowserParticipant::answer_before(
+    std::chrono::steady_clock::time_point latest, Screen screen) {
   const std::int64_t number = show(std::move(screen));
-  while (true) {
+  while (std::chrono::steady_clock::now() < latest) {
     if (const auto input = screens_.take(number)) {
       return *input;
     }
     stop_if_asked();
     std::this_thread::sleep_for(poll_interval);
   }
+  return std::nullopt;
 }
 
 void BrowserParticipant::tell(Message message) {
@@ -41,13 +47,14 @@ void BrowserParticipant::read(const std::string& instructions) {
 }
 
 // The page counts the time down, but does not decide.
-void BrowserParticipant::rest(double min_seconds) {
-  const auto until = std::chrono::steady_clock::now() + std::chrono::duration<double>{min_seconds};
-  double left_s = min_seconds;
+void BrowserParticipant::rest(const protocols::Breaks& breaks) {
+  const RestTimes times = rest_times(breaks);
+  const auto left_s = [&] {
+    return std::chrono::duration<double>(times.earliest - std::chrono::steady_clock::now()).count();
+  };
   do {
-    answer_to({.kind = ScreenKind::rest, .min_seconds = left_s});
-    left_s = std::chrono::duration<double>(until - std::chrono::steady_clock::now()).count();
-  } while (left_s > 0.0);
+    answer_before(times.latest, {.kind = ScreenKind::rest, .min_seconds = std::max(0.0, left_s())});
+  } while (left_s() > 0.0);
 }
 
 Participant::FormAnswers BrowserParticipant::fill_in(const protocols::Form& form) {

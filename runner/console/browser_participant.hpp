@@ -20,7 +20,7 @@ class BrowserParticipant final : public Participant {
   BrowserParticipant(ScreenExchange& screens, Context context)
       : screens_{screens}, context_{std::move(context)} {}
   void read(const std::string& instructions) override;
-  void rest(double min_seconds) override;
+  void rest(const protocols::Breaks& breaks) override;
   bool fills_in_forms() const override { return true; }
   FormAnswers fill_in(const protocols::Form& form) override;
   void wait_while(const std::function<bool()>& is_paused) override;
@@ -43,6 +43,9 @@ class BrowserParticipant final : public Participant {
   std::int64_t show_trial(const TrialPrompt& prompt, const Exploration& exploration);
   // Until it is answered; throws Stopped if the session is to stop.
   ScreenInput answer_to(Screen screen);
+  // nullopt: it was not, until then.
+  std::optional<ScreenInput> answer_before(std::chrono::steady_clock::time_point latest,
+                                           Screen screen);
   void tell(Message message);
   void act_on(const ScreenInput& input, const TrialPrompt& prompt, Exploration& exploration);
   std::optional<std::string> last_word(const TrialPrompt& prompt, Exploration& exploration);

@@ -35,6 +35,7 @@ class Console {
   Participant& participant() { return participant_; }
   void watch(const core::TraceSample& sample) { live_.add(sample); }
   void note_state(const results::SessionEventRow& event);
+  const ConsoleApi& api() const { return api_; }
   std::string url(Role role) const { return server_.url(role); }
 
  private:

@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "core/error.hpp"
 #include "results/store_error.hpp"
+#include "runner/console/operator_text.hpp"
 #include "runner/console/pages.hpp"
 #include "runner/terminal/whole_number.hpp"
 namespace tapstudy::runner {
@@ -96,7 +99,8 @@ std::string ConsoleApi::operator_events(SentToPage& sent) const {
   const auto now = std::chrono::steady_clock::now();
   if (now - sent.state_at >= state_interval) {
     sent.state_at = now;
-    if (std::string state = operator_state(); state != sent.state) {
+    if (std::string state = state_json(session_in_view(), desk_.view(), live_.totals());
+        state != sent.state) {
       text += event("state", state);
       sent.state = std::move(state);
     }
@@ -109,10 +113,22 @@ std::string ConsoleApi::operator_events(SentToPage& sent) const {
   return text;
 }
 
-std::string ConsoleApi::operator_state() const {
-  return state_json({session_.title, session_.participant_id, session_.mode, session_.device,
-                     session_.language, session_.is_blind, session_.state(), session_.last_fault(),
-                     screens_.open_pages() > 0, session_.masking()},
-                    desk_.view(), live_.totals());
+SessionInView ConsoleApi::session_in_view() const {
+  return {session_.title,    session_.participant_id, session_.mode,
+          session_.device,   session_.language,       session_.is_blind,
+          session_.state(),  session_.last_fault(),   screens_.open_pages() > 0,
+          session_.masking()};
+}
+
+std::string ConsoleApi::status() const {
+  return status_text(session_in_view(), desk_.view(), live_.totals());
+}
+
+std::string ConsoleApi::live(std::int64_t& end) const {
+  constexpr std::int64_t second = static_cast<std::int64_t>(1.0 / LiveView::step_s);
+  const std::int64_t newest = live_.since(end).end;
+  const LiveView::Steps steps = live_.since(std::max(end, newest - second));
+  end = newest;
+  return live_line(steps, live_.totals(), scenes_.surface_along_normal_m());
 }
 }  // namespace tapstudy::runner

@@ -61,13 +61,17 @@ class ConsoleApi {
   Reply post_alive(Role role);
   // Server-sent events of what has changed since; empty if nothing has.
   std::string events(Role role, SentToPage& sent) const;
+  // The same for the operator's terminal; the live line is of what has changed since `end`, at most
+  // a second of it, and moves `end` on.
+  std::string status() const;
+  std::string live(std::int64_t& end) const;
   void page_opened(Role role);
   void page_closed(Role role);
 
  private:
   std::string participant_events(SentToPage& sent) const;
   std::string operator_events(SentToPage& sent) const;
-  std::string operator_state() const;
+  SessionInView session_in_view() const;
   Session session_;
   ScreenExchange& screens_;
   OperatorDesk& desk_;

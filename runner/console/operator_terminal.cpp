@@ -4,26 +4,50 @@
 #include "runner/terminal/say.hpp"
 #include "runner/terminal/stop_signal.hpp"
 namespace tapstudy::runner {
-OperatorTerminal::OperatorTerminal(LineInput& input, OperatorDesk& desk)
-    : input_{input}, desk_{desk}, thread_{[this](const std::stop_token& stop) { run(stop); }} {}
+OperatorTerminal::OperatorTerminal(LineInput& input, OperatorDesk& desk, const ConsoleApi& shown)
+    : input_{input}, desk_{desk}, shown_{shown}, thread_{[this](const std::stop_token& stop) {
+        run(stop);
+      }} {}
 
 // At the end of input the session goes on: a page may have an operator, too.
 void OperatorTerminal::run(const std::stop_token& stop) {
-  while (const auto line =
-             input_.next([&] { return !stop.stop_requested() && !stop_was_asked(); })) {
+  while (const auto line = input_.next([&] {
+    show_if_watched();
+    return !stop.stop_requested() && !stop_was_asked();
+  })) {
     if (asks_to_quit(*line)) {
       ask_to_stop();
       return;
     }
+    is_watched_ = false;
     if (!line->empty()) {
       obey(*line);
     }
   }
 }
 
+void OperatorTerminal::show_if_watched() {
+  constexpr std::chrono::seconds interval{1};
+  const auto now = std::chrono::steady_clock::now();
+  if (is_watched_ && now - shown_at_ >= interval) {
+    shown_at_ = now;
+    write_to_terminal(shown_.live(shown_steps_));
+  }
+}
+
 void OperatorTerminal::obey(const std::string& line) {
+  const bool is_watch = line == "watch";
+  if (is_watch || line == "status") {
+    write_to_terminal(shown_.status());
+    is_watched_ = is_watch;
+  } else {
+    order(line);
+  }
+}
+
+void OperatorTerminal::order(const std::string& command) {
   try {
-    const OperatorDesk::Posted posted = desk_.post(parse_operator_command(line));
+    const OperatorDesk::Posted posted = desk_.post(parse_operator_command(command));
     posted.stored.get();
     say("stored: {}\n", posted.said);
   } catch (const core::InvalidInput& error) {

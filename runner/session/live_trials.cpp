@@ -20,7 +20,7 @@ void introduce(const Console& console) {
       console.url(Role::operator_of_session));
   std::vector<std::string_view> names;
   std::ranges::transform(operator_actions(), std::back_inserter(names), &ActionInfo::name);
-  say("here: {}, quit\n", fmt::join(names, ", "));
+  say("here: {}, status, watch, quit\n", fmt::join(names, ", "));
 }
 
 // At once, so that the trial's supervisor does not wait for the disk.
@@ -119,7 +119,7 @@ double LiveTrials::now_s() const {
 void LiveTrials::run() {
   std::optional<OperatorTerminal> terminal;
   if (console_) {
-    terminal.emplace(parts_.input, desk_);
+    terminal.emplace(parts_.input, desk_, console_->api());
   }
   while (const auto interruption = engine_.run(parts_.session.schedule, parts_.session.done)) {
     device_ = reconnect(to_text(*interruption), parts_.device_request, std::move(device_));

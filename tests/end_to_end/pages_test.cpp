@@ -23,6 +23,10 @@ TEST_CASE("the pages' server serves nobody else, and a flood of requests stops n
   pass("server_test.py");
 }
 
+TEST_CASE("the operator sees at the terminal what the page shows", "[end_to_end][pages]") {
+  pass("operator_terminal_test.py");
+}
+
 TEST_CASE("what was confirmed on a screen is stored once, however often the program is killed",
           "[end_to_end][pages]") {
   setenv("TAPSTUDY_KILLS", "12", 0);  // more of them by hand

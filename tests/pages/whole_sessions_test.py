@@ -2,8 +2,10 @@
 import os
 import re
 import shutil
+import signal
 import sys
 import tempfile
+import time
 import unittest
 from pathlib import Path
 
@@ -46,8 +48,8 @@ class WholeSession(unittest.TestCase):
         def there():
             screen = browser.current_screen(self.driver)
             is_there = screen and screen["kind"] == "trial" and screen["isSettled"]
-            done = re.search(r"\d+", screen["progress"]) if is_there else None
-            return screen if done and int(done.group()) + 1 == number else None
+            counts = [int(text) for text in re.findall(r"\d+", screen["progress"])] if is_there else []
+            return screen if counts and min(counts) + 1 == number else None  # "1 of 8", or "8 中 1"
         return browser.wait_until(self.driver, f"trial {number}", there, 30)
 
     def answer_until_accepted(self, answer, index):
@@ -69,7 +71,13 @@ class WholeSession(unittest.TestCase):
         self.assertEqual(self.session.wait(), 0, self.session.said())
 
     def test_discrimination_by_mouse(self):
-        self.start("protocols/paper/discrimination.yaml")
+        self.identify_all(browser.answer_by_mouse)
+
+    def test_discrimination_by_keyboard_in_japanese_on_a_4k_screen(self):
+        self.identify_all(browser.answer_by_keyboard, "--language", "ja", width=3840, height=2160)
+
+    def identify_all(self, answer, *options, **look):
+        self.start("protocols/paper/discrimination.yaml", *options, **look)
         given = []
         for number in range(1, 9):
             self.next_trial(number)
@@ -78,8 +86,8 @@ class WholeSession(unittest.TestCase):
                 self.assertEqual(browser.wait_for_view(self.driver), "canvas")
                 browser.check_axe(self.driver, ("serious", "critical"))
             if number == 2:
-                self.shoot("participant")
-            self.answer_until_accepted(browser.answer_by_mouse, number % 4)
+                self.shoot(f"participant_{look.get('width', 1280)}")
+            self.answer_until_accepted(answer, number % 4)
             given.append(DISCRIMINATION[number % 4])
         self.finish()
         self.assertEqual(self.session.responses(), given)
@@ -109,6 +117,16 @@ class WholeSession(unittest.TestCase):
 
     def test_reality_of_vibration_by_keyboard_on_a_phone_in_german(self):
         self.start("protocols/paper/reality_vibration.yaml", "--language", "de", width=375, height=700)
+        self.watch()
+        self.finish_choices(by_keyboard=True)
+
+    def test_reality_of_vibration_by_mouse_on_a_4k_screen(self):
+        self.start("protocols/paper/reality_vibration.yaml", width=3840, height=2160)
+        self.watch()
+        self.finish_choices(by_keyboard=False)
+
+    def test_reality_at_the_finger_by_keyboard_on_a_phone_in_german(self):
+        self.start("protocols/paper/reality_finger.yaml", "--language", "de", width=375, height=700)
         self.watch()
         self.finish_choices(by_keyboard=True)
 
@@ -387,6 +405,30 @@ class WholeSession(unittest.TestCase):
         browser.open_participant(self.driver, self.session.participant)
         self.next_trial(2)
         self.assertEqual(self.session.responses(), [DISCRIMINATION[1]])
+
+
+    def test_a_browser_that_is_killed_pauses_the_session_and_loses_no_answer(self):
+        self.start("protocols/paper/discrimination.yaml")
+        self.next_trial(1)
+        self.answer_until_accepted(browser.answer_by_mouse, 1)
+        self.next_trial(2)
+        os.kill(self.driver.capabilities["goog:processID"], signal.SIGKILL)
+        self.wait_until_said("paused: ")
+        self.driver = browser.start_browser()
+        self.addCleanup(self.driver.quit)
+        browser.open_participant(self.driver, self.session.participant)
+        self.session.type("resume")
+        for number in range(2, 9):
+            self.next_trial(number)
+            self.answer_until_accepted(browser.answer_by_mouse, 2)
+        self.finish()
+        self.assertEqual(self.session.responses(), [DISCRIMINATION[1]] + 7 * [DISCRIMINATION[2]])
+
+    def wait_until_said(self, text, patience_s=30):
+        end = time.monotonic() + patience_s
+        while text not in self.session.said():
+            self.assertLess(time.monotonic(), end, self.session.said())
+            time.sleep(0.1)
 
 
 if __name__ == "__main__":

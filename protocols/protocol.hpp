@@ -68,9 +68,17 @@ struct Confidence {
 
 // A rest after every so many trials of a block, ended by the participant, after min_seconds at the
 // earliest.
+// After so many trials, or so much time since the last rest or the block's begin, whichever is
+// first.
 struct Breaks {
-  int every_trials{};
+  std::optional<int> every_trials{};
+  std::optional<double> every_seconds{};
   double min_seconds{0.0};
+  std::optional<double> max_seconds{};  // the rest then ends by itself; unset: the participant's
+  bool are_due(int trials, double seconds) const {
+    return (every_trials && trials >= *every_trials) ||
+           (every_seconds && trials > 0 && seconds >= *every_seconds);
+  }
 };
 
 // What a random order must satisfy; drawn uniformly from all that do.
@@ -122,9 +130,10 @@ struct PracticeCriterion {
 // which the operator mounts.
 enum class Presented { virtual_plates, real_plates };
 
+// Of the standard. Levels have a sign on `either` only.
+enum class Side { above, below, either };
 // A comparison that differs from its standard along an axis of their family, by a level that
 // procedures choose: a fraction of the standard, or a difference in the axis's unit.
-enum class Side { above, below, either };  // of the standard; levels have a sign on `either` only
 struct Comparison {
   std::string axis;
   double standard{};

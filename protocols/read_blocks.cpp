@@ -73,26 +73,6 @@ ExploreLimits read_explore(MapReader& block, Presented presented) {
   return limits;
 }
 
-// What a participant reads and is asked besides the trials' question.
-void read_asides(MapReader& reader, Block& block) {
-  block.instructions = reader.translated_paragraphs("instructions", "");
-  reader.map("confidence", Presence::optional, [&](MapReader& inner) {
-    Confidence confidence;
-    confidence.steps = inner.integer("steps", 2, 7, confidence.steps);
-    confidence.low = inner.translated("low", confidence.low);
-    confidence.high = inner.translated("high", confidence.high);
-    block.confidence = confidence;
-  });
-  reader.map("breaks", Presence::optional, [&](MapReader& inner) {
-    block.breaks = Breaks{inner.integer("every_trials", 1, 1000),
-                          inner.number("min_seconds", {0.0, 3600.0}, 0.0)};
-  });
-  block.gives_feedback = reader.yes_or_no("feedback", false);
-  if (block.gives_feedback && !block.is_practice) {
-    reader.reject("feedback", "is for practice: elsewhere it teaches the answers");
-  }
-}
-
 OrderConstraints read_constraints(MapReader& block) {
   OrderConstraints constraints;
   block.map("constraints", Presence::optional, [&](MapReader& reader) {

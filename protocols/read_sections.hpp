@@ -24,6 +24,8 @@ std::vector<std::string> read_form_names(MapReader& reader, const std::string& k
                                          const Protocol& protocol);
 void read_display(MapReader& top, Protocol& protocol);
 void read_blocks(MapReader& top, Protocol& protocol);
+// Of a block: what a participant reads and is asked besides the trials' question.
+void read_asides(MapReader& block_reader, Block& block);
 void read_hypotheses(MapReader& top, Protocol& protocol);
 void read_masking(MapReader& top, Protocol& protocol);
 void read_simulation(MapReader& top, Protocol& protocol);

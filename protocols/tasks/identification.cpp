@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <ranges>
 
@@ -27,15 +28,38 @@ std::vector<std::string> levels_of(const std::string& factor, const Protocol& pr
   return levels;
 }
 
-void read_responses(MapReader& reader, const Protocol& protocol, Block& block) {
-  if (!reader.has("response_factor")) {
-    block.responses =
-        reader.words("responses", "stimulus", stimulus_names(protocol), block.stimuli);
-    return;
+// Levels are refused with the factor that is to be named.
+void read_stimuli_as_responses(MapReader& reader, const std::vector<std::string>& factors,
+                               const Protocol& protocol, Block& block) {
+  const std::vector<std::string> stimuli = stimulus_names(protocol);
+  std::map<std::string, std::string> factor_of;  // by level
+  for (const std::string& factor : factors) {
+    for (const std::string& level : levels_of(factor, protocol, stimuli)) {
+      factor_of.emplace(level, factor);
+    }
   }
+  std::vector<std::string> known = stimuli;
+  std::ranges::copy(std::views::keys(factor_of), std::back_inserter(known));
+  block.responses = reader.words("responses", "stimulus", known, block.stimuli);
+  for (const std::string& response : block.responses) {
+    if (std::ranges::find(stimuli, response) == stimuli.end()) {
+      reader.reject("responses", fmt::format("'{0}' is a level of the factor '{1}': add "
+                                             "response_factor: {1}",
+                                             response, factor_of.at(response)));
+      block.responses = block.stimuli;
+      return;
+    }
+  }
+}
+
+void read_responses(MapReader& reader, const Protocol& protocol, Block& block) {
   const std::vector<std::string> factors = protocol.stimuli.empty()
                                                ? std::vector<std::string>{}
                                                : keys_of(protocol.stimuli.front().factors);
+  if (!reader.has("response_factor")) {
+    read_stimuli_as_responses(reader, factors, protocol, block);
+    return;
+  }
   block.response_factor = reader.word("response_factor", "factor", factors);
   block.responses = reader.words(
       "responses", "level", levels_of(block.response_factor, protocol, stimulus_names(protocol)),

@@ -124,7 +124,14 @@ void print_blocks(const protocols::Protocol& protocol, int participants) {
       print_power(protocol, block, participants);
     }
   }
-  fmt::print("\n  {} participants, {:.0f} min of tapping each\n", participants, total_s / 60.0);
+  double screens_s = 0.0;
+  for (const ScreenGroup& group : screens_of(protocol)) {
+    screens_s += group.seconds;
+  }
+  fmt::print(
+      "\n  {} participants, about {:.0f} min each: {:.0f} of tapping, {:.0f} for the screens "
+      "below\n",
+      participants, (total_s + screens_s) / 60.0, total_s / 60.0, screens_s / 60.0);
   fmt::print("  about {:.0f} MB of disk for all, if they tap no longer than simulated ones\n",
              1e-6 * results::usual_bytes_per_tick * recorded_s * protocol.rate_hz * participants);
 }

@@ -30,15 +30,16 @@ std::optional<std::string> ConsoleParticipant::next_of_participant(
 }
 
 // A script is not asked: its lines are answers.
-void ConsoleParticipant::wait_for_enter() {
+void ConsoleParticipant::wait_for_enter(std::chrono::steady_clock::time_point latest) {
   if (!input_.is_terminal()) {
     return;
   }
+  const auto is_early = [&] { return std::chrono::steady_clock::now() < latest; };
   say("\nTo go on, press Enter. ");
   bool has_quit = input_.forget_typed_ahead();
   while (!has_quit) {
-    const auto line = next_of_participant([] { return true; });
-    if (line && line->empty()) {
+    const auto line = next_of_participant(is_early);
+    if (line ? line->empty() : !is_early()) {
       return;
     }
     has_quit = !line || asks_to_quit(*line);
@@ -67,15 +68,16 @@ void ConsoleParticipant::read(const std::string& instructions) {
   wait_for_enter();
 }
 
-void ConsoleParticipant::rest(double min_seconds) {
-  say("\nTime for a break{}.\n",
-      min_seconds > 0.0 ? fmt::format(", of {:.3g} s at least", min_seconds) : "");
-  const auto until = std::chrono::steady_clock::now() + std::chrono::duration<double>{min_seconds};
-  while (std::chrono::steady_clock::now() < until) {
+void ConsoleParticipant::rest(const protocols::Breaks& breaks) {
+  say("\nTime for a break{}{}.\n",
+      breaks.min_seconds > 0.0 ? fmt::format(", of {:.3g} s at least", breaks.min_seconds) : "",
+      breaks.max_seconds ? fmt::format(", of {:.3g} s at most", *breaks.max_seconds) : "");
+  const RestTimes times = rest_times(breaks);
+  while (std::chrono::steady_clock::now() < times.earliest) {
     stop_if_asked();
     std::this_thread::sleep_for(std::chrono::milliseconds{20});
   }
-  wait_for_enter();
+  wait_for_enter(times.latest);
 }
 
 // Without one at the end of input, or when the session is to stop: the answer is stored all the

@@ -1,4 +1,5 @@
 #pragma once
+#include <chrono>
 #include <functional>
 
 #include "runner/participants/participant.hpp"
@@ -18,7 +19,7 @@ class ConsoleParticipant final : public Participant {
   ConsoleParticipant(LineInput& input, std::function<void()> move_hand, Obey obey)
       : input_{input}, move_hand_{std::move(move_hand)}, obey_{std::move(obey)} {}
   void read(const std::string& instructions) override;
-  void rest(double min_seconds) override;
+  void rest(const protocols::Breaks& breaks) override;
   bool fills_in_forms() const override { return true; }
   FormAnswers fill_in(const protocols::Form& form) override;
   void wait_while(const std::function<bool()>& is_paused) override;
@@ -34,7 +35,8 @@ class ConsoleParticipant final : public Participant {
   void timed_out(const TrialPrompt& prompt, bool is_presented_again) override;
 
  private:
-  void wait_for_enter();
+  void wait_for_enter(
+      std::chrono::steady_clock::time_point latest = std::chrono::steady_clock::time_point::max());
   std::string answer_to(const protocols::FormItem& item);
   // The participant's next line; the operator's are obeyed.
   std::optional<std::string> next_of_participant(const std::function<bool()>& keep_waiting);

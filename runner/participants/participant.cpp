@@ -5,6 +5,16 @@
 
 #include <algorithm>
 namespace tapstudy::runner {
+RestTimes rest_times(const protocols::Breaks& breaks) {
+  using Clock = std::chrono::steady_clock;
+  const auto in = [now = Clock::now()](double seconds) {
+    return now +
+           std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>{seconds});
+  };
+  return {in(breaks.min_seconds),
+          breaks.max_seconds ? in(*breaks.max_seconds) : Clock::time_point::max()};
+}
+
 std::optional<std::size_t> TrialPrompt::alternative_of(const std::string& answer) const {
   const auto found = std::ranges::find(alternative_labels, answer);
   return found == alternative_labels.end()

@@ -1,4 +1,5 @@
 #pragma once
+#include <chrono>
 #include <functional>
 #include <future>
 #include <map>
@@ -30,6 +31,13 @@ struct TrialPrompt {
   std::optional<Previous> previous{};
 };
 
+// When a rest that begins now may end, and when it does by itself.
+struct RestTimes {
+  std::chrono::steady_clock::time_point earliest;
+  std::chrono::steady_clock::time_point latest;
+};
+RestTimes rest_times(const protocols::Breaks& breaks);
+
 // Why an answer would be too early.
 struct TooEarly {
   enum class Reason { intervals, plate_untouched, alternatives_untouched, time };
@@ -46,7 +54,7 @@ class Participant {
   virtual ~Participant() = default;
   // Between trials; each returns once the participant goes on, and throws Stopped where none does.
   virtual void read(const std::string& /*instructions*/) {}
-  virtual void rest(double /*min_seconds*/) {}
+  virtual void rest(const protocols::Breaks& /*breaks*/) {}
   // By item, those left out being absent. A simulation has nothing to say about itself.
   using FormAnswers = std::map<std::string, std::string>;
   virtual bool fills_in_forms() const { return false; }

@@ -20,16 +20,23 @@ void Interludes::before(const protocols::PlannedTrial& trial) {
   if (block_ != trial.block) {
     leave_block();
     block_ = trial.block;
-    since_rest_ = 0;
     read(block.instructions, block.name);
+    trials_since_rest_ = 0;
+    rested_at_s_ = parts_.states.now_s();
   }
-  if (block.breaks && since_rest_ == block.breaks->every_trials) {
-    since_rest_ = 0;
+  rest_if_due(block);
+  ++trials_since_rest_;
+}
+
+void Interludes::rest_if_due(const protocols::Block& block) {
+  if (block.breaks &&
+      block.breaks->are_due(trials_since_rest_, parts_.states.now_s() - rested_at_s_)) {
     parts_.wait_while_paused();
     parts_.states.enter(SessionState::resting);
-    parts_.participant.rest(block.breaks->min_seconds);
+    parts_.participant.rest(*block.breaks);
+    trials_since_rest_ = 0;
+    rested_at_s_ = parts_.states.now_s();
   }
-  ++since_rest_;
 }
 
 // A session that was interrupted just before its last questionnaires has no trial left.

@@ -15,8 +15,7 @@ namespace tapstudy::runner {
 inline constexpr const char* asked_at_begin = "session begin";
 inline constexpr const char* asked_at_end = "session end";
 
-// What comes between the trials of a session: instructions, rests after every so many trials, and
-// questionnaires.
+// What comes between the trials of a session: instructions, rests, and questionnaires.
 class Interludes {
  public:
   struct Parts {
@@ -38,11 +37,13 @@ class Interludes {
   void begin();
   void leave_block();
   void read(const std::string& text, const std::string& whose);
+  void rest_if_due(const protocols::Block& block);
   void ask(const std::vector<std::string>& forms, const std::string& asked);
   Parts parts_;
   FilledForms filled_;
   bool has_begun_{false};
   std::optional<std::string> block_;
-  int since_rest_{0};  // trials
+  int trials_since_rest_{0};
+  double rested_at_s_{0.0};  // or the block's begin
 };
 }  // namespace tapstudy::runner

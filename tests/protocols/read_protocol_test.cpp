@@ -45,6 +45,26 @@ TEST_CASE("every shipped protocol can be read", "[protocols]") {
   }
 }
 
+TEST_CASE("a break comes after trials or time, and may last so long as it must", "[protocols]") {
+  const auto with_breaks = [](const std::string& breaks) {
+    return refusal(replaced(discrimination(), "    task: identification\n",
+                            "    task: identification\n    breaks: {" + breaks + "}\n"));
+  };
+  CHECK(with_breaks("every_seconds: 600, max_seconds: 30") == "accepted");
+  CHECK_THAT(with_breaks("min_seconds: 30"), Contains("breaks.every_trials: is missing"));
+  CHECK_THAT(with_breaks("every_trials: 4, min_seconds: 30, max_seconds: 20"),
+             Contains("breaks.max_seconds: is below min_seconds"));
+}
+
+TEST_CASE("levels as responses are refused with the factor that is to be named", "[protocols]") {
+  const std::string text = replaced(discrimination(), "    task: identification\n",
+                                    "    task: identification\n    responses: [acrylic, mdf]\n");
+  CHECK_THAT(refusal(text),
+             Contains("responses: 'acrylic' is a level of the factor 'material': add "
+                      "response_factor: material"));
+  CHECK_THAT(refusal(text), !Contains("cannot be answered"));
+}
+
 TEST_CASE("an unknown key is refused with its place and the key that was meant", "[protocols]") {
   const std::string text =
       replaced(discrimination(), "  penalty_stiffness_n_per_m:", "  penalty_stifness_n_per_m:");

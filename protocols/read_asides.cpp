@@ -1,0 +1,44 @@
+#include "protocols/read_sections.hpp"
+namespace tapstudy::protocols {
+namespace {
+using Presence = MapReader::Presence;
+
+Breaks read_breaks(MapReader& reader) {
+  Breaks breaks;
+  if (reader.has("every_trials")) {
+    breaks.every_trials = reader.integer("every_trials", 1, 1000);
+  }
+  if (reader.has("every_seconds")) {
+    breaks.every_seconds = reader.number("every_seconds", {10.0, 36000.0});
+  }
+  if (!breaks.every_trials && !breaks.every_seconds) {
+    reader.reject("every_trials", "is missing, and every_seconds too: a break comes after one");
+  }
+  breaks.min_seconds = reader.number("min_seconds", {0.0, 3600.0}, breaks.min_seconds);
+  if (reader.has("max_seconds")) {
+    breaks.max_seconds = reader.number("max_seconds", Range::positive(3600.0));
+    if (*breaks.max_seconds < breaks.min_seconds) {
+      reader.reject("max_seconds", "is below min_seconds");
+    }
+  }
+  return breaks;
+}
+}  // namespace
+
+void read_asides(MapReader& reader, Block& block) {
+  block.instructions = reader.translated_paragraphs("instructions", "");
+  reader.map("confidence", Presence::optional, [&](MapReader& inner) {
+    Confidence confidence;
+    confidence.steps = inner.integer("steps", 2, 7, confidence.steps);
+    confidence.low = inner.translated("low", confidence.low);
+    confidence.high = inner.translated("high", confidence.high);
+    block.confidence = confidence;
+  });
+  reader.map("breaks", Presence::optional,
+             [&](MapReader& inner) { block.breaks = read_breaks(inner); });
+  block.gives_feedback = reader.yes_or_no("feedback", false);
+  if (block.gives_feedback && !block.is_practice) {
+    reader.reject("feedback", "is for practice: elsewhere it teaches the answers");
+  }
+}
+}  // namespace tapstudy::protocols

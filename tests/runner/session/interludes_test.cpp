@@ -1,0 +1,63 @@
+#include "runner/session/interludes.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "support/texts.hpp"
+using namespace tapstudy;
+
+namespace {
+class CountedRests final : public runner::Participant {
+ public:
+  explicit CountedRests(double& now_s) : now_s_{now_s} {}
+  std::optional<std::string> perform(const runner::TrialPrompt& /*prompt*/,
+                                     runner::Exploration& /*exploration*/) override {
+    return std::nullopt;
+  }
+  void rest(const protocols::Breaks& /*breaks*/) override {
+    rested_at_s.push_back(now_s_);
+    now_s_ += 60.0;  // a long one
+  }
+  std::vector<double> rested_at_s;
+
+ private:
+  double& now_s_;
+};
+
+// When rests come in a block of ten trials of 10 s each.
+std::vector<double> rests(const protocols::Breaks& breaks) {
+  protocols::Protocol protocol;
+  protocol.blocks.emplace_back();
+  protocol.blocks.front().name = "only";
+  protocol.blocks.front().breaks = breaks;
+  double now_s = 100.0;
+  CountedRests participant{now_s};
+  runner::SessionStates states{1, [&] { return now_s; }};
+  runner::Interludes interludes{{protocol, participant, states, [](auto) {}, [] {}}, {}};
+  protocols::PlannedTrial trial;
+  trial.block = "only";
+  for (trial.number = 1; trial.number <= 10; ++trial.number) {
+    interludes.before(trial);
+    states.enter(runner::SessionState::ready, trial.number);
+    states.enter(runner::SessionState::exploring, trial.number);
+    states.enter(runner::SessionState::saved, trial.number);
+    now_s += 10.0;
+  }
+  return participant.rested_at_s;
+}
+}  // namespace
+
+TEST_CASE("rests come after so many trials", "[runner][session]") {
+  CHECK(rests({.every_trials = 4}) == std::vector{140.0, 240.0});
+}
+
+TEST_CASE("rests come after so much time since the last one, between two trials",
+          "[runner][session]") {
+  CHECK(rests({.every_seconds = 35.0}) == std::vector{140.0, 240.0});
+  CHECK(rests({.every_seconds = 1000.0}).empty());
+}
+
+TEST_CASE("of trials and time whichever is first brings the rest", "[runner][session]") {
+  CHECK(rests({.every_trials = 2, .every_seconds = 35.0}) ==
+        std::vector{120.0, 200.0, 280.0, 360.0});
+  CHECK(rests({.every_trials = 9, .every_seconds = 35.0}) == std::vector{140.0, 240.0});
+}

@@ -143,6 +143,7 @@ std::string methods(const Summary& summary) {
   }
   std::string text = fmt::format("{} participant{} ({}). ", summary.participants,
                                  summary.participants == 1 ? "" : "s", summary.modes);
+  text += summary.procedure;
   text +=
       "Intervals of proportions are 95 % score intervals (Wilson 1927) where nothing else is said; "
       "those over participants hold for participants of whom these are a sample. Accuracy of "

@@ -33,6 +33,7 @@ struct Summary {
   std::optional<LoopQuality> loop;
   std::vector<std::pair<std::string, std::string>> provenance;
   std::string stated_methods{};  // in place of what methods() would say
+  std::string procedure{};       // how the study was run, in sentences; methods() begins with it
 };
 
 // What a report needs besides answers and visits; all of it may be unknown.

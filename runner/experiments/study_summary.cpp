@@ -12,6 +12,7 @@
 
 #include "core/error.hpp"
 #include "runner/experiments/counted_answers.hpp"
+#include "runner/experiments/procedure_words.hpp"
 #include "runner/experiments/stored_protocol.hpp"
 #include "runner/experiments/study_design.hpp"
 #include "runner/experiments/study_sections.hpp"
@@ -40,6 +41,14 @@ std::vector<std::pair<std::string, std::string>> provenance(
           {"tapstudy", fmt::format("{}", fmt::join(programs, "; "))},
           {"device", fmt::format("{}", fmt::join(devices, "; "))},
           {"seeds", fmt::format("{}", fmt::join(seeds, ", "))}};
+}
+
+std::vector<results::SessionRow> sessions_of(const std::vector<results::SessionRow>& all,
+                                             Mode mode) {
+  std::vector<results::SessionRow> of;
+  std::ranges::copy_if(all, std::back_inserter(of),
+                       [&](const results::SessionRow& session) { return session.mode == mode; });
+  return of;
 }
 
 // The sessions that ended early: "P03: 5 of 8 trials".
@@ -252,6 +261,7 @@ Summary summary_of_study(const std::vector<StudyStore>& stores, Mode mode) {
       analysis::summarise(design_of(protocol, mode), all.answers, all.visits, all.presentations);
   summary.sections = study_sections(protocol, stores, mode);
   summary.provenance = provenance(study, all.sessions, mode);
+  summary.procedure = procedure_words(protocol, sessions_of(all.sessions, mode));
   summary.unfinished = std::move(all.unfinished);
   summary.excluded = std::move(all.excluded);
   summary.deviations = std::move(all.deviations);

@@ -64,12 +64,30 @@ core::Material read_material(MapReader& reader) {
   return material;
 }
 
+core::SinusoidShape::ByPlace read_by_place(MapReader& reader) {
+  const Range coordinate_m{-10.0, 10.0};
+  core::SinusoidShape::ByPlace by_place;
+  const Eigen::Vector2d from_m = reader.numbers("from_m", 2, coordinate_m);
+  const Eigen::Vector2d to_m = reader.numbers("to_m", 2, coordinate_m);
+  by_place.from_m = {from_m.x(), from_m.y()};
+  by_place.to_m = {to_m.x(), to_m.y()};
+  if (from_m == to_m) {
+    reader.reject("to_m", "is from_m: there is no way from one to the other");
+  }
+  const Range factor{0.01, 100.0};
+  by_place.amplitude_factor = reader.number("amplitude_factor", factor, 1.0);
+  by_place.frequency_factor = reader.number("frequency_factor", factor, 1.0);
+  return by_place;
+}
+
 void read_sinusoid(MapReader& rendering, core::SinusoidShape& sinusoid) {
   rendering.map("sinusoid", Presence::optional, [&](MapReader& reader) {
     sinusoid.amplitude_n_s_per_m =
         reader.number("amplitude_n_s_per_m", allowed::sinusoid_amplitude_n_s_per_m);
     sinusoid.decay_per_s = reader.number("decay_per_s", allowed::sinusoid_decay_per_s, 600.0);
     sinusoid.frequency_hz = reader.number("frequency_hz", allowed::sinusoid_frequency_hz, 250.0);
+    reader.map("by_place", Presence::optional,
+               [&](MapReader& inner) { sinusoid.by_place = read_by_place(inner); });
   });
 }
 }  // namespace
@@ -97,8 +115,9 @@ void read_rendering(MapReader& top, Protocol& protocol) {
         "integrator", {{"exact", core::Integrator::exact}, {"newmark", core::Integrator::newmark}},
         "exact");
     read_sinusoid(rendering, settings.sinusoid);
-    if (rendering.has("sinusoid") && settings.sinusoid.frequency_hz >= protocol.rate_hz / 2.0) {
-      rendering.reject("sinusoid", "frequency_hz is not below half of rate_hz: it would alias");
+    if (rendering.has("sinusoid") &&
+        settings.sinusoid.highest_frequency_hz() >= protocol.rate_hz / 2.0) {
+      rendering.reject("sinusoid", "its frequency is not below half of rate_hz: it would alias");
     }
   });
 }

@@ -1,5 +1,8 @@
 #pragma once
+#include <algorithm>
+#include <array>
 #include <memory>
+#include <optional>
 
 #include "core/settings/recorded_taps.hpp"
 namespace tapstudy::core {
@@ -22,6 +25,26 @@ struct SinusoidShape {
   double amplitude_n_s_per_m{};  // A per unit impact speed
   double decay_per_s{600.0};
   double frequency_hz{250.0};
+  // That tells where the impact was (the simplified model of Sreng, Lécuyer & Andriot 2008): from
+  // one place to another amplitude and frequency change in proportion, up to these factors.
+  struct ByPlace {
+    std::array<double, 2> from_m{};  // plate frame
+    std::array<double, 2> to_m{};    // another one
+    double amplitude_factor{1.0};
+    double frequency_factor{1.0};
+    // How far on the way, 0 to 1, the nearest place of the way is; beyond its ends they hold on.
+    double share_at(double x_m, double y_m) const noexcept {
+      const double along_x_m = to_m[0] - from_m[0];
+      const double along_y_m = to_m[1] - from_m[1];
+      const double share = ((x_m - from_m[0]) * along_x_m + (y_m - from_m[1]) * along_y_m) /
+                           (along_x_m * along_x_m + along_y_m * along_y_m);
+      return std::clamp(share, 0.0, 1.0);
+    }
+  };
+  std::optional<ByPlace> by_place{};  // unset: the same everywhere
+  double highest_frequency_hz() const {
+    return frequency_hz * (by_place ? std::max(1.0, by_place->frequency_factor) : 1.0);
+  }
 };
 
 struct RenderSettings {

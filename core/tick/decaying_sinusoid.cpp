@@ -7,9 +7,20 @@ namespace {
 constexpr double silent_exponent = 30.0;  // e^-30 of the amplitude is below any device's resolution
 }
 
+void DecayingSinusoid::touch(const Contact& contact) noexcept {
+  if (shape_.by_place) {
+    share_ = shape_.by_place->share_at(contact.god_object_m.x(), contact.god_object_m.y());
+  }
+}
+
 void DecayingSinusoid::impact(double speed_m_s) noexcept {
   amplitude_n_ = shape_.amplitude_n_s_per_m * speed_m_s;
+  frequency_hz_ = shape_.frequency_hz;
   age_s_ = 0.0;
+  if (shape_.by_place) {
+    amplitude_n_ *= 1.0 + share_ * (shape_.by_place->amplitude_factor - 1.0);
+    frequency_hz_ *= 1.0 + share_ * (shape_.by_place->frequency_factor - 1.0);
+  }
 }
 
 double DecayingSinusoid::force_n() const noexcept {
@@ -18,6 +29,6 @@ double DecayingSinusoid::force_n() const noexcept {
     return 0.0;
   }
   return amplitude_n_ * std::exp(-exponent) *
-         std::sin(2.0 * std::numbers::pi * shape_.frequency_hz * age_s_);
+         std::sin(2.0 * std::numbers::pi * frequency_hz_ * age_s_);
 }
 }  // namespace tapstudy::core

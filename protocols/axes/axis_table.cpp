@@ -68,7 +68,9 @@ Range gains(const PresentedStimulus& /*stimulus*/) {
 // Above half of the rate a sinusoid would alias.
 Range frequencies_hz(const PresentedStimulus& stimulus) {
   Range range = allowed::sinusoid_frequency_hz;
-  const double half_rate_hz = 0.5 / stimulus.rendering.dt_s;
+  core::SinusoidShape of_one_hz = stimulus.rendering.sinusoid;
+  of_one_hz.frequency_hz = 1.0;
+  const double half_rate_hz = 0.5 / stimulus.rendering.dt_s / of_one_hz.highest_frequency_hz();
   if (half_rate_hz <= range.high) {
     range.high = half_rate_hz;
     range.high_included = false;

@@ -56,6 +56,19 @@ TEST_CASE("a break comes after trials or time, and may last so long as it must",
              Contains("breaks.max_seconds: is below min_seconds"));
 }
 
+TEST_CASE("a sinusoid by place leads from one place to another, and does not alias at either",
+          "[protocols]") {
+  const auto with = [](const std::string& by_place) {
+    return refusal(replaced(discrimination(), "  penalty_stiffness_n_per_m:",
+                            "  sinusoid: {amplitude_n_s_per_m: 3, frequency_hz: 300, by_place: {" +
+                                by_place + "}}\n  penalty_stiffness_n_per_m:"));
+  };
+  CHECK(with("from_m: [0, 0], to_m: [0.1, 0], frequency_factor: 1.5") == "accepted");
+  CHECK_THAT(with("from_m: [0, 0], to_m: [0, 0]"), Contains("by_place.to_m: is from_m"));
+  CHECK_THAT(with("from_m: [0, 0], to_m: [0.1, 0], frequency_factor: 2"),
+             Contains("rendering.sinusoid: its frequency is not below half of rate_hz"));
+}
+
 TEST_CASE("levels as responses are refused with the factor that is to be named", "[protocols]") {
   const std::string text = replaced(discrimination(), "    task: identification\n",
                                     "    task: identification\n    responses: [acrylic, mdf]\n");

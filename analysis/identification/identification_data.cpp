@@ -58,7 +58,10 @@ std::vector<const AnswerRow*> in_time(const std::vector<AnswerRow>& answers) {
   for (const AnswerRow& answer : answers) {
     rows.push_back(&answer);
   }
-  std::ranges::stable_sort(rows, {}, [](const AnswerRow* row) { return row->trial_id; });
+  const auto trial_id = [](const AnswerRow* row) { return row->trial_id; };
+  if (!std::ranges::is_sorted(rows, {}, trial_id)) {
+    std::ranges::stable_sort(rows, {}, trial_id);
+  }
   return rows;
 }
 }  // namespace
@@ -70,7 +73,7 @@ IdentificationData identification_data(const BlockDesign& design,
   const Places responses{data.responses, "response"};
   std::unordered_map<std::string, std::size_t> place_of_person;
   for (const AnswerRow& answer : answers) {
-    if (place_of_person.emplace(answer.participant_id, data.participants.size()).second) {
+    if (place_of_person.try_emplace(answer.participant_id, data.participants.size()).second) {
       data.participants.push_back(
           {answer.participant_id, {answer.participant_index, answer.order_index}, {}});
     }

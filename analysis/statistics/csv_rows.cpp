@@ -55,7 +55,8 @@ class CsvReader {
           text_.separator = separator_of(line);
           csv_set_delim(&parser_, static_cast<unsigned char>(text_.separator));
         }
-        take(line + '\n');
+        line += '\n';
+        take(line);
       }
     }
     if (csv_fini(&parser_, end_cell, end_row, this) != 0) {
@@ -114,7 +115,9 @@ class CsvReader {
   }
   static void end_row(int /*terminator*/, void* self) {
     auto& reader = *static_cast<CsvReader*>(self);
+    const std::size_t cells = reader.row_.cells.size();
     reader.text_.rows.push_back(std::exchange(reader.row_, {}));
+    reader.row_.cells.reserve(cells);  // the next row has as many, too
     reader.is_inside_row_ = false;
   }
 

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <iterator>
 #include <map>
 #include <ranges>
 
@@ -33,13 +32,13 @@ void read_stimuli_as_responses(MapReader& reader, const std::vector<std::string>
                                const Protocol& protocol, Block& block) {
   const std::vector<std::string> stimuli = stimulus_names(protocol);
   std::map<std::string, std::string> factor_of;  // by level
+  std::vector<std::string> known = stimuli;
   for (const std::string& factor : factors) {
     for (const std::string& level : levels_of(factor, protocol, stimuli)) {
       factor_of.emplace(level, factor);
+      known.push_back(level);
     }
   }
-  std::vector<std::string> known = stimuli;
-  std::ranges::copy(std::views::keys(factor_of), std::back_inserter(known));
   block.responses = reader.words("responses", "stimulus", known, block.stimuli);
   for (const std::string& response : block.responses) {
     if (std::ranges::find(stimuli, response) == stimuli.end()) {

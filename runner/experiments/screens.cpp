@@ -64,6 +64,15 @@ int number_of(const protocols::Breaks& breaks, int trials, double block_s) {
   return std::min(number, trials - 1);
 }
 
+std::string length_of(const protocols::Breaks& breaks) {
+  if (!breaks.max_seconds) {
+    return breaks.min_seconds > 0.0 ? fmt::format(" of at least {} s", breaks.min_seconds) : "";
+  }
+  return breaks.min_seconds > 0.0
+             ? fmt::format(" of {} to {} s", breaks.min_seconds, *breaks.max_seconds)
+             : fmt::format(" of at most {} s", *breaks.max_seconds);
+}
+
 std::string described(const protocols::Breaks& breaks) {
   std::vector<std::string> after;
   if (breaks.every_trials) {
@@ -72,11 +81,7 @@ std::string described(const protocols::Breaks& breaks) {
   if (breaks.every_seconds) {
     after.push_back(fmt::format("{} s", *breaks.every_seconds));
   }
-  return fmt::format(
-      "a break{}{}, after every {}",
-      breaks.min_seconds > 0.0 ? fmt::format(" of at least {} s", breaks.min_seconds) : "",
-      breaks.max_seconds ? fmt::format(" of at most {} s", *breaks.max_seconds) : "",
-      fmt::join(after, " or "));
+  return fmt::format("a break{}, after every {}", length_of(breaks), fmt::join(after, " or "));
 }
 
 void add_trials(const protocols::Protocol& protocol, const protocols::Block& block,

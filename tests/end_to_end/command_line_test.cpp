@@ -358,7 +358,7 @@ TEST_CASE("check counts the screens that a session shows", "[end_to_end][threads
   INFO(shown);
   const std::string total = counted.standard_output;
   CHECK_THAT(shown, Contains(total.substr(0, total.size() - 1)));
-  CHECK_THAT(shown, Contains("1  a break of at least 1 s, after every 1 trial\n"));
+  CHECK_THAT(shown, Contains("1  a break of 1 to 600 s, after every 1 trial\n"));
 }
 
 TEST_CASE("check warns of a contact that the hand cannot rest on", "[end_to_end]") {

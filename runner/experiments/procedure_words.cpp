@@ -4,7 +4,9 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <iterator>
 #include <set>
+#include <utility>
 
 #include "protocols/schedule.hpp"
 #include "runner/devices/masking_noise.hpp"
@@ -30,7 +32,7 @@ std::string rendering(const Protocol& protocol) {
     vibrates = vibrates || stimulus.technique->needs_model();
   }
   return fmt::format(
-      "Contact was rendered by a spring of {:g} N/m with {}: {}{}. ",
+      "Contact was rendered by a spring of {:g} N/m with {} {}{}. ",
       protocol.rendering.penalty_stiffness_n_per_m,
       techniques.size() == 1 ? "the technique" : "the techniques", fmt::join(techniques, ", "),
       vibrates ? fmt::format("; modes of vibration up to {:g} Hz", protocol.band_limit_hz) : "");
@@ -75,11 +77,20 @@ std::string block_words(const Block& block) {
       practice_words(block));
 }
 
-std::string exploration(const Block& block) {
+// Letters that stand for something else in each trial, and are what is answered.
+bool has_blind_labels(const Block& block, const Protocol& protocol) {
+  const protocols::Answers answers = block.task->answers(block, protocol);
+  return !answers.options.empty() && answers.options.front().name == protocols::blind_label(0);
+}
+
+// What an answer to the block took.
+std::string exploration(const Block& block, const Protocol& protocol) {
   std::vector<std::string> limits;
   if (block.presented == protocols::Presented::virtual_plates && block.explore.min_contacts > 0) {
+    const bool is_each = has_blind_labels(block, protocol) && block.explore.must_visit_all;
     limits.push_back(fmt::format(
-        "at least {}", counted(static_cast<std::size_t>(block.explore.min_contacts), "contact")));
+        "at least {}{}", counted(static_cast<std::size_t>(block.explore.min_contacts), "contact"),
+        is_each ? " with each alternative" : ""));
   }
   if (block.explore.min_seconds > 0.0) {
     limits.push_back(fmt::format("at least {:g} s", block.explore.min_seconds));
@@ -87,17 +98,33 @@ std::string exploration(const Block& block) {
   if (block.explore.max_seconds) {
     limits.push_back(fmt::format("at most {:g} s", *block.explore.max_seconds));
   }
-  return limits.empty()
-             ? ""
-             : fmt::format("An answer in '{}' took {}. ", block.name, fmt::join(limits, ", "));
+  return fmt::format("{}", fmt::join(limits, ", "));
 }
 
-bool has_blind_labels(const Block& block) {
-  return !block.is_practice && !block.task->uses_order() && block.task->is_random(block);
+std::string explorations(const Protocol& protocol) {
+  std::vector<std::pair<std::string, std::vector<std::string>>> blocks_of;  // by what it took
+  for (const Block& block : protocol.blocks) {
+    const std::string took = exploration(block, protocol);
+    auto of = std::ranges::find(blocks_of, took, &decltype(blocks_of)::value_type::first);
+    if (of == blocks_of.end()) {
+      blocks_of.emplace_back(took, std::vector<std::string>{});
+      of = std::prev(blocks_of.end());
+    }
+    of->second.push_back("'" + block.name + "'");
+  }
+  std::string text;
+  for (const auto& [took, blocks] : blocks_of) {
+    const std::string where =
+        blocks_of.size() == 1 ? "" : fmt::format(" in {}", fmt::join(blocks, ", "));
+    text += took.empty() ? "" : fmt::format("An answer{} took {}. ", where, took);
+  }
+  return text;
 }
 
+// Of people: a simulated participant sees nothing.
 std::string blinding(const Protocol& protocol) {
-  const bool are_labels_blind = std::ranges::any_of(protocol.blocks, has_blind_labels);
+  const bool are_labels_blind = std::ranges::any_of(
+      protocol.blocks, [&](const Block& block) { return has_blind_labels(block, protocol); });
   return fmt::format(
       "Blinding: what participants saw did not depend on what was rendered{}; the operator's "
       "screen {} what was presented. ",
@@ -114,10 +141,8 @@ std::string procedure_words(const Protocol& protocol,
   std::ranges::transform(protocol.blocks, std::back_inserter(blocks), block_words);
   std::string text = apparatus(sessions) + rendering(protocol);
   text += fmt::format("Each participant did {}. ", fmt::join(blocks, ", then "));
-  for (const Block& block : protocol.blocks) {
-    text += exploration(block);
-  }
-  text += blinding(protocol);
+  text += explorations(protocol);
+  text += sessions.front().mode == results::Mode::simulated ? "" : blinding(protocol);
   text += protocol.masking ? fmt::format("Masking: {}. ", described(*protocol.masking)) : "";
   return text;
 }

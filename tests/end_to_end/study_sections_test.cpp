@@ -68,20 +68,20 @@ TEST_CASE("the methods of a report say what the protocol asked for and what it r
   const auto methods_of = [&](const std::string& protocol) {
     testing::write(directory / "study.yaml", protocol);
     const std::string out = study + std::to_string(protocol.size());
-    REQUIRE(testing::tapstudy({"simulate", directory / "study.yaml", "--participants", "2",
-                               "--seed", "1", "--no-traces", "--out", out})
+    REQUIRE(testing::tapstudy({"run", directory / "study.yaml", "--participant", "P01", "--seed",
+                               "5", "--out", out},
+                              "1\n2\n3\n4\n1\n2\n3\n4\n")
                 .exit_code == 0);
     REQUIRE(testing::tapstudy({"report", out, "--out", out + "_report"}).exit_code == 0);
     return testing::contents(out + "_report/report.html");
   };
   const std::string plain = testing::contents(testing::shipped("paper/discrimination.yaml"));
   const std::string text = methods_of(plain);
-  CHECK_THAT(text, Contains("2 participants (simulated). Apparatus: "));
-  CHECK_THAT(text,
-             Contains("a spring of 3000 N/m with the technique: fem; modes of vibration up to "
-                      "300 Hz"));
+  CHECK_THAT(text, Contains("1 participant (pilot). Apparatus: "));
+  CHECK_THAT(text, Contains("a spring of 3000 N/m with the technique fem; modes of vibration up to "
+                            "300 Hz"));
   CHECK_THAT(text, Contains("(identification of 4 stimuli, 8 trials, in random order)"));
-  CHECK_THAT(text, Contains("at least 1 contact. "));
+  CHECK_THAT(text, Contains("An answer took at least 1 contact. "));
   CHECK_THAT(text, Contains("screen showed what was presented"));
   CHECK_THAT(text, !Contains("Masking"));
   const std::string masked = methods_of(plain +
@@ -89,4 +89,5 @@ TEST_CASE("the methods of a report say what the protocol asked for and what it r
                                         "display: {blind_operator: true}\n");
   CHECK_THAT(masked, Contains("Masking: pink noise at -24 dB FS"));
   CHECK_THAT(masked, Contains("screen did not show what was presented"));
+  CHECK_THAT(masked, !Contains("letters"));
 }

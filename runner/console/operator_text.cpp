@@ -13,17 +13,17 @@ namespace {
 constexpr std::size_t columns = 25;
 constexpr std::array<const char*, 8> bars{"▁", "▂", "▃", "▄", "▅", "▆", "▇", "█"};
 
-// The largest value of each column, from 0 or below to the largest of all.
+// The largest value of each column, between the least and the greatest of all.
 std::string curve(const std::vector<double>& values) {
   const auto [low, high] = std::ranges::minmax(values);
   const double length = std::max(high - low, 1e-12);
+  const std::size_t shown = std::min(columns, values.size());
+  const auto at = [&](std::size_t column) {
+    return values.begin() + static_cast<std::ptrdiff_t>(column * values.size() / shown);
+  };
   std::string text;
-  for (std::size_t column = 0; column < std::min(columns, values.size()); ++column) {
-    const std::size_t shown = std::min(columns, values.size());
-    const auto begin = values.begin() + static_cast<std::ptrdiff_t>(column * values.size() / shown);
-    const auto end =
-        values.begin() + static_cast<std::ptrdiff_t>((column + 1) * values.size() / shown);
-    const double share = (*std::max_element(begin, end) - low) / length;
+  for (std::size_t column = 0; column < shown; ++column) {
+    const double share = (*std::max_element(at(column), at(column + 1)) - low) / length;
     text += bars.at(std::min(bars.size() - 1, static_cast<std::size_t>(share * bars.size())));
   }
   return text;

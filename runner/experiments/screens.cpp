@@ -68,6 +68,9 @@ std::string length_of(const protocols::Breaks& breaks) {
   if (!breaks.max_seconds) {
     return breaks.min_seconds > 0.0 ? fmt::format(" of at least {} s", breaks.min_seconds) : "";
   }
+  if (breaks.min_seconds == *breaks.max_seconds) {
+    return fmt::format(" of {} s", breaks.min_seconds);
+  }
   return breaks.min_seconds > 0.0
              ? fmt::format(" of {} to {} s", breaks.min_seconds, *breaks.max_seconds)
              : fmt::format(" of at most {} s", *breaks.max_seconds);

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/model/contacts/contacts.hpp"
 #include "core/model/plate.hpp"
 #include "core/placement.hpp"
 #include "core/settings/masking_noise.hpp"
@@ -31,6 +32,12 @@ struct Plate : core::Plate {
   double lateral_ratio{1.0};  // of this plate's lateral scale to the placement's
   Points tapping_points_m;
   std::string stated_at;
+  std::map<std::string, core::Fixation> contact_points;  // regions, by name
+};
+
+// What a plate touches. The first of the plates is the one that is tapped.
+struct Contacts : core::Contacts {
+  std::vector<std::shared_ptr<const Plate>> plates;
 };
 
 // A stimulus: a plate of a material, rendered by a technique; with `vary` a family of them, of
@@ -43,6 +50,8 @@ struct Stimulus {
   const core::Technique* technique{};
   std::shared_ptr<const core::RecordedTaps> recording;  // where its technique plays one
   std::map<std::string, std::string> factors;           // factor → level, for reports
+  std::shared_ptr<const Contacts> contacts{};           // nullptr: it touches no other body
+  AxisValues rendering{};                               // its own, where not the study's
   std::vector<AxisRange> vary{};                        // each axis once
   bool is_vary_refused{false};  // while a file is read in which it was rejected
   // False while a file is read in which one of these names was rejected.
@@ -101,6 +110,16 @@ struct Intervals {
   int max_replays{0};       // of all of them, as the participant likes
 };
 
+// Taps that a simulated hand makes in the participant's place, who holds the device still and feels
+// them: at one point, alike, again and again.
+struct ScriptedTaps {
+  std::string point;  // name of a tapping point
+  double speed_m_s{};
+  double dwell_s{0.25};
+  double pause_s{0.5};  // until the next one begins
+  bool operator==(const ScriptedTaps& other) const = default;
+};
+
 // What a participant must have done before an answer is taken, and how long it may take.
 struct ExploreLimits {
   int min_contacts{1};        // with the plate, or each alternative
@@ -108,7 +127,8 @@ struct ExploreLimits {
   double min_seconds{0.0};
   std::optional<double> max_seconds;
   AtLimit at_limit{AtLimit::requeue};
-  std::optional<Intervals> intervals{};  // nullopt: alternatives are switched freely
+  std::optional<Intervals> intervals{};         // nullopt: alternatives are switched freely
+  std::optional<ScriptedTaps> scripted_taps{};  // nullopt: the participant taps
 };
 
 // Trials with a stimulus that nobody should mistake, at random places among a block's: they show
@@ -136,6 +156,9 @@ enum class Side { above, below, either };
 // procedures choose: a fraction of the standard, or a difference in the axis's unit.
 struct Comparison {
   std::string axis;
+  // All alternatives of a trial have the same values on these, which a procedure of several axes
+  // chooses as they are: the threshold along the axis above depends on them.
+  std::vector<std::string> further_axes;
   double standard{};
   bool is_fraction{true};
   Side side{Side::above};
@@ -254,6 +277,7 @@ struct Protocol {
   std::map<std::string, std::shared_ptr<const Material>> materials;
   std::map<std::string, std::shared_ptr<const Plate>> plates;
   std::map<std::string, std::shared_ptr<const core::RecordedTaps>> recordings;
+  std::map<std::string, std::shared_ptr<const Contacts>> contacts;
   Points tapping_points_m;  // plate frame, at the placement's scale
   std::vector<Stimulus> stimuli;
   std::map<std::string, Form> forms;

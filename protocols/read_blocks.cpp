@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <tuple>
 
 #include "core/error.hpp"
 #include "protocols/ordering.hpp"
@@ -47,8 +48,23 @@ void read_intervals(MapReader& explore, ExploreLimits& limits) {
   });
 }
 
+void read_scripted_taps(MapReader& explore, const Protocol& protocol, Presented presented,
+                        ExploreLimits& limits) {
+  explore.map("scripted_taps", Presence::optional, [&](MapReader& reader) {
+    ScriptedTaps taps;
+    taps.point = reader.word("point", "tapping point", keys_of(protocol.tapping_points_m));
+    taps.speed_m_s = reader.number("speed_m_s", {0.02, 1.0});
+    taps.dwell_s = reader.number("dwell_s", {0.02, 10.0}, taps.dwell_s);
+    taps.pause_s = reader.number("pause_s", {0.2, 10.0}, taps.pause_s);
+    limits.scripted_taps = taps;
+  });
+  if (limits.scripted_taps && presented == Presented::real_plates) {
+    explore.reject("scripted_taps", "are felt through the device: real plates are tapped by hand");
+  }
+}
+
 // How often a real plate is touched is not measured.
-ExploreLimits read_explore(MapReader& block, Presented presented) {
+ExploreLimits read_explore(MapReader& block, const Protocol& protocol, Presented presented) {
   ExploreLimits limits;
   if (presented == Presented::real_plates) {
     limits.min_contacts = 0;
@@ -69,6 +85,7 @@ ExploreLimits read_explore(MapReader& block, Presented presented) {
     limits.at_limit = reader.one_of<AtLimit>(
         "at_limit", {{"requeue", AtLimit::requeue}, {"give_up", AtLimit::give_up}}, "requeue");
     read_intervals(reader, limits);
+    read_scripted_taps(reader, protocol, presented, limits);
   });
   return limits;
 }
@@ -177,14 +194,15 @@ void check_presented(MapReader& reader, const Protocol& protocol, const Block& b
                                            "plates are mounted one at a time",
                                            block.task->name()));
   }
-  std::map<std::pair<const Plate*, const Material*>, std::string> stimulus_of;
+  std::map<std::tuple<const Plate*, const Material*, const Contacts*>, std::string> stimulus_of;
   for (const std::string& name : all_presented(block)) {
     const auto stimulus = std::ranges::find(protocol.stimuli, name, &Stimulus::name);
     if (stimulus == protocol.stimuli.end()) {
       continue;  // rejected already
     }
-    const auto [known, is_new] =
-        stimulus_of.emplace(std::pair{stimulus->plate.get(), stimulus->material.get()}, name);
+    const auto [known, is_new] = stimulus_of.emplace(
+        std::tuple{stimulus->plate.get(), stimulus->material.get(), stimulus->contacts.get()},
+        name);
     if (!is_new) {
       reader.reject("stimuli",
                     fmt::format("'{}' and '{}' are the same real plate", known->second, name));
@@ -214,7 +232,7 @@ Block read_block(MapReader& reader, const Protocol& protocol) {
   block.presented = reader.one_of<Presented>(
       "presented", {{"virtual", Presented::virtual_plates}, {"real", Presented::real_plates}},
       "virtual");
-  block.explore = read_explore(reader, block.presented);
+  block.explore = read_explore(reader, protocol, block.presented);
   read_asides(reader, block);
   block.allows_correction = reader.yes_or_no("correction", false);
   block.forms_after = read_form_names(reader, "forms_after", protocol);

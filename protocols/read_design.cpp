@@ -12,18 +12,24 @@ namespace {
 using Presence = MapReader::Presence;
 constexpr double same_height_m = 1e-3;
 
-// A null value for a name that was rejected.
-template <class Value>
-std::shared_ptr<const Value> named(const std::map<std::string, std::shared_ptr<const Value>>& all,
-                                   const std::string& name) {
-  const auto found = all.find(name);
-  return found == all.end() ? nullptr : found->second;
+// By other bodies, but by nobody who takes part.
+bool is_only_touched(const Plate& plate, const Protocol& protocol) {
+  const auto is_this = [&](const std::shared_ptr<const Plate>& other) {
+    return other.get() == &plate;
+  };
+  return std::ranges::none_of(protocol.stimuli, is_this, &Stimulus::plate) &&
+         std::ranges::any_of(protocol.contacts, [&](const auto& contacts) {
+           return std::ranges::any_of(contacts.second->plates, is_this);
+         });
 }
 
 // Plates of one study must not be told apart by where or how high they are touched.
 void check_points(MapReader& top, const Protocol& protocol) {
   std::map<std::string, double> height_of_point_m;
   for (const auto& [name, plate] : protocol.plates) {
+    if (is_only_touched(*plate, protocol)) {
+      continue;
+    }
     const core::TopHeight top_height{plate->shape};
     for (const auto& [point, at_m] : plate->tapping_points_m) {
       const auto height_m = top_height.at_m(at_m);
@@ -92,7 +98,6 @@ std::vector<std::string> stimulus_names(const Protocol& protocol) {
 }
 
 void read_stimuli(MapReader& top, Protocol& protocol) {
-  check_points(top, protocol);
   top.each("stimuli", Presence::required, [&](const std::string& name, MapReader& reader) {
     Stimulus stimulus;
     stimulus.name = name;
@@ -111,12 +116,19 @@ void read_stimuli(MapReader& top, Protocol& protocol) {
                      [&](const std::string& factor, const std::string& level) {
                        stimulus.factors[factor] = level;
                      });
+    if (reader.has("contacts")) {
+      stimulus.contacts = named(protocol.contacts, reader.word("contacts", "set of contacts",
+                                                               keys_of(protocol.contacts)));
+    }
     check_factors(reader, stimulus, protocol);
     check_technique(reader, stimulus, protocol);
+    check_contacts(reader, stimulus, protocol);
+    stimulus.rendering = read_own_rendering(reader, stimulus, protocol);
     stimulus.vary = read_vary(reader, stimulus, protocol);
     stimulus.is_vary_refused = reader.has("vary") && stimulus.vary.empty();
     protocol.stimuli.push_back(stimulus);
   });
+  check_points(top, protocol);
 }
 
 void read_hypotheses(MapReader& top, Protocol& protocol) {

@@ -51,7 +51,7 @@ void read_place(MapReader& reader, bool is_box, core::Fixation& fixation) {
                                             "both");
 }
 
-core::Fixation read_fixation(MapReader& reader, bool is_box) {
+core::Fixation read_region(MapReader& reader, bool is_box) {
   using core::RegionShape;
   core::Fixation fixation;
   fixation.shape = reader.one_of<RegionShape>("region", {{"vertex", RegionShape::vertex},
@@ -90,6 +90,11 @@ core::Fixation read_fixation(MapReader& reader, bool is_box) {
   if (fixation.shape == RegionShape::disc || fixation.shape == RegionShape::ball) {
     fixation.radius_m = reader.number("radius_m", Range::positive(10.0));
   }
+  return fixation;
+}
+
+core::Fixation read_fixation(MapReader& reader, bool is_box) {
+  core::Fixation fixation = read_region(reader, is_box);
   read_hold(reader, fixation);
   return fixation;
 }
@@ -201,6 +206,10 @@ void read_plates(MapReader& top, Protocol& protocol, const ReadFile& read_file) 
     reader.list("fixations", Presence::required, [&](MapReader& fixation) {
       plate.fixations.push_back(read_fixation(fixation, is_box));
     });
+    reader.each("contact_points", Presence::optional,
+                [&](const std::string& point, MapReader& region) {
+                  plate.contact_points[point] = read_region(region, is_box);
+                });
     read_lateral_scale(reader, is_box, protocol.placement, plate);
     read_own_points(reader, protocol, plate);
     protocol.plates[name] = std::make_shared<const Plate>(std::move(plate));

@@ -35,6 +35,7 @@ Protocol parse(const StudyText& study, const ReadFile& read_file, Problems& prob
   read_points(top, protocol);
   read_plates(top, protocol, read_file);
   read_recordings(top, protocol);
+  read_contacts(top, protocol);
   read_stimuli(top, protocol);
   read_forms(top, protocol);
   read_display(top, protocol);

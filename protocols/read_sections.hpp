@@ -15,8 +15,17 @@ void read_points(MapReader& top, Protocol& protocol);
 // read_file: the bytes of a surface, by the name that the study gives it.
 void read_plates(MapReader& top, Protocol& protocol, const ReadFile& read_file);
 void read_recordings(MapReader& top, Protocol& protocol);
+void read_contacts(MapReader& top, Protocol& protocol);
+// Of a stimulus whose other keys are read.
+void check_contacts(MapReader& stimulus_reader, const Stimulus& stimulus, const Protocol& protocol);
+inline constexpr const char* modal_ratios_in_contact =
+    "its modal_ratios are of a plate's own modes, which it has no more in contact with others "
+    "(give "
+    "coefficients, measured ratios or one ratio)";
 void read_stimuli(MapReader& top, Protocol& protocol);
 // The axes of a stimulus whose other keys are read.
+AxisValues read_own_rendering(MapReader& stimulus_reader, const Stimulus& stimulus,
+                              const Protocol& protocol);
 std::vector<AxisRange> read_vary(MapReader& stimulus_reader, const Stimulus& stimulus,
                                  const Protocol& protocol);
 void read_forms(MapReader& top, Protocol& protocol);
@@ -31,6 +40,13 @@ void read_masking(MapReader& top, Protocol& protocol);
 void read_simulation(MapReader& top, Protocol& protocol);
 
 std::vector<std::string> stimulus_names(const Protocol& protocol);
+// A null value for a name that was rejected.
+template <class Value>
+std::shared_ptr<const Value> named(const std::map<std::string, std::shared_ptr<const Value>>& all,
+                                   const std::string& name) {
+  const auto found = all.find(name);
+  return found == all.end() ? nullptr : found->second;
+}
 template <class Value>
 std::vector<std::string> keys_of(const std::map<std::string, Value>& named) {
   std::vector<std::string> keys;

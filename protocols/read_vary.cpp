@@ -1,4 +1,4 @@
-// The axes along which a stimulus varies.
+// The axes along which a stimulus varies, and what of rendering is its own.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -93,11 +93,14 @@ void check_models(MapReader& vary, const std::vector<AxisRange>& ranges,
 Range any_number() {
   return {std::numeric_limits<double>::lowest(), std::numeric_limits<double>::max()};
 }
+// Whether it is used is not known where the technique was rejected.
+std::string why_refused(const Axis& axis, const PresentedStimulus& own) {
+  return own.technique == nullptr ? std::string{} : refusal(axis, own);
+}
 // A refused axis is read all the same, so that its keys are not reported as unknown.
 void read_axis(MapReader& reader, const Axis& axis, const PresentedStimulus& own,
                std::vector<AxisRange>& ranges) {
-  // whether it is used is not known where the technique was rejected
-  const std::string why = own.technique == nullptr ? std::string{} : refusal(axis, own);
+  const std::string why = why_refused(axis, own);
   const AxisRange range = read_range(reader, axis, why.empty() ? axis.allowed(own) : any_number());
   if (why.empty()) {
     ranges.push_back(range);
@@ -106,6 +109,28 @@ void read_axis(MapReader& reader, const Axis& axis, const PresentedStimulus& own
   }
 }
 }  // namespace
+
+AxisValues read_own_rendering(MapReader& stimulus_reader, const Stimulus& stimulus,
+                              const Protocol& protocol) {
+  AxisValues values;
+  const PresentedStimulus studys = stimulus_with(protocol, whole(stimulus));
+  stimulus_reader.map("rendering", Presence::optional, [&](MapReader& reader) {
+    for (const Axis& axis : axes()) {
+      const std::string name{axis.name};
+      if (!axis.is_of_rendering || !reader.has(name)) {
+        continue;
+      }
+      const std::string why = why_refused(axis, studys);
+      const double value = reader.number(name, why.empty() ? axis.allowed(studys) : any_number());
+      if (why.empty()) {
+        values[name] = value;
+      } else {
+        reader.reject(name, why);
+      }
+    }
+  });
+  return values;
+}
 
 std::vector<AxisRange> read_vary(MapReader& stimulus_reader, const Stimulus& stimulus,
                                  const Protocol& protocol) {

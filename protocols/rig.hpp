@@ -5,6 +5,7 @@
 
 #include "core/placement.hpp"
 #include "core/settings/audio_output.hpp"
+#include "core/settings/device_response.hpp"
 #include "core/settings/gate_settings.hpp"
 #include "core/settings/realtime_request.hpp"
 namespace tapstudy::protocols {
@@ -31,6 +32,7 @@ struct Rig {
   bool has_hardware{};                           // exerts force on a person's hand
   core::GateSettings gate;
   std::optional<double> vibration_band_hz;  // the highest frequency that the device renders
+  std::shared_ptr<const core::DeviceResponse> vibration_response;  // null: not measured
   core::RealtimeRequest realtime;
   int max_late_ticks_in_a_row{0};            // 0: any
   double max_stall_s{0.0};                   // between two ticks; 0: any

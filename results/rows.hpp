@@ -112,12 +112,14 @@ inline constexpr const char* untraced_event = "untraced";
 struct EventRow {
   double t_s{};  // from the first tick of the trial
   // contact, impact, late_impact, release, switch, untraced; setting: what the participant set the
-  // axis of the last alternative to, first at 0 s where it started; of the masking noise, which is
+  // axis of the last alternative to, first at 0 s where it started; scripted_taps: the trace has
+  // the motion of the hand that tapped in the participant's place; of the masking noise, which is
   // played from before the first tick: masking (it was), and of the whole trial masking_underrun,
   // masking_cut (only where there were any) and masking_lost (the card plays no more)
   std::string kind;
-  // impacts: speed m/s; switch: position of the alternative; setting: the axis's unit; masking: RMS
-  // in dB FS; masking_underrun, masking_cut: how many gaps, samples beyond full scale; else 0
+  // impacts, scripted_taps: speed m/s; switch: position of the alternative; setting: the axis's
+  // unit; masking: RMS in dB FS; masking_underrun, masking_cut: how many gaps, samples beyond full
+  // scale; else 0
   double value{};
 };
 struct TraceChunk {

@@ -104,6 +104,12 @@ void Database::run(const std::string& sql) {
   }
 }
 
+std::int64_t Database::pragma(const std::string& name) {
+  Statement statement{*this, "PRAGMA " + name};
+  statement.step();
+  return statement.integer(0);
+}
+
 std::int64_t Database::last_row_id() const {
   return sqlite3_last_insert_rowid(handle_.get());
 }

@@ -20,6 +20,7 @@ class Database {
   // Without a file; the name is for messages.
   static Database in_memory(const std::string& name);
   void run(const std::string& sql);
+  std::int64_t pragma(const std::string& name);  // what PRAGMA name answers, an integer
   const std::string& file() const { return file_; }
   bool is_open() const { return handle_ != nullptr; }
   bool can_write() const { return access_ == Access::write; }

@@ -10,9 +10,15 @@
 #include "results/trace_codec.hpp"
 namespace tapstudy::results {
 namespace {
-std::uint64_t seed_from(const std::string& text) {
+// Throws StoreError with where it stands.
+std::uint64_t seed_from(const std::string& text, const std::string& where) {
   std::uint64_t seed{};
-  std::from_chars(text.data(), text.data() + text.size(), seed);
+  const char* const end = text.data() + text.size();
+  const auto [stopped, error] = std::from_chars(text.data(), end, seed);
+  if (error != std::errc{} || stopped != end) {
+    throw StoreError{
+        fmt::format("{}: the seed '{}' is no whole number below 2^64", where, text.substr(0, 80))};
+  }
   return seed;
 }
 
@@ -21,14 +27,14 @@ constexpr const char* session_columns =
     "language, resumes, rate_hz, "
     "rig_text, device, scheduler, doctor, program_version, git_hash, compiler, started_utc";
 
-SessionRow session_from(Statement& row) {
+SessionRow session_from(Statement& row, const std::string& file) {
   SessionRow session;
   session.id = row.integer(0);
   session.participant_id = row.text(1);
   session.participant_index = static_cast<int>(row.integer(2));
   session.order_index = static_cast<int>(row.integer(3));
   session.mode = mode_from(row.text(4));
-  session.seed = seed_from(row.text(5));
+  session.seed = seed_from(row.text(5), fmt::format("{}: session {}", file, session.id));
   session.planned_order = row.text(6);
   session.language = row.text(7);
   session.resumes = row.integer(8) != 0 ? std::optional{row.integer(8)} : std::nullopt;
@@ -51,7 +57,7 @@ std::vector<SessionRow> Store::sessions() {
                                        "USING (participant_id) ORDER BY session_id",
                                        session_columns)};
   while (row.step()) {
-    sessions.push_back(session_from(row));
+    sessions.push_back(session_from(row, database_.file()));
   }
   return sessions;
 }
@@ -64,7 +70,7 @@ SessionRow Store::session_of(std::int64_t session_id) {
   if (!row.step()) {
     throw StoreError{fmt::format("{}: has no session {}", database_.file(), session_id)};
   }
-  return session_from(row);
+  return session_from(row, database_.file());
 }
 
 namespace {
@@ -158,7 +164,7 @@ std::optional<SessionRow> Store::latest_session(const std::string& participant_i
                                        "ORDER BY session_id DESC LIMIT 1",
                                        session_columns)};
   row.bind(participant_id);
-  return row.step() ? std::optional{session_from(row)} : std::nullopt;
+  return row.step() ? std::optional{session_from(row, database_.file())} : std::nullopt;
 }
 
 std::vector<int> Store::answered_trials(const std::string& participant_id) {

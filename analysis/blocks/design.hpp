@@ -69,6 +69,8 @@ struct BlockDesign {
   int steps{};
   // False: answers without a protocol, which nobody says the order of.
   bool is_order_known{true};
+  // On which all alternatives of a trial have the same values; the block is summarised at each.
+  std::vector<std::string> further_axes{};
 };
 struct StudyDesign {
   std::string title;

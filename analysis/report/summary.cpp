@@ -9,6 +9,7 @@
 
 #include "analysis/identification/identification_summary.hpp"
 #include "analysis/ratings/signed_rank.hpp"
+#include "analysis/report/block_parts.hpp"
 #include "analysis/report/statistic.hpp"
 namespace tapstudy::analysis {
 namespace {
@@ -78,7 +79,9 @@ Summary summarise(const StudyDesign& design, const std::vector<AnswerRow>& answe
                          [&](const VisitOrder& order) { return is_answered_in(rows, order); });
     const auto missing = presentations.missing_replies.find(block.name);
     rows.missing_replies = missing == presentations.missing_replies.end() ? 0 : missing->second;
-    blocks.push_back(find_statistic(block.statistic).summarise(block, rows));
+    for (const BlockPart& part : parts_at_further_values(block, rows)) {
+      blocks.push_back(find_statistic(block.statistic).summarise(part.design, part.rows));
+    }
   }
   adjust(blocks);
   summary.blocks.assign(blocks.begin(), blocks.end());

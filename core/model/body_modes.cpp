@@ -6,29 +6,20 @@
 #include <cmath>
 #include <new>
 #include <numbers>
+#include <utility>
 
 #include "core/error.hpp"
 #include "core/model/beam.hpp"
-#include "core/model/mesh/tetgen_mesher.hpp"
+#include "core/model/contacts/contacts.hpp"
+#include "core/model/contacts/solve_in_contact.hpp"
+#include "core/model/discrete_body.hpp"
 #include "core/model/modes/modal_solver.hpp"
-#include "core/model/stopwatch.hpp"
 #include "core/model/touchable_part.hpp"
 namespace tapstudy::core {
 namespace {
 constexpr double tets_of_first_round = 200.0;
 constexpr double finer = 0.25;  // ratio of element volume between refinement steps
 constexpr std::size_t max_rounds = 8;
-
-Eigen::MatrixXd all_rows(const Eigen::MatrixXd& free_rows, const FreeDofs& dofs) {
-  Eigen::MatrixXd rows =
-      Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(dofs.position.size()), free_rows.cols());
-  for (std::size_t i = 0; i < dofs.position.size(); ++i) {
-    if (dofs.position[i] >= 0) {
-      rows.row(static_cast<Eigen::Index>(i)) = free_rows.row(dofs.position[i]);
-    }
-  }
-  return rows;
-}
 
 void add(const ModelCost& more, ModelCost& to) {
   to.mesh_s += more.mesh_s;
@@ -38,32 +29,23 @@ void add(const ModelCost& more, ModelCost& to) {
 }
 
 SolvedBody solve_once(const BodySpec& body, const MeshSize& size, const ProgressHook& progress) {
-  SolvedBody solved;
-  ModelReport& report = solved.modes.report;
-  Stopwatch watch;
-  tell(progress, "meshing");
-  solved.mesh = mesh_shape(body.shape, size, points_to_mesh(body.fixations, body.shape));
-  if (body.mesh.order == 2) {
-    solved.mesh = to_quadratic(solved.mesh);
-  }
-  report.cost.mesh_s = watch.lap_s();
-  tell(progress, fmt::format("assembling {} tetrahedra", solved.mesh.tets.rows()));
-  const FreeDofs dofs = free_dofs(constrained_dofs(solved.mesh, body.shape, body.fixations));
   const Material unit{1.0, 1.0, body.poissons_ratio, {}};
-  const StiffnessAndMass matrices =
-      assemble(solved.mesh, unit, dofs, spring_supports(solved.mesh, body.shape, body.fixations));
-  report.cost.assemble_s = watch.lap_s();
+  DiscreteBody discrete = discretised(body, unit, size, {}, progress);
   const double turn = 2.0 * std::numbers::pi;
-  const Modes modes = solve_modes(matrices, body.band_limit_rad_per_m / turn, progress);
-  report.cost.factor_s = modes.factor_s;
-  report.cost.iterate_s = modes.iterate_s;
+  const Modes modes = solve_modes(discrete.matrices, body.band_limit_rad_per_m / turn, progress);
+  SolvedBody solved;
   solved.modes.kappa_rad_per_m = modes.omega_rad_s;
   solved.modes.band_limit_rad_per_m = body.band_limit_rad_per_m;
-  solved.displacement = all_rows(modes.shapes, dofs);
+  solved.displacement = with_constrained_rows(modes.shapes, discrete.dofs);
+  solved.mesh = std::move(discrete.mesh);
+  ModelReport& report = solved.modes.report;
+  report.cost = discrete.cost;
+  report.cost.factor_s = modes.factor_s;
+  report.cost.iterate_s = modes.iterate_s;
   report.order = solved.mesh.order();
   report.nodes = static_cast<int>(solved.mesh.nodes_m.rows());
   report.tets = static_cast<int>(solved.mesh.tets.rows());
-  report.dofs = dofs.count;
+  report.dofs = discrete.dofs.count;
   report.rigid_body_modes = modes.rigid_body_modes;
   report.counted_in_band = modes.counted_in_band;
   report.worst_residual = modes.worst_residual;
@@ -167,17 +149,22 @@ SolvedBody refine(const BodySpec& body, const ProgressHook& progress) {
 }
 }  // namespace
 
-std::string content_key(const BodySpec& body) {
-  std::string key =
-      fmt::format("{} mesh(order {},{:a},{:a},{:a},{:a}) poisson({:a}) band({:a}) held",
-                  content_key(body.shape), body.mesh.order, body.mesh.size.radius_edge_ratio,
-                  body.mesh.size.max_tet_volume_m3.value_or(0.0), body.mesh.size.flattening,
-                  body.mesh.accuracy.value_or(0.0), body.poissons_ratio, body.band_limit_rad_per_m);
-  for (const Fixation& fixation : body.fixations) {
+std::string content_key(const Plate& plate) {
+  std::string key = fmt::format(
+      "{} mesh(order {},{:a},{:a},{:a},{:a}) held", content_key(plate.shape), plate.mesh.order,
+      plate.mesh.size.radius_edge_ratio, plate.mesh.size.max_tet_volume_m3.value_or(0.0),
+      plate.mesh.size.flattening, plate.mesh.accuracy.value_or(0.0));
+  for (const Fixation& fixation : plate.fixations) {
     key += " " + content_key(fixation);
   }
-  key += body.theory == Theory::beam ? " as a beam" : "";
+  key += plate.theory == Theory::beam ? " as a beam" : "";
   return key;
+}
+
+std::string content_key(const BodySpec& body) {
+  return fmt::format("{} poisson({:a}) band({:a}) {}", content_key(static_cast<const Plate&>(body)),
+                     body.poissons_ratio, body.band_limit_rad_per_m,
+                     body.contacts ? content_key(*body.contacts) : "");
 }
 
 SolvedBody solve_body(const BodySpec& body, const ProgressHook& progress) {
@@ -185,6 +172,11 @@ SolvedBody solve_body(const BodySpec& body, const ProgressHook& progress) {
     return {{}, {}, beam_modes(body)};
   }
   try {
+    if (body.contacts) {
+      SolvedBody solved = solve_in_contact(body, progress);
+      keep_touchable_part(body.shape, solved);
+      return solved;
+    }
     SolvedBody solved =
         body.mesh.accuracy ? refine(body, progress) : solve_once(body, body.mesh.size, progress);
     keep_touchable_part(body.shape, solved);

@@ -139,15 +139,15 @@ std::string described(const Fixation& fixation) {
 }  // namespace
 
 std::vector<Eigen::Index> nodes_of(const Fixation& fixation, const TetMesh& mesh,
-                                   const Shape& shape) {
+                                   const Shape& shape, std::string_view whose) {
   std::vector<Eigen::Index> nodes = selected_nodes(fixation, mesh, shape);
   if (nodes.empty()) {
     const Bounds body = bounds(shape);
     throw ModelError{fmt::format(
-        "fixation: the {} touches no node of the body (x from {:.4g} to {:.4g} m, y from {:.4g} "
+        "{}: the {} touches no node of the body (x from {:.4g} to {:.4g} m, y from {:.4g} "
         "to {:.4g} m, z from {:.4g} to {:.4g} m)",
-        described(fixation), body.low_m.x(), body.high_m.x(), body.low_m.y(), body.high_m.y(),
-        body.low_m.z(), body.high_m.z())};
+        whose, described(fixation), body.low_m.x(), body.high_m.x(), body.low_m.y(),
+        body.high_m.y(), body.low_m.z(), body.high_m.z())};
   }
   return nodes;
 }

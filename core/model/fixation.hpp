@@ -2,6 +2,7 @@
 #include <array>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/model/elements/spring_support.hpp"
@@ -42,9 +43,9 @@ struct Fixation {
 // lie on the plate. Surfaces from files keep their own points.
 std::vector<Vec3> points_to_mesh(const std::vector<Fixation>& fixations, const Shape& shape);
 
-// Those that the fixation holds. Throws ModelError if there are none.
+// Those that the fixation holds. Throws ModelError if there are none, with whose region it is.
 std::vector<Eigen::Index> nodes_of(const Fixation& fixation, const TetMesh& mesh,
-                                   const Shape& shape);
+                                   const Shape& shape, std::string_view whose = "fixation");
 
 // The constraints that the fixations put on a mesh. One flag a degree of freedom (x0 y0 z0 x1 …):
 // true where it is constrained.

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -75,7 +74,7 @@ class Reader {
       is_good_ = false;
       return;
     }
-    std::memcpy(to, bytes_.data(), size);
+    bytes_.copy(static_cast<char*>(to), size);  // of nothing, where a matrix is empty
     bytes_.remove_prefix(size);
   }
   std::string_view bytes_;
@@ -106,6 +105,8 @@ std::string encoded(const BodyModes& modes) {
   writer.put_all(modes.touch_nodes_m);
   writer.put_all(modes.touch_surface);
   writer.put_all(modes.shape);
+  writer.put_all(modes.kinetic_share);
+  writer.put_all(modes.strain_share);
   each_number(modes.report, [&](const auto& number) { writer.put(number); });
   writer.put(static_cast<std::int64_t>(modes.report.refinement.size()));
   for (const RefinementRound& round : modes.report.refinement) {
@@ -125,6 +126,8 @@ std::optional<BodyModes> decoded(const std::string& bytes) {
   reader.get_all(modes.touch_nodes_m);
   reader.get_all(modes.touch_surface);
   reader.get_all(modes.shape);
+  reader.get_all(modes.kinetic_share);
+  reader.get_all(modes.strain_share);
   modes.kappa_rad_per_m = kappa;
   each_number(modes.report, [&](auto& number) { reader.get(number); });
   std::int64_t rounds = 0;

@@ -1,5 +1,7 @@
 #pragma once
+#include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "core/model/elements/material.hpp"
@@ -25,19 +27,26 @@ struct Plate {
   Theory theory{Theory::solid};
 };
 
+// Equal text for equal plates.
+std::string content_key(const Plate& plate);
+
+struct Contacts;  // core/model/contacts/contacts.hpp
+
 // A plate of a given material, with the frequency band that its model must cover.
 struct PlateSpec : Plate {
   Material material;
-  double band_limit_hz{};  // > 0; modes above are left out
+  double band_limit_hz{};                      // > 0; modes above are left out
+  std::shared_ptr<const Contacts> contacts{};  // nullptr: it touches no other body
 };
 
 // A body of any shape, independent of Young's modulus E and density rho. Stiffness, mass and
 // spectrum scale exactly with them, so one solution for E = 1 Pa, rho = 1 kg/m³ serves every
 // material with the same Poisson's ratio: omega = kappa sqrt(E / rho), with kappa in rad/m, and
 // mode shapes are divided by sqrt(rho). A body on springs serves one Young's modulus only: its
-// springs are in N/m per Pa of it.
+// springs are in N/m per Pa of it. A body in contact with others serves one density only, too.
 struct BodySpec : Plate {
   double poissons_ratio{};
-  double band_limit_rad_per_m{};  // of kappa; > 0
+  double band_limit_rad_per_m{};               // of kappa; > 0
+  std::shared_ptr<const Contacts> contacts{};  // relative to this body's material
 };
 }  // namespace tapstudy::core

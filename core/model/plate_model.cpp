@@ -3,10 +3,13 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <memory>
 #include <numbers>
+#include <optional>
 #include <utility>
 
 #include "core/error.hpp"
+#include "core/model/contacts/contacts.hpp"
 #include "core/model/modes/damping.hpp"
 namespace tapstudy::core {
 namespace {
@@ -20,6 +23,27 @@ void check_band(const BodyModes& body, const Material& material, double band_lim
         fmt::format("modes: a band of {} Hz is requested, but the body was only solved up to {} Hz",
                     band_limit_hz, solved_hz)};
   }
+}
+// Of each body its part, and of each spring half of its loss factor (Ungar & Kerwin 1962).
+DampedModes damped_in_contact(const BodyModes& body, const Material& material,
+                              const Contacts& contacts, const Eigen::ArrayXd& omega_rad_s) {
+  const Eigen::Index modes = omega_rad_s.size();
+  const auto part = [&](const Material& one, Eigen::Index row) -> Eigen::ArrayXd {
+    return damping_ratios_due_to(one.damping, omega_rad_s,
+                                 body.kinetic_share.row(row).head(modes).transpose(),
+                                 body.strain_share.row(row).head(modes).transpose());
+  };
+  DampedModes damped{std::nullopt, part(material, 0)};
+  for (std::size_t i = 0; i < contacts.bodies.size(); ++i) {
+    damped.ratios += part(contacts.bodies[i].material, static_cast<Eigen::Index>(i) + 1);
+  }
+  const auto first_spring = static_cast<Eigen::Index>(contacts.bodies.size()) + 1;
+  for (std::size_t i = 0; i < contacts.springs.size(); ++i) {
+    const Eigen::Index row = first_spring + static_cast<Eigen::Index>(i);
+    damped.ratios += 0.5 * contacts.springs[i].loss_factor *
+                     body.strain_share.row(row).head(modes).transpose().array();
+  }
+  return damped;
 }
 }  // namespace
 
@@ -35,18 +59,31 @@ BodySpec body_of(const PlateSpec& plate) {
       *fixation.springs_n_per_m /= plate.material.youngs_modulus_pa;
     }
   }
+  std::shared_ptr<const Contacts> contacts;
+  if (plate.contacts) {
+    contacts = std::make_shared<const Contacts>(relative_to(
+        *plate.contacts, plate.material.youngs_modulus_pa, plate.material.density_kg_per_m3));
+  }
   return {std::move(of_unit_material), plate.material.poissons_ratio,
-          kappa_rad_per_m(plate.band_limit_hz, plate.material)};
+          kappa_rad_per_m(plate.band_limit_hz, plate.material), std::move(contacts)};
 }
 
-ModalModel model_of(const BodyModes& body, const Material& material, double band_limit_hz) {
+ModalModel model_of(const BodyModes& body, const PlateSpec& plate) {
+  return model_of(body, plate.material, plate.band_limit_hz, plate.contacts.get());
+}
+
+ModalModel model_of(const BodyModes& body, const Material& material, double band_limit_hz,
+                    const Contacts* contacts) {
   check_material(material);
   check_band(body, material, band_limit_hz);
   const Eigen::ArrayXd frequency_hz = body.kappa_rad_per_m / kappa_rad_per_m(1.0, material);
   const Eigen::Index modes = (frequency_hz < band_limit_hz).count();
   ModalModel model;
   model.frequency_hz = frequency_hz.head(modes);
-  const DampedModes damped = damp(material.damping, 2.0 * std::numbers::pi * model.frequency_hz);
+  const Eigen::ArrayXd omega_rad_s = 2.0 * std::numbers::pi * model.frequency_hz;
+  const DampedModes damped = contacts == nullptr
+                                 ? damp(material.damping, omega_rad_s)
+                                 : damped_in_contact(body, material, *contacts, omega_rad_s);
   model.damping = damped.rayleigh;
   model.damping_ratio = damped.ratios;
   model.touch_nodes_m = body.touch_nodes_m;
@@ -59,7 +96,7 @@ PlateModel build_plate_model(const PlateSpec& plate, const ProgressHook& progres
   check_material(plate.material);
   PlateModel built;
   built.body = solve_body(body_of(plate), progress);
-  built.modal = model_of(built.body.modes, plate.material, plate.band_limit_hz);
+  built.modal = model_of(built.body.modes, plate);
   return built;
 }
 }  // namespace tapstudy::core

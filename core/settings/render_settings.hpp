@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 
+#include "core/settings/device_response.hpp"
 #include "core/settings/recorded_taps.hpp"
 namespace tapstudy::core {
 // How the modes are integrated in time: by the exact recurrence of a damped oscillator, or by
@@ -56,6 +57,7 @@ struct RenderSettings {
   Integrator integrator{Integrator::exact};
   Finger finger;
   SinusoidShape sinusoid;
-  std::shared_ptr<const RecordedTaps> recorded_taps;  // of the stimulus; may be null
+  std::shared_ptr<const RecordedTaps> recorded_taps;        // of the stimulus; may be null
+  std::shared_ptr<const DeviceResponse> device_response{};  // undone in recordings; null: unknown
 };
 }  // namespace tapstudy::core

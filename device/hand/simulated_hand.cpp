@@ -6,8 +6,20 @@ SimulatedHand::SimulatedHand(const core::HandBody& body, double dt_s, Memory mem
     : body_{body, dt_s}, dt_s_{dt_s}, memory_{memory} {}
 
 double SimulatedHand::follow(std::vector<PlannedTap> taps) {
-  path_ = TapPath{std::move(taps),
-                  has_started_ ? std::optional{body_.state().position_m} : std::nullopt};
+  TapPath path{std::move(taps),
+               has_started_ ? std::optional{body_.state().position_m} : std::nullopt};
+  const double duration_s = path.duration_s();
+  start(std::move(path), duration_s);
+  return duration_s;
+}
+
+void SimulatedHand::hold(double seconds) {
+  start(TapPath{{}, has_started_ ? std::optional{body_.state().position_m} : std::nullopt},
+        seconds);
+}
+
+void SimulatedHand::start(TapPath path, double duration_s) {
+  path_ = std::move(path);
   ticks_ = 0;
   if (!has_started_) {
     const Target start = path_.at(0.0);
@@ -15,9 +27,8 @@ double SimulatedHand::follow(std::vector<PlannedTap> taps) {
     has_started_ = true;
   }
   if (memory_ == Memory::kept) {
-    felt_.reserve(felt_.size() + static_cast<std::size_t>(std::ceil(path_.duration_s() / dt_s_)));
+    felt_.reserve(felt_.size() + static_cast<std::size_t>(std::ceil(duration_s / dt_s_)));
   }
-  return path_.duration_s();
 }
 
 core::TickFault SimulatedHand::read(core::HandState& hand, double /*elapsed_s*/) noexcept {

@@ -22,6 +22,8 @@ class SimulatedHand final : public Device {
   // the hand above the first point, at speed if there is no run-up; later calls move it there. If
   // the hand records what it feels, memory for the series is reserved here.
   double follow(std::vector<PlannedTap> taps);
+  // Holds still where it is for so long; the first call places it in the middle of the workspace.
+  void hold(double seconds);
   const std::vector<FeltTick>& felt() const noexcept { return felt_; }
   void forget() noexcept { felt_.clear(); }
 
@@ -31,6 +33,8 @@ class SimulatedHand final : public Device {
   std::string description() const override { return "simulated hand"; }
 
  private:
+  void start(TapPath path, double duration_s);
+
   MuscleBody body_;
   double dt_s_;
   Memory memory_;

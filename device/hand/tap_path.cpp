@@ -49,7 +49,7 @@ TapPath::TapPath(std::vector<PlannedTap> taps, std::optional<Vec3> from_m)
 
 Target TapPath::at(double t_s) const noexcept {
   if (taps_.empty()) {
-    return {};
+    return {from_m_.value_or(Vec3::Zero()), Vec3::Zero()};
   }
   if (t_s < starts_s_.front()) {
     return travelling(*from_m_, above(taps_.front()), t_s, starts_s_.front());

@@ -26,7 +26,8 @@ struct Target {
 // 1985). After the last tap the aim rests above its point.
 class TapPath {
  public:
-  // Starts at from_m, the hand's present position, or above the first point if unset.
+  // Starts at from_m, the hand's present position, or above the first point if unset; without taps
+  // it rests there, or in the middle of the workspace.
   explicit TapPath(std::vector<PlannedTap> taps, std::optional<core::Vec3> from_m = {});
   Target at(double t_s) const noexcept;
   double duration_s() const noexcept { return starts_s_.back(); }

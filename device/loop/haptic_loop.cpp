@@ -21,12 +21,13 @@ core::Vec3 as_vector(const std::array<double, 3>& a) noexcept {
 
 HapticLoop::HapticLoop(Device& device, std::span<core::TapRenderer> alternatives,
                        LoopSettings settings, core::SpscRing<core::TraceSample>& trace,
-                       TickClock& clock) noexcept
+                       TickClock& clock, ScriptedHand* taps) noexcept
     : device_{device},
       alternatives_{alternatives},
       settings_{std::move(settings)},
       trace_{trace},
       clock_{clock},
+      taps_{taps},
       gate_{settings_.gate, 1e-9 * static_cast<double>(settings_.period)} {}
 
 void HapticLoop::run(const std::stop_token& stop) noexcept {
@@ -137,6 +138,9 @@ void HapticLoop::take_requests() noexcept {
     alternatives_[wanted].take_over_from(alternatives_[current_]);
     current_ = wanted;
     is_silent_ = is_silence_wanted;
+    if (taps_ != nullptr) {
+      taps_->restart();
+    }
   }
 }
 
@@ -189,11 +193,24 @@ double HapticLoop::bridging_share(const DeviceDetail& detail, Nanoseconds elapse
   return 1.0 - static_cast<double>(detail.missed_replies) / max_missed_replies;
 }
 
+core::RenderedTick HapticLoop::follow(const core::HandState& hand,
+                                      core::TraceSample& sample) noexcept {
+  if (taps_ == nullptr) {
+    return alternatives_[current_].tick(settings_.placement.to_plate(hand));
+  }
+  const core::HandState tip = taps_->state();
+  const core::RenderedTick followed =
+      alternatives_[current_].tick(settings_.placement.to_plate(tip));
+  taps_->move(core::Placement::force_to_device(followed.force_n));
+  sample.position_m = as_array(tip.position_m);
+  sample.velocity_m_s = as_array(tip.velocity_m_s);
+  return followed;
+}
+
 void HapticLoop::render(const core::HandState& hand, double share, double elapsed_s,
                         core::TraceSample& sample) noexcept {
   // in silence the contact is followed all the same: force must not begin inside the plate
-  const core::RenderedTick followed =
-      alternatives_[current_].tick(settings_.placement.to_plate(hand));
+  const core::RenderedTick followed = follow(hand, sample);
   const core::RenderedTick rendered = is_silent_ ? core::RenderedTick{} : followed;
   const PassedForce passed =
       gate_.pass(core::Placement::force_to_device(rendered.force_n), hand, elapsed_s, share);

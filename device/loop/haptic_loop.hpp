@@ -8,6 +8,7 @@
 #include "core/tick/tap_renderer.hpp"
 #include "core/tick/trace_ring.hpp"
 #include "device/device.hpp"
+#include "device/hand/scripted_hand.hpp"
 #include "device/loop/force_gate.hpp"
 #include "device/loop/lateness.hpp"
 #include "device/loop/tick_clock.hpp"
@@ -38,10 +39,15 @@ inline constexpr std::size_t max_alternatives = 128;  // traces have a byte for 
 // the trial's alternatives; a switch request takes effect in the first tick without contact, so
 // that the force law never changes during contact. At most max_alternatives. All referenced objects
 // must outlive the loop.
+//
+// Where a scripted hand taps, the device's hand feels what the scripted one feels: its position
+// does not matter to contact, only to safety, and the trace has the scripted hand's. It taps anew
+// with each switch and after each silence.
 class HapticLoop {
  public:
   HapticLoop(Device& device, std::span<core::TapRenderer> alternatives, LoopSettings settings,
-             core::SpscRing<core::TraceSample>& trace, TickClock& clock) noexcept;
+             core::SpscRing<core::TraceSample>& trace, TickClock& clock,
+             ScriptedHand* taps = nullptr) noexcept;
 
   // May be called from any thread. index < number of alternatives.
   void request_alternative(std::size_t index) noexcept {
@@ -84,6 +90,7 @@ class HapticLoop {
   core::TraceSample tick(Nanoseconds now, Nanoseconds elapsed) noexcept;
   void render(const core::HandState& hand, double share, double elapsed_s,
               core::TraceSample& sample) noexcept;
+  core::RenderedTick follow(const core::HandState& hand, core::TraceSample& sample) noexcept;
   void take_requests() noexcept;
   void note_lateness(Nanoseconds woke_at) noexcept;
 
@@ -92,6 +99,7 @@ class HapticLoop {
   LoopSettings settings_;
   core::SpscRing<core::TraceSample>& trace_;
   TickClock& clock_;
+  ScriptedHand* taps_;  // nullptr: the device's hand taps
   ForceGate gate_;
   std::atomic<std::size_t> requested_{0};
   std::atomic<bool> silence_requested_{false};

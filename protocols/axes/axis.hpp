@@ -28,6 +28,8 @@ struct Axis {
   double (*value)(const PresentedStimulus& stimulus){};
   // Plates and materials are shared: it exchanges them for changed copies.
   void (*set)(PresentedStimulus& stimulus, double value){};
+  bool is_without_contacts{false};  // plates that touch other bodies do not scale so
+  bool is_of_rendering{false};  // no property of plate or material: a stimulus may state its own
 };
 
 const std::vector<Axis>& axes();

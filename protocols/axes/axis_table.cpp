@@ -111,6 +111,25 @@ Range lateral_sizes_m(const PresentedStimulus& stimulus) {
   return {edge.low * std::max(1.0, aspect), edge.high * std::min(1.0, aspect)};
 }
 
+using Rendering = core::RenderSettings;
+using Sinusoid = core::SinusoidShape;
+template <double Rendering::*member>
+double of_rendering(const PresentedStimulus& stimulus) {
+  return stimulus.rendering.*member;
+}
+template <double Rendering::*member>
+void set_rendering(PresentedStimulus& stimulus, double value) {
+  stimulus.rendering.*member = value;
+}
+template <double Sinusoid::*member>
+double of_sinusoid(const PresentedStimulus& stimulus) {
+  return stimulus.rendering.sinusoid.*member;
+}
+template <double Sinusoid::*member>
+void set_sinusoid(PresentedStimulus& stimulus, double value) {
+  stimulus.rendering.sinusoid.*member = value;
+}
+
 bool vibrates(const core::Technique& technique) {
   return technique.needs_model();
 }
@@ -133,13 +152,15 @@ const std::vector<Axis>& axes() {
        [](const P& stimulus) { return stimulus.material->youngs_modulus_pa; },
        [](P& stimulus, double value) {
          change_material(stimulus, [&](Material& m) { m.youngs_modulus_pa = value; });
-       }},
+       },
+       true},
       {"density_kg_per_m3", "kg/m³", AxisKind::scaled, vibrates, false, false,
        constant<allowed::density_kg_per_m3>,
        [](const P& stimulus) { return stimulus.material->density_kg_per_m3; },
        [](P& stimulus, double value) {
          change_material(stimulus, [&](Material& m) { m.density_kg_per_m3 = value; });
-       }},
+       },
+       true},
       {"damping_scale", "", AxisKind::scaled, vibrates, false, false, damping_factors,
        [](const P& /*stimulus*/) { return 1.0; },
        [](P& stimulus, double value) {
@@ -147,23 +168,20 @@ const std::vector<Axis>& axes() {
                          [&](Material& m) { m.damping = core::scaled(m.damping, value); });
        }},
       {"vibration_gain", "", AxisKind::scaled, scales_vibration, false, false, gains,
-       [](const P& stimulus) { return stimulus.rendering.vibration_gain; },
-       [](P& stimulus, double value) { stimulus.rendering.vibration_gain = value; }},
+       of_rendering<&Rendering::vibration_gain>, set_rendering<&Rendering::vibration_gain>, false,
+       true},
       {"sinusoid_amplitude_n_s_per_m", "N s/m", AxisKind::scaled, has_sinusoid, false, false,
-       constant<allowed::sinusoid_amplitude_n_s_per_m>,
-       [](const P& stimulus) { return stimulus.rendering.sinusoid.amplitude_n_s_per_m; },
-       [](P& stimulus, double value) { stimulus.rendering.sinusoid.amplitude_n_s_per_m = value; }},
+       constant<allowed::sinusoid_amplitude_n_s_per_m>, of_sinusoid<&Sinusoid::amplitude_n_s_per_m>,
+       set_sinusoid<&Sinusoid::amplitude_n_s_per_m>, false, true},
       {"sinusoid_decay_per_s", "1/s", AxisKind::scaled, has_sinusoid, false, false,
-       constant<allowed::sinusoid_decay_per_s>,
-       [](const P& stimulus) { return stimulus.rendering.sinusoid.decay_per_s; },
-       [](P& stimulus, double value) { stimulus.rendering.sinusoid.decay_per_s = value; }},
+       constant<allowed::sinusoid_decay_per_s>, of_sinusoid<&Sinusoid::decay_per_s>,
+       set_sinusoid<&Sinusoid::decay_per_s>, false, true},
       {"sinusoid_frequency_hz", "Hz", AxisKind::scaled, has_sinusoid, false, false, frequencies_hz,
-       [](const P& stimulus) { return stimulus.rendering.sinusoid.frequency_hz; },
-       [](P& stimulus, double value) { stimulus.rendering.sinusoid.frequency_hz = value; }},
+       of_sinusoid<&Sinusoid::frequency_hz>, set_sinusoid<&Sinusoid::frequency_hz>, false, true},
       {"penalty_stiffness_n_per_m", "N/m", AxisKind::scaled, nullptr, false, false,
        constant<allowed::penalty_stiffness_n_per_m>,
-       [](const P& stimulus) { return stimulus.rendering.penalty_stiffness_n_per_m; },
-       [](P& stimulus, double value) { stimulus.rendering.penalty_stiffness_n_per_m = value; }},
+       of_rendering<&Rendering::penalty_stiffness_n_per_m>,
+       set_rendering<&Rendering::penalty_stiffness_n_per_m>, false, true},
       {"poissons_ratio", "", AxisKind::tabled, vibrates_as_a_solid, false, false,
        constant<allowed::poissons_ratio>,
        [](const P& stimulus) { return stimulus.material->poissons_ratio; },
@@ -177,7 +195,7 @@ const std::vector<Axis>& axes() {
                       [&](Plate& plate) { std::get<core::Box>(plate.shape).size_m.z() = value; });
        }},
       {"lateral_size_m", "m", AxisKind::tabled, vibrates, true, false, lateral_sizes_m,
-       [](const P& stimulus) { return box_of(stimulus).size_m.x(); }, set_lateral_size},
+       [](const P& stimulus) { return box_of(stimulus).size_m.x(); }, set_lateral_size, true},
   };
   return table;
 }
@@ -210,6 +228,10 @@ std::string refusal(const Axis& axis, const PresentedStimulus& stimulus) {
   }
   if (axis.is_without_springs && core::is_on_springs(stimulus.plate->fixations)) {
     return "a plate on springs does not scale with it (name stimuli of several materials instead)";
+  }
+  if (axis.is_without_contacts && stimulus.contacts) {
+    return "a plate in contact with other bodies does not scale with it (name stimuli of several "
+           "materials or sizes instead)";
   }
   return {};
 }

@@ -46,9 +46,13 @@ PresentedStimulus unvaried(const Protocol& protocol, const Stimulus& stimulus) {
                               protocol.rendering,
                               {},
                               {},
-                              stimulus.plate};
+                              stimulus.plate,
+                              stimulus.contacts};
   presented.rendering.lateral_ratio = stimulus.plate->lateral_ratio;
   presented.rendering.recorded_taps = stimulus.recording;
+  for (const auto& [axis, value] : stimulus.rendering) {
+    find_axis(axis)->set(presented, value);
+  }
   return presented;
 }
 }  // namespace

@@ -8,10 +8,11 @@ struct PresentedStimulus {
   std::shared_ptr<const Plate> plate;  // as presented
   std::shared_ptr<const Material> material;
   const core::Technique* technique{};
-  core::RenderSettings rendering;          // the protocol's, for this plate and these values
-  AxisValues values;                       // of every axis of its `vary`; empty without one
-  AxisValues changed;                      // those that differ from the stimulus's own
-  std::shared_ptr<const Plate> own_plate;  // the stimulus's, whatever the values
+  core::RenderSettings rendering;              // the protocol's, for this plate and these values
+  AxisValues values;                           // of every axis of its `vary`; empty without one
+  AxisValues changed;                          // those that differ from the stimulus's own
+  std::shared_ptr<const Plate> own_plate;      // the stimulus's, whatever the values
+  std::shared_ptr<const Contacts> contacts{};  // nullptr: it touches no other body
 
   // "stimulus 'a' at youngs_modulus_pa = 1e+09", for messages.
   std::string title() const;

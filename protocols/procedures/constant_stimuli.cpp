@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <utility>
 
 #include "core/rng.hpp"
@@ -40,6 +42,10 @@ class ConstantSettings final : public TrackSettings {
     return {{values_.front(), values_.back()}};
   }
 
+  std::string words() const override {
+    return fmt::format("the method of constant stimuli at {} levels, {} times each", values_.size(),
+                       repetitions_);
+  }
   std::unique_ptr<Track> start(std::uint64_t seed) const override {
     core::Rng rng{core::derived_seed(seed, core::Purpose::procedure)};
     std::vector<double> order;

@@ -90,6 +90,8 @@ class TrackSettings {
   // The guess rates that it holds possible; nullopt: it makes no assumption of any.
   virtual std::optional<std::pair<double, double>> guess_rates() const { return std::nullopt; }
   virtual std::unique_ptr<Track> start(std::uint64_t seed) const = 0;
+  // As a methods section says it, with its source: "a 1 up, 2 down staircase (Levitt 1971)".
+  virtual std::string words() const = 0;
 };
 
 // A psychophysical procedure: which stimulus value comes next. To add one: a file beside this with

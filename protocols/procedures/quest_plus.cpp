@@ -17,9 +17,7 @@ constexpr int max_quest_trials = 1000;
 class DesignReader {
  public:
   DesignReader(MapReader& reader, const core::PsychometricShapeRow& shape)
-      : reader_{&reader}, shape_{&shape} {
-    design_.model = psychometric_model(shape.shape);
-  }
+      : reader_{&reader}, shape_{&shape} {}
 
   void read_stimulus() {
     reader_->map("stimulus", Presence::required, [&](MapReader& own) { read_axis(own); });
@@ -38,6 +36,7 @@ class DesignReader {
     reader_->list("further_axes", Presence::optional, [&](MapReader& own) {
       const std::string name = fmt::format("effect_{}", design_.axes.size() + 1);
       read_axis(own);
+      origins_.push_back(own.number("origin", {-largest_value, largest_value}, 0.0));
       own.map("effect", Presence::required, [&](MapReader& effect) {
         add_parameter(effect, name, {-largest_value, largest_value});
       });
@@ -53,12 +52,13 @@ class DesignReader {
                                   : Range{-largest_value, largest_value};
   }
 
-  std::shared_ptr<const TrackSettings> built(const QuestPlusStop& stop) {
+  std::shared_ptr<const TrackSettings> built(const QuestPlusStop& stop, const std::string& method) {
     if (!is_complete()) {
       return nullptr;
     }
+    design_.model = psychometric_model(shape_->shape, origins_);
     try {
-      return std::make_shared<const QuestPlusSettings>(design_, stop);
+      return std::make_shared<const QuestPlusSettings>(design_, stop, method);
     } catch (const core::InvalidInput& error) {
       reader_->reject(error.what());
       return nullptr;
@@ -104,6 +104,7 @@ class DesignReader {
   MapReader* reader_;
   const core::PsychometricShapeRow* shape_;
   QuestPlusDesign design_;
+  std::vector<double> origins_;  // of the further axes
   bool is_refused_{false};
 };
 
@@ -138,7 +139,7 @@ class QuestPlus final : public Procedure {
     design.read_parameter("lapse", rate);
     design.read_further_axes();
     design.check_rates();
-    return design.built(read_stop(reader, true));
+    return design.built(read_stop(reader, true), "QUEST+ (Watson 2017)");
   }
 };
 
@@ -153,7 +154,7 @@ class Psi final : public Procedure {
     design.read_fixed("guess", rate);
     design.read_fixed("lapse", rate);
     design.check_rates();
-    return design.built(read_stop(reader, false));
+    return design.built(read_stop(reader, false), "the psi method (Kontsevich & Tyler 1999)");
   }
 };
 }  // namespace

@@ -38,8 +38,11 @@ void QuestPlusTrack::take(const std::vector<double>& presented, std::size_t outc
   next_.reset();
 }
 
-QuestPlusSettings::QuestPlusSettings(QuestPlusDesign design, const QuestPlusStop& stop)
-    : table_{std::make_shared<const LikelihoodTable>(std::move(design))}, stop_{stop} {
+QuestPlusSettings::QuestPlusSettings(QuestPlusDesign design, const QuestPlusStop& stop,
+                                     std::string method)
+    : table_{std::make_shared<const LikelihoodTable>(std::move(design))},
+      stop_{stop},
+      method_{std::move(method)} {
   const double prior_deviation = standard_deviation(*table_, table_->prior(), 0);
   if (stop_.standard_deviation && prior_deviation <= *stop_.standard_deviation) {
     throw core::InvalidInput{fmt::format(

@@ -1,4 +1,6 @@
 // What a protocol says of a staircase.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -21,6 +23,13 @@ class StaircaseStart final : public TrackSettings {
   std::size_t max_trials() const override { return settings_.max_trials; }
   std::vector<std::pair<double, double>> ranges() const override {
     return {{settings_.min, settings_.max}};
+  }
+  std::string words() const override {
+    const std::string rule = settings_.easier_per_harder == 1.0
+                                 ? fmt::format("a {} up, {} down staircase (Levitt 1971)",
+                                               settings_.n_up, settings_.n_down)
+                                 : "a weighted up-down staircase (Kaernbach 1991)";
+    return fmt::format("{} that settles at {:.3g} correct", rule, staircase_target(settings_));
   }
   // Nothing in it is random.
   std::unique_ptr<Track> start(std::uint64_t /*seed*/) const override {

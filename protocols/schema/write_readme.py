@@ -32,13 +32,15 @@ EXAMPLES = {
         "materials": [PAPER, EVERY_KEY],
         "plates": [PAPER, EVERY_KEY],
         "recordings": [EVERY_KEY],
+        "contacts": ["protocols/examples/plate_on_feet.yaml"],
         "stimuli": [PAPER, EVERY_KEY],
         "forms": [EVERY_KEY],
         "display": [EVERY_KEY],
         "masking": [EVERY_KEY],
         "simulation": ["protocols/paper/reality_finger.yaml", EVERY_KEY],
     },
-    "rig": {"": [SPIDAR], "remote": ["protocols/rigs/remote.yaml"], "replay": [], "audio": [], "markers": []},
+    "rig": {"": [SPIDAR], "remote": ["protocols/rigs/remote.yaml"], "replay": [], "vibration_response": [], "audio": [],
+            "markers": []},
     "calibration": {"": ["tests/data/spidar_calibration.yaml"]},
 }
 

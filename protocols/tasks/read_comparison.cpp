@@ -38,12 +38,29 @@ bool check_value(MapReader& reader, const std::string& key, const Protocol& prot
   }
 }
 
+void check_further_axes(MapReader& reader, const Protocol& protocol, const Stimulus& family,
+                        const Comparison& comparison, const TrackSettings& track) {
+  const auto ranges = track.ranges();
+  for (std::size_t i = 0; i < comparison.further_axes.size(); ++i) {
+    const auto [low, high] = ranges[i + 1];
+    for (const double value : {low, high}) {
+      check_value(reader, fmt::format("further_axes[{}]", i), protocol, family,
+                  comparison.further_axes[i], value);
+    }
+  }
+}
+
 void check_track(MapReader& reader, const Protocol& protocol, const Stimulus& family,
                  const Comparison& comparison, const TrackSettings& track) {
-  if (track.axes() != 1 || track.outcomes() != 2) {
-    reader.reject("varies more than one axis or has other outcomes than right and wrong");
+  const std::size_t axes = 1 + comparison.further_axes.size();
+  if (track.axes() != axes || track.outcomes() != 2) {
+    reader.reject(
+        fmt::format("varies {} axes and has {} outcomes; the block has {} (`axis` and "
+                    "`further_axes`) and 2, right and wrong",
+                    track.axes(), track.outcomes(), axes));
     return;
   }
+  check_further_axes(reader, protocol, family, comparison, track);
   const auto [low, high] = track.ranges().front();
   if (low < 0.0 && comparison.side != Side::either) {
     reader.reject(fmt::format(
@@ -60,6 +77,16 @@ void check_track(MapReader& reader, const Protocol& protocol, const Stimulus& fa
       return;
     }
   }
+}
+
+std::vector<std::string> read_further_axes(MapReader& reader, const std::vector<std::string>& axes,
+                                           const std::string& axis) {
+  if (!reader.has("further_axes")) {
+    return {};
+  }
+  std::vector<std::string> others = axes;
+  std::erase(others, axis);
+  return reader.words("further_axes", "further axis", others);
 }
 
 // Where the standard cannot be presented, which is said already, procedures are only read.
@@ -88,6 +115,7 @@ std::optional<Comparison> read_comparison(MapReader& reader, const Protocol& pro
   if (family != nullptr) {
     comparison.axis = reader.word("axis", "axis of the stimulus", axes,
                                   has_one_axis ? std::optional{axes.front()} : std::nullopt);
+    comparison.further_axes = read_further_axes(reader, axes, comparison.axis);
   }
   const bool is_known =
       std::ranges::find(axes, comparison.axis) != axes.end() && family->is_complete();

@@ -74,11 +74,15 @@ std::vector<Column> columns_of_conduct() {
       {"kind", text, "",
        "contact, impact, late_impact, release, switch (to an alternative), setting (of the "
        "adjusted alternative), interval (its go signal), interval_end, interval_replay (of all "
-       "intervals), masking (noise is played), masking_underrun, masking_cut, masking_lost, "
+       "intervals), scripted_taps (a simulated hand taps in the participant's place, and its "
+       "motion "
+       "is in the trace), masking (noise is played), masking_underrun, masking_cut, masking_lost, "
        "untraced (no trace was kept)"},
       {"value", real, "",
-       "impact, late_impact: speed in m/s; switch, interval, interval_end: position of the "
-       "alternative; interval_replay: its number; setting: in the unit of the axis; masking: RMS "
+       "impact, late_impact, scripted_taps: speed in m/s; switch, interval, interval_end: position "
+       "of "
+       "the alternative; interval_replay: its number; setting: in the unit of the axis; masking: "
+       "RMS "
        "level in dB of full scale; masking_underrun, masking_cut: count; otherwise 0"},
       {"position", integer, "", "Position of the alternative in its trial, from 0"},
       {"label", text, "", "What participants read; of an alternative its blind label"},
@@ -165,6 +169,8 @@ std::vector<Column> columns_of_stimuli() {
       {"size_y_m", real, "m", "Extent of the body along y, plate frame"},
       {"size_z_m", real, "m", "Extent of the body along z: the thickness of a plate"},
       {"fixations", integer, "", "Places at which the plate is held"},
+      {"in_contact", text, "",
+       "Section `contacts` of the protocol that says what the plate touches"},
       {"varied_axes", text, "", "Axes along which members of the stimulus differ, by spaces"},
       {"mode_number", integer, "", "Mode of vibration, ascending in frequency, from 1"},
       {"frequency_hz", real, "Hz", "Undamped natural frequency of the mode"},

@@ -62,13 +62,13 @@ core::BodyModes Workbench::solve(const core::Meshing& mesh, double band_limit_hz
 }
 
 void Workbench::fix_damping(const core::BodyModes& body) {
-  if (std::holds_alternative<core::TwoRatioDamping>(spec_.material.damping)) {
+  if (!spec_.contacts && std::holds_alternative<core::TwoRatioDamping>(spec_.material.damping)) {
     spec_.material.damping = model_of(body, spec_.band_limit_hz).damping.value();
   }
 }
 
 core::ModalModel Workbench::model_of(const core::BodyModes& body, double band_limit_hz) const {
-  return core::model_of(body, spec_.material, band_limit_hz);
+  return core::model_of(body, spec_.material, band_limit_hz, spec_.contacts.get());
 }
 
 core::VibratingPlate Workbench::plate_of(core::ModalModel model) const {

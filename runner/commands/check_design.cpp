@@ -88,6 +88,11 @@ void print_procedures(const protocols::Comparison& comparison, double guess_rate
     fmt::print("    at most {} trials of {}: {} against {:.6g}, from {:.6g} to {:.6g}\n",
                track->max_trials(), comparison.axis, words(comparison.side), comparison.standard,
                comparison.value_at(low), comparison.value_at(high));
+    for (std::size_t i = 0; i < comparison.further_axes.size(); ++i) {
+      const auto [least, greatest] = track->ranges().at(i + 1);
+      fmt::print("      each at one of several {}, from {:.6g} to {:.6g}\n",
+                 comparison.further_axes[i], least, greatest);
+    }
     const bool starts_from_0 = comparison.side == protocols::Side::either;
     warn_of_guess_rate(*track, starts_from_0 ? 0.0 : guess_rate);
   }

@@ -67,7 +67,7 @@ double largest_contact_stiffness_n_per_m(const protocols::Protocol& protocol) {
                                     stimulus.technique->added_stiffness_n_per_m(settings));
   };
   for (const protocols::Stimulus& stimulus : protocol.stimuli) {
-    consider(stimulus, protocol.rendering);
+    consider(stimulus, stimulus_with(protocol, stimulus).rendering);
     for (const protocols::AxisRange& range : stimulus.vary) {
       const auto member =
           stimulus_with(protocol, stimulus, {{std::string{range.axis->name}, range.to}});

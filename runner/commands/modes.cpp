@@ -44,6 +44,10 @@ void print_json(const protocols::PresentedStimulus& stimulus, const core::PlateM
       std::vector<double>(plate.modal.frequency_hz.begin(), plate.modal.frequency_hz.end());
   json["damping_ratios"] =
       std::vector<double>(plate.modal.damping_ratio.begin(), plate.modal.damping_ratio.end());
+  if (stimulus.contacts) {
+    const auto share = plate.body.modes.kinetic_share.row(0);
+    json["kinetic_energy_in_plate"] = std::vector<double>(share.begin(), share.end());
+  }
   if (plate.modal.damping) {
     json["alpha_per_s"] = plate.modal.damping->alpha_per_s;
     json["beta_s"] = plate.modal.damping->beta_s;
@@ -113,11 +117,17 @@ void print_table(const protocols::PresentedStimulus& stimulus, const protocols::
   for (const auto& [name, value] : stimulus.values) {
     fmt::print("  {} {}\n", name, value);
   }
+  if (stimulus.contacts) {
+    fmt::print("  bodies in contact: {}; in_plate: share of a mode's kinetic energy\n\n",
+               stimulus.contacts->bodies.size() + 1);
+  }
   print_refinement(report);
-  fmt::print("  mode  frequency_hz  damping_ratio\n");
+  fmt::print("  mode  frequency_hz  damping_ratio{}\n", stimulus.contacts ? "  in_plate" : "");
   for (Eigen::Index i = 0; i < plate.modal.frequency_hz.size(); ++i) {
-    fmt::print("  {:>4}  {:>12.3f}  {:>13.4f}\n", i + 1, plate.modal.frequency_hz[i],
-               plate.modal.damping_ratio[i]);
+    fmt::print(
+        "  {:>4}  {:>12.3f}  {:>13.4f}{}\n", i + 1, plate.modal.frequency_hz[i],
+        plate.modal.damping_ratio[i],
+        stimulus.contacts ? fmt::format("  {:>8.3f}", plate.body.modes.kinetic_share(0, i)) : "");
   }
   if (!is_beam) {
     print_completeness(report, protocol.band_limit_hz);

@@ -103,9 +103,10 @@ std::string language_of(const RunOptions& options) {
 
 void run(RunOptions options) {
   options.language = language_of(options);
-  const protocols::Protocol protocol = protocols::read_protocol(options.protocol, options.language);
+  protocols::Protocol protocol = protocols::read_protocol(options.protocol, options.language);
   warn_of_language(protocol, options);
   const protocols::Rig rig = options.rig.empty() ? simulated_rig() : read_rig(options.rig);
+  protocol.rendering.device_response = rig.vibration_response;
   const LiveOutcome outcome = run_live_session({protocol, options.protocol, rig, options.directory,
                                                 request_of(options), console_of(options)});
   fmt::print("participant {}: all {} trials are stored in {}/study.db{}\n", options.participant,

@@ -84,6 +84,7 @@ void BrowserParticipant::get_ready(const TrialPrompt& prompt) {
   notice_.reset();
   correction_ = {};
   correction_state_ = CorrectionState::none;
+  screens_.take_entered();  // of an earlier trial
   context_.move_hand();
 }
 
@@ -105,6 +106,7 @@ std::optional<std::string> BrowserParticipant::perform(const TrialPrompt& prompt
   seen_at_ = std::chrono::steady_clock::now();
   while (exploration.is_running() && !stop_was_asked()) {
     pause_if_left();
+    tell_entered(prompt, exploration);
     auto input = screens_.take(number);
     // by the operator, or as intervals begin and end
     const bool is_switched = exploration.current() != current || intervals(exploration) != in_turn;
@@ -113,7 +115,9 @@ std::optional<std::string> BrowserParticipant::perform(const TrialPrompt& prompt
     }
     if (input && input->action == ScreenAction::answer) {
       notice_.reset();
-      return answer_in(input->text, prompt.answers);
+      const auto answer = answer_in(input->text, prompt.answers);
+      exploration.enter_answer(answer.value_or(""));  // had it not arrived yet
+      return answer;
     }
     if (input) {
       act_on(*input, prompt, exploration);
@@ -127,6 +131,12 @@ std::optional<std::string> BrowserParticipant::perform(const TrialPrompt& prompt
     exploration.pass_time(poll_s);
   }
   return last_word(prompt, exploration);
+}
+
+void BrowserParticipant::tell_entered(const TrialPrompt& prompt, Exploration& exploration) {
+  if (const auto entered = screens_.take_entered()) {
+    exploration.enter_answer(answer_in(*entered, prompt.answers).value_or(""));
+  }
 }
 
 void BrowserParticipant::act_on(const ScreenInput& input, const TrialPrompt& prompt,

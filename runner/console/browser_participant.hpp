@@ -47,6 +47,7 @@ class BrowserParticipant final : public Participant {
   std::optional<ScreenInput> answer_before(std::chrono::steady_clock::time_point latest,
                                            Screen screen);
   void tell(Message message);
+  void tell_entered(const TrialPrompt& prompt, Exploration& exploration);
   void act_on(const ScreenInput& input, const TrialPrompt& prompt, Exploration& exploration);
   std::optional<std::string> last_word(const TrialPrompt& prompt, Exploration& exploration);
   void pause_if_left();

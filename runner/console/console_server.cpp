@@ -94,6 +94,10 @@ Reply on_full_stack(Work work) {
   return std::async(std::launch::async, std::move(work)).get();
 }
 
+void wait_for(RateLimit& limit, double cost) {
+  std::this_thread::sleep_for(limit.delay_of(cost, std::chrono::steady_clock::now()));
+}
+
 class OpenPage {
  public:
   OpenPage(ConsoleApi& api, Role role) : api_{api}, role_{role} { api_.page_opened(role_); }
@@ -175,30 +179,10 @@ std::string ConsoleServer::url(Role role) const {
 int ConsoleServer::handle(mg_connection* connection, void* self) {
   auto* const server = static_cast<ConsoleServer*>(self);
   try {
-    server->slow_down_a_flood();
+    wait_for(server->requests_, 1.0);
     return server->serve(connection);
   } catch (const std::exception&) {  // none may leave a callback of C
     return send(connection, refusal(500));
-  }
-}
-
-// More than pages ever ask would take the processor from the loop.
-void ConsoleServer::slow_down_a_flood() {
-  constexpr std::chrono::milliseconds window{100};
-  constexpr int most_in_window = 60;
-  constexpr std::chrono::milliseconds delay{100};
-  bool is_flood = false;
-  {
-    const std::lock_guard lock{flood_mutex_};
-    const auto now = std::chrono::steady_clock::now();
-    if (now > window_ends_) {
-      window_ends_ = now + window;
-      requests_in_window_ = 0;
-    }
-    is_flood = ++requests_in_window_ > most_in_window;
-  }
-  if (is_flood) {
-    std::this_thread::sleep_for(delay);
   }
 }
 
@@ -238,7 +222,9 @@ int ConsoleServer::serve(mg_connection* connection, Role role, const std::string
     return 200;
   }
   if (method == "GET") {
-    return send(connection, on_full_stack([&] { return api_.get(role, path); }));
+    const Reply reply = on_full_stack([&] { return api_.get(role, path); });
+    wait_for(bytes_, static_cast<double>(reply.body.size()));
+    return send(connection, reply);
   }
   if (method != "POST" || header(connection, "X-Tapstudy") != "1") {
     return send(connection, refusal(405));

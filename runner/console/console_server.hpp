@@ -1,12 +1,11 @@
 #pragma once
 #include <array>
 #include <atomic>
-#include <chrono>
 #include <memory>
-#include <mutex>
 #include <string>
 
 #include "runner/console/console_api.hpp"
+#include "runner/console/rate_limit.hpp"
 struct mg_connection;
 struct mg_context;
 namespace tapstudy::runner {
@@ -36,7 +35,6 @@ class ConsoleServer {
   int serve(mg_connection* connection);
   int serve(mg_connection* connection, Role role, const std::string& path);
   bool is_from_here(mg_connection* connection) const;
-  void slow_down_a_flood();
   void stream(mg_connection* connection, Role role);
   std::string token(Role role) const { return tokens_.at(static_cast<std::size_t>(role)); }
 
@@ -44,9 +42,9 @@ class ConsoleServer {
   ConsoleApi& api_;
   std::array<std::string, roles.size()> tokens_;
   std::atomic<bool> is_closing_{false};
-  std::mutex flood_mutex_;
-  std::chrono::steady_clock::time_point window_ends_;
-  int requests_in_window_{0};
+  // More than pages ever ask would take the processor from the loop.
+  RateLimit requests_{200.0, 100.0};
+  RateLimit bytes_{8.0e6, 8.0e6};                         // two pages, with all that they load
   std::array<std::atomic<int>, roles.size()> streams_{};  // ever opened
   mg_context* context_{nullptr};
 };

@@ -51,7 +51,7 @@ void OperatorTerminal::order(const std::string& command) {
     posted.stored.get();
     say("stored: {}\n", posted.said);
   } catch (const core::InvalidInput& error) {
-    say("{}\n", error.what());
+    say("{}; status and watch show what the session does\n", error.what());
   } catch (const std::exception& error) {  // none may leave a thread
     say("not stored: {}\n", error.what());
   }

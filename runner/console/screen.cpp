@@ -30,7 +30,8 @@ const char* name(Message message) {
 }
 
 Json json_of(const TooEarly& notice) {
-  constexpr std::array reasons{"intervals", "plate_untouched", "alternatives_untouched", "time"};
+  constexpr std::array reasons{"intervals",    "plate_untouched",     "alternatives_untouched",
+                               "plate_unfelt", "alternatives_unfelt", "time"};
   return {{"reason", reasons.at(static_cast<std::size_t>(notice.reason))},
           {"contacts", notice.min_contacts},
           {"labels", notice.labels},
@@ -52,6 +53,7 @@ Json json_of(const TrialScreen& trial) {
       {"previous", trial.prompt.previous ? answers_json(trial.prompt.previous->answers) : Json{}},
       {"correction", corrections.at(static_cast<std::size_t>(trial.correction))},
       {"alternatives", trial.prompt.alternative_labels},
+      {"is_tapped_by_script", trial.prompt.block->explore.scripted_taps.has_value()},
       {"current", trial.current},
       {"setting", trial.setting},
       {"intervals", trial.intervals ? json_of(*trial.intervals) : Json{}},
@@ -150,6 +152,8 @@ bool accepts(const Screen& screen, const ScreenInput& input) {
       return screen.trial && screen.trial->intervals && can_replay(*screen.trial->intervals);
     case ScreenAction::adjust:
       return screen.trial && input.value < screen.trial->prompt.answers.settings;
+    case ScreenAction::enter:
+      return screen.trial && (input.text.empty() || is_answer(input.text, *screen.trial));
     case ScreenAction::answer:
       return screen.trial && is_answer(input.text, *screen.trial);
     case ScreenAction::correct:
@@ -165,11 +169,12 @@ bool accepts(const Screen& screen, const ScreenInput& input) {
 }
 
 ScreenInput parse_input(const std::string& text, std::int64_t& screen) {
-  static const std::array<std::pair<std::string, ScreenAction>, 8> actions{
+  static const std::array<std::pair<std::string, ScreenAction>, 9> actions{
       {{"go_on", ScreenAction::go_on},
        {"switch", ScreenAction::switch_to},
        {"replay_intervals", ScreenAction::replay},
        {"adjust", ScreenAction::adjust},
+       {"enter", ScreenAction::enter},
        {"answer", ScreenAction::answer},
        {"correct", ScreenAction::correct},
        {"confidence", ScreenAction::confidence},
@@ -185,7 +190,8 @@ ScreenInput parse_input(const std::string& text, std::int64_t& screen) {
     if (found->second == ScreenAction::form) {
       return {found->second, 0, form_answers(json.at("value"))};
     }
-    if (found->second == ScreenAction::answer || found->second == ScreenAction::correct) {
+    if (found->second == ScreenAction::enter || found->second == ScreenAction::answer ||
+        found->second == ScreenAction::correct) {
       return {found->second, 0, {}, json.at("value").get<std::string>()};
     }
     const bool has_value =

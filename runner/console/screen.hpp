@@ -64,12 +64,23 @@ struct Screen {
 };
 
 // What the participant does with it.
-enum class ScreenAction { go_on, switch_to, replay, adjust, answer, correct, confidence, form };
+// enter: an answer that is picked or typed and not confirmed yet; empty: there is none any more.
+enum class ScreenAction {
+  go_on,
+  switch_to,
+  replay,
+  adjust,
+  enter,
+  answer,
+  correct,
+  confidence,
+  form
+};
 struct ScreenInput {
   ScreenAction action{};
   std::size_t value{};
   Participant::FormAnswers answers{};  // form
-  std::string text{};                  // answer, correct
+  std::string text{};                  // enter, answer, correct
   bool operator==(const ScreenInput& other) const = default;
 };
 // Whether that is one of the things that can be done with this screen.

@@ -1,4 +1,6 @@
 #include "runner/console/screen_exchange.hpp"
+
+#include <utility>
 namespace tapstudy::runner {
 std::int64_t ScreenExchange::show(const Screen& screen) {
   const std::lock_guard lock{mutex_};
@@ -16,6 +18,11 @@ std::optional<ScreenInput> ScreenExchange::take(std::int64_t number) {
   }
   is_taken_ = true;
   return input_;
+}
+
+std::optional<std::string> ScreenExchange::take_entered() {
+  const std::lock_guard lock{mutex_};
+  return std::exchange(entered_, {});
 }
 
 std::optional<ScreenInput> ScreenExchange::close() {
@@ -43,6 +50,10 @@ std::string ScreenExchange::post(std::int64_t number, const ScreenInput& input) 
   }
   if (!accepts(screen_, input)) {
     return "this screen has no such answer";
+  }
+  if (input.action == ScreenAction::enter && !input_) {
+    entered_ = input.text;
+    return "";
   }
   if (input_) {
     return *input_ == input ? "" : "this screen is answered already";

@@ -18,6 +18,8 @@ class ScreenExchange {
   // The session's thread. Returns the screen's number.
   std::int64_t show(const Screen& screen);
   std::optional<ScreenInput> take(std::int64_t number);
+  // What was entered last, and not taken yet: empty if that was withdrawn.
+  std::optional<std::string> take_entered();
   // Takes no more input for the screen that is shown; what was accepted already is returned.
   std::optional<ScreenInput> close();
 
@@ -30,6 +32,7 @@ class ScreenExchange {
   Shown shown() const;
   std::int64_t number() const;
   // Empty: accepted; otherwise why not. The same input again, of the same screen, is accepted.
+  // What is only entered answers nothing: more of it may follow, and an answer.
   std::string post(std::int64_t number, const ScreenInput& input);
   // A page that says so now and then is gone once it is silent, though its connection is open.
   void page_is_alive(std::chrono::steady_clock::time_point now);
@@ -45,6 +48,7 @@ class ScreenExchange {
   Screen screen_;
   std::int64_t number_{0};
   std::optional<ScreenInput> input_;
+  std::optional<std::string> entered_;
   bool is_taken_{false};
   bool is_closed_{false};
   int open_pages_{0};

@@ -12,7 +12,6 @@ std::optional<CachedModel> cached_model(const protocols::Protocol& protocol,
   if (!body) {
     return std::nullopt;
   }
-  const core::PlateSpec spec = plate_spec(protocol, presented);
-  return CachedModel{core::model_of(*body, spec.material, spec.band_limit_hz), body->report};
+  return CachedModel{core::model_of(*body, plate_spec(protocol, presented)), body->report};
 }
 }  // namespace tapstudy::runner

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <map>
 #include <set>
 #include <utility>
 
@@ -66,15 +67,44 @@ std::string practice_words(const Block& block) {
                          : "");
 }
 
+// "levels by QUEST+ (Watson 2017)", alike procedures taken together.
+std::string level_words(const Block& block) {
+  if (!block.comparison) {
+    return "";
+  }
+  std::map<std::string, int> tracks;
+  for (const auto& track : block.comparison->tracks) {
+    ++tracks[track->words()];
+  }
+  std::vector<std::string> parts;
+  for (const auto& [words, count] : tracks) {
+    parts.push_back(count == 1 ? words : fmt::format("{} interleaved tracks of {}", count, words));
+  }
+  const auto& further = block.comparison->further_axes;
+  return fmt::format(
+      ", levels of {}{} by {}", block.comparison->axis,
+      further.empty() ? "" : fmt::format(" and values of {}", fmt::join(further, ", ")),
+      fmt::join(parts, " and "));
+}
+
+std::string tap_words(const Block& block) {
+  const auto& taps = block.explore.scripted_taps;
+  return taps ? fmt::format(
+                    ", scripted taps at {} of {:g} m/s, {:g} s each and {:g} s apart, felt "
+                    "with the device held still",
+                    taps->point, taps->speed_m_s, taps->dwell_s, taps->pause_s)
+              : "";
+}
+
 std::string block_words(const Block& block) {
   const bool may_end_early = block.criterion || block.comparison;
   const auto trials = static_cast<std::size_t>(protocols::planned_trials(block));
   return fmt::format(
-      "'{}' ({} of {}{}, {}{}{}{})", block.name, block.task->name(),
+      "'{}' ({} of {}{}, {}{}{}{}{}{})", block.name, block.task->name(),
       block.stimuli.size() == 1 ? "one stimulus" : fmt::format("{} stimuli", block.stimuli.size()),
       block.presented == protocols::Presented::real_plates ? ", the real plates themselves" : "",
       may_end_early ? "at most " : "", counted(trials, "trial"), order_words(block),
-      practice_words(block));
+      level_words(block), tap_words(block), practice_words(block));
 }
 
 // Letters that stand for something else in each trial, and are what is answered.

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <utility>
+
+#include "runner/experiments/cached_model.hpp"
 namespace tapstudy::runner {
 namespace {
 std::string millimetres(double length_m) {
@@ -101,5 +103,22 @@ std::string fixation_words(const std::vector<core::Fixation>& fixations) {
     parts.push_back(times == 1 ? words : fmt::format("{} × {}", times, words));
   }
   return parts.empty() ? "free" : fmt::format("{}", fmt::join(parts, "; "));
+}
+
+std::string contact_words(const protocols::Protocol& protocol,
+                          const protocols::Stimulus& stimulus) {
+  if (!stimulus.contacts) {
+    return "";
+  }
+  std::vector<std::string> bodies;
+  for (std::size_t i = 0; i < stimulus.contacts->bodies.size(); ++i) {
+    bodies.push_back(fmt::format("{} of {:.3g} Pa, {:.4g} kg/m³",
+                                 name_in(protocol.plates, stimulus.contacts->plates.at(i + 1)),
+                                 stimulus.contacts->bodies[i].material.youngs_modulus_pa,
+                                 stimulus.contacts->bodies[i].material.density_kg_per_m3));
+  }
+  const std::size_t springs = stimulus.contacts->springs.size();
+  return fmt::format("; touches {} by {} spring{}", fmt::join(bodies, ", "), springs,
+                     springs == 1 ? "" : "s");
 }
 }  // namespace tapstudy::runner

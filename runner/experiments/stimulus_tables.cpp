@@ -60,9 +60,9 @@ Row row_of(const Stimulus& stimulus, const std::set<std::string>& factors) {
 results::Table stimuli_table(const Protocol& protocol) {
   std::vector<Column> columns = results::known_columns(
       "stimulus label technique youngs_modulus_pa density_kg_per_m3 poissons_ratio size_x_m "
-      "size_y_m size_z_m fixations varied_axes plate material");
+      "size_y_m size_z_m fixations varied_axes plate material in_contact");
   const std::set<std::string> factors = factors_of(protocol);
-  const std::size_t own = columns.size() - 2;
+  const std::size_t own = columns.size() - 3;
   for (const std::string& factor : factors) {
     columns.push_back({"factor_" + factor, CellType::text, "", "Level of the factor " + factor});
   }
@@ -71,7 +71,8 @@ results::Table stimuli_table(const Protocol& protocol) {
     Row row = row_of(stimulus, factors);
     row.insert(
         row.begin() + static_cast<std::ptrdiff_t>(own),
-        {name_in(protocol.plates, stimulus.plate), name_in(protocol.materials, stimulus.material)});
+        {name_in(protocol.plates, stimulus.plate), name_in(protocol.materials, stimulus.material),
+         stimulus.contacts ? Cell{name_in(protocol.contacts, stimulus.contacts)} : Cell{}});
     rows.push_back(std::move(row));
   }
   return results::table_of("stimuli", "A row a stimulus of the protocol.", std::move(columns),

@@ -79,6 +79,7 @@ void add_discrimination(const protocols::Block& block, const protocols::Protocol
     part.axis = analysis::VariedAxis{comparison.axis, comparison.standard, comparison.is_fraction,
                                      comparison.side == protocols::Side::below,
                                      comparison.is_standard_right};
+    part.further_axes = comparison.further_axes;
   }
 }
 

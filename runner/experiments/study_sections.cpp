@@ -6,6 +6,7 @@
 #include "analysis/rendered/rendered_section.hpp"
 #include "runner/experiments/given_forms.hpp"
 #include "runner/experiments/rendered_study.hpp"
+#include "runner/experiments/track_results.hpp"
 #include "runner/session/practice_record.hpp"
 namespace tapstudy::runner {
 namespace {
@@ -68,6 +69,7 @@ std::vector<analysis::ReportSection> study_sections(const protocols::Protocol& p
                                                     results::Mode mode) {
   return {
       course(protocol, stores, mode),
+      analysis::procedures_section(track_results(protocol, stores, mode)),
       analysis::questionnaires_section(questionnaires_of(protocol), given_answers(stores, mode)),
       analysis::rendered_section(rendered_study(protocol, stores, mode))};
 }

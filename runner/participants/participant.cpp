@@ -36,6 +36,10 @@ std::string to_text(const TooEarly& too_early) {
       return fmt::format("please tap the plate{} first", times);
     case TooEarly::Reason::alternatives_untouched:
       return fmt::format("please tap {}{} first", fmt::join(too_early.labels, ", "), times);
+    case TooEarly::Reason::plate_unfelt:
+      return fmt::format("please wait until you have felt the plate{}", times);
+    case TooEarly::Reason::alternatives_unfelt:
+      return fmt::format("please feel {}{} first", fmt::join(too_early.labels, ", "), times);
     case TooEarly::Reason::time:
       break;
   }

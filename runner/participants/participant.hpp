@@ -40,7 +40,14 @@ RestTimes rest_times(const protocols::Breaks& breaks);
 
 // Why an answer would be too early.
 struct TooEarly {
-  enum class Reason { intervals, plate_untouched, alternatives_untouched, time };
+  enum class Reason {
+    intervals,
+    plate_untouched,
+    alternatives_untouched,
+    plate_unfelt,         // untouched where taps are scripted
+    alternatives_unfelt,  // likewise
+    time
+  };
   Reason reason{};
   int min_contacts{};
   std::vector<std::string> labels{};  // of the alternatives to touch

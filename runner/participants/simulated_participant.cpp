@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <map>
+#include <tuple>
 
 #include "core/error.hpp"
+#include "runner/participants/scripted_taps.hpp"
 #include "runner/participants/tap_drawing.hpp"
 #include "runner/stimuli/trial_stimuli.hpp"
 #include "runner/trial_loop/simulated_reality.hpp"
@@ -14,10 +16,15 @@ namespace tapstudy::runner {
 namespace {
 using core::Purpose;
 
-// What must be memorised for this protocol's tasks, in the order of the protocol.
-std::vector<protocols::Remembered> all_remembered(const protocols::Protocol& protocol) {
+// What must be memorised for the tasks of the blocks that are tapped this way, in the order of the
+// protocol.
+std::vector<protocols::Remembered> all_remembered(
+    const protocols::Protocol& protocol, const std::optional<protocols::ScriptedTaps>& taps) {
   std::vector<protocols::Remembered> all;
   for (const protocols::Block& block : protocol.blocks) {
+    if (block.explore.scripted_taps != taps) {
+      continue;
+    }
     for (const protocols::Remembered& one : block.task->remembered(block, protocol.simulation)) {
       if (std::ranges::find(all, one.key, &protocols::Remembered::key) == all.end()) {
         all.push_back(one);
@@ -44,6 +51,8 @@ class SimulatedParticipant::Touch final : public protocols::SimulatedTouch {
  public:
   Touch(SimulatedParticipant& self, const TrialPrompt& prompt, Exploration& exploration)
       : self_{self},
+        observer_{self.observer_of(*prompt.block)},
+        scripted_{prompt.block->explore.scripted_taps},
         exploration_{exploration},
         settings_{prompt.answers.settings},
         felt_(std::max<std::size_t>(1, prompt.alternative_labels.size())) {}
@@ -60,23 +69,23 @@ class SimulatedParticipant::Touch final : public protocols::SimulatedTouch {
     tap(alternative);
   }
   std::size_t most_similar_stimulus(const std::vector<std::string>& stimuli) override {
-    return self_.observer_.most_similar(felt_.front(), stimuli);
+    return observer_.most_similar(felt_.front(), stimuli);
   }
   std::size_t most_similar_alternative(const std::string& stimulus) override {
-    return self_.observer_.most_similar(felt_, stimulus);
+    return observer_.most_similar(felt_, stimulus);
   }
   double position(std::size_t alternative, const std::string& from,
                   const std::string& to) override {
-    return self_.observer_.position(percept(alternative), from, to);
+    return observer_.position(percept(alternative), from, to);
   }
   double distance(std::size_t first, std::size_t second) override {
-    return self_.observer_.distance(percept(first), percept(second));
+    return observer_.distance(percept(first), percept(second));
   }
   double distance(std::size_t alternative, const std::string& stimulus) override {
-    return self_.observer_.distance(percept(alternative), stimulus);
+    return observer_.distance(percept(alternative), stimulus);
   }
   double level_db(std::size_t alternative) override {
-    return self_.observer_.level_db(percept(alternative));
+    return observer_.level_db(percept(alternative));
   }
   bool adjust(int settings) override {
     const auto wanted = static_cast<std::ptrdiff_t>(exploration_.setting()) + settings;
@@ -86,7 +95,7 @@ class SimulatedParticipant::Touch final : public protocols::SimulatedTouch {
     exploration_.adjust(static_cast<std::size_t>(wanted));
     felt_.back().clear();
     if (noise_.size() == felt_.size()) {
-      noise_.back() = self_.observer_.noise();
+      noise_.back() = observer_.noise();
     }
     return true;
   }
@@ -96,8 +105,23 @@ class SimulatedParticipant::Touch final : public protocols::SimulatedTouch {
  private:
   using Phase = IntervalState::Phase;
   void tap(std::size_t alternative) {
-    const auto taps = self_.tap(exploration_, self_.person_.taps.taps_per_visit);
+    exploration_.pass_time(self_.begin_taps(scripted_, self_.person_.taps.taps_per_visit));
+    keep_felt(alternative);
+  }
+  void keep_felt(std::size_t alternative) {
+    const auto taps = self_.just_felt();
     felt_.at(alternative).insert(felt_.at(alternative).end(), taps.begin(), taps.end());
+  }
+  // What was begun in an interval ends with it.
+  void tap_in_interval() {
+    const std::size_t alternative = exploration_.current();
+    const double end_s =
+        exploration_.time_s() + self_.begin_taps(scripted_, self_.person_.taps.taps_per_visit);
+    while (exploration_.is_running() && exploration_.intervals()->phase == Phase::open &&
+           exploration_.current() == alternative && exploration_.time_s() < end_s) {
+      exploration_.pass_time(poll_s);
+    }
+    keep_felt(alternative);
   }
   // All intervals, in the order in which they come; as often as there are replays.
   void attend() {
@@ -106,7 +130,7 @@ class SimulatedParticipant::Touch final : public protocols::SimulatedTouch {
     }
     while (exploration_.is_running() && exploration_.intervals()->phase != Phase::over) {
       if (exploration_.intervals()->phase == Phase::open) {
-        tap(exploration_.current());
+        tap_in_interval();
       } else {
         exploration_.pass_time(poll_s);
       }
@@ -115,6 +139,8 @@ class SimulatedParticipant::Touch final : public protocols::SimulatedTouch {
 
   static constexpr double poll_s = 0.01;
   SimulatedParticipant& self_;
+  SimulatedObserver& observer_;
+  const Scripted& scripted_;
   Exploration& exploration_;
   std::size_t settings_;
   std::map<std::size_t, int> visits_;  // asked for, of intervals
@@ -122,7 +148,7 @@ class SimulatedParticipant::Touch final : public protocols::SimulatedTouch {
   // Noise is drawn with the first question: whoever asks for none leaves the stream as it was.
   SimulatedObserver::Percept percept(std::size_t alternative) {
     while (noise_.size() < felt_.size()) {
-      noise_.push_back(self_.observer_.noise());
+      noise_.push_back(observer_.noise());
     }
     return {felt_.at(alternative), noise_.at(alternative)};
   }
@@ -139,46 +165,77 @@ SimulatedParticipant::SimulatedParticipant(const protocols::Protocol& protocol,
       settings_{settings},
       hand_{protocol.simulation.hand, protocol.rendering.dt_s, device::SimulatedHand::Memory::kept},
       hand_rng_{core::derived_seed(seed, Purpose::memory)},
-      observer_{aims_m(protocol, settings.placement),
-                {person_.observer.noise_db, person_.people.bias, seed},
-                core::Rng{core::derived_seed(seed, Purpose::observer)}} {
-  remember(models);
+      acquaintances_{acquaintances(seed)} {
+  for (Acquaintance& by : acquaintances_) {
+    remember(models, by);
+  }
   hand_rng_ = core::Rng{core::derived_seed(seed, Purpose::hand)};
 }
 
+// One for each way of tapping in the protocol; the participant's own comes first.
+std::vector<SimulatedParticipant::Acquaintance> SimulatedParticipant::acquaintances(
+    std::uint64_t seed) const {
+  std::vector<Scripted> ways{std::nullopt};
+  for (const protocols::Block& block : protocol_.blocks) {
+    if (std::ranges::find(ways, block.explore.scripted_taps) == ways.end()) {
+      ways.push_back(block.explore.scripted_taps);
+    }
+  }
+  std::vector<Acquaintance> all;
+  for (const Scripted& taps : ways) {
+    all.push_back({taps,
+                   {aims_m(protocol_, settings_.placement),
+                    {person_.observer.noise_db, person_.people.bias, seed},
+                    core::Rng{core::derived_seed(seed, Purpose::observer, all.size())}}});
+  }
+  return all;
+}
+
+SimulatedObserver& SimulatedParticipant::observer_of(const protocols::Block& block) {
+  return std::ranges::find(acquaintances_, block.explore.scripted_taps, &Acquaintance::taps)
+      ->observer;
+}
+
 // A body that several stimuli share is tapped once.
-void SimulatedParticipant::remember(ModelLibrary& models) {
+void SimulatedParticipant::remember(ModelLibrary& models, Acquaintance& by) {
   const protocols::Protocol reality = with_real_plates(protocol_);
   VirtualTrialLoop world{hand_, settings_, Keep::nothing};
-  using Body = std::pair<const core::Plate*, const core::Material*>;
+  using Body = std::tuple<const core::Plate*, const core::Material*, const core::Contacts*>;
   std::map<Body, std::vector<FeltTap>> felt;
   const auto felt_of = [&](const protocols::PresentedStimulus& stimulus) {
     TrialStimuli stimuli = build_trial_stimuli(reality, {stimulus}, models);
-    std::vector<FeltTap> taps;
-    world.run(stimuli.alternatives, [&](Exploration& exploration) {
-      taps = tap(exploration, person_.observer.familiarisation_taps);
+    const Rendered rendered{stimuli.alternatives, scripted_tap(protocol_, by.taps)};
+    world.run(rendered, [&](Exploration& exploration) {
+      exploration.pass_time(begin_taps(by.taps, person_.observer.familiarisation_taps));
     });
-    return taps;
+    return just_felt();
   };
-  for (const protocols::Remembered& one : all_remembered(protocol_)) {
+  for (const protocols::Remembered& one : all_remembered(protocol_, by.taps)) {
     const protocols::Protocol& as = one.is_real ? reality : protocol_;
     const auto stimulus = protocols::stimulus_at(as, as.stimulus(one.stimulus), one.values);
-    const Body body{stimulus.plate.get(), stimulus.material.get()};
+    const Body body{stimulus.plate.get(), stimulus.material.get(), stimulus.contacts.get()};
     if (!one.is_real) {
-      observer_.remember(one.key, felt_of(stimulus));
+      by.observer.remember(one.key, felt_of(stimulus));
       continue;
     }
     if (!felt.contains(body)) {
       felt[body] = felt_of(stimulus);
     }
-    observer_.remember(one.key, felt.at(body));
+    by.observer.remember(one.key, felt.at(body));
   }
 }
 
-std::vector<FeltTap> SimulatedParticipant::tap(Exploration& exploration, int count) {
+double SimulatedParticipant::begin_taps(const Scripted& scripted, int count) {
   hand_.forget();
-  exploration.pass_time(
-      hand_.follow(draw_taps(protocol_, person_.taps, settings_.placement, count, hand_rng_)));
+  if (!scripted) {
+    return hand_.follow(draw_taps(protocol_, person_.taps, settings_.placement, count, hand_rng_));
+  }
+  const double duration_s = count * scripted_tap(protocol_, scripted)->duration_s();
+  hand_.hold(duration_s);
+  return duration_s;
+}
+
+std::vector<FeltTap> SimulatedParticipant::just_felt() const {
   return felt_taps(hand_.felt(), protocol_.rendering.dt_s, person_.observer.threshold_n);
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 #include <cstdint>
+#include <optional>
+#include <vector>
 
 #include "core/rng.hpp"
 #include "device/hand/simulated_hand.hpp"
@@ -13,7 +15,8 @@ namespace tapstudy::runner {
 // its seed; the task defines how it explores and answers. Before the study it taps the real plates
 // required by the protocol's tasks, to memorise them, vibrating at their true natural frequencies
 // (exact integration). Participants differ in noise, threshold, speed and bias as the protocol
-// states.
+// states. Where a block's taps are scripted the hand holds still, and real plates are remembered as
+// such taps on them feel.
 class SimulatedParticipant final : public Participant {
  public:
   SimulatedParticipant(const protocols::Protocol& protocol, const device::LoopSettings& settings,
@@ -27,15 +30,24 @@ class SimulatedParticipant final : public Participant {
 
  private:
   class Touch;
-  std::vector<FeltTap> tap(Exploration& exploration, int count);
-  void remember(ModelLibrary& models);
+  using Scripted = std::optional<protocols::ScriptedTaps>;
+  // Scripted taps and a hand's own do not feel alike: what is known of plates is known by either.
+  struct Acquaintance {
+    Scripted taps;
+    SimulatedObserver observer;
+  };
+  double begin_taps(const Scripted& scripted, int count);  // how long they take [s]
+  std::vector<FeltTap> just_felt() const;
+  std::vector<Acquaintance> acquaintances(std::uint64_t seed) const;
+  void remember(ModelLibrary& models, Acquaintance& by);
+  SimulatedObserver& observer_of(const protocols::Block& block);
 
   const protocols::Protocol& protocol_;
   protocols::Simulation person_;  // as drawn for this participant
   device::LoopSettings settings_;
   device::SimulatedHand hand_;
   core::Rng hand_rng_;
-  SimulatedObserver observer_;
+  std::vector<Acquaintance> acquaintances_;
   int refused_trial_{0};
   int refusals_{0};
 };

@@ -47,6 +47,11 @@ class TapArea {
 };
 }  // namespace
 
+core::Vec3 point_on_surface_m(const protocols::Protocol& protocol, const std::string& point) {
+  const Eigen::Vector2d& at_m = protocol.tapping_points_m.at(point);
+  return TapArea{protocol}.landing_m(at_m, at_m);
+}
+
 std::vector<core::Vec3> aims_m(const protocols::Protocol& protocol,
                                const core::Placement& placement) {
   const TapArea area{protocol};

@@ -6,6 +6,10 @@
 #include "device/hand/tap_path.hpp"
 #include "protocols/protocol.hpp"
 namespace tapstudy::runner {
+// A tapping point of the study on the plates' surfaces, in the plate frame at the placement's
+// scale.
+core::Vec3 point_on_surface_m(const protocols::Protocol& protocol, const std::string& point);
+
 // The target points: the protocol's tapping points, in the device frame.
 std::vector<core::Vec3> aims_m(const protocols::Protocol& protocol,
                                const core::Placement& placement);

@@ -14,7 +14,7 @@ void TypedIntervals::announce(const Exploration& exploration) {
     return;
   }
   if (state->phase == Phase::open) {
-    say("\n  now {}: tap it\n> ", labels_.at(exploration.current()));
+    say("\n  now {}{}\n> ", labels_.at(exploration.current()), is_scripted_ ? "" : ": tap it");
   } else if (told_ && told_->phase == Phase::open) {
     say("\n  stop{}\n> ",
         state->phase == Phase::gap ? "; the next one follows"
@@ -31,8 +31,9 @@ std::string how_they_come(const TrialPrompt& prompt) {
     return "";
   }
   return fmt::format(
-      "  {} come one after the other, for {:.3g} s each: tap each as soon as you are told.{}",
+      "  {} come one after the other, for {:.3g} s each{}.{}",
       fmt::join(prompt.alternative_labels, ", "), intervals->seconds,
+      prompt.block->explore.scripted_taps ? "" : ": tap each as soon as you are told",
       intervals->max_replays > 0 ? "   again: all of them once more." : "");
 }
 

@@ -8,12 +8,15 @@ namespace tapstudy::runner {
 // Alternatives that come one after the other, as a person at the terminal is told of them.
 class TypedIntervals {
  public:
-  explicit TypedIntervals(const TrialPrompt& prompt) : labels_{prompt.alternative_labels} {}
+  explicit TypedIntervals(const TrialPrompt& prompt)
+      : labels_{prompt.alternative_labels},
+        is_scripted_{prompt.block->explore.scripted_taps.has_value()} {}
   // Says what has changed since the last call: go signals, ends, the end of all.
   void announce(const Exploration& exploration);
 
  private:
   std::vector<std::string> labels_;
+  bool is_scripted_;
   std::optional<IntervalState> told_;
 };
 

@@ -1,8 +1,11 @@
 #include "runner/recordings/model_comparison.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "analysis/modal_identification/spring_update.hpp"
+#include "core/error.hpp"
 #include "core/model/plate_model.hpp"
 #include "runner/stimuli/at_its_line.hpp"
 #include "runner/stimuli/model_library.hpp"
@@ -59,6 +62,12 @@ ModelComparison compare_with_model(const protocols::Protocol& protocol, const st
                                    double high_hz, const core::ProgressHook& progress) {
   const protocols::Stimulus& stated = protocol.stimulus(stimulus);
   const protocols::PresentedStimulus presented = protocols::stimulus_with(protocol, stated);
+  if (presented.contacts) {
+    throw core::InvalidInput{fmt::format(
+        "stimulus '{}': it touches other bodies, and its frequencies are not those of its material "
+        "alone (compare with a stimulus without contacts)",
+        stimulus)};
+  }
   ModelComparison model;
   model.material = presented.material;
   model.material_name = name_of(protocol.materials, stated.material);

@@ -13,8 +13,38 @@ using protocols::Block;
 using protocols::PlannedTrial;
 
 namespace {
+using protocols::Comparison;
+
+// What a procedure asks for, of a comparison or of its standard.
+protocols::AxisValues asked_of(const Comparison& comparison, const std::vector<double>& requested,
+                               bool is_comparison) {
+  protocols::AxisValues asked{{comparison.axis, is_comparison
+                                                    ? comparison.value_at(requested.front())
+                                                    : comparison.standard}};
+  for (std::size_t i = 0; i < comparison.further_axes.size(); ++i) {
+    asked[comparison.further_axes[i]] = requested.at(i + 1);
+  }
+  return asked;
+}
+
+// The other way round: what a procedure is told was presented.
+std::vector<double> observed_of(const Comparison& comparison,
+                                const protocols::AxisValues& presented) {
+  std::vector<double> observed{comparison.level_of(presented.at(comparison.axis))};
+  for (const std::string& axis : comparison.further_axes) {
+    observed.push_back(presented.at(axis));
+  }
+  return observed;
+}
+
+bool has_values(const protocols::AxisValues& values, const Comparison& comparison) {
+  return values.contains(comparison.axis) &&
+         std::ranges::all_of(comparison.further_axes,
+                             [&](const std::string& axis) { return values.contains(axis); });
+}
+
 // Throws StoreError where the answer is to no trial of the schedule.
-PlannedTrial as_presented(const protocols::Schedule& schedule,
+PlannedTrial as_presented(const protocols::Schedule& schedule, const Comparison& comparison,
                           const results::JournalledAnswer& answer) {
   const auto planned = std::ranges::find(schedule, answer.trial.number, &PlannedTrial::number);
   bool is_planned = planned != schedule.end() && planned->block == answer.trial.block &&
@@ -22,7 +52,7 @@ PlannedTrial as_presented(const protocols::Schedule& schedule,
   PlannedTrial trial = is_planned ? *planned : PlannedTrial{};
   for (std::size_t i = 0; i < trial.alternatives.size(); ++i) {
     trial.alternatives[i].values = answer.alternatives[i].axis_values;
-    is_planned = is_planned && !trial.alternatives[i].values.empty();
+    is_planned = is_planned && has_values(trial.alternatives[i].values, comparison);
   }
   if (!is_planned) {
     throw results::StoreError{
@@ -47,7 +77,8 @@ AdaptiveBlocks::AdaptiveBlocks(const protocols::Protocol& protocol, std::uint64_
   }
   for (const results::JournalledAnswer& answer : earlier) {
     if (tracks_.contains(answer.trial.block)) {
-      observe(as_presented(schedule, answer), answer.response.response);
+      const Comparison& comparison = *protocol.block(answer.trial.block).comparison;
+      observe(as_presented(schedule, comparison, answer), answer.response.response);
     }
   }
 }
@@ -62,16 +93,21 @@ PlannedTrial AdaptiveBlocks::with_values(PlannedTrial trial) const {
   if (tracks == tracks_.end()) {
     return trial;
   }
-  const protocols::Comparison& comparison = *protocol_.block(trial.block).comparison;
-  const double asked = comparison.value_at(tracks->second.next()->values.front());
+  const Comparison& comparison = *protocol_.block(trial.block).comparison;
+  const std::vector<double> requested = tracks->second.next()->values;
   for (Alternative& alternative : trial.alternatives) {
-    if (alternative.is_comparison) {
-      const protocols::AxisValues presented = presented_values(
-          protocol_, protocol_.stimulus(alternative.stimulus), {{comparison.axis, asked}});
-      alternative.values = {{comparison.axis, presented.at(comparison.axis)}};
+    alternative.values = asked_of(comparison, requested, alternative.is_comparison);
+    const protocols::AxisValues presented =
+        presented_values(protocol_, protocol_.stimulus(alternative.stimulus), alternative.values);
+    for (auto& [axis, value] : alternative.values) {
+      value = presented.at(axis);
     }
   }
   return trial;
+}
+
+const protocols::InterleavedTracks& AdaptiveBlocks::tracks_of(const std::string& block) const {
+  return tracks_.at(block);
 }
 
 void AdaptiveBlocks::observe(const PlannedTrial& presented, const std::string& response) {
@@ -84,8 +120,7 @@ void AdaptiveBlocks::observe(const PlannedTrial& presented, const std::string& r
   const auto comparison =
       std::ranges::find(presented.alternatives, true, &Alternative::is_comparison);
   if (outcome && comparison != presented.alternatives.end()) {
-    const double level = block.comparison->level_of(comparison->values.at(block.comparison->axis));
-    tracks->second.observe({level}, *outcome);
+    tracks->second.observe(observed_of(*block.comparison, comparison->values), *outcome);
   }
 }
 }  // namespace tapstudy::runner

@@ -20,8 +20,10 @@ class AdaptiveBlocks {
                  const std::vector<results::JournalledAnswer>& earlier);
   // Whether the trial is not needed: the procedures of its block are finished.
   bool is_over(const protocols::PlannedTrial& trial) const;
-  // With the value of its comparison, as it can be presented.
+  // With the values that the procedures ask for, as they can be presented.
   protocols::PlannedTrial with_values(protocols::PlannedTrial trial) const;
+  // Of a block with procedures.
+  const protocols::InterleavedTracks& tracks_of(const std::string& block) const;
   void observe(const protocols::PlannedTrial& presented, const std::string& response);
 
  private:

@@ -6,25 +6,25 @@
 #include "device/loop/haptic_loop.hpp"
 #include "protocols/protocol.hpp"
 #include "results/rows.hpp"
-#include "runner/trial_loop/exploration.hpp"
+#include "runner/trial_loop/forwarded_exploration.hpp"
 namespace tapstudy::runner {
 // An exploration whose last alternative has settings, each rendered by itself: positions of the
 // loop from that of the last alternative on are its settings (protocols::rendered). Each setting
 // that is chosen is an event, the one it starts at too. Without settings nothing is changed.
 static_assert(protocols::max_settings < device::max_alternatives);
-class AdjustedExploration final : public Exploration {
+class AdjustedExploration final : public ForwardedExploration {
  public:
   AdjustedExploration(Exploration& inner, const protocols::PlannedTrial& trial,
                       const protocols::Block& block, std::vector<results::EventRow>& events)
-      : inner_{inner},
+      : ForwardedExploration{inner},
         settings_{trial.task->settings(trial, block)},
         adjusted_{trial.alternatives.size() - 1},
         setting_{settings_ ? settings_->start : 0},
         events_{events} {
     note();
   }
-  void switch_to(std::size_t alternative) override { inner_.switch_to(position(alternative)); }
-  std::size_t current() const override { return std::min(inner_.current(), adjusted_); }
+  void switch_to(std::size_t alternative) override { inner().switch_to(position(alternative)); }
+  std::size_t current() const override { return std::min(inner().current(), adjusted_); }
   void adjust(std::size_t setting) override {
     if (settings_ && setting < settings_->values.size()) {
       setting_ = setting;
@@ -33,13 +33,8 @@ class AdjustedExploration final : public Exploration {
     }
   }
   std::size_t setting() const override { return setting_; }
-  void silence(bool is_silent) override { inner_.silence(is_silent); }
-  void pass_time(double seconds) override { inner_.pass_time(seconds); }
-  bool is_running() const override { return inner_.is_running(); }
-  bool is_rendering() const override { return inner_.is_rendering(); }
-  double time_s() const override { return inner_.time_s(); }
   int contacts(std::size_t alternative) const override {
-    return inner_.contacts(position(alternative));
+    return inner().contacts(position(alternative));
   }
 
  private:
@@ -49,11 +44,10 @@ class AdjustedExploration final : public Exploration {
   void note() {
     if (settings_) {
       const double value = settings_->values[setting_].begin()->second;
-      events_.push_back({inner_.time_s(), "setting", value});
+      events_.push_back({time_s(), "setting", value});
     }
   }
 
-  Exploration& inner_;
   std::optional<protocols::Settings> settings_;
   std::size_t adjusted_;
   std::size_t setting_;

@@ -22,16 +22,19 @@ std::optional<TooEarly> too_early(const TrialPrompt& prompt, const std::string& 
                                   const Exploration& exploration) {
   using Reason = TooEarly::Reason;
   const protocols::ExploreLimits& limits = prompt.block->explore;
+  const bool is_scripted = limits.scripted_taps.has_value();
   const IntervalState* const intervals = exploration.intervals();
   if (intervals != nullptr && intervals->phase != IntervalState::Phase::over) {
     return TooEarly{Reason::intervals};
   }
   if (prompt.alternative_labels.empty()) {
     if (exploration.contacts(0) < limits.min_contacts) {
-      return TooEarly{Reason::plate_untouched, limits.min_contacts};
+      return TooEarly{is_scripted ? Reason::plate_unfelt : Reason::plate_untouched,
+                      limits.min_contacts};
     }
   } else if (const auto labels = untouched(prompt, answer, exploration); !labels.empty()) {
-    return TooEarly{Reason::alternatives_untouched, limits.min_contacts, labels};
+    return TooEarly{is_scripted ? Reason::alternatives_unfelt : Reason::alternatives_untouched,
+                    limits.min_contacts, labels};
   }
   if (exploration.time_s() < limits.min_seconds) {
     return TooEarly{Reason::time, 0, {}, limits.min_seconds};

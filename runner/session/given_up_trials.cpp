@@ -11,8 +11,9 @@ std::vector<int> given_up_trials(const protocols::Protocol& protocol,
                                  const std::string& participant_id, results::Store& store) {
   std::vector<int> given_up;
   for (const results::UnansweredTrial& trial : store.unanswered_trials(participant_id)) {
-    if (trial.is_skipped ||
-        protocol.block(trial.block).explore.at_limit == protocols::AtLimit::give_up) {
+    const protocols::Block& block = protocol.block(trial.block);
+    if (trial.is_skipped ? !block.comparison
+                         : block.explore.at_limit == protocols::AtLimit::give_up) {
       given_up.push_back(trial.number);
     }
   }

@@ -5,8 +5,8 @@
 #include "protocols/protocol.hpp"
 #include "results/store.hpp"
 namespace tapstudy::runner {
-// The trials that ended without an answer and do not come again: skipped by the operator, or timed
-// out (at_limit: give_up).
+// The trials that ended without an answer and do not come again: skipped by the operator, but for
+// those of procedures, or timed out (at_limit: give_up).
 std::vector<int> given_up_trials(const protocols::Protocol& protocol,
                                  const std::string& participant_id, results::Store& store);
 // Those that were never presented, because their block's criterion was met before, or its

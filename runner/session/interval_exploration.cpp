@@ -10,9 +10,9 @@ constexpr double step_s = 0.01;  // how late an interval may begin or end in vir
 IntervalExploration::IntervalExploration(Exploration& inner, const protocols::ExploreLimits& limits,
                                          std::size_t alternatives,
                                          std::vector<results::EventRow>& events)
-    : inner_{inner}, limits_{limits}, alternatives_{alternatives}, events_{events} {
+    : ForwardedExploration{inner}, limits_{limits}, alternatives_{alternatives}, events_{events} {
   if (limits_.intervals) {
-    inner_.silence(true);
+    inner.silence(true);
     state_.replays_left = limits_.intervals->max_replays;
     begin_gap(0);
   }
@@ -20,7 +20,7 @@ IntervalExploration::IntervalExploration(Exploration& inner, const protocols::Ex
 
 void IntervalExploration::switch_to(std::size_t alternative) {
   if (!limits_.intervals) {
-    inner_.switch_to(alternative);
+    inner().switch_to(alternative);
   }
 }
 
@@ -30,22 +30,22 @@ void IntervalExploration::replay() {
   }
   --state_.replays_left;
   const int number = limits_.intervals->max_replays - state_.replays_left;
-  events_.push_back({inner_.time_s(), "interval_replay", static_cast<double>(number)});
+  events_.push_back({time_s(), "interval_replay", static_cast<double>(number)});
   begin_gap(0);
 }
 
 void IntervalExploration::pass_time(double seconds) {
   if (!limits_.intervals) {
-    inner_.pass_time(seconds);
+    inner().pass_time(seconds);
     return;
   }
-  const double until_s = inner_.time_s() + seconds;
-  double before_s = inner_.time_s();
+  const double until_s = time_s() + seconds;
+  double before_s = time_s();
   double now_s = before_s;
   do {
     before_s = now_s;
-    inner_.pass_time(std::min(until_s - before_s, step_s));
-    now_s = inner_.time_s();  // what is shorter than a tick does not pass in virtual time
+    inner().pass_time(std::min(until_s - before_s, step_s));
+    now_s = time_s();  // what is shorter than a tick does not pass in virtual time
   } while (is_running() && now_s > before_s && now_s < until_s);
 }
 
@@ -53,38 +53,38 @@ bool IntervalExploration::is_running() const {
   if (limits_.intervals) {
     follow();
   }
-  return inner_.is_running();
+  return inner().is_running();
 }
 
 void IntervalExploration::follow() const {
-  if (state_.phase == Phase::over || inner_.time_s() < until_s_) {
+  if (state_.phase == Phase::over || time_s() < until_s_) {
     return;
   }
   if (state_.phase == Phase::gap) {
     open();
-  } else if (inner_.contacts(next_) - contacts_before_ >= limits_.min_contacts) {
+  } else if (inner().contacts(next_) - contacts_before_ >= limits_.min_contacts) {
     close();
   }
 }
 
 void IntervalExploration::begin_gap(std::size_t next) const {
   next_ = next;
-  until_s_ = inner_.time_s() + limits_.intervals->gap_seconds;
+  until_s_ = time_s() + limits_.intervals->gap_seconds;
   state_.phase = Phase::gap;
 }
 
 void IntervalExploration::open() const {
-  inner_.switch_to(next_);
-  inner_.silence(false);
-  contacts_before_ = inner_.contacts(next_);
-  until_s_ = inner_.time_s() + limits_.intervals->seconds;
+  inner().switch_to(next_);
+  inner().silence(false);
+  contacts_before_ = inner().contacts(next_);
+  until_s_ = time_s() + limits_.intervals->seconds;
   state_.phase = Phase::open;
-  events_.push_back({inner_.time_s(), "interval", static_cast<double>(next_)});
+  events_.push_back({time_s(), "interval", static_cast<double>(next_)});
 }
 
 void IntervalExploration::close() const {
-  inner_.silence(true);
-  events_.push_back({inner_.time_s(), "interval_end", static_cast<double>(next_)});
+  inner().silence(true);
+  events_.push_back({time_s(), "interval_end", static_cast<double>(next_)});
   if (next_ + 1 < alternatives_) {
     begin_gap(next_ + 1);
   } else {

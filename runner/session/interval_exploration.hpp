@@ -4,28 +4,22 @@
 
 #include "protocols/protocol.hpp"
 #include "results/rows.hpp"
-#include "runner/trial_loop/exploration.hpp"
+#include "runner/trial_loop/forwarded_exploration.hpp"
 namespace tapstudy::runner {
 // An exploration whose alternatives come one after the other, each in an interval of its own; with
 // nothing to feel in between. Nobody switches. Each go signal is an event `interval` and each end
 // an event `interval_end`, with the place of the alternative; each replay as `interval_replay`,
 // with its number. Without intervals in the limits nothing is changed.
-class IntervalExploration final : public Exploration {
+class IntervalExploration final : public ForwardedExploration {
  public:
   IntervalExploration(Exploration& inner, const protocols::ExploreLimits& limits,
                       std::size_t alternatives, std::vector<results::EventRow>& events);
   void switch_to(std::size_t alternative) override;
-  std::size_t current() const override { return inner_.current(); }
-  void adjust(std::size_t setting) override { inner_.adjust(setting); }
-  std::size_t setting() const override { return inner_.setting(); }
   const IntervalState* intervals() const override { return limits_.intervals ? &state_ : nullptr; }
   void replay() override;
   void pass_time(double seconds) override;
   // Called continually while anybody waits, so intervals begin and end here too.
   bool is_running() const override;
-  bool is_rendering() const override { return inner_.is_rendering(); }
-  double time_s() const override { return inner_.time_s(); }
-  int contacts(std::size_t alternative) const override { return inner_.contacts(alternative); }
 
  private:
   void follow() const;
@@ -33,7 +27,6 @@ class IntervalExploration final : public Exploration {
   void open() const;
   void close() const;
 
-  Exploration& inner_;
   const protocols::ExploreLimits& limits_;
   std::size_t alternatives_;
   std::vector<results::EventRow>& events_;

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <limits>
 
+#include "runner/participants/scripted_taps.hpp"
 #include "runner/session/adjusted_exploration.hpp"
+#include "runner/session/answering_exploration.hpp"
 #include "runner/session/explore_limits.hpp"
 #include "runner/session/interval_exploration.hpp"
 #include "runner/session/operated_exploration.hpp"
@@ -19,21 +21,23 @@ void ask(const TrialInView& view, Exploration& exploration, const SessionParts& 
   const protocols::PlannedTrial& trial = view.trial;
   OperatedExploration operated{exploration, parts.by};
   LimitedExploration limited{operated, view.prompt.block->explore};
+  const protocols::Block& block = parts.protocol.block(trial.block);
+  AnsweringExploration answering{limited, parts.states, trial, block};
   // an answer that was accepted in time may be handed over a little later
   constexpr double handover_s = 0.05;
   const double latest_s =
       view.prompt.block->explore.max_seconds.value_or(std::numeric_limits<double>::infinity()) +
       handover_s;
-  while (const auto answer = parts.participant.perform(view.prompt, limited)) {
+  while (const auto answer = parts.participant.perform(view.prompt, answering)) {
     if (limited.time_s() > latest_s) {
       break;
     }
     const std::optional<TooEarly> why = too_early(view.prompt, *answer, limited);
     const bool is_rendering = limited.is_rendering();
     if (!why && is_rendering) {
-      presentation.answer =
-          Answer{trial.task->response(trial, parts.protocol.block(trial.block), *answer),
-                 std::min(limited.time_s(), latest_s - handover_s)};
+      presentation.answer = Answer{trial.task->response(trial, block, *answer),
+                                   std::min(limited.time_s(), latest_s - handover_s)};
+      parts.states.enter(SessionState::confirmed, trial.number);
       return;
     }
     if (!is_rendering) {
@@ -87,7 +91,12 @@ Presentation present(const TrialInView& trial, const SessionParts& parts) {
   parts.states.enter(SessionState::exploring, trial.trial.number);
   parts.by.trial_begins(trial);
   std::vector<results::EventRow> events;
-  presentation.result = loop.run(stimuli.alternatives, [&](Exploration& exploration) {
+  const Rendered rendered{stimuli.alternatives,
+                          scripted_tap(parts.protocol, trial.prompt.block->explore.scripted_taps)};
+  if (rendered.scripted) {
+    events.push_back({0.0, "scripted_taps", rendered.scripted->speed_m_s});
+  }
+  presentation.result = loop.run(rendered, [&](Exploration& exploration) {
     AdjustedExploration adjusted{exploration, trial.trial, *trial.prompt.block, events};
     IntervalExploration in_turn{adjusted, trial.prompt.block->explore,
                                 trial.prompt.alternative_labels.size(), events};

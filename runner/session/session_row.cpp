@@ -10,6 +10,7 @@
 #include "core/error.hpp"
 #include "core/sha256.hpp"
 #include "runner/build_info.hpp"
+#include "runner/participants/scripted_taps.hpp"
 namespace tapstudy::runner {
 namespace {
 constexpr double max_trial_ticks = 4e6;
@@ -58,8 +59,10 @@ void check_participant_id(const std::string& id) {
 double simulated_trial_s(const protocols::Protocol& protocol, const protocols::Block& block) {
   const protocols::SimulatedTapSettings& taps = protocol.simulation.taps;
   const double run_up_m = 0.5 * taps.hover_m;  // at half the speed on average
-  const double tap_s =
-      (taps.hover_m + run_up_m + taps.press_m) / taps.speed_m_s + taps.dwell_s + taps.pause_s;
+  const auto scripted = scripted_tap(protocol, block.explore.scripted_taps);
+  const double tap_s = scripted ? scripted->duration_s()
+                                : (taps.hover_m + run_up_m + taps.press_m) / taps.speed_m_s +
+                                      taps.dwell_s + taps.pause_s;
   const double taps_s = tap_s * taps.taps_per_visit * block.task->visits(block, taps);
   if (const auto& intervals = block.explore.intervals) {
     const int visits = block.task->visits(block, taps);

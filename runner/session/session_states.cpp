@@ -21,22 +21,28 @@ const std::vector<SessionState>& between_trials() {
                                                 paused,       practised, stopped, ended};
   return states;
 }
+// While a plate is rendered: what an answer goes through, and how a trial ends without one.
+const std::vector<SessionState>& while_exploring() {
+  static const std::vector<SessionState> states{answering, confirmed, repeated, timed_out,
+                                                skipped,   paused,    faulted,  stopped};
+  return states;
+}
 std::vector<SessionState> between_trials_or(SessionState one, SessionState other) {
   std::vector<SessionState> states = between_trials();
   states.insert(states.end(), {one, other});
   return states;
 }
 
-const std::array<Row, 17>& table() {
-  static const std::array<Row, 17> rows{
+const std::array<Row, 19>& table() {
+  static const std::array<Row, 19> rows{
       {{begun, "begun", between_trials()},
        {instructions, "instructions", between_trials()},
        {resting, "resting", between_trials()},
        {form, "form", between_trials()},
        {ready, "ready", {exploring, stopped}},
-       {exploring,
-        "exploring",
-        {confidence, saved, repeated, timed_out, skipped, paused, faulted, stopped}},
+       {exploring, "exploring", while_exploring()},
+       {answering, "answering", while_exploring()},
+       {confirmed, "confirmed", {confidence, saved, repeated, faulted, stopped}},
        {confidence, "confidence", {saved, repeated, faulted, stopped}},
        {saved, "saved", between_trials_or(feedback, faulted)},
        {repeated, "repeated", {ready, paused, stopped}},

@@ -15,6 +15,8 @@ enum class SessionState {
   form,        // a questionnaire is asked
   ready,       // the trial is shown, nothing is rendered
   exploring,   // go: the plate is rendered
+  answering,   // an answer is entered, changed or withdrawn; the plate is still rendered
+  confirmed,   // the answer counts, and is changed only by a correction from now on
   confidence,  // the answer is given, force is off
   saved,
   repeated,   // stored, but presented again

@@ -277,7 +277,8 @@ TrialEngine::Outcome TrialEngine::run_trial(const PlannedTrial& planned, int tot
       return {.is_repeated = true};
     case Ending::skipped:
       parts_.participant.skipped(prompt);
-      return {};
+      // a procedure asked for this answer: of constant stimuli a level would lack one
+      return {.is_requeued = block.comparison.has_value()};
     case Ending::interrupted:
       throw Stopped{fmt::format(
           "stopped in trial {} of {}; every answer given so far is kept (go on with --resume)",

@@ -47,8 +47,9 @@ class TrialEngine {
 
   // Runs the trials not in `done`, adding each, until all are done or a fault ends one; called
   // again, it repeats that one. A trial that took too long comes again at the end of its block, if
-  // the block says so. Throws Stopped if the participant or the operator stops, StoreError
-  // if a trial cannot be stored; the trial in progress is stored as interrupted, if possible.
+  // the block says so, as does one that the operator skipped if a procedure chose its level. Throws
+  // Stopped if the participant or the operator stops, StoreError if a trial cannot be stored; the
+  // trial in progress is stored as interrupted, if possible.
   std::optional<Interruption> run(const protocols::Schedule& schedule, std::set<int>& done_trials);
   std::int64_t ticks() const noexcept { return ticks_; }  // rendered so far
   int trials() const noexcept { return trials_; }         // stored so far, however they ended

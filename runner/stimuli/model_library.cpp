@@ -32,15 +32,24 @@ std::string first_frequency(core::PlateSpec spec) {
   constexpr int max_doublings = 8;
   for (int i = 0; i < max_doublings; ++i) {
     spec.band_limit_hz *= 2.0;
-    const core::ModalModel model = core::model_of(core::solve_body(core::body_of(spec), {}).modes,
-                                                  spec.material, spec.band_limit_hz);
+    const core::ModalModel model =
+        core::model_of(core::solve_body(core::body_of(spec), {}).modes, spec);
     if (model.frequency_hz.size() > 0) {
       return fmt::format("{:.4g} Hz", model.frequency_hz[0]);
     }
   }
   return fmt::format("more than {:.4g} Hz (is youngs_modulus_pa right?)", spec.band_limit_hz);
 }
-
+// Of all bodies that are damped.
+std::string materials_key(const protocols::PresentedStimulus& stimulus) {
+  std::string key = core::content_key(*stimulus.material);
+  if (stimulus.contacts) {
+    for (const core::BodyInContact& body : stimulus.contacts->bodies) {
+      key += " " + core::content_key(body.material);
+    }
+  }
+  return key;
+}
 }  // namespace
 
 void check_has_mode(Eigen::Index modes_in_band, const core::PlateSpec& spec) {
@@ -61,18 +70,21 @@ core::PlateSpec plate_spec(const protocols::Protocol& protocol,
                            const protocols::PresentedStimulus& stimulus) {
   core::PlateSpec spec{*stimulus.plate, *stimulus.material, protocol.band_limit_hz};
   spec.theory = stimulus.technique->theory;
+  spec.contacts = stimulus.contacts;
   return spec;
 }
 
 core::BodySpec body_spec(const protocols::Protocol& protocol,
                          const protocols::PresentedStimulus& stimulus) {
   core::BodySpec body = core::body_of(plate_spec(protocol, stimulus));
-  const double youngs_modulus_pa = stimulus.material->youngs_modulus_pa;
+  const core::Material& own = *stimulus.material;
   const auto may_share = [&](const protocols::Stimulus& other) {
     return other.technique->needs_model() && other.technique->theory == body.theory &&
-           other.plate == stimulus.own_plate &&
+           other.plate == stimulus.own_plate && other.contacts == stimulus.contacts &&
            (!core::is_on_springs(body.fixations) ||
-            other.material->youngs_modulus_pa == youngs_modulus_pa) &&
+            other.material->youngs_modulus_pa == own.youngs_modulus_pa) &&
+           (!stimulus.contacts || (other.material->youngs_modulus_pa == own.youngs_modulus_pa &&
+                                   other.material->density_kg_per_m3 == own.density_kg_per_m3)) &&
            std::ranges::count(poissons_ratios(protocol, other), body.poissons_ratio) > 0;
   };
   for (const protocols::Stimulus& other : protocol.stimuli) {
@@ -122,8 +134,7 @@ ModelLibrary::Plate ModelLibrary::make_plate(const protocols::Protocol& protocol
                                              const protocols::PresentedStimulus& stimulus) {
   return at_its_line(stimulus, [&] {
     const core::PlateSpec spec = plate_spec(protocol, stimulus);
-    core::ModalModel model =
-        core::model_of(*body(protocol, stimulus), spec.material, spec.band_limit_hz);
+    core::ModalModel model = core::model_of(*body(protocol, stimulus), spec);
     check_has_mode(model.frequency_hz.size(), spec);
     return std::make_shared<const core::VibratingPlate>(
         vibrating_plate(spec.shape, std::move(model)));
@@ -136,9 +147,8 @@ ModelLibrary::Plate ModelLibrary::plate_of(const protocols::Protocol& protocol,
   if (!stimulus.changed.empty()) {
     return make_plate(protocol, stimulus);
   }
-  Plate& plate =
-      plates_[fmt::format("{} {} {:a}", core::content_key(body_spec(protocol, stimulus)),
-                          core::content_key(*stimulus.material), protocol.band_limit_hz)];
+  Plate& plate = plates_[fmt::format("{} {} {:a}", core::content_key(body_spec(protocol, stimulus)),
+                                     materials_key(stimulus), protocol.band_limit_hz)];
   if (!plate) {
     plate = make_plate(protocol, stimulus);
   }

@@ -1,6 +1,7 @@
 #pragma once
 #include <cstddef>
 #include <functional>
+#include <string>
 namespace tapstudy::runner {
 // Where a trial is whose alternatives come one after the other: before one of them, in its
 // interval, or behind the last.
@@ -32,6 +33,8 @@ class Exploration {
   virtual const IntervalState* intervals() const { return nullptr; }
   // All intervals once more, where the last is over and replays are left.
   virtual void replay() {}
+  // An answer that is entered, and may still be changed; empty: it was withdrawn.
+  virtual void enter_answer(const std::string& /*answer*/) {}
   // How often the finger has come down on an alternative, as it is set.
   virtual int contacts(std::size_t alternative) const = 0;
 };

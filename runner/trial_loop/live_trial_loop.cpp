@@ -62,12 +62,14 @@ class Following {
 };
 }  // namespace
 
-TrialResult LiveTrialLoop::run(std::span<core::TapRenderer> alternatives, const Explore& explore) {
+TrialResult LiveTrialLoop::run(const Rendered& rendered, const Explore& explore) {
   core::SpscRing<core::TraceSample> ring{ring_capacity};
   results::TraceCollector collector{ring};
   collector.watch(watch_);
   device::MonotonicClock clock;
-  device::HapticLoop loop{*device_, alternatives, settings_, ring, clock};
+  std::optional<device::ScriptedHand> taps = scripted_hand(rendered, settings_);
+  device::HapticLoop loop{*device_, rendered.alternatives,  settings_, ring,
+                          clock,    taps ? &*taps : nullptr};
   std::atomic<bool> has_ended{false};
   {
     const Following following{recorder_, collector};

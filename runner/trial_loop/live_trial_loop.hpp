@@ -18,7 +18,7 @@ class LiveTrialLoop final : public TrialLoop {
   void watch(results::TraceCollector::Watch watch) { watch_ = std::move(watch); }
   // From the next trial on.
   void use(device::Device& device) { device_ = &device; }
-  TrialResult run(std::span<core::TapRenderer> alternatives, const Explore& explore) override;
+  TrialResult run(const Rendered& rendered, const Explore& explore) override;
   bool is_force_off() const override {
     return stop_ == device::StopOutcome::confirmed || device_->is_force_off();
   }

@@ -42,8 +42,7 @@ void add_events(const device::Played& played, double level_db_fs, Clock::time_po
 }
 }  // namespace
 
-TrialResult MaskedTrialLoop::run(std::span<core::TapRenderer> alternatives,
-                                 const Explore& explore) {
+TrialResult MaskedTrialLoop::run(const Rendered& rendered, const Explore& explore) {
   TrialResult result;
   device::Played played;
   bool has_begun = false;
@@ -52,7 +51,7 @@ TrialResult MaskedTrialLoop::run(std::span<core::TapRenderer> alternatives,
     const Audible audible{player_};
     has_begun = !player_.played().loss;
     begun = Clock::now();
-    result = inner_.run(alternatives, explore);
+    result = inner_.run(rendered, explore);
     played = player_.played();
   }
   if (has_begun) {

@@ -9,7 +9,7 @@ class MaskedTrialLoop final : public TrialLoop {
   // level_db_fs: of what is played, for the record.
   MaskedTrialLoop(TrialLoop& inner, device::AudioPlayer& player, double level_db_fs)
       : inner_{inner}, player_{player}, level_db_fs_{level_db_fs} {}
-  TrialResult run(std::span<core::TapRenderer> alternatives, const Explore& explore) override;
+  TrialResult run(const Rendered& rendered, const Explore& explore) override;
   bool is_force_off() const override { return inner_.is_force_off(); }
 
  private:

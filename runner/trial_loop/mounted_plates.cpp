@@ -26,8 +26,7 @@ class IdleExploration final : public Exploration {
 };
 }  // namespace
 
-TrialResult IdleTrialLoop::run(std::span<core::TapRenderer> /*alternatives*/,
-                               const Explore& explore) {
+TrialResult IdleTrialLoop::run(const Rendered& /*rendered*/, const Explore& explore) {
   IdleExploration exploration;
   explore(exploration);
   TrialResult result;

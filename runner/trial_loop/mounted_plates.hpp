@@ -7,7 +7,7 @@ namespace tapstudy::runner {
 // Time passes, and that is all: the device exerts no force and measures nothing.
 class IdleTrialLoop final : public TrialLoop {
  public:
-  TrialResult run(std::span<core::TapRenderer> alternatives, const Explore& explore) override;
+  TrialResult run(const Rendered& rendered, const Explore& explore) override;
 };
 
 // Real plates, which the operator mounts.

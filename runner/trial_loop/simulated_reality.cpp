@@ -13,6 +13,7 @@ protocols::Protocol with_real_plates(protocols::Protocol protocol) {
   }
   for (protocols::Stimulus& stimulus : protocol.stimuli) {
     stimulus.technique = reality;
+    stimulus.rendering.clear();  // a plate has no gain
   }
   return protocol;
 }

@@ -40,13 +40,14 @@ class VirtualExploration final : public Exploration {
 };
 }  // namespace
 
-TrialResult VirtualTrialLoop::run(std::span<core::TapRenderer> alternatives,
-                                  const Explore& explore) {
+TrialResult VirtualTrialLoop::run(const Rendered& rendered, const Explore& explore) {
   core::SpscRing<core::TraceSample> ring{ring_capacity};
   results::TraceCollector collector{
       ring, keep_ == Keep::events ? results::Traced::events_only : results::Traced::whole};
   device::VirtualClock clock;
-  device::HapticLoop loop{device_, alternatives, settings_, ring, clock};
+  std::optional<device::ScriptedHand> taps = scripted_hand(rendered, settings_);
+  device::HapticLoop loop{device_, rendered.alternatives,  settings_, ring,
+                          clock,   taps ? &*taps : nullptr};
   VirtualExploration exploration{loop, collector, 1e-9 * static_cast<double>(settings_.period),
                                  keep_};
   explore(exploration);

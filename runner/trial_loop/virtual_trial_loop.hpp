@@ -10,7 +10,7 @@ class VirtualTrialLoop final : public TrialLoop {
  public:
   VirtualTrialLoop(device::Device& device, device::LoopSettings settings, Keep keep = Keep::trace)
       : device_{device}, settings_{std::move(settings)}, keep_{keep} {}
-  TrialResult run(std::span<core::TapRenderer> alternatives, const Explore& explore) override;
+  TrialResult run(const Rendered& rendered, const Explore& explore) override;
 
  private:
   device::Device& device_;

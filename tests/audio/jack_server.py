@@ -1,5 +1,6 @@
 """A server of JACK with the dummy driver, and a client that records what others play."""
 import contextlib
+import dataclasses
 import os
 import subprocess
 import time
@@ -10,7 +11,7 @@ import numpy
 RATE_HZ = 48000
 
 
-def wait_until(what, condition, patience_s=20):
+def wait_until(what, condition, patience_s=120):
     end = time.monotonic() + patience_s
     while not (result := condition()):
         assert time.monotonic() < end, f"waited {patience_s} s for {what}"
@@ -18,29 +19,34 @@ def wait_until(what, condition, patience_s=20):
     return result
 
 
+@dataclasses.dataclass
+class Server:
+    name: str
+    process: subprocess.Popen
+
+
 @contextlib.contextmanager
 def running_server():
-    """Yields its name."""
     name = f"tapstudy_{os.getpid()}"
     daemon = subprocess.Popen(
         ["/usr/bin/jackd", "--no-realtime", "--name", name, "-d", "dummy", "-r", str(RATE_HZ), "-p", "256"],
         stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     try:
-        yield name
+        yield Server(name, daemon)
     finally:
         daemon.terminate()
         daemon.wait()
 
 
 def environment_of(server):
-    return {**os.environ, "JACK_DEFAULT_SERVER": server, "JACK_NO_START_SERVER": "1"}
+    return {**os.environ, "JACK_DEFAULT_SERVER": server.name, "JACK_NO_START_SERVER": "1"}
 
 
 class Recorder:
     """Records every audio output that appears, one channel each."""
 
     def __init__(self, server):
-        self.client = jack.Client("recorder", no_start_server=True, servername=server)
+        self.client = jack.Client("recorder", no_start_server=True, servername=server.name)
         self.ports = [self.client.inports.register(f"in_{channel}") for channel in range(2)]
         self.blocks = []
         self.client.set_process_callback(

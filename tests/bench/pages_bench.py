@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """pages_bench.py TAPSTUDY: how late the loop of a session with pages wakes without any load and in a
-flood: 8 threads that ask for three.module.js as fast as they can, 40 streams of which 30 are never
-read. Sessions in pairs, in turns: medians over the trials, and of the ratios of the pairs."""
+flood: 8 threads that ask as fast as they can, half of them for three.module.js, half for the page
+itself, and 40 streams of which 30 are never read. Sessions in pairs, in turns: medians over the trials, and of the ratios of the pairs."""
 import os
 import signal
 import statistics
@@ -17,13 +17,14 @@ from page_client import NETWORK, ask, next_trial_screen, open_stream, post
 
 PAIRS = 5
 SECONDS_PER_TRIAL = 2
+PATIENCE_S = 60
 FLOODS, STREAMS, UNREAD = 8, 40, 30
 # ---- the load, a program of its own: it must not take the participant's Python
 
-def ask_on(url, served):
+def ask_on(url, path, served):
     while True:
         try:
-            served.append(len(ask(url, "GET", "three.module.js")[1]))
+            served.append(len(ask(url, "GET", path)[1]))
         except NETWORK:
             time.sleep(0.001)
 
@@ -53,7 +54,8 @@ def never_read(url):
 def load(url):
     signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGTERM])
     served = []
-    acts = [(ask_on, (url, served))] * FLOODS + [(never_read, (url,))] * UNREAD
+    acts = [(ask_on, (url, path, served)) for path in ("three.module.js", "")] * (FLOODS // 2)
+    acts += [(never_read, (url,))] * UNREAD
     for act, arguments in acts + [(read_on, (url,))] * (STREAMS - UNREAD):
         threading.Thread(target=act, args=arguments, daemon=True).start()
     signal.sigwait([signal.SIGTERM])
@@ -67,13 +69,16 @@ def take_part(session):
     """Answers each trial after so long."""
     url = urlparse(session.participant)
     last = None
+    accepted = time.monotonic()
     while session.process.poll() is None:
         try:
             screen = next_trial_screen(url)
             if screen != last:
                 time.sleep(SECONDS_PER_TRIAL)
             last = screen
-            post(url, {"screen": screen, "action": "answer", "value": 0})
+            if post(url, {"screen": screen, "action": "answer", "value": "1"}) == 200:
+                accepted = time.monotonic()
+            assert time.monotonic() - accepted < PATIENCE_S, "answers are refused"
         except NETWORK:
             time.sleep(0.02)
 

@@ -50,7 +50,7 @@ TEST_CASE("the lines of a session are the rows of its changes of state",
   INFO(result.standard_error);
   REQUIRE(result.exit_code == 0);
   const std::string lines = testing::contents(directory / "markers.tsv");
-  CHECK(std::ranges::count(lines, '\n') == 1 + 3 * 8 + 1);
+  CHECK(std::ranges::count(lines, '\n') == 1 + 4 * 8 + 1);
   CHECK(lines == stored_changes(directory));
 }
 
@@ -82,7 +82,7 @@ TEST_CASE("liblo's own oscdump reads the changes of state that are stored",
     read += fmt::format("{}\t{}\t{}\t{}\n", t_s, address.substr(std::strlen("/tapstudy/")), number,
                         detail);
   }
-  CHECK(std::ranges::count(read, '\n') == 1 + 3 * 8 + 1);
+  CHECK(std::ranges::count(read, '\n') == 1 + 4 * 8 + 1);
   CHECK(read == stored_changes(directory));
 }
 
@@ -93,7 +93,7 @@ TEST_CASE("a session whose markers nobody reads goes on, and says so once",
   const auto result = session(directory, "{lines: pipe}");
   CHECK(result.exit_code == 0);
   CHECK_THAT(result.standard_error, Contains("'begun' is lost (nobody takes it)"));
-  CHECK_THAT(result.standard_error, Contains("26 were lost"));
+  CHECK_THAT(result.standard_error, Contains("34 were lost"));
   CHECK_THAT(result.standard_error, !Contains("'ready' is lost"));
 }
 

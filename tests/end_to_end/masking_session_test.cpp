@@ -35,6 +35,13 @@ std::string sql(const TempDirectory& directory, const std::string& query) {
   return testing::run_program({"/usr/bin/sqlite3", (directory / "the_study") + "/study.db", query})
       .standard_output;
 }
+void hear_with(const std::string& script) {
+  setenv("TAPSTUDY_PROGRAM", TAPSTUDY_PROGRAM, 1);
+  const auto heard =
+      testing::run_program({"/usr/bin/python3", "-B", testing::source("tests/audio/" + script)});
+  INFO(heard.standard_output << heard.standard_error);
+  CHECK(heard.exit_code == 0);
+}
 }  // namespace
 
 TEST_CASE("every trial of a session has its noise, and says so", "[end_to_end][audio][threads]") {
@@ -54,14 +61,17 @@ TEST_CASE("every trial of a session has its noise, and says so", "[end_to_end][a
   CHECK(testing::tapstudy({"verify", directory / "the_study"}).exit_code == 0);
 }
 
-TEST_CASE("a client of JACK hears the noise at its level, spectrum and ramps, and every under-run",
-          "[end_to_end][audio]") {
-  setenv("TAPSTUDY_PROGRAM", TAPSTUDY_PROGRAM, 1);
+TEST_CASE(
+    "a client of JACK hears the noise at its level, spectrum and ramps, and every under-run; "
+    "where JACK is killed no answer is lost",
+    "[end_to_end][audio]") {
   setenv("TAPSTUDY_STALLING_PLAYER", TAPSTUDY_STALLING_PLAYER, 1);
-  const auto heard =
-      testing::run_program({"/usr/bin/python3", "-B", testing::source("tests/audio/jack_test.py")});
-  INFO(heard.standard_output << heard.standard_error);
-  CHECK(heard.exit_code == 0);
+  hear_with("jack_test.py");
+}
+
+TEST_CASE("a card of ALSA's is given the noise at its level, spectrum and ramps",
+          "[end_to_end][audio]") {
+  hear_with("alsa_file_test.py");
 }
 
 TEST_CASE("a session without a card is warned, or refused before anything is stored",

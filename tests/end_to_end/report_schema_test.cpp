@@ -26,7 +26,8 @@ TEST_CASE("reports fit the schema that is shipped", "[end_to_end]") {
   const std::string protocol =
       GENERATE(as<std::string>{}, "paper/discrimination.yaml", "paper/reality_vibration.yaml",
                "examples/stiffness_jnd.yaml", "examples/triangle_mdf_acrylic.yaml",
-               "examples/techniques_compared.yaml", "examples/hardness_magnitude.yaml");
+               "examples/techniques_compared.yaml", "examples/hardness_magnitude.yaml",
+               "examples/cantilever_techniques.yaml");
   const auto result = validated(reported(directory, protocol));
   INFO(protocol << ": " << result.standard_error);
   CHECK(result.exit_code == 0);

@@ -109,7 +109,8 @@ TEST_CASE("instructions, rests, confidence and feedback come in their places and
       sql(directory,
           "SELECT group_concat(state) FROM session_event WHERE number = 5 OR "
           "number IS NULL") ==
-      "begun,instructions,instructions,resting,ready,exploring,confidence,saved,feedback,ended\n");
+      "begun,instructions,instructions,resting,ready,exploring,confirmed,confidence,saved,feedback,"
+      "ended\n");
   CHECK(sql(directory,
             "SELECT count(*) FROM session_event AS a JOIN session_event AS b "
             "ON b.rowid = a.rowid + 1 WHERE b.t_s < a.t_s") == "0\n");

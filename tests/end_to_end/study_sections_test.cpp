@@ -61,6 +61,24 @@ TEST_CASE("a report has each participant's sessions and the load of the task",
              Contains("participant,mode,sessions,answered"));
 }
 
+TEST_CASE("the methods of a report name the procedures that chose the levels",
+          "[end_to_end][report]") {
+  const testing::TempDirectory directory;
+  const auto methods_of = [&](const std::string& example) {
+    const std::string study = directory / example;
+    REQUIRE(
+        testing::tapstudy({"simulate", testing::shipped("examples/" + example + ".yaml").string(),
+                           "--participants", "1", "--no-traces", "--out", study})
+            .exit_code == 0);
+    REQUIRE(testing::tapstudy({"report", study, "--out", study + "_report"}).exit_code == 0);
+    return testing::contents(study + "_report/report.html");
+  };
+  CHECK_THAT(methods_of("stiffness_jnd"),
+             Contains("levels of youngs_modulus_pa by") && Contains("QUEST+ (Watson 2017)"));
+  CHECK_THAT(methods_of("damping_jnd"), Contains("levels of damping_scale by") &&
+                                            Contains("staircase") && Contains("settles at"));
+}
+
 TEST_CASE("the methods of a report say what the protocol asked for and what it ran on",
           "[end_to_end][report]") {
   const testing::TempDirectory directory;

@@ -434,6 +434,30 @@ TEST_CASE("a staircase in a session goes down after right answers and up after a
   CHECK(trials == 8);
 }
 
+TEST_CASE("a skipped trial costs its procedure no answer, also where the session is resumed",
+          "[end_to_end][threads]") {
+  const bool is_resumed = GENERATE(false, true);
+  const std::string answer = "a\nb\n= a\n";
+  const TempDirectory directory;
+  const std::string study = staircase_study(directory, staircase);
+  std::string rest;
+  for (int trial = 0; trial < 7; ++trial) {
+    rest += answer;
+  }
+  const std::string first = answer + "a\n:skip\n";
+  if (is_resumed) {
+    session(directory, study, first);
+    session(directory, study, rest, {"--resume"});
+  } else {
+    session(directory, study, first + rest);
+  }
+  CHECK(sql(directory,
+            "SELECT count(*), count(DISTINCT number) FROM trial WHERE status = 'answered'") ==
+        "8 8\n");
+  CHECK(sql(directory, "SELECT count(*) FROM trial WHERE status = 'skipped'") == "1\n");
+  CHECK(testing::tapstudy({"verify", directory / "study"}).exit_code == 0);
+}
+
 TEST_CASE("a session that is resumed in an adaptive track goes on with the same next stimulus",
           "[end_to_end][threads]") {
   const std::string procedure = GENERATE(false, true) ? psi : staircase;

@@ -1,10 +1,12 @@
-"""Sessions at the page whose program is killed, stopped for a moment and cut off at any time.
+"""Sessions at the page whose program is killed, stopped for a moment and cut off at any time; also on a
+disk that is full again and again, and on one that fails and can be read only from then on.
 
 TAPSTUDY_KILLS says how many times the program is killed, TAPSTUDY_SEED where the chances begin. An
 answer is confirmed on a screen once a later screen's progress counts its trial as done, or once the
 program has ended by itself with all trials stored.
 """
 import collections
+import contextlib
 import hashlib
 import http.client
 import json
@@ -216,9 +218,12 @@ class Helper(threading.Thread):
 
 
 class KillTest(unittest.TestCase):
+    endings = (0, -signal.SIGKILL)
+
     def setUp(self):
         self.directory = Path(tempfile.mkdtemp(prefix="tapstudy_kill_"))
         self.addCleanup(shutil.rmtree, self.directory)
+        self.log_directory = self.directory
         self.chance = random.Random(f"{SEED} {self.id()}")
         self.ledger = Ledger()
         self.kills = 0
@@ -249,14 +254,14 @@ class KillTest(unittest.TestCase):
         life_s = self.chance.uniform(0.001, 3) if self.kills < self.most_kills else None
         options = ["--resume"] if self.has_begun(participant) else []
         session = MortalSession(self.protocol, *options, directory=self.directory,
-                                participant=participant, life_s=life_s)
+                                log_directory=self.log_directory, participant=participant, life_s=life_s)
         try:
             if session.operator:
                 self.live(participant, session)
             status = session.wait()
-            if status not in (0, -signal.SIGKILL):
+            if status not in self.endings:
                 self.fail(f"{participant}: exit status {status}: {session.said()}")
-            self.kills += status != 0
+            self.kills += status == -signal.SIGKILL
             return status == 0
         finally:
             session.close()
@@ -264,7 +269,8 @@ class KillTest(unittest.TestCase):
     def live(self, participant, session):
         chances = [random.Random(self.chance.random()) for _ in range(3)]
         helpers = [Helper(session, lambda: self.note(urlparse(session.operator), chances[1])),
-                   Helper(session, lambda: self.hold_up(session, chances[2]))]
+                   Helper(session, lambda: self.hold_up(session, chances[2])),
+                   *self.more_helpers(session)]
         try:
             Participant(participant, session, self.ledger, chances[0]).take_part()
         finally:
@@ -272,6 +278,9 @@ class KillTest(unittest.TestCase):
                 session.kill()
             for helper in helpers:
                 helper.join()
+
+    def more_helpers(self, session):
+        return []
 
     def note(self, operator, chance):
         time.sleep(chance.uniform(0, 0.4))
@@ -318,7 +327,7 @@ class KillTest(unittest.TestCase):
             self.assertEqual([line for who, line in felt if who == participant], plan.splitlines())
 
     def check_notes(self):
-        stored = [row[0] for row in self.rows("SELECT detail FROM operator_action")]
+        stored = [row[0] for row in self.rows("SELECT detail FROM operator_action WHERE action = 'note'")]
         times = collections.Counter(stored)
         self.assertEqual([note for note, count in times.items() if count > 1], [])
         self.assertEqual([note for note, is_acknowledged in self.ledger.notes.items()
@@ -339,7 +348,7 @@ class KillTest(unittest.TestCase):
         answers = [(who[line["session_id"]], line["number"], line["response"], line["confidence"])
                    for line in lines["answer"]]
         self.assertEqual(sorted(map(str, answers)), sorted(map(str, stored)))
-        self.assertEqual(sorted(line["detail"] for line in lines["operator_action"]), sorted(notes))
+        self.assertEqual(sorted(line["detail"] for line in lines["operator_action"] if line["action"] == "note"), sorted(notes))
 
     def kill_and_check(self, most_kills):
         self.most_kills = most_kills
@@ -360,6 +369,104 @@ class KillTest(unittest.TestCase):
         key = "    order: shuffle\n"
         self.protocol.write_text(PROTOCOL.read_text().replace(key, key + "    confidence: {steps: 5}\n"))
         self.kill_and_check(KILLS // 2)
+
+
+STORE_FAILED = 5
+
+
+def is_done(*command):
+    return subprocess.run(command, stderr=subprocess.DEVNULL, check=False).returncode == 0
+
+
+class FaultyDisk:
+    """Beside KillTest: on a disk of its own, where mounts are allowed, with the log elsewhere."""
+    endings = (0, -signal.SIGKILL, STORE_FAILED)
+    unmount = ["umount"]
+
+    def setUp(self):
+        super().setUp()
+        self.log_directory = Path(tempfile.mkdtemp(prefix="tapstudy_kill_"))
+        self.addCleanup(shutil.rmtree, self.log_directory)
+        if not self.is_mounted():
+            self.skipTest("no such mounts here")
+        self.addCleanup(lambda: subprocess.run([*self.unmount, self.directory], check=True))
+        self.faults = 0
+
+    test_identification_with_confidence = None
+
+    def more_helpers(self, session):
+        chance = random.Random(self.chance.random())
+        return [Helper(session, lambda: self.fault(session, chance))]
+
+    def check_all_laws(self):
+        super().check_all_laws()
+        self.assertGreater(self.faults, 0)
+        print(f"{self.faults} faults of the disk", flush=True)
+
+
+class FullDiskTest(FaultyDisk, KillTest):
+    """A program that finds no space when it starts gives up, later it waits for the operator."""
+    unmount = ["umount", "--lazy"]
+
+    def is_mounted(self):
+        return is_done("mount", "-t", "tmpfs", "-o", "size=40m", "none", self.directory)
+
+    def fault(self, session, chance):
+        """A while later there is space again, and the operator says so."""
+        time.sleep(chance.uniform(0.2, 1.5))
+        filler = self.directory / "filler"
+        try:
+            with open(filler, "wb", buffering=0) as file:
+                for size in (2 ** 20, 4096):
+                    with contextlib.suppress(OSError):
+                        while file.write(b"x" * size) == size:
+                            pass
+            self.faults += 1
+            time.sleep(chance.uniform(0.1, 1))
+        finally:
+            filler.unlink()
+        post(urlparse(session.operator), {"command": "resume"}, chance)
+
+
+class ReadOnlyDiskTest(FaultyDisk, KillTest):
+    """ext4 that finds an error takes nothing any more, not even what was written and not synchronised.
+    The operator tries again in vain and ends the session; the disk is mounted anew before the next one."""
+
+    def is_mounted(self):
+        self.image = self.log_directory / "image"
+        if not self.image.exists():
+            with open(self.image, "wb") as file:
+                file.truncate(64 * 2 ** 20)
+            if not is_done("mkfs.ext4", "-q", self.image):
+                return False
+        if not is_done("mount", "-o", "loop,errors=remount-ro", self.image, self.directory):
+            return False
+        if os.access(self.trigger(), os.W_OK):
+            return True
+        subprocess.run([*self.unmount, self.directory], check=True)
+        return False
+
+    def trigger(self):
+        device = subprocess.run(["findmnt", "--noheadings", "--output", "SOURCE", self.directory],
+                                capture_output=True, text=True, check=True).stdout.strip()
+        return Path("/sys/fs/ext4", Path(device).name, "trigger_fs_error")
+
+    def run_once(self, participant):
+        is_finished = super().run_once(participant)
+        end = time.monotonic() + PATIENCE_S
+        while not is_done(*self.unmount, self.directory):  # busy for a moment
+            self.assertLess(time.monotonic(), end)
+            time.sleep(0.1)
+        self.assertTrue(self.is_mounted())
+        return is_finished
+
+    def fault(self, session, chance):
+        time.sleep(chance.uniform(0.5, 4))
+        self.trigger().write_text("1")
+        self.faults += 1
+        for command in ("resume", "end the disk has failed"):
+            time.sleep(chance.uniform(0.1, 1))
+            post(urlparse(session.operator), {"command": command}, chance)
 
 
 if __name__ == "__main__":

@@ -7,7 +7,7 @@ import unittest
 from pathlib import Path
 from urllib.parse import urlparse
 
-from page_client import NETWORK, next_trial_screen, post
+from page_client import NETWORK, next_trial_screen, open_stream, post
 from program import SOURCE, Session
 
 
@@ -15,9 +15,11 @@ class OperatorTerminalTest(unittest.TestCase):
     def setUp(self):
         self.session = Session("protocols/paper/discrimination.yaml")
         self.addCleanup(self.session.close)
-        next_trial_screen(urlparse(self.session.participant))
+        page = urlparse(self.session.participant)
+        self.addCleanup(open_stream(page).close)  # a page that nobody watches pauses the session
+        next_trial_screen(page)
 
-    def says(self, text, count=1, patience_s=60):
+    def says(self, text, count=1, patience_s=120):
         end = time.monotonic() + patience_s
         while time.monotonic() < end:
             if self.session.said().count(text) >= count:

@@ -40,7 +40,7 @@ def open_stream(url, buffer_bytes=None):
         raise
 
 
-def next_trial_screen(url, patience_s=20):
+def next_trial_screen(url, patience_s=120):
     """The number of the screen that asks a trial's question; raises OSError if none comes."""
     end = time.monotonic() + patience_s
     with open_stream(url) as connection:

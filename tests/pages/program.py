@@ -13,10 +13,11 @@ SOURCE = Path(__file__).resolve().parents[2]
 
 
 class Session:
-    def __init__(self, protocol, *options, directory=None, participant="P01"):
+    def __init__(self, protocol, *options, directory=None, log_directory=None, participant="P01"):
         self.directory = Path(directory or tempfile.mkdtemp(prefix="tapstudy_pages_"))
         self.is_own = directory is None
-        self.log = open(self.directory / "log.txt", "w+")
+        self.log_path = Path(log_directory or self.directory) / "log.txt"
+        self.log = open(self.log_path, "w+")
         self.process = subprocess.Popen(
             [PROGRAM, "run", str(SOURCE / protocol), "--participant", participant,
              "--out", str(self.directory / "study"), "--console", *options],
@@ -36,7 +37,7 @@ class Session:
         raise AssertionError(f"no {name} The program said:\n{self.said()}")
 
     def said(self):
-        return (self.directory / "log.txt").read_text()
+        return self.log_path.read_text()
 
     def type(self, line):
         """At the operator's terminal."""

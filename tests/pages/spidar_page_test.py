@@ -19,7 +19,8 @@ class SpidarSession(Session):
     def __init__(self):
         self.directory = Path(tempfile.mkdtemp(prefix="tapstudy_pages_"))
         self.is_own = True
-        self.log = open(self.directory / "log.txt", "w+")
+        self.log_path = self.directory / "log.txt"
+        self.log = open(self.log_path, "w+")
         self.process = subprocess.Popen(
             ["/usr/bin/env", "LD_PRELOAD=libumockdev-preload.so.0", LAB,
              str(self.directory / "report.json"), "--", PROGRAM, "run", str(STUDY / "study.yaml"),

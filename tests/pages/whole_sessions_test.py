@@ -213,6 +213,30 @@ class WholeSession(unittest.TestCase):
         self.assertEqual(self.session.rows("SELECT detail FROM session_event WHERE state = 'stopped'"),
                          [("feels sick",)])
 
+    def test_an_answer_is_changed_until_it_is_confirmed(self):
+        self.start("protocols/paper/discrimination.yaml")
+        self.watch()
+        browser.wait_for_state(self.operator, "exploring")
+        self.next_trial(1)
+        self.wait_for_touch()
+        browser.pick_by_mouse(self.driver, 2)
+        browser.wait_for_state(self.operator, "answering")
+        time.sleep(0.3)
+        browser.pick_by_mouse(self.driver, 0)
+        time.sleep(0.3)
+        self.driver.refresh()  # nothing is picked any more
+        browser.wait_for_screen(self.driver, "trial")
+        time.sleep(0.5)
+        self.answer_until_accepted(browser.answer_by_mouse, 1)
+        self.next_trial(2)
+        self.assertEqual(self.session.rows(
+            "SELECT state, detail FROM session_event WHERE number = 1 AND state NOT IN ('ready', 'saved') "
+            "ORDER BY t_s"),
+            [("exploring", ""), ("answering", DISCRIMINATION[2]), ("answering", DISCRIMINATION[0]),
+             ("answering", ""), ("answering", DISCRIMINATION[1]), ("confirmed", "")])
+        self.session.type("end seen enough")
+        browser.wait_for_screen(self.driver, "ended")
+
     def test_the_operator_sees_the_noise_that_is_played(self):
         directory = Path(tempfile.mkdtemp(prefix="tapstudy_masked_"))
         self.addCleanup(shutil.rmtree, directory)

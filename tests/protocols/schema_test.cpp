@@ -124,6 +124,14 @@ TEST_CASE("schema and reader accept the same protocols", "[protocols][schema][sl
       {"springs_n_per_m: [1.0e6, 0, 5.0e5]", "springs_n_per_m: [1.0e6, 5.0e5]"},
       {"springs_n_per_m: [1.0e6, 0, 5.0e5]", "springs_n_per_m: [0, 0, 0]"},
       {"springs_n_per_m: [1.0e6, 0, 5.0e5]", "springs_n_per_m: [1, 1, 1], axes: z"},
+      {"springs_n_per_m: [0, 0, 1.0e6]", "springs_n_per_m: [0, 0, -1.0e6]"},
+      {"springs_n_per_m: [0, 0, 1.0e6]", "springs_n_per_m: [0, 0, 0]"},
+      {"loss_factor: 0.1", "loss_factor: 2.1"},
+      {"from: screwed.foot, to: bench.spot", "from: screwed.foot"},
+      {"bodies: {bench: {plate: bench, material: oak}}", "bodies: {}"},
+      {"    tapped: screwed\n", ""},
+      {"spot: {region: vertex, at_m: [0, 0], face: top}",
+       "spot: {region: vertex, at_m: [0, 0], axes: z}"},
       {"gap_seconds: 0.4", "gap_seconds: -1"},
       {"intervals: {seconds: 2, ", "intervals: {"},
       {"max_replays: 1}", "max_replays: 0.5}"},
@@ -273,7 +281,8 @@ TEST_CASE("the schemas of rigs and calibrations have exactly the keys that the r
   testing::write(directory / "spidar_calibration.yaml", calibration());
   std::set<std::string> asked;
   for (const std::string& rig :
-       {shipped_rig("spidar_g6") + "audio: {}\nmarkers: {osc: {port: 9000}, lines: x}\n",
+       {shipped_rig("spidar_g6") + "audio: {}\nmarkers: {osc: {port: 9000}, lines: x}\n"
+                                   "vibration_response: {points: [{frequency_hz: 9, gain: 1}]}\n",
         shipped_rig("remote"), replay_rig}) {
     asked.merge(runner::rig_keys_asked_for(rig, directory / "rig.yaml"));
   }
@@ -298,6 +307,15 @@ TEST_CASE("schema and reader accept the same rigs", "[protocols][rig][schema][sl
       {"simulated_hand", "max_force_n: 10\n", "max_force_n: 10\nloop: {cpu: 1}\n"},
       {"simulated_hand", "max_force_n: 10\n", "max_force_n: 10\nvibration_band_hz: 300\n"},
       {"simulated_hand", "max_force_n: 10\n", "max_force_n: 10\nvibration_band_hz: 0\n"},
+      {"simulated_hand", "max_force_n: 10\n",
+       "max_force_n: 10\nvibration_response: {points: [{frequency_hz: 9, gain: 0.5}]}\n"},
+      {"simulated_hand", "max_force_n: 10\n",
+       "max_force_n: 10\nvibration_response: {points: [], max_boost: 2}\n"},
+      {"simulated_hand", "max_force_n: 10\n",
+       "max_force_n: 10\nvibration_response: {points: [{frequency_hz: 9, gain: 0}]}\n"},
+      {"simulated_hand", "max_force_n: 10\n",
+       "max_force_n: 10\nvibration_response: {points: [{frequency_hz: 9, gain: 1}], max_boost: "
+       "0}\n"},
       {"simulated_hand", "max_force_n: 10\n", "max_force_n: 10\nloop: {cpu: -1}\n"},
       {"simulated_hand", "max_force_n: 10\n", "max_force_n: 10\naudio: {card: \"hw:1,0\"}\n"},
       {"simulated_hand", "max_force_n: 10\n", "max_force_n: 10\naudio: {card: \"\"}\n"},

@@ -118,3 +118,26 @@ TEST_CASE("of fifty write errors at different places none loses or doubles a con
   std::signal(SIGXFSZ, usual_handler);
   CHECK(failures >= 40);
 }
+
+TEST_CASE("a file that a dead program left half changed is read as it was before the change",
+          "[results][store]") {
+  const testing::TempDirectory directory;
+  {
+    auto [store, row] = begun_study(directory.path());
+    store.add_trial(trial(row.id, 1, "a"));
+  }
+  const std::string file = directory.path() + "/study.db";
+  const pid_t child = fork();
+  if (child == 0) {
+    Database database{file, Database::Access::write};
+    database.run(
+        "PRAGMA cache_size = 1; BEGIN; CREATE TABLE t(x); WITH RECURSIVE n(i) AS "
+        "(SELECT 1 UNION ALL SELECT i + 1 FROM n WHERE i < 100) "
+        "INSERT INTO t SELECT randomblob(10000) FROM n");
+    raise(SIGKILL);
+  }
+  waitpid(child, nullptr, 0);
+  REQUIRE(std::filesystem::exists(file + "-journal"));
+  CHECK(Store::open_existing(directory.path()).answered_trials("P01") == std::vector<int>{1});
+  CHECK(agrees_with_journal(directory.path()));
+}

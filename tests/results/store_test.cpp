@@ -164,6 +164,20 @@ TEST_CASE("a page that rotted is seen when the study is opened", "[results][stor
   CHECK_THROWS_AS(Store::open_existing(directory.path()), StoreError);
 }
 
+TEST_CASE("a seed that is no whole number is refused, not read as another one",
+          "[results][store]") {
+  const testing::TempDirectory directory;
+  { begun_study(directory.path()); }
+  const std::string seed = GENERATE("", "x", "-1", "7 ", "0x7", "18446744073709551616");
+  CAPTURE(seed);
+  {
+    Database database{directory / "study.db", Database::Access::write};
+    Statement{database, "UPDATE session SET seed = ?"}.bind(seed).finish();
+  }
+  Store store = Store::open_existing(directory.path());
+  CHECK_THROWS_WITH(store.sessions(), Catch::Contains("study.db: session 1: the seed '" + seed));
+}
+
 TEST_CASE("a pipe is no study", "[results][store]") {
   const testing::TempDirectory directory;
   REQUIRE(mkfifo((directory / "study.db").c_str(), 0600) == 0);

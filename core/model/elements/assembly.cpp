@@ -11,13 +11,11 @@
 #include "core/algebra/lapack.hpp"
 #include "core/error.hpp"
 #include "core/model/elements/node_graph.hpp"
+#include "core/model/elements/rigid_motions.hpp"
 #include "core/model/elements/tet_element.hpp"
 namespace tapstudy::core {
 namespace {
 using Axes = std::array<int, 3>;
-// Threshold for the squared participation of constrained nodes in a rigid-body motion: far above
-// rounding, far below a screw head on a plate.
-constexpr double nothing_holds = 1e-14;
 
 // The sparsity pattern of K and M, computed before assembly: positions are looked up once per pair
 // of nodes, not once per entry.
@@ -156,42 +154,6 @@ void add_elements(const TetMesh& mesh, const Material& material, const Pattern& 
   }
 }
 
-// One flag a degree of freedom: constrained, or on a spring.
-std::vector<bool> resisted_dofs(const FreeDofs& dofs, const std::vector<SpringSupport>& springs) {
-  std::vector<bool> resisted;
-  std::ranges::transform(dofs.position, std::back_inserter(resisted),
-                         [](int position) { return position < 0; });
-  for (const SpringSupport& support : springs) {
-    for (const Eigen::Index node : support.nodes) {
-      for (Eigen::Index axis = 0; axis < 3; ++axis) {
-        if (support.stiffness_n_per_m[axis] > 0.0) {
-          resisted[static_cast<std::size_t>(3 * node + axis)] = true;
-        }
-      }
-    }
-  }
-  return resisted;
-}
-
-// The number of rigid-body motions that nothing resists: the dimension of the null space of the six
-// motions restricted to the resisted degrees of freedom, lengths relative to the body's.
-int free_rigid_motions(const TetMesh& mesh, const std::vector<bool>& resisted) {
-  const Eigen::RowVector3d middle = mesh.nodes_m.colwise().mean();
-  const double size_m = (mesh.nodes_m.rowwise() - middle).rowwise().norm().maxCoeff();
-  Eigen::Matrix<double, 6, 6> held = Eigen::Matrix<double, 6, 6>::Zero();
-  for (Eigen::Index node = 0; node < mesh.nodes_m.rows(); ++node) {
-    const Eigen::Vector3d arm = (mesh.nodes_m.row(node) - middle) / size_m;
-    for (Eigen::Index axis = 0; axis < 3; ++axis) {
-      if (resisted[static_cast<std::size_t>(3 * node + axis)]) {
-        Eigen::Matrix<double, 6, 1> motion;
-        motion << Eigen::Vector3d::Unit(axis), arm.cross(Eigen::Vector3d::Unit(axis));
-        held += motion * motion.transpose();
-      }
-    }
-  }
-  return static_cast<int>((symmetric_eigenpairs(held).values.array() < nothing_holds).count());
-}
-
 std::vector<int> first_of_node(const FreeDofs& dofs) {
   std::vector<int> first;
   for (std::size_t node = 0; node < dofs.position.size() / 3; ++node) {
@@ -228,7 +190,7 @@ StiffnessAndMass assemble(const TetMesh& mesh, const Material& material, const F
   }
   matrices.first_of_node = first_of_node(dofs);
   add_springs(mesh, springs, dofs, matrices.K);
-  matrices.rigid_body_modes = free_rigid_motions(mesh, resisted_dofs(dofs, springs));
+  matrices.rigid_body_modes = unresisted(RigidMotions{mesh}.resisted(dofs, springs));
   return matrices;
 }
 }  // namespace tapstudy::core

@@ -1,8 +1,7 @@
 #include "core/model/elements/spring_support.hpp"
 
-#include <algorithm>
-
 #include "core/model/elements/assembly.hpp"
+#include "core/model/elements/surface_region.hpp"
 namespace tapstudy::core {
 namespace {
 // The integrals of products of two shape functions over a triangle, per unit of its area
@@ -19,18 +18,6 @@ Eigen::MatrixXd products_per_area(Eigen::Index nodes) {
       -4, 0, 0, 16, 32, 16,         //
       0, -4, 0, 16, 16, 32;
   return products / 180.0;
-}
-
-std::vector<Eigen::Index> triangles_of(const TetMesh& mesh, const SpringSupport& support) {
-  const std::vector<bool> is_held = mesh.marked(support.nodes);
-  std::vector<Eigen::Index> triangles;
-  for (Eigen::Index i = 0; i < mesh.surface.rows(); ++i) {
-    if (std::ranges::all_of(mesh.surface.row(i),
-                            [&](int node) { return is_held[static_cast<std::size_t>(node)]; })) {
-      triangles.push_back(i);
-    }
-  }
-  return triangles;
 }
 
 // K of two nodes, or of one.
@@ -79,7 +66,7 @@ void add_springs(const TetMesh& mesh, const std::vector<SpringSupport>& supports
                  const FreeDofs& dofs, Eigen::SparseMatrix<double>& K) {
   for (const SpringSupport& support : supports) {
     const Coupling coupling{dofs, support.stiffness_n_per_m, K};
-    const auto triangles = triangles_of(mesh, support);
+    const auto triangles = triangles_within(mesh, support.nodes);
     if (!triangles.empty()) {
       add_foundation(mesh, triangles, coupling);
       continue;

@@ -99,6 +99,21 @@ RayleighDamping rayleigh_by_least_squares(const FittedDamping& measured) {
                       fmt::format("the {} ratios fitted", measured.points.size()));
 }
 
+Eigen::ArrayXd damping_ratios_due_to(const Damping& damping, const Eigen::ArrayXd& omega_rad_s,
+                                     const Eigen::ArrayXd& kinetic_share,
+                                     const Eigen::ArrayXd& strain_share) {
+  if (std::holds_alternative<ModalDamping>(damping)) {
+    throw DampingError{
+        "modal ratios are those of a body's own modes, which it has no more in contact with others "
+        "(give coefficients, measured ratios or one ratio)"};
+  }
+  if (const auto* stated = std::get_if<RayleighDamping>(&damping)) {
+    return kinetic_share * damping_ratios({stated->alpha_per_s, 0.0}, omega_rad_s) +
+           strain_share * damping_ratios({0.0, stated->beta_s}, omega_rad_s);
+  }
+  return strain_share * damp(damping, omega_rad_s).ratios;
+}
+
 DampedModes damp(const Damping& damping, const Eigen::ArrayXd& omega_rad_s) {
   if (const auto* modal = std::get_if<ModalDamping>(&damping)) {
     return {std::nullopt, as_measured(*modal, omega_rad_s.size())};

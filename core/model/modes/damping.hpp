@@ -21,6 +21,16 @@ struct DampedModes {
   std::optional<RayleighDamping> rayleigh;
   Eigen::ArrayXd ratios;
 };
+// The part of the modes' damping ratios that is due to one of several bodies: its ratio at the
+// mode's frequency by its share of the strain energy (modal strain energy method: Ungar & Kerwin
+// 1962; Johnson & Kienholz 1982); where coefficients are stated, alpha's part by its share of the
+// kinetic energy (eq. 3). What couples modes through damping is left out, as is usual for light
+// damping.
+// Throws ModelError as damp, and for a list of modal ratios: the modes are not those of one body.
+Eigen::ArrayXd damping_ratios_due_to(const Damping& damping, const Eigen::ArrayXd& omega_rad_s,
+                                     const Eigen::ArrayXd& kinetic_share,
+                                     const Eigen::ArrayXd& strain_share);
+
 // Applies a material's damping to these modes; rayleigh is unset where no coefficients are behind
 // it. Throws ModelError if it does not fit them.
 DampedModes damp(const Damping& damping, const Eigen::ArrayXd& omega_rad_s);

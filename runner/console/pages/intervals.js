@@ -17,10 +17,11 @@ export function goSignal(replay) {
     el("button", { type: "button", className: "replay", hidden: true, onclick: replay }));
 }
 
-export function showInterval(element, { intervals, alternatives, current }) {
+export function showInterval(element, { intervals, alternatives, current, is_tapped_by_script: isScripted }) {
   const { phase, replays_left: left } = intervals;
   const line = element.querySelector(".go");
-  const text = word(`interval_${phase}`, { label: alternatives[current] });
+  const signal = phase === "open" && isScripted ? "interval_open_scripted" : `interval_${phase}`;
+  const text = word(signal, { label: alternatives[current] });
   if (line.textContent !== text) line.textContent = text;
   line.dataset.phase = phase;
   element.querySelectorAll(".interval").forEach((name, at) => {

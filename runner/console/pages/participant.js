@@ -3,6 +3,7 @@
 import { listen, post, sayAlive } from "./connection.js";
 import { byId, setText } from "./dom.js";
 import { Outbox } from "./outbox.js";
+import { EnteredAnswer } from "./entered_answer.js";
 import { formScreen } from "./screen_form.js";
 import { confidenceScreen } from "./screen_confidence.js";
 import { restScreen, textScreen } from "./screen_text.js";
@@ -21,6 +22,7 @@ const settleMs = 250;
 
 let screen = null;
 let shown = null;
+let enteredAnswer = null;
 let notice = "";
 
 // Why an answer was too early.
@@ -94,7 +96,10 @@ function settle() {
 
 function mount(key) {
   shown?.leave?.();
-  shown = (makers[screen.kind] ?? textScreen)(screen, { send, feel, adjust, replay, correct, say });
+  enteredAnswer?.leave();
+  enteredAnswer = new EnteredAnswer(() => screen.number);
+  const entered = (answer) => enteredAnswer.tell(answer);
+  shown = (makers[screen.kind] ?? textScreen)(screen, { send, entered, feel, adjust, replay, correct, say });
   shown.key = key;
   byId("screen").replaceChildren(shown.element);
   window.scrollTo(0, 0);

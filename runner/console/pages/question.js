@@ -5,14 +5,18 @@ import { pickedValue } from "./radio_cards.js";
 import { word } from "./words.js";
 
 // answerIn(element): the answer as text, null as long as there is none: `missing` is said then.
-// send(value as text) is called once there is one and it is confirmed.
-export function question({ title, className, body, say, send, answerIn = pickedValue, missing = word("pick_first") }) {
+// entered(answer) is called as it changes; send(value as text) once there is one and it is confirmed.
+export function question({ title, className, body, say, send, answerIn = pickedValue, missing = word("pick_first"), entered = () => {} }) {
   const confirm = el("button", { type: "submit", className: "main", id: "confirm", "aria-disabled": "true" }, word("confirm"));
   const element = el("form", { className, noValidate: true, autocomplete: "off" },
     el("fieldset", {}, el("legend", {}, el("h1", { tabIndex: -1 }, title)), ...body),
     confirm);
 
-  const follow = () => confirm.setAttribute("aria-disabled", String(answerIn(element) === null));
+  function follow() {
+    const answer = answerIn(element);
+    confirm.setAttribute("aria-disabled", String(answer === null));
+    entered(answer);
+  }
   follow();
   element.addEventListener("change", follow);
   element.addEventListener("input", follow);

@@ -54,6 +54,11 @@ function inTurn({ trial, replay }) {
   return { body: [goSignal(replay), cards], show: showInterval };
 }
 
+// Where taps are scripted.
+function toHoldStill({ is_tapped_by_script: isScripted }) {
+  return isScripted ? [el("p", { className: "hint" }, word("hold_still"))] : [];
+}
+
 // The last answer, as long as it may be corrected.
 function lastAnswer(answers, say, correct) {
   return el("details", { className: "previous" },
@@ -62,7 +67,7 @@ function lastAnswer(answers, say, correct) {
     ...otherAnswer(answers, say, correct));
 }
 
-export function trialScreen({ trial }, { send, feel, adjust, replay, correct, say }) {
+export function trialScreen({ trial }, { send, entered, feel, adjust, replay, correct, say }) {
   const labels = trial.alternatives ?? [];
   let { current } = trial;
   const feelOther = (index) => { if (index !== current) feel(index); };
@@ -74,10 +79,11 @@ export function trialScreen({ trial }, { send, feel, adjust, replay, correct, sa
   const asked = question({
     title: trial.question,
     className: "trial",
-    body: labels.length > 0 ? [...presented.body, ...field.body] : field.body,
+    body: [...toHoldStill(trial), ...(labels.length > 0 ? presented.body : []), ...field.body],
     say,
     answerIn: field.answerIn,
     missing: field.missing,
+    entered: answers.kind === "setting" ? () => {} : entered,  // a setting is an event of its own
     send: (value) => send("answer", value),
   });
   if (trial.previous) asked.element.append(lastAnswer(trial.previous, say, correct));

@@ -63,6 +63,25 @@ TEST_CASE("the mean over participants and its interval are those of R's beta-bin
   CHECK(result->interval.high == Approx(ends[1]).epsilon(1e-4));
 }
 
+TEST_CASE("the mean over participants and their intra-class correlation are glmmTMB's",
+          "[analysis][participants]") {
+  std::vector<int> right;
+  std::vector<int> wrong;
+  for (const Proportion& of : people) {
+    right.push_back(static_cast<int>(of.successes));
+    wrong.push_back(static_cast<int>(of.trials - of.successes));
+  }
+  const auto r = r_numbers(
+      "suppressPackageStartupMessages(library(glmmTMB)); d <- data.frame(k = " + r_vector(right) +
+      ", m = " + r_vector(wrong) +
+      "); f <- glmmTMB(cbind(k, m) ~ 1, data = d, family = betabinomial());"
+      "out(plogis(fixef(f)$cond), 1 / (1 + sigma(f)))");
+  const auto result = beta_binomial_mean(people);
+  REQUIRE(result);
+  CHECK(result->mean == Approx(r[0]).epsilon(1e-4));
+  CHECK(result->intraclass_correlation == Approx(r[1]).epsilon(1e-3));
+}
+
 TEST_CASE("intervals of participants' mean share are R's by t and SciPy's by bootstrap",
           "[analysis][participants]") {
   const auto result = mean_proportion(people);

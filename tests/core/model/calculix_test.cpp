@@ -1,102 +1,25 @@
 // The same meshes and constraints through CalculiX (Dhondt), which shares no code with us.
-#include <fmt/format.h>
+#include "support/calculix.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <filesystem>
 #include <fstream>
 #include <numbers>
-#include <sstream>
 
 #include "core/model/elements/assembly.hpp"
 #include "core/model/mesh/tetgen_mesher.hpp"
 #include "core/model/modes/modal_solver.hpp"
 #include "core/model/plate_model.hpp"
 #include "support/plates.hpp"
-#include "support/processes.hpp"
 #include "support/surfaces.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;
 
 namespace {
-constexpr const char* calculix = "/usr/bin/ccx";
-
-// To the ground, one for each node and axis: of supports that hold no whole triangle.
-std::string springs(const std::vector<core::SpringSupport>& supports, Eigen::Index elements) {
-  std::string text;
-  for (const core::SpringSupport& support : supports) {
-    for (const Eigen::Index node : support.nodes) {
-      for (Eigen::Index axis = 0; axis < 3; ++axis) {
-        const double share =
-            support.stiffness_n_per_m[axis] / static_cast<double>(support.nodes.size());
-        text += fmt::format(
-            "*ELEMENT, TYPE=SPRING1, ELSET=S{0}\n{0},{1}\n*SPRING, ELSET=S{0}\n{2}\n{3:.9e}\n",
-            ++elements, node + 1, axis + 1, share);
-      }
-    }
-  }
+testing::CalculixInput input(const core::PlateSpec& spec, const core::TetMesh& mesh) {
+  testing::CalculixInput text;
+  text.add_body(spec, spec.material, mesh);
   return text;
-}
-
-// CalculiX numbers a T10's nodes as we do, from 1.
-std::string input(const core::PlateSpec& spec, const core::TetMesh& mesh, const std::string& step) {
-  std::ostringstream text;
-  text.precision(12);  // CalculiX reads twenty characters a number
-  text << "*NODE, NSET=ALL\n";
-  for (Eigen::Index i = 0; i < mesh.nodes_m.rows(); ++i) {
-    text << i + 1 << ',' << mesh.nodes_m(i, 0) << ',' << mesh.nodes_m(i, 1) << ','
-         << mesh.nodes_m(i, 2) << '\n';
-  }
-  text << "*ELEMENT, TYPE=C3D10, ELSET=BODY\n";
-  for (Eigen::Index tet = 0; tet < mesh.tets.rows(); ++tet) {
-    text << tet + 1;
-    for (const int node : mesh.tets.row(tet)) {
-      text << ',' << node + 1;
-    }
-    text << '\n';
-  }
-  const core::Material& m = spec.material;
-  text << "*MATERIAL, NAME=M\n*ELASTIC\n"
-       << m.youngs_modulus_pa << ',' << m.poissons_ratio << "\n*DENSITY\n"
-       << m.density_kg_per_m3 << "\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n";
-  const auto held = core::constrained_dofs(mesh, spec.shape, spec.fixations);
-  text << "*BOUNDARY\n";
-  for (std::size_t dof = 0; dof < held.size(); ++dof) {
-    if (held[dof]) {
-      text << dof / 3 + 1 << ',' << dof % 3 + 1 << '\n';
-    }
-  }
-  text << springs(core::spring_supports(mesh, spec.shape, spec.fixations), mesh.tets.rows());
-  text << "*STEP\n" << step << "\n*END STEP\n";
-  return text.str();
-}
-
-// Its results are in directory/body.*
-void run_calculix(const std::string& input, const testing::TempDirectory& directory) {
-  testing::write(directory / "body.inp", input);
-  const std::string command = fmt::format("cd {} && {} body", directory / ".", calculix);
-  const auto run = testing::run_program({"/bin/sh", "-c", command});
-  INFO(run.standard_output);
-  REQUIRE(run.exit_code == 0);
-}
-
-// The column "FREQUENCY (CYCLES/TIME)" of the .dat file.
-std::vector<double> calculix_hz(const core::PlateSpec& spec, const core::TetMesh& mesh, int modes) {
-  const testing::TempDirectory directory;
-  run_calculix(input(spec, mesh, fmt::format("*FREQUENCY\n{}", modes)), directory);
-  std::ifstream results{directory / "body.dat"};
-  std::vector<double> hz;
-  for (std::string line; std::getline(results, line) && static_cast<int>(hz.size()) < modes;) {
-    std::istringstream row{line};
-    int number{};
-    double eigenvalue{};
-    double rad_s{};
-    double cycles{};
-    if (row >> number >> eigenvalue >> rad_s >> cycles) {
-      hz.push_back(cycles);
-    }
-  }
-  return hz;
 }
 
 // "row column value" a line, one of the triangles, in CalculiX's order of degrees of freedom.
@@ -118,7 +41,7 @@ core::SparseMatrix read_matrix(const std::string& path, const std::vector<int>& 
 core::StiffnessAndMass calculix_matrices(const core::PlateSpec& spec, const core::TetMesh& mesh,
                                          const core::FreeDofs& dofs) {
   const testing::TempDirectory directory;
-  run_calculix(input(spec, mesh, "*FREQUENCY, SOLVER=MATRIXSTORAGE"), directory);
+  testing::run_calculix(input(spec, mesh).with_step("*FREQUENCY, SOLVER=MATRIXSTORAGE"), directory);
   std::ifstream order{directory / "body.dof"};  // "node.axis" a line
   std::vector<int> ours;
   std::size_t node{};
@@ -162,18 +85,10 @@ std::vector<core::PlateSpec> coarse_bodies() {
   sliding.fixations = {side(core::Side::left, {false, false, true}), ball({0.15, 0.1, 0.0}, 0.01)};
   return {plate, block, sphere, sliding};
 }
-
-bool is_installed() {
-  if (std::filesystem::exists(calculix)) {
-    return true;
-  }
-  WARN("CalculiX (package calculix-ccx) is not installed");
-  return false;
-}
 }  // namespace
 
 TEST_CASE("CalculiX finds the same frequencies on the same mesh", "[core][model][calculix][slow]") {
-  if (!is_installed()) {
+  if (!testing::is_calculix_installed()) {
     return;
   }
   std::vector<core::PlateSpec> bodies = coarse_bodies();
@@ -190,7 +105,7 @@ TEST_CASE("CalculiX finds the same frequencies on the same mesh", "[core][model]
     const core::PlateModel ours = core::build_plate_model(spec);
     const auto count = static_cast<int>(ours.modal.frequency_hz.size());
     REQUIRE(count >= 3);
-    const std::vector<double> theirs = calculix_hz(spec, ours.body.mesh, count);
+    const std::vector<double> theirs = testing::calculix_hz(input(spec, ours.body.mesh), count);
     REQUIRE(static_cast<int>(theirs.size()) == count);
     for (int i = 0; i < count; ++i) {
       CAPTURE(i, ours.modal.frequency_hz[i], theirs[static_cast<std::size_t>(i)]);
@@ -204,7 +119,7 @@ TEST_CASE("CalculiX finds the same frequencies on the same mesh", "[core][model]
 // integrate it exactly, and the frequencies part where elements are coarse for the mode.
 TEST_CASE("CalculiX forms the same stiffness, and its matrices give us its frequencies",
           "[core][model][calculix][slow]") {
-  if (!is_installed()) {
+  if (!testing::is_calculix_installed()) {
     return;
   }
   for (const core::PlateSpec& spec : coarse_bodies()) {
@@ -217,7 +132,7 @@ TEST_CASE("CalculiX forms the same stiffness, and its matrices give us its frequ
     const core::Modes modes = core::solve_modes(theirs, spec.band_limit_hz);
     const auto count = static_cast<int>(modes.omega_rad_s.size());
     REQUIRE(count >= 3);
-    const std::vector<double> hz = calculix_hz(spec, body.mesh, count);
+    const std::vector<double> hz = testing::calculix_hz(input(spec, body.mesh), count);
     for (int i = 0; i < count; ++i) {
       const double found_hz = modes.omega_rad_s[i] / (2.0 * std::numbers::pi);
       CAPTURE(i, found_hz, hz[static_cast<std::size_t>(i)]);

@@ -69,6 +69,25 @@ TEST_CASE(
   CHECK(std::sqrt(difference_n2 / felt_n2) < 0.025);
 }
 
+TEST_CASE("what a device is known to halve is commanded twice as strong",
+          "[core][tick][recorded]") {
+  core::RenderSettings settings =
+      with_taps(1000.0, {{{0.0, 0.0}, 0.3, sampled_n(1000.0, 0.3, 0.1)}});
+  const auto as_recorded = player(settings);
+  settings.device_response =
+      std::make_shared<const core::DeviceResponse>(core::DeviceResponse{{{100.0, 0.5}}});
+  const auto commanded = player(settings);
+  for (core::AddedForce* const force : {as_recorded.get(), commanded.get()}) {
+    touch(*force, 0.0, 0.0);
+    force->impact(0.3);
+  }
+  for (int tick = 0; tick < 90; ++tick) {
+    CHECK(felt_n(*commanded) == Approx(2.0 * felt_n(*as_recorded)).margin(1e-9));
+    as_recorded->advance();
+    commanded->advance();
+  }
+}
+
 TEST_CASE("of several recordings the nearest place is played, and there the nearest speed",
           "[core][tick][recorded]") {
   const auto constant = [](double x_m, double speed_m_s, double force_n) {

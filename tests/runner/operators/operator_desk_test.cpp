@@ -42,7 +42,7 @@ class Endless final : public TrialLoop {
    private:
     std::size_t current_{0};
   };
-  TrialResult run(std::span<core::TapRenderer> /*alternatives*/, const Explore& explore) override {
+  TrialResult run(const Rendered& /*rendered*/, const Explore& explore) override {
     Feeling feeling;
     explore(feeling);
     felt_last = feeling.current();
@@ -131,7 +131,7 @@ TEST_CASE("a paused or repeated trial is stored and presented again, a skipped o
   CHECK(paused.texts("SELECT status FROM trial WHERE number = 1 ORDER BY attempt") ==
         Texts{"interrupted", "answered"});
   CHECK(paused.texts("SELECT state FROM session_event WHERE number = 1") ==
-        Texts{"ready", "exploring", "paused", "ready", "exploring", "saved"});
+        Texts{"ready", "exploring", "paused", "ready", "exploring", "confirmed", "saved"});
   CHECK(paused.texts("SELECT action || ' ' || detail FROM operator_action") ==
         Texts{"pause the phone rang", "resume "});
 

@@ -39,6 +39,7 @@ std::vector<double> rests(const protocols::Breaks& breaks) {
     interludes.before(trial);
     states.enter(runner::SessionState::ready, trial.number);
     states.enter(runner::SessionState::exploring, trial.number);
+    states.enter(runner::SessionState::confirmed, trial.number);
     states.enter(runner::SessionState::saved, trial.number);
     now_s += 10.0;
   }

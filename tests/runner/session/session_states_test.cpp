@@ -36,3 +36,15 @@ TEST_CASE("an answer is asked for its confidence before it is saved, and told ri
   CHECK(may_follow(SessionState::saved, SessionState::feedback));
   CHECK_FALSE(may_follow(SessionState::exploring, SessionState::feedback));
 }
+
+TEST_CASE("an answer may be changed until it is confirmed, and counts only once it is",
+          "[runner][session]") {
+  CHECK(may_follow(SessionState::exploring, SessionState::answering));
+  CHECK(may_follow(SessionState::answering, SessionState::answering));
+  CHECK(may_follow(SessionState::answering, SessionState::confirmed));
+  CHECK(may_follow(SessionState::answering, SessionState::timed_out));
+  CHECK_FALSE(may_follow(SessionState::exploring, SessionState::saved));
+  CHECK_FALSE(may_follow(SessionState::answering, SessionState::saved));
+  CHECK_FALSE(may_follow(SessionState::confirmed, SessionState::answering));
+  CHECK_FALSE(may_follow(SessionState::confirmed, SessionState::timed_out));
+}

@@ -22,7 +22,7 @@ struct Troubles {
 class TroubledTrialLoop final : public runner::TrialLoop {
  public:
   explicit TroubledTrialLoop(Troubles troubles) : troubles_{troubles} {}
-  runner::TrialResult run(std::span<core::TapRenderer> /*alternatives*/,
+  runner::TrialResult run(const runner::Rendered& /*rendered*/,
                           const runner::Explore& explore) override {
     struct Nothing final : runner::Exploration {
       bool is_stalled{};
@@ -113,7 +113,7 @@ namespace {
 class PassingTime final : public runner::TrialLoop {
  public:
   explicit PassingTime(double touches_per_s) : touches_per_s_{touches_per_s} {}
-  runner::TrialResult run(std::span<core::TapRenderer> /*alternatives*/,
+  runner::TrialResult run(const runner::Rendered& /*rendered*/,
                           const runner::Explore& explore) override {
     struct Passing final : runner::Exploration {
       double now_s{0.0};

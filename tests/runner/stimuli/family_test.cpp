@@ -182,6 +182,46 @@ TEST_CASE("the vibration's gain multiplies the vibration, and nothing else",
   }
 }
 
+TEST_CASE("a stimulus with rendering of its own is the member of a family that has these values",
+          "[runner][stimuli][axes]") {
+  const std::vector<std::pair<std::string, std::string>> stated{
+      {"vibration_gain", "{from: 0, to: 3}"},
+      {"sinusoid_amplitude_n_s_per_m", "{from: 0, to: 9}"},
+      {"sinusoid_decay_per_s", "{from: 10, to: 900}"},
+      {"sinusoid_frequency_hz", "{from: 10, to: 400}"},
+      {"penalty_stiffness_n_per_m", "{from: 500, to: 4000}"}};
+  const AxisValues values{{"vibration_gain", 2.5},
+                          {"sinusoid_amplitude_n_s_per_m", 7.0},
+                          {"sinusoid_decay_per_s", 70.0},
+                          {"sinusoid_frequency_hz", 90.0},
+                          {"penalty_stiffness_n_per_m", 700.0}};
+  std::vector<std::string> axes;
+  std::string text = testing::varied_study_text + "    rendering:\n";
+  for (const auto& [axis, range] : stated) {
+    axes.push_back(axis + ": " + range);
+    text += "      " + axis + ": " + std::to_string(values.at(axis)) + "\n";
+  }
+  const Presented own = presented(protocols::parse_protocol(text, "study.yaml"), {});
+  CHECK(own.stimulus.changed.empty());
+  check_equal(own, presented(testing::varied_study(axes), values));
+}
+
+TEST_CASE("rendering that a stimulus cannot have of its own is refused at its line",
+          "[protocols][axes]") {
+  const auto refused = [](const std::string& technique, const std::string& rendering,
+                          const std::string& why) {
+    const std::string text =
+        testing::replaced(testing::varied_study_text, "technique: fem+sinusoid",
+                          "technique: " + technique + "\n    rendering: {" + rendering + "}");
+    CHECK_THROWS_WITH(protocols::parse_protocol(text, "study.yaml"),
+                      Contains("study.yaml:28:") && Contains(why));
+  };
+  refused("fem", "sinusoid_decay_per_s: 300", "technique 'fem' does not use it");
+  refused("fem-coupled", "vibration_gain: 2", "technique 'fem-coupled' does not use it");
+  refused("fem", "vibration_gain: -1", "vibration_gain");
+  refused("fem", "youngs_modulus_pa: 1e9", "is not a known key");
+}
+
 TEST_CASE("a member that cannot be built is named with its values before the session",
           "[runner][stimuli][axes]") {
   const auto refused = [](const std::vector<std::string>& axes, const std::vector<Edit>& edits,

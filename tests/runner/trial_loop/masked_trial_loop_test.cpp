@@ -39,7 +39,7 @@ class SteadySource final : public device::SampleSource {
 class FakeLoop final : public runner::TrialLoop {
  public:
   explicit FakeLoop(std::function<void()> during) : during_{std::move(during)} {}
-  runner::TrialResult run(std::span<core::TapRenderer> /*alternatives*/,
+  runner::TrialResult run(const runner::Rendered& /*rendered*/,
                           const runner::Explore& /*explore*/) override {
     during_();
     std::this_thread::sleep_for(100ms);

@@ -1,0 +1,75 @@
+#include "analysis/report/block_parts.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <iterator>
+#include <map>
+
+#include "core/error.hpp"
+namespace tapstudy::analysis {
+namespace {
+using results::AnswerRow;
+
+// Nine digits, because values of one stimulus differ in their last ones where they are products.
+std::string digits(double value) {
+  return fmt::format("{:.9g}", value);
+}
+
+// All alternatives of a trial have the same ones.
+std::vector<double> further_values(const BlockDesign& design, const AnswerRow& answer) {
+  std::vector<double> values;
+  for (const std::string& axis : design.further_axes) {
+    const auto& presented = answer.alternatives.front().axis_values;
+    const auto value = presented.find(axis);
+    if (value == presented.end()) {
+      throw core::InvalidInput{fmt::format("block '{}': trial {} of {} has no value of '{}'",
+                                           design.name, answer.number, answer.participant_id,
+                                           axis)};
+    }
+    values.push_back(std::stod(digits(value->second)));
+  }
+  return values;
+}
+
+BlockDesign at(const BlockDesign& whole, const std::vector<double>& values) {
+  BlockDesign part = whole;
+  std::vector<std::string> words;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    part.name += fmt::format("_at_{}_{}", whole.further_axes[i], digits(values[i]));
+    words.push_back(fmt::format("{} = {}", whole.further_axes[i], digits(values[i])));
+  }
+  part.question += fmt::format(" ({})", fmt::join(words, ", "));
+  return part;
+}
+
+// The orders of these answers' trials.
+std::vector<VisitOrder> orders_of(const std::vector<VisitOrder>& all,
+                                  const std::vector<AnswerRow>& answers) {
+  std::vector<VisitOrder> own;
+  std::ranges::copy_if(all, std::back_inserter(own), [&](const VisitOrder& order) {
+    return std::ranges::find(answers, order.trial_id, &AnswerRow::trial_id) != answers.end();
+  });
+  return own;
+}
+}  // namespace
+
+std::vector<BlockPart> parts_at_further_values(const BlockDesign& design, const BlockRows& rows) {
+  if (design.further_axes.empty() || rows.answers.empty()) {
+    return {{design, rows}};
+  }
+  std::map<std::vector<double>, BlockRows> at_values;
+  for (const AnswerRow& answer : rows.answers) {
+    at_values[further_values(design, answer)].answers.push_back(answer);
+  }
+  std::vector<BlockPart> parts;
+  for (auto& [values, part] : at_values) {
+    part.visits = rows.visits;
+    part.orders = orders_of(rows.orders, part.answers);
+    part.missing_replies = rows.missing_replies;
+    parts.push_back({at(design, values), std::move(part)});
+  }
+  return parts;
+}
+}  // namespace tapstudy::analysis

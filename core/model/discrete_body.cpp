@@ -1,0 +1,40 @@
+#include "core/model/discrete_body.hpp"
+
+#include <fmt/format.h>
+
+#include "core/model/elements/rigid_motions.hpp"
+#include "core/model/mesh/tetgen_mesher.hpp"
+#include "core/model/stopwatch.hpp"
+namespace tapstudy::core {
+DiscreteBody discretised(const Plate& plate, const Material& material, const MeshSize& size,
+                         const std::vector<Fixation>& regions, const ProgressHook& progress) {
+  DiscreteBody body;
+  Stopwatch watch;
+  tell(progress, "meshing");
+  std::vector<Fixation> all_regions = plate.fixations;
+  all_regions.insert(all_regions.end(), regions.begin(), regions.end());
+  body.mesh = mesh_shape(plate.shape, size, points_to_mesh(all_regions, plate.shape));
+  if (plate.mesh.order == 2) {
+    body.mesh = to_quadratic(body.mesh);
+  }
+  body.cost.mesh_s = watch.lap_s();
+  tell(progress, fmt::format("assembling {} tetrahedra", body.mesh.tets.rows()));
+  body.dofs = free_dofs(constrained_dofs(body.mesh, plate.shape, plate.fixations));
+  const auto supports = spring_supports(body.mesh, plate.shape, plate.fixations);
+  body.matrices = assemble(body.mesh, material, body.dofs, supports);
+  body.resisted_motions = RigidMotions{body.mesh}.resisted(body.dofs, supports);
+  body.cost.assemble_s = watch.lap_s();
+  return body;
+}
+
+Eigen::MatrixXd with_constrained_rows(const Eigen::MatrixXd& free_rows, const FreeDofs& dofs) {
+  Eigen::MatrixXd rows =
+      Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(dofs.position.size()), free_rows.cols());
+  for (std::size_t i = 0; i < dofs.position.size(); ++i) {
+    if (dofs.position[i] >= 0) {
+      rows.row(static_cast<Eigen::Index>(i)) = free_rows.row(dofs.position[i]);
+    }
+  }
+  return rows;
+}
+}  // namespace tapstudy::core

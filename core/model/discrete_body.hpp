@@ -1,0 +1,26 @@
+#pragma once
+#include <Eigen/Core>
+
+#include "core/model/elements/assembly.hpp"
+#include "core/model/mesh/tet_mesh.hpp"
+#include "core/model/modal_model.hpp"
+#include "core/model/plate.hpp"
+#include "core/model/progress_hook.hpp"
+namespace tapstudy::core {
+// A body as finite elements: mesh, constraints and matrices (paper section 4.2.1).
+struct DiscreteBody {
+  TetMesh mesh;
+  FreeDofs dofs;
+  StiffnessAndMass matrices;
+  Eigen::Matrix<double, 6, 6> resisted_motions;  // by constraints and springs: RigidMotions
+  ModelCost cost;                                // of meshing and assembling
+};
+
+// regions: whose nodes the mesh must have beside those of the fixations.
+// Throws ModelError if it cannot be meshed, or a fixation holds nothing or everything.
+DiscreteBody discretised(const Plate& plate, const Material& material, const MeshSize& size,
+                         const std::vector<Fixation>& regions, const ProgressHook& progress);
+
+// With the rows of constrained degrees of freedom, which are 0.
+Eigen::MatrixXd with_constrained_rows(const Eigen::MatrixXd& free_rows, const FreeDofs& dofs);
+}  // namespace tapstudy::core

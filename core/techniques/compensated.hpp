@@ -1,0 +1,13 @@
+#pragma once
+#include <vector>
+
+#include "core/settings/device_response.hpp"
+namespace tapstudy::core {
+// What to command so that the device renders the signal: filtered by the inverse of the device's
+// magnitude response, with the phase of a minimum-phase system (Oppenheim & Schafer 2010, ch. 13),
+// so that nothing is felt before the impact. Exact for a device that is itself of minimum phase; a
+// delay beyond that is not undone. The end may be longer by what the inverse rings on.
+// samples: at least one; the response's frequencies at or above half of the rate have no effect.
+std::vector<double> compensated(const std::vector<double>& samples, const DeviceResponse& response,
+                                double rate_hz);
+}  // namespace tapstudy::core

@@ -1,0 +1,95 @@
+#include "runner/experiments/track_results.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "protocols/schedule.hpp"
+#include "runner/session/adaptive_blocks.hpp"
+namespace tapstudy::runner {
+namespace {
+using analysis::TrackResult;
+using protocols::Block;
+using protocols::TrackSummary;
+
+bool has_results(const Block& block) {
+  return block.comparison && !block.is_practice;
+}
+
+double quantile(const protocols::ParameterPosterior& posterior, double probability) {
+  return std::ranges::find(posterior.quantiles, probability, &protocols::Quantile::probability)
+      ->value;
+}
+
+// One value was given: its deviation is rounding.
+bool is_fixed(const protocols::ParameterPosterior& posterior) {
+  constexpr double rounding = 1e-12;
+  return posterior.standard_deviation <= rounding * std::abs(posterior.mean);
+}
+
+TrackResult result_of(const protocols::Track& track, const protocols::TrackSettings& settings) {
+  const TrackSummary summary = track.summary();
+  TrackResult result;
+  result.procedure = settings.words();
+  result.trials = summary.trials;
+  result.is_finished = summary.is_finished;
+  result.estimate = summary.estimate;
+  result.settles_at = summary.target;
+  result.reversals = summary.reversals.size();
+  result.trials_at_limit = summary.trials_at_limit;
+  for (const protocols::ParameterPosterior& posterior : summary.parameters) {
+    if (is_fixed(posterior)) {
+      continue;
+    }
+    result.parameters.push_back({posterior.name,
+                                 posterior.mean,
+                                 {quantile(posterior, 0.025), quantile(posterior, 0.975)},
+                                 posterior.standard_deviation});
+  }
+  return result;
+}
+
+void add_tracks(const protocols::Protocol& protocol, const std::string& participant,
+                results::Store& store, std::vector<TrackResult>& results) {
+  const auto session = store.latest_session(participant);
+  if (!session) {
+    return;
+  }
+  const protocols::Schedule schedule =
+      protocols::make_schedule(protocol, session->seed, session->order_index);
+  const AdaptiveBlocks adaptive{protocol, session->seed, schedule,
+                                store.answers_as_given(participant)};
+  for (const Block& block : protocol.blocks) {
+    for (std::size_t i = 0; has_results(block) && i < block.comparison->tracks.size(); ++i) {
+      TrackResult result =
+          result_of(adaptive.tracks_of(block.name).track(i), *block.comparison->tracks[i]);
+      result.participant_id = participant;
+      result.block = block.name;
+      result.track = static_cast<int>(i) + 1;
+      results.push_back(std::move(result));
+    }
+  }
+}
+}  // namespace
+
+std::vector<TrackResult> track_results(const protocols::Protocol& protocol,
+                                       const std::vector<StudyStore>& stores, results::Mode mode) {
+  std::vector<TrackResult> results;
+  if (std::ranges::none_of(protocol.blocks, has_results)) {
+    return results;
+  }
+  for (const StudyStore& each : stores) {
+    const auto excluded = each.store->excluded_participants();
+    std::set<std::string> participants;
+    for (const results::SessionRow& session : each.store->sessions()) {
+      if (session.mode == mode && !excluded.contains(session.participant_id)) {
+        participants.insert(session.participant_id);
+      }
+    }
+    for (const std::string& participant : participants) {
+      add_tracks(protocol, participant, *each.store, results);
+    }
+  }
+  return results;
+}
+}  // namespace tapstudy::runner

@@ -1,0 +1,13 @@
+#pragma once
+#include <vector>
+
+#include "analysis/procedures/procedures_section.hpp"
+#include "protocols/protocol.hpp"
+#include "runner/experiments/study_store.hpp"
+namespace tapstudy::runner {
+// Of the procedures of the blocks that are no practice, for each participant of one mode who was
+// not excluded.
+std::vector<analysis::TrackResult> track_results(const protocols::Protocol& protocol,
+                                                 const std::vector<StudyStore>& stores,
+                                                 results::Mode mode);
+}  // namespace tapstudy::runner

@@ -80,6 +80,10 @@ void write_new_file(const std::string& file, const Write& write) {
   write_file(file, write);
 }
 
+void write_new_file(const std::string& file, const std::string& text) {
+  write_new_file(file, [&](std::ostream& out) { out << text; });
+}
+
 void replace_file(const std::string& file, const Write& write) {
   write_file(unfinished(file), write);
   finish(file);

@@ -12,6 +12,7 @@ void check_is_new(const std::string& file);
 // Creates a file and writes it by the function. Throws InvalidInput if the file already exists,
 // cannot be created, or could not be written completely.
 void write_new_file(const std::string& file, const Write& write);
+void write_new_file(const std::string& file, const std::string& text);
 // The same, but replaces an existing file once the new one is completely on disk.
 void replace_file(const std::string& file, const Write& write);
 

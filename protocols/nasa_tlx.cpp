@@ -18,8 +18,8 @@ struct Wording {
   std::array<const char*, 6> questions;
 };
 
-constexpr std::array<const char*, 6> names{"mental_demand", "physical_demand", "temporal_demand",
-                                           "performance",   "effort",          "frustration"};
+constexpr std::array<const char*, 6> item_names{
+    "mental_demand", "physical_demand", "temporal_demand", "performance", "effort", "frustration"};
 constexpr std::string_view of_performance = "performance";
 
 constexpr std::array<Wording, 3> wordings{
@@ -56,9 +56,9 @@ constexpr std::array<Wording, 3> wordings{
        "どのくらい不安、落胆、いらいら、ストレス、不快を感じましたか？"}}}};
 
 FormItem scale(const Wording& wording, std::size_t index) {
-  const Ends& ends = names[index] == of_performance ? wording.performance : wording.demand;
+  const Ends& ends = item_names[index] == of_performance ? wording.performance : wording.demand;
   FormItem item;
-  item.name = names[index];
+  item.name = item_names[index];
   item.kind = ItemKind::scale;
   item.question = wording.questions[index];
   item.low = ends.low;
@@ -77,7 +77,7 @@ const std::vector<std::string>& nasa_tlx_languages() {
 }
 
 bool is_raw_tlx(const Form& form) {
-  return std::ranges::equal(form.items, names, {}, &FormItem::name) &&
+  return std::ranges::equal(form.items, item_names, {}, &FormItem::name) &&
          std::ranges::all_of(form.items,
                              [](const FormItem& item) { return item.kind == ItemKind::scale; });
 }
@@ -86,7 +86,7 @@ Form nasa_tlx(const std::string& language) {
   const auto found = std::ranges::find(wordings, language, &Wording::language);
   const Wording& wording = found == wordings.end() ? wordings.front() : *found;
   Form form{"nasa_tlx", wording.title, wording.text, {}};
-  for (std::size_t i = 0; i < names.size(); ++i) {
+  for (std::size_t i = 0; i < item_names.size(); ++i) {
     form.items.push_back(scale(wording, i));
   }
   return form;

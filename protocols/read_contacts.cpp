@@ -11,7 +11,7 @@
 namespace tapstudy::protocols {
 namespace {
 using Presence = MapReader::Presence;
-using Ends = std::map<std::string, core::ContactSpring::End>;  // by "body.point"
+using EndsByName = std::map<std::string, core::ContactSpring::End>;  // by "body.point"
 
 // Refinement follows one body's frequencies, and they have them together.
 void check_mesh(MapReader& reader, const std::string& key, const Plate& plate) {
@@ -23,7 +23,7 @@ void check_mesh(MapReader& reader, const std::string& key, const Plate& plate) {
 }
 
 void add_points(const std::string& body, const std::shared_ptr<const Plate>& plate,
-                Contacts& contacts, Ends& ends) {
+                Contacts& contacts, EndsByName& ends) {
   if (plate) {
     for (const auto& [name, region] : plate->contact_points) {
       ends.emplace(fmt::format("{}.{}", body, name),
@@ -34,7 +34,7 @@ void add_points(const std::string& body, const std::shared_ptr<const Plate>& pla
 }
 
 void read_body(const std::string& name, MapReader& reader, const Protocol& protocol,
-               Contacts& contacts, Ends& ends) {
+               Contacts& contacts, EndsByName& ends) {
   const auto plate =
       named(protocol.plates, reader.word("plate", "plate", keys_of(protocol.plates)));
   const auto material =
@@ -58,13 +58,13 @@ void read_body(const std::string& name, MapReader& reader, const Protocol& proto
 
 // nullopt for a name that was rejected.
 std::optional<core::ContactSpring::End> read_end(MapReader& reader, const std::string& key,
-                                                 const Ends& ends) {
+                                                 const EndsByName& ends) {
   const auto found = ends.find(reader.word(key, "contact point", keys_of(ends)));
   return found == ends.end() ? std::nullopt : std::optional{found->second};
 }
 
 // nullopt where an end was rejected.
-std::optional<core::ContactSpring> read_spring(MapReader& reader, const Ends& ends) {
+std::optional<core::ContactSpring> read_spring(MapReader& reader, const EndsByName& ends) {
   core::ContactSpring spring;
   const auto from = read_end(reader, "from", ends);
   const auto to = read_end(reader, "to", ends);
@@ -106,7 +106,7 @@ void check_are_joined(MapReader& reader, const Contacts& contacts,
 
 Contacts read_set(MapReader& reader, const Protocol& protocol) {
   Contacts contacts;
-  Ends ends;
+  EndsByName ends;
   const std::string tapped = reader.word("tapped", "plate", keys_of(protocol.plates));
   add_points(tapped, named(protocol.plates, tapped), contacts, ends);
   if (contacts.plates.front()) {

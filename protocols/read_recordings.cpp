@@ -4,13 +4,13 @@
 #include "protocols/read_sections.hpp"
 namespace tapstudy::protocols {
 namespace {
-constexpr Range coordinate_m{-10.0, 10.0};
+constexpr Range recorded_place_m{-10.0, 10.0};
 constexpr Range force_n{-100.0, 100.0};
 constexpr std::size_t max_samples = 100'000;
 
 core::RecordedTap read_tap(MapReader& reader) {
   core::RecordedTap tap;
-  tap.at_m = reader.numbers("at_m", 2, coordinate_m);
+  tap.at_m = reader.numbers("at_m", 2, recorded_place_m);
   tap.speed_m_s = reader.number("speed_m_s", Range::positive(100.0));
   tap.force_n = reader.number_list("force_n", force_n);
   if (tap.force_n.size() > max_samples) {

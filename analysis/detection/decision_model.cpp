@@ -17,7 +17,6 @@ using std::numbers::pi;
 using std::numbers::sqrt2;
 using std::numbers::sqrt3;
 constexpr double reach = 9.0;  // standard deviations; what lies beyond is below 1e-18
-constexpr double max_d_prime = 20.0;
 
 // P(the signal's observation is the greatest of m).
 double greatest_of(double d_prime, int alternatives) {

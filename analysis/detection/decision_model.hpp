@@ -17,6 +17,9 @@ enum class DecisionModel {
   same_different_independent_observation  // which of the four pairs was it? the likelier answer
 };
 
+// The largest d' that is looked for: what lies beyond cannot be told from certainty.
+inline constexpr double max_d_prime = 20.0;
+
 struct DecisionModelRow {
   DecisionModel model{};
   std::string_view name;

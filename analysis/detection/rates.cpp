@@ -13,7 +13,6 @@
 namespace tapstudy::analysis {
 namespace {
 using std::numbers::sqrt2;
-constexpr double max_d_prime = 20.0;
 
 void check_rate(double rate) {
   if (!(rate > 0.0 && rate < 1.0)) {

@@ -8,8 +8,8 @@
 #include "analysis/figures/gnuplot.hpp"
 namespace tapstudy::analysis {
 namespace {
-constexpr std::size_t panel_width = 260;
-constexpr std::size_t panel_height = 230;
+constexpr std::size_t map_width = 260;
+constexpr std::size_t map_height = 230;
 
 double largest(const ColourMap& map) {
   double most = 0.0;
@@ -51,7 +51,7 @@ std::string script_of(const ColourMap& map, const std::string& file) {
       "set xrange [{:.9g}:{:.9g}]\nset yrange [{:.9g}:{:.9g}]\nset cbrange [{:.6g}:{:.6g}]\n"
       "set palette defined (-1 '#2166ac', 0 '#f7f7f7', 1 '#b2182b')\nset format cb '%.3g'\n"
       "set xtics {:.3g}\nset ytics {:.3g}\nset multiplot layout {},{} title {} noenhanced\n",
-      panel_width * map.across, panel_height * down + 40, quoted(file), quoted(map.x_label),
+      map_width * map.across, map_height * down + 40, quoted(file), quoted(map.x_label),
       quoted(map.y_label), quoted(map.value_label), map.low_x, map.high_x, map.low_y, map.high_y,
       -most, most, 0.5 * (map.high_x - map.low_x), 0.5 * (map.high_y - map.low_y), down, map.across,
       quoted(map.title));

@@ -7,7 +7,7 @@
 #include "analysis/ratings/signed_rank.hpp"
 namespace tapstudy::analysis {
 namespace {
-constexpr std::uint64_t seed = 5;
+constexpr std::uint64_t contrasts_seed = 5;
 
 struct Contrast {
   std::string group;
@@ -47,8 +47,8 @@ std::vector<Contrast> contrasts_of(const IdentificationData& data, const Groupin
     for (std::size_t j = i + 1; j < grouping.levels.size(); ++j) {
       const std::vector<double> found = differences(data, grouping, i, j);
       if (found.size() > 1) {
-        contrasts.push_back(
-            {grouping.name, grouping.levels[i], grouping.levels[j], paired_contrast(found, seed)});
+        contrasts.push_back({grouping.name, grouping.levels[i], grouping.levels[j],
+                             paired_contrast(found, contrasts_seed)});
       }
     }
   }

@@ -10,9 +10,9 @@
 #include "analysis/resampling/replicates.hpp"
 namespace tapstudy::analysis {
 namespace {
-constexpr int most_draws = 9999;
-constexpr int fewest_draws = 999;
-constexpr std::uint64_t seed = 4;
+constexpr int most_tables = 9999;
+constexpr int fewest_tables = 999;
+constexpr std::uint64_t dependence_seed = 4;
 
 void add_independence(const MatrixOfParticipants& counted, ReportSection& section) {
   const auto test = independence(counted.matrix.counts);
@@ -23,7 +23,8 @@ void add_independence(const MatrixOfParticipants& counted, ReportSection& sectio
   }
   const auto tables = tables_of(counted.participants);
   const MonteCarloTest exact = monte_carlo_independence(
-      tables, affordable_replicates(work_of_random_tables(tables), fewest_draws, most_draws), seed);
+      tables, affordable_replicates(work_of_random_tables(tables), fewest_tables, most_tables),
+      dependence_seed);
   ReportTable table{"dependence",
                     "Do answers depend on what was presented?",
                     {column("X²", "chi_squared"), column("df", "degrees_of_freedom"),

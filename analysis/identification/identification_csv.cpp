@@ -6,7 +6,7 @@
 namespace tapstudy::analysis {
 namespace {
 // Rows are stimuli, columns responses, cells counts: the form that read_counts takes.
-void write_matrix(std::ostream& out, const ConfusionMatrix& matrix) {
+void write_matrix_csv(std::ostream& out, const ConfusionMatrix& matrix) {
   const std::vector<std::string> factors = factors_of(matrix);
   out << "stimulus";
   for (const std::string& factor : factors) {
@@ -31,7 +31,7 @@ void write_matrix(std::ostream& out, const ConfusionMatrix& matrix) {
 
 std::vector<CsvTable> IdentificationSummary::tables() const {
   std::vector<CsvTable> tables{
-      {"confusion.csv", [this](std::ostream& out) { write_matrix(out, matrix); }}};
+      {"confusion.csv", [this](std::ostream& out) { write_matrix_csv(out, matrix); }}};
   for (CsvTable& table : csv_of(sections)) {
     tables.push_back(std::move(table));
   }

@@ -19,7 +19,7 @@ std::string cell_style(double share) {
                      share > 0.35 ? "#fff" : "#123");
 }
 
-void write_matrix(std::ostream& out, const ConfusionMatrix& matrix) {
+void write_matrix_html(std::ostream& out, const ConfusionMatrix& matrix) {
   out << "<table class=matrix><caption>Rows: presented. Columns: answered. Each cell: count and "
          "share of its row.</caption><thead><tr><th></th>";
   for (const Item& response : matrix.responses) {
@@ -54,7 +54,7 @@ void write_share_row(std::ostream& out, const FactorResult& result) {
 }  // namespace
 
 void IdentificationSummary::write_html(std::ostream& out) const {
-  write_matrix(out, matrix);
+  write_matrix_html(out, matrix);
   out << "<h3>Right answers</h3><table class=accuracy>\n";
   write_share_row(out, {"all answers", "", accuracy, matrix.chance(), accuracy_over_participants});
   for (const FactorResult& result : factors) {

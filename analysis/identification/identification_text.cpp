@@ -9,7 +9,7 @@
 #include "core/print.hpp"
 namespace tapstudy::analysis {
 namespace {
-void write_matrix(std::ostream& out, const ConfusionMatrix& matrix) {
+void print_matrix(std::ostream& out, const ConfusionMatrix& matrix) {
   std::size_t widest = std::string{"presented \\ answered"}.size();
   for (const Item& item : matrix.stimuli) {
     widest = std::max(widest, item.name.size());
@@ -33,7 +33,7 @@ void write_matrix(std::ostream& out, const ConfusionMatrix& matrix) {
 }  // namespace
 
 void IdentificationSummary::write_text(std::ostream& out) const {
-  write_matrix(out, matrix);
+  print_matrix(out, matrix);
   const auto line = [&](const std::string& title, const Proportion& share,
                         const std::optional<MeanProportion>& over, double chance) {
     out << wrapped(

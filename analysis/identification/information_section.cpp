@@ -11,7 +11,7 @@ namespace tapstudy::analysis {
 namespace {
 constexpr int most_draws = 9999;
 constexpr int fewest_draws = 999;
-constexpr std::uint64_t seed = 3;
+constexpr std::uint64_t information_seed = 3;
 
 ReportTable participants_table(const MatrixOfParticipants& counted) {
   ReportTable table{"information_participants",
@@ -54,7 +54,7 @@ InformationSection information_section(const MatrixOfParticipants& counted) {
   const InformationTransfer transfer = information_transfer(matrix.counts);
   const std::vector<CountTable> tables = tables_of(counted.participants);
   const int draws = affordable_replicates(work_of_random_tables(tables), fewest_draws, most_draws);
-  const GuessedInformation guessed = guessed_information(tables, draws, seed);
+  const GuessedInformation guessed = guessed_information(tables, draws, information_seed);
   const std::optional<Interval> over = information_interval(tables);
   const double most =
       std::log2(static_cast<double>(std::min(matrix.stimuli.size(), matrix.responses.size())));

@@ -84,11 +84,11 @@ void add_serial(const IdentificationData& data, ReportSection& section) {
         "Effects of the trial before are not tested: nobody was presented a stimulus twice.");
     return;
   }
-  constexpr int most_draws = 9999;
-  constexpr int fewest_draws = 19;
+  constexpr int most_shuffles = 9999;
+  constexpr int fewest_shuffles = 19;
   constexpr std::size_t cost_of_an_answer = 10;
-  const int draws =
-      affordable_replicates(cost_of_an_answer * number_of_answers(data), fewest_draws, most_draws);
+  const int draws = affordable_replicates(cost_of_an_answer * number_of_answers(data),
+                                          fewest_shuffles, most_shuffles);
   const SerialDependence found = serial_dependence(sequences_of(data), draws, serial_seed);
   const auto add = [&](const std::string& name, const SerialEffect& effect) {
     table.rows.push_back({word(name), count(effect.trials), share(effect.observed),

@@ -11,9 +11,9 @@
 namespace tapstudy::analysis {
 namespace {
 using results::AnswerRow;
-using Value = std::optional<double>;
+using OnAxis = std::optional<double>;
 // Logarithms to base 10 of one stimulus's estimates, by value and participant.
-using Logarithms = std::map<Value, std::map<std::string, std::vector<double>>>;
+using Logarithms = std::map<OnAxis, std::map<std::string, std::vector<double>>>;
 
 double number_of(const BlockDesign& design, const AnswerRow& answer) {
   const auto number = core::number_in<double>(answer.response);
@@ -31,13 +31,13 @@ const results::AlternativeRow& judged(const AnswerRow& answer) {
   return answer.alternatives.back();
 }
 
-Value value_of(const BlockDesign& design, const AnswerRow& answer) {
+OnAxis value_of(const BlockDesign& design, const AnswerRow& answer) {
   if (!design.axis || answer.alternatives.empty()) {
     return std::nullopt;
   }
   const results::AxisValues& values = judged(answer).axis_values;
   const auto found = values.find(design.axis->name);
-  return found == values.end() ? Value{} : Value{found->second};
+  return found == values.end() ? OnAxis{} : OnAxis{found->second};
 }
 
 double mean_of(const std::vector<double>& values) {
@@ -48,7 +48,7 @@ double mean_of(const std::vector<double>& values) {
   return sum / static_cast<double>(values.size());
 }
 
-MagnitudeOfValue mean_at(const Value& value,
+MagnitudeOfValue mean_at(const OnAxis& value,
                          const std::map<std::string, std::vector<double>>& people) {
   MagnitudeOfValue result{value, 0.0, static_cast<int>(people.size()), 0};
   std::vector<double> means;

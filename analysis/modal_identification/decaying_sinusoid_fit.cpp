@@ -10,7 +10,7 @@
 #include "core/error.hpp"
 namespace tapstudy::analysis {
 namespace {
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 constexpr Eigen::Index max_samples = 4000;
 constexpr Eigen::Index min_fit = 16;
 constexpr int grid_frequencies = 60;

@@ -10,7 +10,7 @@
 #include "core/error.hpp"
 namespace tapstudy::analysis {
 namespace {
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 constexpr double stop_band_db = 70.0;
 constexpr Eigen::Index min_bins = 8;
 

@@ -10,7 +10,7 @@
 namespace tapstudy::analysis {
 namespace {
 using Complex = std::complex<double>;
-constexpr int max_rounds = 40;
+constexpr int max_relocations = 40;
 constexpr double start_ratio = 0.01;
 constexpr int further_terms = 3;
 
@@ -128,7 +128,7 @@ std::vector<Pole> vector_fitting(const BandSpectrum& spectrum, int pairs) {
   const Eigen::ArrayXcd z = (Complex{0.0, 1.0} * spectrum.rad_per_sample.cast<Complex>()).exp();
   Poles poles = spread_over(spectrum, pairs);
   std::vector<Pole> found;
-  for (int round = 0; round < max_rounds; ++round) {
+  for (int round = 0; round < max_relocations; ++round) {
     poles = relocated(poles, z, spectrum.values);
     std::vector<Pole> next = poles_inside(poles, spectrum);
     const bool is_done = has_settled(found, next);

@@ -32,7 +32,7 @@ void add_pair(const std::array<Answer, 3>& answers, std::size_t kinds, const Eig
 }
 
 // Parameters: the items' values, then ln nu if there are ties.
-LikelihoodAt likelihood(const PairedCounts& counts, const Eigen::VectorXd& at) {
+LikelihoodAt likelihood_of_bradley_terry(const PairedCounts& counts, const Eigen::VectorXd& at) {
   const Eigen::Index items = counts.items();
   const bool has_ties = at.size() > items;
   const auto unit = [&](Eigen::Index i) { return Eigen::VectorXd::Unit(at.size(), i); };
@@ -58,9 +58,9 @@ BradleyTerry bradley_terry(const PairedCounts& counts) {
   check_comparisons(counts, TiesConnect::no);
   const Eigen::Index items = counts.items();
   const bool has_ties = counts.ties.size() != 0 && counts.ties.sum() > 0;
-  const ScaleMaximum maximum =
-      maximise_scale([&](const Eigen::VectorXd& at) { return likelihood(counts, at); }, items,
-                     has_ties ? items + 1 : items);
+  const ScaleMaximum maximum = maximise_scale(
+      [&](const Eigen::VectorXd& at) { return likelihood_of_bradley_terry(counts, at); }, items,
+      has_ties ? items + 1 : items);
   return {scale_of(maximum, items), has_ties ? std::exp(maximum.at[items]) : 0.0};
 }
 }  // namespace tapstudy::analysis

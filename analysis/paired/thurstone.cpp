@@ -19,7 +19,7 @@ void add_pair(double wins, double losses, double distance, const Eigen::VectorXd
       (wins + losses) * density * density / (p * q) * direction * direction.transpose();
 }
 
-LikelihoodAt likelihood(const PairedCounts& counts, const Eigen::VectorXd& at) {
+LikelihoodAt likelihood_of_thurstone(const PairedCounts& counts, const Eigen::VectorXd& at) {
   const Eigen::Index items = counts.items();
   LikelihoodAt sum{0.0, Eigen::VectorXd::Zero(items), Eigen::MatrixXd::Zero(items, items)};
   for (Eigen::Index i = 0; i < items; ++i) {
@@ -37,8 +37,9 @@ LikelihoodAt likelihood(const PairedCounts& counts, const Eigen::VectorXd& at) {
 PreferenceScale thurstone_case_v(const PairedCounts& counts) {
   check_comparisons(counts, TiesConnect::yes);
   const Eigen::Index items = counts.items();
-  return scale_of(maximise_scale([&](const Eigen::VectorXd& at) { return likelihood(counts, at); },
-                                 items, items),
-                  items);
+  return scale_of(
+      maximise_scale([&](const Eigen::VectorXd& at) { return likelihood_of_thurstone(counts, at); },
+                     items, items),
+      items);
 }
 }  // namespace tapstudy::analysis

@@ -11,7 +11,7 @@
 namespace tapstudy::analysis {
 namespace {
 constexpr std::size_t most_enumerated = 16;
-constexpr int draws = 9999;
+constexpr int sign_flips = 9999;
 
 double exact_p(const std::vector<double>& sizes, double limit) {
   const std::size_t patterns = std::size_t{1} << sizes.size();
@@ -45,7 +45,7 @@ SignFlipTest sign_flip_test(const std::vector<double>& differences, std::uint64_
     return {exact_p(sizes, observed - rounding), true};
   }
   const auto sums = replicates(
-      draws,
+      sign_flips,
       [&](std::uint64_t own_seed) {
         core::Rng rng{own_seed};
         double sum = 0.0;

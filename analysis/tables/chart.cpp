@@ -12,8 +12,8 @@
 #include "analysis/tables/cells.hpp"
 namespace tapstudy::analysis {
 namespace {
-constexpr double width = 340.0;
-constexpr double height = 220.0;
+constexpr double chart_width = 340.0;
+constexpr double chart_height = 220.0;
 constexpr double left = 52.0;
 constexpr double right = 330.0;
 constexpr double top = 10.0;
@@ -56,7 +56,7 @@ std::string axes(const Chart& chart) {
   }
   return svg +
          fmt::format("<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">{}</text>",
-                     0.5 * (left + right), height - 8.0, escaped(chart.x_label)) +
+                     0.5 * (left + right), chart_height - 8.0, escaped(chart.x_label)) +
          fmt::format(
              "<text transform=\"translate(12 {}) rotate(-90)\" text-anchor=\"middle\">{}"
              "</text>",
@@ -199,7 +199,7 @@ std::string inline_svg(const Chart& chart) {
   return fmt::format(
       "<figure{}><svg class=chart viewBox=\"0 0 {} {}\" role=img aria-label=\"{}\">{}</svg>"
       "<figcaption>{}</figcaption></figure>\n",
-      chart.begins_row ? " class=first" : "", width, height, escaped(chart.alternative),
+      chart.begins_row ? " class=first" : "", chart_width, chart_height, escaped(chart.alternative),
       drawn(chart), escaped(chart.caption));
 }
 
@@ -207,7 +207,7 @@ std::string standalone_svg(const Chart& chart, const std::string& mark) {
   constexpr std::size_t line_characters = 58;
   constexpr double line_height = 14.0;
   std::string below;
-  double y = height;
+  double y = chart_height;
   for (const std::string& line :
        lines_of(mark.empty() ? chart.caption : mark + ": " + chart.caption, line_characters)) {
     y += line_height;
@@ -217,7 +217,7 @@ std::string standalone_svg(const Chart& chart, const std::string& mark) {
       "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{2}\" "
       "height=\"{3}\" role=\"img\">\n<title>{4}</title>\n<style>{5}</style>\n"
       "<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n{6}\n{7}</svg>\n",
-      width, y + line_height, 2.0 * width, 2.0 * (y + line_height), escaped(chart.alternative),
-      standalone_style, drawn(chart), below);
+      chart_width, y + line_height, 2.0 * chart_width, 2.0 * (y + line_height),
+      escaped(chart.alternative), standalone_style, drawn(chart), below);
 }
 }  // namespace tapstudy::analysis

@@ -3,23 +3,24 @@
 #include <cblas.h>
 namespace tapstudy::core {
 namespace {
-int as_int(Eigen::Index size) {
+int blas_int(Eigen::Index size) {
   return static_cast<int>(size);
 }
 
 void add_product(double scale, const Tall& a, const Eigen::MatrixXd& weights, Eigen::MatrixXd& to) {
-  cblas_dgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, as_int(a.rows()), as_int(weights.cols()),
-              as_int(a.cols()), scale, a.data(), as_int(a.outerStride()), weights.data(),
-              as_int(weights.rows()), 1.0, to.data(), as_int(to.rows()));
+  cblas_dgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, blas_int(a.rows()),
+              blas_int(weights.cols()), blas_int(a.cols()), scale, a.data(),
+              blas_int(a.outerStride()), weights.data(), blas_int(weights.rows()), 1.0, to.data(),
+              blas_int(to.rows()));
 }
 }  // namespace
 
 Eigen::MatrixXd inner_products(const Tall& a, const Tall& b) {
   Eigen::MatrixXd products = Eigen::MatrixXd::Zero(a.cols(), b.cols());
   if (products.size() > 0) {
-    cblas_dgemm(CblasColMajor, CblasTrans, CblasNoTrans, as_int(a.cols()), as_int(b.cols()),
-                as_int(a.rows()), 1.0, a.data(), as_int(a.outerStride()), b.data(),
-                as_int(b.outerStride()), 0.0, products.data(), as_int(products.rows()));
+    cblas_dgemm(CblasColMajor, CblasTrans, CblasNoTrans, blas_int(a.cols()), blas_int(b.cols()),
+                blas_int(a.rows()), 1.0, a.data(), blas_int(a.outerStride()), b.data(),
+                blas_int(b.outerStride()), 0.0, products.data(), blas_int(products.rows()));
   }
   return products;
 }

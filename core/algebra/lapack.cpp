@@ -10,7 +10,7 @@
 #include "core/error.hpp"
 namespace tapstudy::core {
 namespace {
-lapack_int as_int(Eigen::Index size) {
+lapack_int as_lapack_int(Eigen::Index size) {
   return static_cast<lapack_int>(size);
 }
 
@@ -27,7 +27,7 @@ void check(lapack_int info, const char* problem, const char* routine) {
 
 EigenPairs symmetric_eigenpairs(Eigen::MatrixXd A) {
   EigenPairs pairs{Eigen::VectorXd{A.rows()}, std::move(A)};
-  const lapack_int n = as_int(pairs.values.size());
+  const lapack_int n = as_lapack_int(pairs.values.size());
   if (n > 0) {
     check(
         LAPACKE_dsyev(LAPACK_COL_MAJOR, 'V', 'L', n, pairs.vectors.data(), n, pairs.values.data()),
@@ -38,7 +38,7 @@ EigenPairs symmetric_eigenpairs(Eigen::MatrixXd A) {
 
 EigenPairs symmetric_eigenpairs(Eigen::MatrixXd A, Eigen::MatrixXd B) {
   EigenPairs pairs{Eigen::VectorXd{A.rows()}, std::move(A)};
-  const lapack_int n = as_int(pairs.values.size());
+  const lapack_int n = as_lapack_int(pairs.values.size());
   constexpr lapack_int a_x_is_lambda_b_x = 1;
   if (n > 0) {
     check(LAPACKE_dsygv(LAPACK_COL_MAJOR, a_x_is_lambda_b_x, 'V', 'L', n, pairs.vectors.data(), n,
@@ -49,8 +49,8 @@ EigenPairs symmetric_eigenpairs(Eigen::MatrixXd A, Eigen::MatrixXd B) {
 }
 
 LeastSquares least_squares(Eigen::MatrixXd A, Eigen::VectorXd b) {
-  const lapack_int rows = as_int(A.rows());
-  const lapack_int columns = as_int(A.cols());
+  const lapack_int rows = as_lapack_int(A.rows());
+  const lapack_int columns = as_lapack_int(A.cols());
   std::vector<lapack_int> pivots(static_cast<std::size_t>(columns), 0);
   const double least_share = static_cast<double>(rows) * std::numeric_limits<double>::epsilon();
   lapack_int rank = 0;

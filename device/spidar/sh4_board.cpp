@@ -10,7 +10,7 @@ constexpr std::size_t echo_at = 0;
 constexpr std::size_t counters_at = 16;
 constexpr std::size_t voltages_at = 32;
 constexpr double volts_per_count = 24.0 / 4096.0;  // published; to be confirmed on hardware
-constexpr std::size_t lines_at = 48;
+constexpr std::size_t sh4_lines_at = 48;
 }  // namespace
 
 Sh4Board::Packet Sh4Board::request(const DacCounts& dac_counts) noexcept {
@@ -34,7 +34,7 @@ BoardReading Sh4Board::reading_of(const Packet& reply) noexcept {
   }
   reading.motor_voltage_v = sum_v / strings;
   reading.echo = echo;
-  reading.lines = get_u16(reply, lines_at);
+  reading.lines = get_u16(reply, sh4_lines_at);
   return reading;
 }
 

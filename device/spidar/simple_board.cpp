@@ -4,12 +4,12 @@
 namespace tapstudy::device {
 namespace {
 constexpr std::uint8_t encoders = 0xA2;
-constexpr std::uint8_t direction = 0x1A;
+constexpr std::uint8_t direction_lines = 0x1A;
 constexpr std::uint8_t clear = 0x19;
 constexpr std::uint8_t all_strings = 0xFF;
 constexpr std::uint8_t set_outputs = 0x52;
 constexpr std::uint8_t latch = 0x51;
-constexpr std::size_t lines_at = 24;
+constexpr std::size_t simple_lines_at = 24;
 
 SimpleBoard::Packet command(std::uint8_t first, std::uint8_t second = 0,
                             std::uint8_t third = 0) noexcept {
@@ -30,14 +30,14 @@ BoardReading SimpleBoard::reading_of(const Packet& reply) noexcept {
   for (std::size_t i = 0; i < reading.counter.size(); ++i) {
     reading.counter[i] = get_u24(reply, 3 * i);
   }
-  reading.lines = reply[lines_at];
+  reading.lines = reply[simple_lines_at];
   return reading;
 }
 
 UsbOutcome SimpleBoard::begin(UsbPipe& pipe, BoardReading& reading) noexcept {
   pipe.clear_halt();
   pipe.drain();
-  const UsbOutcome outcome = pipe.send(command(encoders, direction, all_strings));
+  const UsbOutcome outcome = pipe.send(command(encoders, direction_lines, all_strings));
   if (outcome != UsbOutcome::ok) {
     return outcome;
   }

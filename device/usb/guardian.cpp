@@ -20,7 +20,7 @@
 #include "device/device.hpp"
 namespace tapstudy::device {
 namespace {
-constexpr unsigned time_out_ms = 20;
+constexpr unsigned packet_time_out_ms = 20;
 constexpr int round_ms = 5;
 constexpr int rounds_a_sign_of_life = 2;
 constexpr int max_farewell_rounds = 60'000 / round_ms;  // a minute
@@ -134,7 +134,7 @@ class Watchdog {
   }
   bool send_packet() noexcept {
     const auto size = static_cast<unsigned>(settings_.zero_force_packet.size());
-    usbdevfs_bulktransfer packet{settings_.out_endpoint, size, time_out_ms,
+    usbdevfs_bulktransfer packet{settings_.out_endpoint, size, packet_time_out_ms,
                                  settings_.zero_force_packet.data()};
     // NOLINTNEXTLINE(cppcoreguidelines-pro-type-vararg)
     return ioctl(node_, USBDEVFS_BULK, &packet) == static_cast<int>(size);

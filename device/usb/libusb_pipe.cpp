@@ -55,8 +55,9 @@ UsbOutcome outcome_of(const libusb_transfer& transfer) noexcept {
 DeviceError refusal(const char* what, int error) {
   return DeviceError{fmt::format("USB: {}: {}", what, libusb_strerror(error))};
 }
+}  // namespace
 
-// A reusable transfer with its own buffer.
+// A reusable transfer with its own buffer. It has the linkage of the pipe's members.
 class Transfer {
  public:
   Transfer() : transfer_{libusb_alloc_transfer(0)} {}
@@ -106,7 +107,6 @@ class Transfer {
   libusb_transfer* transfer_;
   int has_ended_{1};
 };
-}  // namespace
 
 struct LibusbPipe::Libusb {
   libusb_context* context{};

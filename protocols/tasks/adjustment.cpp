@@ -12,14 +12,14 @@
 #include "protocols/yaml/yaml_reader.hpp"
 namespace tapstudy::protocols {
 namespace {
-constexpr double largest = 1e15;
+constexpr double largest_adjusted_value = 1e15;
 
 // The values that the key `settings` asks for.
 std::vector<double> read_settings(MapReader& reader, Spacing& spacing) {
   std::vector<double> values;
   reader.map("settings", MapReader::Presence::required, [&](MapReader& inner) {
-    const double from = inner.number("from", {-largest, largest});
-    const double to = inner.number("to", {-largest, largest});
+    const double from = inner.number("from", {-largest_adjusted_value, largest_adjusted_value});
+    const double to = inner.number("to", {-largest_adjusted_value, largest_adjusted_value});
     const int count = inner.integer("count", 2, static_cast<int>(max_settings));
     spacing = inner.one_of<Spacing>("spacing", {{"linear", Spacing::linear}, {"log", Spacing::log}},
                                     "linear");
@@ -39,7 +39,8 @@ void read_standard(MapReader& reader, const Protocol& protocol, const Stimulus& 
                    Adjustment& adjustment) {
   const bool is_usable = !adjustment.values.empty();
   const double own = is_usable ? presented_values(protocol, family, {}).at(adjustment.axis) : 0.0;
-  const double standard = reader.number("standard", {-largest, largest}, own);
+  const double standard =
+      reader.number("standard", {-largest_adjusted_value, largest_adjusted_value}, own);
   if (!is_usable) {
     return;
   }

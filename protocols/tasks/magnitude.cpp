@@ -11,7 +11,7 @@
 #include "protocols/yaml/yaml_reader.hpp"
 namespace tapstudy::protocols {
 namespace {
-constexpr double largest = 1e15;
+constexpr double largest_magnitude_value = 1e15;
 
 std::optional<ValuesOnAxis> read_values(MapReader& reader, const Protocol& protocol,
                                         const Block& block) {
@@ -24,7 +24,8 @@ std::optional<ValuesOnAxis> read_values(MapReader& reader, const Protocol& proto
   const std::vector<std::string> axes =
       block.stimuli.empty() ? std::vector<std::string>{} : axes_of(protocol, block.stimuli.front());
   const std::string axis = read_axis(reader, axes);
-  const std::vector<double> asked = reader.number_list("values", {-largest, largest});
+  const std::vector<double> asked =
+      reader.number_list("values", {-largest_magnitude_value, largest_magnitude_value});
   if (axes.empty()) {
     reader.reject("stimuli", "values are of stimuli that have `vary`");
   }

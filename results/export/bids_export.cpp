@@ -59,10 +59,6 @@ void each_row(Store& store, const std::vector<Column>& columns, const std::strin
                  [&](Statement& statement) { show(statement, row_from(statement, columns)); });
 }
 
-void write_text(const fs::path& file, const std::string& text) {
-  core::write_new_file(file.string(), [&](std::ostream& out) { out << text; });
-}
-
 void make_directories(const fs::path& directory) {
   std::error_code error;
   fs::create_directories(directory, error);
@@ -106,7 +102,8 @@ class Dataset {
             session_labels(store)} {}
 
   void write() {
-    write_text(root_ / "dataset_description.json", dataset_description(study_->provenance));
+    core::write_new_file(root_ / "dataset_description.json",
+                         dataset_description(study_->provenance));
     write_participants();
     write_phenotypes();
     write_behaviour();
@@ -115,7 +112,7 @@ class Dataset {
     for (const std::int64_t trial : study_->trials) {
       write_recording(trial);
     }
-    write_text(root_ / "README", readme());
+    core::write_new_file(root_ / "README", readme());
   }
 
  private:
@@ -140,25 +137,25 @@ class Dataset {
                row.front() = "sub-" + labels_.participants.by_name.at(statement.text(0));
                lines += tsv_line(row);
              });
-    write_text(root_ / "participants.tsv", "participant_id\tmode\tis_excluded\n" + lines);
+    core::write_new_file(root_ / "participants.tsv", "participant_id\tmode\tis_excluded\n" + lines);
     std::vector<DescribedColumn> described;
     std::ranges::transform(own, std::back_inserter(described),
                            [](const Column& column) { return DescribedColumn{column}; });
-    write_text(root_ / "participants.json", table_sidecar(described));
+    core::write_new_file(root_ / "participants.json", table_sidecar(described));
   }
 
   void write_phenotypes() {
     for (const Phenotype& tool : phenotypes(*store_, study_->forms, labels_.participants.by_name)) {
       make_directories(root_ / "phenotype");
-      write_text(root_ / "phenotype" / (tool.name + ".tsv"), tool.table);
-      write_text(root_ / "phenotype" / (tool.name + ".json"), tool.sidecar);
+      core::write_new_file(root_ / "phenotype" / (tool.name + ".tsv"), tool.table);
+      core::write_new_file(root_ / "phenotype" / (tool.name + ".json"), tool.sidecar);
     }
   }
 
   void write_events() {
     for (const BlockEvents& events : events_of_blocks(*store_)) {
       const Place where = place(events.participant, events.session, events.block);
-      write_text(where.directory / (where.prefix + "_events.tsv"), events.table);
+      core::write_new_file(where.directory / (where.prefix + "_events.tsv"), events.table);
     }
   }
 
@@ -194,7 +191,7 @@ class Dataset {
     });
     for (const auto& [file, text] : files) {
       make_directories(file.parent_path());
-      write_text(file, text);
+      core::write_new_file(file, text);
     }
   }
 
@@ -206,12 +203,13 @@ class Dataset {
   void write_tasks() {
     for (const auto& [block, label] : labels_.tasks.by_name) {
       const auto text = std::ranges::find(study_->blocks, block, &BlockText::name);
-      write_text(
+      core::write_new_file(
           root_ / fmt::format("task-{}_beh.json", label),
           task_sidecar(label, text == study_->blocks.end() ? BlockText{block, {}, {}, {}} : *text,
                        described_behaviour(text == study_->blocks.end() ? std::vector<Level>{}
                                                                         : text->levels)));
-      write_text(root_ / fmt::format("task-{}_events.json", label), table_sidecar(event_columns()));
+      core::write_new_file(root_ / fmt::format("task-{}_events.json", label),
+                           table_sidecar(event_columns()));
     }
   }
 
@@ -250,7 +248,8 @@ class Dataset {
     GzipFile file{(where.directory / (name + ".tsv.gz")).string()};
     trace_table(*store_, trial).each_row([&](const Row& row) { file.add(tsv_line(row)); });
     file.close();
-    write_text(where.directory / (name + ".json"), recording_sidecar(rate_hz, trace_columns()));
+    core::write_new_file(where.directory / (name + ".json"),
+                         recording_sidecar(rate_hz, trace_columns()));
   }
 
   std::string readme() const {

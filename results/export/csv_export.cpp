@@ -10,10 +10,6 @@ namespace {
 namespace fs = std::filesystem;
 constexpr const char* trace_schema = "trace.schema.json";
 
-void write_text(const fs::path& file, const std::string& text) {
-  core::write_new_file(file.string(), [&](std::ostream& out) { out << text; });
-}
-
 void write_table(const fs::path& file, const Table& table) {
   core::write_new_file(file.string(), [&](std::ostream& out) { write_csv(out, table); });
 }
@@ -37,7 +33,7 @@ void write_traces(const fs::path& directory, Store& store, const StudyExport& st
     write_table(directory / name, trace);
     files.push_back({name, trace.description, trace_schema, {}});
   }
-  write_text(directory / trace_schema, csvw_schema(trace_columns()));
+  core::write_new_file(directory / trace_schema, csvw_schema(trace_columns()));
 }
 }  // namespace
 
@@ -49,7 +45,7 @@ void write_csv_files(const std::string& directory, Store& store, const StudyExpo
     files.push_back({table.name + ".csv", table.description, {}, table.columns});
   }
   write_traces(root, store, study, files);
-  write_text(root / "csv-metadata.json", csvw_metadata(study.provenance, files));
-  write_text(root / "protocol.yaml", study.protocol_text);
+  core::write_new_file(root / "csv-metadata.json", csvw_metadata(study.provenance, files));
+  core::write_new_file(root / "protocol.yaml", study.protocol_text);
 }
 }  // namespace tapstudy::results

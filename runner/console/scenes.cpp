@@ -5,7 +5,7 @@
 #include <variant>
 namespace tapstudy::runner {
 namespace {
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 
 Json json_of(const core::Vec3& v) {
   return {v.x(), v.y(), v.z()};

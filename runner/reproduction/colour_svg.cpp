@@ -12,7 +12,7 @@ namespace {
 constexpr std::size_t shades = 16;
 constexpr std::size_t stride = 2;
 
-double largest(const analysis::ColourMap& map) {
+double largest_value(const analysis::ColourMap& map) {
   double most = 0.0;
   for (const analysis::ColourPanel& panel : map.panels) {
     for (const double value : panel.values) {
@@ -52,7 +52,7 @@ std::array<std::string, shades> squares(const analysis::ColourMap& map,
 }  // namespace
 
 std::vector<std::string> colour_svgs(const analysis::ColourMap& map) {
-  const double most = largest(map);
+  const double most = largest_value(map);
   const std::size_t width = (map.columns + stride - 1) / stride;
   const std::size_t height = (map.rows + stride - 1) / stride;
   std::vector<std::string> figures;

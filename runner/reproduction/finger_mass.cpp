@@ -15,7 +15,7 @@ constexpr double far_db = 10.0;  // a third in force
 constexpr double felt_s = 0.16;
 constexpr double similar_db = 6.0;  // a factor of two in force
 
-const std::vector<std::string> plates{"mdf_two", "acrylic_two"};
+const std::vector<std::string> shaken_plates{"mdf_two", "acrylic_two"};
 const std::vector<std::string> points{"P1", "P2", "P3"};
 
 double mean_level_db(Bench& bench, const protocols::Protocol& protocol, const std::string& plate,
@@ -113,7 +113,7 @@ std::vector<Levels> levels_of(Bench& bench) {
   std::vector<Levels> all;
   for (const Fingers& of : fingers(bench)) {
     for (auto* const compared : {whole_tap, plates_part}) {
-      for (const std::string& plate : plates) {
+      for (const std::string& plate : shaken_plates) {
         all.push_back(compared(bench, of, plate));
       }
     }

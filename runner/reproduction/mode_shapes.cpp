@@ -45,7 +45,7 @@ double largest_at(const analysis::ColourMap& map, const std::vector<std::size_t>
   return most;
 }
 
-double largest(const analysis::ColourMap& map) {
+double largest_anywhere(const analysis::ColourMap& map) {
   std::vector<std::size_t> all(map.rows * map.columns);
   for (std::size_t i = 0; i < all.size(); ++i) {
     all[i] = i;
@@ -74,7 +74,7 @@ void add(Bench& bench, const Shown& shown_plate, Claim& claim) {
   for (const core::Fixation& fixation : stimulus.plate->fixations) {
     held.push_back(place_of(map, fixation.at_m));
   }
-  const double most_um = largest(map);
+  const double most_um = largest_anywhere(map);
   const double middle_um = largest_at(map, {place_of(map, core::Vec3::Zero())});
   claim.methods.push_back(
       {shown_plate.method,
@@ -85,9 +85,10 @@ void add(Bench& bench, const Shown& shown_plate, Claim& claim) {
         at_least(50.0, "largest where it was struck", 100.0 * middle_um / most_um,
                  "% of the largest")}});
   keep_first(map);
-  claim.drawings.push_back({fmt::format("{}: {} after a strike, red is {} µm", shown_plate.method,
-                                        shown_plate.stimulus, analysis::rounded(largest(map))),
-                            colour_svgs(map)});
+  claim.drawings.push_back(
+      {fmt::format("{}: {} after a strike, red is {} µm", shown_plate.method, shown_plate.stimulus,
+                   analysis::rounded(largest_anywhere(map))),
+       colour_svgs(map)});
   analysis::ColourMap modes = analysis::map_of_modes(*bench.models.plate_of(protocol, stimulus),
                                                      std::get<core::Box>(stimulus.plate->shape),
                                                      "mode of " + stimulus.name);

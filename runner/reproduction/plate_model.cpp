@@ -12,22 +12,23 @@ constexpr double printed_tets = 443.0;
 constexpr double printed_modes = 267.0;
 constexpr double same_count = 0.01;
 constexpr double corner_constraints = 12;  // four nodes, three axes
-const char* const file = "protocols/paper/plate_model.yaml";
-const char* const plate = "mdf";
+const char* const model_file = "protocols/paper/plate_model.yaml";
+const char* const model_plate = "mdf";
 
 const core::ModelReport& report_of(Bench& bench, const protocols::Protocol& protocol) {
-  return bench.models.body_of(protocol, stimulus_with(protocol, protocol.stimulus(plate)))->report;
+  return bench.models.body_of(protocol, stimulus_with(protocol, protocol.stimulus(model_plate)))
+      ->report;
 }
 
 Claim tetrahedra(Bench& bench) {
-  const core::ModelReport& report = report_of(bench, shipped_protocol(file));
+  const core::ModelReport& report = report_of(bench, shipped_protocol(model_file));
   Claim claim{
       .name = "tetrahedra",
       .section = "Table 1",
       .statement = "The plate is meshed with 443 linear tetrahedra.",
       .rule = "The count differs by no more than 1 %: a mesh of another version of TetGen."};
   claim.methods.push_back({std::string{method::printed},
-                           modes_command(file, plate),
+                           modes_command(model_file, model_plate),
                            {shown("tetrahedra", report.tets),
                             at_most(100.0 * same_count, "difference from 443",
                                     difference_percent(report.tets, printed_tets), "%")}});
@@ -53,7 +54,7 @@ std::vector<Measure> meshes_of(const protocols::Plate& body) {
 }
 
 Claim all_modes(Bench& bench) {
-  const protocols::Protocol protocol = shipped_protocol(file);
+  const protocols::Protocol protocol = shipped_protocol(model_file);
   const core::ModelReport& report = report_of(bench, protocol);
   Claim claim{
       .name = "all_modes",
@@ -61,11 +62,11 @@ Claim all_modes(Bench& bench) {
       .statement = "Fixed at its four bottom corners the model has 267 modes.",
       .rule = "As many modes as free degrees of freedom, with no more than 1 % difference."};
   claim.methods.push_back({std::string{method::printed},
-                           modes_command(file, plate),
+                           modes_command(model_file, model_plate),
                            {shown("free degrees of freedom", report.dofs),
                             at_most(100.0 * same_count, "difference from 267",
                                     difference_percent(report.dofs, printed_modes), "%")}});
-  claim.findings = meshes_of(*protocol.stimulus(plate).plate);
+  claim.findings = meshes_of(*protocol.stimulus(model_plate).plate);
   const double nodes = (printed_modes + corner_constraints) / 3.0;
   claim.remarks.push_back(
       fmt::format("267 modes and four fixed vertices are {:.0f} vertices, with 443 tetrahedra "

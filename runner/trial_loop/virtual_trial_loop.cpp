@@ -4,7 +4,7 @@
 #include <cmath>
 namespace tapstudy::runner {
 namespace {
-constexpr std::size_t ring_capacity = 1024;
+constexpr std::size_t slice_ticks = 1024;
 
 class VirtualExploration final : public Exploration {
  public:
@@ -20,7 +20,7 @@ class VirtualExploration final : public Exploration {
   void pass_time(double seconds) override {
     auto left = static_cast<std::int64_t>(std::llround(seconds / period_s_));
     while (left > 0 && is_running()) {
-      const std::int64_t slice = std::min<std::int64_t>(left, ring_capacity);
+      const std::int64_t slice = std::min<std::int64_t>(left, slice_ticks);
       loop_.run_ticks(slice);
       keep_ == Keep::nothing ? collector_.discard() : collector_.drain();
       left -= slice;
@@ -41,7 +41,7 @@ class VirtualExploration final : public Exploration {
 }  // namespace
 
 TrialResult VirtualTrialLoop::run(const Rendered& rendered, const Explore& explore) {
-  core::SpscRing<core::TraceSample> ring{ring_capacity};
+  core::SpscRing<core::TraceSample> ring{slice_ticks};
   results::TraceCollector collector{
       ring, keep_ == Keep::events ? results::Traced::events_only : results::Traced::whole};
   device::VirtualClock clock;

@@ -13,7 +13,7 @@ using namespace tapstudy::results;
 using Catch::Matchers::Contains;
 
 namespace {
-StudyRow study() {
+StudyRow empty_study() {
   return {"a study", "study.yaml", "format: tapstudy/1\n", "hash", {{"s.stl", "hash", "solid\n"}}};
 }
 JournalledAnswer answer(int number, const std::string& response) {
@@ -21,7 +21,7 @@ JournalledAnswer answer(int number, const std::string& response) {
           {{0, "A", "one"}, {1, "B", "two"}},
           {response, true, 0.1, std::nullopt}};
 }
-SessionRow session() {
+SessionRow first_session() {
   SessionRow row;
   row.id = 1;
   row.participant_id = "P01";
@@ -31,7 +31,7 @@ SessionRow session() {
 void write_three(const std::string& directory) {
   Journal journal{directory};
   for (int number = 1; number <= 3; ++number) {
-    journal.complete(study, {session()}, {.answers = {answer(number, "one")}});
+    journal.complete(empty_study, {first_session()}, {.answers = {answer(number, "one")}});
   }
 }
 std::vector<std::string> lines_of(const std::string& text) {
@@ -54,13 +54,13 @@ std::string joined(const std::vector<std::string>& lines) {
 TEST_CASE("what a journal was told comes back, once each", "[results][journal]") {
   const testing::TempDirectory directory;
   write_three(directory.path());
-  Journal{directory.path()}.complete(study, {session()},
+  Journal{directory.path()}.complete(empty_study, {first_session()},
                                      {.answers = {answer(2, "one")}});  // known already
   const JournalContent content = read_journal(directory.path());
-  CHECK(content.study.protocol_text == study().protocol_text);
+  CHECK(content.study.protocol_text == empty_study().protocol_text);
   CHECK(content.study.surfaces.at(0).bytes == "solid\n");
   REQUIRE(content.sessions.size() == 1);
-  CHECK(content.sessions[0].seed == session().seed);
+  CHECK(content.sessions[0].seed == first_session().seed);
   REQUIRE(content.entries.answers.size() == 3);
   CHECK(to_lines({.answers = {content.entries.answers[2]}}) ==
         to_lines({.answers = {answer(3, "one")}}));
@@ -97,7 +97,7 @@ TEST_CASE("half a line at a journal's end is cut off, and what it said is said a
   const std::string whole = testing::contents(file);
   testing::write(file, whole.substr(0, whole.size() - 20));
   CHECK(read_journal(directory.path()).entries.answers.size() == 2);
-  Journal{directory.path()}.complete(study, {}, {.answers = {answer(3, "one")}});
+  Journal{directory.path()}.complete(empty_study, {}, {.answers = {answer(3, "one")}});
   CHECK(testing::contents(file) == whole);
 }
 
@@ -106,8 +106,8 @@ TEST_CASE("several programs append to one journal", "[results][journal]") {
   Journal one{directory.path()};
   Journal other{directory.path()};
   for (int number = 1; number <= 20; number += 2) {
-    one.complete(study, {session()}, {.answers = {answer(number, "one")}});
-    other.complete(study, {session()}, {.answers = {answer(number + 1, "two")}});
+    one.complete(empty_study, {first_session()}, {.answers = {answer(number, "one")}});
+    other.complete(empty_study, {first_session()}, {.answers = {answer(number + 1, "two")}});
   }
   CHECK(read_journal(directory.path()).entries.answers.size() == 20);
 }
@@ -123,9 +123,9 @@ TEST_CASE("a journal that cannot be written ends as it was before", "[results][j
   rlimit tight = limit;
   tight.rlim_cur = before.size() + 20;  // the line is longer
   setrlimit(RLIMIT_FSIZE, &tight);
-  CHECK_THROWS_AS(journal.complete(study, {}, {.answers = {answer(4, "one")}}), StoreError);
+  CHECK_THROWS_AS(journal.complete(empty_study, {}, {.answers = {answer(4, "one")}}), StoreError);
   setrlimit(RLIMIT_FSIZE, &limit);
   CHECK(testing::contents(journal_file(directory.path())) == before);
-  journal.complete(study, {}, {.answers = {answer(4, "one")}});
+  journal.complete(empty_study, {}, {.answers = {answer(4, "one")}});
   CHECK(read_journal(directory.path()).entries.answers.size() == 4);
 }

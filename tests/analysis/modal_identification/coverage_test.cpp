@@ -14,7 +14,7 @@ using testing::PlantedMode;
 namespace {
 constexpr double rate_hz = 3000.0;
 constexpr double recorded_s = 1.4;
-const std::vector<PlantedMode> plate{
+const std::vector<PlantedMode> covered_modes{
     {{62.0, 0.03}, 1.0}, {{118.0, 0.02}, 0.7}, {{133.0, 0.015}, 0.6}, {{260.0, 0.03}, 0.8}};
 
 // The ratio of the mean power over the first 0.2 s to that of the noise.
@@ -55,9 +55,10 @@ void count(const TapModes& tap, Coverage& coverage) {
       continue;
     }
     const Pole& pole = mode.fitted.pole;
-    const auto nearest = std::ranges::min_element(plate, {}, [&](const PlantedMode& planted) {
-      return std::abs(planted.pole.frequency_hz - pole.frequency_hz);
-    });
+    const auto nearest =
+        std::ranges::min_element(covered_modes, {}, [&](const PlantedMode& planted) {
+          return std::abs(planted.pole.frequency_hz - pole.frequency_hz);
+        });
     const Pole& truth = nearest->pole;
     if (std::abs(truth.frequency_hz - pole.frequency_hz) > 0.05 * truth.frequency_hz) {
       ++coverage.spurious;
@@ -82,10 +83,10 @@ Coverage coverage_of(double signal_to_noise_db, int recordings, void (*change)(R
   Coverage coverage;
   for (int i = 0; i < recordings; ++i) {
     Recording recording = testing::planted_recording(
-        plate, taps_s, rate_hz, recorded_s, noise_for(plate, signal_to_noise_db),
+        covered_modes, taps_s, rate_hz, recorded_s, noise_for(covered_modes, signal_to_noise_db),
         static_cast<std::uint64_t>(1000 * signal_to_noise_db + i));
     change(recording);
-    coverage.planted += static_cast<int>(plate.size() * taps_s.size());
+    coverage.planted += static_cast<int>(covered_modes.size() * taps_s.size());
     for (const TapModes& tap : modes_of(recording)) {
       count(tap, coverage);
     }

@@ -17,11 +17,11 @@ using namespace tapstudy;
 using namespace tapstudy::analysis;
 
 namespace {
-const std::vector<double> frequencies_hz{48.0, 97.0, 142.0, 231.0, 290.0};
+const std::vector<double> five_modes_hz{48.0, 97.0, 142.0, 231.0, 290.0};
 
 std::vector<MeasuredRatio> ratios_of(const core::RayleighDamping& damping, double relative_error) {
   std::vector<MeasuredRatio> measured;
-  for (const double frequency_hz : frequencies_hz) {
+  for (const double frequency_hz : five_modes_hz) {
     const double omega = 2.0 * std::numbers::pi * frequency_hz;
     const double ratio = core::damping_ratios(damping, Eigen::ArrayXd::Constant(1, omega))[0];
     measured.push_back({frequency_hz, ratio, relative_error * ratio});
@@ -119,7 +119,7 @@ TEST_CASE("Young's modulus follows the square of the frequencies",
   for (const double frequency_hz : {48.0, 142.0, 231.0}) {  // not every mode is excited
     measured.push_back(factor * frequency_hz);
   }
-  const auto update = update_youngs_modulus(estimates(measured), frequencies_hz, 2.5e9);
+  const auto update = update_youngs_modulus(estimates(measured), five_modes_hz, 2.5e9);
   REQUIRE(update);
   CHECK(update->youngs_modulus_pa.value == Approx(2.5e9 * factor * factor));
   CHECK(update->matched[1].model == 2);
@@ -134,10 +134,10 @@ TEST_CASE("the interval of Young's modulus holds what was planted, 95 times in 1
   int inside = 0;
   for (int i = 0; i < fits; ++i) {
     std::vector<double> measured;
-    for (const double frequency_hz : frequencies_hz) {
+    for (const double frequency_hz : five_modes_hz) {
       measured.push_back(1.03 * frequency_hz * std::exp(0.01 * rng.normal()));
     }
-    const auto update = update_youngs_modulus(estimates(measured), frequencies_hz, 1e9);
+    const auto update = update_youngs_modulus(estimates(measured), five_modes_hz, 1e9);
     inside += holds(update->youngs_modulus_pa.interval, 1.03 * 1.03 * 1e9) ? 1 : 0;
   }
   CHECK(std::abs(inside - 0.95 * fits) <= 3.3 * std::sqrt(fits * 0.95 * 0.05));
@@ -172,11 +172,11 @@ TEST_CASE("modes are assigned as SciPy's assignment does", "[analysis][modal_ide
 TEST_CASE("a mode that the model does not have stays without a partner",
           "[analysis][modal_identification]") {
   const auto update =
-      update_youngs_modulus(estimates({48.0, 70.0, 97.0, 142.0}), frequencies_hz, 1e9);
+      update_youngs_modulus(estimates({48.0, 70.0, 97.0, 142.0}), five_modes_hz, 1e9);
   REQUIRE(update);
   CHECK(update->unmatched == std::vector<std::size_t>{1});
   CHECK(update->youngs_modulus_pa.value == Approx(1e9));
-  CHECK_FALSE(update_youngs_modulus(estimates({20.0}), frequencies_hz, 1e9));
+  CHECK_FALSE(update_youngs_modulus(estimates({20.0}), five_modes_hz, 1e9));
 }
 
 TEST_CASE("a decaying sinusoid and its errors are those of SciPy's curve_fit",

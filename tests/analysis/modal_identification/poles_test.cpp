@@ -16,10 +16,10 @@ using testing::PlantedMode;
 
 namespace {
 const Band band{20.0, 600.0};
-const std::vector<PlantedMode> plate{{{62.0, 0.03}, 1.0, -1.5},
-                                     {{118.0, 0.2}, 0.7, 0.3},
-                                     {{124.0, 0.015}, 0.6, -1.2},
-                                     {{431.0, 0.02}, 0.5, 2.0}};
+const std::vector<PlantedMode> planted_modes{{{62.0, 0.03}, 1.0, -1.5},
+                                             {{118.0, 0.2}, 0.7, 0.3},
+                                             {{124.0, 0.015}, 0.6, -1.2},
+                                             {{431.0, 0.02}, 0.5, 2.0}};
 
 bool has(const std::vector<Pole>& poles, const Pole& pole, double tolerance) {
   return std::ranges::any_of(poles, [&](const Pole& one) {
@@ -43,12 +43,12 @@ int agreed_in(const TapModes& tap) {
 TEST_CASE("without noise both methods find the poles, wherever the decay is cut off",
           "[analysis][modal_identification]") {
   const double duration_s = GENERATE(0.1, 0.37, 1.0);
-  const FreeDecay decay = testing::planted_decay(plate, 4000.0, duration_s);
+  const FreeDecay decay = testing::planted_decay(planted_modes, 4000.0, duration_s);
   const auto orders = matrix_pencil(decay, band, 8).orders;
   const auto by_rational_fit =
-      vector_fitting(band_spectrum(decay, band), static_cast<int>(plate.size()));
+      vector_fitting(band_spectrum(decay, band), static_cast<int>(planted_modes.size()));
   REQUIRE(orders.back().order == 8);
-  for (const PlantedMode& mode : plate) {
+  for (const PlantedMode& mode : planted_modes) {
     INFO(duration_s << " s, " << mode.pole.frequency_hz << " Hz");
     CHECK(has(orders.back().poles, mode.pole, 1e-4));
     CHECK(has(by_rational_fit, mode.pole, 1e-6));
@@ -56,11 +56,11 @@ TEST_CASE("without noise both methods find the poles, wherever the decay is cut 
 }
 
 TEST_CASE("filtering and decimating a decay leaves its poles", "[analysis][modal_identification]") {
-  const FreeDecay decay = testing::planted_decay(plate, 48000.0, 0.4);
+  const FreeDecay decay = testing::planted_decay(planted_modes, 48000.0, 0.4);
   const FreeDecay slow = decimated(decay, band.high_hz);
   CHECK(slow.rate_hz >= 4.0 * band.high_hz);
   CHECK(slow.rate_hz < 5.0 * band.high_hz);
-  for (const PlantedMode& mode : plate) {
+  for (const PlantedMode& mode : planted_modes) {
     CHECK(has(matrix_pencil(decay, band, 8).orders.back().poles, mode.pole, 1e-4));
   }
 }
@@ -218,7 +218,7 @@ TEST_CASE("a pole that does not last over the orders is not stable",
 
 TEST_CASE("a decay that is too short for the band is refused with the length it takes",
           "[analysis][modal_identification]") {
-  const FreeDecay decay = testing::planted_decay(plate, 4000.0, 0.01);
+  const FreeDecay decay = testing::planted_decay(planted_modes, 4000.0, 0.01);
   CHECK_THROWS_WITH(identify_modes(decay, {band}), Contains("too short") && Contains("at least"));
   CHECK_THROWS_AS(identify_modes(decay, {band}), core::InvalidInput);
 }

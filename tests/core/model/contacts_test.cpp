@@ -39,16 +39,16 @@ core::Plate block(const core::Vec3& size_m, double tet_volume_m3) {
   plate.mesh.size.max_tet_volume_m3 = tet_volume_m3;
   return plate;
 }
-core::Material material(double youngs_modulus_pa, double density, double ratio) {
+core::Material material_of(double youngs_modulus_pa, double density, double ratio) {
   return {youngs_modulus_pa, density, 0.3, core::ConstantDamping{ratio}};
 }
 
 // A small board on a larger one, at four corners.
 struct BoardOnBoard {
   explicit BoardOnBoard(core::RegionShape shape) {
-    board.material = material(3e9, 1180.0, 0.02);
+    board.material = material_of(3e9, 1180.0, 0.02);
     board.band_limit_hz = 900.0;
-    core::BodyInContact table{block({0.4, 0.4, 0.02}, 2e-5), material(2.5e9, 610.0, 0.05)};
+    core::BodyInContact table{block({0.4, 0.4, 0.02}, 2e-5), material_of(2.5e9, 610.0, 0.05)};
     table.fixations = {side(core::Side::left), side(core::Side::right)};
     core::Contacts contacts{{table}, {}};
     for (const auto& [x, y] : {std::pair{-0.1, -0.08}, {0.1, -0.08}, {-0.1, 0.08}, {0.1, 0.08}}) {
@@ -77,7 +77,7 @@ core::CoupledBodies discrete(const core::PlateSpec& spec) {
 
 // A heavy stiff block on feet, each of which is a spring of its own: closed forms below.
 core::PlateSpec stiff_block(double band_hz) {
-  core::PlateSpec spec{block({0.1, 0.1, 0.05}, 2e-5), material(1e13, 2000.0, 0.01), band_hz};
+  core::PlateSpec spec{block({0.1, 0.1, 0.05}, 2e-5), material_of(1e13, 2000.0, 0.01), band_hz};
   return spec;
 }
 constexpr double block_kg = 0.1 * 0.1 * 0.05 * 2000.0;
@@ -119,7 +119,7 @@ TEST_CASE("CalculiX finds the same frequencies of a board on a board",
 
 TEST_CASE("a stiff block on four soft feet moves up and down at sqrt(k / m)", "[core][model]") {
   core::PlateSpec spec = stiff_block(60.0);
-  core::BodyInContact ground{block({0.3, 0.3, 0.05}, 1e-4), material(1e13, 2000.0, 0.01)};
+  core::BodyInContact ground{block({0.3, 0.3, 0.05}, 1e-4), material_of(1e13, 2000.0, 0.01)};
   ground.fixations = {side(core::Side::bottom)};
   core::Contacts contacts{{ground}, {}};
   for (const auto& [x, y] : {std::pair{-0.03, -0.03}, {0.03, -0.03}, {-0.03, 0.03}, {0.03, 0.03}}) {
@@ -144,7 +144,7 @@ TEST_CASE("a stiff block on four soft feet moves up and down at sqrt(k / m)", "[
 
 TEST_CASE("a block slides on the ground, however many nodes hold the ground", "[core][model]") {
   core::PlateSpec spec = stiff_block(60.0);
-  core::BodyInContact ground{block({0.8, 0.8, 0.025}, 3e-6), material(1e13, 2000.0, 0.01)};
+  core::BodyInContact ground{block({0.8, 0.8, 0.025}, 3e-6), material_of(1e13, 2000.0, 0.01)};
   ground.fixations = {side(core::Side::bottom)};
   core::Contacts contacts{{ground}, {}};
   for (const auto& [x, y] : {std::pair{-0.03, -0.03}, {0.03, -0.03}, {0.0, 0.03}}) {
@@ -192,7 +192,7 @@ TEST_CASE("three equal free blocks in a ring of springs part at sqrt(3 k / m)", 
 
 TEST_CASE("a contact that is stiff beyond all else is a joint: a bar of two halves",
           "[core][model]") {
-  core::PlateSpec whole{block({0.4, 0.03, 0.02}, 2e-6), material(2e9, 1000.0, 0.02), 250.0};
+  core::PlateSpec whole{block({0.4, 0.03, 0.02}, 2e-6), material_of(2e9, 1000.0, 0.02), 250.0};
   whole.fixations = {side(core::Side::left)};
   core::PlateSpec half = whole;
   half.shape = core::Box{{0.2, 0.03, 0.02}};

@@ -7,7 +7,7 @@
 using namespace tapstudy::core;
 
 namespace {
-constexpr double speed_m_s = 0.2;
+constexpr double struck_m_s = 0.2;
 RenderSettings settings_by_place() {
   RenderSettings settings;
   settings.dt_s = 1e-3;
@@ -21,7 +21,7 @@ double force_n(double x_m) {
   Contact contact;
   contact.god_object_m = {x_m, 0.07, 0.0};
   sinusoid.touch(contact);
-  sinusoid.impact(speed_m_s);
+  sinusoid.impact(struck_m_s);
   sinusoid.advance();
   sinusoid.advance();
   ForceParts parts;
@@ -30,7 +30,7 @@ double force_n(double x_m) {
 }
 double expected_n(double amplitude_n_s_per_m, double frequency_hz) {
   const double t_s = 2e-3;
-  return amplitude_n_s_per_m * speed_m_s * std::exp(-600.0 * t_s) *
+  return amplitude_n_s_per_m * struck_m_s * std::exp(-600.0 * t_s) *
          std::sin(2.0 * std::numbers::pi * frequency_hz * t_s);
 }
 }  // namespace
@@ -49,7 +49,7 @@ TEST_CASE("a sinusoid that rings keeps the frequency of its impact", "[core][tic
   Contact contact;
   contact.god_object_m = {-0.2, 0.0, 0.0};
   sinusoid.touch(contact);
-  sinusoid.impact(speed_m_s);
+  sinusoid.impact(struck_m_s);
   contact.god_object_m.x() = 0.2;
   sinusoid.touch(contact);
   sinusoid.advance();

@@ -14,11 +14,11 @@ using namespace tapstudy::core;
 namespace testing = tapstudy::testing;
 
 namespace {
-constexpr double release_height_m = 5e-4;
+constexpr double shaded_release_m = 5e-4;
 constexpr double stiffness_n_per_m = 3000.0;
-constexpr double depth_m = 10.0 / stiffness_n_per_m;  // 10 N
-constexpr double tilt_at_most = 0.012;                // an edge of the sphere turns by 0.09 rad
-constexpr double step_m = 1e-4;                       // 0.1 m/s at 1 kHz
+constexpr double pressed_m = 10.0 / stiffness_n_per_m;  // 10 N
+constexpr double tilt_at_most = 0.012;                  // an edge of the sphere turns by 0.09 rad
+constexpr double step_m = 1e-4;                         // 0.1 m/s at 1 kHz
 
 // A curve `depth` below a surface, by a parameter in which it is smooth; out is its outward normal.
 struct Curve {
@@ -37,7 +37,7 @@ struct Slide {
 
 // At 0.1 m/s.
 Slide slide_along(const TriangleTree& tree, const Curve& curve) {
-  SurfaceContact contact{tree, release_height_m};
+  SurfaceContact contact{tree, shaded_release_m};
   for (int tick = -100; tick < 0; ++tick) {  // in from above
     contact.tick({curve.at(0.0) - tick * step_m * curve.out(0.0), Vec3::Zero()});
   }
@@ -73,7 +73,7 @@ Curve great_circle(double radius_m, const Vec3& pole) {
   const auto out = [=](double u) -> Vec3 {
     return std::cos(2.0 * M_PI * u) * across + std::sin(2.0 * M_PI * u) * along;
   };
-  return {[=](double u) -> Vec3 { return (radius_m - depth_m) * out(u); }, out, 1.0};
+  return {[=](double u) -> Vec3 { return (radius_m - pressed_m) * out(u); }, out, 1.0};
 }
 
 // Once around the axis and `turns` times around the tube.
@@ -86,7 +86,7 @@ Curve around_torus(double radius_m, double tube_m, int turns, double phase) {
   return {[=](double t) -> Vec3 {
             const double u = 2.0 * M_PI * t;
             return Vec3{radius_m * std::cos(u), radius_m * std::sin(u), 0.0} +
-                   (tube_m - depth_m) * out(t);
+                   (tube_m - pressed_m) * out(t);
           },
           out, 1.0};
 }
@@ -111,7 +111,7 @@ Curve over_ridge() {
   const auto out = [](double t) { return ridge_normal(0.16 * t - 0.08); };
   return {[=](double t) -> Vec3 {
             const double x = 0.16 * t - 0.08;
-            return Vec3{x, 0.01 + 0.02 * t, ridge_height(x)} - depth_m * out(t);
+            return Vec3{x, 0.01 + 0.02 * t, ridge_height(x)} - pressed_m * out(t);
           },
           out, 1.0};
 }
@@ -146,7 +146,7 @@ TEST_CASE("a shaded force depends on where the tip is, not on how it came there"
           "[core][contact][surface][shading]") {
   const TriangleTree torus{testing::torus_surface(0.1, 0.04, 40, 20)};
   const Curve curve = around_torus(0.1, 0.04, 2, 0.3);
-  SurfaceContact contact{torus, release_height_m};
+  SurfaceContact contact{torus, shaded_release_m};
   for (int tick = -100; tick < 0; ++tick) {
     contact.tick({curve.at(0.0) - tick * step_m * curve.out(0.0), Vec3::Zero()});
   }
@@ -158,7 +158,7 @@ TEST_CASE("a shaded force depends on where the tip is, not on how it came there"
   for (int tick = 4000; tick >= 0; --tick) {
     const Contact& now = contact.tick({curve.at(1e-4 * tick), Vec3::Zero()});
     CHECK((now.penetration_m * now.normal - there.at(static_cast<std::size_t>(tick))).norm() <
-          1e-6 * depth_m);
+          1e-6 * pressed_m);
   }
 }
 
@@ -171,7 +171,7 @@ TriangleTree roof(double angle_rad) {
 }
 // The largest tilt of the force against the nearer of the roof's two faces, sliding across it.
 double largest_tilt_over(const TriangleTree& tree, double angle_rad) {
-  SurfaceContact contact{tree, release_height_m};
+  SurfaceContact contact{tree, shaded_release_m};
   double largest = 0.0;
   int touched = 0;
   for (int tick = 0; tick <= 1000; ++tick) {
@@ -240,7 +240,7 @@ TEST_CASE("a foot is the place on the triangles whose mean normal points to it f
 
 TEST_CASE("a shaded tick never allocates", "[core][contact][surface][shading][realtime]") {
   const TriangleTree sphere{testing::icosphere_surface(0.1, 3)};
-  SurfaceContact contact{sphere, release_height_m};
+  SurfaceContact contact{sphere, shaded_release_m};
   const Curve circle = great_circle(0.1, {1.0, 2.0, 3.0});
   contact.tick({1.2 * circle.at(0.0), Vec3::Zero()});
   const testing::AllocationCount allocations;

@@ -8,12 +8,12 @@
 using namespace tapstudy::core;
 
 namespace {
-constexpr double release_height_m = 5e-4;
+constexpr double plate_release_m = 5e-4;
 HandState at(double z_m, double speed_m_s = 0.0, double x_m = 0.0) {
   return {{x_m, 0.0, z_m}, {0.0, 0.0, speed_m_s}};
 }
 int strikes(const std::vector<double>& heights_m) {
-  PlateContact contact{{0.3, 0.3}, release_height_m};
+  PlateContact contact{{0.3, 0.3}, plate_release_m};
   int count = 0;
   for (const double z : heights_m) {
     count += contact.tick(at(z)).impact ? 1 : 0;
@@ -23,7 +23,7 @@ int strikes(const std::vector<double>& heights_m) {
 }  // namespace
 
 TEST_CASE("a finger that passes the face strikes once, with its speed", "[core][contact]") {
-  PlateContact contact{{0.3, 0.3}, release_height_m};
+  PlateContact contact{{0.3, 0.3}, plate_release_m};
   contact.tick(at(0.01, -0.3));
   const Contact impact = contact.tick(at(-0.001, -0.3));
   CHECK(impact.impact);
@@ -40,7 +40,7 @@ TEST_CASE("chatter inside the release height does not strike again", "[core][con
 }
 
 TEST_CASE("a finger found below the face is not in contact", "[core][contact][safety]") {
-  PlateContact contact{{0.3, 0.3}, release_height_m};
+  PlateContact contact{{0.3, 0.3}, plate_release_m};
   CHECK_FALSE(contact.tick(at(-0.01)).touching);
   CHECK_FALSE(contact.tick(at(-0.005)).touching);
   contact.tick(at(0.001));
@@ -48,14 +48,14 @@ TEST_CASE("a finger found below the face is not in contact", "[core][contact][sa
 }
 
 TEST_CASE("a finger that comes in from the side meets no force", "[core][contact][safety]") {
-  PlateContact contact{{0.3, 0.3}, release_height_m};
+  PlateContact contact{{0.3, 0.3}, plate_release_m};
   contact.tick(at(0.01, 0.0, 0.4));
   contact.tick(at(-0.01, 0.0, 0.4));
   CHECK_FALSE(contact.tick(at(-0.01, 0.0, 0.2)).touching);
 }
 
 TEST_CASE("a finger that slides over the edge is free", "[core][contact]") {
-  PlateContact contact{{0.3, 0.3}, release_height_m};
+  PlateContact contact{{0.3, 0.3}, plate_release_m};
   contact.tick(at(0.01, 0.0, 0.29));
   CHECK(contact.tick(at(-0.001, 0.0, 0.299)).touching);
   CHECK_FALSE(contact.tick(at(-0.001, 0.0, 0.301)).touching);
@@ -72,7 +72,7 @@ TEST_CASE("a finger on the very edge of a plate lands, wherever the plate is pla
       return placement.to_plate({placement.point_to_device({x_m, y_m, z_m}), Vec3::Zero()});
     };
     const double y_m = i % 2 == 0 ? 0.2 : 0.4 * rng.uniform() - 0.2;  // a corner, or along an edge
-    PlateContact contact{face, release_height_m};
+    PlateContact contact{face, plate_release_m};
     contact.tick(in_plate(0.3, y_m, 0.01));
     CHECK(contact.tick(in_plate(0.3, y_m, -0.001)).touching);
   }

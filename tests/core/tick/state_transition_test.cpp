@@ -21,16 +21,16 @@ double energy(const StateTransition& step, double omega, double q, double v) {
 }
 constexpr std::initializer_list<double> damping_ratios{
     0.0, 0.01, 0.7, 0.999999, 1.0, 1.000001, 1.0000001, 1.004, 1.2, 3.0, 100.0};
-constexpr double dt_s = 1e-3;
+constexpr double step_s = 1e-3;
 }  // namespace
 
 TEST_CASE("two exact half steps are one exact step", "[core][oscillator]") {
   const double zeta = GENERATE(values<double>(damping_ratios));
   const double omega = GENERATE(1e-6, 1.0, 300.0, 1000.0, 3000.0);
   CAPTURE(zeta, omega);
-  const StateTransition half = exact_transition(omega, zeta, 0.5 * dt_s);
+  const StateTransition half = exact_transition(omega, zeta, 0.5 * step_s);
   const StateTransition twice = after(half, half);
-  const StateTransition once = exact_transition(omega, zeta, dt_s);
+  const StateTransition once = exact_transition(omega, zeta, step_s);
   CHECK(twice.qq == Approx(once.qq).epsilon(1e-10).margin(1e-12));
   CHECK(twice.qv == Approx(once.qv).epsilon(1e-10).margin(1e-15));
   CHECK(twice.vq == Approx(once.vq).epsilon(1e-10).margin(1e-12 * omega));
@@ -41,15 +41,15 @@ TEST_CASE("a step shrinks phase space by exp(-2 zeta omega dt) (Liouville)", "[c
   const double zeta = GENERATE(values<double>(damping_ratios));
   const double omega = GENERATE(1e-3, 30.0, 300.0, 1500.0);
   CAPTURE(zeta, omega);
-  CHECK(determinant(exact_transition(omega, zeta, dt_s)) ==
-        Approx(std::exp(-2.0 * zeta * omega * dt_s)).epsilon(1e-9).margin(1e-12));
+  CHECK(determinant(exact_transition(omega, zeta, step_s)) ==
+        Approx(std::exp(-2.0 * zeta * omega * step_s)).epsilon(1e-9).margin(1e-12));
 }
 
 TEST_CASE("an undamped mode swings at its own frequency", "[core][oscillator]") {
   const double omega = GENERATE(10.0, 300.0, 1885.0);
   double q = 1.0;
   double v = 0.0;
-  const StateTransition step = exact_transition(omega, 0.0, dt_s);
+  const StateTransition step = exact_transition(omega, 0.0, step_s);
   for (int tick = 1; tick <= 1000; ++tick) {
     const double q_before = q;
     q = step.qq * q + step.qv * v;
@@ -63,14 +63,14 @@ TEST_CASE("three hundred ticks of a damped mode are its closed form", "[core][os
   const double zeta = GENERATE(0.0, 0.02, 0.5);
   const double omega = 2.0 * M_PI * hz;
   const double damped = omega * std::sqrt(1.0 - zeta * zeta);
-  const StateTransition step = exact_transition(omega, zeta, dt_s);
+  const StateTransition step = exact_transition(omega, zeta, step_s);
   double q = 0.0;
   double v = omega;
   for (int tick = 1; tick <= 300; ++tick) {
     const double q_before = q;
     q = step.qq * q + step.qv * v;
     v = step.vq * q_before + step.vv * v;
-    const double t = tick * dt_s;
+    const double t = tick * step_s;
     REQUIRE(
         q ==
         Approx(omega / damped * std::exp(-zeta * omega * t) * std::sin(damped * t)).margin(1e-12));
@@ -79,10 +79,10 @@ TEST_CASE("three hundred ticks of a damped mode are its closed form", "[core][os
 
 TEST_CASE("around critical damping nothing jumps", "[core][oscillator]") {
   const double omega = GENERATE(1.0, 300.0, 3000.0);
-  const StateTransition critical = exact_transition(omega, 1.0, dt_s);
-  CHECK(critical.qv == Approx(dt_s * std::exp(-omega * dt_s)));
+  const StateTransition critical = exact_transition(omega, 1.0, step_s);
+  CHECK(critical.qv == Approx(step_s * std::exp(-omega * step_s)));
   for (const double off : {-1e-8, 1e-8}) {
-    const StateTransition near = exact_transition(omega, 1.0 + off, dt_s);
+    const StateTransition near = exact_transition(omega, 1.0 + off, step_s);
     CHECK(near.qq == Approx(critical.qq).epsilon(1e-6));
     CHECK(near.vv == Approx(critical.vv).epsilon(1e-6).margin(1e-9));
   }
@@ -91,7 +91,7 @@ TEST_CASE("around critical damping nothing jumps", "[core][oscillator]") {
 TEST_CASE("an overdamped mode creeps back without crossing zero", "[core][oscillator]") {
   const double zeta = GENERATE(1.5, 20.0, 100.0);
   const double omega = GENERATE(1.0, 300.0, 1e6);
-  const StateTransition step = exact_transition(omega, zeta, dt_s);
+  const StateTransition step = exact_transition(omega, zeta, step_s);
   CAPTURE(zeta, omega);
   CHECK(std::isfinite(step.vv));
   CHECK(step.qq >= 0.0);
@@ -101,10 +101,10 @@ TEST_CASE("an overdamped mode creeps back without crossing zero", "[core][oscill
 TEST_CASE("Newmark rings at 2 atan(omega dt / 2) / dt", "[core][oscillator]") {
   const double hz = GENERATE(30.0, 100.0, 300.0, 499.0);
   const double omega = 2.0 * M_PI * hz;
-  const StateTransition step = newmark_transition(omega, 0.0, dt_s);
+  const StateTransition step = newmark_transition(omega, 0.0, step_s);
   // the angle of the step's complex eigenvalues
   const double angle = std::acos(0.5 * (step.qq + step.vv));
-  CHECK(angle / dt_s == Approx(2.0 * std::atan(0.5 * omega * dt_s) / dt_s).epsilon(1e-12));
+  CHECK(angle / step_s == Approx(2.0 * std::atan(0.5 * omega * step_s) / step_s).epsilon(1e-12));
   CHECK(determinant(step) == Approx(1.0));
 }
 
@@ -112,7 +112,7 @@ TEST_CASE("neither integrator ever gains energy", "[core][oscillator]") {
   const double zeta = GENERATE(0.0, 0.05, 1.0, 100.0);
   const double omega = GENERATE(1e-6, 1.0, 1e3, 1e6, 1e9);
   const auto integrator = GENERATE(Integrator::exact, Integrator::newmark);
-  const StateTransition step = state_transition(integrator, omega, zeta, dt_s);
+  const StateTransition step = state_transition(integrator, omega, zeta, step_s);
   CAPTURE(zeta, omega);
   for (const double angle : {0.0, 0.5, 1.0, 2.0, 3.0}) {
     const double q = std::cos(angle) / omega;

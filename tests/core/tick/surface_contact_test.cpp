@@ -13,7 +13,7 @@ using namespace tapstudy::core;
 namespace testing = tapstudy::testing;
 
 namespace {
-constexpr double release_height_m = 5e-4;
+constexpr double surface_release_m = 5e-4;
 HandState at(const Vec3& place_m, const Vec3& velocity_m_s = Vec3::Zero()) {
   return {place_m, velocity_m_s};
 }
@@ -43,8 +43,8 @@ bool is_pierced(const TriangleSurface& surface, const Eigen::RowVector3i& triang
 
 TEST_CASE("on a box a surface is what a plate is", "[core][contact][surface]") {
   const TriangleTree tree{testing::box_surface({0.6, 0.6, 0.05})};
-  SurfaceContact surface{tree, release_height_m};
-  PlateContact plate{{0.3, 0.3}, release_height_m};
+  SurfaceContact surface{tree, surface_release_m};
+  PlateContact plate{{0.3, 0.3}, surface_release_m};
   Rng rng{3};
   for (int tick = 0; tick < 5000; ++tick) {
     const double z = 0.004 * std::sin(0.02 * tick) + 1e-4 * rng.normal();
@@ -64,7 +64,7 @@ TEST_CASE("on a sphere the god-object is the nearest point and pushes outward",
           "[core][contact][surface]") {
   const double radius_m = 0.1;
   const TriangleTree tree{testing::sphere_surface(radius_m, 40)};
-  SurfaceContact contact{tree, release_height_m};
+  SurfaceContact contact{tree, surface_release_m};
   moved(contact, {0.0, 0.0, 0.12}, {0.0, 0.0, 0.097});
   for (int tick = 0; tick <= 2000; ++tick) {
     const double angle = 0.001 * tick;
@@ -80,7 +80,7 @@ TEST_CASE("in a concave corner up to three planes hold the god-object",
           "[core][contact][surface]") {
   // a block with a notch: its floor at z = -0.05, its walls at x = 0 and y = 0
   const TriangleTree tree{testing::notched_block()};
-  SurfaceContact contact{tree, release_height_m};
+  SurfaceContact contact{tree, surface_release_m};
   moved(contact, {0.02, 0.02, 0.02}, {0.02, 0.02, -0.045});
   const Contact corner = moved(contact, {0.02, 0.02, -0.045}, {-0.003, -0.004, -0.055});
   REQUIRE(corner.touching);
@@ -97,7 +97,7 @@ TEST_CASE("nothing pops through: a finger pressed in stays outside wherever it w
   const auto surface = GENERATE(testing::sphere_surface(0.1, 12), testing::notched_block(),
                                 testing::box_surface({0.1, 0.1, 0.02}));
   const TriangleTree tree{surface};
-  SurfaceContact contact{tree, release_height_m};
+  SurfaceContact contact{tree, surface_release_m};
   Rng rng{11};
   Vec3 tip{0.02, 0.02, 0.15};
   Vec3 target = tip;
@@ -123,7 +123,7 @@ TEST_CASE("nothing pops through: a finger pressed in stays outside wherever it w
 
 TEST_CASE("a finger found inside a body is not in contact", "[core][contact][surface][safety]") {
   const TriangleTree tree{testing::sphere_surface(0.1, 12)};
-  SurfaceContact contact{tree, release_height_m};
+  SurfaceContact contact{tree, surface_release_m};
   CHECK_FALSE(contact.tick(at({0.0, 0.0, 0.05})).touching);
   CHECK_FALSE(moved(contact, {0.0, 0.0, 0.05}, {0.0, 0.0, 0.12}).touching);
   CHECK(moved(contact, {0.0, 0.0, 0.12}, {0.0, 0.0, 0.09}).touching);
@@ -131,7 +131,7 @@ TEST_CASE("a finger found inside a body is not in contact", "[core][contact][sur
 
 TEST_CASE("chatter on a surface does not strike again", "[core][contact][surface]") {
   const TriangleTree tree{testing::box_surface({0.1, 0.1, 0.02})};
-  SurfaceContact contact{tree, release_height_m};
+  SurfaceContact contact{tree, surface_release_m};
   int strikes = 0;
   for (const double z : {0.01, -1e-4, 1e-4, -1e-4, 6e-4, -1e-4}) {
     strikes += contact.tick(at({0.0, 0.0, z}, {0.0, 0.0, -0.1})).impact ? 1 : 0;
@@ -141,7 +141,7 @@ TEST_CASE("chatter on a surface does not strike again", "[core][contact][surface
 
 TEST_CASE("a tick on a surface never allocates", "[core][contact][surface][realtime]") {
   const TriangleTree tree{testing::sphere_surface(0.1, 40)};
-  SurfaceContact contact{tree, release_height_m};
+  SurfaceContact contact{tree, surface_release_m};
   const testing::AllocationCount allocations;
   moved(contact, {0.0, 0.0, 0.12}, {0.05, 0.05, 0.05});
   CHECK(allocations.count() == 0);

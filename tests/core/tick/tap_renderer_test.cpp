@@ -12,7 +12,7 @@ using namespace tapstudy::core;
 namespace testing = tapstudy::testing;
 
 namespace {
-const VibratingPlate& plate() {
+const VibratingPlate& tapped_plate() {
   static const VibratingPlate shared{
       build_plate_model(testing::paper_plate(2, testing::mdf())).modal};
   return shared;
@@ -30,7 +30,7 @@ RenderSettings settings() {
 // A finger that goes straight in at 0.3 m/s and stays 2 mm deep.
 std::vector<RenderedTick> tapped(const char* technique, double x_m, double y_m) {
   TapRenderer renderer =
-      make_renderer(*find_technique(technique), settings(), PlateFace{0.3, 0.3}, &plate());
+      make_renderer(*find_technique(technique), settings(), PlateFace{0.3, 0.3}, &tapped_plate());
   std::vector<RenderedTick> ticks;
   renderer.tick({{x_m, y_m, 0.001}, {0.0, 0.0, -0.3}});
   for (int tick = 0; tick < 300; ++tick) {
@@ -122,16 +122,16 @@ TEST_CASE("fem+sinusoid is fem and sinusoid together", "[core][technique]") {
 }
 
 TEST_CASE("nothing is felt off the plate", "[core][technique][safety]") {
-  TapRenderer renderer =
-      make_renderer(*find_technique("fem+sinusoid"), settings(), PlateFace{0.3, 0.3}, &plate());
+  TapRenderer renderer = make_renderer(*find_technique("fem+sinusoid"), settings(),
+                                       PlateFace{0.3, 0.3}, &tapped_plate());
   renderer.tick({{0.0, 0.0, 0.001}, {0.0, 0.0, -1.0}});
   renderer.tick({{0.0, 0.0, -0.001}, {0.0, 0.0, -1.0}});
   CHECK(renderer.tick({{0.0, 0.0, 0.0001}, {}}).force_n == Vec3::Zero());
 }
 
 TEST_CASE("rendering allocates nothing", "[core][technique][realtime]") {
-  TapRenderer renderer =
-      make_renderer(*find_technique("fem+sinusoid"), settings(), PlateFace{0.3, 0.3}, &plate());
+  TapRenderer renderer = make_renderer(*find_technique("fem+sinusoid"), settings(),
+                                       PlateFace{0.3, 0.3}, &tapped_plate());
   const testing::AllocationCount allocations;
   for (int tick = 0; tick < 10'000; ++tick) {
     renderer.tick({{0.0001 * (tick % 1000), 0.0, 0.002 * std::sin(0.05 * tick)}, {}});

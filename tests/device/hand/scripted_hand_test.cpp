@@ -12,7 +12,7 @@ using core::Vec3;
 
 namespace {
 const core::HandBody body;
-constexpr double dt_s = 1e-3;
+constexpr double tick_s = 1e-3;
 
 // Held by a hand that moves as it likes.
 class HeldDevice final : public device::Device {
@@ -66,7 +66,7 @@ struct Bench {
   std::vector<core::TapRenderer> renderers{two_springs()};
   device::LoopSettings settings{strong()};
   core::SpscRing<core::TraceSample> trace{1U << 15U};
-  device::ScriptedHand taps{{body, {0.1, 0.0, 0.0}, 0.3, 0.2, 0.3}, {}, dt_s};
+  device::ScriptedHand taps{{body, {0.1, 0.0, 0.0}, 0.3, 0.2, 0.3}, {}, tick_s};
   device::HapticLoop loop{held, renderers, settings, trace, clock, &taps};
 };
 
@@ -85,7 +85,7 @@ TEST_CASE("scripted taps are all alike, at the stated speed and as often as stat
           "[device][scripted]") {
   Bench bench{0.0};
   const device::RepeatedTap tap{body, {0.1, 0.0, 0.0}, 0.3, 0.2, 0.3};
-  const auto period = static_cast<std::size_t>(std::ceil(tap.duration_s() / dt_s));
+  const auto period = static_cast<std::size_t>(std::ceil(tap.duration_s() / tick_s));
   bench.loop.run_ticks(static_cast<std::int64_t>(5 * period));
   const auto samples = bench.samples();
   const auto at = impacts(samples);
@@ -143,7 +143,7 @@ TEST_CASE("a hand that leaves the workspace ends scripted taps as it ends its ow
           "[device][scripted][safety]") {
   Bench bench{0.02};
   bench.settings.gate.workspace_radius_m = 0.01;
-  device::ScriptedHand taps{{body, Vec3::Zero(), 0.3, 0.2, 0.3}, {}, dt_s};
+  device::ScriptedHand taps{{body, Vec3::Zero(), 0.3, 0.2, 0.3}, {}, tick_s};
   device::HapticLoop loop{bench.held,  bench.renderers, bench.settings,
                           bench.trace, bench.clock,     &taps};
   loop.run_ticks(10);

@@ -15,7 +15,7 @@ constexpr int runs = 200;
 const testing::KnownObserver::Parameters two_alternatives{core::PsychometricShape::gumbel, 0.13,
                                                           3.5, 0.5, 0.02};
 
-std::string quest_plus(int trials, const std::string& stop = "") {
+std::string quest_plus_of(int trials, const std::string& stop = "") {
   return fmt::format(
       "quest_plus: {{function: gumbel, stimulus: {{min: -1.5, max: 1.5, count: 31}}, "
       "threshold: {{min: -1, max: 1, count: 41}}, slope: {{values: [2, 3.5, 5]}}, "
@@ -48,7 +48,7 @@ Spread estimates(const std::string& yaml) {
 
 TEST_CASE("QUEST+ finds the threshold, with fewer trials than a staircase of the same spread",
           "[protocols][procedures]") {
-  const Spread bayes = estimates(quest_plus(40));
+  const Spread bayes = estimates(quest_plus_of(40));
   const Spread steps = estimates(
       "staircase: {rule: transformed, n_down: 2, steps: linear, start: 1, min: -1.5, max: 1.5, "
       "first_step: 0.4, min_step: 0.05, stop: {trials: 80}, estimate_reversals: 8}");
@@ -62,7 +62,7 @@ TEST_CASE("QUEST+ finds the threshold, with fewer trials than a staircase of the
 }
 
 TEST_CASE("QUEST+ stops once the posterior is as narrow as asked", "[protocols][procedures]") {
-  const auto settings = testing::procedure_of(quest_plus(200, ", threshold_sd: 0.08"));
+  const auto settings = testing::procedure_of(quest_plus_of(200, ", threshold_sd: 0.08"));
   testing::KnownObserver observer{two_alternatives, 8};
   const auto track = settings->start(1);
   double before = 0.0;

@@ -10,20 +10,20 @@
 using namespace tapstudy;
 
 namespace {
-const std::string constant = R"(
-constant:
+const std::string right_constant = R"(
+right_constant:
   values: [1, 2, 3]
   repetitions: 10
 )";
-const std::string spaced = R"(
-constant:
+const std::string right_spaced = R"(
+right_constant:
   min: 1
   max: 3
   count: 3
   repetitions: 10
 )";
-const std::string staircase = R"(
-staircase:
+const std::string right_staircase = R"(
+right_staircase:
   rule: transformed
   n_down: 2
   steps: linear
@@ -35,8 +35,8 @@ staircase:
   stop: {reversals: 8}
   estimate_reversals: 6
 )";
-const std::string quest_plus = R"(
-quest_plus:
+const std::string right_quest_plus = R"(
+right_quest_plus:
   function: weibull
   stimulus: {min: 0.1, max: 10, count: 21, spacing: log}
   threshold: {min: 0.5, max: 5, count: 11, prior: normal, mean: 2, sd: 1}
@@ -47,8 +47,8 @@ quest_plus:
     - {values: [0, 1], effect: {values: [-0.1, 0.1], prior: listed, weights: [1, 1]}}
   stop: {trials: 40}
 )";
-const std::string psi = R"(
-psi:
+const std::string right_psi = R"(
+right_psi:
   function: logistic
   stimulus: {min: -3, max: 3, count: 21}
   threshold: {min: -2, max: 2, count: 11}
@@ -67,7 +67,7 @@ std::string message_of(const std::string& yaml) {
   return "";
 }
 
-struct Change {
+struct Spoilt {
   const std::string* base;
   const char* from;
   const char* to;
@@ -78,86 +78,94 @@ struct Change {
 
 TEST_CASE("settings of procedures that make no sense are refused by line and key",
           "[protocols][procedures]") {
-  for (const std::string* base : {&constant, &spaced, &staircase, &quest_plus, &psi}) {
+  for (const std::string* base :
+       {&right_constant, &right_spaced, &right_staircase, &right_quest_plus, &right_psi}) {
     REQUIRE(message_of(*base).empty());
   }
-  const auto [base, from, to, line, message] = GENERATE(values<Change>({
-      {&constant, "[1, 2, 3]", "[1, 3, 2]", 3, "constant.values: are not in increasing order"},
-      {&constant, "[1, 2, 3]", "[]", 3, "constant.values: "},
-      {&constant, "[1, 2, 3]", "[1, 2, 3]\n  max: 3", 4, "constant.max: is not for values"},
-      {&constant, "10", "0", 4, "constant.repetitions: "},
-      {&constant, "10", "10\n  order: listed", 5, "constant.order: "},
-      {&constant, "constant", "constants", 2, "constants: is not a known key"},
-      {&spaced, "max: 3", "max: 1", 4, "constant.max: is not above min"},
-      {&spaced, "count: 3", "count: 1", 5, "constant.count: "},
-      {&spaced, "min: 1", "min: 0\n  spacing: log", 3, "constant.min: is not above 0"},
-      {&spaced, "min: 1\n  max: 3\n  count: 3", "min: 1\n  max: 1.0000000000000002\n  count: 100",
-       5, "constant.count: is too high"},
-      {&spaced, "count: 3\n  repetitions: 10", "count: 1000\n  repetitions: 101", 6,
+  const auto [base, from, to, line, message] = GENERATE(values<Spoilt>({
+      {&right_constant, "[1, 2, 3]", "[1, 3, 2]", 3,
+       "constant.values: are not in increasing order"},
+      {&right_constant, "[1, 2, 3]", "[]", 3, "constant.values: "},
+      {&right_constant, "[1, 2, 3]", "[1, 2, 3]\n  max: 3", 4, "constant.max: is not for values"},
+      {&right_constant, "10", "0", 4, "constant.repetitions: "},
+      {&right_constant, "10", "10\n  order: listed", 5, "constant.order: "},
+      {&right_constant, "constant", "constants", 2, "constants: is not a known key"},
+      {&right_spaced, "max: 3", "max: 1", 4, "constant.max: is not above min"},
+      {&right_spaced, "count: 3", "count: 1", 5, "constant.count: "},
+      {&right_spaced, "min: 1", "min: 0\n  spacing: log", 3, "constant.min: is not above 0"},
+      {&right_spaced, "min: 1\n  max: 3\n  count: 3",
+       "min: 1\n  max: 1.0000000000000002\n  count: 100", 5, "constant.count: is too high"},
+      {&right_spaced, "count: 3\n  repetitions: 10", "count: 1000\n  repetitions: 101", 6,
        "constant.repetitions: make too many trials"},
-      {&staircase, "first_step: 2", "first_step: 0", 9, "staircase.first_step: 0 is not allowed"},
-      {&staircase, "first_step: 2", "first_step: 10", 9, "staircase.first_step: leads from"},
-      {&staircase, "min_step: 0.5", "min_step: 3", 10, "staircase.min_step: is above first_step"},
-      {&staircase, "min_step: 0.5", "min_step: 1e-20", 10, "staircase.min_step: is lost in"},
-      {&staircase, "max: 10", "max: 1", 8, "staircase.max: is not above min"},
-      {&staircase, "start: 5", "start: 11", 6, "staircase.start: is not between"},
-      {&staircase, "start: 5", "start: 1", 6, "staircase.start: is the limit already"},
-      {&staircase, "start: 5", "start: 10\n  after_correct: increase", 6,
+      {&right_staircase, "first_step: 2", "first_step: 0", 9,
+       "staircase.first_step: 0 is not allowed"},
+      {&right_staircase, "first_step: 2", "first_step: 10", 9, "staircase.first_step: leads from"},
+      {&right_staircase, "min_step: 0.5", "min_step: 3", 10,
+       "staircase.min_step: is above first_step"},
+      {&right_staircase, "min_step: 0.5", "min_step: 1e-20", 10, "staircase.min_step: is lost in"},
+      {&right_staircase, "max: 10", "max: 1", 8, "staircase.max: is not above min"},
+      {&right_staircase, "start: 5", "start: 11", 6, "staircase.start: is not between"},
+      {&right_staircase, "start: 5", "start: 1", 6, "staircase.start: is the limit already"},
+      {&right_staircase, "start: 5", "start: 10\n  after_correct: increase", 6,
        "staircase.start: is the limit already"},
-      {&staircase, "steps: linear", "steps: factor", 10, "staircase.min_step: is not above 1"},
-      {&staircase, "steps: linear\n  start: 5\n  min: 1", "steps: db\n  start: 5\n  min: 0", 7,
-       "staircase.min: is not above 0"},
-      {&staircase, "min_step: 0.5", "min_step: 0.5\n  n_up: 0", 11, "staircase.n_up: "},
-      {&staircase, "n_down: 2", "n_down: 0", 4, "staircase.n_down: "},
-      {&staircase, "n_down: 2", "target: 0.75", 4, "staircase.target: is for rule: weighted"},
-      {&staircase, "rule: transformed", "rule: weighted", 4,
+      {&right_staircase, "steps: linear", "steps: factor", 10,
+       "staircase.min_step: is not above 1"},
+      {&right_staircase, "steps: linear\n  start: 5\n  min: 1", "steps: db\n  start: 5\n  min: 0",
+       7, "staircase.min: is not above 0"},
+      {&right_staircase, "min_step: 0.5", "min_step: 0.5\n  n_up: 0", 11, "staircase.n_up: "},
+      {&right_staircase, "n_down: 2", "n_down: 0", 4, "staircase.n_down: "},
+      {&right_staircase, "n_down: 2", "target: 0.75", 4, "staircase.target: is for rule: weighted"},
+      {&right_staircase, "rule: transformed", "rule: weighted", 4,
        "staircase.n_down: is for rule: transformed"},
-      {&staircase, "rule: transformed\n  n_down: 2", "rule: weighted\n  target: 1", 4,
+      {&right_staircase, "rule: transformed\n  n_down: 2", "rule: weighted\n  target: 1", 4,
        "staircase.target: 1 is not allowed"},
-      {&staircase, "{reversals: 8}", "{}", 11, "staircase.stop: has neither"},
-      {&staircase, "{reversals: 8}", "{reversals: 4}", 12, "staircase.estimate_reversals: is more"},
-      {&staircase, "{reversals: 8}", "{trials: 4}", 12, "staircase.estimate_reversals: is more"},
-      {&staircase, "estimate_reversals: 6", "estimate_reversals: 5", 12,
+      {&right_staircase, "{reversals: 8}", "{}", 11, "staircase.stop: has neither"},
+      {&right_staircase, "{reversals: 8}", "{reversals: 4}", 12,
+       "staircase.estimate_reversals: is more"},
+      {&right_staircase, "{reversals: 8}", "{trials: 4}", 12,
+       "staircase.estimate_reversals: is more"},
+      {&right_staircase, "estimate_reversals: 6", "estimate_reversals: 5", 12,
        "staircase.estimate_reversals: is odd"},
-      {&quest_plus, "weibull", "probit", 3, "quest_plus.function: 'probit' is not a known"},
-      {&quest_plus, "min: 0.1, max: 10, count: 21, spacing: log", "values: [-1, 1]", 4,
+      {&right_quest_plus, "weibull", "probit", 3, "quest_plus.function: 'probit' is not a known"},
+      {&right_quest_plus, "min: 0.1, max: 10, count: 21, spacing: log", "values: [-1, 1]", 4,
        "quest_plus.stimulus: has values below 0"},
-      {&quest_plus, "min: 0.5, max: 5, count: 11", "values: [0, 1]", 5,
+      {&right_quest_plus, "min: 0.5, max: 5, count: 11", "values: [0, 1]", 5,
        "quest_plus.threshold: has values from 0 to 1"},
-      {&quest_plus, "mean: 2, sd: 1", "mean: 2e4, sd: 1", 5,
+      {&right_quest_plus, "mean: 2, sd: 1", "mean: 2e4, sd: 1", 5,
        "quest_plus.threshold.prior: excludes every value"},
-      {&quest_plus, "mean: 2, sd: 1", "mean: 2, sd: 0", 5, "quest_plus.threshold.sd: "},
-      {&quest_plus, "prior: normal, mean: 2", "prior: log_normal, mean: 0", 5,
+      {&right_quest_plus, "mean: 2, sd: 1", "mean: 2, sd: 0", 5, "quest_plus.threshold.sd: "},
+      {&right_quest_plus, "prior: normal, mean: 2", "prior: log_normal, mean: 0", 5,
        "quest_plus.threshold.prior: is log_normal"},
-      {&quest_plus, "prior: normal, mean: 2, sd: 1", "prior: uniform, mean: 2", 5,
+      {&right_quest_plus, "prior: normal, mean: 2, sd: 1", "prior: uniform, mean: 2", 5,
        "quest_plus.threshold.mean: is for prior"},
-      {&quest_plus, "prior: normal", "prior: normal, weights: [1]", 5,
+      {&right_quest_plus, "prior: normal", "prior: normal, weights: [1]", 5,
        "quest_plus.threshold.weights: is for prior"},
-      {&quest_plus, "weights: [1, 1]", "weights: [0, 0]", 10,
+      {&right_quest_plus, "weights: [1, 1]", "weights: [0, 0]", 10,
        "quest_plus.further_axes[0].effect.weights: are all 0"},
-      {&quest_plus, "weights: [1, 1]", "weights: [1]", 10,
+      {&right_quest_plus, "weights: [1, 1]", "weights: [1]", 10,
        "quest_plus.further_axes[0].effect.weights: are 1, values are 2"},
-      {&quest_plus, "weights: [1, 1]", "weights: [-1, 1]", 10,
+      {&right_quest_plus, "weights: [1, 1]", "weights: [-1, 1]", 10,
        "quest_plus.further_axes[0].effect.weights[0]: -1 is not allowed"},
-      {&quest_plus, "slope: {values: [2, 4]}", "slope: {values: [0, 4]}", 6,
+      {&right_quest_plus, "slope: {values: [2, 4]}", "slope: {values: [0, 4]}", 6,
        "quest_plus.slope: has values from 0 to 4"},
-      {&quest_plus, "lapse: {values: [0.02]}", "lapse: {values: [0.02, 0.5]}", 8,
+      {&right_quest_plus, "lapse: {values: [0.02]}", "lapse: {values: [0.02, 0.5]}", 8,
        "quest_plus.lapse: and guess reach 1"},
-      {&quest_plus, "lapse: {values: [0.02]}", "lapse: {values: [0.02, 1]}", 8,
+      {&right_quest_plus, "lapse: {values: [0.02]}", "lapse: {values: [0.02, 1]}", 8,
        "quest_plus.lapse: has values from 0.02 to 1"},
-      {&quest_plus, "count: 21, spacing: log}\n  threshold: {min: 0.5, max: 5, count: 11",
+      {&right_quest_plus, "count: 21, spacing: log}\n  threshold: {min: 0.5, max: 5, count: 11",
        "count: 500}\n  threshold: {min: 0.5, max: 5, count: 1000", 3,
        "quest_plus: the grids make 8000000 likelihoods"},
-      {&quest_plus, "trials: 40", "trials: 0", 11, "quest_plus.stop.trials: "},
-      {&quest_plus, "trials: 40", "trials: 40, threshold_sd: 2", 3,
+      {&right_quest_plus, "trials: 40", "trials: 0", 11, "quest_plus.stop.trials: "},
+      {&right_quest_plus, "trials: 40", "trials: 40, threshold_sd: 2", 3,
        "quest_plus: the prior's standard deviation of threshold"},
-      {&psi, "guess: 0.5", "guess: 1", 7, "psi.guess: 1 is not allowed"},
-      {&psi, "guess: 0.5", "guess: {values: [0.5]}", 7, "psi.guess: a mapping is not a number"},
-      {&psi, "trials: 40", "trials: 40, threshold_sd: 1", 9,
+      {&right_psi, "guess: 0.5", "guess: 1", 7, "psi.guess: 1 is not allowed"},
+      {&right_psi, "guess: 0.5", "guess: {values: [0.5]}", 7,
+       "psi.guess: a mapping is not a number"},
+      {&right_psi, "trials: 40", "trials: 40, threshold_sd: 1", 9,
        "psi.stop.threshold_sd: is not a known"},
-      {&psi, "min: -2, max: 2, count: 11}\n  slope: {values: [2, 4]}",
+      {&right_psi, "min: -2, max: 2, count: 11}\n  slope: {values: [2, 4]}",
        "values: [1]}\n  slope: {values: [2]}", 3, "psi: there is nothing to estimate"},
-      {&psi, "[2, 4]}\n  guess: 0.5\n  lapse: 0.02", "[1e4]}\n  guess: 0\n  lapse: 0", 3,
+      {&right_psi, "[2, 4]}\n  guess: 0.5\n  lapse: 0.02", "[1e4]}\n  guess: 0\n  lapse: 0", 3,
        "psi: an answer could exclude every combination"},
   }));
   INFO(from << " -> " << to);

@@ -25,6 +25,8 @@ add_custom_command(OUTPUT ${pages_object}
   COMMAND ${CMAKE_COMMAND} -E chdir ${pages_dir}/files
           ld -r -b binary -z noexecstack -o ${pages_object} ${page_files} three.module.js
   DEPENDS ${page_paths} ${THREE_MODULE} VERBATIM)
-target_sources(tapstudy_runner PRIVATE ${pages_object})
-set_source_files_properties(${pages_object} PROPERTIES EXTERNAL_OBJECT TRUE GENERATED TRUE)
+# A target of its own: a command of the library's would wait for all that the library links.
+add_custom_target(tapstudy_pages DEPENDS ${pages_object})
+add_dependencies(tapstudy_runner tapstudy_pages)
+target_link_libraries(tapstudy_runner PRIVATE ${pages_object})
 target_include_directories(tapstudy_runner PRIVATE ${pages_dir}/table)

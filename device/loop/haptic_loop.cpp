@@ -201,7 +201,9 @@ core::RenderedTick HapticLoop::follow(const core::HandState& hand,
   const core::HandState tip = taps_->state();
   const core::RenderedTick followed =
       alternatives_[current_].tick(settings_.placement.to_plate(tip));
-  taps_->move(core::Placement::force_to_device(followed.force_n));
+  if (!is_silent_) {  // in silence it rests above its place, so that each interval begins alike
+    taps_->move(core::Placement::force_to_device(followed.force_n));
+  }
   sample.position_m = as_array(tip.position_m);
   sample.velocity_m_s = as_array(tip.velocity_m_s);
   return followed;

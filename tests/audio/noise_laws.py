@@ -13,8 +13,14 @@ def rms_db(samples):
     return 10 * numpy.log10(numpy.mean(numpy.square(samples)))
 
 
+def level_db(samples, window):
+    """The median over windows: a busy machine may be late with a trial, and the noise ramps down."""
+    whole = samples[:len(samples) // window * window].reshape(-1, window)
+    return numpy.median([rms_db(part) for part in whole])
+
+
 def answers():
-    """Given at once, they leave no silence between trials: one ramp up, one down."""
+    """Given at once, they leave hardly any silence between trials."""
     return "".join(f"{1 + trial % 4}\n" for trial in range(TRIALS))
 
 
@@ -33,7 +39,8 @@ class NoiseLaws:
         self.assertTrue((self.channels[0] == self.channels[1]).all())
 
     def test_its_level_is_the_stated_one_between_the_ramps(self):
-        self.assertAlmostEqual(rms_db(self.at_full_level), LEVEL_DB, delta=0.2)
+        self.assertAlmostEqual(level_db(self.at_full_level, self.rate_hz // 20), LEVEL_DB,
+                               delta=0.2)
 
     def test_it_is_white(self):
         hz, density = welch(self.at_full_level, self.rate_hz, nperseg=2048)

@@ -19,23 +19,23 @@ void pass(const std::string& script) {
 }  // namespace
 
 TEST_CASE("the pages' server serves nobody else, and a flood of requests stops no session",
-          "[end_to_end][pages]") {
+          "[end_to_end][pages][slow]") {
   pass("server_test.py");
 }
 
-TEST_CASE("the operator sees at the terminal what the page shows", "[end_to_end][pages]") {
+TEST_CASE("the operator sees at the terminal what the page shows", "[end_to_end][pages][slow]") {
   pass("operator_terminal_test.py");
 }
 
 TEST_CASE("what was confirmed on a screen is stored once, however often the program is killed",
-          "[end_to_end][pages]") {
+          "[end_to_end][pages][slow]") {
   setenv("TAPSTUDY_KILLS", "12", 0);  // more of them by hand
   pass("kill_test.py");
 }
 
 #if !TAPSTUDY_SANITIZED  // the mocked kernel is not theirs
 TEST_CASE("a SPIDAR is homed by the operator's command while the participant is at a page",
-          "[end_to_end][pages]") {
+          "[end_to_end][pages][slow]") {
   const testing::TempDirectory directory;
   testing::write_patient_spidar_study(directory);
   setenv("TAPSTUDY_SPIDAR_STUDY", directory.path().c_str(), 1);
@@ -46,7 +46,7 @@ TEST_CASE("a SPIDAR is homed by the operator's command while the participant is 
 
 #if !TAPSTUDY_SANITIZED  // what is drawn and clicked does not depend on it
 TEST_CASE("the paper's three studies are answered in a browser, by mouse and by keyboard",
-          "[end_to_end][pages]") {
+          "[end_to_end][pages][slow]") {
   pass("whole_sessions_test.py");
 }
 #endif

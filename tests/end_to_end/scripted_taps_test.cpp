@@ -54,7 +54,7 @@ TEST_CASE("every scripted tap strikes alike, and the store says that they were s
   first_impacts >> trials >> spread >> speed >> jitter_s;
   CHECK(trials == 3 * 8);
   CHECK(spread < 1e-9);
-  CHECK(speed == Approx(0.3).epsilon(0.03));
+  CHECK(speed == Approx(0.3).epsilon(0.02));
   CHECK(jitter_s < 1e-9);
   CHECK(sql(directory,
             "SELECT count(*) = (SELECT count(*) FROM trial) FROM event WHERE kind = "
@@ -108,7 +108,7 @@ TEST_CASE("who has planned more taps than an interval takes still feels every in
   REQUIRE(simulated(directory, directory / "study.yaml", "1").exit_code == 0);
   CHECK(std::stod(sql(directory,
                       "SELECT avg(is_correct) FROM current_response JOIN trial USING (trial_id) "
-                      "WHERE block = 'odd_one_out'")) > 0.6);
+                      "WHERE block = 'odd_one_out'")) > 0.45);  // one in three by chance
 }
 
 TEST_CASE("scripted taps that cannot be are refused at their line", "[end_to_end][scripted]") {

@@ -395,7 +395,7 @@ class WholeSession(unittest.TestCase):
             browser.wait_until(self.driver, "the end of the intervals", lambda: phases()[-1][0] == "over", 60)
         self.next_trial(1)
         browser.answer_by_keyboard(self.driver, 0)
-        browser.wait_for_status(self.driver, "one after the other")
+        browser.wait_until(self.driver, "the first interval", phases)
         self.check_screen("interval")
         follow_until_over()
         self.check_screen("intervals_over")

@@ -96,7 +96,7 @@ TEST_CASE("scripted taps are all alike, at the stated speed and as often as stat
       REQUIRE(samples[tick + k * period].position_m == samples[tick].position_m);
     }
   }
-  CHECK(-samples[at.front()].velocity_m_s[1] == Approx(0.3).epsilon(0.03));
+  CHECK(-samples[at.front()].velocity_m_s[1] == Approx(0.3).epsilon(0.02));
 }
 
 TEST_CASE("what the held hand does changes neither a scripted tap nor the force that it feels",

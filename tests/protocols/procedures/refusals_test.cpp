@@ -11,19 +11,19 @@ using namespace tapstudy;
 
 namespace {
 const std::string right_constant = R"(
-right_constant:
+constant:
   values: [1, 2, 3]
   repetitions: 10
 )";
 const std::string right_spaced = R"(
-right_constant:
+constant:
   min: 1
   max: 3
   count: 3
   repetitions: 10
 )";
 const std::string right_staircase = R"(
-right_staircase:
+staircase:
   rule: transformed
   n_down: 2
   steps: linear
@@ -36,7 +36,7 @@ right_staircase:
   estimate_reversals: 6
 )";
 const std::string right_quest_plus = R"(
-right_quest_plus:
+quest_plus:
   function: weibull
   stimulus: {min: 0.1, max: 10, count: 21, spacing: log}
   threshold: {min: 0.5, max: 5, count: 11, prior: normal, mean: 2, sd: 1}
@@ -48,7 +48,7 @@ right_quest_plus:
   stop: {trials: 40}
 )";
 const std::string right_psi = R"(
-right_psi:
+psi:
   function: logistic
   stimulus: {min: -3, max: 3, count: 21}
   threshold: {min: -2, max: 2, count: 11}

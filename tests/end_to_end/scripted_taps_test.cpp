@@ -81,12 +81,15 @@ TEST_CASE("in an interval as many scripted taps are felt of one alternative as o
   CHECK(of_each == "3\n");
 }
 
-TEST_CASE("who holds still tells a plate with a sinusoid from two without, by what is felt",
+TEST_CASE("who holds still tells a plate with a strong sinusoid from two without, by what is felt",
           "[end_to_end][scripted]") {
   const TempDirectory directory;
   std::string text = testing::contents(testing::source("tests/data/same_alternatives.yaml"));
   text = testing::replaced(text, "other: {plate: held, material: mdf, technique: sinusoid}",
                            "other: {plate: held, material: mdf, technique: none}");
+  text = testing::replaced(text, "one: {plate: held, material: mdf, technique: sinusoid}",
+                           "one: {plate: held, material: mdf, technique: sinusoid, rendering: "
+                           "{sinusoid_amplitude_n_s_per_m: 25}}");
   text =
       testing::replaced(text, "explore: {intervals: {seconds: 0.8, gap_seconds: 0.2}}",
                         "explore: {scripted_taps: {point: middle, speed_m_s: 0.2, dwell_s: 0.3}}");

@@ -8,7 +8,7 @@ if(TAPSTUDY_WERROR)
   target_compile_options(tapstudy_flags INTERFACE -Werror)
 endif()
 # unite_by_folder(source…): where CMAKE_UNITY_BUILD is on, as it is in the presets, the sources of one
-# folder are compiled as one: a quarter of the time, and a name has one meaning in a folder.
+# folder are compiled as one: about half of the time, and a name has one meaning in a folder.
 function(unite_by_folder)
   foreach(source IN LISTS ARGN)
     file(RELATIVE_PATH path ${PROJECT_SOURCE_DIR} ${source})

@@ -30,25 +30,16 @@ void add(const ModelCost& more, ModelCost& to) {
 
 SolvedBody solve_once(const BodySpec& body, const MeshSize& size, const ProgressHook& progress) {
   const Material unit{1.0, 1.0, body.poissons_ratio, {}};
-  DiscreteBody discrete = discretised(body, unit, size, {}, progress);
+  std::vector<DiscreteBody> discrete{discretised(body, unit, size, {}, progress)};
+  DiscreteBody& only = discrete.front();
   const double turn = 2.0 * std::numbers::pi;
-  const Modes modes = solve_modes(discrete.matrices, body.band_limit_rad_per_m / turn, progress);
+  const Modes modes = solve_modes(only.matrices, body.band_limit_rad_per_m / turn, progress);
   SolvedBody solved;
   solved.modes.kappa_rad_per_m = modes.omega_rad_s;
   solved.modes.band_limit_rad_per_m = body.band_limit_rad_per_m;
-  solved.displacement = with_constrained_rows(modes.shapes, discrete.dofs);
-  solved.mesh = std::move(discrete.mesh);
-  ModelReport& report = solved.modes.report;
-  report.cost = discrete.cost;
-  report.cost.factor_s = modes.factor_s;
-  report.cost.iterate_s = modes.iterate_s;
-  report.order = solved.mesh.order();
-  report.nodes = static_cast<int>(solved.mesh.nodes_m.rows());
-  report.tets = static_cast<int>(solved.mesh.tets.rows());
-  report.dofs = discrete.dofs.count;
-  report.rigid_body_modes = modes.rigid_body_modes;
-  report.counted_in_band = modes.counted_in_band;
-  report.worst_residual = modes.worst_residual;
+  solved.modes.report = report_on(discrete, modes);
+  solved.displacement = with_constrained_rows(modes.shapes, only.dofs);
+  solved.mesh = std::move(only.mesh);
   return solved;
 }
 

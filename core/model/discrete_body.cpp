@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include "core/model/elements/rigid_motions.hpp"
 #include "core/model/mesh/tetgen_mesher.hpp"
 #include "core/model/stopwatch.hpp"
 namespace tapstudy::core {
@@ -20,11 +19,28 @@ DiscreteBody discretised(const Plate& plate, const Material& material, const Mes
   body.cost.mesh_s = watch.lap_s();
   tell(progress, fmt::format("assembling {} tetrahedra", body.mesh.tets.rows()));
   body.dofs = free_dofs(constrained_dofs(body.mesh, plate.shape, plate.fixations));
-  const auto supports = spring_supports(body.mesh, plate.shape, plate.fixations);
-  body.matrices = assemble(body.mesh, material, body.dofs, supports);
-  body.resisted_motions = RigidMotions{body.mesh}.resisted(body.dofs, supports);
+  body.matrices = assemble(body.mesh, material, body.dofs,
+                           spring_supports(body.mesh, plate.shape, plate.fixations));
   body.cost.assemble_s = watch.lap_s();
   return body;
+}
+
+ModelReport report_on(const std::vector<DiscreteBody>& bodies, const Modes& modes) {
+  ModelReport report;
+  for (const DiscreteBody& body : bodies) {
+    report.cost.mesh_s += body.cost.mesh_s;
+    report.cost.assemble_s += body.cost.assemble_s;
+    report.nodes += static_cast<int>(body.mesh.nodes_m.rows());
+    report.tets += static_cast<int>(body.mesh.tets.rows());
+    report.dofs += body.dofs.count;
+  }
+  report.order = bodies.front().mesh.order();
+  report.cost.factor_s = modes.factor_s;
+  report.cost.iterate_s = modes.iterate_s;
+  report.rigid_body_modes = modes.rigid_body_modes;
+  report.counted_in_band = modes.counted_in_band;
+  report.worst_residual = modes.worst_residual;
+  return report;
 }
 
 Eigen::MatrixXd with_constrained_rows(const Eigen::MatrixXd& free_rows, const FreeDofs& dofs) {

@@ -1,9 +1,11 @@
 #pragma once
 #include <Eigen/Core>
+#include <vector>
 
 #include "core/model/elements/assembly.hpp"
 #include "core/model/mesh/tet_mesh.hpp"
 #include "core/model/modal_model.hpp"
+#include "core/model/modes/modal_solver.hpp"
 #include "core/model/plate.hpp"
 #include "core/model/progress_hook.hpp"
 namespace tapstudy::core {
@@ -12,14 +14,16 @@ struct DiscreteBody {
   TetMesh mesh;
   FreeDofs dofs;
   StiffnessAndMass matrices;
-  Eigen::Matrix<double, 6, 6> resisted_motions;  // by constraints and springs: RigidMotions
-  ModelCost cost;                                // of meshing and assembling
+  ModelCost cost;  // of meshing and assembling
 };
 
 // regions: whose nodes the mesh must have beside those of the fixations.
 // Throws ModelError if it cannot be meshed, or a fixation holds nothing or everything.
 DiscreteBody discretised(const Plate& plate, const Material& material, const MeshSize& size,
                          const std::vector<Fixation>& regions, const ProgressHook& progress);
+
+// What solving these bodies, at least one, as one system took and found.
+ModelReport report_on(const std::vector<DiscreteBody>& bodies, const Modes& modes);
 
 // With the rows of constrained degrees of freedom, which are 0.
 Eigen::MatrixXd with_constrained_rows(const Eigen::MatrixXd& free_rows, const FreeDofs& dofs);

@@ -19,8 +19,7 @@ constexpr std::array<ActionInfo, 10> actions{
      {repeat, "repeat", ActionText::optional, "present the running trial again"},
      {skip, "skip", ActionText::optional,
       "end the running trial without an answer; where a procedure chooses levels, it comes again "
-      "at the "
-      "end of the block"},
+      "at the end of the block"},
      {correct, "correct", ActionText::required,
       "ANSWER: the last answer was option N, or that number; the first one stays in the store"},
      {switch_to, "switch", ActionText::required, "N: render alternative N of the running trial"},

@@ -36,6 +36,18 @@ testing::ProgramResult simulated(const TempDirectory& directory, const std::stri
   return testing::tapstudy({"simulate", file, "--participants", participants, "--seed", "3",
                             "--out", directory / "study"});
 }
+// The study whose alternatives are the same, with one that has a sinusoid and one that has none.
+std::string with_and_without_sinusoid() {
+  return testing::replaced(testing::contents(testing::source("tests/data/same_alternatives.yaml")),
+                           "other: {plate: held, material: mdf, technique: sinusoid}",
+                           "other: {plate: held, material: mdf, technique: none}");
+}
+
+double share_of_right_odd_ones(const TempDirectory& directory) {
+  return std::stod(sql(directory,
+                       "SELECT avg(is_correct) FROM current_response JOIN trial USING (trial_id) "
+                       "WHERE block = 'odd_one_out'"));
+}
 }  // namespace
 
 TEST_CASE("every scripted tap strikes alike, and the store says that they were scripted",
@@ -84,34 +96,26 @@ TEST_CASE("in an interval as many scripted taps are felt of one alternative as o
 TEST_CASE("who holds still tells a plate with a strong sinusoid from two without, by what is felt",
           "[end_to_end][scripted]") {
   const TempDirectory directory;
-  std::string text = testing::contents(testing::source("tests/data/same_alternatives.yaml"));
-  text = testing::replaced(text, "other: {plate: held, material: mdf, technique: sinusoid}",
-                           "other: {plate: held, material: mdf, technique: none}");
-  text = testing::replaced(text, "one: {plate: held, material: mdf, technique: sinusoid}",
-                           "one: {plate: held, material: mdf, technique: sinusoid, rendering: "
-                           "{sinusoid_amplitude_n_s_per_m: 25}}");
+  std::string text = testing::replaced(
+      with_and_without_sinusoid(), "one: {plate: held, material: mdf, technique: sinusoid}",
+      "one: {plate: held, material: mdf, technique: sinusoid, rendering: "
+      "{sinusoid_amplitude_n_s_per_m: 25}}");
   text =
       testing::replaced(text, "explore: {intervals: {seconds: 0.8, gap_seconds: 0.2}}",
                         "explore: {scripted_taps: {point: middle, speed_m_s: 0.2, dwell_s: 0.3}}");
   testing::write(directory / "study.yaml", text);
   REQUIRE(simulated(directory, directory / "study.yaml", "1").exit_code == 0);
-  CHECK(std::stod(sql(directory,
-                      "SELECT avg(is_correct) FROM current_response JOIN trial USING (trial_id) "
-                      "WHERE block = 'odd_one_out'")) > 0.6);
+  CHECK(share_of_right_odd_ones(directory) > 0.6);
 }
 
 TEST_CASE("who has planned more taps than an interval takes still feels every interval",
           "[end_to_end][scripted]") {
   const TempDirectory directory;
-  std::string text = testing::contents(testing::source("tests/data/same_alternatives.yaml"));
-  text = testing::replaced(text, "other: {plate: held, material: mdf, technique: sinusoid}",
-                           "other: {plate: held, material: mdf, technique: none}");
-  text = testing::replaced(text, "taps_per_visit: 1", "taps_per_visit: 6");
-  testing::write(directory / "study.yaml", text);
+  testing::write(
+      directory / "study.yaml",
+      testing::replaced(with_and_without_sinusoid(), "taps_per_visit: 1", "taps_per_visit: 6"));
   REQUIRE(simulated(directory, directory / "study.yaml", "1").exit_code == 0);
-  CHECK(std::stod(sql(directory,
-                      "SELECT avg(is_correct) FROM current_response JOIN trial USING (trial_id) "
-                      "WHERE block = 'odd_one_out'")) > 0.45);  // one in three by chance
+  CHECK(share_of_right_odd_ones(directory) > 0.45);  // one in three by chance
 }
 
 TEST_CASE("scripted taps that cannot be are refused at their line", "[end_to_end][scripted]") {

@@ -115,13 +115,14 @@ CoupledBodies coupled(const Plate& plate, std::vector<DiscreteBody> bodies,
   Entries stiffness;
   Entries mass;
   const auto motions = 6 * static_cast<Eigen::Index>(system.bodies.size());
-  Eigen::MatrixXd resisted = Eigen::MatrixXd::Zero(motions, motions);
+  Eigen::MatrixXd& resisted = system.matrices.resisted_motions;
+  resisted.setZero(motions, motions);
   for (std::size_t i = 0; i < system.bodies.size(); ++i) {
     const DiscreteBody& body = system.bodies[i];
     add_block(body.matrices.K, system.first_dof[i], stiffness);
     add_block(body.matrices.M, system.first_dof[i], mass);
     resisted.block<6, 6>(6 * static_cast<Eigen::Index>(i), 6 * static_cast<Eigen::Index>(i)) =
-        body.resisted_motions;
+        body.matrices.resisted_motions;
   }
   system.elongations = Elongations{plate, contacts, system}.all();
   for (const Elongation& elongation : system.elongations) {

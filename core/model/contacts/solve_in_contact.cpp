@@ -64,24 +64,6 @@ void set_energy_shares(const CoupledBodies& system, std::size_t springs, const M
             .transpose();
   }
 }
-
-ModelReport report_on(const CoupledBodies& system, const Modes& modes) {
-  ModelReport report;
-  for (const DiscreteBody& body : system.bodies) {
-    report.cost.mesh_s += body.cost.mesh_s;
-    report.cost.assemble_s += body.cost.assemble_s;
-    report.nodes += static_cast<int>(body.mesh.nodes_m.rows());
-    report.tets += static_cast<int>(body.mesh.tets.rows());
-  }
-  report.order = system.bodies.front().mesh.order();
-  report.dofs = system.first_dof.back();
-  report.cost.factor_s = modes.factor_s;
-  report.cost.iterate_s = modes.iterate_s;
-  report.rigid_body_modes = modes.rigid_body_modes;
-  report.counted_in_band = modes.counted_in_band;
-  report.worst_residual = modes.worst_residual;
-  return report;
-}
 }  // namespace
 
 SolvedBody solve_in_contact(const BodySpec& body, const ProgressHook& progress) {
@@ -92,7 +74,7 @@ SolvedBody solve_in_contact(const BodySpec& body, const ProgressHook& progress) 
   solved.modes.kappa_rad_per_m = modes.omega_rad_s;
   solved.modes.band_limit_rad_per_m = body.band_limit_rad_per_m;
   set_energy_shares(system, body.contacts->springs.size(), modes, solved.modes);
-  solved.modes.report = report_on(system, modes);
+  solved.modes.report = report_on(system.bodies, modes);
   DiscreteBody& tapped = system.bodies.front();
   solved.displacement = with_constrained_rows(modes.shapes.topRows(tapped.dofs.count), tapped.dofs);
   solved.mesh = std::move(tapped.mesh);

@@ -190,7 +190,8 @@ StiffnessAndMass assemble(const TetMesh& mesh, const Material& material, const F
   }
   matrices.first_of_node = first_of_node(dofs);
   add_springs(mesh, springs, dofs, matrices.K);
-  matrices.rigid_body_modes = unresisted(RigidMotions{mesh}.resisted(dofs, springs));
+  matrices.resisted_motions = RigidMotions{mesh}.resisted(dofs, springs);
+  matrices.rigid_body_modes = unresisted(matrices.resisted_motions);
   return matrices;
 }
 }  // namespace tapstudy::core

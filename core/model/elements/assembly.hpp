@@ -25,6 +25,8 @@ struct StiffnessAndMass {
   std::vector<int> first_of_node{};
   // Rigid-body motions that neither constraints nor springs resist: 0 to 6.
   int rigid_body_modes{0};
+  // What resists them, six rows and columns for each body (RigidMotions::resisted).
+  Eigen::MatrixXd resisted_motions{};
   auto stiffness() const { return K.selfadjointView<Eigen::Lower>(); }
   auto mass() const { return M.selfadjointView<Eigen::Lower>(); }
 };

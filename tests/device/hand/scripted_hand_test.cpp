@@ -7,6 +7,7 @@
 
 #include "device/loop/haptic_loop.hpp"
 #include "support/no_alloc.hpp"
+#include "support/trace_samples.hpp"
 using namespace tapstudy;
 using core::Vec3;
 
@@ -53,14 +54,7 @@ device::LoopSettings strong() {
 
 struct Bench {
   explicit Bench(double sway_m) : held{sway_m} { held.written_n.reserve(20'000); }
-  std::vector<core::TraceSample> samples() {
-    std::vector<core::TraceSample> all;
-    core::TraceSample sample{};
-    while (trace.try_pop(sample)) {
-      all.push_back(sample);
-    }
-    return all;
-  }
+  std::vector<core::TraceSample> samples() { return testing::samples_of(trace); }
   HeldDevice held;
   device::VirtualClock clock;
   std::vector<core::TapRenderer> renderers{two_springs()};

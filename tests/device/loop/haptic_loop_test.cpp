@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "support/no_alloc.hpp"
+#include "support/trace_samples.hpp"
 using namespace tapstudy;
 using core::Vec3;
 
@@ -83,14 +84,7 @@ struct Bench {
                              std::vector<std::unique_ptr<core::AddedForce>>{});
     }
   }
-  std::vector<core::TraceSample> samples() {
-    std::vector<core::TraceSample> all;
-    core::TraceSample sample{};
-    while (trace.try_pop(sample)) {
-      all.push_back(sample);
-    }
-    return all;
-  }
+  std::vector<core::TraceSample> samples() { return testing::samples_of(trace); }
   device::HapticLoop loop() { return {hand, renderers, settings, trace, clock}; }
   FakeDevice hand;
   CrankedClock clock;

@@ -63,6 +63,18 @@ TEST_CASE("symmetry and homogeneity of totals are tested as by statsmodels",
   }
 }
 
+TEST_CASE("homogeneity of totals is coin's too", "[analysis][agreement]") {
+  for (const CountTable& table : {paper_table(), large_random_table()}) {
+    const auto coin =
+        r_numbers("suppressPackageStartupMessages(library(coin)); t <- mh_test(as.table(" +
+                  r_matrix(table) + ")); out(statistic(t), pvalue(t))");
+    const auto ours = stuart_maxwell_test(table);
+    REQUIRE(ours);
+    CHECK(ours->chi_squared == Approx(coin[0]).epsilon(1e-9));
+    CHECK(ours->p == Approx(coin[1]).epsilon(1e-9).margin(1e-12));
+  }
+}
+
 TEST_CASE("pairs that were never confused and classes that never occur change no test of symmetry",
           "[analysis][agreement]") {
   const CountTable table{{8, 3}, {2, 5}};

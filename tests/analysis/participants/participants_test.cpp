@@ -180,6 +180,21 @@ TEST_CASE("a paired contrast is tested by all patterns of signs", "[analysis][pa
   CHECK(contrast.mean == Approx(0.1875));
 }
 
+TEST_CASE("a paired contrast's test is coin's exact test of symmetry", "[analysis][participants]") {
+  for (const std::vector<double>& differences :
+       {std::vector<double>{0.25, -0.125, 0.5, 0.0, 0.375, 0.125, -0.25, 0.625},
+        std::vector<double>{1, 2, 3, 4, 5, -6, 7, 8, 9, 10, -11, 12, 13, 14, -15, 16},
+        std::vector<double>{-0.5, -0.5, -0.5, 0.25}}) {
+    const auto coin = r_numbers("suppressPackageStartupMessages(library(coin)); d <- " +
+                                r_vector(differences) + R"(
+n <- length(d); both <- data.frame(y = c(d, 0 * d), condition = gl(2, n), person = gl(n, 1, 2 * n))
+out(pvalue(symmetry_test(y ~ condition | person, both, distribution = exact()))))");
+    const SignFlipTest ours = sign_flip_test(differences, 1);
+    CHECK(ours.is_exact);
+    CHECK(ours.p == Approx(coin.front()).epsilon(1e-9));
+  }
+}
+
 TEST_CASE("a contrast of many participants is drawn, near what all patterns give",
           "[analysis][participants]") {
   std::vector<double> differences;

@@ -10,6 +10,7 @@
 #include "protocols/read_protocol.hpp"
 #include "protocols/schedule.hpp"
 #include "runner/experiments/study_design.hpp"
+#include "support/r_program.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;
 using analysis::Answers;
@@ -97,6 +98,33 @@ TEST_CASE("an order that was not drawn has no test of chance", "[analysis]") {
       dynamic_cast<const analysis::IdentificationSummary&>(*summary).hypotheses.at(0);
   CHECK_FALSE(hypothesis.p);
   CHECK(hypothesis.test.find("listed") != std::string::npos);
+}
+
+TEST_CASE("answers shuffled within participants have the p of coin's exact stratified test",
+          "[analysis]") {
+  const std::vector<std::vector<analysis::CountTable>> studies{
+      {{{6, 2}, {3, 5}}, {{4, 4}, {2, 6}}, {{7, 1}, {3, 5}}},
+      {{{3, 5}, {4, 4}}, {{5, 3}, {4, 4}}},
+      {{{5, 1}, {0, 4}}, {{6, 0}, {4, 2}}}};
+  for (const auto& participants : studies) {
+    std::vector<std::int64_t> cells;
+    for (const auto& table : participants) {
+      for (const auto& row : table) {
+        cells.insert(cells.end(), row.begin(), row.end());
+      }
+    }
+    const double coin = testing::r_numbers("suppressPackageStartupMessages(library(coin)); n <- " +
+                                           testing::r_vector(cells) + R"(
+d <- expand.grid(response = 0:1, stimulus = gl(2, 1), person = gl(length(n) / 4, 1))
+d <- d[rep(seq_along(n), n), ]
+out(pvalue(independence_test(response ~ stimulus | person, d, distribution = exact(),
+                             alternative = 'less'))))")
+                            .front();
+    constexpr int draws = 20'000;
+    const auto ours =
+        analysis::shuffle_tests(participants, {{{true, false}, {false, true}}}, draws, 1);
+    CHECK(ours.front().p == Approx(coin).margin(5.0 * std::sqrt(coin * (1.0 - coin) / draws)));
+  }
 }
 
 TEST_CASE("someone who always gives one answer is not better than chance", "[analysis]") {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "analysis/resampling/random_table.hpp"
 #include "analysis/resampling/replicates.hpp"
 #include "analysis/statistics/distributions.hpp"
 #include "core/error.hpp"
@@ -76,22 +75,18 @@ std::vector<std::vector<double>> adjusted_residuals(const CountTable& table) {
   return residuals;
 }
 
-MonteCarloTest monte_carlo_independence(const std::vector<CountTable>& participants, int draws,
-                                        std::uint64_t seed, unsigned threads) {
+MonteCarloTest monte_carlo_independence(const NullTables& tables, int draws, std::uint64_t seed,
+                                        unsigned threads) {
   if (draws < 1) {
     throw core::InvalidInput{"a null distribution takes one draw or more"};
   }
-  const CountTable observed = sum_of(participants);
-  const TableTotals pooled = totals_of(observed);
-  std::vector<TableTotals> totals;
-  std::ranges::transform(participants, std::back_inserter(totals), totals_of);
-  const auto shuffled = replicates(
+  const auto drawn = replicates(
       draws,
       [&](std::uint64_t own_seed) {
-        core::Rng rng{own_seed};
-        return pearson(sum_of_random_tables(totals, rng), pooled);
+        const CountTable table = tables.draw(own_seed);
+        return pearson(table, totals_of(table));
       },
       seed, threads);
-  return {monte_carlo_p(shuffled, pearson(observed, pooled)), draws};
+  return {monte_carlo_p(drawn, pearson(tables.observed, totals_of(tables.observed))), draws};
 }
 }  // namespace tapstudy::analysis

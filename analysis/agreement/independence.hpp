@@ -3,6 +3,7 @@
 #include <optional>
 #include <vector>
 
+#include "analysis/resampling/null_tables.hpp"
 #include "analysis/statistics/count_table.hpp"
 namespace tapstudy::analysis {
 // Do answers depend on what was presented? Pearson's X^2 and the likelihood ratio G^2 = 2 sum n_ij
@@ -25,9 +26,7 @@ struct MonteCarloTest {
   double p{};  // monte_carlo_p of X^2
   int draws{};
 };
-// X^2 of the tables added up against that of each participant's answers shuffled over the trials
-// (Hope 1968), which keeps each one's preferences. Throws InvalidInput for no tables, different
-// shapes, draws below 1.
-MonteCarloTest monte_carlo_independence(const std::vector<CountTable>& participants, int draws,
-                                        std::uint64_t seed, unsigned threads = 0);
+// X^2 against that of drawn tables (Hope 1968). Throws InvalidInput for draws below 1.
+MonteCarloTest monte_carlo_independence(const NullTables& tables, int draws, std::uint64_t seed,
+                                        unsigned threads = 0);
 }  // namespace tapstudy::analysis

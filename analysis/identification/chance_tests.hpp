@@ -6,19 +6,30 @@
 #include "analysis/identification/identification_data.hpp"
 #include "analysis/statistics/permutation_test.hpp"
 namespace tapstudy::analysis {
+// What answers are compared with that depend on no stimulus.
+struct Randomisation {
+  std::optional<NullTables> tables;  // unset: nothing was randomised, or answered
+  std::string words;                 // how, or why not
+};
+// By the study's own orders, drawn again; beyond 20 000 answers, and where nobody knows the order,
+// by shuffling each participant's answers over the trials.
+Randomisation randomisation_of(const BlockDesign& design, const IdentificationData& data);
+// Of counts whose participants are not known: all answers shuffled over the trials.
+Randomisation randomisation_of(const CountTable& counts);
+
+// So many draws; 0: as many as a report can afford, which it says.
+struct Draws {
+  int draws{};
+  std::uint64_t seed{1};
+  int of(const NullTables& tables) const;
+};
+
 // Accuracy, and agreement in each factor, against chance by randomisation within participants.
 struct ChanceTests {
   std::string test;  // how, or why not
   std::optional<PermutationResult> accuracy;
   std::vector<PermutationResult> factors;  // in the order given; empty where not tested
 };
-// So many draws; 0: as many as a report can afford, which it says.
-struct ChanceDraws {
-  int draws{};
-  std::uint64_t seed{1};
-};
-// By the study's own orders, drawn again; beyond 20 000 answers by shuffling each participant's
-// answers over the trials.
-ChanceTests chance_tests(const BlockDesign& design, const IdentificationData& data,
-                         const std::vector<std::string>& factors, const ChanceDraws& wanted = {});
+ChanceTests chance_tests(const Randomisation& randomisation, const ConfusionMatrix& matrix,
+                         const std::vector<std::string>& factors, const Draws& wanted = {});
 }  // namespace tapstudy::analysis

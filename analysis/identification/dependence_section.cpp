@@ -6,37 +6,33 @@
 #include "analysis/agreement/kappa.hpp"
 #include "analysis/agreement/symmetry.hpp"
 #include "analysis/identification/matrix_sections.hpp"
-#include "analysis/resampling/random_table.hpp"
-#include "analysis/resampling/replicates.hpp"
 namespace tapstudy::analysis {
 namespace {
-constexpr int most_tables = 9999;
-constexpr int fewest_tables = 999;
 constexpr std::uint64_t dependence_seed = 4;
 
-void add_independence(const MatrixOfParticipants& counted, ReportSection& section) {
-  const auto test = independence(counted.matrix.counts);
-  if (!test) {
-    section.remarks.emplace_back(
-        "Dependence is not tested: fewer than two stimuli or answers occurred.");
-    return;
-  }
-  const auto tables = tables_of(counted.participants);
-  const MonteCarloTest exact = monte_carlo_independence(
-      tables, affordable_replicates(work_of_random_tables(tables), fewest_tables, most_tables),
-      dependence_seed);
+void add_independence(const MatrixOfParticipants& counted, const Independence& test,
+                      ReportSection& section) {
+  const auto& tables = counted.randomisation.tables;
   ReportTable table{"dependence",
                     "Do answers depend on what was presented?",
                     {column("X²", "chi_squared"), column("df", "degrees_of_freedom"),
                      column("G²", "g_squared"), column("Cramér's V", "cramers_v"),
                      column("Monte-Carlo", "p"), column("", "draws"), column("", "asymptotic_p")}};
-  table.rows.push_back({number(test->chi_squared), number(test->degrees_of_freedom),
-                        number(test->g_squared), number(test->cramers_v), probability(exact.p),
-                        count(exact.draws), probability(test->asymptotic_p)});
+  std::vector<Cell> row{number(test.chi_squared), number(test.degrees_of_freedom),
+                        number(test.g_squared), number(test.cramers_v)};
+  if (tables) {
+    const MonteCarloTest drawn =
+        monte_carlo_independence(*tables, Draws{}.of(*tables), dependence_seed);
+    row.insert(row.end(), {probability(drawn.p), count(drawn.draws)});
+    section.remarks.push_back(fmt::format("X² is compared with {} {} (Hope 1968).", drawn.draws,
+                                          counted.randomisation.words));
+  } else {
+    row.insert(row.end(), {nothing(table.columns[4]), count(0)});
+    section.remarks.push_back("X² is not tested: " + counted.randomisation.words + ".");
+  }
+  row.push_back(probability(test.asymptotic_p));
+  table.rows.push_back(row);
   section.tables.push_back(table);
-  section.remarks.push_back(
-      fmt::format("X² is compared with {} shuffles of {} answers over the trials (Hope 1968).",
-                  exact.draws, counted.are_known() ? "each participant's" : "all"));
 }
 
 ReportTable residuals_table(const ConfusionMatrix& matrix) {
@@ -87,7 +83,12 @@ void add_square(const CountTable& square, ReportSection& section) {
 ReportSection dependence_section(const MatrixOfParticipants& counted) {
   const ConfusionMatrix& matrix = counted.matrix;
   ReportSection section{"Dependence, agreement and symmetry"};
-  add_independence(counted, section);
+  const auto test = independence(matrix.counts);
+  if (!test) {
+    section.remarks.emplace_back("Nothing to test: fewer than two stimuli or answers occurred.");
+    return section;
+  }
+  add_independence(counted, *test, section);
   section.tables.push_back(residuals_table(matrix));
   if (const auto square = by_right_response(matrix.stimuli, matrix.responses, matrix.counts)) {
     add_square(*square, section);

@@ -44,8 +44,9 @@ ConfusionMatrix matrix_of(const IdentificationData& data) {
   return matrix;
 }
 
-MatrixOfParticipants counted_by(const IdentificationData& data, const ConfusionMatrix& matrix) {
-  MatrixOfParticipants counted{matrix, {}};
+MatrixOfParticipants counted_by(const BlockDesign& design, const IdentificationData& data,
+                                const ConfusionMatrix& matrix) {
+  MatrixOfParticipants counted{matrix, {}, randomisation_of(design, data)};
   for (const IdentifyingParticipant& person : data.participants) {
     counted.participants.push_back({person.id, counts_of(data, person)});
   }
@@ -86,7 +87,7 @@ void add_over_participants(const MatrixOfParticipants& counted, IdentificationSu
   }
 }
 
-void add_tests(const BlockDesign& design, const IdentificationData& data,
+void add_tests(const BlockDesign& design, const Randomisation& randomisation,
                IdentificationSummary& summary) {
   std::vector<std::string> factors;
   for (const FactorResult& result : summary.factors) {
@@ -94,7 +95,7 @@ void add_tests(const BlockDesign& design, const IdentificationData& data,
       factors.push_back(result.factor);
     }
   }
-  const ChanceTests tests = chance_tests(design, data, factors);
+  const ChanceTests tests = chance_tests(randomisation, summary.matrix, factors);
   summary.chance_test = tests.test;
   if (tests.accuracy) {
     summary.chance_p = tests.accuracy->p;
@@ -119,7 +120,7 @@ IdentificationSummary::IdentificationSummary(const BlockDesign& design, Confusio
       matrix{std::move(counted)},
       accuracy{overall_accuracy(matrix)},
       factors{factor_results(matrix)} {
-  add_matrix_sections({matrix, {{"", matrix.counts}}}, *this);
+  add_matrix_sections({matrix, {{"", matrix.counts}}, randomisation_of(matrix.counts)}, *this);
 }
 
 IdentificationSummary::IdentificationSummary(const BlockDesign& design,
@@ -128,14 +129,14 @@ IdentificationSummary::IdentificationSummary(const BlockDesign& design,
       matrix{matrix_of(data)},
       accuracy{overall_accuracy(matrix)},
       factors{factor_results(matrix)} {
-  const MatrixOfParticipants counted = counted_by(data, matrix);
+  const MatrixOfParticipants counted = counted_by(design, data, matrix);
   for (const ParticipantCounts& person : counted.participants) {
     ConfusionMatrix own = matrix;
     own.counts = person.counts;
     participants.push_back({person.id, overall_accuracy(own)});
   }
   add_over_participants(counted, *this);
-  add_tests(design, data, *this);
+  add_tests(design, counted.randomisation, *this);
   if (accuracy.trials == 0) {
     return;
   }

@@ -2,6 +2,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/identification/chance_tests.hpp"
 #include "analysis/identification/identification_data.hpp"
 #include "analysis/tables/sections.hpp"
 namespace tapstudy::analysis {
@@ -10,6 +11,7 @@ namespace tapstudy::analysis {
 struct MatrixOfParticipants {
   ConfusionMatrix matrix;
   std::vector<ParticipantCounts> participants;  // with answers
+  Randomisation randomisation;
   bool are_known() const { return participants.size() > 1 || !participants.at(0).id.empty(); }
 };
 

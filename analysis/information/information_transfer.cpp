@@ -5,7 +5,6 @@
 #include <numbers>
 #include <numeric>
 
-#include "analysis/resampling/random_table.hpp"
 #include "analysis/resampling/replicates.hpp"
 #include "analysis/statistics/distributions.hpp"
 #include "analysis/statistics/quantiles.hpp"
@@ -61,28 +60,23 @@ std::int64_t fewest_answers_for_information(const CountTable& table) {
   return 5 * classes * classes;
 }
 
-GuessedInformation guessed_information(const std::vector<CountTable>& participants, int draws,
-                                       std::uint64_t seed, unsigned threads) {
+GuessedInformation guessed_information(const NullTables& tables, int draws, std::uint64_t seed,
+                                       unsigned threads) {
   if (draws < 1) {
     throw core::InvalidInput{"a null distribution takes one draw or more"};
   }
-  const CountTable observed = sum_of(participants);
-  const TableTotals pooled = answered_totals(observed);
-  std::vector<TableTotals> totals;
-  for (const CountTable& table : participants) {
-    totals.push_back(totals_of(table));
-  }
+  const double observed = plug_in_bits(tables.observed, answered_totals(tables.observed));
   const auto guessed = replicates(
       draws,
       [&](std::uint64_t own_seed) {
-        core::Rng rng{own_seed};
-        return plug_in_bits(sum_of_random_tables(totals, rng), pooled);
+        const CountTable table = tables.draw(own_seed);
+        return plug_in_bits(table, totals_of(table));
       },
       seed, threads);
   const double mean =
       std::accumulate(guessed.begin(), guessed.end(), 0.0) / static_cast<double>(draws);
-  return {mean, quantile(guessed, 0.5), quantile(guessed, 0.95),
-          monte_carlo_p(guessed, plug_in_bits(observed, pooled)), draws};
+  return {mean, quantile(guessed, 0.5), quantile(guessed, 0.95), monte_carlo_p(guessed, observed),
+          draws};
 }
 
 std::optional<Interval> information_interval(const std::vector<CountTable>& participants) {

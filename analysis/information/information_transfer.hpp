@@ -3,6 +3,7 @@
 #include <optional>
 #include <vector>
 
+#include "analysis/resampling/null_tables.hpp"
 #include "analysis/statistics/count_table.hpp"
 #include "analysis/statistics/proportion.hpp"
 namespace tapstudy::analysis {
@@ -23,8 +24,7 @@ InformationTransfer information_transfer(const CountTable& table);
 // 1955): what guessing gives is then as large as what is transferred.
 std::int64_t fewest_answers_for_information(const CountTable& table);
 
-// What guessers with the same answers would give: each table's answers shuffled over its trials,
-// totals kept, the tables added and their plug-in information computed.
+// The plug-in information that guessers with the same answers would give.
 struct GuessedInformation {
   double mean{};
   double median{};
@@ -32,10 +32,9 @@ struct GuessedInformation {
   double p{};  // that guessing gives as much as was observed; monte_carlo_p
   int draws{};
 };
-// One table a participant, so that each one's preferences are kept; or one of all. Throws
-// InvalidInput for no tables, of different shapes, without answers, and draws below 1.
-GuessedInformation guessed_information(const std::vector<CountTable>& participants, int draws,
-                                       std::uint64_t seed, unsigned threads = 0);
+// Throws InvalidInput for tables without answers and for draws below 1.
+GuessedInformation guessed_information(const NullTables& tables, int draws, std::uint64_t seed,
+                                       unsigned threads = 0);
 
 // The 95 % interval of the pooled Miller-Madow information by the jackknife over participants
 // (Tukey 1958): t with participants - 1 degrees of freedom times the standard error of the

@@ -73,6 +73,12 @@ std::vector<results::AnswerRow> answers_of(const BlockDesign& design, int partic
   return answers;
 }
 
+ChanceTests tested(const BlockDesign& design, const std::vector<results::AnswerRow>& answers,
+                   const std::vector<std::string>& factors) {
+  return chance_tests(randomisation_of(design, identification_data(design, answers)),
+                      {design.stimuli, design.responses}, factors, {99, 1});
+}
+
 BlockDesign drawn(BlockDesign design, int repetitions) {
   design.redraw = [repetitions](const Place& place, std::uint64_t draw) {
     core::Rng rng{draw + static_cast<std::uint64_t>(place.participant_index)};
@@ -223,8 +229,7 @@ TEST_CASE("agreement in a factor is tested by that factor's levels", "[analysis]
                              : testing::replaced(answer.stimulus, "acrylic", "mdf");
     answer.is_correct = false;
   }
-  const auto tests = chance_tests(design, identification_data(design, answers),
-                                  {"material", "structure"}, {99, 1});
+  const auto tests = tested(design, answers, {"material", "structure"});
   CHECK(tests.accuracy->p == 1.0);
   CHECK(tests.factors.at(0).p == 1.0);
   CHECK(tests.factors.at(1).p == 0.01);
@@ -241,8 +246,7 @@ TEST_CASE("an order drawn again is compared place by place with the answers",
   }
   design.redraw = [order](const Place& /*place*/, std::uint64_t /*draw*/) { return order; };
   // every draw is the order that was presented, so that each is as good
-  CHECK(chance_tests(design, identification_data(design, answers), {}, {99, 1}).accuracy->as_good ==
-        99);
+  CHECK(tested(design, answers, {}).accuracy->as_good == 99);
 }
 
 TEST_CASE(
@@ -255,19 +259,18 @@ TEST_CASE(
   std::map<std::string, std::vector<double>> found;
   for (std::uint64_t study = 0; study < studies; ++study) {
     const auto data = identification_data(design, answers_of(design, 8, 2, 0.0, 1000 + study));
-    const auto tests = chance_tests(design, data, {"material", "structure"}, {draws, study});
+    const Randomisation randomisation = randomisation_of(design, data);
+    const ConfusionMatrix matrix{design.stimuli, design.responses};
+    const auto tests =
+        chance_tests(randomisation, matrix, {"material", "structure"}, {draws, study});
     found["accuracy"].push_back(tests.accuracy->p);
     found["material"].push_back(tests.factors[0].p);
     found["structure"].push_back(tests.factors[1].p);
     const auto contrasts = contrasts_section(data);
     found["contrast"].push_back(
         std::get<double>(contrasts.tables.at(0).rows.at(0).at(5).values.at(0)));
-    std::vector<CountTable> tables;
-    for (const auto& person : data.participants) {
-      tables.push_back(counts_of(data, person));
-    }
-    found["dependence"].push_back(monte_carlo_independence(tables, draws, study).p);
-    found["information"].push_back(guessed_information(tables, draws, study).p);
+    found["dependence"].push_back(monte_carlo_independence(*randomisation.tables, draws, study).p);
+    found["information"].push_back(guessed_information(*randomisation.tables, draws, study).p);
     const auto serial = serial_dependence(sequences_of(data), draws, study);
     found["previous answer"].push_back(serial.repeated_answer.p);
     found["previous stimulus"].push_back(serial.last_right.p);

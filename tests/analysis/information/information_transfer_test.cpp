@@ -47,7 +47,7 @@ TEST_CASE("what guessing transfers is as in R's random tables of the same totals
                   "sum(ifelse(x > 0, x / n * log2(x / e), 0));"
                   "x <- sapply(r2dtable(20000, rowSums(m), colSums(m)), it);"
                   "out(mean(x), sd(x), median(x), quantile(x, .95))");
-    const GuessedInformation guessed = guessed_information({table}, draws, 3);
+    const GuessedInformation guessed = guessed_information(shuffled_tables({table}), draws, 3);
     const double error = r[1] / std::sqrt(draws);
     CHECK(guessed.mean == Approx(r[0]).margin(6.0 * error));
     CHECK(guessed.median == Approx(r[2]).margin(10.0 * error));
@@ -59,11 +59,11 @@ TEST_CASE("guessing by each participant's own preferences transfers what differs
           "[analysis][information]") {
   // two who always give one answer each: nothing can be shuffled
   const std::vector<CountTable> stubborn{{{4, 0}, {0, 0}}, {{0, 0}, {0, 4}}};
-  const GuessedInformation guessed = guessed_information(stubborn, 99, 1);
+  const GuessedInformation guessed = guessed_information(shuffled_tables(stubborn), 99, 1);
   CHECK(guessed.mean == Approx(1.0));
   CHECK(guessed.p == 1.0);
-  CHECK_THROWS_AS(guessed_information({}, 99, 1), core::InvalidInput);
-  CHECK_THROWS_AS(guessed_information(stubborn, 0, 1), core::InvalidInput);
+  CHECK_THROWS_AS(guessed_information(shuffled_tables({}), 99, 1), core::InvalidInput);
+  CHECK_THROWS_AS(guessed_information(shuffled_tables(stubborn), 0, 1), core::InvalidInput);
 }
 
 TEST_CASE("the interval of information is R's jackknife over participants",

@@ -84,10 +84,11 @@ std::vector<std::string> remarks_on(const MatrixOfParticipants& counted, const s
                     "Miller-Madow value is corrected for that. What guessing gives is not known: "
                     "{}.",
                     counted.randomisation.words)};
-  if (refusal.empty() && counted.participants.size() > 2) {
+  if (refusal.empty() && counted.participants.size() > 1) {
     remarks.emplace_back(
-        "The interval is the jackknife over participants of the corrected value. Pooling "
-        "participants who confuse differently transfers less than each of them does.");
+        "The interval is a jackknife over five participants or more of the corrected value and of "
+        "the logit of its share. Pooling participants who confuse differently transfers less than "
+        "each of them does.");
   }
   if (counted.are_known() || !refusal.empty()) {
     remarks.emplace_back(

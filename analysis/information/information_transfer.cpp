@@ -38,6 +38,27 @@ TableTotals answered_totals(const CountTable& table) {
   }
   return totals;
 }
+constexpr std::size_t fewest_participants = 5;
+
+// Tukey 1958, of a function of the pooled Miller-Madow information.
+template <class Function>
+Interval jackknife(const std::vector<CountTable>& participants, const CountTable& all,
+                   Function of) {
+  const auto n = static_cast<double>(participants.size());
+  const double whole = of(information_transfer(all).miller_madow_bits);
+  std::vector<double> pseudo_values;
+  for (const CountTable& left_out : participants) {
+    CountTable rest = all;
+    for (std::size_t i = 0; i < rest.size(); ++i) {
+      std::ranges::transform(rest[i], left_out[i], rest[i].begin(), std::minus{});
+    }
+    pseudo_values.push_back(n * whole -
+                            (n - 1.0) * of(information_transfer(rest).miller_madow_bits));
+  }
+  const MeanAndSpread spread = mean_and_spread(pseudo_values);
+  const double reach = t_quantile(0.975, n - 1.0) * spread.standard_deviation / std::sqrt(n);
+  return {whole - reach, whole + reach};
+}
 }  // namespace
 
 InformationTransfer information_transfer(const CountTable& table) {
@@ -80,22 +101,22 @@ GuessedInformation guessed_information(const NullTables& tables, int draws, std:
 }
 
 std::optional<Interval> information_interval(const std::vector<CountTable>& participants) {
-  const auto n = static_cast<double>(participants.size());
-  if (participants.size() < 3) {
+  const CountTable all = sum_of(participants);
+  const double answers = static_cast<double>(answered_totals(all).all);
+  if (participants.size() < fewest_participants) {
     return std::nullopt;
   }
-  const CountTable all = sum_of(participants);
-  const double whole = information_transfer(all).miller_madow_bits;
-  std::vector<double> pseudo_values;
-  for (const CountTable& left_out : participants) {
-    CountTable rest = all;
-    for (std::size_t i = 0; i < rest.size(); ++i) {
-      std::ranges::transform(rest[i], left_out[i], rest[i].begin(), std::minus{});
-    }
-    pseudo_values.push_back(n * whole - (n - 1.0) * information_transfer(rest).miller_madow_bits);
+  const double most = std::log2(static_cast<double>(std::min(all.size(), all.front().size())));
+  const double nearest = 0.5 / answers;  // to 0 and 1
+  const auto share = [&](double bits) { return std::clamp(bits / most, nearest, 1.0 - nearest); };
+  const auto direct = jackknife(participants, all, [](double bits) { return bits; });
+  const auto logit = jackknife(
+      participants, all, [&](double bits) { return std::log(share(bits) / (1.0 - share(bits))); });
+  if (!(direct.high > direct.low)) {
+    return std::nullopt;
   }
-  const MeanAndSpread spread = mean_and_spread(pseudo_values);
-  const double reach = t_quantile(0.975, n - 1.0) * spread.standard_deviation / std::sqrt(n);
-  return Interval{std::max(0.0, whole - reach), std::max(0.0, whole + reach)};
+  const auto back = [&](double value) { return most / (1.0 + std::exp(-value)); };
+  return Interval{std::max(0.0, std::min(direct.low, back(logit.low))),
+                  std::max({0.0, direct.high, back(logit.high)})};
 }
 }  // namespace tapstudy::analysis

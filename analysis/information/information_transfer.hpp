@@ -36,9 +36,10 @@ struct GuessedInformation {
 GuessedInformation guessed_information(const NullTables& tables, int draws, std::uint64_t seed,
                                        unsigned threads = 0);
 
-// The 95 % interval of the pooled Miller-Madow information by the jackknife over participants
-// (Tukey 1958): t with participants - 1 degrees of freedom times the standard error of the
-// pseudo-values, not below 0. Unset for fewer than three participants. Throws InvalidInput for
-// tables without answers or of different shapes.
+// The 95 % interval of the pooled Miller-Madow information: the union of two jackknives over
+// participants (Tukey 1958; t with participants - 1 degrees of freedom), of the bits and of the
+// logit of their share of the most possible, back in bits. The first alone is too short near the
+// most, the second near 0. Unset for fewer than five participants, and where leaving one out makes
+// no difference. Throws InvalidInput for tables without answers or of different shapes.
 std::optional<Interval> information_interval(const std::vector<CountTable>& participants);
 }  // namespace tapstudy::analysis

@@ -1,13 +1,36 @@
 #include "analysis/information/information_transfer.hpp"
 
+#include <boost/math/distributions/beta.hpp>
 #include <catch2/catch.hpp>
 
 #include "core/error.hpp"
+#include "core/rng.hpp"
 #include "support/confusion_tables.hpp"
 #include "support/r_program.hpp"
 using namespace tapstudy;
 using namespace tapstudy::analysis;
 using namespace tapstudy::testing;
+
+namespace {
+// Tables of people who answer each of four classes twice, and whose share of right answers is beta
+// distributed about `right` with an intra-class correlation of 0.1.
+std::vector<CountTable> differing_people(int participants, double right, core::Rng& rng) {
+  constexpr double nu = 1.0 / 0.1 - 1.0;
+  std::vector<CountTable> people;
+  for (int person = 0; person < participants; ++person) {
+    const double share = boost::math::quantile(
+        boost::math::beta_distribution<>{nu * right, nu * (1.0 - right)}, rng.uniform());
+    CountTable table(4, std::vector<std::int64_t>(4, 0));
+    for (std::size_t trial = 0; trial < 8; ++trial) {
+      const std::size_t stimulus = trial / 2;
+      const std::size_t other = (stimulus + 1 + rng.below(3)) % 4;
+      ++table[stimulus][rng.uniform() < share ? stimulus : other];
+    }
+    people.push_back(table);
+  }
+  return people;
+}
+}  // namespace
 
 TEST_CASE(
     "information transfer is what the entropies of stimuli and answers have in common, each "
@@ -66,20 +89,47 @@ TEST_CASE("guessing by each participant's own preferences transfers what differs
   CHECK_THROWS_AS(guessed_information(shuffled_tables(stubborn), 0, 1), core::InvalidInput);
 }
 
-TEST_CASE("the interval of information is R's jackknife over participants",
+TEST_CASE("the interval of information is R's union of two jackknives over participants",
           "[analysis][information]") {
   const std::vector<CountTable> people{
-      {{5, 1}, {2, 4}}, {{3, 3}, {1, 5}}, {{6, 0}, {0, 6}}, {{4, 2}, {4, 2}}};
+      {{5, 1}, {2, 4}}, {{3, 3}, {1, 5}}, {{6, 0}, {0, 6}}, {{4, 2}, {4, 2}}, {{6, 0}, {1, 5}}};
   const auto r = r_numbers(
       "p <- list(matrix(c(5,2,1,4),2), matrix(c(3,1,3,5),2), matrix(c(6,0,0,6),2), "
-      "matrix(c(4,4,2,2),2)); it <- function(m) { n <- sum(m); e <- outer(rowSums(m), "
-      "colSums(m)) / n; sum(ifelse(m > 0, m / n * log2(m / e), 0)) + (sum(rowSums(m) > 0) + "
-      "sum(colSums(m) > 0) - sum(m > 0) - 1) / (2 * n * log(2)) };"
-      "all <- Reduce(`+`, p); v <- sapply(p, function(x) it(all - x));"
-      "se <- sqrt(3 / 4 * sum((v - mean(v))^2)); out(it(all) + c(-1, 1) * qt(.975, 3) * se)");
+      "matrix(c(4,4,2,2),2), matrix(c(6,1,0,5),2)); it <- function(m) { n <- sum(m); e <- "
+      "outer(rowSums(m), colSums(m)) / n; sum(ifelse(m > 0, m / n * log2(m / e), 0)) + "
+      "(sum(rowSums(m) > 0) + sum(colSums(m) > 0) - sum(m > 0) - 1) / (2 * n * log(2)) };"
+      "all <- Reduce(`+`, p); ends <- function(f) { v <- sapply(p, function(x) f(it(all - x)));"
+      "f(it(all)) + c(-1, 1) * qt(.975, 4) * sqrt(4 / 5 * sum((v - mean(v))^2)) };"
+      "out(ends(identity), plogis(ends(qlogis)))");
   const auto interval = information_interval(people);
   REQUIRE(interval);
-  CHECK(interval->low == Approx(std::max(0.0, r[0])).margin(1e-9));
-  CHECK(interval->high == Approx(r[1]));
-  CHECK_FALSE(information_interval({people[0], people[1]}));
+  CHECK(interval->low == Approx(std::max(0.0, std::min(r[0], r[2]))).margin(1e-9));
+  CHECK(interval->high == Approx(std::max(r[1], r[3])).epsilon(1e-9));
+  CHECK_FALSE(information_interval({people[0], people[1], people[2], people[3]}));
+  CHECK_FALSE(information_interval(std::vector<CountTable>(6, people[0])));
+}
+
+TEST_CASE("the interval of information holds the true information in 94 % of studies or more",
+          "[analysis][information][slow]") {
+  constexpr int studies = 1000;
+  constexpr int classes = 4;
+  const auto bits_at = [](double right) {  // errors evenly among the others
+    const double wrong = (1.0 - right) / (classes - 1);
+    return 2.0 + right * std::log2(right) + (classes - 1) * wrong * std::log2(wrong);
+  };
+  for (const double right : {0.35, 0.5, 0.85}) {
+    for (const int participants : {5, 10}) {
+      core::Rng rng{7};
+      int held = 0;
+      int known = 0;
+      for (int study = 0; study < studies; ++study) {
+        const auto interval = information_interval(differing_people(participants, right, rng));
+        known += interval ? 1 : 0;
+        held += interval && interval->low <= bits_at(right) && bits_at(right) <= interval->high;
+      }
+      INFO(right << ", " << participants << " participants: " << held << " of " << known);
+      CHECK(known > 0.95 * studies);
+      CHECK(held >= (0.94 - 3.0 * std::sqrt(0.06 * 0.94 / known)) * known);
+    }
+  }
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "analysis/statistics/confusion_matrix.hpp"
+#include "core/psychometric_function.hpp"
 namespace tapstudy::analysis {
 // The part of a study's design that its report needs.
 struct PlannedHypothesis {
@@ -71,6 +72,13 @@ struct BlockDesign {
   bool is_order_known{true};
   // On which all alternatives of a trial have the same values; the block is summarised at each.
   std::vector<std::string> further_axes{};
+  // Of psychometric functions.
+  core::PsychometricShape shape{core::PsychometricShape::weibull};
+  // Answers are "there is a difference": how often by a guess is the participant's own affair, and
+  // shows where there is none.
+  bool has_own_guess_rate{};
+  // Main results only: what takes long and they do not depend on is left out.
+  bool is_for_main_results{};
 };
 struct StudyDesign {
   std::string title;

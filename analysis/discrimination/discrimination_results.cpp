@@ -9,6 +9,7 @@
 #include <set>
 #include <utility>
 
+#include "analysis/discrimination/answer_counts.hpp"
 #include "analysis/statistics/distributions.hpp"
 #include "analysis/statistics/quantiles.hpp"
 #include "core/error.hpp"
@@ -43,25 +44,10 @@ std::string stimuli_of(const AnswerRow& answer) {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-// The number of alternatives in the model's sense: chance is 1 in so many.
-DecisionTask task_of(const BlockDesign& design, const DecisionModelRow& row) {
-  const DecisionTask task{row.model, static_cast<int>(std::lround(1.0 / design.guess_rate))};
-  constexpr double tolerance = 1e-6;
-  if (std::abs(chance(task) - design.guess_rate) > tolerance) {
-    throw core::InvalidInput{fmt::format("block '{}': {} has no guess rate of {}", design.name,
-                                         row.name, design.guess_rate)};
-  }
-  return task;
-}
-
 void check(const BlockDesign& design) {
   if (!(design.guess_rate > 0.0 && design.guess_rate < 1.0)) {
     throw core::InvalidInput{fmt::format("block '{}': a guess rate is between 0 and 1, not {}",
                                          design.name, design.guess_rate)};
-  }
-  if (!design.decision_model.empty() && find_decision_model(design.decision_model) == nullptr) {
-    throw core::InvalidInput{fmt::format("block '{}': there is no decision model '{}'", design.name,
-                                         design.decision_model)};
   }
 }
 
@@ -125,13 +111,14 @@ std::optional<AccuracyTest> accuracy_test(const std::vector<ParticipantDiscrimin
 }
 
 ParticipantDiscrimination participant_of(const BlockDesign& design, const std::string& name,
-                                         const Counts& counts, const DecisionModelRow* model) {
+                                         const Counts& counts,
+                                         const std::optional<DecisionTask>& task) {
   ParticipantDiscrimination person{name, counts.correct, {}, {}, rates_of(counts)};
   if (design.premise.empty()) {
     person.p = binomial_p_at_least(counts.correct, design.guess_rate);
   }
-  if (model != nullptr) {
-    person.sensitivity = sensitivity(task_of(design, *model), counts.correct);
+  if (task) {
+    person.sensitivity = sensitivity(*task, counts.correct);
   }
   return person;
 }
@@ -140,6 +127,7 @@ ParticipantDiscrimination participant_of(const BlockDesign& design, const std::s
 DiscriminationResults discrimination_results(const BlockDesign& design,
                                              const std::vector<AnswerRow>& answers) {
   check(design);
+  const std::optional<DecisionTask> task = decision_task(design);
   std::map<std::string, Counts> people;
   std::map<std::string, std::map<std::string, Proportion>> pairs;  // by stimuli, then participant
   DiscriminationResults results;
@@ -156,7 +144,7 @@ DiscriminationResults discrimination_results(const BlockDesign& design,
     }
   }
   for (const auto& [name, counts] : people) {
-    results.participants.push_back(participant_of(design, name, counts, results.model));
+    results.participants.push_back(participant_of(design, name, counts, task));
   }
   for (const auto& [stimuli, correct] : pairs) {
     DiscriminationResults::Pair pair{stimuli, {}};

@@ -6,7 +6,9 @@
 #include <iterator>
 
 #include "analysis/blocks/pooled_proportion.hpp"
+#include "analysis/discrimination/answer_counts.hpp"
 #include "analysis/discrimination/discrimination_results.hpp"
+#include "analysis/participants/mean_proportion.hpp"
 #include "analysis/tables/tabular_summary.hpp"
 namespace tapstudy::analysis {
 namespace {
@@ -38,6 +40,13 @@ ReportTable participants_table(const DiscriminationResults& results) {
   return table;
 }
 
+std::vector<Proportion> correct_of(const DiscriminationResults& results) {
+  std::vector<Proportion> correct;
+  std::ranges::transform(results.participants, std::back_inserter(correct),
+                         &ParticipantDiscrimination::correct);
+  return correct;
+}
+
 ReportTable all_table(const BlockDesign& design, const DiscriminationResults& results) {
   ReportTable table{"all",
                     "All participants",
@@ -45,12 +54,10 @@ ReportTable all_table(const BlockDesign& design, const DiscriminationResults& re
                      column("participants with d'", "participants"),
                      interval_column("mean of their d' (95 % CI)", "mean_d_prime")}};
   if (!results.participants.empty()) {
-    std::vector<Proportion> correct;
-    std::ranges::transform(results.participants, std::back_inserter(correct),
-                           &ParticipantDiscrimination::correct);
     const auto& mean = results.mean_d_prime;
     table.rows.push_back(
-        {pooled_proportion(correct), share(design.guess_rate), count(mean ? mean->participants : 0),
+        {pooled_proportion(correct_of(results)), share(design.guess_rate),
+         count(mean ? mean->participants : 0),
          mean ? interval(mean->mean, mean->interval) : nothing(table.columns.back())});
   }
   return table;
@@ -109,8 +116,10 @@ std::vector<std::string> remarks_on(const BlockDesign& design,
       fmt::format("Chance is {:.3g}. Each participant: exact binomial test, one-sided; Wilson "
                   "interval.",
                   design.guess_rate),
-      "The interval of all answers takes them as independent, as if of one participant; where "
-      "participants differ it is too narrow."};
+      results.participants.size() > 1 ? "The interval of all answers is over participants, of a "
+                                        "beta-binomial likelihood; those "
+                                        "of one participant take the answers as independent."
+                                      : "The interval takes the answers as independent."};
   if (!design.premise.empty()) {
     remarks.push_back("Not tested: " + design.premise);
   }
@@ -164,9 +173,14 @@ std::shared_ptr<BlockSummary> summarise_discrimination(const BlockDesign& design
                                                        const BlockRows& rows) {
   const DiscriminationResults results = discrimination_results(design, rows.answers);
   auto summary = std::make_shared<TabularSummary>(design);
-  summary->parts = {all_table(design, results), participants_table(results), pairs_table(results),
-                    rates_table(results), models_table(results)};
+  summary->parts = {all_table(design, results), participants_table(results),
+                    pairs_table(results),       rates_table(results),
+                    models_table(results),      answer_counts_table(rows.answers)};
   summary->remarks = remarks_on(design, results);
+  if (const auto over = mean_proportion(correct_of(results))) {
+    summary->main = {{"share of right answers", over->mean, over->interval,
+                      results.test ? std::optional{results.test->p} : std::nullopt}};
+  }
   for (const PlannedHypothesis& planned : design.hypotheses) {
     summary->hypotheses.push_back(tested(design, results, planned));
   }

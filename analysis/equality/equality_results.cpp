@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include "analysis/statistics/distributions.hpp"
@@ -14,6 +15,7 @@ namespace {
 using results::AlternativeRow;
 using results::AnswerRow;
 constexpr double max_rate = 0.1;
+constexpr int draws_of_fit = 200;
 constexpr std::uint64_t test_seed = 1;
 
 bool is_judged_greater(const BlockDesign& design, const AnswerRow& answer) {
@@ -28,9 +30,15 @@ bool is_judged_greater(const BlockDesign& design, const AnswerRow& answer) {
   return named->is_comparison != design.axis->is_smaller_asked;
 }
 
-void estimate(ParticipantEquality& person) {
-  const PsychometricModel model = equality_model();
-  const double quartile = normal_quantile(0.75);
+// Half of the distance from F = 0.25 to F = 0.75 at this slope, which scales it.
+double jnd_at(core::PsychometricShape shape, double slope) {
+  return std::isinf(slope) ? 0.0
+                           : 0.5 * (core::shape_quantile(shape, 0.75, 0.0, slope) -
+                                    core::shape_quantile(shape, 0.25, 0.0, slope));
+}
+
+void estimate(ParticipantEquality& person, const BlockDesign& design) {
+  const PsychometricModel model = equality_model(design);
   try {
     const PsychometricFit fit = fit_psychometric(model, person.levels);
     if (!fit.curve) {
@@ -40,8 +48,14 @@ void estimate(ParticipantEquality& person) {
     const PsychometricIntervals intervals = profile_intervals(model, person.levels);
     person.estimate = {*fit.curve,
                        intervals.threshold,
-                       quartile / fit.curve->slope,
-                       {quartile / intervals.slope.high, quartile / intervals.slope.low}};
+                       jnd_at(model.shape, fit.curve->slope),
+                       {jnd_at(model.shape, intervals.slope.high),
+                        intervals.slope.low > 0.0 ? jnd_at(model.shape, intervals.slope.low)
+                                                  : std::numeric_limits<double>::infinity()},
+                       std::nullopt};
+    if (!design.is_for_main_results) {
+      person.estimate->goodness = deviance_test(model, person.levels, draws_of_fit, test_seed);
+    }
   } catch (const core::InvalidInput& error) {  // too few levels
     person.no_estimate = error.what();
   }
@@ -63,8 +77,8 @@ void add_means(EqualityResults& results) {
 }
 }  // namespace
 
-PsychometricModel equality_model() {
-  return {core::PsychometricShape::cumulative_gaussian, {0.0, max_rate}, {0.0, max_rate}};
+PsychometricModel equality_model(const BlockDesign& design) {
+  return {design.shape, {0.0, max_rate}, {0.0, max_rate}};
 }
 
 EqualityResults equality_results(const BlockDesign& design, const std::vector<AnswerRow>& answers) {
@@ -76,12 +90,14 @@ EqualityResults equality_results(const BlockDesign& design, const std::vector<An
     ParticipantEquality& person = people[answer.participant_id];
     person.participant_id = answer.participant_id;
     if (const auto level = comparison_level(design, answer)) {
-      count_at(person.levels, *level, is_judged_greater(design, answer));
+      const bool is_greater = is_judged_greater(design, answer);
+      count_at(person.levels, *level, is_greater);
+      add_track_point(person.track, answer, *level, is_greater);
     }
   }
   EqualityResults results;
   for (auto& [name, person] : people) {
-    estimate(person);
+    estimate(person, design);
     results.participants.push_back(std::move(person));
   }
   add_means(results);

@@ -6,23 +6,26 @@
 #include "analysis/blocks/block_summary.hpp"
 #include "analysis/participants/paired_contrast.hpp"
 #include "analysis/psychometric/inference.hpp"
+#include "analysis/thresholds/track_points.hpp"
 namespace tapstudy::analysis {
 // Comparisons on either side of a standard: how often they are judged greater, from never to
 // always. Levels are VariedAxis::level_of, below the standard negative.
 
-// psi is a cumulative Gaussian with guess and lapse rates up to 0.1 (Wichmann & Hill 2001a), its
-// mean the point of subjective equality (PSE), 0.6745 of its standard deviation the just
-// noticeable difference (JND): half of the distance from F = 0.25 to F = 0.75.
+// psi is the block's function, on a linear axis, with guess and lapse rates up to 0.1 (Wichmann &
+// Hill 2001a), its value at F = 0.5 the point of subjective equality (PSE), half of the distance
+// from F = 0.25 to F = 0.75 the just noticeable difference (JND).
 struct EqualityEstimate {
   PsychometricCurve curve;
   Interval equality;  // 95 %, by profile likelihood; of levels
   double jnd{};       // a level
   Interval jnd_interval;
+  std::optional<GoodnessOfFit> goodness;  // unset where only main results are wanted
 };
 
 struct ParticipantEquality {
   std::string participant_id;
-  std::vector<Level> levels;  // judged greater, from low to high
+  std::vector<Level> levels;      // judged greater, from low to high
+  std::vector<TrackPoint> track;  // of those judged greater
   std::optional<EqualityEstimate> estimate;
   std::string no_estimate;  // why there is none; empty: there is
 };
@@ -35,7 +38,7 @@ struct EqualityResults {
   std::optional<PairedContrast> log_jnd;
 };
 
-PsychometricModel equality_model();
+PsychometricModel equality_model(const BlockDesign& design);
 
 // Throws InvalidInput where the block has no axis, a comparison has no value on it, or an answer
 // names no alternative.

@@ -32,15 +32,18 @@ ReportTable participants_table(const VariedAxis& axis, const EqualityResults& re
                                 axis.name, axis.is_fraction ? " as fractions of the standard" : ""),
                     {column("participant", "participant_id")}};
   std::ranges::copy(estimate_columns(), std::back_inserter(table.columns));
+  table.columns.push_back(column("deviance test", "deviance_p"));
   for (const ParticipantEquality& person : results.participants) {
     std::vector<Cell> row{word(person.participant_id)};
     if (const auto& of = person.estimate) {
       row.push_back(interval(value_at(axis, of->curve.threshold), values_at(axis, of->equality)));
       row.push_back(interval(of->curve.threshold, of->equality));
       row.push_back(interval(of->jnd, of->jnd_interval));
+      row.push_back(probability(of->goodness ? std::optional{of->goodness->p} : std::nullopt));
     } else {
       std::ranges::transform(estimate_columns(), std::back_inserter(row),
                              [](const Column& missing) { return nothing(missing); });
+      row.push_back(nothing(table.columns.back()));
     }
     table.rows.push_back(row);
   }
@@ -86,16 +89,25 @@ ReportTable levels_table(const VariedAxis& axis, const EqualityResults& results)
   return table;
 }
 
+ReportTable tracks_of(const EqualityResults& results) {
+  ReportTable table = tracks_table("judged greater", "is_judged_greater");
+  for (const ParticipantEquality& person : results.participants) {
+    add_track_rows(person.participant_id, person.track, table);
+  }
+  return table;
+}
+
 std::vector<std::string> remarks_on(const BlockDesign& design, const EqualityResults& results) {
   if (results.participants.empty()) {
     return {"There are no answers."};
   }
   std::vector<std::string> remarks{
-      fmt::format("The standard is {:.6g}. A cumulative Gaussian of how often the comparison is "
-                  "judged greater, by maximum likelihood, guess and lapse rate from 0 to 0.1; "
-                  "intervals by profile likelihood. At equality it is at 50 %; the just noticeable "
-                  "difference is half of the distance from 25 to 75 %, without guesses and lapses.",
-                  design.axis->standard)};
+      fmt::format("The standard is {:.6g}. A {} function of how often the comparison is judged "
+                  "greater, by maximum likelihood, guess and lapse rate from 0 to 0.1; intervals "
+                  "by profile likelihood. At equality it is at 50 %; the just noticeable "
+                  "difference is half of the distance from 25 to 75 %, without guesses and lapses. "
+                  "Deviance test by parametric bootstrap: a small p says that it does not fit.",
+                  design.axis->standard, core::row_of(design.shape).name)};
   for (const ParticipantEquality& person : results.participants) {
     if (!person.estimate) {
       remarks.push_back(fmt::format("{} has no point of equality: {}.", person.participant_id,
@@ -115,7 +127,8 @@ std::vector<std::string> remarks_on(const BlockDesign& design, const EqualityRes
   return remarks;
 }
 
-Chart chart_of(const ParticipantEquality& person, const Interval& range) {
+Chart chart_of(const ParticipantEquality& person, const Interval& range,
+               core::PsychometricShape shape) {
   Chart chart{fmt::format("{}: comparison judged greater; areas by trials", person.participant_id),
               fmt::format("Psychometric function of {}", person.participant_id),
               "level, 0: the standard",
@@ -128,14 +141,14 @@ Chart chart_of(const ParticipantEquality& person, const Interval& range) {
     return chart;
   }
   const PsychometricCurve& curve = person.estimate->curve;
-  chart.line = curve_points(chart, equality_model().shape, curve);
+  chart.line = curve_points(chart, shape, curve);
   chart.bars = {{0.5 * (1.0 + curve.guess - curve.lapse), person.estimate->equality}};
   chart.alternative +=
       ", equality at the level " + with_interval(curve.threshold, person.estimate->equality);
   return chart;
 }
 
-std::vector<Chart> charts_of(const EqualityResults& results) {
+std::vector<Chart> charts_of(const EqualityResults& results, core::PsychometricShape shape) {
   std::vector<double> levels;
   for (const ParticipantEquality& person : results.participants) {
     std::ranges::transform(person.levels, std::back_inserter(levels), &Level::value);
@@ -143,7 +156,13 @@ std::vector<Chart> charts_of(const EqualityResults& results) {
   std::vector<Chart> charts;
   for (const ParticipantEquality& person : results.participants) {
     if (!person.levels.empty()) {
-      charts.push_back(chart_of(person, range_of(levels, false)));
+      const Interval range = range_of(levels, false);
+      charts.push_back(chart_of(person, range, shape));
+      charts.back().begins_row = true;
+      for (Chart& chart :
+           track_charts(person.participant_id, person.track, range, false, "not judged greater")) {
+        charts.push_back(std::move(chart));
+      }
     }
   }
   return charts;
@@ -155,8 +174,8 @@ std::shared_ptr<BlockSummary> summarise_equality(const BlockDesign& design, cons
   const VariedAxis& axis = *design.axis;
   auto summary = std::make_shared<TabularSummary>(design);
   summary->parts = {participants_table(axis, results), over_participants_table(design, results),
-                    levels_table(axis, results)};
-  summary->charts = charts_of(results);
+                    levels_table(axis, results), tracks_of(results)};
+  summary->charts = charts_of(results, design.shape);
   summary->remarks = remarks_on(design, results);
   if (results.equality && results.equality->interval) {
     summary->main = {{"point of subjective equality, " + axis.name,

@@ -127,6 +127,8 @@ std::shared_ptr<BlockSummary> summarise_magnitudes(const BlockDesign& design,
   for (const StimulusMagnitudes& of : results) {
     if (of.power_law) {
       summary->charts.push_back(chart_of(design, of));
+      summary->main.push_back(
+          {"exponent of " + of.stimulus, of.power_law->exponent, of.power_law->exponent_interval});
     }
   }
   for (const PlannedHypothesis& planned : design.hypotheses) {

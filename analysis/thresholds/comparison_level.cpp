@@ -21,7 +21,8 @@ std::optional<double> comparison_level(const BlockDesign& design,
                                        const results::AnswerRow& answer) {
   const auto comparison =
       std::ranges::find_if(answer.alternatives, &results::AlternativeRow::is_comparison);
-  if (comparison == answer.alternatives.end()) {
+  if (comparison == answer.alternatives.end() ||
+      std::ranges::all_of(answer.alternatives, &results::AlternativeRow::is_comparison)) {
     return std::nullopt;
   }
   const auto value = comparison->axis_values.find(design.axis->name);

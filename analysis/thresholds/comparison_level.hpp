@@ -7,8 +7,8 @@
 #include "results/rows.hpp"
 namespace tapstudy::analysis {
 // VariedAxis::level_of the first comparison of an answered trial, to nine digits, because values of
-// one stimulus differ in their last ones where they are products; unset if there was none. Throws
-// InvalidInput if it has no value on the axis.
+// one stimulus differ in their last ones where they are products; unset where no comparison stood
+// beside a standard. Throws InvalidInput if it has no value on the axis.
 std::optional<double> comparison_level(const BlockDesign& design, const results::AnswerRow& answer);
 
 // One answer more at this level. Levels from low to high.

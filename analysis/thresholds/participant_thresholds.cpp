@@ -7,6 +7,7 @@
 #include <cmath>
 #include <future>
 #include <map>
+#include <numbers>
 #include <thread>
 
 #include "analysis/thresholds/comparison_level.hpp"
@@ -17,9 +18,9 @@ using results::AnswerRow;
 constexpr double max_lapse = 0.1;
 constexpr int draws_of_fit = 200;
 constexpr std::uint64_t draws_seed = 1;
-// Levels of all participants together; the time of either grows with them.
-constexpr std::size_t max_levels_with_tests_of_fit = 60;
-constexpr std::size_t max_levels_with_posteriors = 40;
+constexpr double max_own_guess = 0.85;
+// Levels of all participants together; about a hundred take a second of one processor.
+constexpr std::size_t most_levels_examined = 1000;
 
 void add(Proportion& counted, bool is_success) {
   ++counted.trials;
@@ -37,8 +38,7 @@ void add_answer(ParticipantThreshold& person, const BlockDesign& design, const A
     add(person.false_alarms, !*answer.is_correct);
     return;
   }
-  const int number = static_cast<int>(person.track.size()) + 1;
-  person.track.push_back({number, *level, *answer.is_correct});
+  add_track_point(person.track, answer, *level, *answer.is_correct);
   add(person.correct, *answer.is_correct);
   count_at(person.levels, *level, *answer.is_correct);
 }
@@ -59,29 +59,39 @@ std::vector<ParticipantThreshold> people_of(const BlockDesign& design,
   return sorted;
 }
 
-void estimate(ParticipantThreshold& person, const PsychometricModel& model, int draws) {
+std::vector<Level> fitted_levels(const ParticipantThreshold& person, const BlockDesign& design) {
+  std::vector<Level> levels = person.levels;
+  if (design.has_own_guess_rate && person.false_alarms.trials > 0) {
+    levels.push_back({0.0, person.false_alarms});
+  }
+  return levels;
+}
+
+void estimate(ParticipantThreshold& person, const PsychometricModel& model,
+              const std::vector<Level>& levels, int draws) {
   try {
-    const PsychometricFit fit = fit_psychometric(model, person.levels);
+    const PsychometricFit fit = fit_psychometric(model, levels);
     if (!fit.curve) {
       person.no_threshold = explanation(fit.outcome);
       return;
     }
     const PsychometricCurve& curve = *fit.curve;
-    person.estimate = {curve, profile_intervals(model, person.levels),
+    person.estimate = {curve, profile_intervals(model, levels),
                        core::proportion(model.shape, curve.threshold, curve.threshold, curve.slope,
                                         curve.guess, curve.lapse),
                        std::nullopt};
     if (draws > 0) {
-      person.estimate->goodness = deviance_test(model, person.levels, draws, draws_seed);
+      person.estimate->goodness = deviance_test(model, levels, draws, draws_seed);
     }
   } catch (const core::InvalidInput& error) {  // too few levels, or levels below 0
     person.no_threshold = error.what();
   }
 }
 
-void add_posterior(ParticipantThreshold& person, const PsychometricModel& model) {
+void add_posterior(ParticipantThreshold& person, const PsychometricModel& model,
+                   const std::vector<Level>& levels) {
   try {
-    person.posterior = psychometric_posterior(model, person.levels).estimates;
+    person.posterior = psychometric_posterior(model, levels).estimates;
   } catch (const core::InvalidInput&) {  // the fit says why
     person.posterior.reset();
   }
@@ -106,13 +116,22 @@ void each_at_once(std::vector<ParticipantThreshold>& people, Task task) {
   }
 }
 
-std::vector<ParticipantEstimate> logarithms(const std::vector<ParticipantThreshold>& people) {
+// Standard errors are those on the shape's axis; of a linear one the logarithm's by the delta
+// method.
+std::vector<ParticipantEstimate> logarithms(const std::vector<ParticipantThreshold>& people,
+                                            core::PsychometricShape shape) {
   std::vector<ParticipantEstimate> estimates;
   for (const ParticipantThreshold& person : people) {
-    if (person.estimate && std::isfinite(person.estimate->curve.threshold_standard_error) &&
-        person.estimate->curve.threshold_standard_error > 0.0) {
-      estimates.push_back({std::log10(person.estimate->curve.threshold),
-                           person.estimate->curve.threshold_standard_error});
+    if (!person.estimate || person.estimate->curve.threshold <= 0.0) {
+      continue;
+    }
+    const PsychometricCurve& curve = person.estimate->curve;
+    const double error =
+        core::row_of(shape).is_logarithmic
+            ? curve.threshold_standard_error
+            : curve.threshold_standard_error / (curve.threshold * std::numbers::ln10);
+    if (std::isfinite(error) && error > 0.0) {
+      estimates.push_back({std::log10(curve.threshold), error});
     }
   }
   return estimates;
@@ -120,8 +139,9 @@ std::vector<ParticipantEstimate> logarithms(const std::vector<ParticipantThresho
 }  // namespace
 
 PsychometricModel model_of(const BlockDesign& design) {
-  return {
-      core::PsychometricShape::weibull, {design.guess_rate, design.guess_rate}, {0.0, max_lapse}};
+  const Interval guess = design.has_own_guess_rate ? Interval{0.0, max_own_guess}
+                                                   : Interval{design.guess_rate, design.guess_rate};
+  return {design.shape, guess, {0.0, max_lapse}};
 }
 
 ThresholdResults participant_thresholds(const BlockDesign& design,
@@ -136,16 +156,18 @@ ThresholdResults participant_thresholds(const BlockDesign& design,
   for (const ParticipantThreshold& person : results.participants) {
     levels += person.levels.size();
   }
-  results.draws = levels <= max_levels_with_tests_of_fit ? draws_of_fit : 0;
-  results.has_posteriors = levels <= max_levels_with_posteriors;
+  const bool is_examined = levels <= most_levels_examined && !design.is_for_main_results;
+  results.draws = is_examined ? draws_of_fit : 0;
+  results.has_posteriors = is_examined;
   const PsychometricModel model = model_of(design);
   each_at_once(results.participants, [&](ParticipantThreshold& person) {
-    estimate(person, model, results.draws);
+    const std::vector<Level> fitted = fitted_levels(person, design);
+    estimate(person, model, fitted, results.draws);
     if (results.has_posteriors) {
-      add_posterior(person, model);
+      add_posterior(person, model, fitted);
     }
   });
-  if (const auto estimates = logarithms(results.participants); estimates.size() > 1) {
+  if (const auto estimates = logarithms(results.participants, design.shape); estimates.size() > 1) {
     results.pooled_log = pooled(estimates);
     results.pooled_participants = static_cast<int>(estimates.size());
   }

@@ -7,14 +7,9 @@
 #include "analysis/psychometric/inference.hpp"
 #include "analysis/psychometric/pooling.hpp"
 #include "analysis/psychometric/posterior.hpp"
+#include "analysis/thresholds/track_points.hpp"
 namespace tapstudy::analysis {
 // What the answers of a block say of each participant's threshold.
-
-struct TrackPoint {
-  int number{};  // of the trial with a comparison, from 1, in order of time
-  double level{};
-  bool is_correct{};
-};
 
 struct ThresholdEstimate {
   PsychometricCurve curve;
@@ -27,8 +22,8 @@ struct ParticipantThreshold {
   std::string participant_id;
   std::vector<TrackPoint> track;
   std::vector<Level> levels;  // from low to high
-  Proportion correct;         // of trials with a comparison
-  Proportion false_alarms;    // wrong answers in trials without one
+  Proportion correct;         // of trials with a comparison beside a standard
+  Proportion false_alarms;    // wrong answers in the others
   std::optional<ThresholdEstimate> estimate;
   std::string no_threshold;                     // why there is none; empty: there is
   std::optional<PosteriorEstimates> posterior;  // unset also where it would take too long
@@ -43,13 +38,14 @@ struct ThresholdResults {
   int pooled_participants{};  // whose threshold has a standard error
 };
 
-// The Weibull function with the block's guess rate and a lapse rate of up to 0.1.
+// The block's psychometric function with its guess rate, or a free one, and a lapse rate of up to
+// 0.1.
 PsychometricModel model_of(const BlockDesign& design);
 
-// Levels are VariedAxis::level_of the first comparison of a trial, to nine digits. Tests of fit and
-// posteriors are left out of large blocks, so that a report takes seconds at most. Throws
-// InvalidInput where the block has no axis, a comparison has no value on it, or an answer is
-// neither right nor wrong.
+// Levels are those of comparison_level. Where the guess rate is the participant's own, answers that
+// there is a difference where there is none are those at the level 0. Tests of fit and posteriors
+// are left out of very large blocks, so that a report takes seconds. Throws InvalidInput where the
+// block has no axis, a comparison has no value on it, or an answer is neither right nor wrong.
 ThresholdResults participant_thresholds(const BlockDesign& design,
                                         const std::vector<results::AnswerRow>& answers);
 }  // namespace tapstudy::analysis

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "analysis/discrimination/answer_counts.hpp"
 #include "analysis/tables/tabular_summary.hpp"
 #include "analysis/thresholds/threshold_tables.hpp"
 namespace tapstudy::analysis {
@@ -20,6 +21,9 @@ std::shared_ptr<BlockSummary> summarise_thresholds(const BlockDesign& design,
   const ThresholdResults results = participant_thresholds(design, rows.answers);
   auto summary = std::make_shared<TabularSummary>(design);
   summary->parts = threshold_tables(design, results);
+  if (!design.has_own_guess_rate) {  // there the false alarms are the bias
+    summary->parts.push_back(answer_counts_table(rows.answers));
+  }
   summary->charts = threshold_charts(design, results);
   summary->remarks = threshold_remarks(design, results);
   if (results.pooled_log) {

@@ -1,9 +1,13 @@
 #include "analysis/thresholds/threshold_tables.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <map>
 
 #include "analysis/blocks/pooled_proportion.hpp"
+#include "analysis/detection/rates.hpp"
+#include "analysis/discrimination/answer_counts.hpp"
 namespace tapstudy::analysis {
 namespace {
 // A level in the axis's own unit.
@@ -85,47 +89,81 @@ ReportTable pooled_table(const VariedAxis& axis, const ThresholdResults& results
   return table;
 }
 
-ReportTable fits_table(const ThresholdResults& results) {
+ReportTable fits_table(const BlockDesign& design, const ThresholdResults& results) {
   ReportTable table{
       "fits",
-      "Fits: Weibull function of the level",
+      fmt::format("Fits: {} function of the level", core::row_of(design.shape).name),
       {column("participant", "participant_id"), interval_column("slope (95 % CI)", "slope"),
-       column("guess", "guess"), column("lapse", "lapse"), column("deviance test", "deviance_p"),
-       interval_column("Bayesian threshold (95 %)", "posterior_threshold")}};
+       column("guess", "guess"), column("lapse", "lapse"), column("deviance test", "deviance_p")}};
   for (const ParticipantThreshold& person : results.participants) {
-    std::vector<Cell> row{word(person.participant_id)};
     if (const auto& of = person.estimate) {
-      row.insert(row.end(),
-                 {interval(of->curve.slope, of->intervals.slope), number(of->curve.guess),
-                  number(of->curve.lapse, 2),
-                  probability(of->goodness ? std::optional{of->goodness->p} : std::nullopt)});
-    } else {
-      for (std::size_t i = 1; i + 1 < table.columns.size(); ++i) {
-        row.push_back(nothing(table.columns[i]));
-      }
-    }
-    row.push_back(person.posterior
-                      ? interval(person.posterior->threshold, person.posterior->threshold_interval)
-                      : nothing(table.columns.back()));
-    if (person.estimate || person.posterior) {
-      table.rows.push_back(row);
+      table.rows.push_back(
+          {word(person.participant_id), interval(of->curve.slope, of->intervals.slope),
+           number(of->curve.guess), number(of->curve.lapse, 2),
+           probability(of->goodness ? std::optional{of->goodness->p} : std::nullopt)});
     }
   }
   return table;
 }
 
-ReportTable levels_table(const ThresholdResults& results) {
-  ReportTable table{"levels",
-                    "Levels of each participant",
-                    {column("participant", "participant_id"), column("level", "level"),
-                     proportion_column("correct", "correct")}};
-  table.is_for_programs = true;
+ReportTable posteriors_table(const ThresholdResults& results) {
+  ReportTable table{
+      "posteriors",
+      "Posterior medians (95 % credible intervals)",
+      {column("participant", "participant_id"), interval_column("threshold", "posterior_threshold"),
+       interval_column("slope", "posterior_slope"), interval_column("lapse", "posterior_lapse"),
+       interval_column("over-dispersion η", "over_dispersion"),
+       interval_column("", "posterior_guess")}};
+  const auto of = [](const Marginal& marginal) {
+    return interval(marginal.median, marginal.credible);
+  };
+  for (const ParticipantThreshold& person : results.participants) {
+    if (const auto& posterior = person.posterior) {
+      table.rows.push_back({word(person.participant_id),
+                            interval(posterior->threshold, posterior->threshold_interval),
+                            interval(posterior->slope, posterior->slope_interval),
+                            of(posterior->lapse), of(posterior->eta), of(posterior->guess)});
+    }
+  }
+  return table;
+}
+
+// d' of the answers at one level; by hits and false alarms where participants set their own rate.
+Cell d_prime_at(const Level& level, const ParticipantThreshold& person,
+                const std::optional<DecisionTask>& task, bool has_own_guess_rate,
+                const Column& of_d_prime) {
+  if (!has_own_guess_rate) {
+    if (!task) {
+      return nothing(of_d_prime);
+    }
+    const Sensitivity sensitive = sensitivity(*task, level.answers);
+    return interval(sensitive.d_prime, sensitive.interval);
+  }
+  return person.false_alarms.trials == 0
+             ? nothing(of_d_prime)
+             : interval(same_different_independent(log_linear_rate(level.answers),
+                                                   log_linear_rate(person.false_alarms))
+                            .d_prime,
+                        std::optional<Interval>{});
+}
+
+// Of procedures that jump from level to level programs see it only.
+ReportTable levels_table(const BlockDesign& design, const ThresholdResults& results) {
+  ReportTable table{
+      "levels",
+      "Levels of each participant",
+      {column("participant", "participant_id"), column("level", "level"),
+       proportion_column("correct", "correct"), interval_column("d' (95 % CI)", "d_prime")}};
+  const auto task = design.has_own_guess_rate ? std::nullopt : decision_task(design);
   for (const ParticipantThreshold& person : results.participants) {
     for (const Level& level : person.levels) {
       table.rows.push_back(
-          {word(person.participant_id), number(level.value), proportion(level.answers)});
+          {word(person.participant_id), number(level.value), proportion(level.answers),
+           d_prime_at(level, person, task, design.has_own_guess_rate, table.columns.back())});
     }
   }
+  constexpr std::size_t most_rows_to_read = 60;
+  table.is_for_programs = table.rows.size() > most_rows_to_read;
   return table;
 }
 
@@ -147,17 +185,10 @@ ReportTable levels_over_participants(const ThresholdResults& results) {
   return table;
 }
 
-ReportTable tracks_table(const ThresholdResults& results) {
-  ReportTable table{"tracks",
-                    "Levels in order of time",
-                    {column("participant", "participant_id"), column("trial", "trial"),
-                     column("level", "level"), column("correct", "is_correct")}};
-  table.is_for_programs = true;
+ReportTable tracks_of(const ThresholdResults& results) {
+  ReportTable table = tracks_table("correct", "is_correct");
   for (const ParticipantThreshold& person : results.participants) {
-    for (const TrackPoint& point : person.track) {
-      table.rows.push_back({word(person.participant_id), count(point.number), number(point.level),
-                            flag(point.is_correct)});
-    }
+    add_track_rows(person.participant_id, person.track, table);
   }
   return table;
 }
@@ -165,7 +196,7 @@ ReportTable tracks_table(const ThresholdResults& results) {
 ReportTable false_alarm_table(const ThresholdResults& results) {
   ReportTable table{
       "false_alarms",
-      "Trials without a comparison: answered wrongly (false alarms)",
+      "Trials in which nothing differs: answered that there is a difference (false alarms)",
       {column("participant", "participant_id"), proportion_column("false alarms", "false_alarms")}};
   for (const ParticipantThreshold& person : results.participants) {
     if (person.false_alarms.trials > 0) {
@@ -180,10 +211,11 @@ std::vector<ReportTable> threshold_tables(const BlockDesign& design,
                                           const ThresholdResults& results) {
   return {participants_table(*design.axis, results),
           pooled_table(*design.axis, results),
-          fits_table(results),
+          fits_table(design, results),
+          posteriors_table(results),
           levels_over_participants(results),
           false_alarm_table(results),
-          levels_table(results),
-          tracks_table(results)};
+          levels_table(design, results),
+          tracks_of(results)};
 }
 }  // namespace tapstudy::analysis

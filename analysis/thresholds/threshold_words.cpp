@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "analysis/detection/decision_model.hpp"
 #include "analysis/thresholds/threshold_tables.hpp"
 namespace tapstudy::analysis {
 std::string level_words(const VariedAxis& axis) {
@@ -17,10 +18,14 @@ std::vector<std::string> threshold_remarks(const BlockDesign& design,
   }
   std::vector<std::string> remarks{
       "Levels: " + level_words(*design.axis) + ".",
-      fmt::format("Thresholds: maximum likelihood of a Weibull function of the level, guess rate "
-                  "{:.3g} fixed, lapse rate from 0 to 0.1; intervals by profile likelihood. At the "
-                  "threshold the function without guesses and lapses is at 63 %.",
-                  design.guess_rate)};
+      fmt::format("Thresholds: maximum likelihood of a {} function of the level, {}, lapse rate "
+                  "from 0 to 0.1; intervals by profile likelihood. At the threshold the function "
+                  "without guesses and lapses is at {:.0f} %.",
+                  core::row_of(design.shape).name,
+                  design.has_own_guess_rate
+                      ? "guess rate free, with the false alarms as answers at the level 0"
+                      : fmt::format("guess rate {:.3g} fixed", design.guess_rate),
+                  100.0 * core::shape_value(design.shape, 1.0, 1.0, 1.0))};
   for (const ParticipantThreshold& person : results.participants) {
     if (!person.estimate) {
       remarks.push_back(
@@ -48,9 +53,18 @@ std::vector<std::string> threshold_remarks(const BlockDesign& design,
                         results.draws)
           : "Deviance tests are not made for so many levels.");
   remarks.emplace_back(results.has_posteriors
-                           ? "Bayesian thresholds: beta-binomial answers and the priors of Schuett "
-                             "et al. 2016, which limit the slope where the answers alone do not."
-                           : "Bayesian thresholds are not computed for so many levels.");
+                           ? "Posteriors: beta-binomial answers and the priors of Schuett et al. "
+                             "2016, which limit the slope where the answers alone do not."
+                           : "Posteriors are not computed for so many levels.");
+  if (design.has_own_guess_rate) {
+    remarks.emplace_back(
+        "d' at a level: same-different by independent observations, of hits there and all false "
+        "alarms, k + 1/2 in n + 1 (Hautus 1995).");
+  } else if (!design.decision_model.empty()) {
+    remarks.push_back(fmt::format("d' at a level by the decision model '{}' ({}).",
+                                  design.decision_model,
+                                  find_decision_model(design.decision_model)->summary));
+  }
   return remarks;
 }
 }  // namespace tapstudy::analysis

@@ -35,17 +35,18 @@ CoupledFinger::CoupledFinger(const Finger& finger, double contact_stiffness_n_pe
 
 void CoupledFinger::begin(double hand_m, double hand_velocity_m_s, double surface_m) noexcept {
   hand_m_ = hand_m;
-  offset_m_ = std::max(0.0, surface_m - hand_m);
+  offset_m_ = 0.0;
+  yield_m_ = std::max(0.0, surface_m - hand_m);
   velocity_m_s_ = hand_velocity_m_s;
 }
 
 double CoupledFinger::tick(double hand_m, const SurfaceTick& surface) noexcept {
-  const double compression_m = surface.before_m - hand_m_ - offset_m_;
+  const double compression_m = surface.before_m - hand_m_ - offset_m_ - yield_m_;
   const double hand_velocity_m_s = (hand_m - hand_m_) / dt_s_;
   const double relative_m_s = velocity_m_s_ - hand_velocity_m_s;
   const double unloaded_m = step_.qq * offset_m_ + step_.qv * relative_m_s;
   const double contact_n =
-      held_contact_force_n(compression_m, surface.unloaded_m - hand_m - unloaded_m,
+      held_contact_force_n(compression_m, surface.unloaded_m - hand_m - unloaded_m - yield_m_,
                            surface.compliance_m_per_n + per_newton_.q, contact_stiffness_n_per_m_);
   const double velocity_m_s = hand_velocity_m_s + step_.vq * offset_m_ + step_.vv * relative_m_s +
                               per_newton_.v * contact_n;
@@ -53,11 +54,13 @@ double CoupledFinger::tick(double hand_m, const SurfaceTick& surface) noexcept {
   offset_m_ = unloaded_m + per_newton_.q * contact_n;
   velocity_m_s_ = velocity_m_s;
   hand_m_ = hand_m;
+  const double surface_m = surface.unloaded_m - surface.compliance_m_per_n * contact_n;
+  yield_m_ = std::clamp(surface_m - hand_m_ - offset_m_, 0.0, yield_m_);
   return contact_n;
 }
 
 double CoupledFinger::energy_j(double surface_m) const noexcept {
-  const double compression_m = std::max(0.0, surface_m - hand_m_ - offset_m_);
+  const double compression_m = std::max(0.0, surface_m - hand_m_ - offset_m_ - yield_m_);
   return 0.5 * (finger_.mass_kg * velocity_m_s_ * velocity_m_s_ +
                 finger_.stiffness_n_per_m * offset_m_ * offset_m_ +
                 contact_stiffness_n_per_m_ * compression_m * compression_m);

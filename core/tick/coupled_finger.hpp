@@ -18,7 +18,8 @@ struct SurfaceTick {
 //   surface u     of the vibrating body, u = sum of p_i q_i over its modes (paper eq. 9, 16)
 //                     q_i'' + 2 zeta_i omega_i q_i' + omega_i² q_i = -p_i c
 //   contact c     the finger pad's compression against the surface, by the contact stiffness K:
-//                     c = K max(0, u - y) >= 0: it pushes and never pulls
+//                     c = K max(0, u - y - e) >= 0: it pushes and never pulls; e is 0 but for the
+//                     start of a contact (below)
 //
 // f is the force of the finger on the hand: what the device renders. m, k and b are the paper's
 // finger (5.8 g, 300 N/m, 3 N s/m for a bare finger), K the penalty stiffness of eq. 1.
@@ -31,7 +32,7 @@ struct SurfaceTick {
 //
 // One tick. The hand moves at constant speed w, the contact force c is held, and each oscillator's
 // response to that is exact (HeldForceResponse; the finger in coordinates that move with the
-// hand). Let the compression g = u - y be g0 when the tick begins, and G - C c when it ends, G
+// hand). Let the compression g = u - y - e be g0 when the tick begins, and G - C c when it ends, G
 // being what it would be without contact and C the compliances of surface and finger together. With
 // V(g) = K max(0, g)² / 2 the contact's energy, c is the one root of the scalar equation
 //
@@ -46,15 +47,22 @@ struct SurfaceTick {
 // c (y1 - y0) - F (h1 - h0), F the mean of f over the tick. Together that is -c (g1 - g0) - F (h1 -
 // h0); and V gains c (g1 - g0). So modes + finger + contact gain at most -F (h1 - h0): the work of
 // the hand against the force rendered to it, which is F itself. Hence the scheme is stable at any
-// rate. If the finger also moves along the surface, g0 is taken at the new place: the contact's
+// rate.
+//
+// The start of a contact. The finger comes as the hand does, its spring at rest, with the kinetic
+// energy m w² / 2 that the hand gave it. The surface may swing above the hand just then: the finger
+// would begin inside of it, with energy that nobody brought. So the pad yields without force by as
+// much, e = max(0, u - y), and e falls with u - y, as far as 0, and never rises. It changes only
+// where V = 0, so that the law above holds from the first tick on.
+//
+// If the finger also moves along the surface, g0 is taken at the new place: the contact's
 // energy then changes by the work of pushing it along the deformed surface.
 class CoupledFinger {
  public:
   // mass, stiffness > 0; damping >= 0; contact stiffness >= 0.
   CoupledFinger(const Finger& finger, double contact_stiffness_n_per_m, double dt_s) noexcept;
 
-  // One tick before the first in contact: the finger moves as the hand does, but is not inside the
-  // surface.
+  // One tick before the first in contact: the finger moves as the hand does.
   void begin(double hand_m, double hand_velocity_m_s, double surface_m) noexcept;
   // One tick, at the end of which the hand is here. Returns c [N].
   double tick(double hand_m, const SurfaceTick& surface) noexcept;
@@ -72,6 +80,7 @@ class CoupledFinger {
   double hand_m_{0.0};
   double offset_m_{0.0};      // y - h
   double velocity_m_s_{0.0};  // y'
+  double yield_m_{0.0};       // e
   double force_on_hand_n_{0.0};
 };
 

@@ -36,11 +36,12 @@ std::optional<InterleavedTracks::Request> InterleavedTracks::next() const {
   return Request{*track, tracks_[*track]->next().value()};
 }
 
-void InterleavedTracks::observe(const std::vector<double>& presented, std::size_t outcome) {
+std::size_t InterleavedTracks::observe(const std::vector<double>& presented, std::size_t outcome) {
   const auto track = drawn();
   if (!track) {
     throw core::InvalidInput{"all procedures of the block have ended"};
   }
   tracks_[*track]->observe(presented, outcome);
+  return *track;
 }
 }  // namespace tapstudy::protocols

@@ -18,8 +18,9 @@ class InterleavedTracks {
   bool are_finished() const { return !drawn(); }
   // nullopt: all are finished.
   std::optional<Request> next() const;
-  // Of the track drawn by next(), as Track::observe. Throws InvalidInput, also if all are finished.
-  void observe(const std::vector<double>& presented, std::size_t outcome);
+  // Of the track drawn by next(), as Track::observe; which that was. Throws InvalidInput, also if
+  // all are finished.
+  std::size_t observe(const std::vector<double>& presented, std::size_t outcome);
   std::size_t size() const { return tracks_.size(); }
   const Track& track(std::size_t place) const { return *tracks_.at(place); }
 

@@ -7,6 +7,8 @@
 #include <string_view>
 #include <utility>
 #include <vector>
+
+#include "core/psychometric_function.hpp"
 namespace tapstudy::protocols {
 class MapReader;
 
@@ -89,6 +91,10 @@ class TrackSettings {
   virtual std::vector<std::pair<double, double>> ranges() const = 0;
   // The guess rates that it holds possible; nullopt: it makes no assumption of any.
   virtual std::optional<std::pair<double, double>> guess_rates() const { return std::nullopt; }
+  // The psychometric function that it takes answers to follow; nullopt: it assumes none.
+  virtual std::optional<core::PsychometricShape> shape() const { return std::nullopt; }
+  // Whether right answers lead to lower levels.
+  virtual bool is_harder_below() const { return true; }
   virtual std::unique_ptr<Track> start(std::uint64_t seed) const = 0;
   // As a methods section says it, with its source: "a 1 up, 2 down staircase (Levitt 1971)".
   virtual std::string words() const = 0;

@@ -58,7 +58,8 @@ class DesignReader {
     }
     design_.model = psychometric_model(shape_->shape, origins_);
     try {
-      return std::make_shared<const QuestPlusSettings>(design_, stop, method);
+      return std::make_shared<const QuestPlusSettings>(
+          design_, stop, QuestPlusSettings::Method{method, shape_->shape});
     } catch (const core::InvalidInput& error) {
       reader_->reject(error.what());
       return nullptr;

@@ -39,7 +39,7 @@ void QuestPlusTrack::take(const std::vector<double>& presented, std::size_t outc
 }
 
 QuestPlusSettings::QuestPlusSettings(QuestPlusDesign design, const QuestPlusStop& stop,
-                                     std::string method)
+                                     Method method)
     : table_{std::make_shared<const LikelihoodTable>(std::move(design))},
       stop_{stop},
       method_{std::move(method)} {

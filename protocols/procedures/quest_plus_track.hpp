@@ -32,9 +32,11 @@ class QuestPlusTrack final : public Track {
 class QuestPlusSettings final : public TrackSettings {
  public:
   // Throws InvalidInput as LikelihoodTable does, and where the prior is narrow enough to stop.
-  // method: its name and source, as words() gives them.
-  QuestPlusSettings(QuestPlusDesign design, const QuestPlusStop& stop,
-                    std::string method = "QUEST+ (Watson 2017)");
+  struct Method {
+    std::string words{"QUEST+ (Watson 2017)"};  // its name and source
+    std::optional<core::PsychometricShape> shape{};
+  };
+  QuestPlusSettings(QuestPlusDesign design, const QuestPlusStop& stop, Method method);
 
   std::size_t axes() const override { return table_->design().axes.size(); }
   std::size_t outcomes() const override { return table_->design().outcomes; }
@@ -43,12 +45,13 @@ class QuestPlusSettings final : public TrackSettings {
   std::optional<std::pair<double, double>> guess_rates() const override;
   // A QuestPlusTrack. Nothing in it is random.
   std::unique_ptr<Track> start(std::uint64_t seed) const override;
-  std::string words() const override { return method_; }
+  std::optional<core::PsychometricShape> shape() const override { return method_.shape; }
+  std::string words() const override { return method_.words; }
   const LikelihoodTable& table() const { return *table_; }
 
  private:
   std::shared_ptr<const LikelihoodTable> table_;
   QuestPlusStop stop_;
-  std::string method_;
+  Method method_;
 };
 }  // namespace tapstudy::protocols

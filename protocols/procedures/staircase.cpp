@@ -24,6 +24,7 @@ class StaircaseStart final : public TrackSettings {
   std::vector<std::pair<double, double>> ranges() const override {
     return {{settings_.min, settings_.max}};
   }
+  bool is_harder_below() const override { return settings_.is_harder_below; }
   std::string words() const override {
     const std::string rule = settings_.easier_per_harder == 1.0
                                  ? fmt::format("a {} up, {} down staircase (Levitt 1971)",

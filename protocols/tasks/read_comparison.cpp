@@ -18,6 +18,14 @@ const Stimulus* family_of(const Protocol& protocol, const Block& block) {
   return found == protocol.stimuli.end() || found->vary.empty() ? nullptr : &*found;
 }
 
+// What is wrong with its `vary` was said where that was read.
+bool is_refused_family(const Protocol& protocol, const Block& block) {
+  return block.stimuli.size() == 1 &&
+         std::ranges::any_of(protocol.stimuli, [&](const Stimulus& one) {
+           return one.name == block.stimuli.front() && one.is_vary_refused;
+         });
+}
+
 std::vector<std::string> axes_of(const Stimulus& family) {
   std::vector<std::string> names;
   for (const AxisRange& range : family.vary) {
@@ -67,10 +75,22 @@ void check_track(MapReader& reader, const Protocol& protocol, const Stimulus& fa
         "may ask for the level {}: levels are at least 0 (or comparison: either)", low));
     return;
   }
+  if (comparison.side != Side::either && !track.is_harder_below()) {
+    reader.reject("after_correct", "makes it easier: the greater a level, the easier it is");
+    return;
+  }
   for (const double level : {low, high}) {
     const double value = comparison.value_at(level);
     try {
-      presented_values(protocol, family, {{comparison.axis, value}});
+      const double presented =
+          presented_values(protocol, family, {{comparison.axis, value}}).at(comparison.axis);
+      if (level != 0.0 && presented == comparison.standard) {
+        reader.reject(fmt::format(
+            "may ask for the level {}, which is {} = {:.6g}: of the values that are built the "
+            "standard itself is nearest",
+            level, comparison.axis, value));
+        return;
+      }
     } catch (const core::InvalidInput& error) {
       reader.reject(fmt::format("may ask for the level {}, which is {} = {:.6g}: {}", level,
                                 comparison.axis, value, error.what()));
@@ -102,6 +122,31 @@ void read_tracks(MapReader& reader, const Protocol& protocol, const Stimulus* us
     }
     comparison.tracks.push_back(track);
   });
+}
+// Unset: what the procedures assume, where it fits the side.
+void read_function(MapReader& reader, Comparison& comparison) {
+  const bool is_on_either_side = comparison.side == Side::either;
+  const auto fits = [&](core::PsychometricShape shape) {
+    return !is_on_either_side || !core::row_of(shape).is_logarithmic;
+  };
+  core::PsychometricShape assumed = is_on_either_side ? core::PsychometricShape::cumulative_gaussian
+                                                      : core::PsychometricShape::weibull;
+  for (const auto& track : comparison.tracks) {
+    if (const auto shape = track->shape(); shape && fits(*shape)) {
+      assumed = *shape;
+      break;
+    }
+  }
+  const auto* const row = core::find_psychometric_shape(
+      reader.word("function", "psychometric function", core::psychometric_shape_names(),
+                  std::string{core::row_of(assumed).name}));
+  if (row == nullptr) {
+    return;  // noted
+  }
+  if (!fits(row->shape)) {
+    reader.reject("function", fmt::format("'{}' is of levels above 0 only", row->name));
+  }
+  comparison.shape = row->shape;
 }
 }  // namespace
 
@@ -135,7 +180,8 @@ std::optional<Comparison> read_comparison(MapReader& reader, const Protocol& pro
     reader.reject("level", "fractions are of a standard above 0");
   }
   read_tracks(reader, protocol, is_usable ? family : nullptr, comparison);
-  if (family == nullptr) {
+  read_function(reader, comparison);
+  if (family == nullptr && !is_refused_family(protocol, block)) {
     reader.reject("stimuli", "procedures vary one stimulus, which must have `vary`");
   }
   return comparison.tracks.empty() ? std::nullopt : std::optional{comparison};

@@ -17,6 +17,7 @@ class SameDifferent final : public DiscriminationTask {
   std::string_view decision_model(const Block& /*block*/) const override {
     return "same_different_independent_observation";
   }
+  bool has_own_guess_rate() const override { return true; }
   Answers answers(const Block& block, const Protocol& /*protocol*/) const override {
     const auto label = [&](const char* response) {
       const auto found = block.response_labels.find(response);

@@ -137,6 +137,8 @@ class Task {
                                              const std::string& response) const;
   // Of right answers, by chance; 0 where none is right.
   virtual double guess_rate(const Block& block, const Protocol& protocol) const;
+  // Whether answers are "there is a difference", so that participants set the rate of guesses.
+  virtual bool has_own_guess_rate() const { return false; }
   // Of d', in analysis; empty: none.
   virtual std::string_view decision_model(const Block& /*block*/) const { return {}; }
   // nullopt if the task has no correct answer.

@@ -82,7 +82,8 @@ const char* words(protocols::Side side) {
   return "on either side";
 }
 
-void print_procedures(const protocols::Comparison& comparison, double guess_rate) {
+// guess_rate: unset where participants set their own.
+void print_procedures(const protocols::Comparison& comparison, std::optional<double> guess_rate) {
   for (const auto& track : comparison.tracks) {
     const auto [low, high] = track->ranges().front();
     fmt::print("    at most {} trials of {}: {} against {:.6g}, from {:.6g} to {:.6g}\n",
@@ -94,7 +95,9 @@ void print_procedures(const protocols::Comparison& comparison, double guess_rate
                  comparison.further_axes[i], least, greatest);
     }
     const bool starts_from_0 = comparison.side == protocols::Side::either;
-    warn_of_guess_rate(*track, starts_from_0 ? 0.0 : guess_rate);
+    if (guess_rate) {
+      warn_of_guess_rate(*track, starts_from_0 ? 0.0 : *guess_rate);
+    }
   }
 }
 
@@ -124,7 +127,10 @@ void print_blocks(const protocols::Protocol& protocol, int participants) {
     }
     warn_of_balance(block, participants);
     if (block.comparison) {
-      print_procedures(*block.comparison, block.task->guess_rate(block, protocol));
+      print_procedures(*block.comparison,
+                       block.task->has_own_guess_rate()
+                           ? std::nullopt
+                           : std::optional{block.task->guess_rate(block, protocol)});
     } else if (block.task->has_chance_level()) {
       print_power(protocol, block, participants);
     }

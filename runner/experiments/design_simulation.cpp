@@ -49,7 +49,8 @@ analysis::Summary summary_of_one(const SimulatedDesign& design, int study,
             fmt::format("study {} of {}: ", study + 1, design.studies)},
            protocol);
   results::Store store = results::Store::open_existing(directory.path());
-  return summary_of_study({{directory.path(), &store}}, results::Mode::simulated);
+  return summary_of_study({{directory.path(), &store}}, results::Mode::simulated,
+                          Detail::main_results);
 }
 }  // namespace
 

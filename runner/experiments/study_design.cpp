@@ -64,6 +64,7 @@ void add_discrimination(const protocols::Block& block, const protocols::Protocol
                         analysis::BlockDesign& part) {
   part.decision_model = block.task->decision_model(block);
   part.guess_rate = block.task->guess_rate(block, protocol);
+  part.has_own_guess_rate = block.task->has_own_guess_rate();
   part.alternatives = block.alternatives > 0 ? block.alternatives : 2;
   part.steps = block.rating ? block.rating->steps : 0;
   if (block.adjustment) {
@@ -80,6 +81,7 @@ void add_discrimination(const protocols::Block& block, const protocols::Protocol
                                      comparison.side == protocols::Side::below,
                                      comparison.is_standard_right};
     part.further_axes = comparison.further_axes;
+    part.shape = comparison.shape;
   }
 }
 

@@ -16,6 +16,7 @@
 #include "runner/experiments/stored_protocol.hpp"
 #include "runner/experiments/study_design.hpp"
 #include "runner/experiments/study_sections.hpp"
+#include "runner/experiments/track_results.hpp"
 #include "runner/session/given_up_trials.hpp"
 namespace tapstudy::runner {
 namespace {
@@ -164,6 +165,7 @@ StoredResults stored_results(results::Store& store, const protocols::Protocol& p
   StoredResults found;
   found.sessions = store.sessions();
   found.answers = counted_answers(store, mode);
+  set_tracks(protocol, store, found.answers);
   found.visits = store.visits();
   std::erase_if(found.visits, [&](const results::VisitRow& visit) {
     return std::ranges::find(found.answers, visit.participant_id,
@@ -242,7 +244,7 @@ void append(StoredResults& all, StoredResults more) {
 }
 }  // namespace
 
-Summary summary_of_study(const std::vector<StudyStore>& stores, Mode mode) {
+Summary summary_of_study(const std::vector<StudyStore>& stores, Mode mode, Detail detail) {
   check_same_protocol(stores);
   check_different_participants(stores);
   const results::StudyRow study = stores.front().store->study();
@@ -257,8 +259,14 @@ Summary summary_of_study(const std::vector<StudyStore>& stores, Mode mode) {
     throw core::InvalidInput{fmt::format("{}: no answers of {} participants to report",
                                          fmt::join(directories, ", "), results::to_text(mode))};
   }
-  Summary summary =
-      analysis::summarise(design_of(protocol, mode), all.answers, all.visits, all.presentations);
+  analysis::StudyDesign design = design_of(protocol, mode);
+  if (detail == Detail::main_results) {
+    for (analysis::BlockDesign& block : design.blocks) {
+      block.is_for_main_results = true;
+    }
+    return analysis::summarise(design, all.answers, all.visits, all.presentations);
+  }
+  Summary summary = analysis::summarise(design, all.answers, all.visits, all.presentations);
   summary.sections = study_sections(protocol, stores, mode);
   summary.provenance = provenance(study, all.sessions, mode);
   summary.procedure = procedure_words(protocol, sessions_of(all.sessions, mode));

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <optional>
 #include <set>
 
 #include "protocols/schedule.hpp"
@@ -49,20 +51,28 @@ TrackResult result_of(const protocols::Track& track, const protocols::TrackSetti
   return result;
 }
 
-void add_tracks(const protocols::Protocol& protocol, const std::string& participant,
-                results::Store& store, std::vector<TrackResult>& results) {
+// Unset: the participant has no session.
+std::optional<AdaptiveBlocks> replayed(const protocols::Protocol& protocol,
+                                       const std::string& participant, results::Store& store) {
   const auto session = store.latest_session(participant);
   if (!session) {
-    return;
+    return std::nullopt;
   }
   const protocols::Schedule schedule =
       protocols::make_schedule(protocol, session->seed, session->order_index);
-  const AdaptiveBlocks adaptive{protocol, session->seed, schedule,
-                                store.answers_as_given(participant)};
+  return AdaptiveBlocks{protocol, session->seed, schedule, store.answers_as_given(participant)};
+}
+
+void add_tracks(const protocols::Protocol& protocol, const std::string& participant,
+                results::Store& store, std::vector<TrackResult>& results) {
+  const auto adaptive = replayed(protocol, participant, store);
+  if (!adaptive) {
+    return;
+  }
   for (const Block& block : protocol.blocks) {
     for (std::size_t i = 0; has_results(block) && i < block.comparison->tracks.size(); ++i) {
       TrackResult result =
-          result_of(adaptive.tracks_of(block.name).track(i), *block.comparison->tracks[i]);
+          result_of(adaptive->tracks_of(block.name).track(i), *block.comparison->tracks[i]);
       result.participant_id = participant;
       result.block = block.name;
       result.track = static_cast<int>(i) + 1;
@@ -91,5 +101,25 @@ std::vector<TrackResult> track_results(const protocols::Protocol& protocol,
     }
   }
   return results;
+}
+
+void set_tracks(const protocols::Protocol& protocol, results::Store& store,
+                std::vector<results::AnswerRow>& answers) {
+  if (std::ranges::none_of(protocol.blocks, has_results)) {
+    return;
+  }
+  std::map<std::string, std::optional<AdaptiveBlocks>> people;
+  for (results::AnswerRow& answer : answers) {
+    auto found = people.find(answer.participant_id);
+    if (found == people.end()) {
+      found =
+          people.emplace(answer.participant_id, replayed(protocol, answer.participant_id, store))
+              .first;
+    }
+    if (found->second) {
+      const auto track = found->second->track_of(answer.number);
+      answer.track = track ? std::optional{static_cast<int>(*track) + 1} : std::nullopt;
+    }
+  }
 }
 }  // namespace tapstudy::runner

@@ -10,4 +10,7 @@ namespace tapstudy::runner {
 std::vector<analysis::TrackResult> track_results(const protocols::Protocol& protocol,
                                                  const std::vector<StudyStore>& stores,
                                                  results::Mode mode);
+// Sets the answers' tracks, of one store.
+void set_tracks(const protocols::Protocol& protocol, results::Store& store,
+                std::vector<results::AnswerRow>& answers);
 }  // namespace tapstudy::runner

@@ -120,7 +120,13 @@ void AdaptiveBlocks::observe(const PlannedTrial& presented, const std::string& r
   const auto comparison =
       std::ranges::find(presented.alternatives, true, &Alternative::is_comparison);
   if (outcome && comparison != presented.alternatives.end()) {
-    tracks->second.observe(observed_of(*block.comparison, comparison->values), *outcome);
+    track_of_trial_[presented.number] =
+        tracks->second.observe(observed_of(*block.comparison, comparison->values), *outcome);
   }
+}
+
+std::optional<std::size_t> AdaptiveBlocks::track_of(int trial_number) const {
+  const auto found = track_of_trial_.find(trial_number);
+  return found == track_of_trial_.end() ? std::nullopt : std::optional{found->second};
 }
 }  // namespace tapstudy::runner

@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,9 +26,12 @@ class AdaptiveBlocks {
   // Of a block with procedures.
   const protocols::InterleavedTracks& tracks_of(const std::string& block) const;
   void observe(const protocols::PlannedTrial& presented, const std::string& response);
+  // Which of its block's procedures observed the answer to a trial, from 0; unset: none.
+  std::optional<std::size_t> track_of(int trial_number) const;
 
  private:
   const protocols::Protocol& protocol_;
   std::map<std::string, protocols::InterleavedTracks> tracks_;  // by block
+  std::map<int, std::size_t> track_of_trial_;
 };
 }  // namespace tapstudy::runner

@@ -20,6 +20,7 @@ BlockDesign design_of(bool is_smaller_asked = false) {
   design.name = "stiffness";
   design.axis = VariedAxis{"youngs_modulus_pa", standard, true, false, is_smaller_asked};
   design.guess_rate = 0.5;
+  design.shape = core::PsychometricShape::cumulative_gaussian;
   return design;
 }
 

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <random>
 
+#include "analysis/detection/decision_model.hpp"
 #include "analysis/psychometric/inference.hpp"
 #include "analysis/psychometric/pooling.hpp"
 #include "analysis/psychometric/posterior.hpp"
@@ -114,9 +115,9 @@ TEST_CASE("answers that fit a step have no threshold of greatest likelihood but 
   const auto json = reported(statistic, design_of(), answers).json;
   CHECK(json["participants"][0]["threshold"].is_null());
   CHECK(json["participants"][0]["no_threshold_because"] == explanation(FitOutcome::step));
-  CHECK(json["fits"][0]["slope"].is_null());
-  CHECK(json["fits"][0]["posterior_threshold"].get<double>() > 0.1);
-  CHECK(json["fits"][0]["posterior_threshold"].get<double>() < 0.15);
+  CHECK(json["fits"].empty());
+  CHECK(json["posteriors"][0]["posterior_threshold"].get<double>() > 0.1);
+  CHECK(json["posteriors"][0]["posterior_threshold"].get<double>() < 0.15);
 }
 
 TEST_CASE("a report's threshold is that of the fit to the participant's levels, in both units",
@@ -139,8 +140,12 @@ TEST_CASE("a report's threshold is that of the fit to the participant's levels, 
   CHECK(of_fit["deviance_p"].get<double>() ==
         Approx(deviance_test(model, levels, 200, 1).p).margin(0.02));
   const PosteriorEstimates posterior = *psychometric_posterior(model, levels).estimates;
-  CHECK(of_fit["posterior_threshold_low"].get<double>() ==
+  const auto& of_posterior = formats.json["posteriors"][0];
+  CHECK(of_posterior["posterior_threshold_low"].get<double>() ==
         Approx(posterior.threshold_interval.low).epsilon(1e-6));
+  CHECK(of_posterior["posterior_slope"].get<double>() == Approx(posterior.slope).epsilon(1e-6));
+  CHECK(of_posterior["over_dispersion"].get<double>() ==
+        Approx(posterior.eta.median).epsilon(1e-6));
 }
 
 TEST_CASE("levels that are differences have a threshold in the axis's unit and no Weber fraction",
@@ -227,6 +232,76 @@ TEST_CASE("trials without a comparison are counted as false alarms where answere
   CHECK(formats.json["false_alarms"][0]["false_alarms"] == 3);
   CHECK(formats.json["false_alarms"][0]["false_alarms_of"] == 8);
   CHECK(formats.json["participants"][0]["correct_of"] == 90);
+}
+
+TEST_CASE(
+    "of same and different pairs, same ones of either value are the answers at the level 0, whose "
+    "guess rate is free",
+    "[analysis][thresholds]") {
+  auto answers = observer("p", 0.1, 30, 3);
+  std::vector<Level> levels = levels_of(answers);
+  levels.push_back({0.0, {12, 60}});
+  for (int i = 0; i < 60; ++i) {
+    const bool is_of_comparison = i % 2 == 0;
+    answers.push_back(answer_to("p", 1000 + i, is_of_comparison ? 0.12 : 0.0, i >= 12));
+    for (auto& alternative : answers.back().alternatives) {
+      alternative = answers.back().alternatives[1];
+      alternative.is_comparison = is_of_comparison;
+    }
+  }
+  BlockDesign design = design_of();
+  design.has_own_guess_rate = true;
+  const PsychometricFit fit =
+      fit_psychometric({PsychometricShape::weibull, {0.0, 0.85}, {0.0, 0.1}}, levels);
+  const auto json = reported(statistic, design, answers).json;
+  CHECK(json["false_alarms"][0]["false_alarms"] == 12);
+  CHECK(json["false_alarms"][0]["false_alarms_of"] == 60);
+  CHECK(json["participants"][0]["correct_of"] == 270);
+  CHECK(json["participants"][0]["threshold"].get<double>() ==
+        Approx(fit.curve->threshold).epsilon(1e-6));
+  CHECK(json["fits"][0]["guess"].get<double>() == Approx(fit.curve->guess).epsilon(1e-4));
+}
+
+TEST_CASE("a block's function is the one that is fitted", "[analysis][thresholds]") {
+  const auto answers = observer("p", 0.1, 30, 7);
+  BlockDesign design = design_of();
+  for (const auto shape : {PsychometricShape::log_logistic, PsychometricShape::logistic,
+                           PsychometricShape::cumulative_gaussian}) {
+    design.shape = shape;
+    const PsychometricFit fit =
+        fit_psychometric({shape, {0.5, 0.5}, {0.0, 0.1}}, levels_of(answers));
+    const Formats formats = reported(statistic, design, answers);
+    CHECK(formats.json["participants"][0]["threshold"].get<double>() ==
+          Approx(fit.curve->threshold).epsilon(1e-6));
+    CHECK_THAT(formats.text, Contains(std::string{row_of(shape).name} + " function"));
+  }
+}
+
+TEST_CASE("each level has the d' of its answers by the task's decision model",
+          "[analysis][thresholds]") {
+  const auto answers = observer("p", 0.1, 30, 7);
+  BlockDesign design = design_of();
+  design.decision_model = "forced_choice";
+  const auto json = reported(statistic, design, answers).json;
+  const std::vector<Level> levels = levels_of(answers);
+  REQUIRE(json["levels"].size() == levels.size());
+  for (std::size_t i = 0; i < levels.size(); ++i) {
+    CHECK(json["levels"][i]["d_prime"].get<double>() ==
+          Approx(sensitivity({DecisionModel::forced_choice, 2}, levels[i].answers).d_prime));
+  }
+}
+
+TEST_CASE("interleaved procedures are drawn and listed as tracks of their own",
+          "[analysis][thresholds]") {
+  auto answers = observer("p", 0.1, 4, 1);
+  for (std::size_t i = 0; i < answers.size(); ++i) {
+    answers[i].track = i % 3 == 0 ? 1 : 2;
+  }
+  const Formats formats = reported(statistic, design_of(), answers);
+  CHECK(formats.json["tracks"][0]["track"] == 1);
+  CHECK(formats.json["tracks"][1]["track"] == 2);
+  CHECK_THAT(formats.html, Contains("aria-label=\"Levels of p, track 1 over 12 trials"));
+  CHECK_THAT(formats.html, Contains("aria-label=\"Levels of p, track 2 over 24 trials"));
 }
 
 TEST_CASE("tracks follow the time of the trials, not the order of the rows",

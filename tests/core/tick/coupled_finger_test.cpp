@@ -145,7 +145,7 @@ TEST_CASE("plate, finger and contact never gain more energy than the hand's work
       RenderSettings settings = settings_at(rate_hz);
       settings.integrator = integrator;
       settings.penalty_stiffness_n_per_m = between(rng, 10.0, 1e6);
-      settings.finger = {between(rng, 1e-5, 1.0), between(rng, 1.0, 1e5),
+      settings.finger = {between(rng, 1e-7, 1.0), between(rng, 1.0, 1e6),
                          between(rng, 1e-3, 100.0)};
       Eigen::ArrayXd frequency_hz(3);
       frequency_hz << between(rng, 5.0, 50.0), between(rng, 50.0, 120.0),
@@ -157,8 +157,6 @@ TEST_CASE("plate, finger and contact never gain more energy than the hand's work
       CoupledVibration coupled{plate, settings};
       PlateContact contact{{0.3, 0.3}, 0.0};
       WanderingHand hand{rng, settings.dt_s};
-      const double softness =
-          (shape / (2.0 * std::numbers::pi * frequency_hz)).matrix().squaredNorm();
       double before_j = 0.0;
       double before_m = 0.0;
       bool was_touching = false;
@@ -172,9 +170,7 @@ TEST_CASE("plate, finger and contact never gain more energy than the hand's work
           if (!was_touching) {
             ++contacts;
             before_m = -now.penetration_m - speed * settings.dt_s;
-            const double lag_m = std::max(0.0, std::sqrt(2.0 * before_j * softness) - before_m);
-            brought_j = 0.5 * settings.finger.mass_kg * speed * speed +
-                        0.5 * settings.finger.stiffness_n_per_m * lag_m * lag_m;
+            brought_j = 0.5 * settings.finger.mass_kg * speed * speed;
           }
           ForceParts parts;
           coupled.add_to(parts);

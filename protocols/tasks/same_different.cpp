@@ -5,6 +5,7 @@ namespace tapstudy::protocols {
 namespace {
 constexpr const char* same = "same";
 constexpr const char* different = "different";
+constexpr const char* standard_key = "the standard";
 
 bool are_different(const PlannedTrial& trial) {
   return trial.alternatives[0].is_comparison != trial.alternatives[1].is_comparison;
@@ -46,12 +47,21 @@ class SameDifferent final : public DiscriminationTask {
     return are_different(trial) ? DiscriminationTask::outcome(trial, block, response)
                                 : std::nullopt;
   }
+  // How much two of the same differ is known from practice.
+  std::vector<Remembered> remembered(const Block& block,
+                                     const Simulation& /*simulation*/) const override {
+    AxisValues values;
+    if (block.comparison) {
+      values[block.comparison->axis] = block.comparison->standard;
+    }
+    return {{block.name + standard_key, block.stimuli.front(), values, false}};
+  }
   // Different if they are further apart than two of the same are in five of six cases.
-  std::string simulated_answer(const Block& /*block*/, const Simulation& simulation,
+  std::string simulated_answer(const Block& block, const Simulation& simulation,
                                SimulatedTouch& touch) const override {
-    constexpr double criterion = 1.28;  // mean and standard deviation of 26 squared features
+    constexpr double share_of_same = 5.0 / 6.0;
     visit_all(2, simulation, touch);
-    return touch.distance(std::size_t{0}, std::size_t{1}) > criterion ? different : same;
+    return touch.are_different(block.name + standard_key, share_of_same) ? different : same;
   }
 
  protected:

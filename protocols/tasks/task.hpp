@@ -79,6 +79,9 @@ class SimulatedTouch {
   // units of the internal noise: about 1 for two of the same.
   virtual double distance(std::size_t first, std::size_t second) = 0;
   virtual double distance(std::size_t alternative, const std::string& stimulus) = 0;
+  // Whether the first two alternatives are further apart than two of this remembered stimulus, each
+  // felt as often, are in so large a share of cases, as was learned from tapping it.
+  virtual bool are_different(const std::string& stimulus, double share) = 0;
   // How strongly an alternative is felt, in decibels above the threshold: the mean over what is
   // felt of it, blurred by the internal noise.
   virtual double level_db(std::size_t alternative) = 0;

@@ -119,8 +119,25 @@ void* begin_thread_at_low_priority(const mg_context* /*context*/, int /*kind*/) 
   return nullptr;
 }
 
+// The door of every request, also of those that the library would answer by itself (WebSockets,
+// preflights): it does so on a stack that is too small for it.
+using Door = int (*)(mg_connection* connection);
+
+int refuse(mg_connection* connection) {
+  return send(connection, refusal(503));
+}
+
+// What is no request at all.
+int refuse_error(mg_connection* connection, int status, const char* /*message*/) {
+  try {
+    send(connection, refusal(status));
+  } catch (const std::exception&) {  // none may leave a callback of C
+  }
+  return 0;
+}
+
 // Throws InvalidInput if it cannot be listened to.
-mg_context* listening_at(const ServerAddress& address, void* user) {
+mg_context* listening_at(const ServerAddress& address, Door door, void* user) {
   const std::string listening = fmt::format("{}:{}", address.host, address.port);
   std::vector<const char*> options{"listening_ports",
                                    listening.c_str(),
@@ -135,6 +152,8 @@ mg_context* listening_at(const ServerAddress& address, void* user) {
                                    nullptr};
   mg_callbacks callbacks{};
   callbacks.init_thread = begin_thread_at_low_priority;
+  callbacks.begin_request = door;
+  callbacks.http_error = refuse_error;
   callbacks.log_message = [](const mg_connection*, const char*) { return 1; };
   mg_context* const context = mg_start(&callbacks, user, options.data());
   if (context == nullptr) {
@@ -151,7 +170,7 @@ void check_can_listen(const ServerAddress& address) {
     throw core::InvalidInput{
         "--listen: name one address of this machine; pages are served under no other"};
   }
-  mg_context* const trial = listening_at(address, nullptr);
+  mg_context* const trial = listening_at(address, refuse, nullptr);
   mg_stop(trial);
 }
 
@@ -160,11 +179,11 @@ ConsoleServer::ConsoleServer(ServerAddress address, ConsoleApi& api)
   for (std::string& token : tokens_) {
     token = random_token();
   }
-  context_ = listening_at(address_, this);
+  context_ = listening_at(address_, &ConsoleServer::handle, this);
   mg_server_port port{};
   mg_get_server_ports(context_, 1, &port);
   address_.port = port.port;
-  mg_set_request_handler(context_, "/", &ConsoleServer::handle, this);
+  is_open_ = true;
 }
 
 ConsoleServer::~ConsoleServer() {
@@ -176,8 +195,11 @@ std::string ConsoleServer::url(Role role) const {
   return fmt::format("http://{}:{}/{}/", address_.host, address_.port, token(role));
 }
 
-int ConsoleServer::handle(mg_connection* connection, void* self) {
-  auto* const server = static_cast<ConsoleServer*>(self);
+int ConsoleServer::handle(mg_connection* connection) {
+  auto* const server = static_cast<ConsoleServer*>(mg_get_user_data(mg_get_context(connection)));
+  if (!server->is_open_) {
+    return refuse(connection);
+  }
   try {
     wait_for(server->requests_, 1.0);
     return server->serve(connection);

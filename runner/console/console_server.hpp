@@ -31,7 +31,7 @@ class ConsoleServer {
   std::string url(Role role) const;
 
  private:
-  static int handle(mg_connection* connection, void* self);
+  static int handle(mg_connection* connection);
   int serve(mg_connection* connection);
   int serve(mg_connection* connection, Role role, const std::string& path);
   bool is_from_here(mg_connection* connection) const;
@@ -41,6 +41,7 @@ class ConsoleServer {
   ServerAddress address_;
   ConsoleApi& api_;
   std::array<std::string, roles.size()> tokens_;
+  std::atomic<bool> is_open_{false};  // its port is known
   std::atomic<bool> is_closing_{false};
   // More than pages ever ask would take the processor from the loop.
   RateLimit requests_{200.0, 100.0};

@@ -64,6 +64,7 @@ void SimulatedObserver::remember(const std::string& stimulus, std::span<const Fe
   const std::vector<std::vector<FeltTap>> at_place = by_place(taps);
   Memory& memory = memories_[stimulus];
   memory = {};
+  memory.taps.assign(taps.begin(), taps.end());
   for (const std::vector<FeltTap>& here : at_place) {
     memory.mean_db.push_back(mean_of(here.empty() ? taps : std::span<const FeltTap>{here}));
   }
@@ -112,7 +113,7 @@ double SimulatedObserver::position(const Percept& percept, const std::string& fr
   return length > 0.0 ? along / length : percept.noise.front();
 }
 
-double SimulatedObserver::distance(const Percept& first, const Percept& second) const {
+Features SimulatedObserver::difference(const Percept& first, const Percept& second) const {
   const auto here = by_place(first.felt);
   const auto there = by_place(second.felt);
   Features mean{};
@@ -128,13 +129,59 @@ double SimulatedObserver::distance(const Percept& first, const Percept& second) 
       mean.at(i) += one.at(i) - other.at(i);
     }
   }
-  double sum = 0.0;
   for (std::size_t i = 0; i < mean.size(); ++i) {
-    const double felt =
+    mean.at(i) =
         (places > 0.0 ? mean.at(i) / places : 0.0) + first.noise.at(i) - second.noise.at(i);
+  }
+  return mean;
+}
+
+double SimulatedObserver::distance(const Percept& first, const Percept& second) const {
+  double sum = 0.0;
+  for (const double felt : difference(first, second)) {
     sum += felt * felt;
   }
-  return sum / (2.0 * noise_variance_db2() * static_cast<double>(mean.size()));
+  return sum / (2.0 * noise_variance_db2() * static_cast<double>(Features{}.size()));
+}
+
+double SimulatedObserver::weighted_distance(const Percept& first, const Percept& second,
+                                            const Memory& memory) const {
+  const Features felt = difference(first, second);
+  const double taps = static_cast<double>(std::max<std::size_t>(1, first.felt.size()));
+  double sum = 0.0;
+  for (std::size_t i = 0; i < felt.size(); ++i) {
+    sum += felt.at(i) * felt.at(i) / (noise_variance_db2() + memory.variance_db2.at(i) / taps);
+  }
+  return sum / (2.0 * static_cast<double>(felt.size()));
+}
+
+bool SimulatedObserver::are_different(const Percept& first, const Percept& second,
+                                      const std::string& stimulus, double share) {
+  return weighted_distance(first, second, memories_.at(stimulus)) >
+         same_distance(stimulus, first.felt.size(), share);
+}
+
+double SimulatedObserver::same_distance(const std::string& stimulus, std::size_t taps_each,
+                                        double share) {
+  const auto [known, is_new] = same_distances_.try_emplace({stimulus, taps_each, share}, 0.0);
+  if (!is_new) {
+    return known->second;
+  }
+  constexpr int pairs = 300;
+  const Memory& memory = memories_.at(stimulus);
+  std::vector<FeltTap> taps = memory.taps;
+  const std::size_t each = std::clamp<std::size_t>(taps_each, 1, taps.size() / 2);
+  std::vector<double> distances;
+  for (int pair = 0; pair < pairs; ++pair) {
+    rng_.shuffle(taps);
+    const std::span<const FeltTap> all{taps};
+    distances.push_back(
+        weighted_distance({all.first(each), noise()}, {all.subspan(each, each), noise()}, memory));
+  }
+  const auto at = distances.begin() + static_cast<std::ptrdiff_t>(share * pairs);
+  std::ranges::nth_element(distances, at);
+  known->second = *at;
+  return *at;
 }
 
 double SimulatedObserver::distance(const Percept& percept, const std::string& stimulus) const {

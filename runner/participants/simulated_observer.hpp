@@ -2,6 +2,7 @@
 #include <map>
 #include <span>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "core/rng.hpp"
@@ -42,6 +43,11 @@ class SimulatedObserver {
   // of two was tapped at say nothing.
   double distance(const Percept& first, const Percept& second) const;
   double distance(const Percept& percept, const std::string& stimulus) const;
+  // Whether the distance of two percepts, features weighted by their noise and by their variance
+  // between taps on the remembered plate, is beyond the quantile `share` of that of two percepts of
+  // this plate: of random halves of the taps that it was remembered by, with new noise.
+  bool are_different(const Percept& first, const Percept& second, const std::string& stimulus,
+                     double share);
   // The mean over taps and features; noise alone if nothing was felt.
   double level_db(const Percept& percept) const;
   // Which of several felt alternatives is most like the remembered plate? One that was not felt is
@@ -51,11 +57,16 @@ class SimulatedObserver {
 
  private:
   struct Memory {
+    std::vector<FeltTap> taps;
     std::vector<Features> mean_db;  // at each place
     Features variance_db2{};
   };
   std::size_t place_of(const FeltTap& tap) const;
   Features difference(std::span<const FeltTap> felt, const Memory& memory) const;
+  // The mean over places that both were tapped at, noise included.
+  Features difference(const Percept& first, const Percept& second) const;
+  double weighted_distance(const Percept& first, const Percept& second, const Memory& memory) const;
+  double same_distance(const std::string& stimulus, std::size_t taps_each, double share);
   std::vector<std::vector<FeltTap>> by_place(std::span<const FeltTap> taps) const;
   double noise_variance_db2() const;
   std::size_t index_of_least(std::vector<double> distances);  // biased; ties broken at random
@@ -66,5 +77,6 @@ class SimulatedObserver {
   Person person_;
   core::Rng rng_;
   std::map<std::string, Memory> memories_;
+  std::map<std::tuple<std::string, std::size_t, double>, double> same_distances_;
 };
 }  // namespace tapstudy::runner

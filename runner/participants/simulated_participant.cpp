@@ -84,6 +84,9 @@ class SimulatedParticipant::Touch final : public protocols::SimulatedTouch {
   double distance(std::size_t alternative, const std::string& stimulus) override {
     return observer_.distance(percept(alternative), stimulus);
   }
+  bool are_different(const std::string& stimulus, double share) override {
+    return observer_.are_different(percept(0), percept(1), stimulus, share);
+  }
   double level_db(std::size_t alternative) override {
     return observer_.level_db(percept(alternative));
   }

@@ -1,6 +1,8 @@
 """The pages' server against whoever is not meant, and against too much of everything."""
+import contextlib
 import http.client
 import json
+import socket
 import sys
 import threading
 import time
@@ -59,6 +61,34 @@ class ServerTest(unittest.TestCase):
             self.assertEqual(self.ask(self.at.path, host=host)[0], 403, host)
         own = {"Origin": f"http://{self.at.netloc}", "Sec-Fetch-Site": "same-origin"}
         self.assertEqual(self.ask(self.at.path, headers=own)[0], 200)
+
+    def raw(self, request):
+        with socket.create_connection((self.at.hostname, self.at.port), timeout=10) as connection:
+            connection.sendall(request)
+            reply = b""
+            with contextlib.suppress(OSError):
+                while part := connection.recv(65536):
+                    reply += part
+        return reply
+
+    def test_what_the_library_would_answer_by_itself_is_refused(self):
+        upgrade = ("Upgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Key: "
+                   "dGhlIHNhbXBsZSBub25jZQ==\r\nSec-WebSocket-Version: 13\r\n\r\n")
+        preflight = ("Origin: http://evil.example\r\nAccess-Control-Request-Method: POST\r\n"
+                     "Access-Control-Request-Headers: X-Tapstudy\r\n\r\n")
+        for path in ("/", self.at.path, self.at.path + "events"):
+            for host in ("evil.example", self.at.netloc):
+                head = f"GET {path} HTTP/1.1\r\nHost: {host}\r\nOrigin: http://evil.example\r\n"
+                self.assertIn(b" 403 ", self.raw((head + upgrade).encode())[:20])
+            reply = self.raw(f"OPTIONS {path} HTTP/1.1\r\nHost: {self.at.netloc}\r\n{preflight}".encode())
+            self.assertIn(b" 403 ", reply[:20])
+            self.assertNotIn(b"Access-Control-Allow", reply)
+        for junk in (b"\x16\x03\x01\x02\x00\x01\x00\x01\xfc\x03\x03\r\n\r\n", b"GET\r\n\r\n", b"\r\n\r\n",
+                     b"PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n", b"GET / HTTP/9.9\r\n\r\n",
+                     b"GET " + 20000 * b"/a" + b" HTTP/1.1\r\n\r\n",
+                     b"GET http://evil.example/ HTTP/1.1\r\nHost: evil.example\r\n\r\n"):
+            self.raw(junk)
+        self.assertEqual(self.ask(self.at.path)[0], 200)
 
     def test_a_form_of_another_page_cannot_post(self):
         self.assertEqual(self.post(self.of_operator, {"command": "note x"}, ())[0], 405)

@@ -12,7 +12,6 @@ using device::FeltTick;
 constexpr double lowest_band_hz = 20.0;
 constexpr double early_s = 0.04;
 constexpr double late_s = 0.12;
-constexpr double bounce_s = 0.03;             // a shorter time without force is part of the tap
 constexpr double contact_threshold_n = 1e-6;  // threshold of contact detection
 
 double normal_force_n(const FeltTick& tick) {
@@ -84,25 +83,19 @@ Features features_of(std::span<const FeltTick> contact, double dt_s, double thre
 }  // namespace
 
 std::vector<FeltTap> felt_taps(std::span<const FeltTick> felt, double dt_s, double threshold_n) {
-  const auto bounce = static_cast<std::ptrdiff_t>(std::lround(bounce_s / dt_s));
   const auto whole = static_cast<std::size_t>(std::lround((early_s + late_s) / dt_s));
   const auto is_contact = [](const FeltTick& tick) {
     return std::abs(normal_force_n(tick)) > contact_threshold_n;
   };
   std::vector<FeltTap> taps;
   for (auto first = std::ranges::find_if(felt, is_contact); first != felt.end();) {
-    auto last = std::find_if_not(first, felt.end(), is_contact);
-    auto next = std::find_if(last, felt.end(), is_contact);
-    while (next != felt.end() && next - last <= bounce) {
-      last = std::find_if_not(next, felt.end(), is_contact);
-      next = std::find_if(last, felt.end(), is_contact);
-    }
+    const auto last = std::find_if_not(first, felt.end(), is_contact);
     const auto length = std::min(static_cast<std::size_t>(last - first), whole);
     if (length == whole) {
       taps.push_back(
           {first->hand.position_m, features_of(std::span{first, length}, dt_s, threshold_n)});
     }
-    first = next;
+    first = std::find_if(last, felt.end(), is_contact);
   }
   return taps;
 }

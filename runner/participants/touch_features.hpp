@@ -16,7 +16,7 @@ struct FeltTap {
   Features level_db;
 };
 
-// Extracts the taps from the recorded ticks: each from the impact on, bounces included. The contact spring is removed first: a moving hand can
+// Extracts the taps from the recorded ticks. The contact spring is removed first: a moving hand can
 // predict the compliant resistance (a linear fit of force against depth for each contact) and
 // attends to the remainder. Levels are clamped at 0 dB: amplitudes below threshold are not felt.
 std::vector<FeltTap> felt_taps(std::span<const device::FeltTick> felt, double dt_s,

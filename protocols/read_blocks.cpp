@@ -109,6 +109,15 @@ void check_constraints(MapReader& reader, const Block& block) {
     reader.reject("constraints", "are for random orders: this one is given");
     return;
   }
+  if (block.catch_trials &&
+      std::ranges::any_of(block.catch_trials->expected, [&](const auto& expected) {
+        return std::ranges::find(block.stimuli, expected.first) != block.stimuli.end();
+      })) {
+    reader.reject("constraints",
+                  "would be broken by catch trials of the block's own stimuli (catch_trials of "
+                  "another stimulus keep them)");
+    return;
+  }
   try {
     core::Rng rng{1};
     ordered_stimuli(block, rng, {});
@@ -249,7 +258,7 @@ Block read_block(MapReader& reader, const Protocol& protocol) {
     }
     if (!block.task->uses_order() && reader.has("order")) {
       reader.reject("order", fmt::format("a {} block draws the order of its alternatives anew for "
-                                         "each participant and takes no order",
+                                         "each trial and takes no order",
                                          block.task->name()));
     }
   }

@@ -73,6 +73,8 @@ class HapticLoop {
   void zero_force() noexcept;
 
   const LoopReport& report() const noexcept { return report_; }
+  // When its first tick was due, by its clock; for whoever has taken a tick from the trace.
+  Nanoseconds began_at() const noexcept { return start_; }
   // May be called from any thread: whether a tick was made lately, so that what happens now happens
   // to somebody who feels the plate. False in a stall, even before the loop has found it.
   bool is_ticking(Nanoseconds now) const noexcept {

@@ -10,6 +10,7 @@
 #include "device/audio/alsa_sink.hpp"
 #include "device/audio/noise.hpp"
 #include "device/device.hpp"
+#include "runner/devices/device_kind.hpp"
 #include "runner/terminal/logging.hpp"
 namespace tapstudy::runner {
 namespace {
@@ -77,6 +78,11 @@ std::unique_ptr<device::PcmSink> open_masking_card(const protocols::Protocol& pr
     return nullptr;
   }
   if (!has_card(rig)) {
+    if (protocol.masking->is_required && kind_of(rig).has_participant()) {
+      throw device::DeviceError{
+          "the protocol requires masking noise: the rig has neither hardware nor a section "
+          "'audio'"};
+    }
     warn("masking noise is not played: the rig has neither hardware nor a section 'audio'");
     return nullptr;
   }

@@ -24,6 +24,7 @@ Markers::~Markers() {
 }
 
 void Markers::send(const results::SessionEventRow& change) {
+  const std::lock_guard lock{mutex_};
   for (Counted& counted : outputs_) {
     if (counted.output->send(change) == Sent::no && counted.lost++ == 0) {
       warn(fmt::format("markers, {}: '{}' is lost (nobody takes it); the session goes on",
@@ -33,6 +34,7 @@ void Markers::send(const results::SessionEventRow& change) {
 }
 
 std::int64_t Markers::lost() const {
+  const std::lock_guard lock{mutex_};
   std::int64_t lost = 0;
   for (const Counted& counted : outputs_) {
     lost += counted.lost;

@@ -1,14 +1,15 @@
 #pragma once
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <vector>
 
 #include "protocols/rig.hpp"
 #include "runner/markers/marker_output.hpp"
 namespace tapstudy::runner {
-// All that a rig asks to be told of the session's changes of state. What is lost is counted; of
-// each output that loses markers the operator is warned once, and told at the end how many they
-// were.
+// All that a rig asks to be told of what the session does, from any thread. What is lost is
+// counted; of each output that loses markers the operator is warned once, and told at the end how
+// many they were.
 class Markers {
  public:
   // Throws InvalidInput or DeviceError if one cannot be opened.
@@ -26,6 +27,7 @@ class Markers {
     std::unique_ptr<MarkerOutput> output;
     std::int64_t lost{0};
   };
+  mutable std::mutex mutex_;
   std::vector<Counted> outputs_;
 };
 }  // namespace tapstudy::runner

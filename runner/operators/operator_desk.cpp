@@ -166,6 +166,9 @@ OperatorDesk::Posted OperatorDesk::post(const OperatorCommand& command) {
   } else {
     stored = recorder_.note(row).share();
   }
+  if (session_.tell) {
+    session_.tell(row);
+  }
   apply(command);
   const std::string text = said_of(command, row);
   std::string said =

@@ -36,6 +36,8 @@ class OperatorDesk final : public Operator {
     std::int64_t id;
     bool is_excluded;               // the participant, by an earlier session
     std::function<double()> now_s;  // as of its events
+    // Told of each action as it is taken; may be empty.
+    std::function<void(const results::OperatorActionRow&)> tell{};
   };
   OperatorDesk(Session session, results::Recorder& recorder)
       : session_{std::move(session)}, recorder_{recorder} {}

@@ -53,7 +53,7 @@ std::optional<MaskingInView> masking_in_view(const LiveTrials::Parts& parts) {
 }
 
 std::unique_ptr<Console> console_of(const LiveTrials::Parts& parts, OperatorDesk& desk,
-                                    LiveTrialLoop& loop, std::function<void()> move_hand) {
+                                    std::function<void()> move_hand) {
   if (!parts.live.console) {
     return nullptr;
   }
@@ -61,8 +61,6 @@ std::unique_ptr<Console> console_of(const LiveTrials::Parts& parts, OperatorDesk
       *parts.live.console,
       Console::Session{parts.live.protocol, parts.session.row, desk, std::move(move_hand),
                        [parts] { return masking_in_view(parts); }});
-  loop.watch(
-      [seen_by = console.get()](const core::TraceSample& sample) { seen_by->watch(sample); });
   // the terminal's lines are commands then, and the operator may be at a page
   parts.ask_operator = [&desk](const std::string& task) {
     return desk.waits_for_operator(task, [&] { say("{} type resume.\n", task); });
@@ -75,7 +73,8 @@ std::optional<MaskedTrialLoop> masked(TrialLoop& loop, const LiveTrials::Parts& 
   if (parts.masking == nullptr) {
     return std::nullopt;
   }
-  return std::make_optional<MaskedTrialLoop>(loop, *parts.masking, masking_level_db_fs(parts));
+  return std::make_optional<MaskedTrialLoop>(loop, *parts.masking, masking_level_db_fs(parts),
+                                             parts.live.protocol.masking->is_required);
 }
 
 TrialLoop& loop_of(TrialLoop& bare, std::optional<MaskedTrialLoop>& masked) {
@@ -90,13 +89,20 @@ LiveTrials::LiveTrials(const Parts& parts, std::unique_ptr<SessionDevice> device
       live_loop_{device_->device(), parts.settings, parts.live.rig.realtime, recorder_},
       masked_loop_{masked(live_loop_, parts)},
       desk_{{parts.live.protocol, parts.session.row.id, is_excluded(parts),
-             [this] { return now_s(); }},
+             [this] { return now_s(); },
+             [this](const results::OperatorActionRow& action) {
+               parts_.markers.send({action.session_id, action.t_s, "operator", action.number,
+                                    fmt::format("{} {}", action.action, action.detail)});
+             }},
             recorder_},
+      tap_markers_{parts.session.row.id,
+                   [this](const results::SessionEventRow& marker) { parts_.markers.send(marker); }},
       at_terminal_{parts.input, [this] { device_->get_ready(); },
                    [this](const std::string& command) { return obeyed(desk_, command); }},
-      console_{console_of(parts, desk_, live_loop_, [this] { device_->get_ready(); })},
+      console_{console_of(parts, desk_, [this] { device_->get_ready(); })},
       states_{parts.session.row.id, [this] { return now_s(); },
               [this](const results::SessionEventRow& change) {
+                trial_ = change.number.value_or(0);
                 parts_.markers.send(change);
                 if (console_) {
                   console_->note_state(change);
@@ -104,16 +110,29 @@ LiveTrials::LiveTrials(const Parts& parts, std::unique_ptr<SessionDevice> device
               }},
       masked_idle_loop_{masked(idle_loop_, parts)},
       real_plates_{parts.live.protocol,
-                   [this](const std::string& task) { return parts_.ask_operator(task); },
+                   [this](const std::string& task) {
+                     const bool is_done = parts_.ask_operator(task);
+                     if (is_done && !console_) {
+                       clear_screen();  // the participant reads it next
+                     }
+                     return is_done;
+                   },
                    loop_of(idle_loop_, masked_idle_loop_)},
       engine_{{parts.live.protocol, parts.models, loop_of(live_loop_, masked_loop_), real_plates_,
                console_ ? console_->participant() : at_terminal_, desk_, states_,
                parts.session.row.seed},
               recorder_,
-              parts.session.earlier} {}
+              parts.session.earlier} {
+  live_loop_.watch([this](const core::TraceSample& sample, Clock::time_point at) {
+    if (console_) {
+      console_->watch(sample);
+    }
+    tap_markers_.add(sample, std::chrono::duration<double>(at - begun_).count(), trial_);
+  });
+}
 
 double LiveTrials::now_s() const {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begun_).count();
+  return std::chrono::duration<double>(Clock::now() - begun_).count();
 }
 
 void LiveTrials::run() {

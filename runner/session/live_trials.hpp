@@ -1,4 +1,5 @@
 #pragma once
+#include <atomic>
 #include <chrono>
 #include <functional>
 #include <memory>
@@ -9,6 +10,7 @@
 #include "runner/console/console.hpp"
 #include "runner/devices/device_kind.hpp"
 #include "runner/markers/markers.hpp"
+#include "runner/markers/tap_markers.hpp"
 #include "runner/operators/operator_desk.hpp"
 #include "runner/participants/console_participant.hpp"
 #include "runner/session/live_session.hpp"
@@ -41,15 +43,18 @@ class LiveTrials {
   void run();
 
  private:
+  using Clock = std::chrono::steady_clock;
   double now_s() const;  // from the session's begin
 
   Parts parts_;
   std::unique_ptr<SessionDevice> device_;
-  std::chrono::steady_clock::time_point begun_{std::chrono::steady_clock::now()};
+  Clock::time_point begun_{Clock::now()};
+  std::atomic<int> trial_{0};  // the latest
   results::Recorder recorder_;
   LiveTrialLoop live_loop_;
   std::optional<MaskedTrialLoop> masked_loop_;
   OperatorDesk desk_;
+  TapMarkers tap_markers_;
   ConsoleParticipant at_terminal_;
   std::unique_ptr<Console> console_;  // null: at the terminal
   SessionStates states_;

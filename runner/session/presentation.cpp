@@ -88,8 +88,6 @@ Presentation present(const TrialInView& trial, const SessionParts& parts) {
   }
   parts.participant.get_ready(trial.prompt);
   Presentation presentation;
-  parts.states.enter(SessionState::exploring, trial.trial.number);
-  parts.by.trial_begins(trial);
   std::vector<results::EventRow> events;
   const Rendered rendered{stimuli.alternatives,
                           scripted_tap(parts.protocol, trial.prompt.block->explore.scripted_taps)};
@@ -97,6 +95,8 @@ Presentation present(const TrialInView& trial, const SessionParts& parts) {
     events.push_back({0.0, "scripted_taps", rendered.scripted->speed_m_s});
   }
   presentation.result = loop.run(rendered, [&](Exploration& exploration) {
+    parts.states.enter(SessionState::exploring, trial.trial.number);  // masking is heard by now
+    parts.by.trial_begins(trial);
     AdjustedExploration adjusted{exploration, trial.trial, *trial.prompt.block, events};
     IntervalExploration in_turn{adjusted, trial.prompt.block->explore,
                                 trial.prompt.alternative_labels.size(), events};

@@ -1,5 +1,7 @@
 #include "runner/terminal/say.hpp"
 
+#include <unistd.h>
+
 #include <cstdio>
 
 #include "runner/terminal/stop_signal.hpp"
@@ -7,6 +9,12 @@ namespace tapstudy::runner {
 void write_to_terminal(const std::string& text) noexcept {
   if (std::fputs(text.c_str(), stderr) < 0 || std::fflush(stderr) != 0) {
     ask_to_stop();
+  }
+}
+
+void clear_screen() noexcept {
+  if (isatty(STDERR_FILENO) == 1) {
+    write_to_terminal("\033[H\033[2J\033[3J");
   }
 }
 }  // namespace tapstudy::runner

@@ -65,11 +65,16 @@ class Following {
 TrialResult LiveTrialLoop::run(const Rendered& rendered, const Explore& explore) {
   core::SpscRing<core::TraceSample> ring{ring_capacity};
   results::TraceCollector collector{ring};
-  collector.watch(watch_);
   device::MonotonicClock clock;
   std::optional<device::ScriptedHand> taps = scripted_hand(rendered, settings_);
   device::HapticLoop loop{*device_, rendered.alternatives,  settings_, ring,
                           clock,    taps ? &*taps : nullptr};
+  if (watch_) {
+    collector.watch([&](const core::TraceSample& sample) {
+      const std::chrono::nanoseconds since_boot{loop.began_at() + sample.t_ns};
+      watch_(sample, std::chrono::steady_clock::time_point{since_boot});
+    });
+  }
   std::atomic<bool> has_ended{false};
   {
     const Following following{recorder_, collector};

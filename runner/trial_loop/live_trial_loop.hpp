@@ -1,4 +1,6 @@
 #pragma once
+#include <chrono>
+#include <functional>
 #include <utility>
 
 #include "core/settings/realtime_request.hpp"
@@ -14,8 +16,11 @@ class LiveTrialLoop final : public TrialLoop {
         settings_{std::move(settings)},
         realtime_{realtime},
         recorder_{recorder} {}
-  // Called with each tick, milliseconds later, by whoever drains the ring.
-  void watch(results::TraceCollector::Watch watch) { watch_ = std::move(watch); }
+  // Called with each tick and the time at which it was made, milliseconds later, by whoever drains
+  // the ring.
+  using Watch = std::function<void(const core::TraceSample& sample,
+                                   std::chrono::steady_clock::time_point at)>;
+  void watch(Watch watch) { watch_ = std::move(watch); }
   // From the next trial on.
   void use(device::Device& device) { device_ = &device; }
   TrialResult run(const Rendered& rendered, const Explore& explore) override;
@@ -29,6 +34,6 @@ class LiveTrialLoop final : public TrialLoop {
   device::LoopSettings settings_;
   core::RealtimeRequest realtime_;
   results::Recorder& recorder_;
-  results::TraceCollector::Watch watch_;
+  Watch watch_;
 };
 }  // namespace tapstudy::runner

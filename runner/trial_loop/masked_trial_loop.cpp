@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "device/device.hpp"
 #include "runner/terminal/logging.hpp"
 namespace tapstudy::runner {
 namespace {
@@ -43,6 +44,10 @@ void add_events(const device::Played& played, double level_db_fs, Clock::time_po
 }  // namespace
 
 TrialResult MaskedTrialLoop::run(const Rendered& rendered, const Explore& explore) {
+  if (const auto& loss = player_.played().loss; is_required_ && loss) {
+    throw device::DeviceError{fmt::format(
+        "masking noise is no longer played ({}), and the protocol requires it", loss->why)};
+  }
   TrialResult result;
   device::Played played;
   bool has_begun = false;
@@ -59,8 +64,9 @@ TrialResult MaskedTrialLoop::run(const Rendered& rendered, const Explore& explor
   }
   if (played.loss && !has_warned_) {
     has_warned_ = true;
-    warn(fmt::format("masking noise is no longer played ({}); the session goes on without it",
-                     played.loss->why));
+    warn(fmt::format("masking noise is no longer played ({}); {}", played.loss->why,
+                     is_required_ ? "the session ends, since the protocol requires it"
+                                  : "the session goes on without it"));
   }
   return result;
 }

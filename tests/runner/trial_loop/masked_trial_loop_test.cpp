@@ -55,11 +55,11 @@ class FakeLoop final : public runner::TrialLoop {
 
 class Masked {
  public:
-  explicit Masked(std::function<void()> during)
+  explicit Masked(std::function<void()> during, bool is_required = false)
       : inner_{std::move(during)},
         player_{std::make_unique<FakeSink>(card), std::make_unique<SteadySource>(), 0.1,
                 core::RealtimeRequest{0, false, std::nullopt}},
-        loop{inner_, player_, -20.0} {}
+        loop{inner_, player_, -20.0, is_required} {}
   std::vector<results::EventRow> events_of_a_trial() { return loop.run({}, {}).trace.events; }
   Card card;
 
@@ -117,4 +117,12 @@ TEST_CASE("a card that vanishes in a trial is stored with it; later trials have 
   REQUIRE(kinds_of(events) == Kinds{"masking", "contact", "masking_lost"});
   CHECK(events[2].t_s < 0.1);
   CHECK(kinds_of(masked.events_of_a_trial()) == Kinds{"contact"});
+}
+
+TEST_CASE("where noise is required, no trial begins once it is lost", "[runner][audio][threads]") {
+  Card* card = nullptr;
+  Masked masked{[&] { card->outcome = PcmOutcome::gone; }, true};
+  card = &masked.card;
+  CHECK(kinds_of(masked.events_of_a_trial()) == Kinds{"masking", "contact", "masking_lost"});
+  CHECK_THROWS_AS(masked.events_of_a_trial(), device::DeviceError);
 }

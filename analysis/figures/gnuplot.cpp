@@ -1,5 +1,7 @@
 #include "analysis/figures/gnuplot.hpp"
 
+#include <sys/wait.h>
+
 #include <cctype>
 #include <cstdio>
 #include <filesystem>
@@ -10,12 +12,17 @@
 #include "core/output_file.hpp"
 namespace tapstudy::analysis {
 namespace {
-void run_gnuplot(const std::string& script) {
+void run_gnuplot(const std::string& script, const std::string& file) {
   FILE* const gnuplot = popen("gnuplot >/dev/null 2>&1", "w");
   const bool is_written =
       gnuplot != nullptr && std::fwrite(script.data(), 1, script.size(), gnuplot) == script.size();
-  if (gnuplot == nullptr || pclose(gnuplot) != 0 || !is_written) {
-    throw core::InvalidInput{"figures need gnuplot, which is not installed or failed"};
+  const int status = gnuplot == nullptr ? -1 : pclose(gnuplot);
+  constexpr int not_found = 127;  // of the shell
+  if (status != -1 && WIFEXITED(status) && WEXITSTATUS(status) == not_found) {
+    throw core::InvalidInput{"figures need gnuplot, which is not installed"};
+  }
+  if (status != 0 || !is_written) {
+    throw core::InvalidInput{file + ": gnuplot could not draw it"};
   }
 }
 
@@ -44,7 +51,7 @@ std::string quoted(const std::string& text) {
 void draw_with_gnuplot(const std::string& script, const std::string& file) {
   core::write_new_file(file, [](std::ostream&) {});  // gnuplot does not report why it fails
   try {
-    run_gnuplot(script);
+    run_gnuplot(script, file);
     if (!is_whole(file)) {
       throw core::InvalidInput{file + ": writing failed (is the disk full?)"};
     }

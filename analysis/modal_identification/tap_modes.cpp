@@ -14,8 +14,12 @@ namespace tapstudy::analysis {
 namespace {
 constexpr double min_significance = 25.0;
 constexpr double max_ratio = 0.7;
-constexpr double max_line_fall = 0.5;
-constexpr double min_line_z = 2.0;
+// How far a tone falls within the tap, in nepers. Below the first it is steady; what falls by less
+// than the second must do so for certain, and not be where the mains hum.
+constexpr double steady_fall = 0.25;
+constexpr double plain_fall = 0.5;
+constexpr double min_decay_z = 2.0;
+constexpr double min_slow_decay_z = 4.0;
 constexpr double neighbourhood = 0.1;  // of the frequency
 constexpr double same_line = 0.01;
 constexpr int further_pairs = 4;
@@ -149,8 +153,12 @@ std::string hum_at(const FittedMode& mode) {
 bool is_line(const FittedMode& mode, double duration_s) {
   const double decay_per_s =
       mode.pole.damping_ratio * 2.0 * std::numbers::pi * mode.pole.frequency_hz;
-  return decay_per_s * duration_s < max_line_fall ||
-         decay_per_s < min_line_z * mode.decay_error_per_s;
+  const double fall = decay_per_s * duration_s;
+  if (fall >= plain_fall) {
+    return decay_per_s < min_decay_z * mode.decay_error_per_s;
+  }
+  return fall < steady_fall || decay_per_s < min_slow_decay_z * mode.decay_error_per_s ||
+         !hum_at(mode).empty();
 }
 
 TapMode judged(const FittedMode& fitted, const Candidate& candidate, double duration_s) {

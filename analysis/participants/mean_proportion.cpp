@@ -114,7 +114,7 @@ Interval t_interval(const std::vector<double>& values) {
 }
 
 std::optional<Interval> bca_interval(const std::vector<double>& values, int draws,
-                                     std::uint64_t seed) {
+                                     std::uint64_t seed, double tail) {
   check_values(values);
   if (are_equal(values)) {
     return std::nullopt;
@@ -141,8 +141,13 @@ std::optional<Interval> bca_interval(const std::vector<double>& values, int draw
   const auto level = [&](double z) {
     return normal_cdf(bias + (bias + z) / (1.0 - a * (bias + z)));
   };
-  const double z = normal_quantile(0.975);
+  const double z = normal_quantile(1.0 - tail);
   return Interval{quantile(means, level(-z)), quantile(means, level(z))};
+}
+
+double expanded_tail(std::size_t values) {
+  const auto n = static_cast<double>(values);
+  return normal_cdf(-std::sqrt(n / (n - 1.0)) * t_quantile(0.975, n - 1.0));
 }
 
 std::optional<BetaBinomialMean> beta_binomial_mean(const std::vector<Proportion>& participants) {

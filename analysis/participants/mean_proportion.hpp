@@ -30,10 +30,15 @@ struct MeanProportion : BetaBinomialMean {
 std::optional<MeanProportion> mean_proportion(const std::vector<Proportion>& participants);
 
 // The 95 % interval of a mean by the bootstrap, corrected for bias and acceleration (Efron 1987;
-// ties of the bias count one half). Throws InvalidInput for fewer than two values and values that
-// are not finite; unset if all are equal, which leaves nothing to draw from.
+// ties of the bias count one half), that leaves so much out at either end. Throws InvalidInput for
+// fewer than two values and values that are not finite; unset if all are equal, which leaves
+// nothing to draw from.
 std::optional<Interval> bca_interval(const std::vector<double>& values, int draws,
-                                     std::uint64_t seed);
+                                     std::uint64_t seed, double tail = 0.025);
+// The tail with which the interval of a mean of so few values is as long as that by t, as far as
+// the bootstrap's own spread, which is too small by sqrt(1 - 1 / n), makes it short (Hesterberg
+// 2015).
+double expanded_tail(std::size_t values);
 
 // mean +- t s / sqrt n, 95 %. Throws InvalidInput for fewer than two values.
 Interval t_interval(const std::vector<double>& values);

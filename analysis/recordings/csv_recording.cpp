@@ -131,17 +131,30 @@ std::optional<TimeColumn> time_column(const Table& table, const ReadingOptions& 
   return ascends ? std::optional{TimeColumn{0, 1.0}} : std::nullopt;
 }
 
+// Start and period of the grid nearest to the times by least squares: each of them may be off.
+std::pair<double, double> uniform_grid(const std::vector<double>& times) {
+  const auto count = static_cast<double>(times.size());
+  const double middle = 0.5 * (count - 1.0);
+  double mean = 0.0;
+  double slope = 0.0;
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    mean += (times[i] - times.front()) / count;
+    slope += (static_cast<double>(i) - middle) * (times[i] - times.front());
+  }
+  const double period = slope / (count * (count * count - 1.0) / 12.0);
+  return {times.front() + mean - middle * period, period};
+}
+
 double rate_from_times(const Table& table, const TimeColumn& column) {
   const std::vector<double> times = table.values(column.index);
-  const auto periods = static_cast<double>(times.size() - 1);
-  const double period = (times.back() - times.front()) / periods;
+  const auto [start, period] = uniform_grid(times);
   if (!(period > 0.0)) {
     refuse(table.file(), table.last_line(), "times must ascend");
   }
   double furthest = 0.0;
   std::size_t worst_step = 1;
   for (std::size_t i = 1; i < times.size(); ++i) {
-    const double expected = times.front() + period * static_cast<double>(i);
+    const double expected = start + period * static_cast<double>(i);
     furthest = std::max(furthest, std::abs(times[i] - expected) / period);
     const auto misfit = [&](std::size_t k) { return std::abs(times[k] - times[k - 1] - period); };
     worst_step = misfit(i) > misfit(worst_step) ? i : worst_step;

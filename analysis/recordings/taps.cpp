@@ -189,6 +189,9 @@ class TapFinder {
 
   std::string refusal(std::size_t impacts) const {
     const double loudest = *std::ranges::max_element(energies_.of_frame);
+    if (!(loudest > 0.0)) {
+      return recording_.file + ": holds no tap: all samples are the same";
+    }
     if (impacts == 0) {
       return fmt::format(
           "{}: holds no tap: nowhere does the energy exceed the noise floor tenfold (at most "

@@ -198,6 +198,20 @@ TEST_CASE("an undamped line is no mode, and at the mains it is called hum",
   CHECK(mode_near(tap, 90.0)->standing == Standing::agreed);
 }
 
+TEST_CASE("a mode whose tap is over before it has fallen by half is a mode, not a steady tone",
+          "[analysis][modal_identification]") {
+  FreeDecay decay =
+      testing::planted_decay({{{62.0, 0.004}, 1.0}, {{118.0, 0.003}, 0.7}}, 4000.0, 0.22);
+  core::Rng rng{5};
+  testing::add_noise(decay, 40.0, rng);
+  const TapModes tap = identify_modes(decay, {{20.0, 400.0}});
+  for (const double frequency_hz : {62.0, 118.0}) {
+    const TapMode* const mode = mode_near(tap, frequency_hz);
+    REQUIRE(mode != nullptr);
+    CHECK(mode->standing == Standing::agreed);
+  }
+}
+
 TEST_CASE("a pole that does not last over the orders is not stable",
           "[analysis][modal_identification]") {
   std::vector<PolesOfOrder> orders;

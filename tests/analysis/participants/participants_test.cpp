@@ -114,6 +114,28 @@ TEST_CASE("a skewed sample moves the bootstrap interval as SciPy's does",
   CHECK(interval->high == Approx(scipy[1]).margin(0.01));
 }
 
+TEST_CASE("of five values an expanded bootstrap interval holds the mean in 90 % of samples or more",
+          "[analysis][participants][slow]") {
+  constexpr int samples = 2000;
+  core::Rng rng{3};
+  int plain = 0;
+  int expanded = 0;
+  for (int sample = 0; sample < samples; ++sample) {
+    std::vector<double> values(5);
+    for (double& value : values) {
+      value = rng.normal();
+    }
+    const auto holds = [](const std::optional<Interval>& interval) {
+      return interval && interval->low <= 0.0 && 0.0 <= interval->high;
+    };
+    plain += holds(bca_interval(values, 999, 1)) ? 1 : 0;
+    expanded += holds(bca_interval(values, 999, 1, expanded_tail(values.size()))) ? 1 : 0;
+  }
+  fmt::print("  bootstrap of five: covered {}, expanded {} of {}\n", plain, expanded, samples);
+  CHECK(expanded > 0.9 * samples);
+  CHECK(plain < 0.88 * samples);
+}
+
 TEST_CASE("participants who do not differ, or are all right, have an interval too",
           "[analysis][participants]") {
   const auto equal = mean_proportion({{4, 8}, {4, 8}, {4, 8}});

@@ -12,6 +12,8 @@ struct StoredTrial {
   std::string participant_id;
   TrialRow row;
   std::int64_t ticks{};
+  std::int64_t saturated{};
+  std::int64_t dropped{};
 };
 struct StoredAnswer {
   std::int64_t id{};
@@ -22,7 +24,8 @@ std::vector<StoredTrial> stored_trials(Store& store) {
   std::vector<StoredTrial> trials;
   store.each_row(
       "SELECT trial_id, participant_id, session_id, number, attempt, block, task, is_practice, "
-      "repetition, status, duration_s, is_catch, presented = 'real', ticks FROM trial_context "
+      "repetition, status, duration_s, is_catch, presented = 'real', ticks, saturated, "
+      "dropped_samples FROM trial_context "
       "LEFT JOIN tick_statistics USING (trial_id) ORDER BY trial_id",
       [&](Statement& row) {
         trials.push_back(
@@ -31,7 +34,9 @@ std::vector<StoredTrial> stored_trials(Store& store) {
              {row.integer(2), static_cast<int>(row.integer(3)), static_cast<int>(row.integer(4)),
               row.text(5), row.text(6), row.integer(7) != 0, static_cast<int>(row.integer(8)),
               row.text(9), row.real(10), row.integer(11) != 0, row.integer(12) != 0},
-             row.integer(13)});
+             row.integer(13),
+             row.integer(14),
+             row.integer(15)});
       });
   return trials;
 }
@@ -120,6 +125,12 @@ class Comparison {
     result_.events += std::ssize(events);
     note("tick_statistics.ticks", fmt::format("{}", trial_->ticks),
          fmt::format("{}", trace.size()));
+    if (trial_->dropped == 0) {
+      const auto saturated = std::ranges::count_if(
+          trace, [](const core::TraceSample& sample) { return sample.saturated; });
+      note("tick_statistics.saturated", fmt::format("{}", trial_->saturated),
+           fmt::format("{}", saturated));
+    }
     note("trial.duration_s", fmt::format("{}", trial_->row.duration_s),
          fmt::format("{}", time_s(trace.back())));
     const auto [a, b] = std::ranges::mismatch(stored, events, are_equal);

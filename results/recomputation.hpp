@@ -21,7 +21,7 @@ struct TaskRule {
 //   event            contacts, impacts (with their speeds), releases, switches, from the trace, bit
 //                    for bit: visits, dwell times and the fastest impact follow from them
 //   trial            duration_s, from the trace's last tick
-//   tick_statistics  ticks, from the trace
+//   tick_statistics  ticks, saturated, from the trace
 //   response         time_from_first_contact_s, from response_time_s and the first contact;
 //                    is_correct, by the rule
 // Trials without a trace (real plates, simulations without traces) have nothing of the first four

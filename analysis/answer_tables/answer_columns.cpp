@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
 #include <string_view>
 
 #include "core/error.hpp"
@@ -36,14 +37,22 @@ const std::vector<AnswerFormat>& formats() {
       {{},
        {"stimulus"},
        {"response"},
-       {"participant_id", "participant", "subject_id", "subject"},
+       {"participant_id", "participant", "subject_id", "subject", "subject_nr", "ppid"},
        {"response_time_s"},
        1.0}};
   return table;
 }
 
+// Whatever the case of its letters.
+bool is_same_word(std::string_view one, std::string_view other) {
+  return std::ranges::equal(one, other, [](unsigned char a, unsigned char b) {
+    return std::tolower(a) == std::tolower(b);
+  });
+}
+
 bool has(const Header& header, std::string_view name) {
-  return std::ranges::find(header, name) != header.end();
+  return std::ranges::any_of(header,
+                             [&](const std::string& one) { return is_same_word(one, name); });
 }
 
 const AnswerFormat& format_of(const Header& header) {
@@ -70,7 +79,7 @@ std::size_t place_of_named(const Header& header, std::string_view name, const st
 std::vector<std::string> columns_like(const Header& header, std::string_view pattern) {
   std::vector<std::string> found;
   for (const std::string& name : header) {
-    if (pattern.starts_with('.') ? name.ends_with(pattern) : name == pattern) {
+    if (pattern.starts_with('.') ? name.ends_with(pattern) : is_same_word(name, pattern)) {
       found.push_back(name);
     }
   }
@@ -112,7 +121,12 @@ std::size_t need(const Header& header, const Wanted& wanted, const std::string& 
 
 // A name may say its unit.
 double unit_in(std::string_view name, double otherwise) {
-  return name.ends_with("_ms") ? 1e-3 : name.ends_with("_s") ? 1.0 : otherwise;
+  for (const std::string_view end : {"_ms", "(ms)", "[ms]"}) {
+    if (name.ends_with(end)) {
+      return 1e-3;
+    }
+  }
+  return name.ends_with("_s") ? 1.0 : otherwise;
 }
 }  // namespace
 

@@ -70,6 +70,8 @@ class BlockSummary {
   virtual std::vector<ReportTable> report_tables() const = 0;
   // Its figures; marks within tables are none.
   virtual std::vector<Chart> figures() const { return {}; }
+  // How it was tested, as a sentence for a methods section; may be empty.
+  virtual std::string methods() const { return {}; }
   // Empty: the answers do not determine it.
   virtual std::vector<MainResult> main_results() const { return {}; }
 

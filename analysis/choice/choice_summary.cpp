@@ -107,4 +107,11 @@ std::shared_ptr<BlockSummary> summarise_choice(const BlockDesign& design, const 
   summary->sections = {choosing_section(design, rows)};
   return summary;
 }
+
+std::string ChoiceSummary::methods() const {
+  return untested.empty()
+             ? "Choices are tested by the exact binomial and multinomial distributions, one vote a "
+               "participant."
+             : std::string{};
+}
 }  // namespace tapstudy::analysis

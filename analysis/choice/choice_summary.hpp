@@ -27,6 +27,7 @@ class ChoiceSummary final : public BlockSummary {
   nlohmann::ordered_json as_json() const override;
   std::vector<CsvTable> tables() const override;
   std::vector<ReportTable> report_tables() const override;
+  std::string methods() const override;
 
   std::vector<AlternativeResult> alternatives;
   std::vector<std::pair<std::string, std::string>> choices;  // participant, stimulus

@@ -49,8 +49,8 @@ std::vector<Cell> row_of(const IdentificationData& data, const std::string& name
 ReportSection exploration_section(const IdentificationData& data) {
   ReportSection section{"What the participants did"};
   ReportTable table{"exploration",
-                    "Taps in a trial, means over participants (95 % CI, t)",
-                    {column("presented", "stimulus"), interval_column("taps", "taps"),
+                    "In a trial, means over participants (95 % CI, t)",
+                    {column("presented", "stimulus"), interval_column("impacts", "impacts"),
                      interval_column("their speed, m/s", "speed_m_s"),
                      interval_column("time in contact, s", "contact_s")}};
   const bool are_impacts_known =
@@ -69,7 +69,9 @@ ReportSection exploration_section(const IdentificationData& data) {
   table.rows.push_back(row_of(data, "all", std::nullopt));
   section.tables.push_back(table);
   section.remarks.emplace_back(
-      "Where participants tapped some stimuli otherwise than others, that may explain answers.");
+      "Where participants tapped some stimuli otherwise than others, that may explain answers. "
+      "Impacts are all that came down on the plate, rebounds among them; forces of whole taps are "
+      "with what was rendered.");
   return section;
 }
 }  // namespace tapstudy::analysis

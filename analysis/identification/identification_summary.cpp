@@ -148,6 +148,11 @@ IdentificationSummary::IdentificationSummary(const BlockDesign& design,
   }
 }
 
+std::string IdentificationSummary::methods() const {
+  return chance_p ? "Accuracy of identification against chance: " + chance_test + "."
+                  : std::string{};
+}
+
 std::vector<MainResult> IdentificationSummary::main_results() const {
   if (!accuracy_over_participants) {
     return {};

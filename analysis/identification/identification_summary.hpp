@@ -39,6 +39,7 @@ class IdentificationSummary final : public BlockSummary {
   std::vector<CsvTable> tables() const override;
   std::vector<ReportTable> report_tables() const override;
   std::vector<Chart> figures() const override;
+  std::string methods() const override;
   std::vector<MainResult> main_results() const override;
 
   ConfusionMatrix matrix;

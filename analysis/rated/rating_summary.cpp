@@ -103,6 +103,10 @@ void test_against_others(HypothesisResult& result, const RatingResults& results,
     }
   }
   result.observed = weakest.above;
+  if (weakest.above.trials == 0) {
+    result.test = fmt::format("no participant's median differs between it and {}", hardest);
+    return;
+  }
   result.p = weakest.p;
   result.test = fmt::format(
       "exact sign tests of participants' medians, one-sided, against every other stimulus; the "

@@ -11,23 +11,24 @@
 #include "core/error.hpp"
 namespace tapstudy::analysis {
 namespace {
-// P(V <= v) for V the sum of a random subset of 1..n.
-double exact_cdf(int n, double v) {
-  const auto most = static_cast<std::size_t>(n * (n + 1) / 2);
+// The distribution of V under all signs, given the ranks, which are whole when doubled.
+double exact_p(const std::vector<double>& ranks, double v) {
+  std::vector<std::size_t> doubled;
+  std::size_t most = 0;
+  for (const double rank : ranks) {
+    doubled.push_back(static_cast<std::size_t>(std::llround(2.0 * rank)));
+    most += doubled.back();
+  }
   std::vector<double> p(most + 1, 0.0);
   p[0] = 1.0;
-  for (std::size_t rank = 1; rank <= static_cast<std::size_t>(n); ++rank) {
+  for (const std::size_t rank : doubled) {
     for (std::size_t sum = most + 1; sum-- > 0;) {
       p[sum] = 0.5 * (p[sum] + (sum >= rank ? p[sum - rank] : 0.0));
     }
   }
-  const auto last = static_cast<std::ptrdiff_t>(std::llround(v));
-  return std::accumulate(p.begin(), p.begin() + last + 1, 0.0);
-}
-
-double exact_p(int n, double v) {
-  const double mirrored = 0.5 * n * (n + 1) - v;
-  return std::min(1.0, 2.0 * exact_cdf(n, std::min(v, mirrored)));
+  const auto observed = static_cast<std::size_t>(std::llround(2.0 * v));
+  const auto tail = static_cast<std::ptrdiff_t>(std::min(observed, most - observed));
+  return std::min(1.0, 2.0 * std::accumulate(p.begin(), p.begin() + tail + 1, 0.0));
 }
 
 double normal_p(int n, double v, double ties) {
@@ -60,14 +61,10 @@ SignedRankTest signed_rank_test(const std::vector<double>& differences) {
     test.positive_ranks += is_positive[i] ? ranks[i] : 0.0;
   }
   constexpr int fewest_for_normal = 50;
-  const double ties = tie_sum(sizes);
-  test.is_exact =
-      sizes.size() == differences.size() && ties == 0.0 && test.pairs < fewest_for_normal;
-  if (test.pairs == 0) {
-    test.p = 1.0;
-  } else {
-    test.p = test.is_exact ? exact_p(test.pairs, test.positive_ranks)
-                           : normal_p(test.pairs, test.positive_ranks, ties);
+  test.is_exact = test.pairs < fewest_for_normal;
+  if (test.pairs > 0) {
+    test.p = test.is_exact ? exact_p(ranks, test.positive_ranks)
+                           : normal_p(test.pairs, test.positive_ranks, tie_sum(sizes));
   }
   return test;
 }
@@ -99,13 +96,18 @@ std::vector<PairwiseTest> pairwise_signed_rank(const RatingTable& ratings) {
       for (const std::vector<double>& row : ratings) {
         differences.push_back(row[i] - row[j]);
       }
-      tests.push_back({i, j, signed_rank_test(differences), 0.0});
-      p.push_back(tests.back().test.p);
+      tests.push_back({i, j, signed_rank_test(differences), {}});
+      if (tests.back().test.p) {
+        p.push_back(*tests.back().test.p);
+      }
     }
   }
-  const std::vector<double> adjusted = holm_adjusted(p);
-  for (std::size_t i = 0; i < tests.size(); ++i) {
-    tests[i].adjusted_p = adjusted[i];
+  auto adjusted = holm_adjusted(p);
+  auto next = adjusted.begin();
+  for (PairwiseTest& test : tests) {
+    if (test.test.p) {
+      test.adjusted_p = *next++;
+    }
   }
   return tests;
 }

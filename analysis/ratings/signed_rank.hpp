@@ -1,18 +1,18 @@
 #pragma once
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "analysis/ratings/friedman.hpp"
 namespace tapstudy::analysis {
 struct SignedRankTest {
   double positive_ranks{};  // V: the sum of the ranks of differences above 0
-  double p{};               // two-sided; 1 if no difference is left
+  std::optional<double> p;  // two-sided; unset if no difference is left
   int pairs{};              // whose difference is not 0
   bool is_exact{};
 };
-// Wilcoxon 1945 on differences; those of 0 are left out. Exact for fewer than 50 differences that
-// are all different and not 0; else by the normal distribution with correction for ties and
-// continuity. Throws InvalidInput for no or not finite differences.
+// Wilcoxon 1945 on differences; those of 0 are left out. For fewer than 50 others exact, given the
+// mid-ranks of ties; else by the normal distribution with correction for ties and continuity. Throws InvalidInput for no or not finite differences.
 SignedRankTest signed_rank_test(const std::vector<double>& differences);
 
 // p values adjusted for their number by Holm 1979, in the order given. Each in [0, 1], else throws
@@ -23,7 +23,7 @@ struct PairwiseTest {
   std::size_t first{};  // conditions; differences are first - second
   std::size_t second{};
   SignedRankTest test;
-  double adjusted_p{};  // Holm over all pairs
+  std::optional<double> adjusted_p;  // Holm over all pairs that are tested
 };
 // Every pair of conditions. Throws InvalidInput as check_ratings does.
 std::vector<PairwiseTest> pairwise_signed_rank(const RatingTable& ratings);

@@ -63,6 +63,8 @@ std::shared_ptr<TabularSummary> compare_blocks(const BlockSummary& first,
   if (first.question != second.question) {
     compared->remarks.push_back(fmt::format("{} asked: {}", b.name, second.question));
   }
+  compared->remarks.emplace_back(
+      "The intervals of differences hold where no participant is in both studies.");
   compared->parts.push_back(std::move(table));
   return compared;
 }

@@ -1,8 +1,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <sstream>
+
 #include "analysis/blocks/html_parts.hpp"
 #include "analysis/report/html_style.hpp"
+#include "analysis/report/references.hpp"
 #include "analysis/report/writers.hpp"
 #include "analysis/tables/sections.hpp"
 #include "core/print.hpp"
@@ -21,6 +24,42 @@ void write_contents(std::ostream& out, const Summary& summary) {
     out << "<li><a href=\"#study\">The study as a whole</a></li>\n";
   }
   out << "</ul></nav>\n";
+}
+// Ampersands as they are cited.
+std::string text_of(const std::string& html) {
+  std::string text = html;
+  constexpr std::string_view escape{"&amp;"};
+  for (auto at = text.find(escape); at != std::string::npos; at = text.find(escape, at + 1)) {
+    text.replace(at, escape.size(), "&");
+  }
+  return text;
+}
+
+// With what was cited in it.
+void write_body(std::ostream& out, const Summary& summary) {
+  std::ostringstream body;
+  write_contents(body, summary);
+  for (const auto& block : summary.blocks) {
+    if (!block->block.empty()) {
+      core::print(body, "<h2 id=\"block-{0}\">{0}</h2>\n<p>{1}</p>\n", escaped(block->block),
+                  escaped(block->question));
+    }
+    block->write_html(body);
+  }
+  if (!summary.sections.empty()) {
+    body << "<h2 id=\"study\">The study as a whole</h2>\n";
+    write_sections_html(body, summary.sections, "study");
+  }
+  core::print(body, "<h2>Methods</h2><p>{}</p>\n", escaped(methods(summary)));
+  const std::string text = body.str();
+  out << text;
+  if (const auto cited = references_in(text_of(text)); !cited.empty()) {
+    out << "<h2>References</h2>\n<ul class=references>\n";
+    for (const std::string& reference : cited) {
+      core::print(out, "<li>{}</li>\n", escaped(reference));
+    }
+    out << "</ul>\n";
+  }
 }
 }  // namespace
 
@@ -45,19 +84,7 @@ void write_html(std::ostream& out, const Summary& summary) {
     core::print(out, "<p>Not as planned: {}.</p>\n",
                 escaped(fmt::format("{}", fmt::join(summary.deviations, "; "))));
   }
-  write_contents(out, summary);
-  for (const auto& block : summary.blocks) {
-    if (!block->block.empty()) {
-      core::print(out, "<h2 id=\"block-{0}\">{0}</h2>\n<p>{1}</p>\n", escaped(block->block),
-                  escaped(block->question));
-    }
-    block->write_html(out);
-  }
-  if (!summary.sections.empty()) {
-    out << "<h2 id=\"study\">The study as a whole</h2>\n";
-    write_sections_html(out, summary.sections, "study");
-  }
-  core::print(out, "<h2>Methods</h2><p>{}</p>\n", escaped(methods(summary)));
+  write_body(out, summary);
   if (!summary.notes.empty()) {
     core::print(out, "<h2>Notes of the protocol</h2><p class=notes>{}</p>\n",
                 escaped(summary.notes));

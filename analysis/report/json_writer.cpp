@@ -1,5 +1,6 @@
 #include <nlohmann/json.hpp>
 
+#include "analysis/report/references.hpp"
 #include "analysis/report/writers.hpp"
 namespace tapstudy::analysis {
 using Json = nlohmann::ordered_json;
@@ -30,6 +31,8 @@ void write_json(std::ostream& out, const Summary& summary) {
   for (const auto& [key, value] : summary.provenance) {
     json["provenance"][key] = value;
   }
+  json["methods"] = methods(summary);
+  json["references"] = references_in(json.dump(-1, ' ', false));
   out << json.dump(2) << '\n';
 }
 }  // namespace tapstudy::analysis

@@ -125,8 +125,27 @@ Summary summarise(const AnswerTable& table, const std::string& title, std::strin
   return summary;
 }
 
+namespace {
+// Of all blocks, each once.
+std::vector<std::string> tests_of(const Summary& summary) {
+  std::vector<std::string> sentences;
+  for (const auto& block : summary.blocks) {
+    const std::string sentence = block->methods();
+    if (!sentence.empty() && std::ranges::find(sentences, sentence) == sentences.end()) {
+      sentences.push_back(sentence);
+    }
+  }
+  return sentences;
+}
+}  // namespace
+
 std::string banner(const Summary& summary) {
-  if (summary.modes.find("simulated") != std::string::npos) {
+  const bool has_simulated = summary.modes.find("simulated") != std::string::npos;
+  if (has_simulated && (summary.modes.find("real") != std::string::npos ||
+                        summary.modes.find("pilot") != std::string::npos)) {
+    return "Some participants are SIMULATED: in part of these data no person took part.";
+  }
+  if (has_simulated) {
     return "SIMULATED participants: no person took part. These data show what the physics and the "
            "assumed observer give.";
   }
@@ -149,10 +168,11 @@ std::string methods(const Summary& summary) {
   text += summary.procedure;
   text +=
       "Intervals of proportions are 95 % score intervals (Wilson 1927) where nothing else is said; "
-      "those over participants hold for participants of whom these are a sample. Accuracy of "
-      "identification is tested by drawing the orders of presentation again as the study drew "
-      "them, choices by the exact binomial and multinomial distributions, one vote a participant; "
-      "other statistics state their methods with their results. ";
+      "those over participants hold for participants of whom these are a sample. ";
+  for (const std::string& sentence : tests_of(summary)) {
+    text += sentence + " ";
+  }
+  text += "Other statistics state their methods with their results. ";
   if (summary.loop) {
     text += fmt::format(
         "The haptic loop made {} ticks; {} were late, {} were skipped, and {} force samples were "

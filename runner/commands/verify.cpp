@@ -93,6 +93,16 @@ std::string print_recomputed(const results::Recomputation& recomputed) {
                                            differences.size());
 }
 
+// Likewise.
+std::string print_heads(const std::vector<std::string>& differences) {
+  for (const std::string& difference : differences) {
+    fmt::print("differs: {}\n", difference);
+  }
+  return differences.empty()
+             ? ""
+             : fmt::format("{} rows of the study and its sessions differ", differences.size());
+}
+
 // The journal against the database; likewise.
 std::string print_compared(const results::JournalEntries& in_store,
                            const results::JournalEntries& in_journal) {
@@ -115,9 +125,11 @@ void verify(const VerifyOptions& options) {
   const results::JournalEntries in_store = store.entries_for_journal();
   fmt::print("study.db         {} trials, {} answers, {} ticks: sound\n", store.trials().size(),
              in_store.answers.size(), recomputed.ticks);
+  const results::JournalContent journal = results::read_journal(options.directory);
   std::vector<std::string> wrong{
       print_recomputed(recomputed),
-      print_compared(in_store, results::read_journal(options.directory).entries)};
+      print_heads(results::differing_heads(store.study(), store.sessions(), journal)),
+      print_compared(in_store, journal.entries)};
   std::erase(wrong, "");
   if (!wrong.empty()) {
     throw results::StoreError{fmt::format("{}: {}", options.directory, fmt::join(wrong, "; "))};

@@ -191,12 +191,22 @@ void check_same_protocol(const std::vector<StudyStore>& stores) {
   }
 }
 
+// Of whatever name: a redacted copy has the sessions of its study.
 void check_different_participants(const std::vector<StudyStore>& stores) {
   std::map<std::string, std::string> directories;
+  std::map<std::pair<std::uint64_t, std::string>, std::string> begun;
   for (const StudyStore& each : stores) {
     std::set<std::string> here;
     for (const results::SessionRow& session : each.store->sessions()) {
       here.insert(session.participant_id);
+      const auto [other, is_new] =
+          begun.try_emplace({session.seed, session.started_utc}, each.directory);
+      if (!is_new && other->second != each.directory) {
+        throw core::InvalidInput{
+            fmt::format("{} and {} hold the same session, begun {} with the seed {}: is one a copy "
+                        "of the other?",
+                        other->second, each.directory, session.started_utc, session.seed)};
+      }
     }
     for (const std::string& participant : here) {
       const auto [before, is_new] = directories.try_emplace(participant, each.directory);

@@ -94,7 +94,8 @@ out(p, p.adjust(p, 'holm'))
 }
 
 TEST_CASE(
-    "from fifty differences on, and with ties and zeros, the signed rank test is R's normal one",
+    "from fifty differences on the signed rank test is R's normal one, below it R's exact one, and "
+    "with ties and zeros coin's",
     "[analysis][ratings]") {
   core::Rng rng{4};
   std::vector<double> many(60);
@@ -104,17 +105,22 @@ TEST_CASE(
   const std::vector<double> coarse{1, -2, 0, 3, 3, -1, 2, 4, 0, 5, -3};
   const std::vector<double> below(many.begin(), many.begin() + 49);
   const std::vector<double> with_zero{1.5, -2.5, 0.0, 3.5, 4.5, -0.5, 5.5};
-  for (const auto& differences : {many, coarse, with_zero, below}) {
-    const std::vector<double> expected =
-        testing::r_numbers("w <- suppressWarnings(wilcox.test(" + testing::r_vector(differences) +
-                           ")); out(w$statistic, w$p.value)");
+  const std::vector<double> alike(5, 1.0);
+  for (const auto& differences : {many, coarse, with_zero, below, alike}) {
+    const bool has_ties = differences.size() < 49;
+    const std::vector<double> expected = testing::r_numbers(
+        "suppressPackageStartupMessages(library(coin)); d <- " + testing::r_vector(differences) +
+        "; w <- suppressWarnings(wilcox.test(d)); out(w$statistic, " +
+        (has_ties ? "pvalue(wilcoxsign_test(d ~ rep(0, length(d)), zero.method = 'Wilcoxon', "
+                    "distribution = exact())))"
+                  : "w$p.value)"));
     const auto ours = analysis::signed_rank_test(differences);
     CHECK(ours.positive_ranks == expected.at(0));
-    CHECK(ours.p == Approx(expected.at(1)).epsilon(1e-9));
-    CHECK(ours.is_exact == (differences.size() == 49));
+    CHECK(ours.p.value() == Approx(expected.at(1)).epsilon(1e-9));
+    CHECK(ours.is_exact == (differences.size() < 50));
   }
   CHECK(analysis::signed_rank_test(coarse).pairs == 9);
-  CHECK(analysis::signed_rank_test({0.0, 0.0}).p == 1.0);
+  CHECK_FALSE(analysis::signed_rank_test({0.0, 0.0}).p);
 }
 
 TEST_CASE("ratings that cannot be compared are refused", "[analysis][ratings]") {

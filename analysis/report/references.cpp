@@ -1,0 +1,105 @@
+#include "analysis/report/references.hpp"
+
+#include <array>
+namespace tapstudy::analysis {
+namespace {
+struct Reference {
+  std::string_view key;  // as it is cited
+  std::string_view full;
+};
+constexpr std::array references{
+    Reference{"Berger 1982",
+              "Berger, R. L. (1982). Multiparameter hypothesis testing and acceptance sampling. "
+              "Technometrics 24, 295–300."},
+    Reference{"Bowker 1948",
+              "Bowker, A. H. (1948). A test for symmetry in contingency tables. Journal of the "
+              "American Statistical Association 43, 572–574."},
+    Reference{"DerSimonian & Laird 1986",
+              "DerSimonian, R. & Laird, N. (1986). Meta-analysis in clinical trials. Controlled "
+              "Clinical Trials 7, 177–188."},
+    Reference{"Efron 1987",
+              "Efron, B. (1987). Better bootstrap confidence intervals. Journal of the American "
+              "Statistical Association 82, 171–185."},
+    Reference{
+        "Frijters 1979",
+        "Frijters, J. E. R. (1979). Variations of the triangular method and the relationship "
+        "of its unidimensional probabilistic models to three-alternative forced-choice signal "
+        "detection theory models. British Journal of Mathematical and Statistical Psychology "
+        "32, 229–241."},
+    Reference{"Hart 2006",
+              "Hart, S. G. (2006). NASA-Task Load Index (NASA-TLX); 20 years later. Proceedings of "
+              "the Human Factors and Ergonomics Society 50, 904–908."},
+    Reference{"Hart and Staveland 1988",
+              "Hart, S. G. & Staveland, L. E. (1988). Development of NASA-TLX (Task Load Index). "
+              "In P. A. Hancock & N. Meshkati (eds.), Human Mental Workload, 139–183."},
+    Reference{
+        "Hartung & Knapp 2001",
+        "Hartung, J. & Knapp, G. (2001). A refined method for the meta-analysis of controlled "
+        "clinical trials with binary outcome. Statistics in Medicine 20, 3875–3889."},
+    Reference{"Hautus 1995",
+              "Hautus, M. J. (1995). Corrections for extreme proportions and their biasing effects "
+              "on estimated values of d'. Behavior Research Methods 27, 46–51."},
+    Reference{"Holm 1979",
+              "Holm, S. (1979). A simple sequentially rejective multiple test procedure. "
+              "Scandinavian Journal of Statistics 6, 65–70."},
+    Reference{
+        "Hope 1968",
+        "Hope, A. C. A. (1968). A simplified Monte Carlo significance test procedure. Journal "
+        "of the Royal Statistical Society B 30, 582–598."},
+    Reference{"Kaernbach 1991",
+              "Kaernbach, C. (1991). Simple adaptive testing with the weighted up-down method. "
+              "Perception & Psychophysics 49, 227–229."},
+    Reference{"Kendall & Babington Smith 1940",
+              "Kendall, M. G. & Babington Smith, B. (1940). On the method of paired comparisons. "
+              "Biometrika 31, 324–345."},
+    Reference{"Kontsevich & Tyler 1999",
+              "Kontsevich, L. L. & Tyler, C. W. (1999). Bayesian adaptive estimation of "
+              "psychometric slope and threshold. Vision Research 39, 2729–2737."},
+    Reference{"Levitt 1971",
+              "Levitt, H. (1971). Transformed up-down methods in psychoacoustics. Journal of the "
+              "Acoustical Society of America 49, 467–477."},
+    Reference{"Liesefeld & Janczyk 2019",
+              "Liesefeld, H. R. & Janczyk, M. (2019). Combining speed and accuracy to control for "
+              "speed-accuracy trade-offs(?). Behavior Research Methods 51, 40–60."},
+    Reference{"Luce 1963",
+              "Luce, R. D. (1963). Detection and recognition. In R. D. Luce, R. R. Bush & E. "
+              "Galanter (eds.), Handbook of Mathematical Psychology 1, 103–189."},
+    Reference{"Maxwell 1970",
+              "Maxwell, A. E. (1970). Comparing the classification of subjects by two independent "
+              "judges. British Journal of Psychiatry 116, 651–655."},
+    Reference{"Miller & Nicely 1955",
+              "Miller, G. A. & Nicely, P. E. (1955). An analysis of perceptual confusions among "
+              "some English consonants. Journal of the Acoustical Society of America 27, 338–352."},
+    Reference{"Schuett et al. 2016",
+              "Schütt, H. H., Harmeling, S., Macke, J. H. & Wichmann, F. A. (2016). Painfree and "
+              "accurate Bayesian estimation of psychometric functions for (potentially) "
+              "overdispersed data. Vision Research 122, 105–123."},
+    Reference{
+        "Stuart 1955",
+        "Stuart, A. (1955). A test for homogeneity of the marginal distributions in a two-way "
+        "classification. Biometrika 42, 412–416."},
+    Reference{"Watson 2017",
+              "Watson, A. B. (2017). QUEST+: A general multidimensional Bayesian adaptive "
+              "psychometric method. Journal of Vision 17(3), 10."},
+    Reference{
+        "Williams 1949",
+        "Williams, E. J. (1949). Experimental designs balanced for the estimation of residual "
+        "effects of treatments. Australian Journal of Scientific Research A 2, 149–168."},
+    Reference{"Wilson 1927",
+              "Wilson, E. B. (1927). Probable inference, the law of succession, and statistical "
+              "inference. Journal of the American Statistical Association 22, 209–212."},
+    Reference{"Zou & Donner 2008",
+              "Zou, G. Y. & Donner, A. (2008). Construction of confidence limits about effect "
+              "measures: a general approach. Statistics in Medicine 27, 1693–1702."}};
+}  // namespace
+
+std::vector<std::string> references_in(std::string_view text) {
+  std::vector<std::string> found;
+  for (const Reference& reference : references) {
+    if (text.find(reference.key) != std::string_view::npos) {
+      found.emplace_back(reference.full);
+    }
+  }
+  return found;
+}
+}  // namespace tapstudy::analysis

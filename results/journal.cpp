@@ -121,27 +121,4 @@ void Journal::complete(const std::function<StudyRow()>& study,
   known_.insert(bodies.begin(), bodies.end());
   read_bytes_ += static_cast<std::int64_t>(text.size());
 }
-
-std::vector<std::string> differing_heads(const StudyRow& study,
-                                         const std::vector<SessionRow>& sessions,
-                                         const JournalContent& journal) {
-  std::vector<std::string> differences;
-  if (core::sha256(study.protocol_text) != study.protocol_sha256) {
-    differences.emplace_back("study: protocol_sha256 is not that of protocol_text");
-  }
-  if (const auto keys = differing_keys(to_line(study), to_line(journal.study)); !keys.empty()) {
-    differences.push_back(fmt::format("study: {} not as in answers.journal", keys));
-  }
-  for (const SessionRow& journalled : journal.sessions) {
-    const auto stored = std::ranges::find(sessions, journalled.id, &SessionRow::id);
-    if (stored == sessions.end()) {
-      differences.push_back(fmt::format("session {}: missing in study.db", journalled.id));
-    } else if (const auto keys = differing_keys(to_line(*stored), to_line(journalled));
-               !keys.empty()) {
-      differences.push_back(fmt::format("session {} (participant {}): {} not as in answers.journal",
-                                        journalled.id, journalled.participant_id, keys));
-    }
-  }
-  return differences;
-}
 }  // namespace tapstudy::results

@@ -65,10 +65,4 @@ JournalContent read_journal(const std::string& directory);
 
 // One text per entry, equal if and only if the entries are, kind by kind.
 std::vector<std::string> to_lines(const JournalEntries& entries);
-
-// What a database holds of its study and its sessions (the protocol and its hash, modes, seeds,
-// orders, devices …) otherwise than the journal does, a line each; answers apart.
-std::vector<std::string> differing_heads(const StudyRow& study,
-                                         const std::vector<SessionRow>& sessions,
-                                         const JournalContent& journal);
 }  // namespace tapstudy::results

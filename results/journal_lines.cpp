@@ -158,18 +158,6 @@ std::string chain_of(const std::string& chain_before, const std::string& body) {
   return core::sha256(chain_before + body);
 }
 
-std::string differing_keys(const std::string& one, const std::string& other) {
-  const Json first = Json::parse(one);
-  const Json second = Json::parse(other);
-  std::vector<std::string> keys;
-  for (const auto& [key, value] : first.items()) {
-    if (!second.contains(key) || second.at(key) != value) {
-      keys.push_back(key);
-    }
-  }
-  return fmt::format("{}", fmt::join(keys, ", "));
-}
-
 std::string to_line(const StudyRow& study) {
   Json line{{"kind", "study"},
             {"format", format},

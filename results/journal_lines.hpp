@@ -12,9 +12,6 @@ JournalLine split_line(const std::string& line);
 std::string join_line(const JournalLine& line);
 std::string chain_of(const std::string& chain_before, const std::string& body);
 
-// The keys of the first body whose values the other has not, as a list in words.
-std::string differing_keys(const std::string& one, const std::string& other);
-
 // Bodies.
 std::string to_line(const StudyRow& study);
 std::string to_line(const SessionRow& session);

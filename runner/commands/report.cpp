@@ -8,7 +8,7 @@
 #include <sstream>
 #include <utility>
 
-#include "analysis/figures/pdf_of_svg.hpp"
+#include "analysis/figures/svg_formats.hpp"
 #include "analysis/report/comparison.hpp"
 #include "analysis/report/figure_files.hpp"
 #include "analysis/report/selection.hpp"

@@ -7,7 +7,7 @@
 
 #include "core/error.hpp"
 #include "protocols/protocol.hpp"
-#include "results/journal.hpp"
+#include "results/journal_heads.hpp"
 #include "results/recomputation.hpp"
 #include "results/store.hpp"
 #include "results/store_error.hpp"

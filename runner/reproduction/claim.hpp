@@ -49,6 +49,13 @@ struct Drawing {
   bool is_open{true};  // else the reader unfolds it
 };
 
+// Shown on the page, and a file of its own beside it.
+struct Animation {
+  std::string title;
+  std::string file;
+  std::string png;
+};
+
 struct Claim {
   std::string name;       // of its place on the page and in JSON
   std::string section;    // of the paper
@@ -58,6 +65,7 @@ struct Claim {
   std::vector<Measure> findings{};  // beside the judgement: what would give it, and the like
   std::vector<std::string> remarks{};
   std::vector<Drawing> drawings{};
+  std::vector<Animation> animations{};
   ClaimVerdict verdict() const;
   // By which methods it holds, and of each of the others the measures that do not.
   std::vector<std::string> reasons() const;

@@ -6,6 +6,9 @@
 #include "runner/reproduction/bench.hpp"
 #include "runner/reproduction/claim.hpp"
 namespace tapstudy::runner {
+// Of Figure 3, beside the page.
+inline constexpr std::string_view strike_animation_file = "figure_3.png";
+
 // Claims that are measured together. To add some: a file with a function, declared here, and a row
 // in claim_table.cpp.
 struct ClaimGroup {

@@ -7,6 +7,8 @@
 #include <cmath>
 
 #include "analysis/blocks/html_parts.hpp"
+#include "analysis/figures/animated_png.hpp"
+#include "analysis/figures/svg_formats.hpp"
 namespace tapstudy::runner {
 namespace {
 constexpr std::size_t shades = 16;
@@ -34,8 +36,8 @@ std::string colour(std::size_t shade) {
 }
 
 // Squares of a shade as one path, the lowest row at the bottom.
-std::array<std::string, shades> squares(const analysis::ColourMap& map,
-                                        const analysis::ColourPanel& panel, double most) {
+std::string squares(const analysis::ColourMap& map, const analysis::ColourPanel& panel,
+                    double most) {
   std::array<std::string, shades> paths;
   const std::size_t rows = (map.rows + stride - 1) / stride;
   for (std::size_t row = 0; row < map.rows; row += stride) {
@@ -47,29 +49,50 @@ std::array<std::string, shades> squares(const analysis::ColourMap& map,
       paths.at(shade) += fmt::format("M{} {}h1v1h-1z", column / stride, rows - 1 - row / stride);
     }
   }
-  return paths;
+  std::string svg;
+  for (std::size_t shade = 0; shade < shades; ++shade) {
+    if (!paths.at(shade).empty()) {
+      svg += fmt::format("<path fill=\"{}\" d=\"{}\"/>", colour(shade), paths.at(shade));
+    }
+  }
+  return svg;
+}
+
+// Of squares, across and up.
+std::pair<std::size_t, std::size_t> size_of(const analysis::ColourMap& map) {
+  return {(map.columns + stride - 1) / stride, (map.rows + stride - 1) / stride};
 }
 }  // namespace
 
 std::vector<std::string> colour_svgs(const analysis::ColourMap& map) {
   const double most = largest_value(map);
-  const std::size_t width = (map.columns + stride - 1) / stride;
-  const std::size_t height = (map.rows + stride - 1) / stride;
+  const auto [width, height] = size_of(map);
   std::vector<std::string> figures;
   for (const analysis::ColourPanel& panel : map.panels) {
     std::string svg = fmt::format(
         "<figure><svg class=map viewBox=\"0 0 {} {}\" role=img shape-rendering=crispEdges "
         "aria-label=\"{}\">",
         width, height, analysis::escaped(map.title + ", " + panel.title));
-    const auto paths = squares(map, panel, most);
-    for (std::size_t shade = 0; shade < shades; ++shade) {
-      if (!paths.at(shade).empty()) {
-        svg += fmt::format("<path fill=\"{}\" d=\"{}\"/>", colour(shade), paths.at(shade));
-      }
-    }
-    figures.push_back(svg + fmt::format("</svg><figcaption>{}</figcaption></figure>\n",
-                                        analysis::escaped(panel.title)));
+    figures.push_back(svg + squares(map, panel, most) +
+                      fmt::format("</svg><figcaption>{}</figcaption></figure>\n",
+                                  analysis::escaped(panel.title)));
   }
   return figures;
+}
+
+std::string colour_animation(const analysis::ColourMap& map) {
+  constexpr int pixels = 360;
+  constexpr unsigned frame_ms = 200;
+  const double most = largest_value(map);
+  const auto [width, height] = size_of(map);
+  std::vector<std::string> frames;
+  for (const analysis::ColourPanel& panel : map.panels) {
+    frames.push_back(analysis::png_of_svg(
+        fmt::format("<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" "
+                    "viewBox=\"0 0 {0} {1}\" shape-rendering=\"crispEdges\">{2}</svg>",
+                    width, height, squares(map, panel, most)),
+        pixels));
+  }
+  return analysis::animated_png(frames, frame_ms);
 }
 }  // namespace tapstudy::runner

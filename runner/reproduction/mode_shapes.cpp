@@ -84,6 +84,13 @@ void add(Bench& bench, const Shown& shown_plate, Claim& claim) {
                 "% of the largest"),
         at_least(50.0, "largest where it was struck", 100.0 * middle_um / most_um,
                  "% of the largest")}});
+  if (claim.animations.empty()) {
+    claim.animations.push_back({fmt::format("{}: {} in the {} ticks after a strike, one after the "
+                                            "other, blue where nothing moves, red at {} µm",
+                                            shown_plate.method, shown_plate.stimulus,
+                                            map.panels.size(), analysis::rounded(most_um)),
+                                std::string{strike_animation_file}, colour_animation(map)});
+  }
   keep_first(map);
   claim.drawings.push_back(
       {fmt::format("{}: {} after a strike, red is {} µm", shown_plate.method, shown_plate.stimulus,

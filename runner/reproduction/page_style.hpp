@@ -13,7 +13,7 @@ inline constexpr const char* reproduction_style = R"css(
 .small{grid-template-columns:repeat(auto-fill,minmax(min(100%,17rem),1fr))}
 .force .line{stroke:#1b2733;stroke-width:1.2}.force .alone{stroke:#08519c;stroke-width:1.2}
 .map{width:100%;height:auto}.map text{font-size:11px;fill:currentColor}
-details{margin:.5rem 0}summary{cursor:pointer;color:#08519c}
+details{margin:.5rem 0}.animation img{max-width:100%;image-rendering:pixelated}summary{cursor:pointer;color:#08519c}
 a{color:#08519c}
 @media (max-width:600px){body{margin:1rem auto}}
 @media (prefers-color-scheme:dark){

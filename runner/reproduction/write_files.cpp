@@ -3,16 +3,19 @@
 
 #include <filesystem>
 #include <sstream>
+#include <string_view>
+#include <vector>
 
 #include "core/error.hpp"
 #include "core/output_file.hpp"
+#include "runner/reproduction/claim_table.hpp"
 #include "runner/reproduction/writers.hpp"
 namespace tapstudy::runner {
 namespace {
 constexpr const char* page_file = "reproduction.html";
 constexpr const char* json_file = "reproduction.json";
 
-std::string in(const std::string& directory, const char* name) {
+std::string in(const std::string& directory, std::string_view name) {
   return (std::filesystem::path{directory} / name).string();
 }
 
@@ -33,12 +36,20 @@ void make_room_for_reproduction(const std::string& directory) {
   }
   core::check_is_new(in(directory, page_file));
   core::check_is_new(in(directory, json_file));
+  core::check_is_new(in(directory, strike_animation_file));
 }
 
 void write_files(const std::string& directory, const Reproduction& reproduction) {
-  core::write_all_or_none({{in(directory, page_file), written(write_html, reproduction)},
-                           {in(directory, json_file), written(write_json, reproduction)}},
-                          core::Existing::kept);
+  std::vector<core::NewFile> files{{in(directory, page_file), written(write_html, reproduction)},
+                                   {in(directory, json_file), written(write_json, reproduction)}};
+  for (const MeasuredGroup& group : reproduction.groups) {
+    for (const Claim& claim : group.claims) {
+      for (const Animation& animation : claim.animations) {
+        files.push_back({in(directory, animation.file), animation.png});
+      }
+    }
+  }
+  core::write_all_or_none(files, core::Existing::kept);
 }
 
 std::string command_of(const Reproduction& reproduction) {

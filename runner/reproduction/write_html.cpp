@@ -2,6 +2,7 @@
 #include <fmt/ranges.h>
 
 #include "analysis/blocks/html_parts.hpp"
+#include "analysis/figures/svg_formats.hpp"
 #include "analysis/report/html_style.hpp"
 #include "core/print.hpp"
 #include "runner/reproduction/page_style.hpp"
@@ -80,6 +81,13 @@ void write_claim(std::ostream& out, const Claim& claim) {
       out << svg;
     }
     out << "</div></details>\n";
+  }
+  for (const Animation& animation : claim.animations) {
+    core::print(out,
+                "<figure class=animation><img src=\"{}\" alt=\"{}\"><figcaption>{} ({})"
+                "</figcaption></figure>\n",
+                analysis::png_data_uri(animation.png), escaped(animation.title),
+                escaped(animation.title), escaped(animation.file));
   }
   out << "</section>\n";
 }

@@ -37,6 +37,6 @@ TEST_CASE("verify notices what was changed of a study, its sessions or its stati
   INFO(changed.standard_error);
   REQUIRE(changed.exit_code == 0);
   const auto verified = testing::tapstudy({"verify", directory / "s"});
-  CHECK(verified.exit_code == 4);
+  CHECK(verified.exit_code == 5);
   CHECK_THAT(verified.standard_output, Catch::Contains("differs: ") && Catch::Contains(words));
 }

@@ -15,6 +15,12 @@ std::string r_vector(const Values& values) {
   return fmt::format("c({})", fmt::join(values, ","));
 }
 
+// The exact signed rank test of differences, those of 0 left out, as R's coin has it.
+inline const std::string exact_signed_rank_p =
+    "suppressPackageStartupMessages(library(coin)); exact_signed_rank_p <- function(d) "
+    "as.numeric(pvalue(wilcoxsign_test(d ~ rep(0, length(d)), zero.method = 'Wilcoxon', "
+    "distribution = exact())))\n";
+
 // The numbers that a script of R prints by `out(...)`, in order, as doubles whole to the last
 // digit.
 inline std::vector<double> r_numbers(const std::string& script) {

@@ -63,12 +63,12 @@ std::string r_medians() {
 
 TEST_CASE("ratings are tested as R tests the participants' medians", "[analysis][rated]") {
   const auto json = reported(statistic, design_of(), all_answers()).json;
-  const auto r = r_numbers(r_medians() +
-                           "f <- friedman.test(m); out(f$statistic, f$p.value, "
-                           "f$statistic / (6 * 2));"
-                           "p <- sapply(list(c(1, 2), c(1, 3), c(2, 3)), function(k) "
-                           "suppressWarnings(wilcox.test(m[, k[1]], m[, k[2]], paired = TRUE)"
-                           "$p.value)); out(p, p.adjust(p, 'holm'))");
+  const auto r =
+      r_numbers(testing::exact_signed_rank_p + r_medians() +
+                "f <- friedman.test(m); out(f$statistic, f$p.value, "
+                "f$statistic / (6 * 2));"
+                "p <- sapply(list(c(1, 2), c(1, 3), c(2, 3)), function(k) "
+                "exact_signed_rank_p(m[, k[1]] - m[, k[2]])); out(p, p.adjust(p, 'holm'))");
   const auto& friedman = json["friedman"][0];
   CHECK(friedman["chi_squared"].get<double>() == Approx(r[0]));
   CHECK(friedman["p"].get<double>() == Approx(r[1]));

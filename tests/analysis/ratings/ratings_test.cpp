@@ -69,13 +69,15 @@ TEST_CASE("first places count the lowest value, shared ones for each", "[analysi
   CHECK(analysis::mid_ranks({5, 1, 5, 9}) == std::vector<double>{2.5, 1.0, 2.5, 4.0});
 }
 
-TEST_CASE("signed rank tests of pairs and Holm's adjustment are R's", "[analysis][ratings]") {
+TEST_CASE("signed rank tests of pairs and Holm's adjustment are coin's and R's",
+          "[analysis][ratings]") {
   for (const RatingTable& ratings : {tied, untied}) {
-    const std::vector<double> expected = testing::r_numbers(r_table(ratings) + R"(
+    const std::vector<double> expected =
+        testing::r_numbers(testing::exact_signed_rank_p + r_table(ratings) + R"(
 p <- c()
 for (i in 1:3) for (j in (i + 1):4) {
   w <- suppressWarnings(wilcox.test(m[, i], m[, j], paired = TRUE))
-  out(w$statistic); p <- c(p, w$p.value)
+  out(w$statistic); p <- c(p, exact_signed_rank_p(m[, i] - m[, j]))
 }
 out(p, p.adjust(p, 'holm'))
 )");

@@ -1,5 +1,5 @@
 // Figures as PDF, read by poppler's tools.
-#include "analysis/figures/pdf_of_svg.hpp"
+#include "analysis/figures/svg_formats.hpp"
 
 #include <fmt/format.h>
 

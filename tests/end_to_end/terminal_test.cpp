@@ -1,0 +1,16 @@
+// A session at a pseudo-terminal, as a participant has it.
+#include <catch2/catch.hpp>
+#include <cstdlib>
+
+#include "support/processes.hpp"
+#include "support/texts.hpp"
+using namespace tapstudy;
+
+TEST_CASE("the paper's three studies are answered at a terminal, which may stop or vanish",
+          "[end_to_end][slow]") {
+  setenv("TAPSTUDY_PROGRAM", TAPSTUDY_PROGRAM, 1);
+  const auto result = testing::run_program(
+      {"/usr/bin/python3", "-B", testing::source("tests/terminal/terminal_session_test.py")});
+  INFO(result.standard_output << result.standard_error);
+  CHECK(result.exit_code == 0);
+}

@@ -1,0 +1,71 @@
+// What a simulated observer's internal noise makes of its thresholds.
+#include <fmt/format.h>
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "protocols/read_protocol.hpp"
+#include "results/store.hpp"
+#include "runner/experiments/simulated_study.hpp"
+#include "runner/experiments/study_summary.hpp"
+#include "support/texts.hpp"
+using namespace tapstudy;
+
+namespace {
+// Constant stimuli of a plate whose vibration is louder by these fractions.
+constexpr const char* study = R"(
+format: tapstudy/1
+title: Loudness of a vibration
+finger: {{mass_kg: 0.058, stiffness_n_per_m: 300, damping_n_s_per_m: 3}}
+rendering: {{rate_hz: 1000, band_limit_hz: 300, penalty_stiffness_n_per_m: 3000}}
+placement: {{origin_m: [0, 0, 0], lateral_scale: 0.1}}
+materials:
+  mdf: {{youngs_modulus_pa: 2.5e9, density_kg_per_m3: 610, poissons_ratio: 0.25, damping: {{ratio: 0.02}}}}
+plates:
+  held:
+    size_m: [0.3, 0.3, 0.05]
+    fixations: [{{region: disc, at_m: [0.1, 0.1], radius_m: 0.02}}]
+tapping_points_m: {{middle: [0, 0]}}
+stimuli:
+  plate: {{plate: held, material: mdf, technique: fem, vary: {{vibration_gain: {{from: 1, to: 10}}}}}}
+blocks:
+  - name: loudness
+    task: comparison
+    question: Which vibrates more?
+    stimuli: [plate]
+    procedures: [{{constant: {{values: {values}, repetitions: 24}}}}]
+simulation:
+  taps: {{points: [middle], taps_per_visit: 4, visits: 1, speed_spread: 0}}
+  observer: {{noise_db: {noise_db}, reality: fem}}
+  people: {{noise_spread: 0, threshold_spread: 0, speed_spread: 0, bias: 0}}
+)";
+
+// The mean threshold of ten participants, as a level.
+double threshold_db(double noise_db, const std::string& values) {
+  const testing::TempDirectory directory;
+  const std::string text =
+      fmt::format(study, fmt::arg("noise_db", noise_db), fmt::arg("values", values));
+  const protocols::Protocol protocol = protocols::parse_protocol(text, "study.yaml");
+  runner::simulate({"study.yaml", directory / "study", 10, 3, false}, protocol);
+  results::Store store = results::Store::open_existing(directory / "study");
+  const auto summary = runner::summary_of_study(
+      {{directory / "study", &store}}, results::Mode::simulated, runner::Detail::main_results);
+  return 20.0 * std::log10(1.0 + summary.blocks.at(0)->main_results().at(0).estimate);
+}
+}  // namespace
+
+// In 2AFC d' grows with the difference in decibels over the noise of a percept, which is the
+// internal one and that of the hand: threshold² = k² (internal² + hand²). Of three thresholds the
+// unknown k and hand cancel.
+TEST_CASE("thresholds of a simulated observer follow from its internal noise",
+          "[runner][observer][slow]") {
+  const double at_6 = threshold_db(6.0, "[0.1, 0.2, 0.35, 0.6, 1.2]");
+  const double at_12 = threshold_db(12.0, "[0.25, 0.5, 0.9, 1.6, 3]");
+  const double at_24 = threshold_db(24.0, "[0.5, 1, 2, 4, 8]");
+  fmt::print("  thresholds at 6, 12, 24 dB of noise: {:.2f}, {:.2f}, {:.2f} dB\n", at_6, at_12,
+             at_24);
+  CHECK(at_6 < at_12);
+  const double scale = (at_24 * at_24 - at_12 * at_12) / (24.0 * 24.0 - 12.0 * 12.0);
+  const double predicted_at_6 = std::sqrt(at_12 * at_12 - scale * (12.0 * 12.0 - 6.0 * 6.0));
+  CHECK(at_6 == Approx(predicted_at_6).epsilon(0.15));
+}

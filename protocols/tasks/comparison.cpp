@@ -9,7 +9,8 @@ constexpr const char* least_key = "the least";
 constexpr const char* greatest_key = "the greatest";
 
 // m-alternative forced choice: one alternative differs from the others, which? Or, where the
-// standard is asked for, which of two is the standard?
+// standard is asked for, which of two is the standard? Of fixed stimuli, which are listed from the
+// least to the greatest, the later one of each pair is right.
 class ComparisonTask final : public DiscriminationTask {
  public:
   std::string_view name() const override { return "comparison"; }
@@ -25,6 +26,8 @@ class ComparisonTask final : public DiscriminationTask {
         reader.one_of<bool>("right", {{"comparison", false}, {"standard", true}}, "comparison");
     if (block.comparison) {
       block.comparison->is_standard_right = is_standard_right;
+    } else if (is_standard_right) {
+      reader.reject("right", "the standard only with procedures; list the stimuli the other way");
     }
     if (is_standard_right && block.alternatives > 2) {
       reader.reject("right", "the standard is one of two alternatives only");
@@ -55,6 +58,10 @@ class ComparisonTask final : public DiscriminationTask {
   // Which way to look for is known from practice.
   std::vector<Remembered> remembered(const Block& block,
                                      const Simulation& /*simulation*/) const override {
+    if (!block.comparison) {
+      return {{block.name + least_key, block.stimuli.front(), {}, false},
+              {block.name + greatest_key, block.stimuli.back(), {}, false}};
+    }
     const Comparison& comparison = *block.comparison;
     const auto [low, high] = comparison.tracks.front()->ranges().front();
     const double least = is_on_either_side(block) ? comparison.value_at(low) : comparison.standard;
@@ -71,13 +78,12 @@ class ComparisonTask final : public DiscriminationTask {
     for (std::size_t i = 0; i < alternatives; ++i) {
       positions.push_back(touch.position(i, block.name + least_key, block.name + greatest_key));
     }
-    const auto picked = block.comparison->is_standard_right ? std::ranges::min_element(positions)
-                                                            : std::ranges::max_element(positions);
+    const auto picked = is_least_right(block) ? std::ranges::min_element(positions)
+                                              : std::ranges::max_element(positions);
     return blind_label(static_cast<std::size_t>(picked - positions.begin()));
   }
 
  protected:
-  bool needs_procedure() const override { return true; }
   Sides sides() const override { return Sides::one_or_both; }
   std::vector<Layout> layouts(const Block& block) const override {
     const auto alternatives = static_cast<std::size_t>(block.alternatives);
@@ -92,10 +98,13 @@ class ComparisonTask final : public DiscriminationTask {
   static bool is_on_either_side(const Block& block) {
     return block.comparison && block.comparison->side == Side::either;
   }
+  static bool is_least_right(const Block& block) {
+    return block.comparison && block.comparison->is_standard_right;
+  }
   // On one side: answered right.
   static bool judged_greater(const PlannedTrial& trial, const Block& block,
                              const std::string& response) {
-    return labelled(trial, response).is_comparison != block.comparison->is_standard_right;
+    return labelled(trial, response).is_comparison != is_least_right(block);
   }
   static double level_of_comparison(const PlannedTrial& trial, const Comparison& comparison) {
     const auto varied = std::ranges::find_if(trial.alternatives, &Alternative::is_comparison);

@@ -13,7 +13,7 @@ std::size_t observations(const Comparison& comparison) {
 }  // namespace
 
 void DiscriminationTask::read(MapReader& reader, const Protocol& protocol, Block& block) const {
-  if (reader.has("procedures") || needs_procedure()) {
+  if (reader.has("procedures")) {
     block.comparison = read_comparison(reader, protocol, block, sides());
     if (reader.has("repetitions")) {
       reader.reject("repetitions", "is what the procedures make it");

@@ -37,7 +37,6 @@ class DiscriminationTask : public Task {
   // presented equally often, in every run of trials where procedures may end early.
   using Layout = std::vector<bool>;
   virtual std::vector<Layout> layouts(const Block& block) const = 0;
-  virtual bool needs_procedure() const { return false; }
   virtual Sides sides() const { return Sides::one; }
   // Trials in which no comparison stands beside a standard, for each that has both.
   virtual int empty_trials_per_observation() const { return 0; }

@@ -513,7 +513,7 @@ TEST_CASE("what cannot be compared is refused at its line", "[end_to_end]") {
       {"    stimuli: [family]\n", "    stimuli: [family]\n    repetitions: 2\n",
        "is what the procedures make it"},
       {"    procedures:\n      - constant: {values: [0.0], repetitions: 240}\n", "",
-       "procedures: is missing"},
+       "give procedures, or at least two stimuli"},
       {"stimuli: [one, other], modulus", "stimuli: [family], values: [4, 3], modulus",
        "are not in increasing order"},
       {"stimuli: [one, other], modulus", "stimuli: [family], values: [4, 9], modulus",
@@ -570,4 +570,26 @@ TEST_CASE("a family of an unknown material, plate or technique is refused by its
   INFO(checked.standard_error);
   CHECK(checked.exit_code == 2);
   CHECK_THAT(checked.standard_error, Contains(said));
+}
+
+TEST_CASE("fixed stimuli are compared in the order in which they are listed, and the report has d'",
+          "[end_to_end]") {
+  const TempDirectory directory;
+  const std::string file = study_of(
+      directory,
+      "  - {name: fixed, task: comparison, question: Which is stronger, stimuli: [other, one], "
+      "alternatives: 3, repetitions: 8, explore: {min_contacts: 0}}\n",
+      "noise_db: 1, reality: sinusoid");
+  const auto result = testing::tapstudy(
+      {"simulate", file, "--participants", "3", "--seed", "4", "--out", directory / "study"});
+  INFO(result.standard_error);
+  REQUIRE(result.exit_code == 0);
+  CHECK(sql(directory,
+            "SELECT count(DISTINCT stimulus), avg(stimulus = 'one') FROM alternative "
+            "WHERE is_comparison") == "1 1.0\n");
+  CHECK(std::stod(sql(directory, "SELECT avg(is_correct) FROM current_response")) > 0.6);
+  CHECK(testing::tapstudy({"verify", directory / "study"}).exit_code == 0);
+  const auto report = testing::tapstudy({"report", directory / "study"});
+  CHECK_THAT(report.standard_output, Contains("forced_choice") && Contains("d' (95 % CI)") &&
+                                         Contains("each right equally often"));
 }

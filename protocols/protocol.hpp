@@ -162,7 +162,7 @@ struct Comparison {
   double standard{};
   bool is_fraction{true};
   Side side{Side::above};
-  bool is_standard_right{false};                             // what is asked for is the standard
+  bool is_standard_right{false};  // what is asked for is the standard
   // Of the function that is fitted to the answers.
   core::PsychometricShape shape{core::PsychometricShape::weibull};
   std::vector<std::shared_ptr<const TrackSettings>> tracks;  // interleaved; at least one

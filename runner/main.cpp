@@ -1,5 +1,6 @@
 #include <fcntl.h>
 
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <exception>
@@ -35,7 +36,9 @@ ExitCode code_of(const std::exception& error) {
 void check_results_arrived() {
   std::cout.flush();
   if (!std::cout || std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
-    throw tapstudy::results::StoreError{"standard output: writing failed (is the disk full?)"};
+    throw tapstudy::results::StoreError{
+        errno == EPIPE ? "standard output: whoever read it has gone"
+                       : "standard output: writing failed (is the disk full?)"};
   }
 }
 // Else a file or a socket opened later would take the place of a closed one, and be written to.

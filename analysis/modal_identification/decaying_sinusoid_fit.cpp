@@ -1,6 +1,7 @@
 #include "analysis/modal_identification/decaying_sinusoid_fit.hpp"
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -149,17 +150,23 @@ std::optional<FittedSinusoid> fit_decaying_sinusoid(const FreeDecay& from_impact
   return fit;
 }
 
+namespace {
+void check_speeds(const std::vector<double>& speeds_m_s, const std::vector<double>& amplitudes) {
+  if (speeds_m_s.empty() || speeds_m_s.size() != amplitudes.size()) {
+    throw core::InvalidInput{"a law of amplitudes needs as many speeds, and one at least"};
+  }
+  if (!std::ranges::all_of(speeds_m_s, [](double speed) { return speed > 0.0; })) {
+    throw core::InvalidInput{"speeds of impact must be above 0"};
+  }
+}
+}  // namespace
+
 Estimate amplitude_per_speed(const std::vector<double>& speeds_m_s,
                              const std::vector<double>& amplitudes) {
   double speed_squares = 0.0;
   double products = 0.0;
-  if (speeds_m_s.empty() || speeds_m_s.size() != amplitudes.size()) {
-    throw core::InvalidInput{"a law of amplitudes needs as many speeds, and one at least"};
-  }
+  check_speeds(speeds_m_s, amplitudes);
   for (std::size_t i = 0; i < speeds_m_s.size(); ++i) {
-    if (!(speeds_m_s[i] > 0.0)) {
-      throw core::InvalidInput{"speeds of impact must be above 0"};
-    }
     speed_squares += speeds_m_s[i] * speeds_m_s[i];
     products += speeds_m_s[i] * amplitudes[i];
   }
@@ -177,5 +184,29 @@ Estimate amplitude_per_speed(const std::vector<double>& speeds_m_s,
   const double error = std::sqrt(squares / freedom / speed_squares);
   const double half = t_quantile(0.975, freedom) * error;
   return {slope, error, {slope - half, slope + half}, std::nullopt};
+}
+
+std::optional<AmplitudeLine> amplitude_line(const std::vector<double>& speeds_m_s,
+                                            const std::vector<double>& amplitudes) {
+  check_speeds(speeds_m_s, amplitudes);
+  const auto count = static_cast<Eigen::Index>(speeds_m_s.size());
+  const Eigen::ArrayXd speed = Eigen::Map<const Eigen::ArrayXd>(speeds_m_s.data(), count);
+  const Eigen::ArrayXd amplitude = Eigen::Map<const Eigen::ArrayXd>(amplitudes.data(), count);
+  const double spread = (speed - speed.mean()).square().sum();
+  if (count < 3 || spread <= 1e-12 * speed.square().sum()) {
+    return std::nullopt;
+  }
+  const double slope = ((speed - speed.mean()) * amplitude).sum() / spread;
+  const double offset = amplitude.mean() - slope * speed.mean();
+  const auto freedom = static_cast<double>(count - 2);
+  const double variance = (amplitude - offset - slope * speed).square().sum() / freedom;
+  const auto estimate = [&](double value, double error) {
+    const double half = t_quantile(0.975, freedom) * error;
+    return Estimate{value, error, {value - half, value + half}, std::nullopt};
+  };
+  return AmplitudeLine{
+      estimate(offset, std::sqrt(variance * (1.0 / static_cast<double>(count) +
+                                             speed.mean() * speed.mean() / spread))),
+      estimate(slope, std::sqrt(variance / spread))};
 }
 }  // namespace tapstudy::analysis

@@ -28,4 +28,15 @@ std::optional<FittedSinusoid> fit_decaying_sinusoid(const FreeDecay& from_impact
 // Throws InvalidInput otherwise.
 Estimate amplitude_per_speed(const std::vector<double>& speeds_m_s,
                              const std::vector<double>& amplitudes);
+
+// amplitude = offset + slope * speed by least squares, with Student's t intervals: whether the law
+// above holds. Unset for fewer than three taps, and for taps of one speed. Throws InvalidInput as
+// above.
+struct AmplitudeLine {
+  Estimate offset;
+  Estimate slope;
+  bool is_proportional() const { return offset.interval.low <= 0.0 && offset.interval.high >= 0.0; }
+};
+std::optional<AmplitudeLine> amplitude_line(const std::vector<double>& speeds_m_s,
+                                            const std::vector<double>& amplitudes);
 }  // namespace tapstudy::analysis

@@ -12,7 +12,8 @@ struct SignedRankTest {
   bool is_exact{};
 };
 // Wilcoxon 1945 on differences; those of 0 are left out. For fewer than 50 others exact, given the
-// mid-ranks of ties; else by the normal distribution with correction for ties and continuity. Throws InvalidInput for no or not finite differences.
+// mid-ranks of ties; else by the normal distribution with correction for ties and continuity.
+// Throws InvalidInput for no or not finite differences.
 SignedRankTest signed_rank_test(const std::vector<double>& differences);
 
 // p values adjusted for their number by Holm 1979, in the order given. Each in [0, 1], else throws

@@ -147,7 +147,9 @@ std::pair<double, double> uniform_grid(const std::vector<double>& times) {
 
 double rate_from_times(const Table& table, const TimeColumn& column) {
   const std::vector<double> times = table.values(column.index);
-  const auto [start, period] = uniform_grid(times);
+  const std::pair<double, double> grid = uniform_grid(times);
+  const double start = grid.first;
+  const double period = grid.second;
   if (!(period > 0.0)) {
     refuse(table.file(), table.last_line(), "times must ascend");
   }

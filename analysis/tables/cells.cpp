@@ -16,6 +16,9 @@ std::string rounded(double value, int significant_digits) {
   // whole numbers of up to six digits keep them all
   const double size = std::abs(value);
   const bool is_plain = size >= 100.0 && size < 999'999.5;
+  if (value == 0.0) {
+    return "0";  // whatever its sign
+  }
   return is_plain ? fmt::format("{:.0f}", value)
                   : fmt::format("{:.{}g}", value, significant_digits);
 }

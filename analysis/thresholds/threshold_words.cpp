@@ -11,6 +11,20 @@ std::string level_words(const VariedAxis& axis) {
              : fmt::format("{} {} the standard of {:.4g}", axis.name, side, axis.standard);
 }
 
+namespace {
+// Empty: there is none.
+std::string d_prime_words(const BlockDesign& design) {
+  if (design.has_own_guess_rate) {
+    return "d' at a level: same-different by independent observations, of hits there and all false "
+           "alarms, k + 1/2 in n + 1 (Hautus 1995).";
+  }
+  return design.decision_model.empty()
+             ? ""
+             : fmt::format("d' at a level by the decision model '{}' ({}).", design.decision_model,
+                           find_decision_model(design.decision_model)->summary);
+}
+}  // namespace
+
 std::vector<std::string> threshold_remarks(const BlockDesign& design,
                                            const ThresholdResults& results) {
   if (results.participants.empty()) {
@@ -56,14 +70,8 @@ std::vector<std::string> threshold_remarks(const BlockDesign& design,
                            ? "Posteriors: beta-binomial answers and the priors of Schuett et al. "
                              "2016, which limit the slope where the answers alone do not."
                            : "Posteriors are not computed for so many levels.");
-  if (design.has_own_guess_rate) {
-    remarks.emplace_back(
-        "d' at a level: same-different by independent observations, of hits there and all false "
-        "alarms, k + 1/2 in n + 1 (Hautus 1995).");
-  } else if (!design.decision_model.empty()) {
-    remarks.push_back(fmt::format("d' at a level by the decision model '{}' ({}).",
-                                  design.decision_model,
-                                  find_decision_model(design.decision_model)->summary));
+  if (const std::string words = d_prime_words(design); !words.empty()) {
+    remarks.push_back(words);
   }
   return remarks;
 }

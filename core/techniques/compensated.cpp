@@ -16,21 +16,6 @@ constexpr std::size_t least_length = 4096;
 // Of the inverse's impulse response, relative to its largest value.
 constexpr double silence = 1e-5;
 
-double gain_at(double frequency_hz, const std::vector<DeviceResponse::Point>& points) {
-  const auto above =
-      std::ranges::lower_bound(points, frequency_hz, {}, &DeviceResponse::Point::frequency_hz);
-  if (above == points.begin()) {
-    return points.front().gain;
-  }
-  if (above == points.end()) {
-    return points.back().gain;
-  }
-  const DeviceResponse::Point& below = *std::prev(above);
-  const double share = std::log(frequency_hz / below.frequency_hz) /
-                       std::log(above->frequency_hz / below.frequency_hz);
-  return below.gain * std::pow(above->gain / below.gain, share);
-}
-
 std::vector<double> inverse_transform(const Spectrum& spectrum) {
   Eigen::FFT<double> transform;
   std::vector<double> samples;
@@ -76,7 +61,7 @@ std::vector<double> inverse_filter(const DeviceResponse& response, double rate_h
   for (std::size_t i = 0; i < length; ++i) {
     const double frequency_hz =
         rate_hz * static_cast<double>(std::min(i, length - i)) / static_cast<double>(length);
-    const double boost = std::min(response.max_boost, 1.0 / gain_at(frequency_hz, response.points));
+    const double boost = std::min(response.max_boost, 1.0 / gain_at(frequency_hz, response));
     log_magnitude[i] = std::log(boost);
   }
   std::vector<double> filter = minimum_phase(log_magnitude);
@@ -85,6 +70,22 @@ std::vector<double> inverse_filter(const DeviceResponse& response, double rate_h
   return filter;
 }
 }  // namespace
+
+double gain_at(double frequency_hz, const DeviceResponse& response) {
+  const std::vector<DeviceResponse::Point>& points = response.points;
+  const auto above =
+      std::ranges::lower_bound(points, frequency_hz, {}, &DeviceResponse::Point::frequency_hz);
+  if (above == points.begin()) {
+    return points.front().gain;
+  }
+  if (above == points.end()) {
+    return points.back().gain;
+  }
+  const DeviceResponse::Point& below = *std::prev(above);
+  const double share = std::log(frequency_hz / below.frequency_hz) /
+                       std::log(above->frequency_hz / below.frequency_hz);
+  return below.gain * std::pow(above->gain / below.gain, share);
+}
 
 std::vector<double> compensated(const std::vector<double>& samples, const DeviceResponse& response,
                                 double rate_hz) {

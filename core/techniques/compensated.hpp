@@ -3,6 +3,9 @@
 
 #include "core/settings/device_response.hpp"
 namespace tapstudy::core {
+// Of a vibration that is commanded; as at its nearest point beyond the outer ones.
+double gain_at(double frequency_hz, const DeviceResponse& response);
+
 // What to command so that the device renders the signal: filtered by the inverse of the device's
 // magnitude response, with the phase of a minimum-phase system (Oppenheim & Schafer 2010, ch. 13),
 // so that nothing is felt before the impact. Exact for a device that is itself of minimum phase; a

@@ -139,19 +139,18 @@ void run_check(const CheckOptions& options) {
         fmt::format("--simulations: {} is not allowed (from 0 to 10000)", options.simulations)};
   }
   int delay_ticks = 0;
-  std::optional<double> vibration_band_hz;
+  std::optional<protocols::Rig> rig;
   if (!options.rig.empty()) {
-    const protocols::Rig rig = read_rig(options.rig);
-    loop_settings(protocol, rig);
-    check_fits(protocol, rig);
-    delay_ticks = kind_of(rig).delay_ticks(rig);
-    vibration_band_hz = rig.vibration_band_hz;
+    rig = read_rig(options.rig);
+    loop_settings(protocol, *rig);
+    check_fits(protocol, *rig);
+    delay_ticks = kind_of(*rig).delay_ticks(*rig);
   }
   print_design(protocol, options.participants);
   ModelLibrary models;
   print_models(protocol, models);
-  if (vibration_band_hz) {
-    print_lost_modes(protocol, models, *vibration_band_hz);
+  if (rig) {
+    print_lost_modes(protocol, models, *rig);
   }
   print_families(protocol, models);
   print_contact(protocol, delay_ticks);

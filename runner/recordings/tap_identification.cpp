@@ -207,6 +207,7 @@ class Identifier {
     law.frequency_hz = analysis::estimate_over_taps(frequencies, frequency_errors, many);
     if (!speeds.empty()) {
       law.amplitude_per_speed = analysis::amplitude_per_speed(speeds, amplitudes);
+      law.line = analysis::amplitude_line(speeds, amplitudes);
       if (protocol_) {
         law.amplitude_n_s_per_m = law.amplitude_per_speed->value * newtons_per_unit(law);
       }

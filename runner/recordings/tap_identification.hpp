@@ -41,6 +41,7 @@ struct SinusoidLaw {
   analysis::Estimate frequency_hz;
   double explained{};                                     // of the taps' energy, on average
   std::optional<analysis::Estimate> amplitude_per_speed;  // SI unit of the quantity per m/s
+  std::optional<analysis::AmplitudeLine> line;            // amplitude = offset + slope * speed
   std::optional<double> amplitude_n_s_per_m;  // as the protocol's finger makes a force of it
 };
 

@@ -100,7 +100,13 @@ Json json_of(const SinusoidLaw& law) {
             {"frequency_hz", json_of(law.frequency_hz)},
             {"explained", law.explained},
             {"amplitude_per_speed", nullptr},
+            {"amplitude_line", nullptr},
             {"amplitude_n_s_per_m", nullptr}};
+  if (law.line) {
+    json["amplitude_line"] = {{"offset", json_of(law.line->offset)},
+                              {"slope", json_of(law.line->slope)},
+                              {"is_proportional", law.line->is_proportional()}};
+  }
   if (law.amplitude_per_speed) {
     json["amplitude_per_speed"] = json_of(*law.amplitude_per_speed);
   }

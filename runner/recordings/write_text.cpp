@@ -68,6 +68,11 @@ void print_sinusoid(const SinusoidLaw& law) {
     fmt::print("  amplitude per impact speed {:.4g} ({}), SI\n", law.amplitude_per_speed->value,
                interval(*law.amplitude_per_speed));
   }
+  if (law.line) {
+    fmt::print("  by a line: {:.4g} ({}) + {:.4g} ({}) per m/s{}\n", law.line->offset.value,
+               interval(law.line->offset), law.line->slope.value, interval(law.line->slope),
+               law.line->is_proportional() ? "" : ": the amplitude is not proportional to speed");
+  }
   if (law.amplitude_n_s_per_m) {
     fmt::print("  as a force of the protocol's finger {:.4g} N s/m\n", *law.amplitude_n_s_per_m);
   }

@@ -233,6 +233,29 @@ out(r.params, r.bse, r.conf_int())
   CHECK_THROWS_AS(amplitude_per_speed({}, {}), core::InvalidInput);
 }
 
+TEST_CASE("a line of amplitudes over speeds is statsmodels', and says whether it is a proportion",
+          "[analysis][modal_identification]") {
+  const std::vector<double> speeds{0.1, 0.2, 0.3, 0.4, 0.5};
+  const std::vector<double> offset{1.52, 1.98, 2.51, 3.02, 3.47};
+  const auto line = amplitude_line(speeds, offset);
+  const auto numbers = testing::python_numbers(R"(
+import statsmodels.api as sm
+r = sm.OLS([1.52, 1.98, 2.51, 3.02, 3.47], sm.add_constant([0.1, 0.2, 0.3, 0.4, 0.5])).fit()
+out(r.params, r.bse, r.conf_int())
+)");
+  REQUIRE(line);
+  CHECK(line->offset.value == Approx(numbers[0]));
+  CHECK(line->slope.value == Approx(numbers[1]));
+  CHECK(line->offset.standard_error == Approx(numbers[2]));
+  CHECK(line->slope.standard_error == Approx(numbers[3]));
+  CHECK(line->offset.interval.low == Approx(numbers[4]));
+  CHECK(line->slope.interval.high == Approx(numbers[7]));
+  CHECK_FALSE(line->is_proportional());
+  CHECK(amplitude_line(speeds, {0.49, 1.02, 1.51, 1.98, 2.51})->is_proportional());
+  CHECK_FALSE(amplitude_line({0.1, 0.2}, {1.0, 2.0}));
+  CHECK_FALSE(amplitude_line({0.2, 0.2, 0.2}, {1.0, 2.0, 3.0}));
+}
+
 TEST_CASE("over taps the interval is Student's, of one tap that of its noise",
           "[analysis][modal_identification]") {
   const Estimate several = estimate_over_taps({1.0, 1.2, 1.1, 0.9, 1.3}, {9, 9, 9, 9, 9}, 100.0);

@@ -13,8 +13,9 @@
 namespace tapstudy::analysis {
 namespace {
 ReportTable scale_table(const BlockDesign& design, const PreferenceResults& results) {
-  const Column bradley = interval_column("Bradley-Terry (95 % CI)", "bradley_terry");
-  const Column thurstone = interval_column("Thurstone V (95 % CI)", "thurstone");
+  const Column bradley =
+      interval_column("Bradley-Terry (95 %, answers independent)", "bradley_terry");
+  const Column thurstone = interval_column("Thurstone V (95 %, answers independent)", "thurstone");
   ReportTable table{"scale",
                     "Scales of the stimuli, mean 0",
                     {column("stimulus", "stimulus"), proportion_column("preferred", "preferred"),

@@ -20,7 +20,7 @@ double mean_place(const std::vector<int>& counts) {
 }
 
 ReportTable stimuli_table(const RankingResults& results) {
-  const Column of_worth = interval_column("log worth (95 % CI)", "log_worth");
+  const Column of_worth = interval_column("log worth (95 %, answers independent)", "log_worth");
   ReportTable table{"stimuli",
                     "Places of each stimulus; 1 is the best",
                     {column("stimulus", "stimulus"), column("mean place", "mean_place"), of_worth}};
@@ -40,7 +40,8 @@ ReportTable stimuli_table(const RankingResults& results) {
 }
 
 ReportTable pairs_table(const RankingResults& results) {
-  const Column of_difference = interval_column("log worth, difference (95 % CI)", "difference");
+  const Column of_difference =
+      interval_column("log worth, difference (95 %, answers independent)", "difference");
   ReportTable table{"pairs",
                     "Pairs of stimuli: Wilcoxon signed-rank tests of participants' mean places",
                     {column("first", "first"), column("second", "second"), of_difference,

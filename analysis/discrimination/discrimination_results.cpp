@@ -9,7 +9,7 @@
 #include <set>
 #include <utility>
 
-#include "analysis/discrimination/answer_counts.hpp"
+#include "analysis/discrimination/decision_task.hpp"
 #include "analysis/statistics/distributions.hpp"
 #include "analysis/statistics/quantiles.hpp"
 #include "core/error.hpp"

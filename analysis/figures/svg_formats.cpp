@@ -31,6 +31,7 @@ cairo_status_t append(void* file, const unsigned char* data, unsigned int length
   throw core::InvalidInput{std::string{"a figure is not SVG: "} +
                            (error == nullptr ? "it has no size" : error->message)};
 }
+
 struct Drawing {
   Owned<RsvgHandle> handle;
   RsvgRectangle size{};  // [pixels]

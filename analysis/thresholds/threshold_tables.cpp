@@ -7,7 +7,7 @@
 
 #include "analysis/blocks/pooled_proportion.hpp"
 #include "analysis/detection/rates.hpp"
-#include "analysis/discrimination/answer_counts.hpp"
+#include "analysis/discrimination/decision_task.hpp"
 namespace tapstudy::analysis {
 namespace {
 // A level in the axis's own unit.

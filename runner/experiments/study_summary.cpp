@@ -159,13 +159,15 @@ std::map<std::string, int> missing_replies(results::Store& store, const Excluded
   return missing;
 }
 
-StoredResults stored_results(results::Store& store, const protocols::Protocol& protocol,
-                             Mode mode) {
+StoredResults stored_results(results::Store& store, const protocols::Protocol& protocol, Mode mode,
+                             Detail detail) {
   const Excluded excluded = store.excluded_participants();
   StoredResults found;
   found.sessions = store.sessions();
   found.answers = counted_answers(store, mode);
-  set_tracks(protocol, store, found.answers);
+  if (detail == Detail::all) {  // which replays the procedures
+    set_tracks(protocol, store, found.answers);
+  }
   found.visits = store.visits();
   std::erase_if(found.visits, [&](const results::VisitRow& visit) {
     return std::ranges::find(found.answers, visit.participant_id,
@@ -262,7 +264,7 @@ Summary summary_of_study(const std::vector<StudyStore>& stores, Mode mode, Detai
   StoredResults all;
   std::vector<std::string> directories;
   for (const StudyStore& each : stores) {
-    append(all, stored_results(*each.store, protocol, mode));
+    append(all, stored_results(*each.store, protocol, mode, detail));
     directories.push_back(each.directory);
   }
   if (all.answers.empty()) {

@@ -8,6 +8,7 @@
 #include "results/store.hpp"
 #include "runner/experiments/simulated_study.hpp"
 #include "runner/experiments/study_summary.hpp"
+#include "runner/participants/touch_features.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;
 
@@ -66,6 +67,9 @@ TEST_CASE("thresholds of a simulated observer follow from its internal noise",
              at_24);
   CHECK(at_6 < at_12);
   const double scale = (at_24 * at_24 - at_12 * at_12) / (24.0 * 24.0 - 12.0 * 12.0);
+  // of n features that rise alike k = d' / sqrt n; at the threshold, 82 % right, d' is 1.27
+  CHECK(scale >= 1.27 * 1.27 / (2.0 * runner::bands));
+  CHECK(scale <= 1.27 * 1.27);
   const double predicted_at_6 = std::sqrt(at_12 * at_12 - scale * (12.0 * 12.0 - 6.0 * 6.0));
   CHECK(at_6 == Approx(predicted_at_6).epsilon(0.15));
 }

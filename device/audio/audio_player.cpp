@@ -103,12 +103,14 @@ void AudioPlayer::run() {
   }
 }
 
-// Until it is faded out and all but silence has left the buffer.
+// Until it is faded out, all but silence has left the buffer, and a period of silence after it: a
+// server of JACK repeats what a client played last until that has closed.
 void AudioPlayer::play() {
   Pace pace{*sink_};
+  const std::size_t silence = sink_->buffer_frames() + period_.size();
   ramp_.restart();  // a card that failed at its end has cut the last fade short
   std::size_t silent_frames = 0;
-  while (silent_frames <= sink_->buffer_frames()) {
+  while (silent_frames <= silence) {
     const Heard is_wanted = wanted();
     source_->fill(period_);
     ramp_.apply(period_, is_wanted);

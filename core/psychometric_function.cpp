@@ -14,19 +14,27 @@ namespace {
 using std::numbers::ln10;
 using std::numbers::sqrt2;
 
-// S and its inverse.
+// S, its derivative and its inverse.
 struct StandardForm {
   double (*value)(double z);
+  double (*density)(double z);
   double (*quantile)(double value);
 };
 
+double logistic_of(double z) {
+  return 1.0 / (1.0 + std::exp(-z));
+}
+
 constexpr StandardForm extreme_value_form{
     [](double z) { return -std::expm1(-std::exp(ln10 * z)); },
+    [](double z) { return ln10 * std::exp(ln10 * z - std::exp(ln10 * z)); },
     [](double value) { return std::log(-std::log1p(-value)) / ln10; }};
-constexpr StandardForm logistic_form{[](double z) { return 1.0 / (1.0 + std::exp(-z)); },
+constexpr StandardForm logistic_form{logistic_of,
+                                     [](double z) { return logistic_of(z) * logistic_of(-z); },
                                      [](double value) { return std::log(value / (1.0 - value)); }};
 constexpr StandardForm gaussian_form{
     [](double z) { return 0.5 * std::erfc(-z / sqrt2); },
+    [](double z) { return std::numbers::inv_sqrtpi / sqrt2 * std::exp(-0.5 * z * z); },
     [](double value) { return -sqrt2 * boost::math::erfc_inv(2.0 * value); }};
 
 using enum PsychometricShape;
@@ -69,6 +77,17 @@ void check_rates(double guess, double lapse) {
                     guess, lapse)};
   }
 }
+
+// a(x) - a(threshold)
+double distance_on_axis(PsychometricShape shape, double x, double threshold, double slope) {
+  const PsychometricShapeRow& row = row_of(shape);
+  check(row, threshold, slope);
+  if (std::isnan(x) || (row.is_logarithmic && x < 0.0)) {
+    throw InvalidInput{fmt::format("{}: a value is a number{}, not {}", row.name,
+                                   row.is_logarithmic ? " of at least 0" : "", x)};
+  }
+  return row.is_logarithmic ? std::log10(x / threshold) : x - threshold;
+}
 }  // namespace
 
 std::span<const PsychometricShapeRow> psychometric_shapes() {
@@ -93,14 +112,14 @@ std::vector<std::string> psychometric_shape_names() {
 }
 
 double shape_value(PsychometricShape shape, double x, double threshold, double slope) {
-  const PsychometricShapeRow& row = row_of(shape);
-  check(row, threshold, slope);
-  if (std::isnan(x) || (row.is_logarithmic && x < 0.0)) {
-    throw InvalidInput{fmt::format("{}: a value is a number{}, not {}", row.name,
-                                   row.is_logarithmic ? " of at least 0" : "", x)};
-  }
-  const double distance = row.is_logarithmic ? std::log10(x / threshold) : x - threshold;
-  return form_of(shape).value(slope * distance);
+  return form_of(shape).value(slope * distance_on_axis(shape, x, threshold, slope));
+}
+
+ShapeGradient shape_gradient(PsychometricShape shape, double x, double threshold, double slope) {
+  const double z = slope * distance_on_axis(shape, x, threshold, slope);
+  const double density = form_of(shape).density(z);
+  // where S no longer grows, z may be infinite
+  return {form_of(shape).value(z), -slope * density, density == 0.0 ? 0.0 : z * density};
 }
 
 double shape_quantile(PsychometricShape shape, double value, double threshold, double slope) {

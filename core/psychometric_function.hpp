@@ -49,6 +49,13 @@ std::vector<std::string> psychometric_shape_names();
 
 // F(x; threshold, slope). Throws InvalidInput for parameters and x that the shape does not allow.
 double shape_value(PsychometricShape shape, double x, double threshold, double slope);
+// F with its derivatives, likewise.
+struct ShapeGradient {
+  double value{};
+  double by_threshold{};  // by a(threshold)
+  double by_log_slope{};
+};
+ShapeGradient shape_gradient(PsychometricShape shape, double x, double threshold, double slope);
 // The x at which F is `value`, 0 < value < 1. Throws InvalidInput.
 double shape_quantile(PsychometricShape shape, double value, double threshold, double slope);
 

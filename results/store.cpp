@@ -95,6 +95,10 @@ Store Store::open_existing(const std::string& directory) {
   return store;
 }
 
+std::string Store::directory() const {
+  return fs::path{database_.file()}.parent_path().string();
+}
+
 bool Store::has_database(const std::string& directory) {
   return exists(database_file(directory));
 }

@@ -46,17 +46,19 @@ class Store {
   Store(const Store& other) = delete;
   Store& operator=(const Store& other) = delete;
 
+  std::string directory() const;
   // Includes its surfaces, decompressed.
   StudyRow study();
   struct Place {
     int participant_index;
     int order_index;
   };
+  using IsInSession = std::function<bool(const std::string& participant_id)>;
   // Of an existing participant, or the next free one of the mode. The order is the first that no
-  // other participant of the mode has: those who were excluded, or stopped before their first
-  // answer, use none up.
+  // other participant of the mode has: those who were excluded, or are no longer in a session and
+  // never answered, use none up.
   // Throws InvalidInput if the participant is there already in another mode.
-  Place place_of(const std::string& participant_id, Mode mode);
+  Place place_of(const std::string& participant_id, Mode mode, const IsInSession& is_in_session);
   bool has_sessions(const std::string& participant_id);
   // No other program adds anything while `act` runs; all that it adds is kept, or nothing.
   void in_one_transaction(const std::function<void()>& act);
@@ -128,7 +130,7 @@ class Store {
                        const std::function<void(JournalEntries&)>& insert);
   void check_has_not_moved();
   int next_participant_index(Mode mode);
-  int free_order_index(Mode mode);
+  int free_order_index(Mode mode, const IsInSession& is_in_session);
   std::vector<AlternativeRow> alternatives_of(std::int64_t trial_id);
   AlternativesOfTrials alternatives_where(const char* condition,
                                           std::optional<std::int64_t> trial_id);

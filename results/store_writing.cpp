@@ -11,13 +11,14 @@
 namespace tapstudy::results {
 namespace fs = std::filesystem;
 
-Store::Place Store::place_of(const std::string& participant_id, Mode mode) {
+Store::Place Store::place_of(const std::string& participant_id, Mode mode,
+                             const IsInSession& is_in_session) {
   Statement row{
       database_,
       "SELECT participant_index, order_index, mode FROM participant WHERE participant_id = ?"};
   row.bind(participant_id);
   if (!row.step()) {
-    return {next_participant_index(mode), free_order_index(mode)};
+    return {next_participant_index(mode), free_order_index(mode, is_in_session)};
   }
   if (row.text(2) != to_text(mode)) {
     throw core::InvalidInput{
@@ -34,20 +35,19 @@ int Store::next_participant_index(Mode mode) {
   return static_cast<int>(next.integer(0));
 }
 
-int Store::free_order_index(Mode mode) {
+int Store::free_order_index(Mode mode, const IsInSession& is_in_session) {
   const std::map<std::string, std::string> excluded = excluded_participants();
   Statement row{database_,
-                "WITH answered AS (SELECT DISTINCT participant_id FROM trial "
-                "    JOIN session USING (session_id) WHERE status = 'answered'), "
-                "  latest AS (SELECT participant_id, state, max(session_event.rowid) "
-                "    FROM session_event JOIN session USING (session_id) GROUP BY participant_id) "
-                "SELECT participant_id, order_index, participant_id IN answered "
-                "  OR coalesce(state, '') <> 'stopped' "
-                "FROM participant LEFT JOIN latest USING (participant_id) WHERE mode = ?"};
+                "SELECT participant_id, order_index, participant_id IN "
+                "  (SELECT participant_id FROM trial JOIN session USING (session_id) "
+                "   WHERE status = 'answered') "
+                "FROM participant WHERE mode = ?"};
   row.bind(to_text(mode));
   std::set<int> used;
   while (row.step()) {
-    if (!excluded.contains(row.text(0)) && row.integer(2) != 0) {
+    const std::string participant_id = row.text(0);
+    const bool has_answered = row.integer(2) != 0;
+    if (!excluded.contains(participant_id) && (has_answered || is_in_session(participant_id))) {
       used.insert(static_cast<int>(row.integer(1)));
     }
   }

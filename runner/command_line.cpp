@@ -13,6 +13,7 @@ ExitCode run_command_line(int argc, const char* const* argv) {
   add_simulate(line);
   add_report(line);
   add_export(line);
+  add_amend(line);
   add_redact(line);
   add_verify(line);
   add_modes(line);

@@ -66,8 +66,10 @@ struct BlockDesign {
   int alternatives{};            // presented in a trial
   double guess_rate{};           // of right answers
   std::optional<AdjustedAxis> adjusted{};
-  // Ratings: from 1 to this.
+  // Ratings: from 1 to this; 0: marks on a line, from 0 to 1.
   int steps{};
+  // Pairs: "tie" is an answer.
+  bool has_ties{};
   // False: answers without a protocol, which nobody says the order of.
   bool is_order_known{true};
   // On which all alternatives of a trial have the same values; the block is summarised at each.

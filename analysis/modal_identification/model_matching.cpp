@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/modal_identification/assignment.hpp"
 #include "analysis/statistics/distributions.hpp"
 namespace tapstudy::analysis {
 namespace {
@@ -23,10 +24,16 @@ struct Assignment {
   double cost{};        // pairs and those left alone
 };
 
+double of(const Eigen::MatrixXd& assurance, const Pair& pair) {
+  return assurance(static_cast<Eigen::Index>(pair.measured),
+                   static_cast<Eigen::Index>(pair.model));
+}
+
 class Matcher {
  public:
-  Matcher(const std::vector<double>& measured, const std::vector<double>& model)
-      : measured_{measured}, model_{model} {}
+  Matcher(const std::vector<double>& measured, const std::vector<double>& model,
+          const Eigen::MatrixXd& assurance)
+      : measured_{measured}, model_{model}, assurance_{assurance} {}
 
   Assignment settled_from(double log_factor) const {
     Assignment now = assigned(log_factor);
@@ -42,35 +49,30 @@ class Matcher {
   }
 
  private:
-  // cost(i, j): of the first i measured and the first j model modes
+  // Columns beyond the model's modes stand for having no partner.
   Assignment assigned(double log_factor) const {
     const auto rows = static_cast<Eigen::Index>(measured_.size());
     const auto columns = static_cast<Eigen::Index>(model_.size());
-    Eigen::MatrixXd cost = Eigen::MatrixXd::Zero(rows + 1, columns + 1);
-    cost.col(0) = Eigen::VectorXd::LinSpaced(rows + 1, 0.0, static_cast<double>(rows)) * skip_cost;
-    const auto pair_cost = [&](Eigen::Index i, Eigen::Index j) {
-      const double difference = measured_[static_cast<std::size_t>(i - 1)] -
-                                model_[static_cast<std::size_t>(j - 1)] - log_factor;
-      return difference * difference;
-    };
-    for (Eigen::Index i = 1; i <= rows; ++i) {
-      for (Eigen::Index j = 1; j <= columns; ++j) {
-        cost(i, j) = std::min(
-            {cost(i, j - 1), cost(i - 1, j) + skip_cost, cost(i - 1, j - 1) + pair_cost(i, j)});
+    Eigen::MatrixXd cost = Eigen::MatrixXd::Constant(rows, columns + rows, skip_cost);
+    for (Eigen::Index i = 0; i < rows; ++i) {
+      for (Eigen::Index j = 0; j < columns; ++j) {
+        cost(i, j) = cost_of({static_cast<std::size_t>(i), static_cast<std::size_t>(j)}, log_factor);
       }
     }
     std::vector<Pair> pairs;
-    for (Eigen::Index i = rows, j = columns; i > 0 && j > 0;) {
-      if (cost(i, j) == cost(i, j - 1)) {
-        --j;
-      } else if (cost(i, j) == cost(i - 1, j) + skip_cost) {
-        --i;
-      } else {
-        pairs.push_back({static_cast<std::size_t>(--i), static_cast<std::size_t>(--j)});
+    const std::vector<std::size_t> partners = least_cost_assignment(cost);
+    for (std::size_t i = 0; i < partners.size(); ++i) {
+      if (partners[i] < model_.size()) {
+        pairs.push_back({i, partners[i]});
       }
     }
-    std::ranges::reverse(pairs);
     return with_factor(std::move(pairs), log_factor);
+  }
+
+  double cost_of(const Pair& pair, double log_factor) const {
+    const double difference = measured_[pair.measured] - model_[pair.model] - log_factor;
+    const double unlike = assurance_.size() == 0 ? 0.0 : 1.0 - of(assurance_, pair);
+    return difference * difference + skip_cost * unlike;
   }
 
   // The least-squares factor of these pairs.
@@ -84,8 +86,7 @@ class Matcher {
       result.log_factor = sum / static_cast<double>(result.pairs.size());
     }
     for (const Pair& pair : result.pairs) {
-      const double difference = measured_[pair.measured] - model_[pair.model] - result.log_factor;
-      result.cost += difference * difference;
+      result.cost += cost_of(pair, result.log_factor);
     }
     result.cost += skip_cost * static_cast<double>(measured_.size() - result.pairs.size());
     return result;
@@ -93,6 +94,7 @@ class Matcher {
 
   const std::vector<double>& measured_;
   const std::vector<double>& model_;
+  const Eigen::MatrixXd& assurance_;
 };
 
 std::optional<double> rival_factor(const Matcher& matcher, const Assignment& chosen) {
@@ -138,10 +140,11 @@ FactorError error_of(const Assignment& found, const std::vector<Estimate>& measu
 
 std::optional<ModelUpdate> update_youngs_modulus(const std::vector<Estimate>& measured_hz,
                                                  const std::vector<double>& model_hz,
-                                                 double youngs_modulus_pa) {
+                                                 double youngs_modulus_pa,
+                                                 const Eigen::MatrixXd& assurance) {
   const std::vector<double> measured = logarithms_of(measured_hz);
   const std::vector<double> model = logarithms(model_hz);
-  const Matcher matcher{measured, model};
+  const Matcher matcher{measured, model, assurance};
   const Assignment found = matcher.settled_from(0.0);
   if (found.pairs.empty()) {
     return std::nullopt;
@@ -150,7 +153,9 @@ std::optional<ModelUpdate> update_youngs_modulus(const std::vector<Estimate>& me
   double squares = 0.0;
   for (const Pair& pair : found.pairs) {
     const double difference = measured[pair.measured] - model[pair.model] - found.log_factor;
-    update.matched.push_back({pair.measured, pair.model, std::expm1(difference)});
+    update.matched.push_back(
+        {pair.measured, pair.model, std::expm1(difference),
+         assurance.size() == 0 ? std::nullopt : std::optional{of(assurance, pair)}});
     squares += difference * difference;
   }
   for (std::size_t i = 0; i < measured.size(); ++i) {
@@ -178,6 +183,6 @@ std::optional<ModelUpdate> update_youngs_modulus(const std::vector<Estimate>& me
 double match_cost(const std::vector<Estimate>& measured_hz, const std::vector<double>& model_hz) {
   const std::vector<double> measured = logarithms_of(measured_hz);
   const std::vector<double> model = logarithms(model_hz);
-  return Matcher{measured, model}.settled_from(0.0).cost;
+  return Matcher{measured, model, {}}.settled_from(0.0).cost;
 }
 }  // namespace tapstudy::analysis

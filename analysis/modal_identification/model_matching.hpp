@@ -1,4 +1,5 @@
 #pragma once
+#include <Eigen/Core>
 #include <optional>
 #include <vector>
 
@@ -8,6 +9,7 @@ struct MatchedMode {
   std::size_t measured{};  // index into the measured modes
   std::size_t model{};     // index into the model's modes
   double misfit{};         // measured / model - 1 after the update
+  std::optional<double> assurance{};  // of their shapes; unset where those are not known
 };
 
 struct ModelUpdate {
@@ -27,13 +29,14 @@ inline constexpr double max_match_difference = 0.15;
 // Young's modulus by least squares of logarithms of frequencies, which are proportional to its root
 // at one Poisson's ratio, density and geometry. Modes are assigned so that the sum of squared
 // differences of the logarithms is least, each at most once; a mode without a partner costs
-// max_match_difference squared. Both are sorted, so that the best assignment keeps their order, and
-// is found by dynamic programming. Assignment and factor are repeated until they settle, from the
-// modulus given. The interval is Student's t of the scatter between modes, or of one mode its own.
+// max_match_difference squared, a pair whose shapes are known (assurance: measured by model modes,
+// modal_assurance; empty: not known) as much times 1 less their assurance. Assignment and factor
+// are repeated until they settle, from the modulus given. The interval is Student's t of the scatter between modes, or of one mode its own.
 // Both ascending, not empty, above 0 [Hz]. Unset if no mode finds a partner.
 std::optional<ModelUpdate> update_youngs_modulus(const std::vector<Estimate>& measured_hz,
                                                  const std::vector<double>& model_hz,
-                                                 double youngs_modulus_pa);
+                                                 double youngs_modulus_pa,
+                                                 const Eigen::MatrixXd& assurance = {});
 
 // The sum of squares of that assignment, with the cost of modes without a partner. The model may
 // have no modes.

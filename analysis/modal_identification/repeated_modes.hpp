@@ -15,6 +15,11 @@ struct Estimate {
 Estimate estimate_over_taps(const std::vector<double>& values, const std::vector<double>& errors,
                             double degrees_of_freedom_of_one);
 
+struct ModeInTap {
+  std::size_t tap{};  // index
+  FittedMode fitted;
+};
+
 // One mode, as several taps show it.
 struct RepeatedMode {
   Estimate frequency_hz;
@@ -25,6 +30,7 @@ struct RepeatedMode {
   int agreed{};                        // of these, with both methods
   std::vector<double> frequencies_hz;  // of each that shows it
   std::vector<double> ratios;
+  std::vector<ModeInTap> in_taps;  // all that show it, agreed or not
 };
 
 // Modes of different taps are one if their frequencies differ by 2 % at most (a third of the

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "analysis/participants/beta_binomial_score.hpp"
 #include "analysis/psychometric/beta_binomial.hpp"
 #include "analysis/resampling/replicates.hpp"
 #include "analysis/statistics/distributions.hpp"
@@ -161,8 +162,14 @@ std::optional<BetaBinomialMean> beta_binomial_mean(const std::vector<Proportion>
   const Minimum pooled = pooled_share(people);
   best = pooled.value <= best.value + indistinguishable ? pooled : best;
   const double eta = profile_at(people, best.at).eta;
-  return BetaBinomialMean{static_cast<int>(people.size()), best.at, eta * eta,
+  BetaBinomialMean result{static_cast<int>(people.size()), best.at, eta * eta,
                           profile_interval(people, best.at, -best.value)};
+  if (eta > 0.0 && eta < largest_eta && best.at > 0.0 && best.at < 1.0) {
+    const auto [mean, nu] = polished(people, {best.at, 1.0 / (eta * eta) - 1.0});
+    result.mean = mean;
+    result.intraclass_correlation = 1.0 / (1.0 + nu);
+  }
+  return result;
 }
 
 std::optional<MeanProportion> mean_proportion(const std::vector<Proportion>& participants) {

@@ -15,10 +15,13 @@ Eigen::Index place_of(const BlockDesign& design, const std::string& name) {
   return std::ranges::find(design.stimuli, name, &Item::name) - design.stimuli.begin();
 }
 
+constexpr const char* tie = "tie";
+
 struct Comparison {
   Eigen::Index preferred{};
   Eigen::Index other{};
   bool is_first{};  // the preferred one stood at position 0
+  bool is_tie{};    // neither was preferred
 };
 
 Comparison comparison_of(const BlockDesign& design, const AnswerRow& answer) {
@@ -35,29 +38,46 @@ Comparison comparison_of(const BlockDesign& design, const AnswerRow& answer) {
   if (first == second || place_of(design, first) == items || place_of(design, second) == items) {
     refuse("a comparison takes two different stimuli of the block");
   }
-  if (answer.response != first && answer.response != second) {
+  const bool is_tie = design.has_ties && answer.response == tie;
+  if (answer.response != first && answer.response != second && !is_tie) {
     refuse("the answer is neither of the two stimuli");
+  }
+  if (is_tie) {
+    return {place_of(design, first), place_of(design, second), false, true};
   }
   const bool is_of_first = answer.response == first;
   return {place_of(design, answer.response), place_of(design, is_of_first ? second : first),
-          is_of_first == (answer.alternatives[0].position < answer.alternatives[1].position)};
+          is_of_first == (answer.alternatives[0].position < answer.alternatives[1].position),
+          false};
+}
+
+void add(const Comparison& comparison, PairedCounts& counts) {
+  if (comparison.is_tie) {
+    ++counts.ties(comparison.preferred, comparison.other);
+    ++counts.ties(comparison.other, comparison.preferred);
+  } else {
+    ++counts.wins(comparison.preferred, comparison.other);
+  }
 }
 
 PairedCounts no_counts(const BlockDesign& design) {
   const auto items = static_cast<Eigen::Index>(design.stimuli.size());
-  return {Eigen::MatrixXi::Zero(items, items), {}};
+  const Eigen::MatrixXi none = Eigen::MatrixXi::Zero(items, items);
+  return {none, design.has_ties ? none : Eigen::MatrixXi{}};
 }
 
 // Why a judge's answers do not decide every pair; empty: they do.
-std::string undecided(const Eigen::MatrixXi& wins) {
+std::string undecided(const PairedCounts& counts) {
+  const Eigen::MatrixXi& wins = counts.wins;
   if (wins.rows() < 3) {
     return "circular triads take three stimuli";
   }
   for (Eigen::Index i = 0; i < wins.rows(); ++i) {
     for (Eigen::Index j = 0; j < i; ++j) {
       if (wins(i, j) == wins(j, i)) {
-        return wins(i, j) == 0 ? "not every pair was compared"
-                               : "a pair was preferred as often either way";
+        return wins(i, j) + counts.ties_of(i, j) == 0
+                   ? "not every pair was compared"
+                   : "a pair was preferred as often either way";
       }
     }
   }
@@ -66,7 +86,7 @@ std::string undecided(const Eigen::MatrixXi& wins) {
 
 void judge_consistency(ParticipantPreferences& person) {
   const Eigen::MatrixXi& wins = person.counts.wins;
-  person.no_consistency = undecided(wins);
+  person.no_consistency = undecided(person.counts);
   if (person.no_consistency.empty()) {
     person.consistency =
         consistency((wins.array() > wins.transpose().array()).cast<int>().matrix());
@@ -75,7 +95,9 @@ void judge_consistency(ParticipantPreferences& person) {
 
 void add_scales(PreferenceResults& results) {
   try {
-    results.bradley_terry = bradley_terry(results.counts).scale;
+    BradleyTerry found = bradley_terry(results.counts);
+    results.bradley_terry = std::move(found.scale);
+    results.nu = found.nu;
     results.thurstone = thurstone_case_v(results.counts);
   } catch (const core::InvalidInput& error) {  // comparisons that do not connect the items
     results.bradley_terry.reset();
@@ -87,6 +109,11 @@ void add_scales(PreferenceResults& results) {
 Proportion preferred(const PairedCounts& counts, Eigen::Index item) {
   const std::int64_t wins = counts.wins.row(item).sum();
   return {wins, wins + counts.wins.col(item).sum()};
+}
+
+Proportion tied(const PairedCounts& counts) {
+  const std::int64_t ties = counts.ties.size() == 0 ? 0 : counts.ties.sum() / 2;
+  return {ties, ties + counts.wins.sum()};
 }
 
 PreferenceResults preference_results(const BlockDesign& design,
@@ -101,9 +128,9 @@ PreferenceResults preference_results(const BlockDesign& design,
       own.participant_id = answer.participant_id;
       own.counts = no_counts(design);
     }
-    ++own.counts.wins(comparison.preferred, comparison.other);
-    ++results.counts.wins(comparison.preferred, comparison.other);
-    ++own.first_position.trials;
+    add(comparison, own.counts);
+    add(comparison, results.counts);
+    own.first_position.trials += comparison.is_tie ? 0 : 1;
     own.first_position.successes += comparison.is_first ? 1 : 0;
   }
   for (auto& [name, person] : people) {

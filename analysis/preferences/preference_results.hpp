@@ -7,12 +7,13 @@
 #include "analysis/paired/bradley_terry.hpp"
 #include "analysis/paired/circular_triads.hpp"
 namespace tapstudy::analysis {
-// Answers to pairs of a block's stimuli: which of the two is preferred.
+// Answers to pairs of a block's stimuli: which of the two is preferred, or neither ("tie", where the
+// block allows it).
 
 struct ParticipantPreferences {
   std::string participant_id;
   PairedCounts counts;                     // in the order of the block's stimuli
-  Proportion first_position;               // preferred what stood at position 0
+  Proportion first_position;               // preferred what stood at position 0; without ties
   std::optional<Consistency> consistency;  // by the more frequent answer to each pair
   std::string no_consistency;              // why there is none; empty: there is
 };
@@ -21,12 +22,15 @@ struct PreferenceResults {
   std::vector<ParticipantPreferences> participants;  // by name
   PairedCounts counts;                               // of all
   std::optional<PreferenceScale> bradley_terry;
+  double nu{};  // of ties, as in BradleyTerry
   std::optional<PreferenceScale> thurstone;
   std::string no_scale;  // why there is none; empty: there is
 };
 
-// How often an item was preferred, of its comparisons.
+// How often an item was preferred, of its comparisons with a preference.
 Proportion preferred(const PairedCounts& counts, Eigen::Index item);
+// How often neither was preferred, of all comparisons.
+Proportion tied(const PairedCounts& counts);
 
 // Throws InvalidInput for trials without two different stimuli of the block, and answers that are
 // neither of them.

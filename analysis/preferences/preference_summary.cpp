@@ -57,6 +57,24 @@ ReportTable wins_table(const BlockDesign& design, const PreferenceResults& resul
   return table;
 }
 
+// Empty where participants must choose.
+ReportTable ties_table(const PreferenceResults& results) {
+  ReportTable table{"ties",
+                    "Ties",
+                    {proportion_column("neither preferred", "tied"), column("Davidson's nu", "nu")}};
+  if (results.counts.ties.size() == 0 || results.participants.empty()) {
+    return table;
+  }
+  std::vector<Proportion> people;
+  for (const ParticipantPreferences& person : results.participants) {
+    people.push_back(tied(person.counts));
+  }
+  table.rows.push_back({pooled_proportion(people), results.no_scale.empty()
+                                                       ? number(results.nu)
+                                                       : nothing(table.columns.back())});
+  return table;
+}
+
 ReportTable consistency_table(const PreferenceResults& results) {
   ReportTable table{
       "consistency",
@@ -113,8 +131,14 @@ std::vector<std::string> remarks_on(const BlockDesign& design, const PreferenceR
   if (results.no_scale.empty()) {
     remarks.emplace_back(
         "Scales by maximum likelihood, intervals of plus or minus 1.96 standard errors; both take "
-        "all answers as independent. Bradley-Terry: logarithms of abilities; Thurstone: standard "
-        "deviations of a difference.");
+        "all answers as independent. Bradley-Terry (Bradley & Terry 1952): logarithms of abilities; "
+        "Thurstone's Case V (Thurstone 1927): standard deviations of a difference.");
+    if (results.counts.ties.size() != 0) {
+      remarks.emplace_back(
+          "Proportions are of comparisons with a preference. In Bradley-Terry a tie between two "
+          "equal stimuli is nu times as probable as either preference (Davidson 1970); Thurstone "
+          "takes a tie for half a preference each way.");
+    }
   } else {
     std::string items;
     for (std::size_t i = 0; i < design.stimuli.size(); ++i) {
@@ -165,7 +189,7 @@ std::shared_ptr<BlockSummary> summarise_preferences(const BlockDesign& design,
                                                     const BlockRows& rows) {
   const PreferenceResults results = preference_results(design, rows.answers);
   auto summary = std::make_shared<TabularSummary>(design);
-  summary->parts = {scale_table(design, results), wins_table(design, results),
+  summary->parts = {scale_table(design, results), wins_table(design, results), ties_table(results),
                     position_table(results), consistency_table(results),
                     participants_table(design, results)};
   summary->remarks = remarks_on(design, results);

@@ -5,7 +5,6 @@
 #include <utility>
 namespace tapstudy::analysis {
 namespace {
-constexpr double relative_step = 1e-5;
 constexpr double smallest_p = 1e-15;  // keeps the weights of the information finite
 
 double times_log(std::int64_t count, double p) {
@@ -18,9 +17,7 @@ double binomial_log_likelihood(const Proportion& answers, double p) {
 }
 
 BinomialLikelihood::BinomialLikelihood(core::PsychometricShape shape, std::vector<Level> levels)
-    : shape_{shape},
-      levels_{std::move(levels)},
-      step_{relative_step * axis_range(levels_, shape).smallest_gap} {}
+    : shape_{shape}, levels_{std::move(levels)} {}
 
 double BinomialLikelihood::shape_value(double x, double threshold, double log_slope) const {
   return core::shape_value(shape_, x, from_axis(shape_, threshold), std::exp(log_slope));
@@ -54,18 +51,14 @@ double BinomialLikelihood::value(const PsychometricVector& at) const {
 BinomialLikelihood::Slopes BinomialLikelihood::slopes(const PsychometricVector& at) const {
   Slopes result{PsychometricVector::Zero(), Eigen::Matrix4d::Zero()};
   const double gain = 1.0 - at[guess_at] - at[lapse_at];
+  const double threshold = from_axis(shape_, at[threshold_at]);
+  const double slope = std::exp(at[log_slope_at]);
   for (const Level& level : levels_) {
-    const auto shape_at = [&](double along_axis, double along_slope) {
-      return shape_value(level.value, at[threshold_at] + along_axis,
-                         at[log_slope_at] + along_slope);
-    };
-    const double shape = shape_at(0.0, 0.0);
-    const PsychometricVector gradient{
-        gain * (shape_at(step_, 0.0) - shape_at(-step_, 0.0)) / (2.0 * step_),
-        gain * (shape_at(0.0, relative_step) - shape_at(0.0, -relative_step)) /
-            (2.0 * relative_step),
-        1.0 - shape, -shape};
-    const double p = std::clamp(at[guess_at] + gain * shape, smallest_p, 1.0 - smallest_p);
+    const core::ShapeGradient shape =
+        core::shape_gradient(shape_, level.value, threshold, slope);
+    const PsychometricVector gradient{gain * shape.by_threshold, gain * shape.by_log_slope,
+                                      1.0 - shape.value, -shape.value};
+    const double p = std::clamp(at[guess_at] + gain * shape.value, smallest_p, 1.0 - smallest_p);
     const auto n = static_cast<double>(level.answers.trials);
     const auto k = static_cast<double>(level.answers.successes);
     result.score += (k - n * p) / (p * (1.0 - p)) * gradient;

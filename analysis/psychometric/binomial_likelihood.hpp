@@ -35,7 +35,6 @@ class BinomialLikelihood {
   double shape_value(double x, double threshold, double log_slope) const;
   core::PsychometricShape shape_;
   std::vector<Level> levels_;
-  double step_;  // of differences along the axis
 };
 
 // k ln p + (n - k) ln(1 - p), with 0 ln 0 = 0.

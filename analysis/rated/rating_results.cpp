@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 
 #include "core/error.hpp"
 #include "core/number_in.hpp"
@@ -13,15 +14,26 @@ using results::AnswerRow;
 // Of each stimulus, by its place in the block.
 using RatingsByStimulus = std::vector<std::vector<double>>;
 
-int step_of(const BlockDesign& design, const AnswerRow& answer) {
-  const auto step = core::number_in<int>(answer.response);
-  if (!step || *step < 1 || *step > design.steps) {
-    throw core::InvalidInput{fmt::format(
-        "block '{}', {} in trial {}: a rating is a whole number "
-        "from 1 to {}, not '{}'",
-        design.name, answer.participant_id, answer.number, design.steps, answer.response)};
+std::optional<double> rating_in(const std::string& response, int steps) {
+  if (steps == 0) {
+    const auto mark = core::number_in<double>(response);
+    return mark && *mark >= 0.0 && *mark <= 1.0 ? mark : std::nullopt;
   }
-  return *step;
+  const auto step = core::number_in<int>(response);
+  return step && *step >= 1 && *step <= steps ? step : std::nullopt;
+}
+
+double rating_of(const BlockDesign& design, const AnswerRow& answer) {
+  const std::optional<double> rating = rating_in(answer.response, design.steps);
+  if (!rating) {
+    throw core::InvalidInput{fmt::format(
+        "block '{}', {} in trial {}: a rating is {}, not '{}'", design.name, answer.participant_id,
+        answer.number,
+        design.steps == 0 ? "a number from 0 to 1"
+                          : fmt::format("a whole number from 1 to {}", design.steps),
+        answer.response)};
+  }
+  return *rating;
 }
 
 std::size_t stimulus_of(const BlockDesign& design, const AnswerRow& answer) {
@@ -36,7 +48,7 @@ std::size_t stimulus_of(const BlockDesign& design, const AnswerRow& answer) {
 
 StimulusRatings described(const std::string& name, const std::vector<double>& ratings, int steps) {
   StimulusRatings result{name, std::vector<int>(static_cast<std::size_t>(steps)), {}};
-  for (const double rating : ratings) {
+  for (const double rating : steps == 0 ? std::vector<double>{} : ratings) {
     ++result.counts.at(static_cast<std::size_t>(rating) - 1);
   }
   if (!ratings.empty()) {
@@ -69,18 +81,18 @@ void add_tests(RatingResults& results) {
 }  // namespace
 
 RatingResults rating_results(const BlockDesign& design, const std::vector<AnswerRow>& answers) {
-  if (design.steps < 2) {
-    throw core::InvalidInput{fmt::format("block '{}': a rating has two steps or more, not {}",
-                                         design.name, design.steps)};
+  if (design.steps == 1) {
+    throw core::InvalidInput{fmt::format("block '{}': a rating has two steps or more",
+                                         design.name)};
   }
   const RatingsByStimulus none(design.stimuli.size());
   RatingsByStimulus all = none;
   std::map<std::string, RatingsByStimulus> people;
   for (const AnswerRow& answer : answers) {
     const std::size_t stimulus = stimulus_of(design, answer);
-    const int step = step_of(design, answer);
-    all[stimulus].push_back(step);
-    people.try_emplace(answer.participant_id, none).first->second[stimulus].push_back(step);
+    const double rating = rating_of(design, answer);
+    all[stimulus].push_back(rating);
+    people.try_emplace(answer.participant_id, none).first->second[stimulus].push_back(rating);
   }
   RatingResults results;
   for (std::size_t i = 0; i < design.stimuli.size(); ++i) {

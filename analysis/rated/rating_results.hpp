@@ -8,10 +8,10 @@
 #include "analysis/ratings/signed_rank.hpp"
 #include "analysis/statistics/quantiles.hpp"
 namespace tapstudy::analysis {
-// Ratings from 1 to design.steps of one presented stimulus a trial.
+// Ratings from 1 to design.steps, or on a line from 0 to 1, of one presented stimulus a trial.
 struct StimulusRatings {
   std::string stimulus;
-  std::vector<int> counts;             // of each step, from 1
+  std::vector<int> counts;             // of each step, from 1; empty of a line
   std::optional<Quartiles> quartiles;  // of all ratings; unset if there are none
 };
 
@@ -25,7 +25,7 @@ struct RatingResults {
   std::string no_tests;                   // why there are none; empty: there are
 };
 
-// Throws InvalidInput for fewer than two steps, answers that are no step, and stimuli that the
+// Throws InvalidInput for a single step, answers that are no step or mark, and stimuli that the
 // block does not have.
 RatingResults rating_results(const BlockDesign& design,
                              const std::vector<results::AnswerRow>& answers);

@@ -14,6 +14,13 @@ constexpr std::array references{
     Reference{"Bowker 1948",
               "Bowker, A. H. (1948). A test for symmetry in contingency tables. Journal of the "
               "American Statistical Association 43, 572–574."},
+    Reference{"Bradley & Terry 1952",
+              "Bradley, R. A. & Terry, M. E. (1952). Rank analysis of incomplete block designs: I. "
+              "The method of paired comparisons. Biometrika 39, 324–345."},
+    Reference{"Davidson 1970",
+              "Davidson, R. R. (1970). On extending the Bradley-Terry model to accommodate ties in "
+              "paired comparison experiments. Journal of the American Statistical Association 65, "
+              "317–328."},
     Reference{"DerSimonian & Laird 1986",
               "DerSimonian, R. & Laird, N. (1986). Meta-analysis in clinical trials. Controlled "
               "Clinical Trials 7, 177–188."},
@@ -78,6 +85,9 @@ constexpr std::array references{
         "Stuart 1955",
         "Stuart, A. (1955). A test for homogeneity of the marginal distributions in a two-way "
         "classification. Biometrika 42, 412–416."},
+    Reference{"Thurstone 1927",
+              "Thurstone, L. L. (1927). A law of comparative judgment. Psychological Review 34, "
+              "273–286."},
     Reference{"Watson 2017",
               "Watson, A. B. (2017). QUEST+: A general multidimensional Bayesian adaptive "
               "psychometric method. Journal of Vision 17(3), 10."},

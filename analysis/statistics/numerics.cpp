@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <boost/math/quadrature/gauss_kronrod.hpp>
+#include <boost/math/special_functions/digamma.hpp>
+#include <boost/math/special_functions/trigamma.hpp>
 #include <boost/math/tools/minima.hpp>
 #include <boost/math/tools/toms748_solve.hpp>
 
@@ -33,6 +35,14 @@ double root(const RealFunction& function, double one_end, double other_end) {
       function, low, high, at_low, at_high,
       boost::math::tools::eps_tolerance<double>{significant_bits}, iterations);
   return 0.5 * (left + right);
+}
+
+double digamma(double x) {
+  return boost::math::digamma(x);
+}
+
+double trigamma(double x) {
+  return boost::math::trigamma(x);
 }
 
 Minimum minimum(const RealFunction& function, double low, double high) {

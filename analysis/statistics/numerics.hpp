@@ -11,6 +11,10 @@ double integral(const RealFunction& function, double low, double high);
 // (Alefeld et al. 1995, algorithm 748, by Boost.Math). Throws InvalidInput if it does not.
 double root(const RealFunction& function, double one_end, double other_end);
 
+// The first and second derivative of the logarithm of the gamma function, x > 0 (Boost.Math).
+double digamma(double x);
+double trigamma(double x);
+
 struct Minimum {
   double at{};
   double value{};

@@ -18,14 +18,23 @@ std::string trimmed(const std::string& text) {
 }
 
 // Digits with at most one point: no sign, no exponent, no "inf".
-std::optional<std::string> number_above_0(const std::string& text) {
+std::optional<double> plain_number(const std::string& text) {
   if (text.size() > max_characters || text.find_first_not_of("0123456789.") != std::string::npos) {
     return std::nullopt;
   }
-  const auto number = core::number_in<double>(text);
+  return core::number_in<double>(text);
+}
+
+std::optional<std::string> number_above_0(const std::string& text) {
+  const auto number = plain_number(text);
   return number && *number > 0.0 && std::isfinite(*number)
              ? std::optional{fmt::format("{}", *number)}
              : std::nullopt;
+}
+
+std::optional<std::string> mark_on_line(const std::string& text) {
+  const auto mark = plain_number(text);
+  return mark && *mark <= 1.0 ? std::optional{fmt::format("{}", *mark)} : std::nullopt;
 }
 
 // From 1.
@@ -79,6 +88,8 @@ std::optional<std::string> answer_in(const std::string& text, const Answers& ans
       return setting_at(word, answers.settings);
     case AnswerKind::order:
       return order_of(word, answers.options);
+    case AnswerKind::line:
+      return mark_on_line(word);
   }
   return std::nullopt;
 }
@@ -95,6 +106,8 @@ std::string expected_answer(const Answers& answers) {
     case AnswerKind::order:
       return fmt::format("all numbers from 1 to {} in order, with spaces between",
                          answers.options.size());
+    case AnswerKind::line:
+      return fmt::format("a number from 0 ({}) to 1 ({})", answers.ends.low, answers.ends.high);
   }
   return {};
 }

@@ -10,7 +10,14 @@ namespace tapstudy::protocols {
 //   number  any number above 0
 //   setting where the last alternative was set to: the place of its setting, from 1
 //   order   all options, the first of the order first
-enum class AnswerKind { option, number, setting, order };
+//   line    a mark on a line, from 0 to 1
+enum class AnswerKind { option, number, setting, order, line };
+
+// What the ends of a line mean.
+struct LineEnds {
+  std::string low;
+  std::string high;
+};
 
 // The answers that a trial takes. Each is given as a text, the same at the terminal, from a page
 // and in a correction.
@@ -20,11 +27,12 @@ struct Answers {
   std::optional<std::size_t> judged{};  // the alternative that all answers are about
   std::size_t settings{};               // how many there are
   std::optional<double> modulus{};      // the number of the first alternative, as people are told
+  LineEnds ends{};                      // of a line
 };
 
 // The answer that a text gives: an option's name where the text is its place, from 1; a number
-// above 0 in decimal notation, at most 20 characters, in its shortest form; a setting's place; all
-// options' names with a space between, where the text has all their places, with spaces or commas
+// above 0 in decimal notation, at most 20 characters, in its shortest form; a setting's place; a
+// mark from 0 to 1, written likewise; all options' names with a space between, where the text has all their places, with spaces or commas
 // between. Spaces around it do not matter. nullopt: the text is no answer.
 std::optional<std::string> answer_in(const std::string& text, const Answers& answers);
 // What answer_in takes: "a number from 1 to 4".

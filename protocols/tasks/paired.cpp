@@ -1,9 +1,13 @@
+#include <algorithm>
+
 #include "protocols/tasks/preference_task.hpp"
 #include "protocols/tasks/shipped_tasks.hpp"
 #include "protocols/yaml/yaml_reader.hpp"
 namespace tapstudy::protocols {
 namespace {
-// Which of the two? All pairs of the stimuli, each in either order equally often.
+constexpr const char* tie = "tie";
+
+// Which of the two, or neither? All pairs of the stimuli, each in either order equally often.
 class Paired final : public PreferenceTask {
  public:
   std::string_view name() const override { return "paired"; }
@@ -17,6 +21,10 @@ class Paired final : public PreferenceTask {
   void read(MapReader& reader, const Protocol& /*protocol*/, Block& block) const override {
     if (block.stimuli.size() < 2) {
       reader.reject("stimuli", "pairs take at least two stimuli");
+    }
+    block.tie = reader.translated("tie", "");
+    if (!block.tie.empty() && std::ranges::find(block.stimuli, tie) != block.stimuli.end()) {
+      reader.reject("tie", "is how this answer is stored: no stimulus can be called so");
     }
   }
   // A repetition presents each pair in both orders.
@@ -40,12 +48,16 @@ class Paired final : public PreferenceTask {
   std::size_t trials_per_repetition(const Block& block) const override {
     return 2 * pairs_of(block.stimuli.size()).size();
   }
-  Answers answers(const Block& /*block*/, const Protocol& /*protocol*/) const override {
-    return one_of(blind_options(2));
+  Answers answers(const Block& block, const Protocol& /*protocol*/) const override {
+    std::vector<Option> options = blind_options(2);
+    if (!block.tie.empty()) {
+      options.push_back({tie, block.tie});
+    }
+    return one_of(std::move(options));
   }
   std::string response(const PlannedTrial& trial, const Block& /*block*/,
                        const std::string& answer) const override {
-    return labelled(trial, answer).stimulus;
+    return answer == tie ? answer : labelled(trial, answer).stimulus;
   }
   std::vector<std::string> alternative_labels(const PlannedTrial& trial) const override {
     return blind_labels(trial);
@@ -53,9 +65,14 @@ class Paired final : public PreferenceTask {
   int visits(const Block& /*block*/, const SimulatedTapSettings& taps) const override {
     return 2 * taps.visits;
   }
-  std::string simulated_answer(const Block& /*block*/, const Simulation& simulation,
+  // No difference if they are no further apart than two of the same are in half of the cases.
+  std::string simulated_answer(const Block& block, const Simulation& simulation,
                                SimulatedTouch& touch) const override {
+    constexpr double share_of_same = 0.5;
     visit_all(2, simulation, touch);
+    if (!block.tie.empty() && !touch.are_different(simulation.observer.reference, share_of_same)) {
+      return tie;
+    }
     return blind_label(touch.most_similar_alternative(simulation.observer.reference));
   }
 };

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -7,7 +9,7 @@
 #include "protocols/yaml/yaml_reader.hpp"
 namespace tapstudy::protocols {
 namespace {
-// How real (hard, pleasant ...) is it, from 1 to so many steps?
+// How real (hard, pleasant ...) is it, from 1 to so many steps, or on a line?
 class Rating final : public PreferenceTask {
  public:
   std::string_view name() const override { return "rating"; }
@@ -21,7 +23,12 @@ class Rating final : public PreferenceTask {
 
   void read(MapReader& reader, const Protocol& /*protocol*/, Block& block) const override {
     RatingScale scale;
-    scale.steps = reader.integer("steps", 2, 11, scale.steps);
+    scale.kind = reader.one_of<ScaleKind>(
+        "scale", {{"likert", ScaleKind::likert}, {"visual_analogue", ScaleKind::visual_analogue}},
+        "likert");
+    if (scale.kind == ScaleKind::likert) {
+      scale.steps = reader.integer("steps", 2, 11, scale.steps);
+    }
     scale.low = reader.translated("low");
     scale.high = reader.translated("high");
     block.rating = scale;
@@ -40,6 +47,11 @@ class Rating final : public PreferenceTask {
     return block.stimuli.size();
   }
   Answers answers(const Block& block, const Protocol& /*protocol*/) const override {
+    if (block.rating->kind == ScaleKind::visual_analogue) {
+      Answers line{AnswerKind::line};
+      line.ends = {block.rating->low, block.rating->high};
+      return line;
+    }
     std::vector<Option> all;
     for (int step = 1; step <= block.rating->steps; ++step) {
       const std::string number = std::to_string(step);
@@ -61,7 +73,12 @@ class Rating final : public PreferenceTask {
     touch.visit(0);
     const double excess =
         std::max(0.0, touch.distance(std::size_t{0}, simulation.observer.reference) - 1.0);
-    return std::to_string(1 + std::lround((block.rating->steps - 1) * std::exp(-excess)));
+    const double nearness = std::exp(-excess);
+    if (block.rating->kind == ScaleKind::visual_analogue) {
+      constexpr double marks = 100.0;  // as fine as a page's line
+      return fmt::format("{}", std::round(marks * nearness) / marks);
+    }
+    return std::to_string(1 + std::lround((block.rating->steps - 1) * nearness));
   }
 };
 }  // namespace

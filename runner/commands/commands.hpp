@@ -7,6 +7,7 @@ void add_run(CommandParser& line);
 void add_simulate(CommandParser& line);
 void add_report(CommandParser& line);
 void add_export(CommandParser& line);
+void add_amend(CommandParser& line);
 void add_redact(CommandParser& line);
 void add_verify(CommandParser& line);
 void add_modes(CommandParser& line);

@@ -13,6 +13,7 @@
 #include "results/store_error.hpp"
 #include "runner/commands/commands.hpp"
 #include "runner/experiments/stored_protocol.hpp"
+#include "runner/experiments/stored_trial.hpp"
 #include "runner/terminal/logging.hpp"
 namespace tapstudy::runner {
 namespace {
@@ -38,23 +39,6 @@ int print_missing(const std::set<std::string>& lines, const std::set<std::string
   return missing;
 }
 
-protocols::PlannedTrial planned(const results::TrialRow& row,
-                                const std::vector<results::AlternativeRow>& alternatives,
-                                const protocols::Block& block) {
-  protocols::PlannedTrial trial;
-  trial.number = row.number;
-  trial.block = row.block;
-  trial.task = block.task;
-  trial.is_practice = row.is_practice;
-  trial.repetition = row.repetition;
-  trial.is_catch = row.is_catch;
-  for (const results::AlternativeRow& alternative : alternatives) {
-    trial.alternatives.push_back(
-        {alternative.stimulus, alternative.axis_values, alternative.is_comparison});
-  }
-  return trial;
-}
-
 // Of a protocol that is not one of this version, no block is known.
 results::TaskRule rule_of(const results::StudyRow& study) {
   auto protocol = std::make_shared<protocols::Protocol>();
@@ -72,7 +56,7 @@ results::TaskRule rule_of(const results::StudyRow& study) {
                      const std::vector<results::AlternativeRow>& alternatives,
                      const std::string& response) {
             const protocols::Block& block = *block_of(trial);
-            return block.task->is_correct(planned(trial, alternatives, block), block, response);
+            return block.task->is_correct(stored_trial(trial, alternatives, block), block, response);
           }};
 }
 

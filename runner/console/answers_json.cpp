@@ -5,7 +5,7 @@
 namespace tapstudy::runner {
 nlohmann::ordered_json answers_json(const protocols::Answers& answers) {
   using Json = nlohmann::ordered_json;
-  constexpr std::array kinds{"option", "number", "setting", "order"};
+  constexpr std::array kinds{"option", "number", "setting", "order", "line"};
   Json labels = Json::array();
   for (const protocols::Option& option : answers.options) {
     labels.push_back(option.label);
@@ -13,6 +13,8 @@ nlohmann::ordered_json answers_json(const protocols::Answers& answers) {
   return {{"kind", kinds.at(static_cast<std::size_t>(answers.kind))},
           {"options", labels},
           {"settings", answers.settings},
+          {"low", answers.ends.low},
+          {"high", answers.ends.high},
           {"modulus", answers.modulus ? Json(*answers.modulus) : Json{}}};
 }
 }  // namespace tapstudy::runner

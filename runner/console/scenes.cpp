@@ -11,21 +11,48 @@ Json json_of(const core::Vec3& v) {
   return {v.x(), v.y(), v.z()};
 }
 
-Json json_of(const core::Fixation& fixation) {
+Json box_of(const core::Vec3& low_m, const core::Vec3& high_m) {
+  return {{"kind", "box"}, {"low_m", json_of(low_m)}, {"high_m", json_of(high_m)}};
+}
+
+// Of a body's bounding box. The lower face is not seen from above: null.
+Json json_of(core::Side side, const core::Bounds& bounds) {
+  core::Vec3 low_m = bounds.low_m;
+  core::Vec3 high_m = bounds.high_m;
+  switch (side) {
+    case core::Side::left:
+      high_m.x() = low_m.x();
+      break;
+    case core::Side::right:
+      low_m.x() = high_m.x();
+      break;
+    case core::Side::front:
+      high_m.y() = low_m.y();
+      break;
+    case core::Side::back:
+      low_m.y() = high_m.y();
+      break;
+    case core::Side::top:
+      break;
+    case core::Side::bottom:
+      return nullptr;
+  }
+  return box_of(low_m, high_m);
+}
+
+Json json_of(const core::Fixation& fixation, const core::Bounds& bounds) {
   switch (fixation.shape) {
     case core::RegionShape::vertex:
       return {{"kind", "vertex"}, {"at_m", json_of(fixation.at_m)}};
     case core::RegionShape::disc:
+    case core::RegionShape::ball:
       return {{"kind", "disc"},
               {"at_m", {fixation.at_m.x(), fixation.at_m.y()}},
               {"radius_m", fixation.radius_m}};
     case core::RegionShape::box:
-      return {{"kind", "box"},
-              {"low_m", json_of(fixation.low_m)},
-              {"high_m", json_of(fixation.high_m)}};
-    case core::RegionShape::ball:
+      return box_of(fixation.low_m.cwiseMax(bounds.low_m), fixation.high_m.cwiseMin(bounds.high_m));
     case core::RegionShape::side:
-      break;
+      return json_of(fixation.side, bounds);
   }
   return nullptr;
 }
@@ -66,7 +93,7 @@ Scenes::Scenes(const protocols::Protocol& protocol) : protocol_{protocol} {
     const std::string shape = json.dump();
     json["fixations"] = Json::array();
     for (const core::Fixation& fixation : plate->fixations) {
-      if (const Json shown = json_of(fixation);
+      if (const Json shown = json_of(fixation, core::bounds(plate->shape));
           protocol.display.shows_fixations && !shown.is_null()) {
         json["fixations"].push_back(shown);
       }

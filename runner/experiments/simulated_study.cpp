@@ -48,7 +48,8 @@ std::vector<PlannedSession> add_sessions(const SimulatedStudy& study,
         "simulated hand",
         "virtual time",
         ""};
-    const auto place = store.place_of(plan.participant_id, plan.mode);
+    const auto place = store.place_of(plan.participant_id, plan.mode,
+                                      [](const std::string& /*all of them*/) { return true; });
     plan.participant_index = place.participant_index;
     plan.order_index = place.order_index;
     if (store.has_sessions(plan.participant_id)) {

@@ -70,7 +70,7 @@ void OperatorDesk::check_is_possible(const OperatorCommand& command) const {
   if (!is_possible(command.action)) {
     throw core::InvalidInput{fmt::format("{} is not possible now", name(command.action))};
   }
-  const std::optional<int> trial = trial_of(command.action);
+  const std::optional<int> trial = trial_of(command);
   if (command.trial && command.trial != trial) {
     throw core::InvalidInput{fmt::format("trial {} is over", *command.trial)};
   }
@@ -95,8 +95,11 @@ bool OperatorDesk::is_excluded() const {
   return is;
 }
 
-std::optional<int> OperatorDesk::trial_of(OperatorAction action) const {
-  if (action == OperatorAction::correct) {
+// A remark may be about the trial that was answered last, too.
+std::optional<int> OperatorDesk::trial_of(const OperatorCommand& command) const {
+  const bool is_about_last = command.action == OperatorAction::note && last_answer_ &&
+                             command.trial == last_answer_->trial.number;
+  if (command.action == OperatorAction::correct || is_about_last) {
     return last_answer_->trial.number;
   }
   return trial_ ? std::optional{trial_->trial.number} : std::nullopt;
@@ -158,7 +161,7 @@ OperatorDesk::Posted OperatorDesk::post(const OperatorCommand& command) {
   const std::lock_guard lock{mutex_};
   check_is_possible(command);
   results::OperatorActionRow row{session_.id, session_.now_s(), std::string{name(command.action)},
-                                 trial_of(command.action), command.text};
+                                 trial_of(command), command.text};
   std::shared_future<void> stored;
   if (command.action == OperatorAction::correct) {
     results::CorrectionRow corrected = correction(command.text, command.by, row.detail);

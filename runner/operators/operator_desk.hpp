@@ -70,7 +70,7 @@ class OperatorDesk final : public Operator {
  private:
   bool is_possible(OperatorAction action) const;
   void check_is_possible(const OperatorCommand& command) const;
-  std::optional<int> trial_of(OperatorAction action) const;
+  std::optional<int> trial_of(const OperatorCommand& command) const;
   bool is_excluded() const;
   void apply(const OperatorCommand& command);
   std::string said_of(const OperatorCommand& command, const results::OperatorActionRow& row) const;

@@ -37,6 +37,9 @@ void ConsoleParticipant::get_ready(const TrialPrompt& prompt) {
   for (std::size_t i = 0; !are_named && i < options.size(); ++i) {
     say("  {}  {}\n", i + 1, options[i].label);
   }
+  if (prompt.answers.kind == protocols::AnswerKind::line) {
+    say("  {}\n", expected_answer(prompt.answers));
+  }
   if (prompt.block->explore.scripted_taps) {
     say("  hold the device still: the plate is tapped for you\n");
   }

@@ -7,13 +7,23 @@
 #include <cctype>
 namespace tapstudy::runner {
 namespace {
-// "= B".
+// "= B", or "= 3" for an option that is none of the alternatives.
 std::optional<std::string> option_after_equals(const std::string& word,
-                                               const std::vector<protocols::Option>& options) {
-  const auto option = word.starts_with('=')
-                          ? std::ranges::find(options, word.substr(1), &protocols::Option::label)
-                          : options.end();
-  return option == options.end() ? std::nullopt : std::optional{option->name};
+                                               const protocols::Answers& answers) {
+  if (!word.starts_with('=')) {
+    return std::nullopt;
+  }
+  const auto& options = answers.options;
+  const auto option = std::ranges::find(options, word.substr(1), &protocols::Option::label);
+  return option == options.end() ? answer_in(word.substr(1), answers) : std::optional{option->name};
+}
+
+std::string further_options(const TrialPrompt& prompt) {
+  std::string all;
+  for (std::size_t i = prompt.alternative_labels.size(); i < prompt.answers.options.size(); ++i) {
+    all += fmt::format("   = {}: {}.", i + 1, prompt.answers.options[i].label);
+  }
+  return all;
 }
 
 // "= C A B": labels of alternatives are single letters.
@@ -38,7 +48,7 @@ bool is_order(const TrialPrompt& prompt) {
 std::optional<std::string> labels_after_equals(const std::string& word,
                                                const protocols::Answers& answers) {
   return answers.kind == protocols::AnswerKind::order ? order_after_equals(word, answers)
-                                                      : option_after_equals(word, answers.options);
+                                                      : option_after_equals(word, answers);
 }
 }  // namespace
 
@@ -84,7 +94,8 @@ std::string how_to_answer(const TrialPrompt& prompt) {
   return is_order(prompt)
              ? fmt::format("   = {}: your order, the first one first.",
                            fmt::join(prompt.alternative_labels, " "))
-             : fmt::format("   = {}: choose it.", prompt.answers.options.front().label);
+             : fmt::format("   = {}: choose it.{}", prompt.answers.options.front().label,
+                           further_options(prompt));
 }
 
 std::string expected_among_alternatives(const TrialPrompt& prompt) {

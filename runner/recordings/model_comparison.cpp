@@ -30,36 +30,50 @@ core::PlateSpec on_springs(core::PlateSpec spec, double factor) {
   return spec;
 }
 
-std::vector<double> frequencies_hz(const core::PlateSpec& spec,
-                                   const core::ProgressHook& progress) {
-  const core::PlateModel plate = core::build_plate_model(spec, progress);
-  return {plate.modal.frequency_hz.begin(), plate.modal.frequency_hz.end()};
+core::ModalModel modes_of(const core::PlateSpec& spec, const core::ProgressHook& progress) {
+  return core::build_plate_model(spec, progress).modal;
 }
 
-void update_on_springs(const core::PlateSpec& spec, const std::vector<analysis::Estimate>& measured,
+std::vector<double> frequencies_hz(const core::ModalModel& modal) {
+  return {modal.frequency_hz.begin(), modal.frequency_hz.end()};
+}
+
+Eigen::MatrixXd assurance_if_known(const MeasuredModes& measured, const core::ModalModel& modal,
+                                   const core::PlateSpec& spec) {
+  return measured.shapes ? assurance_of(*measured.shapes, modal, spec.shape) : Eigen::MatrixXd{};
+}
+
+// Modes are matched by frequency alone while the springs are sought; their shapes are told after.
+void update_on_springs(const core::PlateSpec& spec, const MeasuredModes& measured,
                        const core::ProgressHook& progress, ModelComparison& model) {
   const auto found = analysis::update_springs(
-      measured, [&](double factor) { return frequencies_hz(on_springs(spec, factor), progress); },
+      measured.frequencies_hz,
+      [&](double factor) { return frequencies_hz(modes_of(on_springs(spec, factor), progress)); },
       spec.material.youngs_modulus_pa);
   if (!found) {
     return;
   }
   model.update = found->model;
-  model.frequencies_hz = found->model_hz;
-  IdentifiedSprings springs{found->spring_factor, {}, {}};
-  const auto& fixations = on_springs(spec, found->spring_factor.value).fixations;
-  for (std::size_t i = 0; i < fixations.size(); ++i) {
-    if (fixations[i].springs_n_per_m) {
-      springs.springs_n_per_m.emplace_back(i + 1, *fixations[i].springs_n_per_m);
+  if (measured.shapes) {
+    const double over_modulus = found->spring_factor.value * spec.material.youngs_modulus_pa /
+                                found->model.youngs_modulus_pa.value;
+    const core::PlateSpec updated = on_springs(spec, over_modulus);
+    const Eigen::MatrixXd assurance =
+        assurance_if_known(measured, modes_of(updated, progress), updated);
+    for (analysis::MatchedMode& one : model.update->matched) {
+      one.assurance = assurance(static_cast<Eigen::Index>(one.measured),
+                                static_cast<Eigen::Index>(one.model));
     }
   }
-  model.springs = std::move(springs);
+  model.frequencies_hz = found->model_hz;
+  model.springs = IdentifiedSprings{found->spring_factor, {},
+                                    on_springs(spec, found->spring_factor.value).fixations};
 }
 }  // namespace
 
 ModelComparison compare_with_model(const protocols::Protocol& protocol, const std::string& stimulus,
-                                   const std::vector<analysis::Estimate>& measured_hz,
-                                   double high_hz, const core::ProgressHook& progress) {
+                                   const MeasuredModes& measured, double high_hz,
+                                   const core::ProgressHook& progress) {
   const protocols::Stimulus& stated = protocol.stimulus(stimulus);
   const protocols::PresentedStimulus presented = protocols::stimulus_with(protocol, stated);
   if (presented.contacts) {
@@ -73,18 +87,21 @@ ModelComparison compare_with_model(const protocols::Protocol& protocol, const st
   model.material_name = name_of(protocol.materials, stated.material);
   model.band_limit_hz = protocol.band_limit_hz;
   core::PlateSpec spec = plate_spec(protocol, presented);
+  model.shape = spec.shape;
   spec.band_limit_hz = further_band * std::max(spec.band_limit_hz, high_hz);
   spec.material.damping = core::ConstantDamping{};  // only frequencies are compared
   model.is_on_springs = core::is_on_springs(spec.fixations);
   at_its_line(presented, [&] {
-    model.frequencies_hz = frequencies_hz(spec, progress);
-    if (measured_hz.empty() || model.frequencies_hz.empty()) {
+    const core::ModalModel modal = modes_of(spec, progress);
+    model.frequencies_hz = frequencies_hz(modal);
+    if (measured.frequencies_hz.empty() || model.frequencies_hz.empty()) {
       return;
     }
-    model.update = analysis::update_youngs_modulus(measured_hz, model.frequencies_hz,
-                                                   spec.material.youngs_modulus_pa);
+    model.update = analysis::update_youngs_modulus(
+        measured.frequencies_hz, model.frequencies_hz, spec.material.youngs_modulus_pa,
+        assurance_if_known(measured, modal, spec));
     if (model.is_on_springs) {
-      update_on_springs(spec, measured_hz, progress, model);
+      update_on_springs(spec, measured, progress, model);
     }
   });
   if (model.springs) {

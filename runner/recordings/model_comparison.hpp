@@ -7,19 +7,20 @@
 #include "analysis/modal_identification/model_matching.hpp"
 #include "core/model/progress_hook.hpp"
 #include "protocols/axes/presented_stimulus.hpp"
+#include "runner/recordings/measured_shapes.hpp"
 namespace tapstudy::runner {
 // Of a plate on springs: all of them by one factor.
 struct IdentifiedSprings {
   analysis::Estimate factor;  // on the protocol's
   std::string plate_name;
-  // By the number of the fixation, from 1: along x y z, updated.
-  std::vector<std::pair<std::size_t, core::Vec3>> springs_n_per_m;
+  std::vector<core::Fixation> fixations;  // all of the plate's, with updated springs
 };
 
 // The model of the protocol's stimulus beside what was measured.
 struct ModelComparison {
   std::shared_ptr<const protocols::Material> material;
   std::string material_name;
+  core::Shape shape;
   std::vector<double> frequencies_hz;  // at the protocol's Young's modulus
   double band_limit_hz{};
   std::optional<analysis::ModelUpdate> update;  // unset: no mode has a partner
@@ -27,8 +28,14 @@ struct ModelComparison {
   std::optional<IdentifiedSprings> springs;  // unset: rigid, or the modes do not tell
 };
 
-// Up to the protocol's band limit or high_hz. Throws ModelError if the model cannot be built.
+struct MeasuredModes {
+  std::vector<analysis::Estimate> frequencies_hz;
+  std::optional<MeasuredShapes> shapes;  // of the same modes; unset: not known
+};
+
+// Up to the protocol's band limit or high_hz. Throws ModelError if the model cannot be built,
+// InvalidInput as assurance_of does.
 ModelComparison compare_with_model(const protocols::Protocol& protocol, const std::string& stimulus,
-                                   const std::vector<analysis::Estimate>& measured_hz,
-                                   double high_hz, const core::ProgressHook& progress);
+                                   const MeasuredModes& measured, double high_hz,
+                                   const core::ProgressHook& progress);
 }  // namespace tapstudy::runner

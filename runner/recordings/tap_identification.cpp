@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "core/error.hpp"
 #include "protocols/read_protocol.hpp"
-#include "runner/recordings/speeds.hpp"
+#include "runner/recordings/impact_table.hpp"
+#include "runner/recordings/sinusoid_law.hpp"
 namespace tapstudy::runner {
 namespace {
 using analysis::Band;
@@ -18,7 +18,6 @@ constexpr double default_low_hz = 10.0;
 constexpr double default_high_hz = 1000.0;
 constexpr double usable_rate_share = 0.4;  // of the rate; sensors' own filters begin above
 constexpr double max_rate_share = 0.47;
-constexpr double min_explained = 0.5;
 
 Band band_for(const TapQuestion& question, double rate_hz, std::optional<double> band_limit_hz) {
   if (!question.band) {
@@ -71,6 +70,7 @@ class Identifier {
       throw core::InvalidInput{fmt::format("{}", fmt::join(result_.remarks, "\n"))};
     }
     give_speeds(impacts);
+    give_places(impacts);
     sum_up();
     return std::move(result_);
   }
@@ -124,20 +124,65 @@ class Identifier {
     return true;
   }
 
+  static void check_rows(const std::string& file, const char* what, std::size_t rows,
+                         int impacts) {
+    if (rows != static_cast<std::size_t>(impacts)) {
+      throw core::InvalidInput{
+          fmt::format("{}: has {} {}, the recordings {} impacts (one row for each, in their order, "
+                      "also for those left out)",
+                      file, rows, what, impacts)};
+    }
+  }
+  std::size_t impact_of(std::size_t tap) const {
+    return static_cast<std::size_t>(impact_numbers_[tap] - 1);
+  }
+
   void give_speeds(int impacts) {
     if (result_.question.speeds.empty()) {
       return;
     }
     const std::vector<double> speeds = read_speeds(result_.question.speeds);
-    if (speeds.size() != static_cast<std::size_t>(impacts)) {
-      throw core::InvalidInput{
-          fmt::format("{}: has {} speeds, the recordings {} impacts (one row for each, in their "
-                      "order, also for those left out)",
-                      result_.question.speeds, speeds.size(), impacts)};
-    }
+    check_rows(result_.question.speeds, "speeds", speeds.size(), impacts);
     for (std::size_t i = 0; i < result_.taps.size(); ++i) {
-      result_.taps[i].speed_m_s = speeds[static_cast<std::size_t>(impact_numbers_[i] - 1)];
+      result_.taps[i].speed_m_s = speeds[impact_of(i)];
     }
+  }
+
+  void give_places(int impacts) {
+    if (result_.question.places.empty()) {
+      return;
+    }
+    const NumberedPlaces places = numbered(read_places(result_.question.places));
+    check_rows(result_.question.places, "places", places.of_impacts.size(), impacts);
+    result_.places_m = places.places_m;
+    for (std::size_t i = 0; i < result_.taps.size(); ++i) {
+      result_.taps[i].place = places.of_impacts[impact_of(i)];
+    }
+  }
+
+  // Of the agreed modes.
+  std::optional<MeasuredShapes> measured_shapes() {
+    if (result_.places_m.empty()) {
+      return std::nullopt;
+    }
+    if (result_.places_m.size() < fewest_places) {
+      result_.remarks.push_back(fmt::format(
+          "shapes are not compared: {} places were tapped, fewer than {} tell none apart",
+          result_.places_m.size(), fewest_places));
+      return std::nullopt;
+    }
+    std::vector<analysis::PlacedTap> taps;
+    for (const IdentifiedTap& tap : result_.taps) {
+      const double rate_hz = tap.decay.rate_hz;
+      taps.push_back({*tap.place, *tap.speed_m_s,
+                      static_cast<double>(tap.tap.begin - tap.tap.onset) / rate_hz});
+    }
+    MeasuredShapes shapes{result_.places_m, {}};
+    for (const std::size_t i : result_.agreed) {
+      shapes.shapes.push_back(
+          analysis::tapped_shape(result_.modes[i], taps, shapes.places_m.size()));
+    }
+    return shapes;
   }
 
   std::vector<analysis::TapModes> modes_of_taps() const {
@@ -172,71 +217,23 @@ class Identifier {
     if (result_.agreed.empty()) {
       result_.remarks.emplace_back("no mode was found by both methods");
     }
-    result_.sinusoid = sinusoid_law();
+    result_.sinusoid = sinusoid_law(
+        result_, protocol_ ? std::optional{protocol_->rendering.finger} : std::nullopt);
+    if (!result_.sinusoid) {
+      result_.remarks.push_back(
+          fmt::format("no tap is mostly one decaying sinusoid (it would have to explain {:.0f} % "
+                      "of its energy)",
+                      100.0 * min_explained_by_sinusoid));
+    }
     if (protocol_) {
       result_.model = compared_with_model();
     }
   }
 
-  std::optional<SinusoidLaw> sinusoid_law() {
-    std::vector<double> decays, decay_errors, frequencies, frequency_errors, amplitudes, speeds;
-    SinusoidLaw law;
-    for (const IdentifiedTap& tap : result_.taps) {
-      if (tap.sinusoid && tap.sinusoid->explained >= min_explained) {
-        decays.push_back(tap.sinusoid->decay_per_s);
-        decay_errors.push_back(tap.sinusoid->decay_error_per_s);
-        frequencies.push_back(tap.sinusoid->frequency_hz);
-        frequency_errors.push_back(tap.sinusoid->frequency_error_hz);
-        law.explained += tap.sinusoid->explained;
-        if (tap.speed_m_s) {
-          speeds.push_back(*tap.speed_m_s);
-          amplitudes.push_back(tap.sinusoid->amplitude * result_.question.si_per_unit);
-        }
-      }
-    }
-    if (decays.empty()) {
-      result_.remarks.push_back(
-          fmt::format("no tap is mostly one decaying sinusoid (it would have to explain {:.0f} % "
-                      "of its energy)",
-                      100.0 * min_explained));
-      return std::nullopt;
-    }
-    law.explained /= static_cast<double>(decays.size());
-    constexpr double many = 1e6;  // degrees of freedom of one tap's samples
-    law.decay_per_s = analysis::estimate_over_taps(decays, decay_errors, many);
-    law.frequency_hz = analysis::estimate_over_taps(frequencies, frequency_errors, many);
-    if (!speeds.empty()) {
-      law.amplitude_per_speed = analysis::amplitude_per_speed(speeds, amplitudes);
-      law.line = analysis::amplitude_line(speeds, amplitudes);
-      if (protocol_) {
-        law.amplitude_n_s_per_m = law.amplitude_per_speed->value * newtons_per_unit(law);
-      }
-    }
-    return law;
-  }
-
-  // Acceleration moves the finger's mass; velocity and displacement of the surface are felt through
-  // its spring and damper (eq. 17), at s = -decay + i omega.
-  double newtons_per_unit(const SinusoidLaw& law) const {
-    const core::Finger& finger = protocol_->rendering.finger;
-    const std::complex<double> s{-law.decay_per_s.value,
-                                 2.0 * std::numbers::pi * law.frequency_hz.value};
-    const double per_metre = std::abs(finger.stiffness_n_per_m + finger.damping_n_s_per_m * s);
-    switch (result_.question.quantity) {
-      case analysis::Quantity::acceleration:
-        return finger.mass_kg;
-      case analysis::Quantity::velocity:
-        return per_metre / std::abs(s);
-      case analysis::Quantity::displacement:
-        break;
-    }
-    return per_metre;
-  }
-
   ModelComparison compared_with_model() {
-    std::vector<Estimate> measured;
+    MeasuredModes measured{{}, measured_shapes()};
     for (const std::size_t i : result_.agreed) {
-      measured.push_back(result_.modes[i].frequency_hz);
+      measured.frequencies_hz.push_back(result_.modes[i].frequency_hz);
     }
     ModelComparison model = compare_with_model(*protocol_, result_.question.stimulus, measured,
                                                result_.band.high_hz, hook_);

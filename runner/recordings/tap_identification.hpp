@@ -19,6 +19,7 @@ struct TapQuestion {
   analysis::TapFinding finding;
   std::optional<analysis::Band> band;  // unset: 10 Hz to the protocol's band limit or 1000 Hz
   std::string speeds;  // CSV with a column speed_m_s, a row for each tap; may be empty
+  std::string places;  // CSV with columns x_m and y_m, likewise; may be empty
   std::optional<Eigen::Vector2d> at_m;  // where was tapped, plate frame: to be played back
   std::string protocol;                 // with a stimulus, or both empty
   std::string stimulus;
@@ -34,6 +35,7 @@ struct IdentifiedTap {
   analysis::TapModes modes;
   std::optional<analysis::FittedSinusoid> sinusoid;
   std::optional<double> speed_m_s;
+  std::optional<std::size_t> place;  // that was tapped: index into TapIdentification::places_m
 };
 
 struct SinusoidLaw {
@@ -54,12 +56,13 @@ struct TapIdentification {
   std::optional<analysis::RayleighFit> rayleigh;  // of the agreed modes
   std::optional<SinusoidLaw> sinusoid;
   std::optional<ModelComparison> model;
+  std::vector<Eigen::Vector2d> places_m;  // that were tapped; empty: not known
   std::vector<std::string> remarks;
   double finger_kg{};  // of the protocol; 0 without one
 };
 
 // Reads, finds the taps, identifies modes, damping, sinusoid and Young's modulus. Throws
 // InvalidInput for what cannot be read, recordings without a tap, a band that does not fit, speeds
-// that are not as many as impacts; ModelError if the stimulus's model cannot be built.
+// or places that are not as many as impacts; ModelError if the stimulus's model cannot be built.
 TapIdentification identify_taps(const TapQuestion& question, Progress& progress);
 }  // namespace tapstudy::runner

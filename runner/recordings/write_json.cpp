@@ -128,7 +128,10 @@ Json json_of(const ModelComparison& model) {
   json["rms_misfit"] = model.update->rms_misfit;
   for (const analysis::MatchedMode& one : model.update->matched) {
     json["matched"].push_back(
-        {{"agreed_mode", one.measured}, {"model_mode", one.model}, {"misfit", one.misfit}});
+        {{"agreed_mode", one.measured},
+         {"model_mode", one.model},
+         {"misfit", one.misfit},
+         {"mac", one.assurance ? Json(*one.assurance) : Json{}}});
   }
   json["unmatched"] = model.update->unmatched;
   if (model.springs) {

@@ -92,11 +92,13 @@ void print_model(const TapIdentification& found, const ModelComparison& model) {
     fmt::print("  springs {:.4g} ({}) times as stiff as the protocol's\n",
                model.springs->factor.value, interval(model.springs->factor));
   }
-  fmt::print("  measured_hz  mode  model_hz   misfit after the update\n");
+  fmt::print("  measured_hz  mode  model_hz   misfit after the update{}\n",
+             found.places_m.empty() ? "" : "   MAC");
   for (const analysis::MatchedMode& one : update.matched) {
-    fmt::print("  {:>11.3f}  {:>4}  {:>8.3f}  {:>+7.2f} %\n",
+    fmt::print("  {:>11.3f}  {:>4}  {:>8.3f}  {:>+7.2f} %{}\n",
                found.modes[found.agreed[one.measured]].frequency_hz.value, one.model + 1,
-               model.frequencies_hz[one.model], 100.0 * one.misfit);
+               model.frequencies_hz[one.model], 100.0 * one.misfit,
+               one.assurance ? fmt::format("{:>20.3f}", *one.assurance) : "");
   }
   for (const std::size_t i : update.unmatched) {
     fmt::print("  {:>11.3f}     -         -  no mode of the model within {:.0f} %\n",

@@ -97,14 +97,12 @@ std::string damping_of(const TapIdentification& found, const std::string& indent
       indent, comment(rayleigh->alpha_per_s).substr(2), comment(rayleigh->beta_s).substr(2),
       100.0 * rayleigh->largest_misfit, first, second);
 }
-// As comments: the list of fixations is the protocol's.
-std::string springs_of(const IdentifiedSprings& springs) {
-  std::string text = fmt::format("# springs: {:.4g} times the protocol's, {}\n",
-                                 springs.factor.value, comment(springs.factor).substr(2));
-  for (const auto& [number, springs_n_per_m] : springs.springs_n_per_m) {
-    text += fmt::format("# plates: {}: fixation {}: springs_n_per_m: [{:.5g}, {:.5g}, {:.5g}]\n",
-                        springs.plate_name, number, springs_n_per_m.x(), springs_n_per_m.y(),
-                        springs_n_per_m.z());
+std::string springs_of(const IdentifiedSprings& springs, const core::Shape& shape) {
+  std::string text = fmt::format(
+      "plates:\n  {}:\n    # springs: {:.4g} times the protocol's, {}\n    fixations:\n",
+      springs.plate_name, springs.factor.value, comment(springs.factor).substr(2));
+  for (const core::Fixation& fixation : springs.fixations) {
+    text += "      - " + fixation_yaml(fixation, std::holds_alternative<core::Box>(shape)) + "\n";
   }
   return text;
 }
@@ -134,7 +132,7 @@ std::string yaml_of(const TapIdentification& found) {
     return text + damping_of(found, "");
   }
   if (found.model->springs) {
-    text += springs_of(*found.model->springs);
+    text += springs_of(*found.model->springs, found.model->shape);
   }
   const core::Material& material = *found.model->material;
   const auto& update = found.model->update;

@@ -6,6 +6,7 @@
 
 #include "core/error.hpp"
 #include "runner/session/given_up_trials.hpp"
+#include "runner/session/participant_lock.hpp"
 #include "runner/session/session_row.hpp"
 namespace tapstudy::runner {
 namespace {
@@ -68,7 +69,9 @@ BegunSession begin_session(const SessionRequest& request, const protocols::Proto
       throw core::InvalidInput{
           "--row: the order of a participant who resumes is the one begun with"};
     }
-    const auto place = store.place_of(plan.participant_id, plan.mode);
+    const auto place = store.place_of(plan.participant_id, plan.mode, [&](const std::string& id) {
+      return is_in_session(store.directory(), id);
+    });
     plan.participant_index = place.participant_index;
     plan.order_index =
         earlier ? place.order_index : request.order_index.value_or(place.order_index);

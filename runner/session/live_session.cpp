@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <filesystem>
 #include <optional>
 #include <utility>
 
@@ -15,12 +14,12 @@
 #include "runner/markers/markers.hpp"
 #include "runner/session/given_up_trials.hpp"
 #include "runner/session/live_trials.hpp"
+#include "runner/session/participant_lock.hpp"
 #include "runner/session/session_row.hpp"
 #include "runner/terminal/logging.hpp"
 #include "runner/terminal/no_flow_control.hpp"
 #include "runner/terminal/operator_prompt.hpp"
 #include "runner/terminal/say.hpp"
-#include "runner/terminal/session_lock.hpp"
 #include "runner/terminal/stop_signal.hpp"
 namespace tapstudy::runner {
 namespace {
@@ -49,13 +48,6 @@ SessionRequest request_of(const LiveSession& live) {
   return request;
 }
 
-SessionLock lock_of(const LiveSession& live) {
-  const std::string& id = live.request.participant_id;
-  // a link and what it leads to are one study
-  return {std::filesystem::weakly_canonical(live.directory).string() + " " + id,
-          fmt::format("participant '{}' is in a session of this study right now", id)};
-}
-
 void say_what_was_found(const BegunSession& session) {
   if (session.resumed_since_utc.empty()) {
     return;
@@ -72,7 +64,7 @@ LiveOutcome run_live_session(const LiveSession& live) {
   check(live);
   ModelLibrary models;
   models.build_all(live.protocol);
-  const SessionLock lock = lock_of(live);
+  const ParticipantLock lock{live.directory, live.request.participant_id};
   listen_for_stop();
   const NoFlowControl no_flow_control{STDIN_FILENO};
   LineInput input{STDIN_FILENO};

@@ -69,12 +69,17 @@ std::unique_ptr<Console> console_of(const LiveTrials::Parts& parts, OperatorDesk
   return console;
 }
 
-std::optional<MaskedTrialLoop> masked(TrialLoop& loop, const LiveTrials::Parts& parts) {
+using TellOfMasking = std::function<void(std::string_view state, const std::string& detail)>;
+
+std::optional<MaskedTrialLoop> masked(TrialLoop& loop, const LiveTrials::Parts& parts,
+                                      TellOfMasking tell) {
   if (parts.masking == nullptr) {
     return std::nullopt;
   }
-  return std::make_optional<MaskedTrialLoop>(loop, *parts.masking, masking_level_db_fs(parts),
-                                             parts.live.protocol.masking->is_required);
+  return std::make_optional<MaskedTrialLoop>(
+      loop, *parts.masking,
+      MaskedTrialLoop::Noise{masking_level_db_fs(parts), parts.live.protocol.masking->is_required,
+                             std::move(tell)});
 }
 
 TrialLoop& loop_of(TrialLoop& bare, std::optional<MaskedTrialLoop>& masked) {
@@ -87,7 +92,7 @@ LiveTrials::LiveTrials(const Parts& parts, std::unique_ptr<SessionDevice> device
       device_{std::move(device)},
       recorder_{parts.store},
       live_loop_{device_->device(), parts.settings, parts.live.rig.realtime, recorder_},
-      masked_loop_{masked(live_loop_, parts)},
+      masked_loop_{masked(live_loop_, parts, masking_marker())},
       desk_{{parts.live.protocol, parts.session.row.id, is_excluded(parts),
              [this] { return now_s(); },
              [this](const results::OperatorActionRow& action) {
@@ -108,7 +113,7 @@ LiveTrials::LiveTrials(const Parts& parts, std::unique_ptr<SessionDevice> device
                   console_->note_state(change);
                 }
               }},
-      masked_idle_loop_{masked(idle_loop_, parts)},
+      masked_idle_loop_{masked(idle_loop_, parts, masking_marker())},
       real_plates_{parts.live.protocol,
                    [this](const std::string& task) {
                      const bool is_done = parts_.ask_operator(task);
@@ -129,6 +134,12 @@ LiveTrials::LiveTrials(const Parts& parts, std::unique_ptr<SessionDevice> device
     }
     tap_markers_.add(sample, std::chrono::duration<double>(at - begun_).count(), trial_);
   });
+}
+
+std::function<void(std::string_view, const std::string&)> LiveTrials::masking_marker() {
+  return [this](std::string_view state, const std::string& detail) {
+    parts_.markers.send({parts_.session.row.id, now_s(), std::string{state}, trial_, detail});
+  };
 }
 
 double LiveTrials::now_s() const {

@@ -45,6 +45,7 @@ class LiveTrials {
  private:
   using Clock = std::chrono::steady_clock;
   double now_s() const;  // from the session's begin
+  std::function<void(std::string_view state, const std::string& detail)> masking_marker();
 
   Parts parts_;
   std::unique_ptr<SessionDevice> device_;

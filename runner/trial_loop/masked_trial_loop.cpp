@@ -43,8 +43,14 @@ void add_events(const device::Played& played, double level_db_fs, Clock::time_po
 }
 }  // namespace
 
+void MaskedTrialLoop::tell(bool is_heard, std::string_view state, const std::string& detail) const {
+  if (is_heard && noise_.tell) {
+    noise_.tell(state, detail);
+  }
+}
+
 TrialResult MaskedTrialLoop::run(const Rendered& rendered, const Explore& explore) {
-  if (const auto& loss = player_.played().loss; is_required_ && loss) {
+  if (const auto& loss = player_.played().loss; noise_.is_required && loss) {
     throw device::DeviceError{fmt::format(
         "masking noise is no longer played ({}), and the protocol requires it", loss->why)};
   }
@@ -55,17 +61,19 @@ TrialResult MaskedTrialLoop::run(const Rendered& rendered, const Explore& explor
   {
     const Audible audible{player_};
     has_begun = !player_.played().loss;
+    tell(has_begun, "masking", fmt::format("{:.1f} dB FS", noise_.level_db_fs));
     begun = Clock::now();
     result = inner_.run(rendered, explore);
     played = player_.played();
+    tell(has_begun, "masking_end", "");
   }
   if (has_begun) {
-    add_events(played, level_db_fs_, begun, result.trace.events);
+    add_events(played, noise_.level_db_fs, begun, result.trace.events);
   }
   if (played.loss && !has_warned_) {
     has_warned_ = true;
     warn(fmt::format("masking noise is no longer played ({}); {}", played.loss->why,
-                     is_required_ ? "the session ends, since the protocol requires it"
+                     noise_.is_required ? "the session ends, since the protocol requires it"
                                   : "the session goes on without it"));
   }
   return result;

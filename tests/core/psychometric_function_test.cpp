@@ -88,3 +88,29 @@ TEST_CASE("a psychometric function refuses what it is not defined for", "[core][
   CHECK_THROWS_AS(core::value_at_proportion(logistic, 0.5, 1.0, 1.0, 0.5, 0.0), core::InvalidInput);
   CHECK_THROWS_AS(core::shape_quantile(logistic, 1.0, 1.0, 1.0), core::InvalidInput);
 }
+
+TEST_CASE("a shape's derivatives are the limits of its differences", "[core][psychometric]") {
+  for (const auto& row : core::psychometric_shapes()) {
+    INFO(row.name);
+    constexpr double threshold = 1.3;
+    constexpr double slope = 2.4;
+    constexpr double h = 1e-4;
+    const double on_axis = row.is_logarithmic ? std::log10(threshold) : threshold;
+    const auto value = [&](double x, double along_axis, double along_slope) {
+      const double at = on_axis + along_axis;
+      return core::shape_value(row.shape, x, row.is_logarithmic ? std::pow(10.0, at) : at,
+                               slope * std::exp(along_slope));
+    };
+    for (const double x : {0.2, 0.9, 1.3, 2.0}) {
+      const auto found = core::shape_gradient(row.shape, x, threshold, slope);
+      CHECK(found.value == value(x, 0.0, 0.0));
+      CHECK(found.by_threshold ==
+            Approx((value(x, h, 0.0) - value(x, -h, 0.0)) / (2.0 * h)).epsilon(1e-6).margin(1e-9));
+      CHECK(found.by_log_slope ==
+            Approx((value(x, 0.0, h) - value(x, 0.0, -h)) / (2.0 * h)).epsilon(1e-6).margin(1e-9));
+    }
+  }
+  // far below it, also where a logarithm ends
+  const auto none = core::shape_gradient(core::PsychometricShape::weibull, 0.0, 1.0, 2.0);
+  CHECK((none.value == 0.0 && none.by_threshold == 0.0 && none.by_log_slope == 0.0));
+}

@@ -3,6 +3,7 @@
 
 #include <catch2/catch.hpp>
 #include <cstdlib>
+#include <sstream>
 
 #include "support/alsa_file.hpp"
 #include "support/processes.hpp"
@@ -35,6 +36,20 @@ std::string sql(const TempDirectory& directory, const std::string& query) {
   return testing::run_program({"/usr/bin/sqlite3", (directory / "the_study") + "/study.db", query})
       .standard_output;
 }
+std::string markers_of_masking(const TempDirectory& directory) {
+  std::istringstream lines{testing::contents(directory / "markers.tsv")};
+  std::string kinds;
+  double t_s = 0.0;
+  int trial = 0;
+  std::string kind;
+  std::string detail;
+  while (lines >> t_s >> kind >> trial && std::getline(lines, detail)) {
+    if (kind.starts_with("masking") || kind == "exploring" || kind == "confirmed") {
+      kinds += kind + " ";
+    }
+  }
+  return kinds;
+}
 void hear_with(const std::string& script) {
   setenv("TAPSTUDY_PROGRAM", TAPSTUDY_PROGRAM, 1);
   const auto heard =
@@ -43,6 +58,23 @@ void hear_with(const std::string& script) {
   CHECK(heard.exit_code == 0);
 }
 }  // namespace
+
+TEST_CASE("markers tell when the noise is heard: from before go until after the answer",
+          "[end_to_end][audio][markers]") {
+  const TempDirectory directory;
+  const auto result = testing::tapstudy(
+      session(directory, protocol(directory, "{kind: white, level_db_fs: -20, ramp_s: 0.02}"),
+              fmt::format("{{card: \"{}\"}}\nmarkers: {{lines: markers.tsv}}",
+                          testing::file_card(directory / "played.raw"))),
+      answers);
+  INFO(result.standard_error);
+  REQUIRE(result.exit_code == 0);
+  std::string expected;
+  for (int trial = 0; trial < 8; ++trial) {
+    expected += "masking exploring confirmed masking_end ";
+  }
+  CHECK(markers_of_masking(directory) == expected);
+}
 
 TEST_CASE("every trial of a session has its noise, and says so", "[end_to_end][audio][threads]") {
   const TempDirectory directory;

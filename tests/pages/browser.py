@@ -12,6 +12,7 @@ from selenium.common.exceptions import JavascriptException, StaleElementReferenc
 from selenium.webdriver.chrome.service import Service
 from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.by import By
+from selenium.webdriver.common.actions.wheel_input import ScrollOrigin
 from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.support.ui import Select
 
@@ -229,6 +230,23 @@ def has_number_field(driver):
 def move_by_mouse(driver, way):
     """One setting up or down."""
     find_all(driver, "#screen .move")[2 if way > 0 else 1].click()
+
+
+def turn_wheel(driver, selector, notches):
+    """Of a mouse, away from the hand where positive."""
+    origin = ScrollOrigin.from_element(find(driver, selector))
+    ActionChains(driver).scroll_from_origin(origin, 0, -100 * notches).perform()
+
+
+def press_volume_up(driver):
+    """WebDriver has no name for that key."""
+    driver.execute_script("document.activeElement.dispatchEvent("
+                          "new KeyboardEvent('keydown', {key: 'AudioVolumeUp', bubbles: true, cancelable: true}))")
+
+
+def click_at(driver, element, share):
+    """Where an element is so far from its left end."""
+    ActionChains(driver).move_to_element_with_offset(element, round((share - 0.5) * element.size["width"]), 0).click().perform()
 
 
 def answer_number_by_mouse(driver, number):

@@ -3,6 +3,8 @@ import os
 import re
 import shutil
 import signal
+import sqlite3
+import subprocess
 import sys
 import tempfile
 import time
@@ -297,9 +299,13 @@ class WholeSession(unittest.TestCase):
             browser.answer_number_by_keyboard if by_keys else browser.answer_number_by_mouse, "12.5")
 
     def adjust(self, by_keys):
-        """To the highest of 13 settings, and one back."""
-        up = lambda: browser.press(self.driver, browser.Keys.ARROW_UP) if by_keys else browser.move_by_mouse(self.driver, 1)
-        for _ in range(13):
+        """To the highest of 13 settings, and one back; dials are wheels of a mouse or keys of a keyboard."""
+        up = lambda: browser.press(self.driver, browser.Keys.ARROW_UP) if by_keys else browser.turn_wheel(self.driver, ".moves", 1)
+        if by_keys:
+            browser.press_volume_up(self.driver)
+        else:
+            browser.move_by_mouse(self.driver, 1)
+        for _ in range(12):
             up()
         browser.wait_for_status(self.driver, "B goes no further that way")
         browser.wait_until(self.driver, "B to be felt", lambda: browser.current_screen(self.driver)["felt"] == 1)
@@ -309,6 +315,23 @@ class WholeSession(unittest.TestCase):
             browser.move_by_mouse(self.driver, -1)
         confirm = lambda driver, _: browser.press(driver, browser.Keys.ENTER) if by_keys else browser.find(driver, "#confirm").click()
         self.answer_until_accepted(confirm, None)
+
+    def mark_line(self, by_keys):
+        """To the right of the middle by arrows, left of it by mouse; the first is corrected to the left end."""
+        if browser.find_all(self.driver, ".previous input[type=range]"):
+            browser.find(self.driver, ".previous summary").click()
+            browser.find(self.driver, ".previous input[type=range]").send_keys(browser.Keys.HOME)
+            browser.find(self.driver, ".previous > button").click()
+            browser.wait_for_status(self.driver, "is corrected")
+        browser.find(self.driver, "#confirm").click()
+        browser.wait_for_status(self.driver, "mark the line first")
+        if by_keys:
+            browser.find(self.driver, "h1").click()
+            browser.press(self.driver, browser.Keys.ARROW_RIGHT, browser.Keys.ARROW_RIGHT)
+        else:
+            browser.click_at(self.driver, browser.find(self.driver, ".trial > fieldset input[type=range]"), 0.25)
+        self.check_screen("line")
+        self.answer_until_accepted(lambda driver, _: browser.find(driver, "#confirm").click(), None)
 
     def rank(self, by_keys):
         """C A B by keys, C B A by mouse after a change of mind; the first is corrected to B C A."""
@@ -335,15 +358,15 @@ class WholeSession(unittest.TestCase):
     def test_every_task_is_answered_by_mouse_and_by_keyboard(self):
         self.start("tests/data/every_task.yaml", width=375, height=800)
         alternatives = {"comparison": 2, "same_different": 2, "odd_one_out": 3, "abx": 3, "match_to_sample": 4, "adjustment": 14,
-                        "paired": 2, "ranking": 3, "with_modulus": 2}
+                        "paired": 2, "paired_or_tied": 2, "ranking": 3, "with_modulus": 2}
         shown = set()
-        for number in range(1, 36):
+        for number in range(1, 40):
             screen = self.next_trial(number)
             feels = browser.find_all(self.driver, ".feel")
             by_keys = number % 2 == 0
             for index in range(len(feels)):
                 (browser.feel_by_keyboard if by_keys else browser.feel_by_mouse)(self.driver, index)
-            if len(feels) not in shown or not feels or number > 33:
+            if len(feels) not in shown or not feels or number > 37:
                 self.check_screen(f"task_{number}")
                 shown.add(len(feels))
             if browser.has_number_field(self.driver):
@@ -353,12 +376,15 @@ class WholeSession(unittest.TestCase):
                 self.adjust(by_keys)
             elif browser.find_all(self.driver, ".trial > fieldset .in-order"):
                 self.rank(by_keys)
+            elif browser.find_all(self.driver, ".trial > fieldset input[type=range]"):
+                self.mark_line(by_keys)
             else:
-                self.answer_until_accepted(browser.answer_by_keyboard if by_keys else browser.answer_by_mouse, 0)
+                has_tie = screen["options"][-1:] == ["no difference"]
+                self.answer_until_accepted(browser.answer_by_keyboard if by_keys else browser.answer_by_mouse, 2 if has_tie else 0)
         self.finish()
         counted = dict(self.session.rows(
             "SELECT block, max(position) + 1 FROM alternative JOIN trial USING (trial_id) "
-            "WHERE block NOT IN ('rating', 'magnitude') GROUP BY block"))
+            "WHERE block NOT IN ('rating', 'line', 'magnitude') GROUP BY block"))
         self.assertEqual(counted, alternatives)
         answers = dict(self.session.rows(
             "SELECT block, group_concat(DISTINCT response) FROM response JOIN trial USING (trial_id) GROUP BY block"))
@@ -369,6 +395,12 @@ class WholeSession(unittest.TestCase):
         self.assertEqual(answers["magnitude"], "12.5,13.5")  # and its correction
         self.assertEqual(answers["with_modulus"], "12.5")
         self.assertEqual(answers["rating"], "1")
+        self.assertEqual(answers["paired_or_tied"], "tie")
+        marks = [float(row[0]) for row in self.session.rows(
+            "SELECT response FROM response JOIN trial USING (trial_id) WHERE block = 'line' ORDER BY response_id")]
+        self.assertEqual(marks[1], 0)  # a correction
+        self.assertEqual(max(marks), 0.52)
+        self.assertAlmostEqual(sorted(marks)[1], 0.25, delta=0.04)
         wanted = [list(order) for order in ("CAB", "BCA", "CBA")]  # the first, its correction, the second
         ranked = self.session.rows("SELECT trial_id, response FROM response JOIN trial USING (trial_id) "
                                    "WHERE block = 'ranking' ORDER BY response.rowid")
@@ -430,6 +462,39 @@ class WholeSession(unittest.TestCase):
         self.next_trial(2)
         self.assertEqual(self.session.responses(), [DISCRIMINATION[1]])
 
+    def test_fixations_of_every_kind_are_drawn_if_the_protocol_shows_them(self):
+        self.start("tests/data/adaptive_tracks.yaml", has_webgl=False)
+        self.next_trial(1)
+        self.assertEqual(browser.wait_for_view(self.driver), "svg")
+        drawn = [mark.tag_name for mark in browser.find_all(self.driver, "#view .fixation")]
+        self.assertEqual(drawn, ["circle", "circle", "rect", "rect"])  # disc, ball, side, box
+        side = browser.find(self.driver, "#view rect.fixation")
+        self.assertAlmostEqual(float(side.get_attribute("height")), 300, delta=1)  # mm, the whole side
+        self.shoot("fixations")
+
+    def test_adaptive_tracks_at_the_page_are_those_of_the_terminal_and_outlive_the_program(self):
+        study = "tests/data/adaptive_tracks.yaml"
+        picks = [0, 1, 1, 0, 0, 0, 1, 0, 1, 1]
+        self.start(study, "--seed", "5")
+        for number, pick in enumerate(picks, 1):
+            self.next_trial(number)
+            if number == 6:
+                self.session.kill()
+                self.session = Session(study, "--resume", directory=self.session.directory)
+                self.addCleanup(self.session.close)
+                browser.open_participant(self.driver, self.session.participant)
+                self.next_trial(number)
+            self.answer_until_accepted(browser.answer_by_keyboard if number % 2 else browser.answer_by_mouse, pick)
+        self.finish()
+        typed = Path(tempfile.mkdtemp(prefix="tapstudy_typed_"))
+        self.addCleanup(shutil.rmtree, typed)
+        subprocess.run([PROGRAM, "run", SOURCE / study, "--participant", "P01", "--seed", "5", "--out", typed / "study"],
+                       input="".join(f"= {'AB'[pick]}\n" for pick in picks), text=True, capture_output=True, check=True)
+        levels = ("SELECT number, value, response FROM axis_value JOIN alternative USING (trial_id, position) "
+                  "JOIN trial USING (trial_id) JOIN current_response USING (trial_id) WHERE is_comparison ORDER BY number")
+        at_terminal = sqlite3.connect(typed / "study" / "study.db").execute(levels).fetchall()
+        self.assertEqual(len(at_terminal), 10)
+        self.assertEqual(self.session.rows(levels), at_terminal)
 
     def test_a_browser_that_is_killed_pauses_the_session_and_loses_no_answer(self):
         self.start("protocols/paper/discrimination.yaml")

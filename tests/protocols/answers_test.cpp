@@ -87,3 +87,17 @@ TEST_CASE("a setting is answered by its place, and nothing else is one", "[proto
   }
   CHECK(protocols::expected_answer(answers) == "a number from 1 to 12");
 }
+
+TEST_CASE("a mark on a line is a number from 0 to 1, and nothing else is one",
+          "[protocols][tasks]") {
+  Answers answers{AnswerKind::line};
+  answers.ends = {"soft", "hard"};
+  CHECK(answer_in("0", answers) == "0");
+  CHECK(answer_in(" .370 ", answers) == "0.37");
+  CHECK(answer_in("1.0", answers) == "1");
+  for (const char* const text : {"", "1.01", "-0.1", "+0.1", "1e-1", "nan", "0.5 0.6", "soft"}) {
+    CAPTURE(text);
+    CHECK_FALSE(answer_in(text, answers));
+  }
+  CHECK(protocols::expected_answer(answers) == "a number from 0 (soft) to 1 (hard)");
+}

@@ -17,9 +17,14 @@ OperatorActionRow action(std::int64_t session_id, const std::string& name,
   return {session_id, 1.0, name, std::nullopt, detail};
 }
 
-SessionRow add_participant(Store& store, const std::string& id) {
+bool is_nobody(const std::string& /*id*/) {
+  return false;
+}
+
+SessionRow add_participant(Store& store, const std::string& id,
+                           const Store::IsInSession& is_in_session = is_nobody) {
   SessionRow row = small_study::session(id);
-  const Store::Place place = store.place_of(id, Mode::real);
+  const Store::Place place = store.place_of(id, Mode::real, is_in_session);
   row.participant_index = place.participant_index;
   row.order_index = place.order_index;
   store.add_session(row);
@@ -114,25 +119,22 @@ TEST_CASE("what the journal could not take is made up for, not doubled", "[resul
   CHECK(read_journal(directory.path()).entries.form_answers.size() == 1);
 }
 
-TEST_CASE("who stopped before an answer or was excluded uses no balanced order up, others do",
+TEST_CASE("a balanced order is used up by who has answered, or is in a session, and is not excluded",
           "[results][store]") {
   const testing::TempDirectory directory;
   Store store = Store::open_or_create(directory.path(), small_study::study);
-  const SessionRow stopped = add_participant(store, "P01");
-  const SessionRow ended = add_participant(store, "P02");
-  const SessionRow active = add_participant(store, "P03");
-  const SessionRow excluded = add_participant(store, "P04");
-  const SessionRow resumable = add_participant(store, "P04b");
-  CHECK(excluded.order_index == 3);
-  store.add_trial(small_study::trial(resumable.id, 1, "a"));
-  store.add_session_events({{stopped.id, 1.0, "stopped", {}, {}},
-                            {ended.id, 1.0, "ended", {}, {}},
-                            {resumable.id, 1.0, "stopped", {}, {}},
-                            {excluded.id, 1.0, "ended", {}, {}}});
+  const auto is_p02 = [](const std::string& id) { return id == "P02"; };
+  const SessionRow killed = add_participant(store, "P01", is_p02);
+  const SessionRow active = add_participant(store, "P02", is_p02);
+  CHECK(active.order_index == killed.order_index);  // who was never asked anything keeps no order
+  const SessionRow answered = add_participant(store, "P03", is_p02);
+  CHECK(answered.order_index == 1);
+  store.add_trial(small_study::trial(answered.id, 1, "a"));
+  const SessionRow excluded = add_participant(store, "P04", is_p02);
+  CHECK(excluded.order_index == 2);
+  store.add_trial(small_study::trial(excluded.id, 1, "a"));
   store.add_operator_action(action(excluded.id, "exclude", "asleep"));
-  CHECK(add_participant(store, "P05").order_index == stopped.order_index);
-  CHECK(add_participant(store, "P06").order_index == excluded.order_index);
-  CHECK(add_participant(store, "P07").order_index == 5);
-  CHECK(store.place_of("P01", Mode::real).order_index == stopped.order_index);  // if resumed
-  CHECK(store.place_of("Q01", Mode::pilot).order_index == 0);
+  CHECK(add_participant(store, "P05", is_p02).order_index == 2);
+  CHECK(store.place_of("P03", Mode::real, is_p02).order_index == 1);  // if resumed
+  CHECK(store.place_of("Q01", Mode::pilot, is_p02).order_index == 0);
 }

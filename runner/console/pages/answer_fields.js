@@ -1,7 +1,9 @@
 // What a trial's answers are given by: cards to pick one of the options, a field for a number,
-// buttons that change an alternative, or the options to be put in order. The text that is sent is an
-// option's place, the number, the setting's place, or all options' places in order.
+// buttons that change an alternative, the options to be put in order, or a line to mark. The text that
+// is sent is an option's place, the number, the setting's place, all options' places in order, or the
+// mark from 0 to 1.
 
+import { analogueScale } from "./analogue_scale.js";
 import { el } from "./dom.js";
 import { orderOf } from "./order_field.js";
 import { newGroupName, pickedValue, pickNumber, radioCard } from "./radio_cards.js";
@@ -9,10 +11,11 @@ import { word } from "./words.js";
 
 const placeOf = (index) => String(index + 1);
 
-function optionCards(options) {
-  const group = newGroupName();
-  const cards = options.map((label, index) =>
-    radioCard({ group, value: placeOf(index), label, key: index < 9 ? placeOf(index) : null }));
+function optionCards(options, { group = newGroupName(), from = 0 } = {}) {
+  const cards = options.slice(from).map((label, index) => {
+    const place = placeOf(from + index);
+    return radioCard({ group, value: place, label, key: place.length === 1 ? place : null });
+  });
   return el("div", { className: "options" }, ...cards);
 }
 
@@ -22,10 +25,10 @@ export const cardOf = ({ group, option, label }) => radioCard({
   spokenLabel: `${word("this_one")}: ${label}`,
 });
 
-// isBesideAlternatives: the options stand there already.
-function optionField({ options }, { isBesideAlternatives }) {
+// The first so many options stand beside their alternatives already, in the same group.
+function optionField({ options }, { besideAlternatives, group }) {
   return {
-    body: isBesideAlternatives ? [] : [optionCards(options)],
+    body: besideAlternatives < options.length ? [optionCards(options, { group, from: besideAlternatives })] : [],
     answerIn: pickedValue,
     missing: word("pick_first"),
     press: (element, key) => pickNumber(element, key),
@@ -63,6 +66,24 @@ const moves = [
   { steps: 1, name: "setting_up", key: "ArrowUp" }, { steps: farSteps, name: "setting_far_up", key: "PageUp" },
 ];
 
+// Dials that are keyboards turn the volume; those that are mice turn a wheel.
+const keyNames = { "+": "ArrowUp", "-": "ArrowDown", AudioVolumeUp: "ArrowUp", AudioVolumeDown: "ArrowDown" };
+const pixelsANotch = 100;
+const notchesOf = ({ deltaY, deltaMode }) => (deltaMode === WheelEvent.DOM_DELTA_PIXEL ? deltaY / pixelsANotch : Math.sign(deltaY));
+
+// Calls move with whole notches, positive upwards.
+function onTurn(element, move) {
+  let turned = 0;
+  element.addEventListener("wheel", (event) => {
+    event.preventDefault();
+    turned -= notchesOf(event);
+    const notches = Math.trunc(turned);
+    turned -= notches;
+    if (notches !== 0) move(notches);
+  }, { passive: false });
+  return element;
+}
+
 // Buttons that move an alternative among its settings. Where it stands is not shown: it is to be felt.
 function settingField({ settings }, { label, setting, adjust, say }) {
   let shown = setting;
@@ -88,12 +109,11 @@ function settingField({ settings }, { label, setting, adjust, say }) {
     el("button", { type: "button", className: "move", onclick: () => move(steps), "aria-label": word(`${name}_spoken`, { label }) },
       word(name, { label })));
   return {
-    body: [el("div", { className: "moves" }, ...buttons)],
+    body: [onTurn(el("div", { className: "moves" }, ...buttons), move)],
     answerIn: () => (wanted === shown ? String(shown + 1) : null),
     missing: word("please_wait"),
     press: (element, key) => {
-      const wantedMove = moves.find((one) => one.key === key || (one.name === "setting_up" && key === "+") ||
-        (one.name === "setting_down" && key === "-"));
+      const wantedMove = moves.find((one) => one.key === (keyNames[key] ?? key));
       if (wantedMove) move(wantedMove.steps);
       return Boolean(wantedMove);
     },
@@ -118,14 +138,42 @@ function orderField({ options }) {
   };
 }
 
-const makers = { option: optionField, number: numberField, setting: settingField, order: orderField };
+const lineMoves = { ArrowLeft: -0.01, ArrowDown: -0.01, ArrowRight: 0.01, ArrowUp: 0.01, PageDown: -0.1, PageUp: 0.1 };
+
+// Arrows move the mark from anywhere.
+function lineField({ low, high }, { title }) {
+  const scale = analogueScale({ low, high, label: title });
+  const mark = () => (scale.value() === null ? null : String(scale.value()));
+  return {
+    body: [scale.body],
+    answerIn: mark,
+    missing: word("mark_first"),
+    press: (element, key) => {
+      if (!(key in lineMoves) || document.activeElement === scale.input) return false;
+      scale.input.focus();
+      scale.input.value = Number(scale.input.value) + lineMoves[key];
+      scale.input.dispatchEvent(new Event("input", { bubbles: true }));
+      return true;
+    },
+  };
+}
+
+const makers = { option: optionField, number: numberField, setting: settingField, order: orderField, line: lineField };
 
 // {body, answerIn(element), missing, press(element, key)}, of a setting also update(setting).
-// trial: {isBesideAlternatives, label, setting, adjust, say}
+// trial: {title, besideAlternatives, group, label, setting, adjust, say}
 export const answerField = (answers, trial) => makers[answers.kind](answers, trial);
 
+function otherMark({ low, high }, say, send) {
+  const scale = analogueScale({ low, high, label: word("correct_last") });
+  const give = () => (scale.value() === null ? say(word("mark_first")) : send(String(scale.value())));
+  return [scale.body, el("button", { type: "button", onclick: give }, word("confirm"))];
+}
+
 // Another answer instead of one that was given, sent by a button.
-export function otherAnswer({ kind, options }, say, send) {
+export function otherAnswer(answers, say, send) {
+  const { kind, options } = answers;
+  if (kind === "line") return otherMark(answers, say, send);
   if (kind === "option") {
     const buttons = options.map((label, index) =>
       el("button", { type: "button", onclick: () => send(placeOf(index)) }, label));

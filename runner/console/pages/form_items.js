@@ -1,8 +1,9 @@
 // The kinds of items in a form. Each has an element, value() (null: not answered) and problem(),
 // the words for what is wrong with it or null.
 
+import { analogueScale } from "./analogue_scale.js";
 import { el } from "./dom.js";
-import { anchors, newGroupName, pickedValue, radioCard, steps } from "./radio_cards.js";
+import { newGroupName, pickedValue, radioCard, steps } from "./radio_cards.js";
 import { word } from "./words.js";
 
 function radios(body, valueOf) {
@@ -24,27 +25,7 @@ function singleChoice(item) {
   return radios(el("div", { className: "options" }, ...cards), (index) => item.options[Number(index)].name);
 }
 
-// A visual analogue scale: without a mark until it is touched.
-function scale(item) {
-  const input = el("input", { type: "range", min: 0, max: 1, step: 0.01, value: 0.5, "aria-label": item.question });
-  const body = el("div", { className: "scale" }, input, anchors(item.low ?? "", item.high ?? ""));
-  let isTouched = false;
-  function setTouched(is) {
-    isTouched = is;
-    input.classList.toggle("is-touched", is);
-    if (is) input.setAttribute("aria-valuetext", word("scale_value", { percent: Math.round(100 * input.value), low: item.low ?? "", high: item.high ?? "" }));
-    else input.setAttribute("aria-valuetext", word("scale_untouched"));
-  }
-  input.addEventListener("input", () => setTouched(true));
-  input.addEventListener("pointerup", () => setTouched(true));
-  input.addEventListener("keydown", (event) => { if (event.key === " ") setTouched(true); });
-  setTouched(false);
-  return {
-    body,
-    value: () => (isTouched ? Number(input.value) : null),
-    clear: () => { input.value = 0.5; setTouched(false); },
-  };
-}
+const scale = (item) => analogueScale({ low: item.low ?? "", high: item.high ?? "", label: item.question });
 
 function rangeProblem(item, value) {
   const { min, max } = item;

@@ -51,16 +51,18 @@ function surfaceShape({ points_m: coordinates, triangles: indices }) {
   return { ...boundsOf(points), triangles, heightAt: (x, y) => heightOnSurface(triangles, x, y) };
 }
 
-// Where a fixation is seen from above, as a disc: centre and radius.
-function fixationDisc({ kind, at_m: at, radius_m: radius, low_m: low, high_m: high }, smallest) {
-  if (kind === "box") {
-    const half = Math.min(high[0] - low[0], high[1] - low[1]) / 2;
-    return { x: (low[0] + high[0]) / 2, y: (low[1] + high[1]) / 2, radius: Math.max(half, smallest) };
-  }
-  return { x: at[0], y: at[1], radius: Math.max(radius ?? 0, smallest) };
+// Where a fixation is seen from above: a disc (centre and radius) or a rectangle (centre, width and depth).
+function fixationMark({ kind, at_m: at, radius_m: radius, low_m: low, high_m: high }, smallest) {
+  if (kind !== "box") return { x: at[0], y: at[1], radius: Math.max(radius ?? 0, smallest) };
+  return {
+    x: (low[0] + high[0]) / 2,
+    y: (low[1] + high[1]) / 2,
+    width: Math.max(high[0] - low[0], 2 * smallest),
+    depth: Math.max(high[1] - low[1], 2 * smallest),
+  };
 }
 
-// {low, high, heightAt(x, y), extent, headroom, triangles?, points: [[x, y, z]…], fixations: [{x, y, z, radius}…]}
+// {low, high, heightAt(x, y), extent, headroom, triangles?, points: [[x, y, z]…], fixations: [{x, y, z, radius} or {x, y, z, width, depth}…]}
 export function shapeOf(scene) {
   const shape = scene.kind === "surface" ? surfaceShape(scene) : boxShape(scene);
   const extent = Math.max(shape.high[0] - shape.low[0], shape.high[1] - shape.low[1]);
@@ -71,7 +73,7 @@ export function shapeOf(scene) {
     headroom: headroomShare * extent,
     points: (scene.tapping_points_m ?? []).map(([x, y, z]) => [x, y, z ?? heightOr(x, y)]),
     fixations: (scene.fixations ?? [])
-      .map((fixation) => fixationDisc(fixation, 0.012 * extent))
-      .map((disc) => ({ ...disc, z: heightOr(disc.x, disc.y) })),
+      .map((fixation) => fixationMark(fixation, 0.012 * extent))
+      .map((mark) => ({ ...mark, z: heightOr(mark.x, mark.y) })),
   };
 }

@@ -28,17 +28,16 @@ function hint(labels, { kind, modulus }) {
     el("span", { className: "keys" }, word("feel_keys", { keys }), kind === "setting" ? ` ${word("setting_keys", { label: labels.at(-1) })}` : ""));
 }
 
-function alternativeCards(labels, { kind, options }, makeCard) {
-  const group = newGroupName();
+function alternativeCards(labels, { kind, options }, group, makeCard) {
   const optionOf = (label) => (kind === "option" ? options.indexOf(label) : -1);
   const cards = labels.map((label, index) => makeCard({ label, index, option: optionOf(label), group }));
   return el("div", { className: "alternatives" }, ...cards);
 }
 
 // Freely: a button to feel each of them.
-function freely({ trial, feel }) {
+function freely({ trial, group, feel }) {
   const labels = trial.alternatives;
-  const cards = alternativeCards(labels, trial.answers, (card) => alternativeCard({ ...card, feel }));
+  const cards = alternativeCards(labels, trial.answers, group, (card) => alternativeCard({ ...card, feel }));
   return { body: [hint(labels, trial.answers), cards], show: showCurrent };
 }
 
@@ -49,8 +48,8 @@ function showCurrent(element, { current }) {
 }
 
 // One after the other, by themselves.
-function inTurn({ trial, replay }) {
-  const cards = alternativeCards(trial.alternatives, trial.answers, intervalCard);
+function inTurn({ trial, group, replay }) {
+  const cards = alternativeCards(trial.alternatives, trial.answers, group, intervalCard);
   return { body: [goSignal(replay), cards], show: showInterval };
 }
 
@@ -72,9 +71,11 @@ export function trialScreen({ trial }, { send, entered, feel, adjust, replay, co
   let { current } = trial;
   const feelOther = (index) => { if (index !== current) feel(index); };
   const { answers } = trial;
-  const presented = trial.intervals ? inTurn({ trial, replay }) : freely({ trial, feel: feelOther });
+  const group = newGroupName();
+  const presented = trial.intervals ? inTurn({ trial, group, replay }) : freely({ trial, group, feel: feelOther });
   const field = answerField(answers, {
-    isBesideAlternatives: labels.includes(answers.options[0]), label: labels.at(-1), setting: trial.setting, adjust, say,
+    title: trial.question, besideAlternatives: answers.options.filter((option) => labels.includes(option)).length,
+    group, label: labels.at(-1), setting: trial.setting, adjust, say,
   });
   const asked = question({
     title: trial.question,

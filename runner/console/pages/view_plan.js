@@ -21,6 +21,13 @@ function circle(className, x, y, radius) {
   return svg("circle", { class: className, cx: mm(x), cy: mm(-y), r: mm(radius) });
 }
 
+function fixationMark({ x, y, radius, width, depth }) {
+  if (radius !== undefined) return circle("fixation", x, y, radius);
+  return svg("rect", {
+    class: "fixation", x: mm(x - width / 2), y: mm(-y - depth / 2), width: mm(width), height: mm(depth),
+  });
+}
+
 export class PlanPainter {
   constructor(frame) {
     this.root = svg("svg", { class: "plan", "aria-hidden": "true", focusable: "false" });
@@ -33,7 +40,7 @@ export class PlanPainter {
     this.dot = circle("pointer", 0, 0, 0.018 * shape.extent);
     this.root.replaceChildren(
       outline(scene, shape),
-      ...shape.fixations.map(({ x, y, radius }) => circle("fixation", x, y, radius)),
+      ...shape.fixations.map(fixationMark),
       ...shape.points.map(([x, y]) => circle("ring", x, y, 0.02 * shape.extent)),
       ...this.#heightBar(heightLabel),
       this.dot,

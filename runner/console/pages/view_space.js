@@ -44,10 +44,15 @@ function onSurface(geometry, material, [x, y, z], order) {
   return mesh;
 }
 
+const fixationGeometry = ({ radius, width, depth }) => (radius === undefined
+  ? new THREE.PlaneBufferGeometry(width, depth)
+  : new THREE.CircleBufferGeometry(radius, 32));
+
 function marks(shape) {
   const group = new THREE.Group();
-  for (const { x, y, z, radius } of shape.fixations) {
-    group.add(onSurface(new THREE.CircleBufferGeometry(radius, 32), flat("--fixation"), [x, y, z], 1));
+  for (const fixation of shape.fixations) {
+    const { x, y, z } = fixation;
+    group.add(onSurface(fixationGeometry(fixation), flat("--fixation"), [x, y, z], 1));
   }
   const outer = 0.028 * shape.extent;
   for (const point of shape.points) {

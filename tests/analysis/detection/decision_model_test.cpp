@@ -45,12 +45,14 @@ double simulated_oddity(double d_prime, int alternatives, int trials) {
 }
 }  // namespace
 
-TEST_CASE("d' of proportions correct is that of psyphy", "[analysis][detection]") {
-  // psyphy finds roots to 1.2e-4 unless uniroot is told otherwise
+TEST_CASE("d' of proportions correct is that of psyphy, as far as its integrals go",
+          "[analysis][detection]") {
+  // psyphy finds roots, and integrates, to 1.2e-4 unless told otherwise
   const std::vector<double> expected = r_numbers(R"(
 suppressMessages(library(psyphy))
 exactly <- function(f) {
-  environment(f) <- list2env(list(uniroot = function(...) stats::uniroot(..., tol = 1e-13)),
+  environment(f) <- list2env(list(uniroot = function(...) stats::uniroot(..., tol = 1e-15),
+                                  integrate = function(...) stats::integrate(..., rel.tol = 1e-12, subdivisions = 2000)),
                              parent = environment(f))
   f
 }
@@ -67,7 +69,7 @@ for (p in seq(0.52, 0.99, length.out = 9)) out(dprime.SD(zdiff = 2 * qnorm(p), m
     for (int i = 0; i < 9; ++i) {
       const double proportion = low + (0.99 - low) * i / 8.0;
       INFO("model " << static_cast<int>(task.model) << " at " << proportion);
-      CHECK(analysis::d_prime_of(task, proportion) == Approx(expected[next++]).epsilon(1e-7));
+      CHECK(analysis::d_prime_of(task, proportion) == Approx(expected[next++]).epsilon(1e-9));
     }
   };
   for (const int m : {2, 3, 4, 8}) {
@@ -88,7 +90,7 @@ TEST_CASE("with no sensitivity a proportion is chance, and d' is the inverse of 
     for (const double d_prime : {0.05, 0.4, 1.0, 2.3, 4.0}) {
       const double proportion = analysis::proportion_correct(task, d_prime);
       CHECK(proportion > before);
-      CHECK(analysis::d_prime_of(task, proportion) == Approx(d_prime).epsilon(1e-6));
+      CHECK(analysis::d_prime_of(task, proportion) == Approx(d_prime).epsilon(1e-9));
       before = proportion;
     }
   }

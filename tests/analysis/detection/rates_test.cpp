@@ -31,7 +31,7 @@ for (f in c(0.05, 0.2, 0.4)) for (h in c(0.5, 0.7, 0.95)) out(
       for (const auto by :
            {analysis::same_different_differencing, analysis::same_different_independent,
             analysis::abx_differencing_by_rates, analysis::abx_independent_by_rates}) {
-        CHECK(by(hits, false_alarms).d_prime == Approx(expected[next++]).epsilon(1e-7));
+        CHECK(by(hits, false_alarms).d_prime == Approx(expected[next++]).epsilon(1e-9));
         CHECK(by(false_alarms, hits).d_prime == 0.0);
         CHECK(by(false_alarms, hits).is_below_chance);
       }

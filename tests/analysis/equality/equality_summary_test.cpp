@@ -62,7 +62,7 @@ TEST_CASE("the point of equality and the just noticeable difference of an observ
     const auto& row = json["participants"][0];
     REQUIRE(row["constant_error"].is_number());
     CHECK(row["equality"].get<double>() ==
-          Approx(standard * (1.0 + row["constant_error"].get<double>())));
+          Approx(standard * (1.0 + row["constant_error"].get<double>())).epsilon(1e-9));
     held_equality += row["constant_error_low"] <= 0.05 && row["constant_error_high"] >= 0.05;
     held_jnd += row["jnd_low"] <= 0.12 && row["jnd_high"] >= 0.12;
   }

@@ -200,13 +200,13 @@ TEST_CASE("contrasts, learning and medians are those that R computes from the an
   const auto& contrast = json["contrasts"][0];
   CHECK(contrast["of"] == "material");
   CHECK(contrast["difference"].get<double>() == Approx(r[0]).margin(1e-12));
-  CHECK(contrast["difference_low"].get<double>() == Approx(r[1]));
-  CHECK(contrast["difference_high"].get<double>() == Approx(r[2]));
-  CHECK(contrast["p"].get<double>() == Approx(r[3]));
+  CHECK(contrast["difference_low"].get<double>() == Approx(r[1]).epsilon(1e-9));
+  CHECK(contrast["difference_high"].get<double>() == Approx(r[2]).epsilon(1e-9));
+  CHECK(contrast["p"].get<double>() == Approx(r[3]).epsilon(1e-9));
   CHECK(json["learning"][0]["change"].get<double>() == Approx(r[4]).margin(1e-12));
-  CHECK(json["learning"][0]["p"].get<double>() == Approx(r[5]));
-  CHECK(json["response_times"][0]["mean_median_s"].get<double>() == Approx(r[6]));
-  CHECK(json["response_times"][0]["quartile_low_s"].get<double>() == Approx(r[7]));
+  CHECK(json["learning"][0]["p"].get<double>() == Approx(r[5]).epsilon(1e-9));
+  CHECK(json["response_times"][0]["mean_median_s"].get<double>() == Approx(r[6]).epsilon(1e-9));
+  CHECK(json["response_times"][0]["quartile_low_s"].get<double>() == Approx(r[7]).epsilon(1e-9));
 }
 
 TEST_CASE("who is presented techniques that differ has contrasts of them",

@@ -75,9 +75,9 @@ TEST_CASE("the report's scales are those of the counted preferences and hold the
   for (std::size_t i = 0; i < 4; ++i) {
     const auto& row = json["scale"][i];
     const auto item = static_cast<Eigen::Index>(i);
-    CHECK(row["bradley_terry"].get<double>() == Approx(scale.scale.values[item]));
-    CHECK(row["bradley_terry_low"].get<double>() == Approx(scale.scale.intervals[i].low));
-    CHECK(row["thurstone_high"].get<double>() == Approx(thurstone.intervals[i].high));
+    CHECK(row["bradley_terry"].get<double>() == Approx(scale.scale.values[item]).epsilon(1e-9));
+    CHECK(row["bradley_terry_low"].get<double>() == Approx(scale.scale.intervals[i].low).epsilon(1e-9));
+    CHECK(row["thurstone_high"].get<double>() == Approx(thurstone.intervals[i].high).epsilon(1e-9));
     CHECK(row["bradley_terry"].get<double>() ==
           Approx(0.9 - 0.6 * static_cast<double>(i)).margin(0.25));
     CHECK(row["preferred"] == counts.wins.row(item).sum());
@@ -162,4 +162,48 @@ TEST_CASE("comparisons take two stimuli of the block and one of them as the answ
   neither.response = "both";
   CHECK_THROWS_AS(reported(statistic, design_of(2), {neither}), core::InvalidInput);
   CHECK_THAT(reported(statistic, design_of(2), {}).text, Contains("There are no answers"));
+}
+
+TEST_CASE("ties are counted apart, and their nu is that of R's log-linear fit",
+          "[analysis][preferences]") {
+  BlockDesign design = design_of(3);
+  design.has_ties = true;
+  std::vector<results::AnswerRow> answers = judges(8, 4, 7);
+  std::erase_if(answers, [](const results::AnswerRow& answer) {
+    return std::ranges::any_of(answer.alternatives, [](const results::AlternativeRow& alternative) {
+      return alternative.stimulus == "glass";
+    });
+  });
+  for (std::size_t i = 0; i < answers.size(); i += 3) {
+    answers[i].response = "tie";
+  }
+  const auto json = reported(statistic, design, answers).json;
+  const auto ties = static_cast<int>((answers.size() + 2) / 3);
+  CHECK(json["ties"][0]["tied"] == ties);
+  CHECK(json["ties"][0]["tied_of"] == answers.size());
+  // as a Poisson model of counts: pair, abilities, ties (Davidson 1970)
+  std::string counts;
+  const auto count_of = [&](const auto& is_counted) {
+    counts += (counts.empty() ? "" : ",") + std::to_string(std::ranges::count_if(answers, is_counted));
+  };
+  for (const auto& [i, j] : {std::pair{0, 1}, {0, 2}, {1, 2}}) {
+    const auto is_of_pair = [&, i = i, j = j](const results::AnswerRow& answer) {
+      const std::string& a = answer.alternatives[0].stimulus;
+      const std::string& b = answer.alternatives[1].stimulus;
+      return (a == names[i] && b == names[j]) || (a == names[j] && b == names[i]);
+    };
+    for (const std::string& response : {names[i], names[j], std::string{"tie"}}) {
+      count_of([&](const results::AnswerRow& answer) {
+        return is_of_pair(answer) && answer.response == response;
+      });
+    }
+  }
+  const auto r = r_numbers("n <- c(" + counts +
+                           "); pair <- gl(3, 3); tie <- rep(c(0, 0, 1), 3);"
+                           "a <- c(1,0,.5, 1,0,.5, 0,0,0); b <- c(0,1,.5, 0,0,0, 1,0,.5);"
+                           "out(exp(coef(glm(n ~ pair + a + b + tie, poisson,"
+                           "control = list(epsilon = 1e-14)))[['tie']]))");
+  CHECK(json["ties"][0]["nu"].get<double>() == Approx(r[0]).epsilon(1e-9));
+  design.has_ties = false;
+  CHECK_THROWS_WITH(reported(statistic, design, answers), Contains("neither of the two stimuli"));
 }

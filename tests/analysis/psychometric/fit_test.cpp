@@ -28,6 +28,7 @@ TEST_CASE("without guesses and lapses a psychometric function is R's generalised
 control <- glm.control(epsilon = 1e-14, maxit = 100)
 tell <- function(u, link, to_slope, to_value) {
   g <- glm(cbind(k, n - k) ~ u, family = binomial(link), control = control)
+  for (more in 1:30) g <- glm(cbind(k, n - k) ~ u, family = binomial(link), control = control, start = coef(g))
   a <- coef(g)[[1]]; b <- coef(g)[[2]]; V <- vcov(g); d <- c(-1 / b, a / b^2)
   out(to_value(-a / b), b * to_slope, sqrt(d %*% V %*% d), sqrt(V[2, 2]) * to_slope, deviance(g))
 }
@@ -46,11 +47,11 @@ tell(x, 'cloglog', 1 / log(10), identity)
     INFO(core::row_of(shape).name);
     const auto fit = analysis::fit_psychometric({shape, {0.0, 0.0}, {0.0, 0.0}}, yes_no_levels);
     REQUIRE(fit.curve);
-    CHECK(fit.curve->threshold == Approx(expected[next++]).epsilon(1e-6));
-    CHECK(fit.curve->slope == Approx(expected[next++]).epsilon(1e-6));
-    CHECK(fit.curve->threshold_standard_error == Approx(expected[next++]).epsilon(1e-5));
-    CHECK(fit.curve->slope_standard_error == Approx(expected[next++]).epsilon(1e-5));
-    CHECK(fit.deviance == Approx(expected[next++]).epsilon(1e-8));
+    CHECK(fit.curve->threshold == Approx(expected[next++]).epsilon(1e-9));
+    CHECK(fit.curve->slope == Approx(expected[next++]).epsilon(1e-9));
+    CHECK(fit.curve->threshold_standard_error == Approx(expected[next++]).epsilon(1e-9));
+    CHECK(fit.curve->slope_standard_error == Approx(expected[next++]).epsilon(1e-9));
+    CHECK(fit.deviance == Approx(expected[next++]).epsilon(1e-9));
     CHECK(fit.free_parameters == 2);
   }
 }
@@ -62,6 +63,7 @@ suppressMessages(library(psyphy))
 control <- glm.control(epsilon = 1e-14, maxit = 200)
 tell <- function(u, link, to_slope, to_value) {
   g <- glm(cbind(k, n - k) ~ u, family = binomial(link), control = control)
+  for (more in 1:100) g <- glm(cbind(k, n - k) ~ u, family = binomial(link), control = control, start = coef(g))
   out(to_value(-coef(g)[[1]] / coef(g)[[2]]), coef(g)[[2]] * to_slope, deviance(g))
 }
 tell(x, mafc.logit(2), 1, identity)
@@ -79,10 +81,10 @@ tell(x, mafc.logit(4), 1, identity)
     const bool is_inside = expected[next] >= 0.5;  // the lowest level
     CHECK((fit.outcome == FitOutcome::fitted) == is_inside);
     CHECK(analysis::from_axis(shape, fit.maximum.at[analysis::threshold_at]) ==
-          Approx(expected[next++]).epsilon(1e-5));
+          Approx(expected[next++]).epsilon(1e-9));
     CHECK(std::exp(fit.maximum.at[analysis::log_slope_at]) ==
-          Approx(expected[next++]).epsilon(1e-5));
-    CHECK(fit.deviance == Approx(expected[next++]).epsilon(1e-8));
+          Approx(expected[next++]).epsilon(1e-9));
+    CHECK(fit.deviance == Approx(expected[next++]).epsilon(1e-9));
   }
 }
 
@@ -97,11 +99,24 @@ minus <- function(q, guess) {
   p <- g + (1 - g - q[3]) * plogis(exp(q[2]) * (x - q[1]))
   -sum(dbinom(k, n, p, log = TRUE)) + sum(lchoose(n, k))
 }
+gradient <- function(q, guess) {
+  if (guess) g <- q[4] else g <- 0
+  e <- exp(q[2]); f <- plogis(e * (x - q[1])); p <- g + (1 - g - q[3]) * f
+  steep <- (1 - g - q[3]) * f * (1 - f) * e
+  of_p <- -(k / p - (n - k) / (1 - p))
+  c(sum(of_p * -steep), sum(of_p * steep * (x - q[1])), sum(of_p * -f), if (guess) sum(of_p * (1 - f)) else 0)
+}
 best <- function(guess) {
   fits <- lapply(list(c(3, 0, .02, .02), c(4, .5, .05, .05), c(3.5, 1, .01, .01)), function(q)
-    optim(q, minus, guess = guess, method = 'L-BFGS-B', lower = c(1, -1, 1e-6, 1e-6),
-          upper = c(8, 2, 0.1, 0.1), control = list(factr = 10, maxit = 1000)))
+    optim(q, minus, gradient, guess = guess, method = 'L-BFGS-B', lower = c(1, -1, 1e-6, 1e-6),
+          upper = c(8, 2, 0.1, 0.1), control = list(factr = 1, pgtol = 0, maxit = 1000)))
   b <- fits[[which.min(sapply(fits, `[[`, 'value'))]]
+  free <- if (guess) 1:4 else 1:3
+  for (step in 1:8) {  # values tell the place to seven digits, the score to all
+    by <- function(i, h) (gradient(b$par + h * (seq_along(b$par) == i), guess))[free]
+    H <- sapply(free, function(i) (by(i, 1e-6) - by(i, -1e-6)) / 2e-6)
+    b$par[free] <- b$par[free] - solve(H, gradient(b$par, guess)[free])
+  }
   out(-b$value, b$par[1], exp(b$par[2]), b$par[3], if (guess) b$par[4] else 0)
 }
 best(FALSE); best(TRUE)
@@ -113,11 +128,11 @@ best(FALSE); best(TRUE)
         {PsychometricShape::logistic, {0.0, max_guess}, {0.0, 0.1}}, levels);
     REQUIRE(fit.curve);
     CHECK(fit.maximum.log_likelihood >= expected[next] - 1e-7);
-    CHECK(fit.maximum.log_likelihood == Approx(expected[next++]).margin(1e-4));
-    CHECK(fit.curve->threshold == Approx(expected[next++]).epsilon(1e-3));
-    CHECK(fit.curve->slope == Approx(expected[next++]).epsilon(3e-3));
-    CHECK(fit.curve->lapse == Approx(expected[next++]).margin(1e-3));
-    CHECK(fit.curve->guess == Approx(expected[next++]).margin(1e-3));
+    CHECK(fit.maximum.log_likelihood == Approx(expected[next++]).margin(1e-9));
+    CHECK(fit.curve->threshold == Approx(expected[next++]).epsilon(1e-9));
+    CHECK(fit.curve->slope == Approx(expected[next++]).epsilon(1e-9));
+    CHECK(fit.curve->lapse == Approx(expected[next++]).margin(1e-9));
+    CHECK(fit.curve->guess == Approx(expected[next++]).margin(1e-9));
     CHECK(fit.free_parameters == (max_guess > 0.0 ? 4 : 3));
   }
 }
@@ -129,13 +144,13 @@ TEST_CASE("answers in proportions that a function gives are fitted by that funct
     std::vector<Level> levels;
     for (const double x : {0.4, 0.7, 1.0, 1.4, 1.8, 2.3}) {
       const double p = core::proportion(row.shape, x, 1.1, 2.5, 0.5, 0.03);
-      levels.push_back({x, {std::llround(1e9 * p), 1'000'000'000}});
+      levels.push_back({x, {std::llround(1e12 * p), 1'000'000'000'000}});
     }
     const auto fit = analysis::fit_psychometric({row.shape, {0.5, 0.5}, {0.0, 0.1}}, levels);
     REQUIRE(fit.curve);
-    CHECK(fit.curve->threshold == Approx(1.1).epsilon(1e-4));
-    CHECK(fit.curve->slope == Approx(2.5).epsilon(1e-3));
-    CHECK(fit.curve->lapse == Approx(0.03).margin(1e-4));
+    CHECK(fit.curve->threshold == Approx(1.1).epsilon(1e-9));
+    CHECK(fit.curve->slope == Approx(2.5).epsilon(1e-9));
+    CHECK(fit.curve->lapse == Approx(0.03).margin(1e-9));
   }
 }
 

@@ -34,10 +34,10 @@ for (link in c('logit', 'probit')) {
   std::size_t next = 0;
   for (const auto shape : {PsychometricShape::logistic, PsychometricShape::cumulative_gaussian}) {
     const auto ours = analysis::profile_intervals({shape, {0.0, 0.0}, {0.0, 0.0}}, yes_no_levels);
-    CHECK(ours.threshold.low == Approx(expected[next++]).epsilon(1e-6));
-    CHECK(ours.threshold.high == Approx(expected[next++]).epsilon(1e-6));
-    CHECK(ours.slope.low == Approx(expected[next++]).epsilon(1e-6));
-    CHECK(ours.slope.high == Approx(expected[next++]).epsilon(1e-6));
+    CHECK(ours.threshold.low == Approx(expected[next++]).epsilon(1e-9));
+    CHECK(ours.threshold.high == Approx(expected[next++]).epsilon(1e-9));
+    CHECK(ours.slope.low == Approx(expected[next++]).epsilon(1e-9));
+    CHECK(ours.slope.high == Approx(expected[next++]).epsilon(1e-9));
   }
 }
 
@@ -97,7 +97,7 @@ TEST_CASE("a bad fit has a small p, an exact one a p of 1", "[analysis][psychome
   std::vector<Level> uneven = yes_no_levels;
   uneven[2].answers.successes = 36;
   uneven[3].answers.successes = 12;
-  CHECK(analysis::deviance_test(logistic, uneven, 199, 3).p == Approx(1.0 / 200.0));
+  CHECK(analysis::deviance_test(logistic, uneven, 199, 3).p == Approx(1.0 / 200.0).epsilon(1e-9));
   const std::vector<Level> two{{1.0, {10, 40}}, {2.0, {30, 40}}};
   CHECK(analysis::deviance_test(logistic, two, 199, 3).p == 1.0);
 }

@@ -56,7 +56,7 @@ for eta in (0.01, 0.2, 0.7):
                                      {analysis::Proportion{7, 10}, 0.6},
                                      {analysis::Proportion{40, 40}, 0.99}}) {
       CHECK(analysis::beta_binomial_log_likelihood(answers, p, eta) ==
-            Approx(expected[next++]).epsilon(1e-7));
+            Approx(expected[next++]).epsilon(1e-9));
     }
   }
   CHECK(analysis::beta_binomial_log_likelihood({7, 10}, 0.6, 0.0) ==
@@ -70,15 +70,15 @@ TEST_CASE("priors are even within the levels' range and half as high midway to w
   for (const double inside : {10.0, 13.0, 18.0}) {
     CHECK(analysis::log_prior_of_position(inside, range) == 0.0);
   }
-  CHECK(analysis::log_prior_of_position(8.0, range) == Approx(half));
-  CHECK(analysis::log_prior_of_position(20.0, range) == Approx(half));
+  CHECK(analysis::log_prior_of_position(8.0, range) == Approx(half).epsilon(1e-9));
+  CHECK(analysis::log_prior_of_position(20.0, range) == Approx(half).epsilon(1e-9));
   CHECK(std::isinf(analysis::log_prior_of_position(6.0, range)));
   CHECK(std::isinf(analysis::log_prior_of_position(22.5, range)));
   for (const double inside : {2.0, 5.0, 8.0}) {
     CHECK(analysis::log_prior_of_width(inside, range) == 0.0);
   }
-  CHECK(analysis::log_prior_of_width(1.5, range) == Approx(half));
-  CHECK(analysis::log_prior_of_width(16.0, range) == Approx(half));
+  CHECK(analysis::log_prior_of_width(1.5, range) == Approx(half).epsilon(1e-9));
+  CHECK(analysis::log_prior_of_width(16.0, range) == Approx(half).epsilon(1e-9));
   CHECK(std::isinf(analysis::log_prior_of_width(0.9, range)));
   CHECK(std::isinf(analysis::log_prior_of_width(24.0, range)));
 }
@@ -221,7 +221,7 @@ TEST_CASE("the area below a posterior's density is 1, and 0.95 within its interv
     area += marginal.density[i] * cell;
     within += marginal.density[i] * std::max(0.0, overlap);
   }
-  CHECK(area == Approx(1.0));
+  CHECK(area == Approx(1.0).epsilon(1e-9));
   CHECK(within == Approx(0.95).margin(1e-9));
   CHECK(posterior.estimates->guess.density.empty());  // known
 }

@@ -85,9 +85,9 @@ out(len(scores), len(rows) - len(scores), np.mean(scores), ci[0], ci[1],
 )py");
     CHECK(row.at("scored") == expected[0]);
     CHECK(row.at("incomplete") == expected[1]);
-    CHECK(row.at("mean").get<double>() == Approx(expected[2]));
-    CHECK(row.at("mean_low").get<double>() == Approx(expected[3]));
-    CHECK(row.at("mean_high").get<double>() == Approx(expected[4]));
+    CHECK(row.at("mean").get<double>() == Approx(expected[2]).epsilon(1e-9));
+    CHECK(row.at("mean_low").get<double>() == Approx(expected[3]).epsilon(1e-9));
+    CHECK(row.at("mean_high").get<double>() == Approx(expected[4]).epsilon(1e-9));
     CHECK(row.at("bootstrap_low").get<double>() == Approx(expected[5]).margin(1.0));
     CHECK(row.at("bootstrap_high").get<double>() == Approx(expected[6]).margin(1.0));
   }
@@ -119,9 +119,9 @@ TEST_CASE("quartiles of an item are numpy's, and every answer is counted once",
     }
     const auto expected =
         testing::python_numbers("out(np.quantile([" + numbers + "], [0.25, 0.5, 0.75]))");
-    CHECK(row.at("quartile_low").get<double>() == Approx(expected[0]));
-    CHECK(row.at("median").get<double>() == Approx(expected[1]));
-    CHECK(row.at("quartile_high").get<double>() == Approx(expected[2]));
+    CHECK(row.at("quartile_low").get<double>() == Approx(expected[0]).epsilon(1e-9));
+    CHECK(row.at("median").get<double>() == Approx(expected[1]).epsilon(1e-9));
+    CHECK(row.at("quartile_high").get<double>() == Approx(expected[2]).epsilon(1e-9));
   }
   std::map<std::string, int> counted;
   for (const auto& row : json.at("questionnaire_answers")) {

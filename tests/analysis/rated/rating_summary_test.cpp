@@ -70,12 +70,12 @@ TEST_CASE("ratings are tested as R tests the participants' medians", "[analysis]
                 "p <- sapply(list(c(1, 2), c(1, 3), c(2, 3)), function(k) "
                 "exact_signed_rank_p(m[, k[1]] - m[, k[2]])); out(p, p.adjust(p, 'holm'))");
   const auto& friedman = json["friedman"][0];
-  CHECK(friedman["chi_squared"].get<double>() == Approx(r[0]));
-  CHECK(friedman["p"].get<double>() == Approx(r[1]));
-  CHECK(friedman["kendalls_w"].get<double>() == Approx(r[2]));
+  CHECK(friedman["chi_squared"].get<double>() == Approx(r[0]).epsilon(1e-9));
+  CHECK(friedman["p"].get<double>() == Approx(r[1]).epsilon(1e-9));
+  CHECK(friedman["kendalls_w"].get<double>() == Approx(r[2]).epsilon(1e-9));
   for (std::size_t i = 0; i < 3; ++i) {
-    CHECK(json["pairs"][i]["p"].get<double>() == Approx(r[3 + i]));
-    CHECK(json["pairs"][i]["p_holm"].get<double>() == Approx(r[6 + i]));
+    CHECK(json["pairs"][i]["p"].get<double>() == Approx(r[3 + i]).epsilon(1e-9));
+    CHECK(json["pairs"][i]["p_holm"].get<double>() == Approx(r[6 + i]).epsilon(1e-9));
   }
 }
 
@@ -83,9 +83,9 @@ TEST_CASE("ratings are described by R's quartiles and their counts", "[analysis]
   const auto json = reported(statistic, design_of(), all_answers()).json;
   const auto r = r_numbers("out(quantile(c(6,7,5,5,7,6,4,6,7,7,5,6), c(.5, .25, .75)))");
   const auto& steel = json["stimuli"][0];
-  CHECK(steel["median"].get<double>() == Approx(r[0]));
-  CHECK(steel["quartile_low"].get<double>() == Approx(r[1]));
-  CHECK(steel["quartile_high"].get<double>() == Approx(r[2]));
+  CHECK(steel["median"].get<double>() == Approx(r[0]).epsilon(1e-9));
+  CHECK(steel["quartile_low"].get<double>() == Approx(r[1]).epsilon(1e-9));
+  CHECK(steel["quartile_high"].get<double>() == Approx(r[2]).epsilon(1e-9));
   CHECK(steel["rated_5"] == 3);
   CHECK(steel["rated_7"] == 4);
   CHECK(steel["rated_1"] == 0);
@@ -99,7 +99,7 @@ TEST_CASE("a claim to be rated highest is tested against the stimulus that conte
   const auto& result = formats.json["hypotheses"][0];
   // medians of steel are above those of wood in five of six, of rubber in all six
   const auto r = r_numbers("out(binom.test(5, 6, 0.5, 'greater')$p.value)");
-  CHECK(result["p"].get<double>() == Approx(r[0]));
+  CHECK(result["p"].get<double>() == Approx(r[0]).epsilon(1e-9));
   CHECK(result["observed"]["successes"] == 5);
   CHECK_THAT(result["test"].get<std::string>(), Contains("of wood"));
   CHECK(testing::longest_line(formats.text) <= 100);
@@ -137,4 +137,19 @@ TEST_CASE("a rating is a step of the scale", "[analysis][rated]") {
   CHECK_THROWS_AS(reported(statistic, design_of(), {answer_of("a", "gold", "1")}),
                   core::InvalidInput);
   CHECK_THROWS_AS(reported(statistic, design_of(1), {}), core::InvalidInput);
+}
+
+TEST_CASE("marks on a line are tested by R's Friedman test as they are, and have no counts",
+          "[analysis][rated]") {
+  std::vector<results::AnswerRow> answers = all_answers();
+  for (results::AnswerRow& answer : answers) {
+    answer.response = std::to_string(0.1 * std::stod(answer.response) + 0.05);
+  }
+  const auto json = reported(statistic, design_of(0), answers).json;
+  const auto r = r_numbers(r_medians() + "t <- friedman.test(m); out(t$statistic, t$p.value)");
+  CHECK(json["friedman"][0]["chi_squared"].get<double>() == Approx(r[0]).epsilon(1e-9));
+  CHECK(json["friedman"][0]["p"].get<double>() == Approx(r[1]).epsilon(1e-9));
+  CHECK_FALSE(json["stimuli"][0].contains("rated_1"));
+  answers.front().response = "1.5";
+  CHECK_THROWS_WITH(reported(statistic, design_of(0), answers), Contains("a number from 0 to 1"));
 }

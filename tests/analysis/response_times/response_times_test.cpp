@@ -17,7 +17,7 @@ TEST_CASE("balanced integration scores are R's standardised shares less standard
       "z <- function(x) (x - mean(x)) / sqrt(mean((x - mean(x))^2));"
       "out(z(c(.5, .75, .9, .25)) - z(c(1.2, 2, 1.4, .8)))");
   for (std::size_t i = 0; i < scores.size(); ++i) {
-    CHECK(scores[i] == Approx(r[i]));
+    CHECK(scores[i] == Approx(r[i]).epsilon(1e-9));
   }
   CHECK(balanced_integration_scores({{0.5, 1.0}}).empty());
   CHECK(balanced_integration_scores({{0.5, 1.0}, {0.5, 1.0}}) == std::vector<double>{0.0, 0.0});
@@ -28,10 +28,10 @@ TEST_CASE("conditional accuracy averages equal parts of each participant's order
   const auto bins = conditional_accuracy(
       {{{4, true}, {1, false}, {2, true}, {3, true}}, {{10, false}, {20, true}}, {{1, true}}}, 2);
   REQUIRE(bins.size() == 2);
-  CHECK(bins[0].mean_time_s == Approx(0.5 * (1.5 + 10)));
-  CHECK(bins[0].share_right == Approx(0.5 * (0.5 + 0.0)));
-  CHECK(bins[1].mean_time_s == Approx(0.5 * (3.5 + 20)));
-  CHECK(bins[1].share_right == Approx(1.0));
+  CHECK(bins[0].mean_time_s == Approx(0.5 * (1.5 + 10)).epsilon(1e-9));
+  CHECK(bins[0].share_right == Approx(0.5 * (0.5 + 0.0)).epsilon(1e-9));
+  CHECK(bins[1].mean_time_s == Approx(0.5 * (3.5 + 20)).epsilon(1e-9));
+  CHECK(bins[1].share_right == Approx(1.0).epsilon(1e-9));
   CHECK(conditional_accuracy({{{1, true}}}, 2).empty());
   CHECK_THROWS_AS(conditional_accuracy({}, 0), core::InvalidInput);
 }
@@ -51,7 +51,7 @@ TEST_CASE("who repeats the last answer is found, and what is confused with what 
     confusing.responses.push_back((stimulus + 1) % 4);
   }
   const SerialDependence found = serial_dependence({repeating}, 999, 1);
-  CHECK(found.repeated_answer.p == Approx(0.001));
+  CHECK(found.repeated_answer.p == Approx(0.001).epsilon(1e-9));
   CHECK(found.repeated_answer.observed > found.repeated_answer.expected);
   const SerialDependence none = serial_dependence({confusing}, 999, 1);
   CHECK(none.repeated_answer.p == 1.0);

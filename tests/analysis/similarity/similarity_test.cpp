@@ -25,13 +25,13 @@ TEST_CASE("the similarity-choice model is the log-linear model of quasi-symmetry
         "out(deviance(f), f$df.residual, b, t(e))");
     const SimilarityChoice model = similarity_choice(table);
     REQUIRE(model.refusal.empty());
-    CHECK(model.g_squared == Approx(r[0]).epsilon(1e-6));
+    CHECK(model.g_squared == Approx(r[0]).epsilon(1e-9));
     CHECK(model.degrees_of_freedom == static_cast<int>(r[1]));
     const std::size_t k = table.size();
     for (std::size_t i = 0; i < k; ++i) {
-      CHECK(model.biases[i] == Approx(r[2 + i]).epsilon(1e-6));
+      CHECK(model.biases[i] == Approx(r[2 + i]).epsilon(1e-9));
       for (std::size_t j = 0; j < k; ++j) {
-        CHECK(model.similarities[i][j] == Approx(r[2 + k + i * k + j]).epsilon(1e-6));
+        CHECK(model.similarities[i][j] == Approx(r[2 + k + i * k + j]).epsilon(1e-9));
       }
     }
   }
@@ -87,14 +87,14 @@ TEST_CASE("a map is R's classical scaling", "[analysis][similarity]") {
                            ", 4); f <- cmdscale(d, 2, eig = TRUE); out(f$eig[1:2], f$GOF[1], "
                            "dist(f$points))");
   const ScaledMap map = classical_scaling(distances, 2);
-  CHECK(map.eigenvalues[0] == Approx(r[0]));
-  CHECK(map.eigenvalues[1] == Approx(r[1]));
-  CHECK(map.explained == Approx(r[2]));
+  CHECK(map.eigenvalues[0] == Approx(r[0]).epsilon(1e-9));
+  CHECK(map.eigenvalues[1] == Approx(r[1]).epsilon(1e-9));
+  CHECK(map.explained == Approx(r[2]).epsilon(1e-9));
   std::size_t at = 3;
   for (std::size_t i = 0; i < 4; ++i) {
     for (std::size_t j = i + 1; j < 4; ++j) {
       CHECK(std::hypot(map.points[i][0] - map.points[j][0], map.points[i][1] - map.points[j][1]) ==
-            Approx(r[at]));
+            Approx(r[at]).epsilon(1e-9));
       ++at;
     }
   }
@@ -109,7 +109,7 @@ TEST_CASE("points of a plane are found again from their distances", "[analysis][
             Approx(distances[i][j]).margin(1e-12));
     }
   }
-  CHECK(map.explained == Approx(1.0));
+  CHECK(map.explained == Approx(1.0).epsilon(1e-9));
   CHECK_THROWS_AS(classical_scaling({{0, 1}, {2, 0}}, 1), core::InvalidInput);
   CHECK_THROWS_AS(classical_scaling(distances, 4), core::InvalidInput);
   CHECK_THROWS_AS(distances_of({{1.0, 0.0}, {0.0, 1.0}}), core::InvalidInput);

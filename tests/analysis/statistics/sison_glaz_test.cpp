@@ -24,7 +24,7 @@ TEST_CASE("Sison and Glaz's intervals of choices are those of statsmodels", "[an
     for (std::size_t i = 0; i < found.size(); ++i) {
       INFO(fmt::format("{} of [{}]", i, fmt::join(counts, ",")));
       CHECK(found[i].low == Approx(expected[2 * i]).margin(1e-9));
-      CHECK(found[i].high == Approx(expected[2 * i + 1]).epsilon(1e-7));
+      CHECK(found[i].high == Approx(expected[2 * i + 1]).epsilon(1e-9));
     }
   }
 }

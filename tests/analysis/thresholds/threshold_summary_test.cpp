@@ -128,13 +128,13 @@ TEST_CASE("a report's threshold is that of the fit to the participant's levels, 
   const PsychometricIntervals intervals = profile_intervals(model, levels);
   const Formats formats = reported(statistic, design_of(), answers);
   const auto& row = formats.json["participants"][0];
-  CHECK(row["threshold"].get<double>() == Approx(fit.curve->threshold).epsilon(1e-8));
-  CHECK(row["threshold_low"].get<double>() == Approx(intervals.threshold.low).epsilon(1e-6));
-  CHECK(row["threshold_high"].get<double>() == Approx(intervals.threshold.high).epsilon(1e-6));
+  CHECK(row["threshold"].get<double>() == Approx(fit.curve->threshold).epsilon(1e-9));
+  CHECK(row["threshold_low"].get<double>() == Approx(intervals.threshold.low).epsilon(1e-9));
+  CHECK(row["threshold_high"].get<double>() == Approx(intervals.threshold.high).epsilon(1e-9));
   CHECK(row["weber_fraction"] == row["threshold"]);
-  CHECK(row["jnd"].get<double>() == Approx(standard * fit.curve->threshold).epsilon(1e-8));
+  CHECK(row["jnd"].get<double>() == Approx(standard * fit.curve->threshold).epsilon(1e-9));
   CHECK(row["proportion_at_threshold"].get<double>() ==
-        Approx(0.5 + (0.5 - fit.curve->lapse) * (1.0 - std::exp(-1.0))));
+        Approx(0.5 + (0.5 - fit.curve->lapse) * (1.0 - std::exp(-1.0))).epsilon(1e-9));
   CHECK(row["correct_of"] == 270);
   const auto& of_fit = formats.json["fits"][0];
   CHECK(of_fit["deviance_p"].get<double>() ==
@@ -142,10 +142,10 @@ TEST_CASE("a report's threshold is that of the fit to the participant's levels, 
   const PosteriorEstimates posterior = *psychometric_posterior(model, levels).estimates;
   const auto& of_posterior = formats.json["posteriors"][0];
   CHECK(of_posterior["posterior_threshold_low"].get<double>() ==
-        Approx(posterior.threshold_interval.low).epsilon(1e-6));
-  CHECK(of_posterior["posterior_slope"].get<double>() == Approx(posterior.slope).epsilon(1e-6));
+        Approx(posterior.threshold_interval.low).epsilon(1e-9));
+  CHECK(of_posterior["posterior_slope"].get<double>() == Approx(posterior.slope).epsilon(1e-9));
   CHECK(of_posterior["over_dispersion"].get<double>() ==
-        Approx(posterior.eta.median).epsilon(1e-6));
+        Approx(posterior.eta.median).epsilon(1e-9));
 }
 
 TEST_CASE("levels that are differences have a threshold in the axis's unit and no Weber fraction",
@@ -156,7 +156,7 @@ TEST_CASE("levels that are differences have a threshold in the axis's unit and n
   const auto of_difference = reported(statistic, design, answers).json["participants"][0];
   const auto of_fraction = reported(statistic, design_of(), answers).json["participants"][0];
   CHECK(of_difference["threshold"].get<double>() ==
-        Approx(standard * of_fraction["threshold"].get<double>()).epsilon(1e-4));
+        Approx(standard * of_fraction["threshold"].get<double>()).epsilon(1e-9));
   CHECK(of_difference["jnd"] == of_difference["threshold"]);
   CHECK(of_difference.count("weber_fraction") == 0);
 }
@@ -173,7 +173,7 @@ TEST_CASE("comparisons below the standard have the thresholds of those above",
   design.axis->is_below = true;
   const auto below = reported(statistic, design, answers).json["participants"];
   CHECK(below[0]["threshold"].get<double>() ==
-        Approx(above[0]["threshold"].get<double>()).epsilon(1e-8));
+        Approx(above[0]["threshold"].get<double>()).epsilon(1e-9));
 }
 
 TEST_CASE("participants' thresholds are pooled by their logarithms, not as one observer",
@@ -191,11 +191,11 @@ TEST_CASE("participants' thresholds are pooled by their logarithms, not as one o
   const PooledEstimate expected = pooled(estimates);
   const auto row = reported(statistic, design_of(), answers).json["pooled"][0];
   CHECK(row["participants"] == 3);
-  CHECK(std::log10(row["threshold"].get<double>()) == Approx(expected.mean).epsilon(1e-6));
+  CHECK(std::log10(row["threshold"].get<double>()) == Approx(expected.mean).epsilon(1e-9));
   CHECK(std::log10(row["threshold_low"].get<double>()) ==
-        Approx(expected.interval.low).epsilon(1e-6));
+        Approx(expected.interval.low).epsilon(1e-9));
   CHECK(row["jnd_high"].get<double>() ==
-        Approx(standard * std::pow(10.0, expected.interval.high)).epsilon(1e-6));
+        Approx(standard * std::pow(10.0, expected.interval.high)).epsilon(1e-9));
 }
 
 TEST_CASE("who has no threshold is given none, and every format says why",
@@ -258,8 +258,8 @@ TEST_CASE(
   CHECK(json["false_alarms"][0]["false_alarms_of"] == 60);
   CHECK(json["participants"][0]["correct_of"] == 270);
   CHECK(json["participants"][0]["threshold"].get<double>() ==
-        Approx(fit.curve->threshold).epsilon(1e-6));
-  CHECK(json["fits"][0]["guess"].get<double>() == Approx(fit.curve->guess).epsilon(1e-4));
+        Approx(fit.curve->threshold).epsilon(1e-9));
+  CHECK(json["fits"][0]["guess"].get<double>() == Approx(fit.curve->guess).epsilon(1e-9));
 }
 
 TEST_CASE("a block's function is the one that is fitted", "[analysis][thresholds]") {
@@ -272,7 +272,7 @@ TEST_CASE("a block's function is the one that is fitted", "[analysis][thresholds
         fit_psychometric({shape, {0.5, 0.5}, {0.0, 0.1}}, levels_of(answers));
     const Formats formats = reported(statistic, design, answers);
     CHECK(formats.json["participants"][0]["threshold"].get<double>() ==
-          Approx(fit.curve->threshold).epsilon(1e-6));
+          Approx(fit.curve->threshold).epsilon(1e-9));
     CHECK_THAT(formats.text, Contains(std::string{row_of(shape).name} + " function"));
   }
 }
@@ -287,7 +287,7 @@ TEST_CASE("each level has the d' of its answers by the task's decision model",
   REQUIRE(json["levels"].size() == levels.size());
   for (std::size_t i = 0; i < levels.size(); ++i) {
     CHECK(json["levels"][i]["d_prime"].get<double>() ==
-          Approx(sensitivity({DecisionModel::forced_choice, 2}, levels[i].answers).d_prime));
+          Approx(sensitivity({DecisionModel::forced_choice, 2}, levels[i].answers).d_prime).epsilon(1e-9));
   }
 }
 
@@ -312,8 +312,8 @@ TEST_CASE("tracks follow the time of the trials, not the order of the rows",
   const auto turned = reported(statistic, design_of(), answers);
   CHECK(turned.json == in_order.json);
   CHECK(in_order.json["tracks"].size() == 36);
-  CHECK(in_order.json["tracks"][8]["level"].get<double>() == Approx(fractions[8]));
-  CHECK(in_order.json["tracks"][9]["level"].get<double>() == Approx(fractions[0]));
+  CHECK(in_order.json["tracks"][8]["level"].get<double>() == Approx(fractions[8]).epsilon(1e-9));
+  CHECK(in_order.json["tracks"][9]["level"].get<double>() == Approx(fractions[0]).epsilon(1e-9));
 }
 
 TEST_CASE("a report of thresholds fits a terminal and names its figures",

@@ -59,7 +59,7 @@ class Masked {
       : inner_{std::move(during)},
         player_{std::make_unique<FakeSink>(card), std::make_unique<SteadySource>(), 0.1,
                 core::RealtimeRequest{0, false, std::nullopt}},
-        loop{inner_, player_, -20.0, is_required} {}
+        loop{inner_, player_, {-20.0, is_required}} {}
   std::vector<results::EventRow> events_of_a_trial() { return loop.run({}, {}).trace.events; }
   Card card;
 

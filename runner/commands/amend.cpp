@@ -1,0 +1,123 @@
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <ctime>
+#include <memory>
+
+#include "core/error.hpp"
+#include "results/recorder.hpp"
+#include "results/store.hpp"
+#include "runner/commands/commands.hpp"
+#include "runner/experiments/stored_protocol.hpp"
+#include "runner/experiments/stored_trial.hpp"
+#include "runner/operators/operator_desk.hpp"
+#include "runner/session/participant_lock.hpp"
+namespace tapstudy::runner {
+namespace {
+struct AmendOptions {
+  std::string directory;
+  std::string participant;
+  std::string action;
+};
+
+// What an operator can still do once the session is over.
+constexpr std::array amendments{OperatorAction::note, OperatorAction::correct,
+                                OperatorAction::exclude, OperatorAction::include};
+
+OperatorCommand amendment_in(const std::string& line) {
+  const OperatorCommand command = parse_operator_command(line);
+  if (std::ranges::find(amendments, command.action) == amendments.end()) {
+    std::vector<std::string_view> names;
+    std::ranges::transform(amendments, std::back_inserter(names), name);
+    throw core::InvalidInput{fmt::format("{} concerns a running session (after one: {})",
+                                         name(command.action), fmt::join(names, ", "))};
+  }
+  if (command.action == OperatorAction::correct && !command.trial) {
+    throw core::InvalidInput{"which trial? \"correct @12 ANSWER\" corrects that of trial 12"};
+  }
+  return command;
+}
+
+// By the wall clock: the session's own has ended with it.
+double seconds_since(const std::string& started_utc) {
+  std::tm started{};
+  if (strptime(started_utc.c_str(), "%Y-%m-%dT%H:%M:%SZ", &started) == nullptr) {
+    return 0.0;
+  }
+  return std::max(0.0, std::difftime(std::time(nullptr), timegm(&started)));
+}
+
+// The one in which the trial was answered; without a trial the latest.
+results::SessionRow session_of(const AmendOptions& options,
+                               const std::optional<results::JournalledAnswer>& answer,
+                               results::Store& store) {
+  if (answer) {
+    const auto sessions = store.sessions();
+    return *std::ranges::find(sessions, answer->trial.session_id, &results::SessionRow::id);
+  }
+  const auto session = store.latest_session(options.participant);
+  if (!session) {
+    throw core::InvalidInput{fmt::format("--participant: there is no '{}' in {}",
+                                         options.participant, options.directory)};
+  }
+  return *session;
+}
+
+// The participant's answer to that trial, as the operator would see it had it just been given.
+results::JournalledAnswer answer_to(int trial, const AmendOptions& options, results::Store& store) {
+  const auto given = store.answers_as_given(options.participant);
+  const auto found = std::ranges::find(
+      given, trial, [](const results::JournalledAnswer& answer) { return answer.trial.number; });
+  if (found == given.end()) {
+    throw core::InvalidInput{
+        fmt::format("participant '{}' has not answered trial {}", options.participant, trial)};
+  }
+  return *found;
+}
+
+AnswerInView in_view(const results::JournalledAnswer& answer,
+                     const protocols::Protocol& protocol) {
+  const protocols::Block& block = protocol.block(answer.trial.block);
+  return {stored_trial(answer.trial, answer.alternatives, block),
+          block.task->answers(block, protocol), answer.response.response};
+}
+
+void amend(const AmendOptions& options) {
+  const OperatorCommand command = amendment_in(options.action);
+  const protocols::Protocol protocol =
+      stored_protocol(results::Store::open_existing(options.directory).study());
+  const ParticipantLock lock{options.directory, options.participant};
+  results::Store store = results::Store::open_or_create(
+      options.directory, results::Store::open_existing(options.directory).study());
+  std::optional<results::JournalledAnswer> answer;
+  if (command.trial) {
+    answer = answer_to(*command.trial, options, store);
+  }
+  const results::SessionRow session = session_of(options, answer, store);
+  results::Recorder recorder{store};
+  OperatorDesk desk{{protocol, session.id, store.excluded_participants().contains(options.participant),
+                     [&] { return seconds_since(session.started_utc); }},
+                    recorder};
+  if (answer) {
+    desk.answer_is_stored(in_view(*answer, protocol));
+  }
+  const OperatorDesk::Posted posted = desk.post(command);
+  posted.stored.get();
+  fmt::print("participant {}: {}\n", options.participant, posted.said);
+}
+}  // namespace
+
+void add_amend(CommandParser& line) {
+  Command command = line.add(
+      "amend", "Add the operator's word after a session: a note, a correction, an exclusion");
+  const auto options = std::make_shared<AmendOptions>();
+  command.argument("directory", options->directory, "Directory of a study");
+  command.argument("action", options->action,
+                   "\"note TEXT\", \"correct @TRIAL ANSWER\", \"exclude REASON\" or \"include\"");
+  command.option("--participant", options->participant, "Participant's id", Need::required);
+  command.on_run([options] { amend(*options); });
+}
+}  // namespace tapstudy::runner

@@ -1,0 +1,49 @@
+#include "analysis/modal_identification/assignment.hpp"
+
+#include <fmt/format.h>
+
+#include <catch2/catch.hpp>
+
+#include "analysis/modal_identification/modal_assurance.hpp"
+#include "core/rng.hpp"
+#include "support/python_program.hpp"
+using namespace tapstudy;
+using namespace tapstudy::analysis;
+
+namespace {
+double cost_of(const std::vector<std::size_t>& columns, const Eigen::MatrixXd& cost) {
+  double sum = 0.0;
+  for (std::size_t row = 0; row < columns.size(); ++row) {
+    sum += cost(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(columns[row]));
+  }
+  return sum;
+}
+}  // namespace
+
+TEST_CASE("the least cost of an assignment is SciPy's", "[analysis][modal_identification]") {
+  core::Rng rng{4};
+  std::string script = "from scipy.optimize import linear_sum_assignment as f\n";
+  std::vector<double> ours;
+  for (int sample = 0; sample < 40; ++sample) {
+    const Eigen::Index rows = 1 + rng.below(9);
+    const Eigen::Index columns = rows + rng.below(6);
+    Eigen::MatrixXd cost(rows, columns);
+    std::string text;
+    for (double& one : cost.reshaped<Eigen::RowMajor>()) {
+      one = static_cast<double>(rng.below(20)) - 5.0;  // with ties
+      text += fmt::format("{},", one);
+    }
+    script += fmt::format("c = np.array([{}]).reshape({}, {})\nout(c[f(c)].sum())\n", text, rows,
+                          columns);
+    ours.push_back(cost_of(least_cost_assignment(cost), cost));
+  }
+  CHECK(ours == testing::python_numbers(script));
+}
+
+TEST_CASE("shapes in proportion have an assurance of 1, orthogonal ones and none of 0",
+          "[analysis][modal_identification]") {
+  const Eigen::Vector3d shape{1.0, -2.0, 0.5};
+  CHECK(modal_assurance(shape, -3.0 * shape) == Approx(1.0).epsilon(1e-12));
+  CHECK(modal_assurance(shape, Eigen::Vector3d{2.0, 1.0, 0.0}) == Approx(0.0).margin(1e-12));
+  CHECK(modal_assurance(shape, Eigen::Vector3d::Zero()) == 0.0);
+}

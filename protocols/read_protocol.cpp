@@ -25,7 +25,7 @@ Protocol parse(const StudyText& study, const ReadFile& read_file, Problems& prob
   protocol.translations.language = study.language;
   MapReader top = MapReader::whole_file(study.text, study.file, problems, &protocol.translations);
   top.word("format", "format", {"tapstudy/1"});
-  protocol.title = top.text("title");
+  protocol.title = top.translated("title");
   protocol.notes = top.paragraphs("notes", "");
   protocol.instructions = top.translated_paragraphs("instructions", "");
   read_rendering(top, protocol);

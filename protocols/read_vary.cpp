@@ -117,7 +117,11 @@ AxisValues read_own_rendering(MapReader& stimulus_reader, const Stimulus& stimul
   stimulus_reader.map("rendering", Presence::optional, [&](MapReader& reader) {
     for (const Axis& axis : axes()) {
       const std::string name{axis.name};
-      if (!axis.is_of_rendering || !reader.has(name)) {
+      if (!axis.is_of_rendering) {
+        continue;
+      }
+      if (!reader.has(name)) {
+        reader.number(name, any_number(), 0.0);  // a known key, if not given
         continue;
       }
       const std::string why = why_refused(axis, studys);

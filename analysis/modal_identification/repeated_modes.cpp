@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <map>
+#include <numeric>
 
 #include "analysis/participants/mean_proportion.hpp"
 #include "analysis/statistics/distributions.hpp"
@@ -81,7 +84,44 @@ Sightings of_standing(const Sightings& group, Standing standing) {
   return some;
 }
 
-RepeatedMode summary_of(const Sightings& group, std::size_t taps) {
+// What the channels of one impact say, averaged.
+struct Shown {
+  std::vector<double> frequencies_hz;
+  std::vector<double> ratios;
+  std::vector<double> frequency_errors_hz;
+  std::vector<double> ratio_errors;
+};
+Shown shown_by(const Sightings& group, const std::vector<int>& impacts) {
+  std::map<int, Sightings> by_impact;
+  for (const Sighting& one : group) {
+    by_impact[impacts.empty() ? static_cast<int>(one.tap) : impacts[one.tap]].push_back(one);
+  }
+  Shown shown;
+  for (const auto& [impact, channels] : by_impact) {
+    const auto count = static_cast<double>(channels.size());
+    const auto of = [&](auto value_of) {
+      std::vector<double> values;
+      std::ranges::transform(channels, std::back_inserter(values),
+                             [&](const Sighting& one) { return value_of(one.mode->fitted); });
+      return values;
+    };
+    const auto mean = [&](const std::vector<double>& values) {
+      return std::accumulate(values.begin(), values.end(), 0.0) / count;
+    };
+    shown.frequencies_hz.push_back(
+        mean(of([](const FittedMode& fitted) { return fitted.pole.frequency_hz; })));
+    shown.ratios.push_back(
+        mean(of([](const FittedMode& fitted) { return fitted.pole.damping_ratio; })));
+    shown.frequency_errors_hz.push_back(
+        norm_of(of([](const FittedMode& fitted) { return fitted.frequency_error_hz; })) / count);
+    shown.ratio_errors.push_back(
+        norm_of(of([](const FittedMode& fitted) { return fitted.ratio_error; })) / count);
+  }
+  return shown;
+}
+
+RepeatedMode summary_of(const Sightings& group, std::size_t taps,
+                        const std::vector<int>& impacts) {
   const Sightings agreed = of_standing(group, Standing::agreed);
   const Sightings lines = of_standing(group, Standing::line);
   RepeatedMode mode;
@@ -102,17 +142,13 @@ RepeatedMode summary_of(const Sightings& group, std::size_t taps) {
     const Sightings doubtful = of_standing(group, Standing::doubtful);
     mode.why = doubtful.empty() ? "in one tap only" : doubtful.front().mode->why;
   }
-  std::vector<double> frequency_errors;
-  std::vector<double> ratio_errors;
-  for (const Sighting& one : *shown) {
-    mode.frequencies_hz.push_back(frequency_of(one));
-    mode.ratios.push_back(one.mode->fitted.pole.damping_ratio);
-    frequency_errors.push_back(one.mode->fitted.frequency_error_hz);
-    ratio_errors.push_back(one.mode->fitted.ratio_error);
-  }
+  const Shown of_impacts = shown_by(*shown, impacts);
+  mode.frequencies_hz = of_impacts.frequencies_hz;
+  mode.ratios = of_impacts.ratios;
   const double freedom = shown->front().degrees_of_freedom;
-  mode.frequency_hz = estimate_over_taps(mode.frequencies_hz, frequency_errors, freedom);
-  mode.damping_ratio = estimate_over_taps(mode.ratios, ratio_errors, freedom);
+  mode.frequency_hz =
+      estimate_over_taps(mode.frequencies_hz, of_impacts.frequency_errors_hz, freedom);
+  mode.damping_ratio = estimate_over_taps(mode.ratios, of_impacts.ratio_errors, freedom);
   return mode;
 }
 }  // namespace
@@ -141,10 +177,11 @@ Estimate estimate_over_taps(const std::vector<double>& values, const std::vector
   return estimate;
 }
 
-std::vector<RepeatedMode> modes_over_taps(const std::vector<TapModes>& taps) {
+std::vector<RepeatedMode> modes_over_taps(const std::vector<TapModes>& taps,
+                                          const std::vector<int>& impacts) {
   std::vector<RepeatedMode> modes;
   for (const Sightings& group : groups_of(sightings_in(taps))) {
-    modes.push_back(summary_of(group, taps.size()));
+    modes.push_back(summary_of(group, taps.size(), impacts));
   }
   std::ranges::sort(modes, {}, [](const RepeatedMode& mode) { return mode.frequency_hz.value; });
   return modes;

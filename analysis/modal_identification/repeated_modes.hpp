@@ -28,7 +28,7 @@ struct RepeatedMode {
   std::string why;
   int taps{};                          // that show it
   int agreed{};                        // of these, with both methods
-  std::vector<double> frequencies_hz;  // of each that shows it
+  std::vector<double> frequencies_hz;  // of each impact that shows it, mean over its channels
   std::vector<double> ratios;
   std::vector<ModeInTap> in_taps;  // all that show it, agreed or not
 };
@@ -37,5 +37,8 @@ struct RepeatedMode {
 // half-power bandwidth or four standard errors if that is more); the most significant come first,
 // and each tap has one at most. A mode is agreed if at least half of the taps that show it say so,
 // and, of several taps, two do; its estimates are of these taps alone. Ascending frequency.
-std::vector<RepeatedMode> modes_over_taps(const std::vector<TapModes>& taps);
+// impacts: of each tap the number of its impact, where several channels show the same one: what
+// they say is averaged, since they vary together. Empty: each tap is an impact of its own.
+std::vector<RepeatedMode> modes_over_taps(const std::vector<TapModes>& taps,
+                                          const std::vector<int>& impacts = {});
 }  // namespace tapstudy::analysis

@@ -39,6 +39,9 @@ Eigen::Vector2d place_from(const std::string& text) {
 }
 
 void check_playback(const TapQuestion& question) {
+  if (question.columns.size() > 1) {
+    throw core::InvalidInput{"--at takes one channel: that of the place tapped"};
+  }
   if (question.protocol.empty() || question.speeds.empty() ||
       question.quantity != analysis::Quantity::acceleration) {
     throw core::InvalidInput{
@@ -59,10 +62,11 @@ TapQuestion question_of(const IdentifyOptions& options) {
   if (!options.band.empty()) {
     question.band = band_from(options.band);
   }
-  if (!question.places.empty() && (question.protocol.empty() || question.speeds.empty())) {
+  const bool has_impulses = !question.speeds.empty() || !question.force_column.empty();
+  if (!question.places.empty() && (question.protocol.empty() || !has_impulses)) {
     throw core::InvalidInput{
-        "--places needs --speeds, whose impulses are in proportion, and --protocol with --stimulus, "
-        "whose model has shapes"};
+        "--places needs --force-column or --speeds, for the impulses, and --protocol with "
+        "--stimulus, whose model has shapes"};
   }
   if (!options.at.empty()) {
     question.at_m = place_from(options.at);
@@ -102,8 +106,10 @@ void add_identify(CommandParser& line) {
   command.option("--stimulus", question.stimulus, "Which of its stimuli was tapped");
   command.number_within("--rate", question.reading.rate_hz, 0.0, 1e7,
                         "Samples a second, of tables without a time column");
-  command.option("--column", question.reading.column,
-                 "Header or number (from 1) of the channel; default: the only one");
+  command.list("--column", question.columns,
+               "Headers or numbers (from 1) of the channels; default: the only one");
+  command.option("--force-column", question.force_column,
+                 "Channel of what struck, N: impulses for --places");
   command.one_of("--quantity", options->quantity, {"acceleration", "velocity", "displacement"},
                  "What was measured; default: acceleration");
   command.number_within("--scale", question.si_per_unit, 1e-12, 1e12,

@@ -8,6 +8,7 @@
 #include "core/error.hpp"
 #include "protocols/read_protocol.hpp"
 #include "runner/recordings/impact_table.hpp"
+#include "runner/recordings/measured_file.hpp"
 #include "runner/recordings/sinusoid_law.hpp"
 namespace tapstudy::runner {
 namespace {
@@ -54,17 +55,17 @@ class Identifier {
   }
 
   TapIdentification identify() {
-    std::vector<analysis::Recording> recordings;
+    std::vector<MeasuredFile> files;
     for (const std::string& file : result_.question.recordings) {
-      recordings.push_back(analysis::read_recording(file, result_.question.reading));
+      files.push_back(read_measured_file(file, result_.question));
     }
-    const auto slowest = std::ranges::min_element(recordings, {}, &analysis::Recording::rate_hz);
-    check_playback_rate(recordings);
-    result_.band = band_for(result_.question, slowest->rate_hz,
+    const double slowest_hz = rate_of(*std::ranges::min_element(files, {}, rate_of));
+    check_playback_rate(files);
+    result_.band = band_for(result_.question, slowest_hz,
                             protocol_ ? std::optional{protocol_->band_limit_hz} : std::nullopt);
     int impacts = 0;
-    for (const analysis::Recording& recording : recordings) {
-      impacts += add(recording, impacts);
+    for (const MeasuredFile& file : files) {
+      impacts += add(file, impacts);
     }
     if (result_.taps.empty()) {
       throw core::InvalidInput{fmt::format("{}", fmt::join(result_.remarks, "\n"))};
@@ -76,25 +77,33 @@ class Identifier {
   }
 
  private:
-  void check_playback_rate(const std::vector<analysis::Recording>& recordings) const {
-    for (const analysis::Recording& recording : recordings) {
-      if (result_.question.at_m && recording.rate_hz != recordings.front().rate_hz) {
+  static double rate_of(const MeasuredFile& file) { return file.channels.front().rate_hz; }
+
+  void check_playback_rate(const std::vector<MeasuredFile>& files) const {
+    for (const MeasuredFile& file : files) {
+      if (result_.question.at_m && rate_of(file) != rate_of(files.front())) {
         throw core::InvalidInput{fmt::format(
-            "--at: {} has {:g} samples a second, {} {:g}: all of one rate", recording.file,
-            recording.rate_hz, recordings.front().file, recordings.front().rate_hz)};
+            "--at: {} has {:g} samples a second, {} {:g}: all of one rate",
+            file.channels.front().file, rate_of(file), files.front().channels.front().file,
+            rate_of(files.front()))};
       }
     }
   }
   // How many impacts it has; `before` are those of earlier recordings.
-  int add(const analysis::Recording& recording, int before) {
-    const analysis::FoundTaps found = analysis::find_taps(recording, result_.question.finding);
+  int add(const MeasuredFile& file, int before) {
+    const analysis::FoundTaps found = find_taps(file, result_.question.finding);
     for (const std::string& remark : found.remarks) {
-      result_.remarks.push_back(recording.file + ": " + remark);
+      result_.remarks.push_back(file.channels.front().file + ": " + remark);
     }
     for (const analysis::Tap& tap : found.taps) {
-      hook_(fmt::format("tap {} of {}", tap.impact, recording.file));
-      if (add(recording, tap)) {
-        impact_numbers_.push_back(before + tap.impact);
+      hook_(fmt::format("tap {} of {}", tap.impact, file.channels.front().file));
+      for (const analysis::Recording& channel : file.channels) {
+        if (add(channel, tap)) {
+          result_.taps.back().impact = before + tap.impact;
+          if (file.force) {
+            result_.taps.back().impulse_n_s = impulse_n_s(*file.force, tap);
+          }
+        }
       }
     }
     return found.impacts;
@@ -134,7 +143,7 @@ class Identifier {
     }
   }
   std::size_t impact_of(std::size_t tap) const {
-    return static_cast<std::size_t>(impact_numbers_[tap] - 1);
+    return static_cast<std::size_t>(result_.taps[tap].impact - 1);
   }
 
   void give_speeds(int impacts) {
@@ -174,7 +183,7 @@ class Identifier {
     std::vector<analysis::PlacedTap> taps;
     for (const IdentifiedTap& tap : result_.taps) {
       const double rate_hz = tap.decay.rate_hz;
-      taps.push_back({*tap.place, *tap.speed_m_s,
+      taps.push_back({*tap.place, tap.channel, tap.impulse_n_s ? *tap.impulse_n_s : *tap.speed_m_s,
                       static_cast<double>(tap.tap.begin - tap.tap.onset) / rate_hz});
     }
     MeasuredShapes shapes{result_.places_m, {}};
@@ -203,7 +212,9 @@ class Identifier {
         tap.modes = analysis::identify_modes(tap.decay, finding);
       }
     }
-    result_.modes = analysis::modes_over_taps(modes_of_taps());
+    std::vector<int> impacts;
+    std::ranges::transform(result_.taps, std::back_inserter(impacts), &IdentifiedTap::impact);
+    result_.modes = analysis::modes_over_taps(modes_of_taps(), impacts);
     std::vector<analysis::MeasuredRatio> ratios;
     for (std::size_t i = 0; i < result_.modes.size(); ++i) {
       const analysis::RepeatedMode& mode = result_.modes[i];
@@ -247,7 +258,6 @@ class Identifier {
   TapIdentification result_;
   std::optional<protocols::Protocol> protocol_;
   core::ProgressHook hook_;
-  std::vector<int> impact_numbers_;  // over all recordings, of each tap
 };
 }  // namespace
 

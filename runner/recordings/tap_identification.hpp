@@ -13,7 +13,9 @@ namespace tapstudy::runner {
 // What is asked of recordings of real taps.
 struct TapQuestion {
   std::vector<std::string> recordings;
-  analysis::ReadingOptions reading;
+  analysis::ReadingOptions reading;   // its column left open
+  std::vector<std::string> columns;   // of each recording, as ReadingOptions::column; empty: one
+  std::string force_column;           // of what struck [N], likewise; may be empty
   analysis::Quantity quantity{analysis::Quantity::acceleration};
   double si_per_unit{1.0};  // from the recordings' unit to m/s², m/s or m
   analysis::TapFinding finding;
@@ -29,12 +31,14 @@ struct IdentifiedTap {
   std::string file;
   std::string channel;
   analysis::Tap tap;
+  int impact{};               // over all recordings, from 1; the same in all channels
   double time_s{};            // of the impact
   analysis::FreeDecay decay;  // in the recording's unit, about its mean
   analysis::FreeDecay whole;  // from the impact on
   analysis::TapModes modes;
   std::optional<analysis::FittedSinusoid> sinusoid;
   std::optional<double> speed_m_s;
+  std::optional<double> impulse_n_s;  // of the force, where it was recorded
   std::optional<std::size_t> place;  // that was tapped: index into TapIdentification::places_m
 };
 

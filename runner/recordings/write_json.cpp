@@ -44,6 +44,7 @@ Json json_of(const analysis::TapMode& mode) {
 Json json_of(const IdentifiedTap& tap) {
   Json json{{"recording", tap.file},
             {"channel", tap.channel},
+            {"impact", tap.impact},
             {"time_s", tap.time_s},
             {"begin", tap.tap.begin},
             {"end", tap.tap.end},
@@ -65,6 +66,9 @@ Json json_of(const IdentifiedTap& tap) {
   }
   if (tap.speed_m_s) {
     json["speed_m_s"] = *tap.speed_m_s;
+  }
+  if (tap.impulse_n_s) {
+    json["impulse_n_s"] = *tap.impulse_n_s;
   }
   return json;
 }

@@ -398,7 +398,7 @@ class WholeSession(unittest.TestCase):
         self.assertEqual(answers["paired_or_tied"], "tie")
         marks = [float(row[0]) for row in self.session.rows(
             "SELECT response FROM response JOIN trial USING (trial_id) WHERE block = 'line' ORDER BY response_id")]
-        self.assertEqual(marks[1], 0)  # a correction
+        self.assertEqual(marks[1], 0, marks)  # a correction
         self.assertEqual(max(marks), 0.52)
         self.assertAlmostEqual(sorted(marks)[1], 0.25, delta=0.04)
         wanted = [list(order) for order in ("CAB", "BCA", "CBA")]  # the first, its correction, the second

@@ -72,7 +72,7 @@ TEST_CASE("the schema has exactly the keys that the reader asks for", "[protocol
 
 TEST_CASE("schema and reader accept the same protocols", "[protocols][schema][slow]") {
   const auto [from, to] = GENERATE(values<Change>({
-      {"title: Every", "title: Every"},
+      {"title: {en: Every", "title: {en: Every"},
       {"youngs_modulus_pa: 1.0e10", "youngs_modulus_pa: 10"},
       {"{ratio: 0.02}", "{ratio: 0.02, beta_s: 0}"},
       {"order: 2", "order: 3"},
@@ -102,8 +102,8 @@ TEST_CASE("schema and reader accept the same protocols", "[protocols][schema][sl
       {"modal_ratios: [0.02, 0.01]", "modal_ratios: [0.02], alpha_per_s: 1, beta_s: 1"},
       {"task: choice, ", "task: choice, order: shuffle, "},
       {"more real?\", stimuli: [a, b]", "more real?\", stimuli: [a]"},
-      {"title: Every key there is\n", ""},
-      {"title: Every", "titel: x\ntitle: Every"},
+      {"title: {en: Every key there is, ja: すべてのキー}\n", ""},
+      {"title: {en: Every", "titel: x\ntitle: {en: Every"},
       {"tapstudy/1", "tapstudy/2"},
       {"mass_kg: 0.058", "mass_kg: -1"},
       {"mass_kg: 0.058", "mass_kg: heavy"},

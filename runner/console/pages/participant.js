@@ -99,6 +99,9 @@ function mount(key) {
   enteredAnswer?.leave();
   enteredAnswer = new EnteredAnswer(() => screen.number);
   const entered = (answer) => enteredAnswer.tell(answer);
+  // Should the next one not be drawn, the last one must not stand for it.
+  shown = null;
+  byId("screen").replaceChildren();
   shown = (makers[screen.kind] ?? textScreen)(screen, { send, entered, feel, adjust, replay, correct, say });
   shown.key = key;
   byId("screen").replaceChildren(shown.element);

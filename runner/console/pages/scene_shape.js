@@ -51,15 +51,18 @@ function surfaceShape({ points_m: coordinates, triangles: indices }) {
   return { ...boundsOf(points), triangles, heightAt: (x, y) => heightOnSurface(triangles, x, y) };
 }
 
+// Middle and size of what is at least so large, inside of the shape.
+function widened(low, high, least, [from, to]) {
+  const size = Math.max(high - low, least);
+  return [Math.min(Math.max((low + high) / 2, from + size / 2), to - size / 2), size];
+}
+
 // Where a fixation is seen from above: a disc (centre and radius) or a rectangle (centre, width and depth).
-function fixationMark({ kind, at_m: at, radius_m: radius, low_m: low, high_m: high }, smallest) {
+function fixationMark({ kind, at_m: at, radius_m: radius, low_m: low, high_m: high }, smallest, shape) {
   if (kind !== "box") return { x: at[0], y: at[1], radius: Math.max(radius ?? 0, smallest) };
-  return {
-    x: (low[0] + high[0]) / 2,
-    y: (low[1] + high[1]) / 2,
-    width: Math.max(high[0] - low[0], 2 * smallest),
-    depth: Math.max(high[1] - low[1], 2 * smallest),
-  };
+  const [x, width] = widened(low[0], high[0], 2 * smallest, [shape.low[0], shape.high[0]]);
+  const [y, depth] = widened(low[1], high[1], 2 * smallest, [shape.low[1], shape.high[1]]);
+  return { x, y, width, depth };
 }
 
 // {low, high, heightAt(x, y), extent, headroom, triangles?, points: [[x, y, z]…], fixations: [{x, y, z, radius} or {x, y, z, width, depth}…]}
@@ -73,7 +76,7 @@ export function shapeOf(scene) {
     headroom: headroomShare * extent,
     points: (scene.tapping_points_m ?? []).map(([x, y, z]) => [x, y, z ?? heightOr(x, y)]),
     fixations: (scene.fixations ?? [])
-      .map((fixation) => fixationMark(fixation, 0.012 * extent))
+      .map((fixation) => fixationMark(fixation, 0.012 * extent, shape))
       .map((mark) => ({ ...mark, z: heightOr(mark.x, mark.y) })),
   };
 }

@@ -34,6 +34,9 @@ function alternativeCards(labels, { kind, options }, group, makeCard) {
   return el("div", { className: "alternatives" }, ...cards);
 }
 
+// A single one needs nothing to be felt by.
+const alone = { body: [], show: () => {} };
+
 // Freely: a button to feel each of them.
 function freely({ trial, group, feel }) {
   const labels = trial.alternatives;
@@ -72,7 +75,7 @@ export function trialScreen({ trial }, { send, entered, feel, adjust, replay, co
   const feelOther = (index) => { if (index !== current) feel(index); };
   const { answers } = trial;
   const group = newGroupName();
-  const presented = trial.intervals ? inTurn({ trial, group, replay }) : freely({ trial, group, feel: feelOther });
+  const presented = labels.length === 0 ? alone : trial.intervals ? inTurn({ trial, group, replay }) : freely({ trial, group, feel: feelOther });
   const field = answerField(answers, {
     title: trial.question, besideAlternatives: answers.options.filter((option) => labels.includes(option)).length,
     group, label: labels.at(-1), setting: trial.setting, adjust, say,
@@ -80,7 +83,7 @@ export function trialScreen({ trial }, { send, entered, feel, adjust, replay, co
   const asked = question({
     title: trial.question,
     className: "trial",
-    body: [...toHoldStill(trial), ...(labels.length > 0 ? presented.body : []), ...field.body],
+    body: [...toHoldStill(trial), ...presented.body, ...field.body],
     say,
     answerIn: field.answerIn,
     missing: field.missing,

@@ -47,3 +47,32 @@ TEST_CASE("shapes in proportion have an assurance of 1, orthogonal ones and none
   CHECK(modal_assurance(shape, Eigen::Vector3d{2.0, 1.0, 0.0}) == Approx(0.0).margin(1e-12));
   CHECK(modal_assurance(shape, Eigen::Vector3d::Zero()) == 0.0);
 }
+
+TEST_CASE("what channels say of one impact is one observation", "[analysis][modal_identification]") {
+  const auto tap_of = [](double frequency_hz, double ratio) {
+    TapModes tap;
+    FittedMode fitted;
+    fitted.pole = {frequency_hz, ratio};
+    fitted.frequency_error_hz = 0.01;
+    fitted.ratio_error = 1e-4;
+    tap.modes.push_back({fitted, Standing::agreed, "", {}, 5});
+    return tap;
+  };
+  std::vector<TapModes> one_channel;
+  std::vector<TapModes> two_channels;
+  std::vector<int> impacts;
+  int impact = 0;
+  for (const double frequency_hz : {100.0, 100.2, 99.9, 100.1}) {
+    one_channel.push_back(tap_of(frequency_hz, 0.02));
+    ++impact;
+    for (const double apart : {-0.05, 0.05}) {
+      two_channels.push_back(tap_of(frequency_hz + apart, 0.02));
+      impacts.push_back(impact);
+    }
+  }
+  const auto one = modes_over_taps(one_channel).at(0).frequency_hz;
+  const auto two = modes_over_taps(two_channels, impacts).at(0).frequency_hz;
+  CHECK(two.value == Approx(one.value).epsilon(1e-12));
+  CHECK(two.interval.low == Approx(one.interval.low).epsilon(1e-12));
+  CHECK(modes_over_taps(two_channels).at(0).frequency_hz.interval.low > two.interval.low);
+}

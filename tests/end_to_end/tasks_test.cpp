@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <cstring>
 #include <filesystem>
 #include <map>
 #include <sstream>
@@ -100,6 +101,43 @@ TEST_CASE("alternatives that are physically the same are told apart by chance in
   const double margin = 4.0 * std::sqrt(2.0 / 9.0 / rankings);
   CHECK(by_label == Approx(1.0 / 3.0).margin(margin));
   CHECK(by_stimulus == Approx(1.0 / 3.0).margin(margin));
+}
+
+TEST_CASE("two of the same are called different in one of six cases, the simulated criterion",
+          "[end_to_end][slow]") {
+  const TempDirectory directory;
+  const std::string study = testing::contents(testing::source("tests/data/same_alternatives.yaml"));
+  const std::size_t blocks = study.find("blocks:\n") + std::strlen("blocks:\n");
+  testing::write(directory / "study.yaml",
+                 study.substr(0, blocks) +
+                     "  - {name: same_different, task: same_different, question: \"Same?\", stimuli: "
+                     "[one, other], repetitions: 60}\n" +
+                     testing::replaced(study.substr(study.find("simulation:")), ", reference: one",
+                                       ""));
+  const auto run =
+      testing::tapstudy({"simulate", directory / "study.yaml", "--participants", "40", "--seed",
+                         "4", "--no-traces", "--out", directory / "study"});
+  INFO(run.standard_error);
+  REQUIRE(run.exit_code == 0);
+  std::istringstream rows{sql(directory,
+                              "SELECT avg(response = 'different') FROM current_response "
+                              "JOIN trial USING (trial_id) GROUP BY session_id")};
+  std::vector<double> rates;
+  for (double rate = 0.0; rows >> rate;) {
+    rates.push_back(rate);
+  }
+  REQUIRE(rates.size() == 40);
+  double mean = 0.0;
+  double squares = 0.0;
+  for (const double rate : rates) {
+    mean += rate / 40.0;
+  }
+  for (const double rate : rates) {
+    squares += (rate - mean) * (rate - mean) / 39.0;
+  }
+  // criteria, learned from a few taps, differ between participants
+  CHECK(mean == Approx(1.0 / 6.0).margin(4.0 * std::sqrt(squares / 40.0)));
+  CHECK(std::sqrt(squares) < 0.1);
 }
 
 TEST_CASE("who feels almost without noise mostly ranks first what is the reference itself",

@@ -20,7 +20,8 @@ struct PlacedTap {
 // A mode's shape at `places` places, up to a factor: what a tap excites of a mode is in proportion
 // to its impulse and to the mode's displacement at the place (reciprocity). Amplitudes are taken
 // back to the impact; signs are those of their phases, against the largest; several taps at one
-// place are averaged; 0 where no tap shows the mode; of several sensors the one that sees most of it. taps: those that modes_over_taps was given.
+// place are averaged; 0 where no tap shows the mode; of several sensors the one that sees most of
+// it. taps: those that modes_over_taps was given.
 Eigen::VectorXd tapped_shape(const RepeatedMode& mode, const std::vector<PlacedTap>& taps,
                              std::size_t places);
 }  // namespace tapstudy::analysis

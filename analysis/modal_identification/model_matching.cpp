@@ -25,8 +25,7 @@ struct Assignment {
 };
 
 double of(const Eigen::MatrixXd& assurance, const Pair& pair) {
-  return assurance(static_cast<Eigen::Index>(pair.measured),
-                   static_cast<Eigen::Index>(pair.model));
+  return assurance(static_cast<Eigen::Index>(pair.measured), static_cast<Eigen::Index>(pair.model));
 }
 
 class Matcher {
@@ -56,7 +55,8 @@ class Matcher {
     Eigen::MatrixXd cost = Eigen::MatrixXd::Constant(rows, columns + rows, skip_cost);
     for (Eigen::Index i = 0; i < rows; ++i) {
       for (Eigen::Index j = 0; j < columns; ++j) {
-        cost(i, j) = cost_of({static_cast<std::size_t>(i), static_cast<std::size_t>(j)}, log_factor);
+        cost(i, j) =
+            cost_of({static_cast<std::size_t>(i), static_cast<std::size_t>(j)}, log_factor);
       }
     }
     std::vector<Pair> pairs;

@@ -6,9 +6,9 @@
 #include "analysis/modal_identification/repeated_modes.hpp"
 namespace tapstudy::analysis {
 struct MatchedMode {
-  std::size_t measured{};  // index into the measured modes
-  std::size_t model{};     // index into the model's modes
-  double misfit{};         // measured / model - 1 after the update
+  std::size_t measured{};             // index into the measured modes
+  std::size_t model{};                // index into the model's modes
+  double misfit{};                    // measured / model - 1 after the update
   std::optional<double> assurance{};  // of their shapes; unset where those are not known
 };
 
@@ -31,8 +31,9 @@ inline constexpr double max_match_difference = 0.15;
 // differences of the logarithms is least, each at most once; a mode without a partner costs
 // max_match_difference squared, a pair whose shapes are known (assurance: measured by model modes,
 // modal_assurance; empty: not known) as much times 1 less their assurance. Assignment and factor
-// are repeated until they settle, from the modulus given. The interval is Student's t of the scatter between modes, or of one mode its own.
-// Both ascending, not empty, above 0 [Hz]. Unset if no mode finds a partner.
+// are repeated until they settle, from the modulus given. The interval is Student's t of the
+// scatter between modes, or of one mode its own. Both ascending, not empty, above 0 [Hz]. Unset if
+// no mode finds a partner.
 std::optional<ModelUpdate> update_youngs_modulus(const std::vector<Estimate>& measured_hz,
                                                  const std::vector<double>& model_hz,
                                                  double youngs_modulus_pa,

@@ -120,8 +120,7 @@ Shown shown_by(const Sightings& group, const std::vector<int>& impacts) {
   return shown;
 }
 
-RepeatedMode summary_of(const Sightings& group, std::size_t taps,
-                        const std::vector<int>& impacts) {
+RepeatedMode summary_of(const Sightings& group, std::size_t taps, const std::vector<int>& impacts) {
   const Sightings agreed = of_standing(group, Standing::agreed);
   const Sightings lines = of_standing(group, Standing::line);
   RepeatedMode mode;

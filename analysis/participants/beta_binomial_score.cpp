@@ -17,8 +17,8 @@ Slopes slopes_at(const std::vector<Proportion>& people, double a, double b) {
     const auto k = static_cast<double>(of.successes);
     const auto n = static_cast<double>(of.trials);
     const double both = digamma(a + b) - digamma(n + a + b);
-    sum.score += Eigen::Vector2d{digamma(k + a) - digamma(a) + both,
-                                 digamma(n - k + b) - digamma(b) + both};
+    sum.score +=
+        Eigen::Vector2d{digamma(k + a) - digamma(a) + both, digamma(n - k + b) - digamma(b) + both};
     const double both_again = trigamma(a + b) - trigamma(n + a + b);
     sum.curvature.array() += both_again;
     sum.curvature(0, 0) += trigamma(k + a) - trigamma(a);

@@ -75,9 +75,8 @@ std::string undecided(const PairedCounts& counts) {
   for (Eigen::Index i = 0; i < wins.rows(); ++i) {
     for (Eigen::Index j = 0; j < i; ++j) {
       if (wins(i, j) == wins(j, i)) {
-        return wins(i, j) + counts.ties_of(i, j) == 0
-                   ? "not every pair was compared"
-                   : "a pair was preferred as often either way";
+        return wins(i, j) + counts.ties_of(i, j) == 0 ? "not every pair was compared"
+                                                      : "a pair was preferred as often either way";
       }
     }
   }

@@ -7,8 +7,8 @@
 #include "analysis/paired/bradley_terry.hpp"
 #include "analysis/paired/circular_triads.hpp"
 namespace tapstudy::analysis {
-// Answers to pairs of a block's stimuli: which of the two is preferred, or neither ("tie", where the
-// block allows it).
+// Answers to pairs of a block's stimuli: which of the two is preferred, or neither ("tie", where
+// the block allows it).
 
 struct ParticipantPreferences {
   std::string participant_id;

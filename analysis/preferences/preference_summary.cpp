@@ -59,9 +59,10 @@ ReportTable wins_table(const BlockDesign& design, const PreferenceResults& resul
 
 // Empty where participants must choose.
 ReportTable ties_table(const PreferenceResults& results) {
-  ReportTable table{"ties",
-                    "Ties",
-                    {proportion_column("neither preferred", "tied"), column("Davidson's nu", "nu")}};
+  ReportTable table{
+      "ties",
+      "Ties",
+      {proportion_column("neither preferred", "tied"), column("Davidson's nu", "nu")}};
   if (results.counts.ties.size() == 0 || results.participants.empty()) {
     return table;
   }
@@ -131,7 +132,8 @@ std::vector<std::string> remarks_on(const BlockDesign& design, const PreferenceR
   if (results.no_scale.empty()) {
     remarks.emplace_back(
         "Scales by maximum likelihood, intervals of plus or minus 1.96 standard errors; both take "
-        "all answers as independent. Bradley-Terry (Bradley & Terry 1952): logarithms of abilities; "
+        "all answers as independent. Bradley-Terry (Bradley & Terry 1952): logarithms of "
+        "abilities; "
         "Thurstone's Case V (Thurstone 1927): standard deviations of a difference.");
     if (results.counts.ties.size() != 0) {
       remarks.emplace_back(
@@ -189,9 +191,9 @@ std::shared_ptr<BlockSummary> summarise_preferences(const BlockDesign& design,
                                                     const BlockRows& rows) {
   const PreferenceResults results = preference_results(design, rows.answers);
   auto summary = std::make_shared<TabularSummary>(design);
-  summary->parts = {scale_table(design, results), wins_table(design, results), ties_table(results),
-                    position_table(results), consistency_table(results),
-                    participants_table(design, results)};
+  summary->parts = {scale_table(design, results), wins_table(design, results),
+                    ties_table(results),          position_table(results),
+                    consistency_table(results),   participants_table(design, results)};
   summary->remarks = remarks_on(design, results);
   for (const PlannedHypothesis& planned : design.hypotheses) {
     summary->hypotheses.push_back(tested(design, results, planned));

@@ -54,8 +54,7 @@ BinomialLikelihood::Slopes BinomialLikelihood::slopes(const PsychometricVector& 
   const double threshold = from_axis(shape_, at[threshold_at]);
   const double slope = std::exp(at[log_slope_at]);
   for (const Level& level : levels_) {
-    const core::ShapeGradient shape =
-        core::shape_gradient(shape_, level.value, threshold, slope);
+    const core::ShapeGradient shape = core::shape_gradient(shape_, level.value, threshold, slope);
     const PsychometricVector gradient{gain * shape.by_threshold, gain * shape.by_log_slope,
                                       1.0 - shape.value, -shape.value};
     const double p = std::clamp(at[guess_at] + gain * shape.value, smallest_p, 1.0 - smallest_p);

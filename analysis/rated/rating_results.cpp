@@ -26,12 +26,12 @@ std::optional<double> rating_in(const std::string& response, int steps) {
 double rating_of(const BlockDesign& design, const AnswerRow& answer) {
   const std::optional<double> rating = rating_in(answer.response, design.steps);
   if (!rating) {
-    throw core::InvalidInput{fmt::format(
-        "block '{}', {} in trial {}: a rating is {}, not '{}'", design.name, answer.participant_id,
-        answer.number,
-        design.steps == 0 ? "a number from 0 to 1"
-                          : fmt::format("a whole number from 1 to {}", design.steps),
-        answer.response)};
+    throw core::InvalidInput{
+        fmt::format("block '{}', {} in trial {}: a rating is {}, not '{}'", design.name,
+                    answer.participant_id, answer.number,
+                    design.steps == 0 ? "a number from 0 to 1"
+                                      : fmt::format("a whole number from 1 to {}", design.steps),
+                    answer.response)};
   }
   return *rating;
 }
@@ -82,8 +82,8 @@ void add_tests(RatingResults& results) {
 
 RatingResults rating_results(const BlockDesign& design, const std::vector<AnswerRow>& answers) {
   if (design.steps == 1) {
-    throw core::InvalidInput{fmt::format("block '{}': a rating has two steps or more",
-                                         design.name)};
+    throw core::InvalidInput{
+        fmt::format("block '{}': a rating has two steps or more", design.name)};
   }
   const RatingsByStimulus none(design.stimuli.size());
   RatingsByStimulus all = none;

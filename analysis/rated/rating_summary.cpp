@@ -69,7 +69,8 @@ std::vector<std::string> remarks_on(const RatingResults& results) {
     return {"There are no answers."};
   }
   std::vector<std::string> remarks{
-      "Medians and quartiles (and counts of steps) are of all ratings. Tests take the median of each "
+      "Medians and quartiles (and counts of steps) are of all ratings. Tests take the median of "
+      "each "
       "participant's ratings of a stimulus; ranks count from the lowest rating."};
   if (!results.left_out.empty()) {
     remarks.push_back(fmt::format("Left out of tests, without ratings of every stimulus: {}.",

@@ -32,8 +32,9 @@ struct Answers {
 
 // The answer that a text gives: an option's name where the text is its place, from 1; a number
 // above 0 in decimal notation, at most 20 characters, in its shortest form; a setting's place; a
-// mark from 0 to 1, written likewise; all options' names with a space between, where the text has all their places, with spaces or commas
-// between. Spaces around it do not matter. nullopt: the text is no answer.
+// mark from 0 to 1, written likewise; all options' names with a space between, where the text has
+// all their places, with spaces or commas between. Spaces around it do not matter. nullopt: the
+// text is no answer.
 std::optional<std::string> answer_in(const std::string& text, const Answers& answers);
 // What answer_in takes: "a number from 1 to 4".
 std::string expected_answer(const Answers& answers);

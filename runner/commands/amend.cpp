@@ -78,8 +78,7 @@ results::JournalledAnswer answer_to(int trial, const AmendOptions& options, resu
   return *found;
 }
 
-AnswerInView in_view(const results::JournalledAnswer& answer,
-                     const protocols::Protocol& protocol) {
+AnswerInView in_view(const results::JournalledAnswer& answer, const protocols::Protocol& protocol) {
   const protocols::Block& block = protocol.block(answer.trial.block);
   return {stored_trial(answer.trial, answer.alternatives, block),
           block.task->answers(block, protocol), answer.response.response};
@@ -98,9 +97,10 @@ void amend(const AmendOptions& options) {
   }
   const results::SessionRow session = session_of(options, answer, store);
   results::Recorder recorder{store};
-  OperatorDesk desk{{protocol, session.id, store.excluded_participants().contains(options.participant),
-                     [&] { return seconds_since(session.started_utc); }},
-                    recorder};
+  OperatorDesk desk{
+      {protocol, session.id, store.excluded_participants().contains(options.participant),
+       [&] { return seconds_since(session.started_utc); }},
+      recorder};
   if (answer) {
     desk.answer_is_stored(in_view(*answer, protocol));
   }

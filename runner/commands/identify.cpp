@@ -120,9 +120,10 @@ void add_identify(CommandParser& line) {
                         "Seconds after a tap's peak before it rings freely");
   command.option("--speeds", question.speeds,
                  "CSV with a column speed_m_s: the speed of each impact, in order");
-  command.option("--places", question.places,
-                 "CSV with columns x_m and y_m: where each impact tapped the plate, in order; modes "
-                 "are then matched by their shapes, too");
+  command.option(
+      "--places", question.places,
+      "CSV with columns x_m and y_m: where each impact tapped the plate, in order; modes "
+      "are then matched by their shapes, too");
   command.option("--at", options->at,
                  "X,Y of the place tapped, m: writes recordings.yaml for technique recorded");
   command.flag("--json", options->wants_json, "Output as JSON");

@@ -56,7 +56,8 @@ results::TaskRule rule_of(const results::StudyRow& study) {
                      const std::vector<results::AlternativeRow>& alternatives,
                      const std::string& response) {
             const protocols::Block& block = *block_of(trial);
-            return block.task->is_correct(stored_trial(trial, alternatives, block), block, response);
+            return block.task->is_correct(stored_trial(trial, alternatives, block), block,
+                                          response);
           }};
 }
 

@@ -1,8 +1,8 @@
 #include "runner/experiments/stored_trial.hpp"
 namespace tapstudy::runner {
 protocols::PlannedTrial stored_trial(const results::TrialRow& row,
-                                const std::vector<results::AlternativeRow>& alternatives,
-                                const protocols::Block& block) {
+                                     const std::vector<results::AlternativeRow>& alternatives,
+                                     const protocols::Block& block) {
   protocols::PlannedTrial trial;
   trial.number = row.number;
   trial.block = row.block;

@@ -66,9 +66,8 @@ void add_discrimination(const protocols::Block& block, const protocols::Protocol
   part.guess_rate = block.task->guess_rate(block, protocol);
   part.has_own_guess_rate = block.task->has_own_guess_rate();
   part.alternatives = block.alternatives > 0 ? block.alternatives : 2;
-  part.steps = block.rating && block.rating->kind == protocols::ScaleKind::likert
-                   ? block.rating->steps
-                   : 0;
+  part.steps =
+      block.rating && block.rating->kind == protocols::ScaleKind::likert ? block.rating->steps : 0;
   part.has_ties = !block.tie.empty();
   if (block.adjustment) {
     const protocols::Adjustment& of = *block.adjustment;

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 namespace tapstudy::runner {
-// CSV files with a row for each impact, in the order of the recordings. Both throw InvalidInput with
-// file and line: no such column, a cell that is no such value.
+// CSV files with a row for each impact, in the order of the recordings. Both throw InvalidInput
+// with file and line: no such column, a cell that is no such value.
 
 // The column speed_m_s: above 0, below 100 m/s.
 std::vector<double> read_speeds(const std::string& file);

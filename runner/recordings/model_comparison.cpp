@@ -61,13 +61,13 @@ void update_on_springs(const core::PlateSpec& spec, const MeasuredModes& measure
     const Eigen::MatrixXd assurance =
         assurance_if_known(measured, modes_of(updated, progress), updated);
     for (analysis::MatchedMode& one : model.update->matched) {
-      one.assurance = assurance(static_cast<Eigen::Index>(one.measured),
-                                static_cast<Eigen::Index>(one.model));
+      one.assurance =
+          assurance(static_cast<Eigen::Index>(one.measured), static_cast<Eigen::Index>(one.model));
     }
   }
   model.frequencies_hz = found->model_hz;
-  model.springs = IdentifiedSprings{found->spring_factor, {},
-                                    on_springs(spec, found->spring_factor.value).fixations};
+  model.springs = IdentifiedSprings{
+      found->spring_factor, {}, on_springs(spec, found->spring_factor.value).fixations};
 }
 }  // namespace
 
@@ -97,9 +97,9 @@ ModelComparison compare_with_model(const protocols::Protocol& protocol, const st
     if (measured.frequencies_hz.empty() || model.frequencies_hz.empty()) {
       return;
     }
-    model.update = analysis::update_youngs_modulus(
-        measured.frequencies_hz, model.frequencies_hz, spec.material.youngs_modulus_pa,
-        assurance_if_known(measured, modal, spec));
+    model.update = analysis::update_youngs_modulus(measured.frequencies_hz, model.frequencies_hz,
+                                                   spec.material.youngs_modulus_pa,
+                                                   assurance_if_known(measured, modal, spec));
     if (model.is_on_springs) {
       update_on_springs(spec, measured, progress, model);
     }

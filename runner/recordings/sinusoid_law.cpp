@@ -71,8 +71,8 @@ std::optional<SinusoidLaw> sinusoid_law(const TapIdentification& found,
   law.amplitude_per_speed = analysis::amplitude_per_speed(taps.speeds, taps.amplitudes);
   law.line = analysis::amplitude_line(taps.speeds, taps.amplitudes);
   if (finger) {
-    law.amplitude_n_s_per_m = law.amplitude_per_speed->value *
-                              newtons_per_unit(law, found.question.quantity, *finger);
+    law.amplitude_n_s_per_m =
+        law.amplitude_per_speed->value * newtons_per_unit(law, found.question.quantity, *finger);
   }
   return law;
 }

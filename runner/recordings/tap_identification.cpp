@@ -82,10 +82,10 @@ class Identifier {
   void check_playback_rate(const std::vector<MeasuredFile>& files) const {
     for (const MeasuredFile& file : files) {
       if (result_.question.at_m && rate_of(file) != rate_of(files.front())) {
-        throw core::InvalidInput{fmt::format(
-            "--at: {} has {:g} samples a second, {} {:g}: all of one rate",
-            file.channels.front().file, rate_of(file), files.front().channels.front().file,
-            rate_of(files.front()))};
+        throw core::InvalidInput{
+            fmt::format("--at: {} has {:g} samples a second, {} {:g}: all of one rate",
+                        file.channels.front().file, rate_of(file),
+                        files.front().channels.front().file, rate_of(files.front()))};
       }
     }
   }
@@ -133,8 +133,7 @@ class Identifier {
     return true;
   }
 
-  static void check_rows(const std::string& file, const char* what, std::size_t rows,
-                         int impacts) {
+  static void check_rows(const std::string& file, const char* what, std::size_t rows, int impacts) {
     if (rows != static_cast<std::size_t>(impacts)) {
       throw core::InvalidInput{
           fmt::format("{}: has {} {}, the recordings {} impacts (one row for each, in their order, "

@@ -13,9 +13,9 @@ namespace tapstudy::runner {
 // What is asked of recordings of real taps.
 struct TapQuestion {
   std::vector<std::string> recordings;
-  analysis::ReadingOptions reading;   // its column left open
-  std::vector<std::string> columns;   // of each recording, as ReadingOptions::column; empty: one
-  std::string force_column;           // of what struck [N], likewise; may be empty
+  analysis::ReadingOptions reading;  // its column left open
+  std::vector<std::string> columns;  // of each recording, as ReadingOptions::column; empty: one
+  std::string force_column;          // of what struck [N], likewise; may be empty
   analysis::Quantity quantity{analysis::Quantity::acceleration};
   double si_per_unit{1.0};  // from the recordings' unit to m/s², m/s or m
   analysis::TapFinding finding;
@@ -39,7 +39,7 @@ struct IdentifiedTap {
   std::optional<analysis::FittedSinusoid> sinusoid;
   std::optional<double> speed_m_s;
   std::optional<double> impulse_n_s;  // of the force, where it was recorded
-  std::optional<std::size_t> place;  // that was tapped: index into TapIdentification::places_m
+  std::optional<std::size_t> place;   // that was tapped: index into TapIdentification::places_m
 };
 
 struct SinusoidLaw {

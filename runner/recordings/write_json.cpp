@@ -131,11 +131,10 @@ Json json_of(const ModelComparison& model) {
   json["youngs_modulus_pa"] = json_of(model.update->youngs_modulus_pa);
   json["rms_misfit"] = model.update->rms_misfit;
   for (const analysis::MatchedMode& one : model.update->matched) {
-    json["matched"].push_back(
-        {{"agreed_mode", one.measured},
-         {"model_mode", one.model},
-         {"misfit", one.misfit},
-         {"mac", one.assurance ? Json(*one.assurance) : Json{}}});
+    json["matched"].push_back({{"agreed_mode", one.measured},
+                               {"model_mode", one.model},
+                               {"misfit", one.misfit},
+                               {"mac", one.assurance ? Json(*one.assurance) : Json{}}});
   }
   json["unmatched"] = model.update->unmatched;
   if (model.springs) {

@@ -15,7 +15,8 @@ void print(const TapIdentification& found);
 // were found, the plate's `fixations`, whole, under `plates`.
 std::string yaml_of(const TapIdentification& found);
 
-// One of a protocol's fixations, as it is read: {region: ...}. is_of_box: of a plate, not a surface.
+// One of a protocol's fixations, as it is read: {region: ...}. is_of_box: of a plate, not a
+// surface.
 std::string fixation_yaml(const core::Fixation& fixation, bool is_of_box);
 
 std::string json_of(const TapIdentification& found);

@@ -74,7 +74,7 @@ TrialResult MaskedTrialLoop::run(const Rendered& rendered, const Explore& explor
     has_warned_ = true;
     warn(fmt::format("masking noise is no longer played ({}); {}", played.loss->why,
                      noise_.is_required ? "the session ends, since the protocol requires it"
-                                  : "the session goes on without it"));
+                                        : "the session goes on without it"));
   }
   return result;
 }

@@ -16,8 +16,7 @@ std::string sql(const TempDirectory& directory, const std::string& query) {
 
 testing::ProgramResult amend(const TempDirectory& directory, const std::string& participant,
                              const std::string& action) {
-  return testing::tapstudy(
-      {"amend", directory / "study", action, "--participant", participant});
+  return testing::tapstudy({"amend", directory / "study", action, "--participant", participant});
 }
 
 void simulate(const TempDirectory& directory, const std::string& protocol) {
@@ -41,8 +40,9 @@ TEST_CASE("after a session any answer is corrected, remarks and exclusions are a
             "SELECT participant_id, number, response, given_by FROM current_response "
             "JOIN trial USING (trial_id) JOIN session USING (session_id) "
             "WHERE supersedes IS NOT NULL") == "sim-02|3|mdf_two|operator\n");
-  CHECK(sql(directory, "SELECT is_correct = (response = stimulus) FROM v_trials "
-                       "WHERE is_corrected") == "1\n");
+  CHECK(sql(directory,
+            "SELECT is_correct = (response = stimulus) FROM v_trials "
+            "WHERE is_corrected") == "1\n");
   CHECK(sql(directory,
             "SELECT participant_id, action, number, detail, t_s >= 0 FROM operator_action "
             "JOIN session USING (session_id)") ==
@@ -63,8 +63,7 @@ TEST_CASE("an answer that names a blind label is corrected to what had that labe
                             "JOIN session USING (session_id) WHERE participant_id = 'sim-02' "
                             "AND number = 1 AND label = 'B'");
   REQUIRE(amend(directory, "sim-02", "correct @1 2").exit_code == 0);
-  CHECK(sql(directory,
-            "SELECT response FROM current_response WHERE supersedes IS NOT NULL") == b);
+  CHECK(sql(directory, "SELECT response FROM current_response WHERE supersedes IS NOT NULL") == b);
 }
 
 TEST_CASE("what cannot be amended is refused in one line, and nothing is stored", "[end_to_end]") {

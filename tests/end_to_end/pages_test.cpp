@@ -27,8 +27,9 @@ TEST_CASE("the operator sees at the terminal what the page shows", "[end_to_end]
   pass("operator_terminal_test.py");
 }
 
-TEST_CASE("every task with every procedure is the same at the terminal and at the page, and simulated",
-          "[end_to_end][pages][slow]") {
+TEST_CASE(
+    "every task with every procedure is the same at the terminal and at the page, and simulated",
+    "[end_to_end][pages][slow]") {
   pass("every_way_test.py");
 }
 

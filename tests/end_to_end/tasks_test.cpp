@@ -108,15 +108,14 @@ TEST_CASE("two of the same are called different in one of six cases, the simulat
   const TempDirectory directory;
   const std::string study = testing::contents(testing::source("tests/data/same_alternatives.yaml"));
   const std::size_t blocks = study.find("blocks:\n") + std::strlen("blocks:\n");
-  testing::write(directory / "study.yaml",
-                 study.substr(0, blocks) +
-                     "  - {name: same_different, task: same_different, question: \"Same?\", stimuli: "
-                     "[one, other], repetitions: 60}\n" +
-                     testing::replaced(study.substr(study.find("simulation:")), ", reference: one",
-                                       ""));
-  const auto run =
-      testing::tapstudy({"simulate", directory / "study.yaml", "--participants", "40", "--seed",
-                         "4", "--no-traces", "--out", directory / "study"});
+  testing::write(
+      directory / "study.yaml",
+      study.substr(0, blocks) +
+          "  - {name: same_different, task: same_different, question: \"Same?\", stimuli: "
+          "[one, other], repetitions: 60}\n" +
+          testing::replaced(study.substr(study.find("simulation:")), ", reference: one", ""));
+  const auto run = testing::tapstudy({"simulate", directory / "study.yaml", "--participants", "40",
+                                      "--seed", "4", "--no-traces", "--out", directory / "study"});
   INFO(run.standard_error);
   REQUIRE(run.exit_code == 0);
   std::istringstream rows{sql(directory,

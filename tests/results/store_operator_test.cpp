@@ -119,8 +119,9 @@ TEST_CASE("what the journal could not take is made up for, not doubled", "[resul
   CHECK(read_journal(directory.path()).entries.form_answers.size() == 1);
 }
 
-TEST_CASE("a balanced order is used up by who has answered, or is in a session, and is not excluded",
-          "[results][store]") {
+TEST_CASE(
+    "a balanced order is used up by who has answered, or is in a session, and is not excluded",
+    "[results][store]") {
   const testing::TempDirectory directory;
   Store store = Store::open_or_create(directory.path(), small_study::study);
   const auto is_p02 = [](const std::string& id) { return id == "P02"; };

@@ -34,8 +34,9 @@ TEST_CASE("a class that was never presented, or alone, has no d'", "[analysis][d
   CHECK_THROWS_AS(one_against_rest({{1, 2, 3}, {4, 5, 6}}), core::InvalidInput);
 }
 
-TEST_CASE("four alternatives' equivalent d' of the paper's 43 of 80 is R's integral's, and psyphy's",
-          "[analysis][detection]") {
+TEST_CASE(
+    "four alternatives' equivalent d' of the paper's 43 of 80 is R's integral's, and psyphy's",
+    "[analysis][detection]") {
   const auto r = r_numbers(
       "p <- function(d) integrate(function(x) dnorm(x - d) * pnorm(x)^3, -Inf, Inf, rel.tol = "
       "1e-13, subdivisions = 1000)$value; out(uniroot(function(d) p(d) - 43 / 80, c(0, 5), "

@@ -70,7 +70,8 @@ TEST_CASE("d' is that of the decision model, its mean has R's interval",
   const auto json = reported(statistic, design_of("oddity", 3), answers).json;
   const Sensitivity first = sensitivity({DecisionModel::oddity, 3}, {18, 30});
   CHECK(json["participants"][0]["d_prime"].get<double>() == Approx(first.d_prime).epsilon(1e-9));
-  CHECK(json["participants"][0]["d_prime_high"].get<double>() == Approx(first.interval.high).epsilon(1e-9));
+  CHECK(json["participants"][0]["d_prime_high"].get<double>() ==
+        Approx(first.interval.high).epsilon(1e-9));
   const auto r =
       r_numbers("x <- " + testing::r_vector(d_primes) + "; out(mean(x), t.test(x)$conf.int)");
   CHECK(json["all"][0]["mean_d_prime"].get<double>() == Approx(r[0]).epsilon(1e-9));

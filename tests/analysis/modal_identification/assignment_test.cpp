@@ -48,7 +48,8 @@ TEST_CASE("shapes in proportion have an assurance of 1, orthogonal ones and none
   CHECK(modal_assurance(shape, Eigen::Vector3d::Zero()) == 0.0);
 }
 
-TEST_CASE("what channels say of one impact is one observation", "[analysis][modal_identification]") {
+TEST_CASE("what channels say of one impact is one observation",
+          "[analysis][modal_identification]") {
   const auto tap_of = [](double frequency_hz, double ratio) {
     TapModes tap;
     FittedMode fitted;

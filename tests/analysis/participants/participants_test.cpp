@@ -52,7 +52,8 @@ TEST_CASE("the mean over participants and its interval are those of R's beta-bin
       "1e-15, maxit = 5000)); p <- function(m) optimize(function(r) l(m, r), c(1e-6, .999), "
       "maximum = TRUE, tol = 1e-9)$objective;"
       // values tell a maximum's place to seven digits, the score to all
-      "s <- function(a, b) c(sum(digamma(k + a) - digamma(a) + digamma(a + b) - digamma(n + a + b)),"
+      "s <- function(a, b) c(sum(digamma(k + a) - digamma(a) + digamma(a + b) - digamma(n + a + "
+      "b)),"
       "sum(digamma(n - k + b) - digamma(b) + digamma(a + b) - digamma(n + a + b)));"
       "v <- 1 / plogis(f$par[2]) - 1; q <- v * c(plogis(f$par[1]), plogis(-f$par[1]));"
       "for (i in 1:20) { h <- 1e-6 * q; J <- cbind((s(q[1] + h[1], q[2]) - s(q[1] - h[1], q[2])) / "

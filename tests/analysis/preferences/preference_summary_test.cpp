@@ -76,7 +76,8 @@ TEST_CASE("the report's scales are those of the counted preferences and hold the
     const auto& row = json["scale"][i];
     const auto item = static_cast<Eigen::Index>(i);
     CHECK(row["bradley_terry"].get<double>() == Approx(scale.scale.values[item]).epsilon(1e-9));
-    CHECK(row["bradley_terry_low"].get<double>() == Approx(scale.scale.intervals[i].low).epsilon(1e-9));
+    CHECK(row["bradley_terry_low"].get<double>() ==
+          Approx(scale.scale.intervals[i].low).epsilon(1e-9));
     CHECK(row["thurstone_high"].get<double>() == Approx(thurstone.intervals[i].high).epsilon(1e-9));
     CHECK(row["bradley_terry"].get<double>() ==
           Approx(0.9 - 0.6 * static_cast<double>(i)).margin(0.25));
@@ -184,7 +185,8 @@ TEST_CASE("ties are counted apart, and their nu is that of R's log-linear fit",
   // as a Poisson model of counts: pair, abilities, ties (Davidson 1970)
   std::string counts;
   const auto count_of = [&](const auto& is_counted) {
-    counts += (counts.empty() ? "" : ",") + std::to_string(std::ranges::count_if(answers, is_counted));
+    counts +=
+        (counts.empty() ? "" : ",") + std::to_string(std::ranges::count_if(answers, is_counted));
   };
   for (const auto& [i, j] : {std::pair{0, 1}, {0, 2}, {1, 2}}) {
     const auto is_of_pair = [&, i = i, j = j](const results::AnswerRow& answer) {

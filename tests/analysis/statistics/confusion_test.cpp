@@ -152,7 +152,8 @@ TEST_CASE("the chance of a factor weighs stimuli as they were presented", "[anal
   const ConfusionMatrix matrix = matrix_from(
       "stimulus,factor:material,a,b,c,d\na,wood,10,0,0,0\nb,wood,0,0,0,0\nc,wood,0,0,0,0\n"
       "d,metal,0,0,0,40\n");
-  CHECK(factor_chance(matrix, "material", "") == Approx((10 * 0.75 + 40 * 0.25) / 50).epsilon(1e-9));
+  CHECK(factor_chance(matrix, "material", "") ==
+        Approx((10 * 0.75 + 40 * 0.25) / 50).epsilon(1e-9));
 }
 
 TEST_CASE("a table that is no confusion matrix is refused at its line", "[analysis][confusion]") {

@@ -172,8 +172,7 @@ TEST_CASE("exact tests have no smaller probabilities than they say, whatever par
     }
     return *exact_multinomial_p(votes);
   });
-  check_p("sign", Law::not_smaller,
-          [](Rng& rng) { return sign_test(differences(14, rng)).p; });
+  check_p("sign", Law::not_smaller, [](Rng& rng) { return sign_test(differences(14, rng)).p; });
   check_p("signed ranks", Law::not_smaller,
           [](Rng& rng) { return *signed_rank_test(differences(14, rng)).p; });
   check_p("sign flips", Law::not_smaller,

@@ -287,7 +287,8 @@ TEST_CASE("each level has the d' of its answers by the task's decision model",
   REQUIRE(json["levels"].size() == levels.size());
   for (std::size_t i = 0; i < levels.size(); ++i) {
     CHECK(json["levels"][i]["d_prime"].get<double>() ==
-          Approx(sensitivity({DecisionModel::forced_choice, 2}, levels[i].answers).d_prime).epsilon(1e-9));
+          Approx(sensitivity({DecisionModel::forced_choice, 2}, levels[i].answers).d_prime)
+              .epsilon(1e-9));
   }
 }
 

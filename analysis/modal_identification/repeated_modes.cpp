@@ -99,7 +99,7 @@ Shown shown_by(const Sightings& group, const std::vector<int>& impacts) {
   Shown shown;
   for (const auto& [impact, channels] : by_impact) {
     const auto count = static_cast<double>(channels.size());
-    const auto of = [&](auto value_of) {
+    const auto of = [&, &channels = channels](auto value_of) {
       std::vector<double> values;
       std::ranges::transform(channels, std::back_inserter(values),
                              [&](const Sighting& one) { return value_of(one.mode->fitted); });

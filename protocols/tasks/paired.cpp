@@ -17,6 +17,10 @@ class Paired final : public PreferenceTask {
   bool can_present_real_plates() const override { return false; }
   bool is_random(const Block& /*block*/) const override { return true; }
   std::string_view success() const override { return "prefer the expected one"; }
+  // Ties are left out of tests.
+  double chance_level(const Block& /*block*/, const Protocol& /*protocol*/) const override {
+    return 0.5;
+  }
 
   void read(MapReader& reader, const Protocol& /*protocol*/, Block& block) const override {
     if (block.stimuli.size() < 2) {

@@ -116,6 +116,8 @@ class Task {
   virtual bool is_random(const Block& block) const = 0;
   // Whether answers are counted against a chance level; ratings are not.
   virtual bool has_chance_level() const { return true; }
+  // Of what success() says, where there is one: one option of those that can be answered.
+  virtual double chance_level(const Block& block, const Protocol& protocol) const;
 
   // The block's trials, numbers left open.
   virtual std::vector<PlannedTrial> trials(const Block& block, const Draw& draw) const = 0;

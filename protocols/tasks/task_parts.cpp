@@ -22,9 +22,12 @@ std::vector<Alternative> rendered(const PlannedTrial& trial, const Block& block)
   return all;
 }
 
+double Task::chance_level(const Block& block, const Protocol& protocol) const {
+  return 1.0 / static_cast<double>(answers(block, protocol).options.size());
+}
+
 double Task::guess_rate(const Block& block, const Protocol& protocol) const {
-  return has_correct_answer() ? 1.0 / static_cast<double>(answers(block, protocol).options.size())
-                              : 0.0;
+  return has_correct_answer() ? chance_level(block, protocol) : 0.0;
 }
 
 void visit_all(std::size_t alternatives, const Simulation& simulation, SimulatedTouch& touch) {

@@ -41,8 +41,7 @@ void warn_of_balance(const protocols::Block& block, int participants) {
 
 void print_power(const protocols::Protocol& protocol, const protocols::Block& block,
                  int participants) {
-  const std::size_t options = block.task->answers(block, protocol).options.size();
-  const double chance = 1.0 / static_cast<double>(options);
+  const double chance = block.task->chance_level(block, protocol);
   const int answers = participants * block.task->counted_answers(block);
   const int critical = analysis::critical_successes(answers, chance, alpha);
   fmt::print(

@@ -577,6 +577,17 @@ TEST_CASE("what cannot be compared is refused at its line", "[end_to_end]") {
   CHECK_THAT(result.standard_error, Contains(said) && Contains("study.yaml:"));
 }
 
+TEST_CASE("chance prefers either of two, whether or not ties are allowed", "[end_to_end]") {
+  const auto check = testing::tapstudy({"check", testing::source("tests/data/every_task.yaml")});
+  REQUIRE(check.exit_code == 0);
+  for (const std::string block : {"paired", "paired_or_tied"}) {
+    const std::string& said = check.standard_output;
+    const std::size_t begin = said.find("  " + block + ": paired, ");
+    REQUIRE(begin != std::string::npos);
+    CHECK_THAT(said.substr(begin, 150), Contains("chance 50 %; of 10 answers 9 must prefer"));
+  }
+}
+
 TEST_CASE("check warns of a procedure that assumes another guess rate than the task has",
           "[end_to_end]") {
   const TempDirectory directory;

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "core/number_in.hpp"
+#include "core/plain_text.hpp"
 namespace tapstudy::protocols {
 namespace {
 constexpr std::size_t max_text = 5000;
@@ -46,6 +47,9 @@ std::string wrong_with(const FormItem& item, const std::string& answer) {
                                fmt::join(names_of(item.options), ", "));
     case ItemKind::text:
       break;
+  }
+  if (!core::is_plain_text(answer)) {
+    return "not text: UTF-8 without control characters is";
   }
   return answer.size() <= max_text ? "" : fmt::format("at most {} characters", max_text);
 }

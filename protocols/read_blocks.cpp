@@ -182,7 +182,8 @@ void check_criterion(MapReader& reader, const Block& block) {
     return;
   }
   if (!block.task->has_correct_answer()) {
-    reader.reject("criterion", fmt::format("no answer is right in a {} block", block.task->name()));
+    reader.reject("criterion",
+                  fmt::format("no answer is right in a block of {}", block.task->name()));
   }
   if (block.comparison) {
     reader.reject("criterion",
@@ -257,9 +258,10 @@ Block read_block(MapReader& reader, const Protocol& protocol) {
                     fmt::format("no answer is right in a {} block", block.task->name()));
     }
     if (!block.task->uses_order() && reader.has("order")) {
-      reader.reject("order", fmt::format("a {} block draws the order of its alternatives anew for "
-                                         "each trial and takes no order",
-                                         block.task->name()));
+      reader.reject("order",
+                    fmt::format("a block of {} draws the order of its alternatives anew for "
+                                "each trial and takes no order",
+                                block.task->name()));
     }
   }
   return block;

@@ -167,6 +167,14 @@ std::optional<SessionRow> Store::latest_session(const std::string& participant_i
   return row.step() ? std::optional{session_from(row, database_.file())} : std::nullopt;
 }
 
+std::optional<std::int64_t> Store::session_of_trial(const std::string& participant_id, int number) {
+  Statement row{database_,
+                "SELECT session_id FROM trial JOIN session USING (session_id) "
+                "WHERE participant_id = ? AND number = ? ORDER BY trial_id DESC LIMIT 1"};
+  row.bind(participant_id).bind(number);
+  return row.step() ? std::optional{row.integer(0)} : std::nullopt;
+}
+
 std::vector<int> Store::answered_trials(const std::string& participant_id) {
   Statement row{database_,
                 "SELECT number FROM trial JOIN session USING (session_id) "

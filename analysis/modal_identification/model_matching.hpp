@@ -30,8 +30,8 @@ inline constexpr double max_match_difference = 0.15;
 // at one Poisson's ratio, density and geometry. Modes are assigned so that the sum of squared
 // differences of the logarithms is least, each at most once; a mode without a partner costs
 // max_match_difference squared, a pair whose shapes are known (assurance: measured by model modes,
-// modal_assurance; empty: not known) as much times 1 less their assurance. Assignment and factor
-// are repeated until they settle, from the modulus given. The interval is Student's t of the
+// modal_assurance; empty: not known) half as much times 1 less their assurance. Assignment and
+// factor are repeated until they settle, from the modulus given. The interval is Student's t of the
 // scatter between modes, or of one mode its own. Both ascending, not empty, above 0 [Hz]. Unset if
 // no mode finds a partner.
 std::optional<ModelUpdate> update_youngs_modulus(const std::vector<Estimate>& measured_hz,

@@ -124,9 +124,6 @@ RepeatedMode summary_of(const Sightings& group, std::size_t taps, const std::vec
   const Sightings agreed = of_standing(group, Standing::agreed);
   const Sightings lines = of_standing(group, Standing::line);
   RepeatedMode mode;
-  for (const Sighting& one : group) {
-    mode.in_taps.push_back({one.tap, one.mode->fitted});
-  }
   mode.taps = static_cast<int>(group.size());
   mode.agreed = static_cast<int>(agreed.size());
   const Sightings* shown = &group;

@@ -15,11 +15,6 @@ struct Estimate {
 Estimate estimate_over_taps(const std::vector<double>& values, const std::vector<double>& errors,
                             double degrees_of_freedom_of_one);
 
-struct ModeInTap {
-  std::size_t tap{};  // index
-  FittedMode fitted;
-};
-
 // One mode, as several taps show it.
 struct RepeatedMode {
   Estimate frequency_hz;
@@ -30,7 +25,6 @@ struct RepeatedMode {
   int agreed{};                        // of these, with both methods
   std::vector<double> frequencies_hz;  // of each impact that shows it, mean over its channels
   std::vector<double> ratios;
-  std::vector<ModeInTap> in_taps;  // all that show it, agreed or not
 };
 
 // Modes of different taps are one if their frequencies differ by 2 % at most (a third of the

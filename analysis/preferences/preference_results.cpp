@@ -76,6 +76,7 @@ std::string undecided(const PairedCounts& counts) {
     for (Eigen::Index j = 0; j < i; ++j) {
       if (wins(i, j) == wins(j, i)) {
         return wins(i, j) + counts.ties_of(i, j) == 0 ? "not every pair was compared"
+               : wins(i, j) == 0                      ? "of a pair neither was ever preferred"
                                                       : "a pair was preferred as often either way";
       }
     }
@@ -93,13 +94,17 @@ void judge_consistency(ParticipantPreferences& person) {
 }
 
 void add_scales(PreferenceResults& results) {
+  // Comparisons may not connect the items; for Thurstone ties do.
   try {
     BradleyTerry found = bradley_terry(results.counts);
     results.bradley_terry = std::move(found.scale);
     results.nu = found.nu;
+  } catch (const core::InvalidInput& error) {
+    results.no_scale = error.what();
+  }
+  try {
     results.thurstone = thurstone_case_v(results.counts);
-  } catch (const core::InvalidInput& error) {  // comparisons that do not connect the items
-    results.bradley_terry.reset();
+  } catch (const core::InvalidInput& error) {
     results.no_scale = error.what();
   }
 }

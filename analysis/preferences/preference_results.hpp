@@ -24,7 +24,7 @@ struct PreferenceResults {
   std::optional<PreferenceScale> bradley_terry;
   double nu{};  // of ties, as in BradleyTerry
   std::optional<PreferenceScale> thurstone;
-  std::string no_scale;  // why there is none; empty: there is
+  std::string no_scale;  // why one of them is missing; empty: neither is
 };
 
 // How often an item was preferred, of its comparisons with a preference.

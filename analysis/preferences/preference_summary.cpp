@@ -22,18 +22,17 @@ ReportTable scale_table(const BlockDesign& design, const PreferenceResults& resu
                      bradley, thurstone}};
   for (std::size_t i = 0; i < design.stimuli.size(); ++i) {
     const auto item = static_cast<Eigen::Index>(i);
-    const bool has_scale = results.no_scale.empty();
     std::vector<Proportion> people;
     for (const ParticipantPreferences& person : results.participants) {
       people.push_back(preferred(person.counts, item));
     }
-    table.rows.push_back(
-        {word(design.stimuli[i].name), pooled_proportion(people),
-         has_scale
-             ? interval(results.bradley_terry->values[item], results.bradley_terry->intervals[i])
-             : nothing(bradley),
-         has_scale ? interval(results.thurstone->values[item], results.thurstone->intervals[i])
-                   : nothing(thurstone)});
+    table.rows.push_back({word(design.stimuli[i].name), pooled_proportion(people),
+                          results.bradley_terry ? interval(results.bradley_terry->values[item],
+                                                           results.bradley_terry->intervals[i])
+                                                : nothing(bradley),
+                          results.thurstone ? interval(results.thurstone->values[item],
+                                                       results.thurstone->intervals[i])
+                                            : nothing(thurstone)});
   }
   return table;
 }
@@ -70,7 +69,7 @@ ReportTable ties_table(const PreferenceResults& results) {
   for (const ParticipantPreferences& person : results.participants) {
     people.push_back(tied(person.counts));
   }
-  table.rows.push_back({pooled_proportion(people), results.no_scale.empty()
+  table.rows.push_back({pooled_proportion(people), results.bradley_terry
                                                        ? number(results.nu)
                                                        : nothing(table.columns.back())});
   return table;
@@ -135,18 +134,20 @@ std::vector<std::string> remarks_on(const BlockDesign& design, const PreferenceR
         "all answers as independent. Bradley-Terry (Bradley & Terry 1952): logarithms of "
         "abilities; "
         "Thurstone's Case V (Thurstone 1927): standard deviations of a difference.");
-    if (results.counts.ties.size() != 0) {
-      remarks.emplace_back(
-          "Proportions are of comparisons with a preference. In Bradley-Terry a tie between two "
-          "equal stimuli is nu times as probable as either preference (Davidson 1970); Thurstone "
-          "takes a tie for half a preference each way.");
-    }
   } else {
     std::string items;
     for (std::size_t i = 0; i < design.stimuli.size(); ++i) {
       items += fmt::format("{}{} {}", i == 0 ? "" : ", ", i + 1, design.stimuli[i].name);
     }
-    remarks.push_back(fmt::format("No scale: {}. Items: {}.", results.no_scale, items));
+    remarks.push_back(fmt::format("No scale{}: {}. Items: {}.",
+                                  results.thurstone ? " by Bradley-Terry" : "", results.no_scale,
+                                  items));
+  }
+  if (results.counts.ties.size() != 0) {
+    remarks.emplace_back(
+        "Proportions are of comparisons with a preference. In Bradley-Terry a tie between two "
+        "equal stimuli is nu times as probable as either preference (Davidson 1970); Thurstone "
+        "takes a tie for half a preference each way.");
   }
   remarks.emplace_back(
       "Circular triads: A preferred to B, B to C, C to A; zeta is 1 without them, 0 with as many "

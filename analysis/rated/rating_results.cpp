@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <optional>
 
@@ -57,6 +58,12 @@ StimulusRatings described(const std::string& name, const std::vector<double>& ra
   return result;
 }
 
+// Means of two marks that are equal but for rounding are ties.
+double rounded(double median) {
+  constexpr double digits = 1e9;
+  return std::round(digits * median) / digits;
+}
+
 void add_medians(RatingResults& results, const std::string& name,
                  const RatingsByStimulus& ratings) {
   if (std::ranges::any_of(ratings, &std::vector<double>::empty)) {
@@ -66,7 +73,7 @@ void add_medians(RatingResults& results, const std::string& name,
   results.participants.push_back(name);
   results.medians.emplace_back();
   for (const std::vector<double>& of_stimulus : ratings) {
-    results.medians.back().push_back(quantile(of_stimulus, 0.5));
+    results.medians.back().push_back(rounded(quantile(of_stimulus, 0.5)));
   }
 }
 

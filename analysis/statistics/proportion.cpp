@@ -53,7 +53,8 @@ Interval wilson_interval(const Proportion& proportion) {
   const double centre = p + z * z / (2.0 * n);
   const double reach = z * std::sqrt(p * (1.0 - p) / n + z * z / (4.0 * n * n));
   const double scale = 1.0 + z * z / n;
-  return {std::max(0.0, (centre - reach) / scale), std::min(1.0, (centre + reach) / scale)};
+  return {proportion.successes == 0 ? 0.0 : (centre - reach) / scale,
+          proportion.successes == proportion.trials ? 1.0 : (centre + reach) / scale};
 }
 
 double binomial_p_at_least(const Proportion& observed, double chance) {

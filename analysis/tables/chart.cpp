@@ -117,7 +117,11 @@ std::vector<double> linear_ticks(const Interval& range) {
 
 std::vector<double> ticks(const Interval& range, bool is_logarithmic) {
   constexpr std::size_t most = 6;
+  constexpr std::size_t fewest = 2;
   std::vector<double> found = is_logarithmic ? logarithmic_ticks(range) : linear_ticks(range);
+  if (found.size() < fewest) {  // less than a decade may hold no round number
+    found = linear_ticks(range);
+  }
   if (found.size() <= most) {
     return found;
   }

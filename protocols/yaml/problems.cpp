@@ -33,7 +33,10 @@ std::string Problems::place(int line, int column, const std::string& key_path) c
 }
 
 void Problems::add(int line, int column, const std::string& key_path, const std::string& what) {
-  problems_.push_back({line, column, place(line, column, key_path) + ": " + what});
+  const std::string at = place(line, column, key_path);
+  if (places_.insert(at).second) {
+    problems_.push_back({line, column, at + ": " + what});
+  }
 }
 
 void Problems::throw_if_any() const {

@@ -8,7 +8,7 @@ namespace tapstudy::protocols {
 class Problems {
  public:
   explicit Problems(std::string file) : file_{std::move(file)} {}
-  // line and column count from 0.
+  // line and column count from 0. Of one key the first problem is kept: others follow from it.
   void add(int line, int column, const std::string& key_path, const std::string& what);
   // "file:line:column: key.path"
   std::string place(int line, int column, const std::string& key_path) const;
@@ -28,6 +28,7 @@ class Problems {
   };
   std::string file_;
   std::vector<Problem> problems_;
+  std::set<std::string> places_;  // of these
   std::set<std::string> asked_;
 };
 

@@ -38,6 +38,12 @@ OperatorCommand amendment_in(const std::string& line) {
   if (command.action == OperatorAction::correct && !command.trial) {
     throw core::InvalidInput{"which trial? \"correct @12 ANSWER\" corrects that of trial 12"};
   }
+  const bool is_of_participant =
+      command.action == OperatorAction::exclude || command.action == OperatorAction::include;
+  if (is_of_participant && command.trial) {
+    throw core::InvalidInput{
+        fmt::format("{} concerns the participant, not a trial", name(command.action))};
+  }
   return command;
 }
 
@@ -50,20 +56,24 @@ double seconds_since(const std::string& started_utc) {
   return std::max(0.0, std::difftime(std::time(nullptr), timegm(&started)));
 }
 
-// The one in which the trial was answered; without a trial the latest.
-results::SessionRow session_of(const AmendOptions& options,
-                               const std::optional<results::JournalledAnswer>& answer,
+// The one in which the trial was presented; without a trial the latest.
+results::SessionRow session_of(const AmendOptions& options, std::optional<int> trial,
                                results::Store& store) {
-  if (answer) {
-    const auto sessions = store.sessions();
-    return *std::ranges::find(sessions, answer->trial.session_id, &results::SessionRow::id);
-  }
-  const auto session = store.latest_session(options.participant);
-  if (!session) {
+  const auto latest = store.latest_session(options.participant);
+  if (!latest) {
     throw core::InvalidInput{fmt::format("--participant: there is no '{}' in {}",
                                          options.participant, options.directory)};
   }
-  return *session;
+  if (!trial) {
+    return *latest;
+  }
+  const auto id = store.session_of_trial(options.participant, *trial);
+  if (!id) {
+    throw core::InvalidInput{
+        fmt::format("trial {} was not presented to participant '{}'", *trial, options.participant)};
+  }
+  const auto sessions = store.sessions();
+  return *std::ranges::find(sessions, *id, &results::SessionRow::id);
 }
 
 // The participant's answer to that trial, as the operator would see it had it just been given.
@@ -91,18 +101,16 @@ void amend(const AmendOptions& options) {
   const ParticipantLock lock{options.directory, options.participant};
   results::Store store = results::Store::open_or_create(
       options.directory, results::Store::open_existing(options.directory).study());
-  std::optional<results::JournalledAnswer> answer;
-  if (command.trial) {
-    answer = answer_to(*command.trial, options, store);
-  }
-  const results::SessionRow session = session_of(options, answer, store);
+  const results::SessionRow session = session_of(options, command.trial, store);
   results::Recorder recorder{store};
   OperatorDesk desk{
       {protocol, session.id, store.excluded_participants().contains(options.participant),
        [&] { return seconds_since(session.started_utc); }},
       recorder};
-  if (answer) {
-    desk.answer_is_stored(in_view(*answer, protocol));
+  if (command.action == OperatorAction::correct) {
+    desk.answer_is_stored(in_view(answer_to(*command.trial, options, store), protocol));
+  } else if (command.trial) {
+    desk.trial_was(*command.trial);
   }
   const OperatorDesk::Posted posted = desk.post(command);
   posted.stored.get();

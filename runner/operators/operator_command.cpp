@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/error.hpp"
+#include "core/plain_text.hpp"
 namespace tapstudy::runner {
 namespace {
 using enum OperatorAction;
@@ -77,6 +78,9 @@ OperatorCommand parse_operator_command(const std::string& line) {
   }
   if (!text.empty() && found->text == ActionText::none) {
     throw core::InvalidInput{fmt::format("{} takes nothing more", found->name)};
+  }
+  if (!core::is_plain_text(text)) {
+    throw core::InvalidInput{"not text: UTF-8 without control characters is"};
   }
   if (text.size() > max_text) {
     throw core::InvalidInput{fmt::format("at most {} characters", max_text)};

@@ -95,12 +95,13 @@ bool OperatorDesk::is_excluded() const {
   return is;
 }
 
-// A remark may be about the trial that was answered last, too.
+// A remark may be about the last trial, too.
 std::optional<int> OperatorDesk::trial_of(const OperatorCommand& command) const {
-  const bool is_about_last = command.action == OperatorAction::note && last_answer_ &&
-                             command.trial == last_answer_->trial.number;
-  if (command.action == OperatorAction::correct || is_about_last) {
+  if (command.action == OperatorAction::correct) {
     return last_answer_->trial.number;
+  }
+  if (command.action == OperatorAction::note && last_trial_ && command.trial == last_trial_) {
+    return last_trial_;
   }
   return trial_ ? std::optional{trial_->trial.number} : std::nullopt;
 }
@@ -222,6 +223,11 @@ DeskView OperatorDesk::view() const {
   return view;
 }
 
+void OperatorDesk::trial_was(int number) {
+  const std::lock_guard lock{mutex_};
+  last_trial_ = number;
+}
+
 void OperatorDesk::trial_begins(const TrialInView& trial) {
   const std::lock_guard lock{mutex_};
   trial_ = trial;
@@ -244,6 +250,9 @@ void OperatorDesk::trial_is_over(std::optional<TrialRequest> carried_out) {
         trial_->trial.number, fmt::format("{}: not carried out, the trial was over", name(action))};
     const std::shared_future<void> stored = recorder_.note(row).share();
     log_.push_back({std::move(row), stored});
+  }
+  if (trial_) {
+    last_trial_ = trial_->trial.number;
   }
   trial_.reset();
   request_.reset();

@@ -55,6 +55,8 @@ class OperatorDesk final : public Operator {
   // is possible.
   bool waits_for_operator(const std::string& why, const std::function<void()>& tell);
   DeskView view() const;
+  // A trial that is over, and may be remarked on.
+  void trial_was(int number);
 
   void trial_begins(const TrialInView& trial) override;
   void alternative_is_selected(std::size_t alternative) override;
@@ -88,6 +90,7 @@ class OperatorDesk final : public Operator {
   std::optional<TrialInView> trial_;
   std::size_t current_{0};
   std::optional<AnswerInView> last_answer_;
+  std::optional<int> last_trial_;
   std::optional<TrialRequest> request_;
   std::optional<std::size_t> switch_to_;
   std::string end_reason_;

@@ -1,5 +1,7 @@
 #include "runner/recordings/measured_file.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <exception>
@@ -22,6 +24,14 @@ double largest(const analysis::Recording& recording) {
 }  // namespace
 
 MeasuredFile read_measured_file(const std::string& file, const TapQuestion& question) {
+  std::vector<std::string> asked = question.columns;
+  if (!question.force_column.empty()) {
+    asked.push_back(question.force_column);
+  }
+  std::ranges::sort(asked);
+  if (const auto twice = std::ranges::adjacent_find(asked); twice != asked.end()) {
+    throw core::InvalidInput{fmt::format("--column, --force-column: '{}' is named twice", *twice)};
+  }
   MeasuredFile measured;
   for (const std::string& column :
        question.columns.empty() ? std::vector<std::string>{""} : question.columns) {
@@ -55,24 +65,61 @@ analysis::FoundTaps find_taps(const MeasuredFile& measured, const analysis::TapF
   return *clearest;
 }
 
-double impulse_n_s(const analysis::Recording& force, const analysis::Tap& tap) {
-  constexpr double before_s = 0.005;
+namespace {
+// [first, last) of the samples in which the force is above a share of its largest, which lies
+// within a window.
+struct Pulse {
+  std::size_t first{};
+  std::size_t last{};
+  double resting_n{};
+};
+Pulse pulse_in(const analysis::Recording& force, std::size_t begin, std::size_t end) {
+  constexpr double least_share = 0.02;
   constexpr double resting_s = 0.02;
-  const auto samples = [&](double seconds) {
-    return static_cast<std::size_t>(std::lround(seconds * force.rate_hz));
-  };
-  const std::size_t begin = tap.onset - std::min(tap.onset, samples(before_s));
-  const std::size_t rest = begin - std::min(begin, samples(resting_s));
+  const auto rest = begin - std::min(begin, static_cast<std::size_t>(resting_s * force.rate_hz));
   const auto at = [&](std::size_t place) {
     return force.samples.begin() + static_cast<std::ptrdiff_t>(place);
   };
   const double resting_n =
       begin == rest ? 0.0
                     : std::accumulate(at(rest), at(begin), 0.0) / static_cast<double>(begin - rest);
-  double sum_n = 0.0;
-  for (std::size_t i = begin; i < tap.begin; ++i) {
-    sum_n += force.samples[i] - resting_n;
+  const auto away_n = [&](std::size_t i) { return std::abs(force.samples[i] - resting_n); };
+  std::size_t peak = begin;
+  for (std::size_t i = begin; i < end; ++i) {
+    peak = away_n(i) > away_n(peak) ? i : peak;
   }
-  return std::abs(sum_n) / force.rate_hz;
+  const double least_n = least_share * away_n(peak);
+  Pulse pulse{peak, peak, resting_n};
+  while (pulse.first > 0 && away_n(pulse.first) > least_n) {
+    --pulse.first;
+  }
+  while (pulse.last < force.samples.size() && away_n(pulse.last) > least_n) {
+    ++pulse.last;
+  }
+  return pulse;
+}
+}  // namespace
+
+ImpactForce impact_force(const analysis::Recording& force, const analysis::Tap& tap) {
+  constexpr double near_s = 0.01;
+  const auto reach = static_cast<std::size_t>(near_s * force.rate_hz);
+  const Pulse pulse = pulse_in(force, tap.onset - std::min(tap.onset, reach),
+                               std::min(force.samples.size(), tap.begin + reach));
+  double sum_n = 0.0;
+  double moment = 0.0;
+  for (std::size_t i = pulse.first; i < pulse.last; ++i) {
+    const double above_n = force.samples[i] - pulse.resting_n;
+    sum_n += above_n;
+    moment += above_n * static_cast<double>(i);
+  }
+  if (!(std::abs(sum_n) > 0.0)) {
+    throw core::InvalidInput{fmt::format("{}, {}: shows no force at the tap at {:.3f} s",
+                                         force.file, force.channel,
+                                         static_cast<double>(tap.onset) / force.rate_hz)};
+  }
+  const std::vector<std::size_t> rails = analysis::rail_samples(force.samples);
+  return {std::abs(sum_n) / force.rate_hz, moment / sum_n / force.rate_hz,
+          std::ranges::any_of(rails,
+                              [&](std::size_t i) { return pulse.first <= i && i < pulse.last; })};
 }
 }  // namespace tapstudy::runner

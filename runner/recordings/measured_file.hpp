@@ -10,14 +10,14 @@ struct MeasuredFile {
   std::vector<analysis::Recording> channels;
   std::optional<analysis::Recording> force;  // [N]
 };
-// Throws InvalidInput as read_recording does.
+// Throws InvalidInput as read_recording does, and for a column that is asked for twice.
 MeasuredFile read_measured_file(const std::string& file, const TapQuestion& question);
 
 // Of the channel in which taps stand out most from the noise; they are the same in all channels.
 // Throws InvalidInput if no channel has one.
 analysis::FoundTaps find_taps(const MeasuredFile& measured, const analysis::TapFinding& finding);
 
-// The integral of the force over an impact, from before its onset to the free decay, above what it
-// was before.
-double impulse_n_s(const analysis::Recording& force, const analysis::Tap& tap);
+// The force of an impact, above what it was before, for as long as it acts near the tap's onset.
+// Throws InvalidInput with file and time if there is none.
+ImpactForce impact_force(const analysis::Recording& force, const analysis::Tap& tap);
 }  // namespace tapstudy::runner

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <optional>
 
+#include "analysis/modal_identification/modal_assurance.hpp"
 #include "core/error.hpp"
 #include "core/model/shape/top_height.hpp"
 #include "core/tick/surface_point.hpp"
@@ -98,12 +99,10 @@ Eigen::MatrixXd assurance_of(const MeasuredShapes& measured, const core::ModalMo
     }
     model_shapes.row(static_cast<Eigen::Index>(place)) = shape_at(model, found);
   }
-  Eigen::MatrixXd assurance(static_cast<Eigen::Index>(measured.shapes.size()),
-                            model.frequency_hz.size());
+  Eigen::MatrixXd assurance(measured.shapes.cols(), model.frequency_hz.size());
   for (Eigen::Index i = 0; i < assurance.rows(); ++i) {
     for (Eigen::Index j = 0; j < assurance.cols(); ++j) {
-      assurance(i, j) = analysis::modal_assurance(measured.shapes[static_cast<std::size_t>(i)],
-                                                  model_shapes.col(j));
+      assurance(i, j) = analysis::modal_assurance(measured.shapes.col(i), model_shapes.col(j));
     }
   }
   return assurance;

@@ -2,14 +2,13 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "analysis/modal_identification/modal_assurance.hpp"
 #include "core/model/modal_model.hpp"
 #include "core/model/shape/shape.hpp"
 namespace tapstudy::runner {
 // Shapes of measured modes at the places that were tapped.
 struct MeasuredShapes {
   std::vector<Eigen::Vector2d> places_m;  // plate frame, each once
-  std::vector<Eigen::VectorXd> shapes;    // of each measured mode, at the places
+  Eigen::MatrixXd shapes;                 // at the places, a column for each measured mode
 };
 inline constexpr std::size_t fewest_places = 3;
 

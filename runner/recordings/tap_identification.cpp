@@ -1,10 +1,12 @@
 #include "runner/recordings/tap_identification.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/modal_identification/tapped_shapes.hpp"
 #include "core/error.hpp"
 #include "protocols/read_protocol.hpp"
 #include "runner/recordings/impact_table.hpp"
@@ -97,12 +99,15 @@ class Identifier {
     }
     for (const analysis::Tap& tap : found.taps) {
       hook_(fmt::format("tap {} of {}", tap.impact, file.channels.front().file));
+      const auto force = file.force ? std::optional{impact_force(*file.force, tap)} : std::nullopt;
+      if (force && force->is_clipped) {
+        result_.remarks.push_back(fmt::format("{}: the force of the tap at {:.3f} s is clipped",
+                                              file.force->file, force->centre_s));
+      }
       for (const analysis::Recording& channel : file.channels) {
         if (add(channel, tap)) {
           result_.taps.back().impact = before + tap.impact;
-          if (file.force) {
-            result_.taps.back().impulse_n_s = impulse_n_s(*file.force, tap);
-          }
+          result_.taps.back().force = force;
         }
       }
     }
@@ -174,22 +179,31 @@ class Identifier {
       return std::nullopt;
     }
     if (result_.places_m.size() < fewest_places) {
-      result_.remarks.push_back(fmt::format(
-          "shapes are not compared: {} places were tapped, fewer than {} tell none apart",
-          result_.places_m.size(), fewest_places));
+      result_.remarks.push_back(
+          fmt::format("shapes are not compared: of {} tapped, fewer than {} tell none apart",
+                      result_.places_m.size() == 1 ? "one place" : "two places", fewest_places));
       return std::nullopt;
     }
+    std::vector<std::string> sensors;
     std::vector<analysis::PlacedTap> taps;
     for (const IdentifiedTap& tap : result_.taps) {
-      const double rate_hz = tap.decay.rate_hz;
-      taps.push_back({*tap.place, tap.channel, tap.impulse_n_s ? *tap.impulse_n_s : *tap.speed_m_s,
-                      static_cast<double>(tap.tap.begin - tap.tap.onset) / rate_hz});
+      const auto known = std::ranges::find(sensors, tap.channel);
+      const auto sensor = static_cast<std::size_t>(known - sensors.begin());
+      if (known == sensors.end()) {
+        sensors.push_back(tap.channel);
+      }
+      taps.push_back({*tap.place, sensor, tap.impact,
+                      tap.force ? tap.force->impulse_n_s : *tap.speed_m_s,
+                      static_cast<double>(tap.tap.begin) / tap.decay.rate_hz -
+                          (tap.force ? tap.force->centre_s : tap.time_s),
+                      tap.decay});
     }
-    MeasuredShapes shapes{result_.places_m, {}};
+    std::vector<analysis::Pole> poles;
     for (const std::size_t i : result_.agreed) {
-      shapes.shapes.push_back(
-          analysis::tapped_shape(result_.modes[i], taps, shapes.places_m.size()));
+      poles.push_back({result_.modes[i].frequency_hz.value, result_.modes[i].damping_ratio.value});
     }
+    const MeasuredShapes shapes{result_.places_m,
+                                analysis::tapped_shapes(poles, taps, result_.places_m.size())};
     return shapes;
   }
 

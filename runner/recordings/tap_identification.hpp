@@ -27,6 +27,13 @@ struct TapQuestion {
   std::string stimulus;
 };
 
+// Of what struck.
+struct ImpactForce {
+  double impulse_n_s{};  // above 0
+  double centre_s{};     // when, by the centroid of the force
+  bool is_clipped{};     // at its sensor's limit
+};
+
 struct IdentifiedTap {
   std::string file;
   std::string channel;
@@ -38,8 +45,8 @@ struct IdentifiedTap {
   analysis::TapModes modes;
   std::optional<analysis::FittedSinusoid> sinusoid;
   std::optional<double> speed_m_s;
-  std::optional<double> impulse_n_s;  // of the force, where it was recorded
-  std::optional<std::size_t> place;   // that was tapped: index into TapIdentification::places_m
+  std::optional<ImpactForce> force;  // where it was recorded
+  std::optional<std::size_t> place;  // that was tapped: index into TapIdentification::places_m
 };
 
 struct SinusoidLaw {

@@ -67,8 +67,8 @@ Json json_of(const IdentifiedTap& tap) {
   if (tap.speed_m_s) {
     json["speed_m_s"] = *tap.speed_m_s;
   }
-  if (tap.impulse_n_s) {
-    json["impulse_n_s"] = *tap.impulse_n_s;
+  if (tap.force) {
+    json["impulse_n_s"] = tap.force->impulse_n_s;
   }
   return json;
 }

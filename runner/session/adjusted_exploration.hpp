@@ -5,7 +5,7 @@
 
 #include "device/loop/haptic_loop.hpp"
 #include "protocols/protocol.hpp"
-#include "results/rows.hpp"
+#include "runner/session/trial_events.hpp"
 #include "runner/trial_loop/forwarded_exploration.hpp"
 namespace tapstudy::runner {
 // An exploration whose last alternative has settings, each rendered by itself: positions of the
@@ -15,7 +15,7 @@ static_assert(protocols::max_settings < device::max_alternatives);
 class AdjustedExploration final : public ForwardedExploration {
  public:
   AdjustedExploration(Exploration& inner, const protocols::PlannedTrial& trial,
-                      const protocols::Block& block, std::vector<results::EventRow>& events)
+                      const protocols::Block& block, TrialEvents& events)
       : ForwardedExploration{inner},
         settings_{trial.task->settings(trial, block)},
         adjusted_{trial.alternatives.size() - 1},
@@ -44,13 +44,13 @@ class AdjustedExploration final : public ForwardedExploration {
   void note() {
     if (settings_) {
       const double value = settings_->values[setting_].begin()->second;
-      events_.push_back({time_s(), "setting", value});
+      events_.add({time_s(), "setting", value});
     }
   }
 
   std::optional<protocols::Settings> settings_;
   std::size_t adjusted_;
   std::size_t setting_;
-  std::vector<results::EventRow>& events_;
+  TrialEvents& events_;
 };
 }  // namespace tapstudy::runner

@@ -8,8 +8,7 @@ constexpr double step_s = 0.01;  // how late an interval may begin or end in vir
 }  // namespace
 
 IntervalExploration::IntervalExploration(Exploration& inner, const protocols::ExploreLimits& limits,
-                                         std::size_t alternatives,
-                                         std::vector<results::EventRow>& events)
+                                         std::size_t alternatives, TrialEvents& events)
     : ForwardedExploration{inner}, limits_{limits}, alternatives_{alternatives}, events_{events} {
   if (limits_.intervals) {
     inner.silence(true);
@@ -30,7 +29,7 @@ void IntervalExploration::replay() {
   }
   --state_.replays_left;
   const int number = limits_.intervals->max_replays - state_.replays_left;
-  events_.push_back({time_s(), "interval_replay", static_cast<double>(number)});
+  events_.add({time_s(), "interval_replay", static_cast<double>(number)});
   begin_gap(0);
 }
 
@@ -79,12 +78,12 @@ void IntervalExploration::open() const {
   contacts_before_ = inner().contacts(next_);
   until_s_ = time_s() + limits_.intervals->seconds;
   state_.phase = Phase::open;
-  events_.push_back({time_s(), "interval", static_cast<double>(next_)});
+  events_.add({time_s(), "interval", static_cast<double>(next_)});
 }
 
 void IntervalExploration::close() const {
   inner().silence(true);
-  events_.push_back({time_s(), "interval_end", static_cast<double>(next_)});
+  events_.add({time_s(), "interval_end", static_cast<double>(next_)});
   if (next_ + 1 < alternatives_) {
     begin_gap(next_ + 1);
   } else {

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "protocols/protocol.hpp"
-#include "results/rows.hpp"
+#include "runner/session/trial_events.hpp"
 #include "runner/trial_loop/forwarded_exploration.hpp"
 namespace tapstudy::runner {
 // An exploration whose alternatives come one after the other, each in an interval of its own; with
@@ -13,7 +13,7 @@ namespace tapstudy::runner {
 class IntervalExploration final : public ForwardedExploration {
  public:
   IntervalExploration(Exploration& inner, const protocols::ExploreLimits& limits,
-                      std::size_t alternatives, std::vector<results::EventRow>& events);
+                      std::size_t alternatives, TrialEvents& events);
   void switch_to(std::size_t alternative) override;
   const IntervalState* intervals() const override { return limits_.intervals ? &state_ : nullptr; }
   void replay() override;
@@ -29,7 +29,7 @@ class IntervalExploration final : public ForwardedExploration {
 
   const protocols::ExploreLimits& limits_;
   std::size_t alternatives_;
-  std::vector<results::EventRow>& events_;
+  TrialEvents& events_;
   mutable IntervalState state_;
   mutable std::size_t next_{0};  // or the one that is open
   mutable double until_s_{0.0};  // of the gap or the interval

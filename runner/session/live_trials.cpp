@@ -125,7 +125,11 @@ LiveTrials::LiveTrials(const Parts& parts, std::unique_ptr<SessionDevice> device
                    loop_of(idle_loop_, masked_idle_loop_)},
       engine_{{parts.live.protocol, parts.models, loop_of(live_loop_, masked_loop_), real_plates_,
                console_ ? console_->participant() : at_terminal_, desk_, states_,
-               parts.session.row.seed},
+               parts.session.row.seed,
+               [this](const results::EventRow& event, int trial) {
+                 parts_.markers.send({parts_.session.row.id, now_s(), event.kind, trial,
+                                      fmt::format("{:g}", event.value)});
+               }},
               recorder_,
               parts.session.earlier} {
   live_loop_.watch([this](const core::TraceSample& sample, Clock::time_point at) {

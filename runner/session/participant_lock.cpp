@@ -8,8 +8,10 @@
 namespace tapstudy::runner {
 // A link and what it leads to are one study.
 ParticipantLock::ParticipantLock(const std::string& directory, const std::string& participant_id)
-    : lock_{std::filesystem::weakly_canonical(directory).string() + " " + participant_id,
-            fmt::format("participant '{}' is in a session of this study right now",
+    : lock_{std::filesystem::weakly_canonical(std::filesystem::absolute(directory)).string() + " " +
+                participant_id,
+            fmt::format("participant '{}' is in a session of this study right now, or what was "
+                        "done in one is being amended",
                         participant_id)} {}
 
 bool is_in_session(const std::string& directory, const std::string& participant_id) {

@@ -9,6 +9,7 @@
 #include "runner/session/explore_limits.hpp"
 #include "runner/session/interval_exploration.hpp"
 #include "runner/session/operated_exploration.hpp"
+#include "runner/session/trial_events.hpp"
 #include "runner/stimuli/trial_stimuli.hpp"
 #include "runner/terminal/logging.hpp"
 #include "runner/terminal/stop_signal.hpp"
@@ -88,11 +89,15 @@ Presentation present(const TrialInView& trial, const SessionParts& parts) {
   }
   parts.participant.get_ready(trial.prompt);
   Presentation presentation;
-  std::vector<results::EventRow> events;
+  TrialEvents events{[&](const results::EventRow& event) {
+    if (parts.tell) {
+      parts.tell(event, trial.trial.number);
+    }
+  }};
   const Rendered rendered{stimuli.alternatives,
                           scripted_tap(parts.protocol, trial.prompt.block->explore.scripted_taps)};
   if (rendered.scripted) {
-    events.push_back({0.0, "scripted_taps", rendered.scripted->speed_m_s});
+    events.add({0.0, "scripted_taps", rendered.scripted->speed_m_s});
   }
   presentation.result = loop.run(rendered, [&](Exploration& exploration) {
     parts.states.enter(SessionState::exploring, trial.trial.number);  // masking is heard by now
@@ -106,7 +111,7 @@ Presentation present(const TrialInView& trial, const SessionParts& parts) {
       presentation.failure = std::current_exception();
     }
   });
-  add_in_time(events, presentation.result.trace.events);
+  add_in_time(events.rows(), presentation.result.trace.events);
   parts.by.trial_is_over(presentation.request);
   parts.by.force_is(loop.is_force_off() ? ForceState::off : ForceState::unknown);
   if (presentation.result.loop.stop == device::StopOutcome::unconfirmed) {

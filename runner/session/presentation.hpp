@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <exception>
+#include <functional>
 #include <optional>
 
 #include "protocols/schedule.hpp"
@@ -33,6 +34,8 @@ struct SessionParts {
   Operator& by;
   SessionStates& states;
   std::uint64_t seed{};  // of the session
+  // Told of what happens in a trial beside its trace, as it does; may be empty.
+  std::function<void(const results::EventRow& event, int trial)> tell{};
 };
 
 // Builds the trial's stimuli and renders them until the participant has given an answer that

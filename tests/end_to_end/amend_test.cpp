@@ -79,7 +79,10 @@ TEST_CASE("what cannot be amended is refused in one line, and nothing is stored"
   };
   check_refused("sim-01", "pause", "concerns a running session");
   check_refused("sim-01", "correct 2", "which trial?");
-  check_refused("sim-01", "correct @99 2", "has not answered trial 99");
+  check_refused("sim-01", "correct @99 2", "trial 99 was not presented");
+  check_refused("sim-01", "exclude @3 asleep", "concerns the participant, not a trial");
+  check_refused("sim-01", "note \xff\xfe", "not text");
+  check_refused("sim-01", "note \033[31mred", "not text");
   check_refused("sim-01", "correct @3 9", "'9' is not a number from 1 to 4");
   check_refused("sim-01", "include", "include is not possible now");
   check_refused("sim-01", "exclude", "REASON");
@@ -88,4 +91,20 @@ TEST_CASE("what cannot be amended is refused in one line, and nothing is stored"
   CHECK(sql(directory, "SELECT count(*) FROM operator_action") == "0\n");
   CHECK(testing::tapstudy({"amend", directory / "nothing", "note x", "--participant", "a"})
             .exit_code == 2);
+}
+
+TEST_CASE("a study is one however its directory is written, from before it is there",
+          "[end_to_end][threads]") {
+  const TempDirectory directory;
+  const auto run = testing::run_program(
+      {"/bin/sh", "-c",
+       "cd \"$1\" && mkfifo keys && touch log || exit 1\n"
+       "\"$0\" run \"$2\" --participant P01 --out study <keys >log 2>&1 &\n"
+       "exec 3>keys\n"
+       "for i in $(seq 400); do grep -q 'Trial 1' log && break; sleep 0.05; done\n"
+       "\"$0\" amend \"$1/study\" 'note now' --participant P01; echo $?\n"
+       "exec 3>&-; wait",
+       TAPSTUDY_PROGRAM, directory.path(), testing::shipped("paper/discrimination.yaml").string()});
+  CHECK_THAT(run.standard_error, Contains("is in a session of this study right now"));
+  CHECK_THAT(run.standard_output, Contains("2"));
 }

@@ -101,6 +101,52 @@ for trial in sent:
   CHECK(compared.exit_code == 0);
 }
 
+TEST_CASE("intervals, replays, settings and scripted taps are markers, as they are stored",
+          "[end_to_end][markers][threads]") {
+  const TempDirectory directory;
+  std::string study = testing::contents(testing::source("tests/data/every_task.yaml"));
+  const std::size_t blocks = study.find("blocks:\n");
+  const std::string head = study.substr(0, blocks);
+  std::string simulation = study.substr(study.find("simulation:"));
+  simulation = testing::replaced(simulation, ", reference: one", "");
+  testing::write(
+      directory / "study.yaml",
+      head +
+          "blocks:\n"
+          "  - {name: in_turn, task: abx, question: \"Which is X?\", stimuli: [one, other], "
+          "explore: "
+          "{min_contacts: 0, intervals: {seconds: 0.3, gap_seconds: 0.1, max_replays: 1}}}\n"
+          "  - {name: set, task: adjustment, question: \"Equal?\", stimuli: [family], settings: "
+          "{from: 3, to: 6, count: 13}, standard: 4.5, explore: {min_contacts: 0}}\n"
+          "  - {name: by_script, task: identification, question: \"Which?\", stimuli: [one, "
+          "other], "
+          "explore: {scripted_taps: {point: middle, speed_m_s: 0.2}}}\n" +
+          simulation);
+  testing::write(directory / "rig.yaml",
+                 testing::contents(testing::shipped("rigs/simulated_hand.yaml")) +
+                     "\nmarkers: {lines: markers.tsv}\n");
+  const auto result =
+      testing::tapstudy({"run", directory / "study.yaml", "--participant", "P01", "--seed", "5",
+                         "--out", directory / "the_study", "--rig", directory / "rig.yaml"},
+                        "again\n= A\n= A\n= A\n= A\n+\n++\n=\n1\n1\n");
+  INFO(result.standard_error);
+  REQUIRE(result.exit_code == 0);
+  const auto compared =
+      testing::run_program({"/usr/bin/python3", "-c", R"py(
+import collections, sqlite3, sys
+kinds = ("interval", "interval_end", "interval_replay", "setting", "scripted_taps")
+sent = [line.rstrip("\n").split("\t") for line in open(sys.argv[1])]
+sent = collections.Counter((k, int(n), round(float(v), 5)) for t, k, n, v in sent if k in kinds)
+stored = collections.Counter((k, n, round(v, 5)) for k, n, v in sqlite3.connect(sys.argv[2]).execute(
+    "SELECT kind, number, value FROM event JOIN trial USING (trial_id)") if k in kinds)
+assert sent == stored, (sent, stored)
+assert {k for k, n, v in sent} == set(kinds), sent
+)py",
+                            directory / "markers.tsv", (directory / "the_study") + "/study.db"});
+  INFO(compared.standard_error);
+  CHECK(compared.exit_code == 0);
+}
+
 TEST_CASE("liblo's own oscdump reads the changes of state that are stored",
           "[end_to_end][markers][threads]") {
   const TempDirectory directory;

@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 
 #include "analysis/modal_identification/modal_assurance.hpp"
+#include "analysis/modal_identification/repeated_modes.hpp"
 #include "core/rng.hpp"
 #include "support/python_program.hpp"
 using namespace tapstudy;

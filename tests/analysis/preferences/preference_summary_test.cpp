@@ -209,3 +209,22 @@ TEST_CASE("ties are counted apart, and their nu is that of R's log-linear fit",
   design.has_ties = false;
   CHECK_THROWS_WITH(reported(statistic, design, answers), Contains("neither of the two stimuli"));
 }
+
+TEST_CASE("where ties alone connect the stimuli Thurstone's scale is there, Bradley-Terry's is not",
+          "[analysis][preferences]") {
+  BlockDesign design = design_of(2);
+  design.has_ties = true;
+  std::vector<results::AnswerRow> answers;
+  for (int trial = 0; trial < 12; ++trial) {
+    answers.push_back(answer_of("p" + std::to_string(trial % 3), names[0], names[1], true));
+    if (trial % 2 == 0) {
+      answers.back().response = "tie";
+    }
+  }
+  const auto formats = reported(statistic, design, answers);
+  CHECK(formats.json["scale"][0]["bradley_terry"].is_null());
+  // 6 wins and 6 halves of 12
+  const auto r = r_numbers("out(qnorm(9 / 12) / 2)");
+  CHECK(formats.json["scale"][0]["thurstone"].get<double>() == Approx(r[0]).epsilon(1e-9));
+  CHECK_THAT(formats.text, Contains("No scale by Bradley-Terry"));
+}

@@ -153,3 +153,18 @@ TEST_CASE("marks on a line are tested by R's Friedman test as they are, and have
   answers.front().response = "1.5";
   CHECK_THROWS_WITH(reported(statistic, design_of(0), answers), Contains("a number from 0 to 1"));
 }
+
+TEST_CASE("medians of marks that differ by rounding alone are ties", "[analysis][rated]") {
+  std::vector<results::AnswerRow> answers;
+  for (int person = 0; person < 6; ++person) {
+    const std::string name = "p" + std::to_string(person);
+    for (const char* const mark : {"0.2", "0.4"}) {  // 0.1 + 0.2 is not 0.3
+      answers.push_back(answer_of(name, "steel", mark));
+      answers.push_back(answer_of(name, "wood", "0.3"));
+      answers.push_back(answer_of(name, "rubber", "0.9"));
+    }
+  }
+  const auto json = reported(statistic, design_of(0), answers).json;
+  CHECK(json["pairs"][0]["differing"] == 0);
+  CHECK(json["stimuli"][0]["mean_rank"] == 1.5);
+}

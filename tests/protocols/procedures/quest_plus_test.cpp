@@ -26,7 +26,7 @@ json random_sequences(const LikelihoodTable& table, core::Rng& rng) {
   json all = json::array();
   for (int i = 0; i < sequences_of_each; ++i) {
     json sequence = json::array();
-    for (std::uint32_t left = rng.below(9); left > 0; --left) {
+    for (std::uint32_t left = 1 + rng.below(24); left > 0; --left) {
       const auto stimulus = rng.below(static_cast<std::uint32_t>(table.stimuli()));
       const auto outcome = rng.below(static_cast<std::uint32_t>(table.design().outcomes));
       sequence.push_back(json::array({table.stimulus(stimulus), outcome}));

@@ -63,7 +63,7 @@ TEST_CASE("a setting is rendered at once, felt by itself, and an event with its 
   const double start = trial.alternatives.back().values.at("sinusoid_amplitude_n_s_per_m");
   Positions positions;
   positions.contacts_ = {{0, 5}, {3, 7}, {11, 0}};
-  std::vector<results::EventRow> events;
+  runner::TrialEvents events;
   runner::AdjustedExploration adjusted{positions, trial, planned.block, events};
   CHECK(values.at(adjusted.setting()) == start);
   adjusted.switch_to(1);
@@ -82,13 +82,13 @@ TEST_CASE("a setting is rendered at once, felt by itself, and an event with its 
   CHECK(adjusted.contacts(1) == 0);
   adjusted.adjust(values.size());  // there is none
   CHECK(adjusted.setting() == 10);
-  REQUIRE(events.size() == 3);
+  REQUIRE(events.rows().size() == 3);
   const std::vector<double> expected{start, values[2], values[10]};
   const std::vector<double> times_s{0.0, 2.0, 3.0};
-  for (std::size_t i = 0; i < events.size(); ++i) {
-    CHECK(events[i].kind == "setting");
-    CHECK(events[i].value == expected[i]);
-    CHECK(events[i].t_s == times_s[i]);
+  for (std::size_t i = 0; i < events.rows().size(); ++i) {
+    CHECK(events.rows()[i].kind == "setting");
+    CHECK(events.rows()[i].value == expected[i]);
+    CHECK(events.rows()[i].t_s == times_s[i]);
   }
 }
 
@@ -99,7 +99,7 @@ TEST_CASE("alternatives without settings keep their positions", "[runner][sessio
       continue;
     }
     Positions positions;
-    std::vector<results::EventRow> events;
+    runner::TrialEvents events;
     runner::AdjustedExploration same{positions, trial, planned.protocol.block(trial.block), events};
     for (std::size_t i = 0; i < trial.alternatives.size(); ++i) {
       positions.contacts_[i] = 10 + static_cast<int>(i);
@@ -110,6 +110,6 @@ TEST_CASE("alternatives without settings keep their positions", "[runner][sessio
       same.adjust(0);
       CHECK(positions.current() == i);
     }
-    CHECK(events.empty());
+    CHECK(events.rows().empty());
   }
 }

@@ -49,7 +49,7 @@ TEST_CASE("alternatives come in their order, each for its time, with silence aro
           "[runner][session]") {
   World world;
   const protocols::ExploreLimits limits = limits_with(0);
-  std::vector<results::EventRow> events;
+  runner::TrialEvents events;
   runner::IntervalExploration in_turn{world, limits, 3, events};
   for (int i = 0; i < 6000; ++i) {
     in_turn.switch_to(2);  // nobody switches
@@ -57,11 +57,11 @@ TEST_CASE("alternatives come in their order, each for its time, with silence aro
     const bool is_open = in_turn.intervals()->phase == Phase::open;
     REQUIRE(world.is_silent() != is_open);
   }
-  REQUIRE(events.size() == 6);
+  REQUIRE(events.rows().size() == 6);
   for (std::size_t i = 0; i < 6; ++i) {
-    CHECK(events[i].kind == (i % 2 == 0 ? "interval" : "interval_end"));
-    CHECK(events[i].value == static_cast<double>(i / 2));
-    CHECK(events[i].t_s ==
+    CHECK(events.rows()[i].kind == (i % 2 == 0 ? "interval" : "interval_end"));
+    CHECK(events.rows()[i].value == static_cast<double>(i / 2));
+    CHECK(events.rows()[i].t_s ==
           Approx(0.5 + 1.5 * static_cast<double>(i / 2) + 1.0 * static_cast<double>(i % 2))
               .margin(0.02));
   }
@@ -75,12 +75,12 @@ TEST_CASE("however long the participant lets pass at once, intervals begin and e
           "[runner][session]") {
   World world;
   const protocols::ExploreLimits limits = limits_with(0);
-  std::vector<results::EventRow> events;
+  runner::TrialEvents events;
   runner::IntervalExploration in_turn{world, limits, 2, events};
   in_turn.pass_time(10.0);
   CHECK(in_turn.time_s() == Approx(10.0));
-  REQUIRE(events.size() == 4);
-  CHECK(events[3].t_s == Approx(3.0).margin(0.05));
+  REQUIRE(events.rows().size() == 4);
+  CHECK(events.rows()[3].t_s == Approx(3.0).margin(0.05));
   in_turn.pass_time(0.0004);  // less than a tick
   CHECK(in_turn.time_s() == Approx(10.0));
 }
@@ -94,7 +94,7 @@ TEST_CASE("an interval lasts until it was tapped, and only then an answer is tak
   runner::TrialPrompt prompt;
   prompt.block = &block;
   prompt.alternative_labels = {"A", "B"};
-  std::vector<results::EventRow> events;
+  runner::TrialEvents events;
   runner::IntervalExploration in_turn{world, block.explore, 2, events};
   in_turn.pass_time(20.0);
   CHECK(in_turn.intervals()->phase == Phase::open);
@@ -111,7 +111,7 @@ TEST_CASE("all intervals come again as often as the protocol allows, and only wh
           "[runner][session]") {
   World world;
   const protocols::ExploreLimits limits = limits_with(2);
-  std::vector<results::EventRow> events;
+  runner::TrialEvents events;
   runner::IntervalExploration in_turn{world, limits, 2, events};
   in_turn.replay();
   CHECK(in_turn.intervals()->replays_left == 2);
@@ -121,19 +121,19 @@ TEST_CASE("all intervals come again as often as the protocol allows, and only wh
     in_turn.replay();
     CHECK(in_turn.intervals()->replays_left == left);
   }
-  CHECK(std::ranges::count(events, "interval", &results::EventRow::kind) == 6);
-  CHECK(std::ranges::count(events, "interval_replay", &results::EventRow::kind) == 2);
+  CHECK(std::ranges::count(events.rows(), "interval", &results::EventRow::kind) == 6);
+  CHECK(std::ranges::count(events.rows(), "interval_replay", &results::EventRow::kind) == 2);
 }
 
 TEST_CASE("without intervals an exploration is as free as it was", "[runner][session]") {
   World world;
   const protocols::ExploreLimits limits;
-  std::vector<results::EventRow> events;
+  runner::TrialEvents events;
   runner::IntervalExploration free{world, limits, 2, events};
   free.pass_time(3.0);
   free.switch_to(1);
   CHECK(world.current() == 1);
   CHECK_FALSE(world.is_silent());
   CHECK(free.intervals() == nullptr);
-  CHECK(events.empty());
+  CHECK(events.rows().empty());
 }

@@ -17,12 +17,8 @@ OperatorActionRow action(std::int64_t session_id, const std::string& name,
   return {session_id, 1.0, name, std::nullopt, detail};
 }
 
-bool is_nobody(const std::string& /*id*/) {
-  return false;
-}
-
 SessionRow add_participant(Store& store, const std::string& id,
-                           const Store::IsInSession& is_in_session = is_nobody) {
+                           const Store::IsInSession& is_in_session) {
   SessionRow row = small_study::session(id);
   const Store::Place place = store.place_of(id, Mode::real, is_in_session);
   row.participant_index = place.participant_index;

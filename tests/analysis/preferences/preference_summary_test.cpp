@@ -188,7 +188,8 @@ TEST_CASE("ties are counted apart, and their nu is that of R's log-linear fit",
     counts +=
         (counts.empty() ? "" : ",") + std::to_string(std::ranges::count_if(answers, is_counted));
   };
-  for (const auto& [i, j] : {std::pair{0, 1}, {0, 2}, {1, 2}}) {
+  using Pair = std::pair<std::size_t, std::size_t>;
+  for (const auto& [i, j] : {Pair{0, 1}, Pair{0, 2}, Pair{1, 2}}) {
     const auto is_of_pair = [&, i = i, j = j](const results::AnswerRow& answer) {
       const std::string& a = answer.alternatives[0].stimulus;
       const std::string& b = answer.alternatives[1].stimulus;

@@ -52,6 +52,7 @@ struct Stimulus {
   std::shared_ptr<const Contacts> contacts{};           // nullptr: it touches no other body
   AxisValues rendering{};                               // its own, where not the study's
   std::vector<AxisRange> vary{};                        // each axis once
+  std::string vary_stated_at{};                         // as a Material's
   bool is_vary_refused{false};  // while a file is read in which it was rejected
   // False while a file is read in which one of these names was rejected.
   bool is_complete() const { return plate && material && technique != nullptr; }

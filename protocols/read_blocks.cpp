@@ -258,10 +258,7 @@ Block read_block(MapReader& reader, const Protocol& protocol) {
                     fmt::format("no answer is right in a {} block", block.task->name()));
     }
     if (!block.task->uses_order() && reader.has("order")) {
-      reader.reject("order",
-                    fmt::format("a block of {} draws the order of its alternatives anew for "
-                                "each trial and takes no order",
-                                block.task->name()));
+      reader.reject("order", "a task that draws alternatives anew in each trial takes no order");
     }
   }
   return block;

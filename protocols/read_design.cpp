@@ -125,6 +125,7 @@ void read_stimuli(MapReader& top, Protocol& protocol) {
     check_contacts(reader, stimulus, protocol);
     stimulus.rendering = read_own_rendering(reader, stimulus, protocol);
     stimulus.vary = read_vary(reader, stimulus, protocol);
+    stimulus.vary_stated_at = reader.stated_at("vary");
     stimulus.is_vary_refused = reader.has("vary") && stimulus.vary.empty();
     protocol.stimuli.push_back(stimulus);
   });

@@ -15,37 +15,17 @@ class Assigner {
 
   // The cheapest way to give one more row a column, others moving up.
   void add(Eigen::Index row) {
-    const Eigen::Index columns = cost_.cols();
-    Eigen::VectorXd distance =
-        Eigen::VectorXd::Constant(columns, std::numeric_limits<double>::infinity());
-    std::vector<Eigen::Index> before(static_cast<std::size_t>(columns), none);
-    std::vector<bool> is_reached(static_cast<std::size_t>(columns), false);
-    Eigen::Index from_column = none;
-    double so_far = 0.0;
+    Search search{cost_.cols()};
     for (Eigen::Index from_row = row; from_row != none;) {
-      Eigen::Index nearest = none;
-      for (Eigen::Index column = 0; column < columns; ++column) {
-        if (is_reached[place(column)]) {
-          continue;
-        }
-        const double by_here =
-            so_far + cost_(from_row, column) - of_rows_[from_row] - of_columns_[column];
-        if (by_here < distance[column]) {
-          distance[column] = by_here;
-          before[place(column)] = from_column;
-        }
-        if (nearest == none || distance[column] < distance[nearest]) {
-          nearest = column;
-        }
-      }
-      so_far = distance[nearest];
-      is_reached[place(nearest)] = true;
-      from_column = nearest;
+      const Eigen::Index nearest = nearest_column(from_row, search);
+      search.length = search.distance[nearest];
+      search.is_reached[place(nearest)] = true;
+      search.from_column = nearest;
       from_row = row_of_[place(nearest)];
     }
-    adjust(row, distance, is_reached, so_far);
-    for (Eigen::Index column = from_column; column != none;) {
-      const Eigen::Index earlier = before[place(column)];
+    adjust(row, search);
+    for (Eigen::Index column = search.from_column; column != none;) {
+      const Eigen::Index earlier = search.before[place(column)];
       row_of_[place(column)] = earlier == none ? row : row_of_[place(earlier)];
       column = earlier;
     }
@@ -62,17 +42,48 @@ class Assigner {
   }
 
  private:
+  struct Search {
+    explicit Search(Eigen::Index columns)
+        : distance{Eigen::VectorXd::Constant(columns, std::numeric_limits<double>::infinity())},
+          before(static_cast<std::size_t>(columns), none),
+          is_reached(static_cast<std::size_t>(columns), false) {}
+    Eigen::VectorXd distance;          // to each column
+    std::vector<Eigen::Index> before;  // the column from which it is reached
+    std::vector<bool> is_reached;
+    Eigen::Index from_column{none};  // reached last
+    double length{0.0};              // of the path to it
+  };
+
   static std::size_t place(Eigen::Index index) { return static_cast<std::size_t>(index); }
 
-  // Prices at which every assigned column is the cheapest of its row.
-  void adjust(Eigen::Index row, const Eigen::VectorXd& distance,
-              const std::vector<bool>& is_reached, double length) {
-    of_rows_[row] += length;
+  // Of those not reached, once they can be reached from this row.
+  Eigen::Index nearest_column(Eigen::Index from_row, Search& search) const {
+    Eigen::Index nearest = none;
     for (Eigen::Index column = 0; column < cost_.cols(); ++column) {
-      if (!is_reached[place(column)]) {
+      if (search.is_reached[place(column)]) {
         continue;
       }
-      const double saved = length - distance[column];
+      const double by_here =
+          search.length + cost_(from_row, column) - of_rows_[from_row] - of_columns_[column];
+      if (by_here < search.distance[column]) {
+        search.distance[column] = by_here;
+        search.before[place(column)] = search.from_column;
+      }
+      if (nearest == none || search.distance[column] < search.distance[nearest]) {
+        nearest = column;
+      }
+    }
+    return nearest;
+  }
+
+  // Prices at which every assigned column is the cheapest of its row.
+  void adjust(Eigen::Index row, const Search& search) {
+    of_rows_[row] += search.length;
+    for (Eigen::Index column = 0; column < cost_.cols(); ++column) {
+      if (!search.is_reached[place(column)]) {
+        continue;
+      }
+      const double saved = search.length - search.distance[column];
       of_columns_[column] -= saved;
       if (row_of_[place(column)] != none) {
         of_rows_[row_of_[place(column)]] += saved;

@@ -66,22 +66,31 @@ PairedCounts no_counts(const BlockDesign& design) {
   return {none, design.has_ties ? none : Eigen::MatrixXi{}};
 }
 
-// Why a judge's answers do not decide every pair; empty: they do.
+// Why a judge's answers do not decide a pair; empty: they do.
+std::string undecided(const PairedCounts& counts, Eigen::Index i, Eigen::Index j) {
+  const int wins = counts.wins(i, j);
+  if (wins != counts.wins(j, i)) {
+    return "";
+  }
+  if (wins > 0) {
+    return "a pair was preferred as often either way";
+  }
+  return counts.ties_of(i, j) > 0 ? "of a pair neither was ever preferred"
+                                  : "not every pair was compared";
+}
+
+// Of every pair.
 std::string undecided(const PairedCounts& counts) {
-  const Eigen::MatrixXi& wins = counts.wins;
-  if (wins.rows() < 3) {
+  if (counts.items() < 3) {
     return "circular triads take three stimuli";
   }
-  for (Eigen::Index i = 0; i < wins.rows(); ++i) {
-    for (Eigen::Index j = 0; j < i; ++j) {
-      if (wins(i, j) == wins(j, i)) {
-        return wins(i, j) + counts.ties_of(i, j) == 0 ? "not every pair was compared"
-               : wins(i, j) == 0                      ? "of a pair neither was ever preferred"
-                                                      : "a pair was preferred as often either way";
-      }
+  std::string why;
+  for (Eigen::Index i = 0; i < counts.items(); ++i) {
+    for (Eigen::Index j = 0; j < i && why.empty(); ++j) {
+      why = undecided(counts, i, j);
     }
   }
-  return "";
+  return why;
 }
 
 void judge_consistency(ParticipantPreferences& person) {

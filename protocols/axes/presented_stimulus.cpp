@@ -65,6 +65,7 @@ std::string PresentedStimulus::title() const {
 PresentedStimulus stimulus_with(const Protocol& protocol, const Stimulus& stimulus,
                                 const AxisValues& values) {
   PresentedStimulus presented = unvaried(protocol, stimulus);
+  presented.vary_stated_at = stimulus.vary_stated_at;
   for (const AxisRange& range : stimulus.vary) {
     const std::string name{range.axis->name};
     const double own = range.axis->value(presented);

@@ -124,7 +124,9 @@ void print_simulated(const SimulatedDesign& design, const protocols::Protocol& p
     fmt::print("\n");
   }
   if (results.empty()) {
-    fmt::print("  no block has a result that is one number\n");
+    fmt::print(
+        "  no block has a result that is one number: what simulated participants choose, prefer "
+        "and rate follows from the protocol's reference\n");
   }
 }
 

@@ -16,7 +16,9 @@ auto at_its_line(const protocols::PresentedStimulus& stimulus, const Build& buil
   } catch (const core::DampingError& error) {
     throw told(stimulus.material->damping_stated_at, error);
   } catch (const core::ModelError& error) {
-    throw told(stimulus.plate->stated_at, error);
+    // what can be built as stated, and not at these values, is the fault of the values
+    throw told(stimulus.changed.empty() ? stimulus.plate->stated_at : stimulus.vary_stated_at,
+               error);
   }
 }
 }  // namespace tapstudy::runner

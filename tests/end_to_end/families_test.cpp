@@ -1,5 +1,7 @@
 // --set at the command line, and families in check.
+#include <algorithm>
 #include <catch2/catch.hpp>
+#include <cstdlib>
 #include <nlohmann/json.hpp>
 
 #include "support/processes.hpp"
@@ -119,4 +121,21 @@ TEST_CASE("check lists families with their models", "[end_to_end][axes]") {
              Contains("a: youngs_modulus_pa from 1000000000 to 4000000000 Pa; vibration_gain from "
                       "0 to 2; thickness_m 0.015, 0.03 m") &&
                  Contains("3 models, solved in "));
+}
+
+TEST_CASE("a member that cannot be built is refused at its `vary`, in one line",
+          "[end_to_end][axes]") {
+  const testing::TempDirectory directory;
+  const std::string file = directory / "study.yaml";
+  const std::string text = testing::varied_study_text_with({"thickness_m: {values: [0.02, 9]}"});
+  testing::write(file, text);
+  const auto result = testing::tapstudy({"check", file});
+  INFO(result.standard_error);
+  CHECK(result.exit_code == 4);
+  const auto line =
+      1 + std::count(text.begin(),
+                     text.begin() + static_cast<std::ptrdiff_t>(text.find("thickness_m")), '\n');
+  CHECK_THAT(result.standard_error, Contains("thickness_m = 9"));
+  const std::string at = result.standard_error.substr(file.size() + 1);
+  CHECK(std::abs(std::stoi(at) - line) <= 1);  // the mapping begins at its key or below it
 }

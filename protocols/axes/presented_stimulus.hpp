@@ -11,9 +11,9 @@ struct PresentedStimulus {
   core::RenderSettings rendering;              // the protocol's, for this plate and these values
   AxisValues values;                           // of every axis of its `vary`; empty without one
   AxisValues changed;                          // those that differ from the stimulus's own
-  std::string vary_stated_at;                  // where the protocol says that they may
   std::shared_ptr<const Plate> own_plate;      // the stimulus's, whatever the values
   std::shared_ptr<const Contacts> contacts{};  // nullptr: it touches no other body
+  std::string vary_stated_at{};                // where the protocol says what may change
 
   // "stimulus 'a' at youngs_modulus_pa = 1e+09", for messages.
   std::string title() const;

@@ -109,7 +109,8 @@ class ServerTest(unittest.TestCase):
             status = self.ask(self.at.path + "input", "POST", body, {"X-Tapstudy": "1"})[0]
             self.assertIn(status, allowed)
         self.assertEqual(self.post(self.of_operator, {"command": "note " + "x" * 3000})[0], 409)
-        self.assertEqual(self.post(self.of_operator, {"command": "note \u0000\u202e<script>"})[0], 200)
+        self.assertEqual(self.post(self.of_operator, {"command": "note \u0000 is no text"})[0], 409)
+        self.assertEqual(self.post(self.of_operator, {"command": "note \u202e<script>"})[0], 200)
 
     def test_the_session_goes_on_with_a_flood_and_pages_that_do_not_read(self):
         for _ in range(40):

@@ -1,10 +1,11 @@
 #include "analysis/modal_identification/tapped_shapes.hpp"
 
 #include <Eigen/QR>
+#include <algorithm>
 #include <cmath>
 #include <complex>
 #include <map>
-#include <numbers>
+#include <utility>
 namespace tapstudy::analysis {
 namespace {
 using Complex = std::complex<double>;
@@ -30,11 +31,10 @@ Eigen::MatrixXcd excited(const std::vector<Pole>& poles, const std::vector<Place
 }
 
 Eigen::VectorXd damped_rad_per_s(const std::vector<Pole>& poles) {
+  constexpr double per_second = 1.0;
   Eigen::VectorXd all(static_cast<Eigen::Index>(poles.size()));
   for (std::size_t i = 0; i < poles.size(); ++i) {
-    const double ratio = poles[i].damping_ratio;
-    all[static_cast<Eigen::Index>(i)] =
-        2.0 * std::numbers::pi * poles[i].frequency_hz * std::sqrt(1.0 - ratio * ratio);
+    all[static_cast<Eigen::Index>(i)] = log_of(poles[i], per_second).imag();
   }
   return all;
 }
@@ -53,17 +53,17 @@ class Alignment {
     Eigen::Index sensors = 0;
     for (const PlacedTap& tap : taps) {
       sensors = std::max(sensors, static_cast<Eigen::Index>(tap.sensor) + 1);
+      late_s_[tap.impact] = 0.0;
     }
     phases_ = Eigen::MatrixXcd::Zero(sensors, excited.cols());
-    add_to_phases(strongest_impact());
+    const int strongest = strongest_impact();
+    add_phases([&](const PlacedTap& tap) { return tap.impact == strongest; });
     for (int round = 0; round < rounds; ++round) {
-      for (const PlacedTap& tap : taps) {
-        late_s_[tap.impact] = best_shift(tap.impact);
+      for (auto& [impact, late_s] : late_s_) {
+        late_s = best_shift(impact);
       }
       phases_.setZero();
-      for (std::size_t tap = 0; tap < taps.size(); ++tap) {
-        add_to_phases(taps[tap].impact, tap);
-      }
+      add_phases([](const PlacedTap& /*each*/) { return true; });
     }
   }
 
@@ -84,8 +84,7 @@ class Alignment {
            std::polar(1.0, rad_per_s_[mode] * late_s);
   }
   Complex shifted(std::size_t tap, Eigen::Index mode) const {
-    const auto known = late_s_.find(taps_[tap].impact);
-    return shifted_by(tap, mode, known == late_s_.end() ? 0.0 : known->second);
+    return shifted_by(tap, mode, late_s_.at(taps_[tap].impact));
   }
 
   int strongest_impact() const {
@@ -99,16 +98,12 @@ class Alignment {
     }
     return strongest;
   }
-  void add_to_phases(int impact) {
+  template <class IsCounted>
+  void add_phases(IsCounted is_counted) {
     for (std::size_t tap = 0; tap < taps_.size(); ++tap) {
-      if (taps_[tap].impact == impact) {
-        add_to_phases(impact, tap);
+      for (Eigen::Index mode = 0; is_counted(taps_[tap]) && mode < excited_.cols(); ++mode) {
+        phases_(sensor_of(tap), mode) += doubled(shifted(tap, mode));
       }
-    }
-  }
-  void add_to_phases(int /*impact*/, std::size_t tap) {
-    for (Eigen::Index mode = 0; mode < excited_.cols(); ++mode) {
-      phases_(sensor_of(tap), mode) += doubled(shifted(tap, mode));
     }
   }
 

@@ -70,8 +70,7 @@ std::vector<std::string> remarks_on(const RatingResults& results) {
   }
   std::vector<std::string> remarks{
       "Medians and quartiles (and counts of steps) are of all ratings. Tests take the median of "
-      "each "
-      "participant's ratings of a stimulus; ranks count from the lowest rating."};
+      "each participant's ratings of a stimulus; ranks count from the lowest rating."};
   if (!results.left_out.empty()) {
     remarks.push_back(fmt::format("Left out of tests, without ratings of every stimulus: {}.",
                                   fmt::join(results.left_out, ", ")));

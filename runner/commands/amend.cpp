@@ -96,11 +96,10 @@ AnswerInView in_view(const results::JournalledAnswer& answer, const protocols::P
 
 void amend(const AmendOptions& options) {
   const OperatorCommand command = amendment_in(options.action);
-  const protocols::Protocol protocol =
-      stored_protocol(results::Store::open_existing(options.directory).study());
+  const results::StudyRow study = results::Store::open_existing(options.directory).study();
+  const protocols::Protocol protocol = stored_protocol(study);
   const ParticipantLock lock{options.directory, options.participant};
-  results::Store store = results::Store::open_or_create(
-      options.directory, results::Store::open_existing(options.directory).study());
+  results::Store store = results::Store::open_or_create(options.directory, study);
   const results::SessionRow session = session_of(options, command.trial, store);
   results::Recorder recorder{store};
   OperatorDesk desk{

@@ -157,7 +157,7 @@ void check_intervals(MapReader& reader, const Block& block) {
   const bool is_of_several = trials.front().alternatives.size() > 1;
   if (!is_of_several || block.task->settings(trials.front(), block)) {
     reader.reject("explore",
-                  fmt::format("intervals: the alternatives of a {} block cannot come one after the "
+                  fmt::format("intervals: the alternatives of {} cannot come one after the "
                               "other: {}",
                               block.task->name(),
                               is_of_several ? "the last is changed while it is felt"
@@ -182,8 +182,7 @@ void check_criterion(MapReader& reader, const Block& block) {
     return;
   }
   if (!block.task->has_correct_answer()) {
-    reader.reject("criterion",
-                  fmt::format("no answer is right in a block of {}", block.task->name()));
+    reader.reject("criterion", fmt::format("the task {} has no right answer", block.task->name()));
   }
   if (block.comparison) {
     reader.reject("criterion",
@@ -200,7 +199,7 @@ void check_presented(MapReader& reader, const Protocol& protocol, const Block& b
     return;
   }
   if (block.task != nullptr && !block.task->can_present_real_plates()) {
-    reader.reject("presented", fmt::format("a {} block has several alternatives at hand; real "
+    reader.reject("presented", fmt::format("the task {} has several alternatives at hand; real "
                                            "plates are mounted one at a time",
                                            block.task->name()));
   }
@@ -254,8 +253,7 @@ Block read_block(MapReader& reader, const Protocol& protocol) {
       reader.reject("correction", "would be of an answer whose right one was told by feedback");
     }
     if (block.gives_feedback && !block.task->has_correct_answer()) {
-      reader.reject("feedback",
-                    fmt::format("no answer is right in a {} block", block.task->name()));
+      reader.reject("feedback", fmt::format("the task {} has no right answer", block.task->name()));
     }
     if (!block.task->uses_order() && reader.has("order")) {
       reader.reject("order", "a task that draws alternatives anew in each trial takes no order");

@@ -43,22 +43,13 @@ void read_place(MapReader& reader, bool is_box, core::Fixation& fixation) {
     return;
   }
   fixation.at_m.head<2>() = reader.numbers("at_m", 2, coordinate_m);
-  fixation.face = reader.one_of<core::Face>("face",
-                                            {{"both", core::Face::both},
-                                             {"top", core::Face::top},
-                                             {"bottom", core::Face::bottom},
-                                             {"through", core::Face::through}},
-                                            "both");
+  fixation.face = reader.one_of<core::Face>("face", core::face_names, "both");
 }
 
 core::Fixation read_region(MapReader& reader, bool is_box) {
   using core::RegionShape;
   core::Fixation fixation;
-  fixation.shape = reader.one_of<RegionShape>("region", {{"vertex", RegionShape::vertex},
-                                                         {"disc", RegionShape::disc},
-                                                         {"ball", RegionShape::ball},
-                                                         {"box", RegionShape::box},
-                                                         {"side", RegionShape::side}});
+  fixation.shape = reader.one_of<RegionShape>("region", core::region_names);
   switch (fixation.shape) {
     case RegionShape::disc:
       if (!is_box) {
@@ -79,12 +70,7 @@ core::Fixation read_region(MapReader& reader, bool is_box) {
       }
       break;
     case RegionShape::side:
-      fixation.side = reader.one_of<core::Side>("side", {{"left", core::Side::left},
-                                                         {"right", core::Side::right},
-                                                         {"front", core::Side::front},
-                                                         {"back", core::Side::back},
-                                                         {"bottom", core::Side::bottom},
-                                                         {"top", core::Side::top}});
+      fixation.side = reader.one_of<core::Side>("side", core::side_names);
       break;
   }
   if (fixation.shape == RegionShape::disc || fixation.shape == RegionShape::ball) {

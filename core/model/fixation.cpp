@@ -113,12 +113,6 @@ double held_volume_m3(const TetMesh& mesh, const std::vector<bool>& is_held) {
   return volume_m3;
 }
 
-std::string_view name(Side side) {
-  constexpr std::array<std::string_view, 6> names{"left", "right",  "front",
-                                                  "back", "bottom", "top"};
-  return names.at(static_cast<std::size_t>(side));
-}
-
 std::string described(const Fixation& fixation) {
   const auto text = [](const Vec3& v) { return fmt::format("({}, {}, {})", v.x(), v.y(), v.z()); };
   switch (fixation.shape) {
@@ -132,7 +126,7 @@ std::string described(const Fixation& fixation) {
     case RegionShape::box:
       return fmt::format("box from {} to {} m", text(fixation.low_m), text(fixation.high_m));
     case RegionShape::side:
-      return fmt::format("side '{}'", name(fixation.side));
+      return fmt::format("side '{}'", name_in(side_names, fixation.side));
   }
   return {};
 }

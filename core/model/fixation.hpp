@@ -15,6 +15,17 @@ enum class Face { top, bottom, both, through };
 // The faces of a body's bounding box: left is low x, front low y, bottom low z.
 enum class Side { left, right, front, back, bottom, top };
 enum class RegionShape { vertex, disc, ball, box, side };
+// Their names in protocols, in the order of the enumerations.
+inline constexpr std::array<std::string_view, 4> face_names{"top", "bottom", "both", "through"};
+inline constexpr std::array<std::string_view, 6> side_names{"left", "right",  "front",
+                                                            "back", "bottom", "top"};
+inline constexpr std::array<std::string_view, 5> region_names{"vertex", "disc", "ball", "box",
+                                                              "side"};
+template <class Enumeration, std::size_t Size>
+constexpr std::string_view name_in(const std::array<std::string_view, Size>& names,
+                                   Enumeration value) {
+  return names.at(static_cast<std::size_t>(value));
+}
 
 // A boundary condition of the finite element model: a region of the body whose displacement is zero
 // along the constrained axes (a homogeneous Dirichlet condition), or that springs hold to the

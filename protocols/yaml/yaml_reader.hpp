@@ -1,9 +1,12 @@
 #pragma once
 #include <Eigen/Core>
+#include <algorithm>
+#include <array>
 #include <functional>
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -88,6 +91,14 @@ class MapReader {
       }
     }
     return table.front().second;
+  }
+  // Of an enumeration whose names stand in its order.
+  template <class Enumeration, std::size_t Size>
+  Enumeration one_of(const std::string& key, const std::array<std::string_view, Size>& names,
+                     const std::optional<std::string>& otherwise = {}) {
+    const std::string chosen = word(key, "value", {names.begin(), names.end()}, otherwise);
+    const auto at = std::ranges::find(names, chosen);
+    return static_cast<Enumeration>(at == names.end() ? 0 : at - names.begin());
   }
   using ReadMap = std::function<void(MapReader&)>;
   using ReadNamed = std::function<void(const std::string& name, MapReader&)>;

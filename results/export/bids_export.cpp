@@ -203,17 +203,15 @@ class Dataset {
   void write_tasks() {
     for (const auto& [block, label] : labels_.tasks.by_name) {
       const auto text = std::ranges::find(study_->blocks, block, &BlockText::name);
-      core::write_new_file(
-          root_ / fmt::format("task-{}_beh.json", label),
-          task_sidecar(label, text == study_->blocks.end() ? BlockText{block, {}, {}, {}} : *text,
-                       described_behaviour(text == study_->blocks.end() ? std::vector<Level>{}
-                                                                        : text->levels)));
+      const BlockText known = text == study_->blocks.end() ? BlockText{.name = block} : *text;
+      core::write_new_file(root_ / fmt::format("task-{}_beh.json", label),
+                           task_sidecar(label, known, described_behaviour(known)));
       core::write_new_file(root_ / fmt::format("task-{}_events.json", label),
                            table_sidecar(event_columns()));
     }
   }
 
-  static std::vector<DescribedColumn> described_behaviour(const std::vector<Level>& levels) {
+  static std::vector<DescribedColumn> described_behaviour(const BlockText& block) {
     std::vector<DescribedColumn> described;
     for (const Column& column : behaviour_columns()) {
       described.push_back({column});
@@ -222,7 +220,9 @@ class Dataset {
         described.back().column.name = found->name;
       }
       if (described.back().column.name == "trial_type") {
-        described.back().levels = levels;
+        described.back().levels = block.stimuli;
+      } else if (described.back().column.name == "response") {
+        described.back().levels = block.responses;
       }
     }
     described.push_back({{"recording", CellType::text, "",

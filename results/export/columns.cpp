@@ -41,6 +41,7 @@ std::vector<Column> columns_of_answers() {
       {"first_response", text, "", "The answer as first given"},
       {"first_is_correct", boolean, "", "Whether the answer as first given is right"},
       {"given_by", text, "", "participant, or operator (a correction)"},
+      {"response_meaning", text, "", "What participants took the answer to mean: its label"},
       {"confidence", integer, "", "Rated confidence from 1; missing if not asked or not given"},
       {"response_time_s", real, "s", "From the first tick of the trial to the answer"},
       {"time_from_first_contact_s", real, "s",

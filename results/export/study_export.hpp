@@ -12,10 +12,11 @@ namespace tapstudy::results {
 using Level = std::pair<std::string, std::string>;
 // What a block of the protocol tells participants.
 struct BlockText {
-  std::string name;
-  std::string question;
-  std::string instructions;
-  std::vector<Level> levels;  // its stimuli
+  std::string name{};
+  std::string question{};
+  std::string instructions{};
+  std::vector<Level> stimuli{};
+  std::vector<Level> responses{};  // that have a meaning; empty: plain numbers
 };
 
 // A questionnaire, and what can be answered to its items.

@@ -13,6 +13,7 @@
 #include "results/export/study_tables.hpp"
 #include "runner/build_info.hpp"
 #include "runner/commands/commands.hpp"
+#include "runner/experiments/response_meanings.hpp"
 #include "runner/experiments/stimulus_tables.hpp"
 #include "runner/experiments/stored_protocol.hpp"
 #include "runner/stimuli/model_library.hpp"
@@ -37,9 +38,10 @@ std::map<std::string, std::string> units_of_axes() {
 std::vector<results::BlockText> block_texts(const protocols::Protocol& protocol) {
   std::vector<results::BlockText> texts;
   for (const protocols::Block& block : protocol.blocks) {
-    results::BlockText text{block.name, block.question, block.instructions, {}};
+    results::BlockText text{
+        block.name, block.question, block.instructions, {}, response_meanings(block, protocol)};
     for (const std::string& name : protocols::all_presented(block)) {
-      text.levels.emplace_back(name, protocol.stimulus(name).label);
+      text.stimuli.emplace_back(name, protocol.stimulus(name).label);
     }
     texts.push_back(std::move(text));
   }

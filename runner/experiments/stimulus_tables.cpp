@@ -10,6 +10,7 @@
 #include "core/error.hpp"
 #include "results/export/columns.hpp"
 #include "runner/experiments/cached_model.hpp"
+#include "runner/experiments/response_meanings.hpp"
 namespace tapstudy::runner {
 namespace {
 using protocols::Protocol;
@@ -145,7 +146,7 @@ StimulusTables stimulus_tables(const Protocol& protocol, const core::ModelCache&
        results::table_of("modes", "A row a mode of vibration of a stimulus, below the band limit.",
                          results::known_columns("stimulus mode_number frequency_hz damping_ratio"),
                          std::move(modes)),
-       items_table(protocol)},
+       items_table(protocol), response_meanings_table(protocol)},
       without_model};
 }
 }  // namespace tapstudy::runner

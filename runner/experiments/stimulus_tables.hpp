@@ -7,7 +7,7 @@
 #include "results/export/table.hpp"
 namespace tapstudy::runner {
 // What a protocol says of a study, as tables of an export: stimuli (a column factor_NAME a factor),
-// their modes, and the items of questionnaires.
+// their modes, the items of questionnaires, and what answers mean.
 struct StimulusTables {
   std::vector<results::Table> tables;
   // Vibrating stimuli of which no modes are listed, because no model of them is cached.

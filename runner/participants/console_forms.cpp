@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "runner/participants/console_participant.hpp"
+#include "runner/terminal/marked_text.hpp"
 #include "runner/terminal/say.hpp"
 #include "runner/terminal/stop_signal.hpp"
 #include "runner/terminal/whole_number.hpp"
@@ -60,7 +61,7 @@ Participant::FormAnswers ConsoleParticipant::fill_in(const protocols::Form& form
     ask_to_stop();
     stop_if_asked();
   }
-  say("\n{}\n{}\n", form.title, form.text);
+  say("\n{}\n{}\n", form.title, marked_text(form.text, terminal_shows_bold()));
   FormAnswers answers;
   for (const protocols::FormItem& item : form.items) {
     if (std::string answer = answer_to(item); !answer.empty()) {

@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "runner/participants/typed_answers.hpp"
+#include "runner/terminal/marked_text.hpp"
 #include "runner/terminal/say.hpp"
 #include "runner/terminal/stop_signal.hpp"
 #include "runner/terminal/whole_number.hpp"
@@ -64,7 +65,8 @@ void ConsoleParticipant::wait_while(const std::function<bool()>& is_paused) {
 }
 
 void ConsoleParticipant::read(const std::string& instructions) {
-  say("\n{}\n", instructions.substr(0, instructions.find_last_not_of('\n') + 1));
+  const std::string text = instructions.substr(0, instructions.find_last_not_of('\n') + 1);
+  say("\n{}\n", marked_text(text, terminal_shows_bold()));
   wait_for_enter();
 }
 

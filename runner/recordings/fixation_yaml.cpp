@@ -1,26 +1,15 @@
 #include <fmt/format.h>
 
-#include <array>
-#include <string_view>
-
 #include "runner/recordings/writers.hpp"
 namespace tapstudy::runner {
 namespace {
-template <std::size_t Size, class Value>
-std::string_view word_of(const std::array<std::string_view, Size>& words, Value value) {
-  return words.at(static_cast<std::size_t>(value));
-}
-constexpr std::array<std::string_view, 5> regions{"vertex", "disc", "ball", "box", "side"};
-constexpr std::array<std::string_view, 4> faces{"top", "bottom", "both", "through"};
-constexpr std::array<std::string_view, 6> sides{"left", "right", "front", "back", "bottom", "top"};
-
 std::string numbers(const core::Vec3& v) {
   return fmt::format("[{:.9g}, {:.9g}, {:.9g}]", v.x(), v.y(), v.z());
 }
 
 std::string place(const core::Fixation& fixation, bool is_of_box) {
   return is_of_box ? fmt::format("at_m: [{:.9g}, {:.9g}], face: {}", fixation.at_m.x(),
-                                 fixation.at_m.y(), word_of(faces, fixation.face))
+                                 fixation.at_m.y(), name_in(core::face_names, fixation.face))
                    : "at_m: " + numbers(fixation.at_m);
 }
 
@@ -38,7 +27,7 @@ std::string where(const core::Fixation& fixation, bool is_of_box) {
     case core::RegionShape::side:
       break;
   }
-  return fmt::format("side: {}", word_of(sides, fixation.side));
+  return fmt::format("side: {}", name_in(core::side_names, fixation.side));
 }
 
 std::string hold(const core::Fixation& fixation) {
@@ -55,7 +44,7 @@ std::string hold(const core::Fixation& fixation) {
 }  // namespace
 
 std::string fixation_yaml(const core::Fixation& fixation, bool is_of_box) {
-  return fmt::format("{{region: {}, {}, {}}}", word_of(regions, fixation.shape),
+  return fmt::format("{{region: {}, {}, {}}}", name_in(core::region_names, fixation.shape),
                      where(fixation, is_of_box), hold(fixation));
 }
 }  // namespace tapstudy::runner

@@ -3,7 +3,9 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
+#include "analysis/statistics/quantiles.hpp"
 #include "protocols/read_protocol.hpp"
 #include "results/store.hpp"
 #include "runner/experiments/simulated_study.hpp"
@@ -13,7 +15,7 @@
 using namespace tapstudy;
 
 namespace {
-// Constant stimuli of a plate whose vibration is louder by these fractions.
+// Of a plate whose vibration is louder by fractions that a procedure chooses.
 constexpr const char* study = R"(
 format: tapstudy/1
 title: Loudness of a vibration
@@ -34,24 +36,57 @@ blocks:
     task: comparison
     question: Which vibrates more?
     stimuli: [plate]
-    procedures: [{{constant: {{values: {values}, repetitions: 24}}}}]
+    procedures: [{procedure}]
 simulation:
   taps: {{points: [middle], taps_per_visit: 4, visits: 1, speed_spread: 0}}
   observer: {{noise_db: {noise_db}, reality: fem}}
   people: {{noise_spread: 0, threshold_spread: 0, speed_spread: 0, bias: 0}}
 )";
 
-// The mean threshold of ten participants, as a level.
-double threshold_db(double noise_db, const std::string& values) {
+using Json = nlohmann::ordered_json;
+constexpr double noise_db = 12.0;
+
+// The report of the block, over simulated participants.
+std::shared_ptr<const analysis::BlockSummary> reported(double internal_noise_db,
+                                                       const std::string& procedure,
+                                                       int participants) {
   const testing::TempDirectory directory;
   const std::string text =
-      fmt::format(study, fmt::arg("noise_db", noise_db), fmt::arg("values", values));
+      fmt::format(study, fmt::arg("noise_db", internal_noise_db), fmt::arg("procedure", procedure));
   const protocols::Protocol protocol = protocols::parse_protocol(text, "study.yaml");
-  runner::simulate({"study.yaml", directory / "study", 10, 3, false}, protocol);
+  runner::simulate({"study.yaml", directory / "study", participants, 3, false}, protocol);
   results::Store store = results::Store::open_existing(directory / "study");
-  const auto summary = runner::summary_of_study(
-      {{directory / "study", &store}}, results::Mode::simulated, runner::Detail::main_results);
-  return 20.0 * std::log10(1.0 + summary.blocks.at(0)->main_results().at(0).estimate);
+  return runner::summary_of_study({{directory / "study", &store}}, results::Mode::simulated,
+                                  runner::Detail::main_results)
+      .blocks.at(0);
+}
+
+double as_level_db(double fraction) {
+  return 20.0 * std::log10(1.0 + fraction);
+}
+
+// The mean threshold of participants, as a level.
+double threshold_db(double internal_noise_db, const std::string& values, int participants = 10) {
+  const std::string constant = fmt::format("{{constant: {{values: {}, repetitions: 24}}}}", values);
+  const auto block = reported(internal_noise_db, constant, participants);
+  return as_level_db(block->main_results().at(0).estimate);
+}
+
+struct Recovered {
+  std::vector<double> thresholds_db;  // of the runs that have one
+  double trials{};                    // a run
+};
+Recovered recovered(const std::string& procedure) {
+  constexpr int runs = 200;
+  const Json report = reported(noise_db, procedure, runs)->as_json();
+  Recovered all;
+  for (const Json& run : report.at("participants")) {
+    all.trials += run.at("correct_of").get<double>() / runs;
+    if (run.at("threshold").is_number()) {
+      all.thresholds_db.push_back(as_level_db(run.at("threshold").get<double>()));
+    }
+  }
+  return all;
 }
 }  // namespace
 
@@ -61,7 +96,7 @@ double threshold_db(double noise_db, const std::string& values) {
 TEST_CASE("thresholds of a simulated observer follow from its internal noise",
           "[runner][observer][slow]") {
   const double at_6 = threshold_db(6.0, "[0.1, 0.2, 0.35, 0.6, 1.2]");
-  const double at_12 = threshold_db(12.0, "[0.25, 0.5, 0.9, 1.6, 3]");
+  const double at_12 = threshold_db(noise_db, "[0.25, 0.5, 0.9, 1.6, 3]");
   const double at_24 = threshold_db(24.0, "[0.5, 1, 2, 4, 8]");
   fmt::print("  thresholds at 6, 12, 24 dB of noise: {:.2f}, {:.2f}, {:.2f} dB\n", at_6, at_12,
              at_24);
@@ -72,4 +107,31 @@ TEST_CASE("thresholds of a simulated observer follow from its internal noise",
   CHECK(scale <= 1.27 * 1.27);
   const double predicted_at_6 = std::sqrt(at_12 * at_12 - scale * (12.0 * 12.0 - 6.0 * 6.0));
   CHECK(at_6 == Approx(predicted_at_6).epsilon(0.15));
+}
+
+TEST_CASE("every procedure recovers the threshold of an observer who feels the taps",
+          "[runner][observer][slow]") {
+  const double expected_db = threshold_db(noise_db, "[0.1, 0.25, 0.5, 0.9, 1.6, 3, 6]", 30);
+  const std::string grid =
+      "function: weibull, stimulus: {min: 0.05, max: 9, count: 25, spacing: log}, threshold: {min: "
+      "0.05, max: 9, count: 25, spacing: log}, slope: {values: [0.7, 1, 2, 3.5]}, stop: {trials: "
+      "50}";
+  const std::string steps =
+      "steps: factor, start: 4, min: 0.05, max: 9, first_step: 2, min_step: 1.4, "
+      "estimate_reversals: 6, stop: {trials: 50}";
+  const std::vector<std::pair<std::string, std::string>> procedures{
+      {"1 up 3 down", "{staircase: {rule: transformed, n_down: 3, " + steps + "}}"},
+      {"weighted to 75 %", "{staircase: {rule: weighted, target: 0.75, " + steps + "}}"},
+      {"QUEST+",
+       "{quest_plus: {" + grid + ", guess: {values: [0.5]}, lapse: {values: [0.02, 0.05]}}}"}};
+  for (const auto& [name, procedure] : procedures) {
+    const Recovered runs = recovered(procedure);
+    const double median_db = analysis::quantile(runs.thresholds_db, 0.5);
+    const double spread_db = analysis::mean_and_spread(runs.thresholds_db).standard_deviation;
+    fmt::print("  {}: {} of 200 runs of {:.0f} trials, bias {:+.2f} dB, spread {:.2f} dB\n", name,
+               runs.thresholds_db.size(), runs.trials, median_db - expected_db, spread_db);
+    CAPTURE(name);
+    CHECK(runs.thresholds_db.size() >= 160);
+    CHECK(median_db == Approx(expected_db).epsilon(0.15));
+  }
 }

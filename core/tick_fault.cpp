@@ -32,6 +32,10 @@ const char* to_text(TickFault fault) noexcept {
       return "the device did not acknowledge zero force";
     case TickFault::amplifier_off:
       return "the motors get no voltage (is the amplifier on?)";
+    case TickFault::force_not_followed:
+      return "the device reports a force far from the one it was sent";
+    case TickFault::force_released:
+      return "the device released the force, for want of requests";
     case TickFault::tensions_unsolved:
       return "no string tensions were found for the force";
     case TickFault::too_late:

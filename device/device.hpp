@@ -28,8 +28,8 @@ inline constexpr int zero_force_packets = 3;
 // What a device reports about its last tick; NaN: it does not tell.
 struct DeviceDetail {
   core::Vec3 achieved_n{core::Vec3::Constant(std::numeric_limits<double>::quiet_NaN())};
-  double pose_residual_m{0.0};
-  double closure_margin{1.0};
+  double pose_residual_m{std::numeric_limits<double>::quiet_NaN()};
+  double closure_margin{std::numeric_limits<double>::quiet_NaN()};
   double motor_voltage_v{std::numeric_limits<double>::quiet_NaN()};  // mean over the motors
   int missed_replies{0};  // in a row: the position is the last one known
 };

@@ -1,5 +1,7 @@
 #include "protocols/read_rig.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <filesystem>
 
@@ -8,7 +10,7 @@ namespace tapstudy::protocols {
 namespace {
 using Presence = MapReader::Presence;
 
-// A person's hand is on hardware; a simulated one may wait for any time.
+// A person's hand is on hardware; a simulated one may wait for any time (0).
 constexpr int max_late_ticks_of_hardware = 20;
 constexpr double max_stall_of_hardware_s = 0.01;
 
@@ -23,8 +25,10 @@ void read_loop(MapReader& top, Rig& rig) {
       realtime.cpu = reader.integer("cpu", 0, 1023);
     }
     rig.max_late_ticks_in_a_row =
-        reader.integer("max_late_ticks_in_a_row", 0, 1'000'000, rig.max_late_ticks_in_a_row);
-    rig.max_stall_s = reader.number("max_stall_s", {0.0, 0.1}, rig.max_stall_s);
+        reader.integer("max_late_ticks_in_a_row", rig.has_hardware ? 1 : 0, 1'000'000,
+                       rig.max_late_ticks_in_a_row);
+    rig.max_stall_s =
+        reader.number("max_stall_s", {0.0, 0.1, !rig.has_hardware, true}, rig.max_stall_s);
   });
 }
 
@@ -53,6 +57,21 @@ void read_device(MapReader& top, const std::string& file, RigDevices devices, Ri
   rig.has_hardware = (*device)->has_hardware();
   rig.section =
       (*device)->read_section(top, {std::filesystem::path{file}.parent_path().string(), &rig.text});
+}
+
+// A slower limit would hold the force on after the finger has left the plate.
+constexpr double max_time_to_full_force_s = 0.1;
+
+void read_limits(MapReader& top, core::ForceLimits& limits) {
+  limits.max_force_n = top.number("max_force_n", Range::positive(100.0));
+  limits.max_force_rate_n_per_s = top.number("max_force_rate_n_per_s", Range::positive(1e6));
+  const double least_n_per_s = limits.max_force_n / max_time_to_full_force_s;
+  if (top.has("max_force_rate_n_per_s") && limits.max_force_rate_n_per_s < least_n_per_s) {
+    top.reject("max_force_rate_n_per_s",
+               fmt::format("is too slow to reach, and to release, max_force_n within {} s (at "
+                           "least {:.6g})",
+                           max_time_to_full_force_s, least_n_per_s));
+  }
 }
 
 void read_audio(MapReader& top, Rig& rig) {
@@ -104,9 +123,7 @@ Rig parse(const std::string& text, const std::string& file, RigDevices devices,
   rig.text = text;
   top.word("format", "format", {"tapstudy-rig/1"});
   read_device(top, file, devices, rig);
-  rig.gate.limits.max_force_n = top.number("max_force_n", Range::positive(100.0));
-  rig.gate.limits.max_force_rate_n_per_s =
-      top.number("max_force_rate_n_per_s", Range::positive(1e6));
+  read_limits(top, rig.gate.limits);
   if (rig.has_hardware) {
     read_limits_of_motion(top, rig.gate);
   }
@@ -129,6 +146,17 @@ Rig parse_rig(const std::string& text, const std::string& file, RigDevices devic
   Rig rig = parse(text, file, devices, problems);
   problems.throw_if_any();
   return rig;
+}
+
+std::optional<core::Placement> placement_in_stored_rig(const std::string& rig_text) {
+  const std::string file = "stored rig";
+  Problems problems{file};
+  MapReader top =
+      MapReader::whole_file(rig_text.substr(0, rig_text.find("\n---\n")), file, problems);
+  std::optional<core::Placement> placement;
+  read_placement(top, Presence::optional, [&](const core::Placement& own) { placement = own; });
+  problems.throw_if_any();
+  return placement;
 }
 
 std::set<std::string> rig_keys_asked_for(const std::string& text, const std::string& file,

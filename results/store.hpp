@@ -156,7 +156,13 @@ class Store {
   std::optional<Journal> journal_;
   bool confirms_{true};
   std::optional<std::array<std::int64_t, 3>> unconfirmed_;  // a trial that is committed, no more
-  // Likewise: as they were given, and as they were inserted.
-  std::optional<std::pair<std::vector<std::string>, JournalEntries>> unjournalled_;
+  // Committed by a call that then failed.
+  struct FailedCall {
+    std::vector<std::string> lines;  // as given
+    JournalEntries entries;          // as inserted
+    std::int64_t session_id{};
+    bool is_journalled{false};
+  };
+  std::vector<FailedCall> failed_calls_;
 };
 }  // namespace tapstudy::results

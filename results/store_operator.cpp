@@ -1,6 +1,8 @@
 // What the operator adds to a study, and what follows from it.
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "results/store.hpp"
 #include "results/store_error.hpp"
 namespace tapstudy::results {
@@ -22,21 +24,27 @@ void Store::insert_action(const OperatorActionRow& action) {
       .finish();
 }
 
-// Of rows that are in the database, but not yet in the journal, only the latter is made up for.
+// Rows that are in the database, but whose journalling failed, are journalled by the next call of
+// any kind; the call that is made again for them finds them here and inserts nothing.
 void Store::add_and_journal(JournalEntries entries, std::int64_t session_id,
                             const std::function<void(JournalEntries&)>& insert) {
   const std::vector<std::string> what = to_lines(entries);
-  if (!unjournalled_ || unjournalled_->first != what) {
+  if (std::ranges::find(failed_calls_, what, &FailedCall::lines) == failed_calls_.end()) {
     Transaction all{database_};
     insert(entries);
     all.commit();
-    unjournalled_ = {what, std::move(entries)};
+    failed_calls_.push_back({what, std::move(entries), session_id});
   }
   if (journal_) {
     check_has_not_moved();
   }
-  journal(unjournalled_->second, session_id);
-  unjournalled_.reset();
+  for (FailedCall& one : failed_calls_) {
+    if (!one.is_journalled) {
+      journal(one.entries, one.session_id);
+      one.is_journalled = true;
+    }
+  }
+  std::erase_if(failed_calls_, [&](const FailedCall& one) { return one.lines == what; });
 }
 
 void Store::add_operator_action(const OperatorActionRow& action) {

@@ -76,6 +76,6 @@ PassedForce ForceGate::pass(const core::Vec3& wanted_n, const core::HandState& h
   const core::LimitedForce limited =
       core::limit_force(share_ * wanted_n, previous_n_, settings_.limits, dt_s_);
   previous_n_ = limited.force_n;
-  return {limited.force_n, limited.was_changed || share_ < 1.0, TickFault::none};
+  return {limited.force_n, limited.was_changed, TickFault::none};
 }
 }  // namespace tapstudy::device

@@ -63,12 +63,11 @@ bool HapticLoop::step() noexcept {
   const Nanoseconds woke_at = clock_.wait_until(deadline_);
   note_lateness(woke_at);
   const Nanoseconds elapsed = woke_at - std::exchange(last_tick_, woke_at);
-  core::TraceSample sample = unread_sample(woke_at - start_);
+  core::TraceSample sample = unread_sample(woke_at - began_at());
   sample.fault = fault_of_time(woke_at, elapsed);
-  sample.late = late_in_a_row_ > 0;
   if (sample.fault == TickFault::none) {
     ticked_at_.store(woke_at, std::memory_order_release);
-    sample = tick(woke_at - start_, elapsed);
+    sample = tick(woke_at - began_at(), elapsed);
   }
   if (sample.fault != TickFault::none) {
     report_.stop = device_.emergency_stop();
@@ -84,7 +83,8 @@ bool HapticLoop::step() noexcept {
 void HapticLoop::begin() noexcept {
   fault_at_begin_ = device_.begin();
   suspended_before_ = clock_.suspended();
-  start_ = deadline_ = last_beat_ = last_tick_ = clock_.now();
+  deadline_ = last_beat_ = last_tick_ = clock_.now();
+  start_.store(deadline_, std::memory_order_release);
   has_begun_ = true;
 }
 
@@ -131,8 +131,9 @@ TickFault HapticLoop::fault_of_time(Nanoseconds woke_at, Nanoseconds elapsed) no
 }
 
 void HapticLoop::take_requests() noexcept {
-  const std::size_t wanted = requested_.load(std::memory_order_acquire);
+  // first the silence: an interval that opens must not have the alternative of the one before
   const bool is_silence_wanted = silence_requested_.load(std::memory_order_acquire);
+  const std::size_t wanted = requested_.load(std::memory_order_acquire);
   const bool is_change = wanted != current_ || is_silence_wanted != is_silent_;
   if (is_change && !alternatives_[current_].is_touching()) {
     alternatives_[wanted].take_over_from(alternatives_[current_]);
@@ -149,6 +150,7 @@ core::TraceSample HapticLoop::unread_sample(Nanoseconds now) const noexcept {
   core::TraceSample sample{};
   sample.t_ns = now;
   sample.alternative = static_cast<std::uint8_t>(current_);
+  sample.late = late_in_a_row_ > 0;
   constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
   sample.position_m.fill(unknown);
   sample.velocity_m_s.fill(unknown);
@@ -163,7 +165,6 @@ core::TraceSample HapticLoop::tick(Nanoseconds now, Nanoseconds elapsed) noexcep
   core::TraceSample sample = unread_sample(now);
   core::HandState hand{as_vector(sample.position_m), as_vector(sample.velocity_m_s)};
   const double elapsed_s = 1e-9 * static_cast<double>(elapsed);
-  sample.late = late_in_a_row_ > 0;
   sample.fault = device_.read(hand, elapsed_s);
   sample.position_m = as_array(hand.position_m);
   sample.velocity_m_s = as_array(hand.velocity_m_s);

@@ -69,12 +69,13 @@ class HapticLoop {
   void run(const std::stop_token& stop) noexcept;
   // Runs the given number of ticks; the next call continues from there.
   void run_ticks(std::int64_t count) noexcept;
-  // Commands zero force in any state.
+  // Commands zero force; after a fault the emergency stop has done so.
   void zero_force() noexcept;
 
   const LoopReport& report() const noexcept { return report_; }
-  // When its first tick was due, by its clock; for whoever has taken a tick from the trace.
-  Nanoseconds began_at() const noexcept { return start_; }
+  // May be called from any thread: when its first tick was due, by its clock, from which times in
+  // the trace count; 0 before.
+  Nanoseconds began_at() const noexcept { return start_.load(std::memory_order_acquire); }
   // May be called from any thread: whether a tick was made lately, so that what happens now happens
   // to somebody who feels the plate. False in a stall, even before the loop has found it.
   bool is_ticking(Nanoseconds now) const noexcept {
@@ -110,7 +111,7 @@ class HapticLoop {
   std::size_t current_{0};
   bool is_silent_{false};
   std::array<std::atomic<int>, max_alternatives> contacts_{};
-  Nanoseconds start_{0};
+  std::atomic<Nanoseconds> start_{0};
   Nanoseconds deadline_{0};
   Nanoseconds last_beat_{0};
   Nanoseconds last_tick_{0};

@@ -118,8 +118,24 @@ TickFault RemoteHand::ask(core::HandState& hand) noexcept {
 
 TickFault RemoteHand::begin() noexcept {
   held_.forget();
+  exerted_.forget();
+  is_holding_ = false;
   detail_.missed_replies = 0;
   return TickFault::none;
+}
+
+// Between trials nobody asks, so that the first reply may tell of a release.
+TickFault RemoteHand::fault_of_report() noexcept {
+  const std::uint32_t status = status_.value_or(motors_on);
+  if ((status & motors_on) == 0) {
+    return TickFault::amplifier_off;
+  }
+  const bool has_released = (status & has_let_go) != 0;
+  if (has_released && is_holding_) {
+    return TickFault::force_released;
+  }
+  is_holding_ = is_holding_ || !has_released;
+  return exerted_.judge(force_n_, detail_.achieved_n);
 }
 
 TickFault RemoteHand::read(core::HandState& hand, double /*elapsed_s*/) noexcept {
@@ -128,13 +144,12 @@ TickFault RemoteHand::read(core::HandState& hand, double /*elapsed_s*/) noexcept
     detail_.missed_replies = held_.missed_replies();
     return TickFault::none;
   }
-  if (fault == TickFault::none) {
-    detail_.missed_replies = 0;
-    held_.keep(hand);
+  if (fault != TickFault::none) {
+    return fault;
   }
-  const bool is_without_power =
-      fault == TickFault::none && (status_.value_or(motors_on) & motors_on) == 0;
-  return is_without_power ? TickFault::amplifier_off : fault;
+  detail_.missed_replies = 0;
+  held_.keep(hand);
+  return fault_of_report();
 }
 
 TickFault RemoteHand::write(const core::Vec3& force_n) noexcept {
@@ -155,7 +170,8 @@ std::optional<bool> RemoteHand::lets_go_after(std::chrono::milliseconds silence)
   return (*status_ & has_let_go) != 0;
 }
 
-// Confirmed by a reply to a request that carried zero force, and that does not tell of another.
+// Confirmed by a reply to a request that carried zero force, and that does not tell of another; the
+// last one counts.
 StopOutcome RemoteHand::zero_force() noexcept {
   force_n_ = core::Vec3::Zero();
   StopOutcome outcome = StopOutcome::unconfirmed;
@@ -163,7 +179,7 @@ StopOutcome RemoteHand::zero_force() noexcept {
     core::HandState ignored;
     const bool is_told = ask(ignored) == TickFault::none;
     const bool is_exerted = detail_.achieved_n.norm() > max_zero_force_n;  // not so if untold, NaN
-    outcome = is_told && !is_exerted ? StopOutcome::confirmed : outcome;
+    outcome = is_told && !is_exerted ? StopOutcome::confirmed : StopOutcome::unconfirmed;
   }
   return outcome;
 }

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "device/device.hpp"
+#include "device/remote/exerted_force.hpp"
 namespace tapstudy::device {
 // A device driven by another program on this machine, over UDP on the loopback (packets.hpp): each
 // tick requests the position and waits for it, then sends the force, which is applied immediately.
@@ -33,6 +34,7 @@ class RemoteHand final : public Device {
   core::TickFault send(bool wants_reply) noexcept;
   core::TickFault ask(core::HandState& hand) noexcept;
   core::TickFault receive(core::HandState& hand) noexcept;
+  core::TickFault fault_of_report() noexcept;
   bool wait_until(std::chrono::steady_clock::time_point end) const noexcept;
 
   std::uint16_t port_;
@@ -41,6 +43,8 @@ class RemoteHand final : public Device {
   std::uint32_t number_{0};
   core::Vec3 force_n_{core::Vec3::Zero()};
   HeldHand held_;
+  ExertedForce exerted_;
+  bool is_holding_{false};  // a reply of this trial told so
   std::optional<std::uint32_t> status_;
   DeviceDetail detail_;
 };

@@ -8,7 +8,7 @@
 namespace tapstudy::runner {
 Console::Console(const ConsoleRequest& request, const Session& session)
     : shows_plate_{session.protocol.display.shows_plate},
-      scenes_{session.protocol},
+      scenes_{session.protocol, session.placement},
       screens_{request.language, session.protocol.title},
       participant_{screens_, context(session)},
       api_{in_view(request, session), screens_, session.desk, live_, scenes_},

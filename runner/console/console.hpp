@@ -18,6 +18,7 @@ class Console {
  public:
   struct Session {
     const protocols::Protocol& protocol;
+    const core::Placement& placement;  // of the loop
     const results::SessionRow& row;
     OperatorDesk& desk;
     std::function<void()> move_hand;  // as a ConsoleParticipant's

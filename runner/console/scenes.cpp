@@ -85,7 +85,8 @@ Json points_of(const protocols::Protocol& protocol, const protocols::Plate& plat
 }
 }  // namespace
 
-Scenes::Scenes(const protocols::Protocol& protocol) : protocol_{protocol} {
+Scenes::Scenes(const protocols::Protocol& protocol, const core::Placement& placement)
+    : protocol_{protocol}, placement_{placement} {
   for (const auto& [name, plate] : protocol.plates) {
     Json json = std::visit([](const auto& shape) { return shape_of(shape); }, plate->shape);
     json["tapping_points_m"] =
@@ -98,8 +99,7 @@ Scenes::Scenes(const protocols::Protocol& protocol) : protocol_{protocol} {
         json["fixations"].push_back(shown);
       }
     }
-    all_.push_back(
-        {plate.get(), protocol.placement.scaled(plate->lateral_ratio), json.dump(), shape});
+    all_.push_back({plate.get(), placement.scaled(plate->lateral_ratio), json.dump(), shape});
   }
 }
 
@@ -123,7 +123,7 @@ int Scenes::place_of(const std::string& stimulus) const {
 }
 
 double Scenes::surface_along_normal_m() const {
-  return core::along_normal(protocol_.placement.origin_m);
+  return core::along_normal(placement_.origin_m);
 }
 
 core::Vec3 Scenes::to_scene(int number, const core::Vec3& device_position_m) const {

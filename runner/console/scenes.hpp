@@ -11,7 +11,8 @@ namespace tapstudy::runner {
 // its upper face.
 class Scenes {
  public:
-  explicit Scenes(const protocols::Protocol& protocol);
+  // placement: of the protocol, or of the rig where that has its own.
+  Scenes(const protocols::Protocol& protocol, const core::Placement& placement);
   // nullopt where the block's plates look different: the picture would tell which one it is.
   std::optional<int> number_of(const std::string& stimulus, const protocols::Block& block) const;
   int count() const { return static_cast<int>(all_.size()); }
@@ -29,6 +30,7 @@ class Scenes {
   int place_of(const std::string& stimulus) const;
   const Scene& at(int number) const { return all_.at(static_cast<std::size_t>(number)); }
   const protocols::Protocol& protocol_;
+  core::Placement placement_;
   std::vector<Scene> all_;
 };
 }  // namespace tapstudy::runner

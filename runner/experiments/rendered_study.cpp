@@ -1,9 +1,12 @@
 #include "runner/experiments/rendered_study.hpp"
 
 #include <algorithm>
+#include <map>
 #include <set>
 #include <unordered_map>
 
+#include "protocols/read_rig.hpp"
+#include "results/sqlite.hpp"
 #include "results/trace_stream.hpp"
 #include "runner/experiments/cached_model.hpp"
 #include "runner/experiments/counted_answers.hpp"
@@ -73,6 +76,7 @@ class TapSorter {
       counted[answer.trial_id] = &answer;
       study_.trials += answer.ticks > 0 ? 1 : 0;
     }
+    const std::map<std::int64_t, core::Placement> placements = placements_of_trials(store);
     std::set<std::int64_t> traced;
     results::each_trace_chunk(
         store, [&](std::int64_t trial_id, std::span<const core::TraceSample> samples) {
@@ -83,6 +87,7 @@ class TapSorter {
           if (traced.insert(trial_id).second) {
             cutter_.end_trial();
             trial_ = found->second;
+            placement_ = placements.at(trial_id);
           }
           std::ranges::for_each(samples, [&](const auto& sample) { cutter_.add(sample); });
         });
@@ -91,6 +96,23 @@ class TapSorter {
   }
 
  private:
+  // A rig may have a placement of its own.
+  std::map<std::int64_t, core::Placement> placements_of_trials(results::Store& store) const {
+    std::map<std::int64_t, core::Placement> placements;
+    std::map<std::string, core::Placement> known;  // by rig
+    store.each_row(
+        "SELECT trial_id, rig_text FROM trial JOIN session USING (session_id)",
+        [&](results::Statement& row) {
+          const auto [rig, is_new] = known.try_emplace(row.text(1));
+          if (is_new) {
+            rig->second =
+                protocols::placement_in_stored_rig(rig->first).value_or(protocol_.placement);
+          }
+          placements.emplace(row.integer(0), rig->second);
+        });
+    return placements;
+  }
+
   void sort(const analysis::FeltTap& tap) {
     const auto& alternatives = trial_->alternatives;
     if (alternatives.empty()) {
@@ -105,7 +127,7 @@ class TapSorter {
     analysis::StimulusTaps& taps = study_.taps[place->second];
     taps.all.add(tap);
     const core::HandState hand{{tap.position_m[0], tap.position_m[1], tap.position_m[2]}, {}};
-    const Eigen::Vector2d at_m = protocol_.placement.to_plate(hand).position_m.head<2>();
+    const Eigen::Vector2d at_m = placement_.to_plate(hand).position_m.head<2>();
     const auto distance_m = [&](const analysis::PointTaps& point) {
       return (protocol_.tapping_points_m.at(point.point) - at_m).norm();
     };
@@ -121,6 +143,7 @@ class TapSorter {
   analysis::TapCutter cutter_;
   std::unordered_map<std::string, std::size_t> places_;  // of stimuli, by name
   const results::AnswerRow* trial_{};
+  core::Placement placement_;  // in this trial
 };
 }  // namespace
 

@@ -8,12 +8,23 @@ namespace tapstudy::runner {
 namespace {
 constexpr double timing_spread = 0.1;  // of the logarithm of dwell and pause
 
-// Where taps may land: on every plate of the protocol, in the plate frame at the placement's scale.
+// In the order of the stimuli; what a plate only touches (contacts) is never tapped.
+std::vector<const protocols::Plate*> tapped_plates(const protocols::Protocol& protocol) {
+  std::vector<const protocols::Plate*> plates;
+  for (const protocols::Stimulus& stimulus : protocol.stimuli) {
+    if (std::ranges::find(plates, stimulus.plate.get()) == plates.end()) {
+      plates.push_back(stimulus.plate.get());
+    }
+  }
+  return plates;
+}
+
+// Where taps may land: on every plate that is tapped, in the plate frame at the placement's scale.
 // They agree on their heights at the tapping points.
 class TapArea {
  public:
   explicit TapArea(const protocols::Protocol& protocol) {
-    for (const auto& [name, plate] : protocol.plates) {
+    for (const protocols::Plate* const plate : tapped_plates(protocol)) {
       half_m_ = half_m_.cwiseMin(0.999 * plate->lateral_ratio *
                                  core::bounds(plate->shape).high_m.head<2>());
       is_flat_ = is_flat_ && std::holds_alternative<core::Box>(plate->shape);

@@ -8,9 +8,13 @@ void Interludes::begin() {
   }
 }
 
-void Interludes::leave_block() {
-  if (block_) {
-    ask(parts_.protocol.block(*block_).forms_after, *block_);
+// Also those of a block that an earlier session finished, but for its questionnaires.
+void Interludes::ask_after_blocks_before(const std::string& block) {
+  for (const protocols::Block& earlier : parts_.protocol.blocks) {
+    if (earlier.name == block) {
+      return;
+    }
+    ask(earlier.forms_after, earlier.name);
   }
 }
 
@@ -18,7 +22,7 @@ void Interludes::before(const protocols::PlannedTrial& trial) {
   begin();
   const protocols::Block& block = parts_.protocol.block(trial.block);
   if (block_ != trial.block) {
-    leave_block();
+    ask_after_blocks_before(trial.block);
     block_ = trial.block;
     read(block.instructions, block.name);
     trials_since_rest_ = 0;

@@ -35,7 +35,7 @@ class Interludes {
 
  private:
   void begin();
-  void leave_block();
+  void ask_after_blocks_before(const std::string& block);
   void read(const std::string& text, const std::string& whose);
   void rest_if_due(const protocols::Block& block);
   void ask(const std::vector<std::string>& forms, const std::string& asked);

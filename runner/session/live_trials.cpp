@@ -59,8 +59,8 @@ std::unique_ptr<Console> console_of(const LiveTrials::Parts& parts, OperatorDesk
   }
   auto console = std::make_unique<Console>(
       *parts.live.console,
-      Console::Session{parts.live.protocol, parts.session.row, desk, std::move(move_hand),
-                       [parts] { return masking_in_view(parts); }});
+      Console::Session{parts.live.protocol, parts.settings.placement, parts.session.row, desk,
+                       std::move(move_hand), [parts] { return masking_in_view(parts); }});
   // the terminal's lines are commands then, and the operator may be at a page
   parts.ask_operator = [&desk](const std::string& task) {
     return desk.waits_for_operator(task, [&] { say("{} type resume.\n", task); });

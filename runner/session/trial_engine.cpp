@@ -47,6 +47,10 @@ std::optional<Interruption> TrialEngine::run(const protocols::Schedule& schedule
     parts_.states.enter(SessionState::stopped, {}, parts_.by.end_reason());
     note_events();
     throw;
+  } catch (const core::Error& error) {
+    parts_.states.enter(SessionState::stopped, {}, error.what());
+    note_events();
+    throw;
   }
 }
 

@@ -33,8 +33,10 @@ class LiveExploration final : public Exploration {
     return !has_ended_.load(std::memory_order_acquire);
   }
   bool is_rendering() const override { return is_running() && loop_.is_ticking(clock_.now()); }
+  // As the trace counts it: the thread's and the device's set-up are before the trial.
   double time_s() const override {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+    const device::Nanoseconds began_at = loop_.began_at();
+    return began_at == 0 ? 0.0 : 1e-9 * static_cast<double>(clock_.now() - began_at);
   }
 
   int contacts(std::size_t alternative) const override { return loop_.contacts(alternative); }
@@ -44,7 +46,6 @@ class LiveExploration final : public Exploration {
   device::TickClock& clock_;
   const std::atomic<bool>& has_ended_;
   std::size_t current_{0};
-  std::chrono::steady_clock::time_point start_{std::chrono::steady_clock::now()};
 };
 
 // RAII: the recorder follows the collector during this object's lifetime.

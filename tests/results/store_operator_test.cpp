@@ -116,6 +116,27 @@ TEST_CASE("what the journal could not take is made up for, not doubled", "[resul
 }
 
 TEST_CASE(
+    "a questionnaire that the journal could not take can be saved again after an operator's note",
+    "[results][store]") {
+  const testing::TempDirectory directory;
+  auto [store, row] = begun_study(directory.path());
+  const std::string journal = directory / "answers.journal";
+  std::filesystem::remove(journal);
+  std::filesystem::create_directory(journal);
+  const std::vector<FormAnswerRow> form{{row.id, 1.0, "about", "main", "hand", "left"}};
+  CHECK_THROWS_AS(store.add_form(form), StoreError);
+  CHECK_THROWS_AS(store.add_operator_action(action(row.id, "note", "disk full")), StoreError);
+  std::filesystem::remove(journal);
+  store.add_operator_action(action(row.id, "resume", ""));
+  store.add_form(form);
+  store.add_form({{row.id, 2.0, "about", "end", "hand", "right"}});
+  const JournalEntries journalled = read_journal(directory.path()).entries;
+  CHECK(to_lines(journalled) == to_lines(store.entries_for_journal()));
+  CHECK(journalled.form_answers.size() == 2);
+  CHECK(journalled.actions.size() == 2);
+}
+
+TEST_CASE(
     "a balanced order is used up by who has answered, or is in a session, and is not excluded",
     "[results][store]") {
   const testing::TempDirectory directory;

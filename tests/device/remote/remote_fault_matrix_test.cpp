@@ -30,6 +30,10 @@ enum class Trouble {
   not_a_number,
   jump,
   no_power,
+  overload,     // exerts far more than it was sent
+  limp,         // exerts nothing
+  releases,     // as after a silence
+  every_other,  // request is answered
   gone
 };
 
@@ -49,6 +53,7 @@ class MockProgram {
   }
   std::uint16_t port{};
   std::atomic<Trouble> trouble{Trouble::none};
+  std::atomic<bool> is_version_2{false};
   std::atomic<double> height_m{0.01};
   std::atomic<double> exerted_n{0.0};
   std::atomic<int> forces_since_trouble{0};
@@ -75,18 +80,28 @@ class MockProgram {
     std::memcpy(&force_n, request.data() + 20, sizeof force_n);
     exerted_n = force_n;
     forces_since_trouble += trouble != Trouble::none && force_n > 0.0 ? 1 : 0;
-    if (request[4] == 1 && trouble != Trouble::mute) {
+    const bool is_left_out =
+        trouble == Trouble::every_other && request[4] == 1 && ++requests_ % 2 == 0;
+    if (request[4] == 1 && trouble != Trouble::mute && !is_left_out) {
       usleep(trouble == Trouble::slow ? 20'000 : 0);
       const auto reply = reply_to(request);
-      const std::size_t length = trouble == Trouble::short_reply ? 30
-                                 : trouble == Trouble::no_power  ? 88
-                                                                 : 60;
+      const std::size_t length = trouble == Trouble::short_reply ? 30 : tells_of_force() ? 88 : 60;
       static_cast<void>(sendto(socket_, reply.data(), length, 0, &from, size));
     }
   }
+  bool tells_of_force() const {
+    return is_version_2 || trouble == Trouble::no_power || trouble == Trouble::overload;
+  }
   std::array<std::uint8_t, 88> reply_to(const std::array<std::uint8_t, 64>& request) {
     std::array<std::uint8_t, 88> reply{'T', 'A', 'P', 'R', 1};
-    reply[4] = trouble == Trouble::no_power ? 2 : 1;  // with a status of zero
+    reply[4] = tells_of_force() ? 2 : 1;
+    const std::uint32_t on = trouble == Trouble::no_power ? 0 : device::motors_on;
+    const std::uint32_t status = on | (trouble == Trouble::releases ? device::has_let_go : 0);
+    std::memcpy(reply.data() + 60, &status, sizeof status);
+    const double told_n = trouble == Trouble::overload ? 80.0
+                          : trouble == Trouble::limp   ? 0.0
+                                                       : exerted_n.load();
+    std::memcpy(reply.data() + 72, &told_n, sizeof told_n);
     std::copy_n(request.begin() + 8, 4, reply.begin() + 8);
     reply[8] = static_cast<std::uint8_t>(reply[8] - (trouble == Trouble::old_number ? 1 : 0));
     const double y_m = trouble == Trouble::not_a_number ? std::numeric_limits<double>::quiet_NaN()
@@ -96,6 +111,7 @@ class MockProgram {
     return reply;
   }
 
+  int requests_{0};
   int socket_{socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)};
   std::jthread thread_;
 };
@@ -131,6 +147,7 @@ const std::vector<Fault> all_faults{
     {"position is NaN", Trouble::not_a_number, {TickFault::non_finite_force}, true},
     {"position jumps", Trouble::jump, {TickFault::too_fast, TickFault::outside_workspace}, true},
     {"motors are off", Trouble::no_power, {TickFault::amplifier_off}, true},
+    {"exerts 80 N", Trouble::overload, {TickFault::force_not_followed}, false},
     {"has ended", Trouble::gone, {TickFault::device_gone, TickFault::no_reply}, false}};
 
 struct State {
@@ -176,4 +193,33 @@ TEST_CASE("the fault matrix of a remote device: no force is sent once the fault 
       CHECK((!hears || stage.exerted_n == 0.0));
     }
   }
+}
+
+TEST_CASE(
+    "a remote device that does not exert the force, releases it, or misses half of the replies "
+    "ends the trial",
+    "[device][safety][remote]") {
+  const std::vector<std::pair<Trouble, TickFault>> troubles{
+      {Trouble::limp, TickFault::force_not_followed},
+      {Trouble::releases, TickFault::force_released},
+      {Trouble::every_other, TickFault::no_reply}};
+  for (const auto& [trouble, fault] : troubles) {
+    CAPTURE(core::to_text(fault));
+    Stage stage;
+    stage.is_version_2 = true;
+    stage.press();
+    const std::int64_t before = stage.loop.loop->report().ticks;
+    stage.trouble = trouble;
+    stage.loop.tick(100);
+    CHECK(stage.loop.loop->report().stopped_by == fault);
+    CHECK(stage.loop.loop->report().ticks - before < 60);
+  }
+}
+
+TEST_CASE("a stop that a later reply contradicts is not confirmed", "[device][safety][remote]") {
+  Stage stage;
+  stage.is_version_2 = true;
+  CHECK(stage.hand.zero_force() == device::StopOutcome::confirmed);
+  stage.trouble = Trouble::overload;
+  CHECK(stage.hand.zero_force() == device::StopOutcome::unconfirmed);
 }

@@ -62,3 +62,38 @@ TEST_CASE("of trials and time whichever is first brings the rest", "[runner][ses
         std::vector{120.0, 200.0, 280.0, 360.0});
   CHECK(rests({.every_trials = 9, .every_seconds = 35.0}) == std::vector{140.0, 240.0});
 }
+
+TEST_CASE("a block's questionnaire that an interruption left open is asked before the next block",
+          "[runner][session]") {
+  struct Person final : runner::Participant {
+    explicit Person(std::vector<std::string>& done) : done_{done} {}
+    std::optional<std::string> perform(const runner::TrialPrompt& /*prompt*/,
+                                       runner::Exploration& /*exploration*/) override {
+      return std::nullopt;
+    }
+    void read(const std::string& text) override { done_.push_back(text); }
+    bool fills_in_forms() const override { return true; }
+    FormAnswers fill_in(const protocols::Form& form) override {
+      done_.push_back(form.title);
+      return {};
+    }
+    std::vector<std::string>& done_;
+  };
+  protocols::Protocol protocol;
+  protocol.forms["load"].title = "form";
+  for (const char* const name : {"first", "second"}) {
+    protocols::Block& block = protocol.blocks.emplace_back();
+    block.name = name;
+    block.instructions = std::string{"read "} + name;
+    block.forms_after = {"load"};
+  }
+  std::vector<std::string> done;
+  Person person{done};
+  runner::SessionStates states{1, [] { return 0.0; }};
+  runner::Interludes interludes{{protocol, person, states, [](auto) {}, [] {}}, {}};
+  protocols::PlannedTrial trial;
+  trial.block = "second";
+  interludes.before(trial);
+  interludes.before(trial);
+  CHECK(done == std::vector<std::string>{"form", "read second"});
+}

@@ -1,0 +1,20 @@
+#pragma once
+#include "core/haptic_state.hpp"
+#include "core/tick_fault.hpp"
+namespace tapstudy::device {
+// Compares the force that a device reports with the force that it was sent: a report far above, in
+// three ticks running, or of almost nothing for 30 ticks of force, is a fault. Both margins are
+// wide, since devices measure late and coarsely. One that reports nothing (NaN) is not judged.
+class ExertedForce {
+ public:
+  void forget() noexcept { *this = {}; }
+  // Once a tick: what was commanded when the device reported.
+  [[nodiscard]] core::TickFault judge(const core::Vec3& commanded_n,
+                                      const core::Vec3& reported_n) noexcept;
+
+ private:
+  double recent_peak_n_{0.0};  // of the commands, decaying
+  int ticks_above_{0};
+  int ticks_without_{0};
+};
+}  // namespace tapstudy::device

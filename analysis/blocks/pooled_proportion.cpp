@@ -3,8 +3,16 @@
 #include <fmt/format.h>
 
 #include "analysis/blocks/wording.hpp"
-#include "analysis/participants/mean_proportion.hpp"
 namespace tapstudy::analysis {
+std::string over_participants(const Proportion& all, const BetaBinomialMean& over) {
+  const std::string mean = percent(over.mean);
+  return mean == percent(all.value())
+             ? fmt::format("(95 % CI over {} participants {})", over.participants,
+                           percent_range(over.interval))
+             : fmt::format("(mean over {} participants {}, 95 % CI {})", over.participants, mean,
+                           percent_range(over.interval));
+}
+
 Cell pooled_proportion(const std::vector<Proportion>& participants) {
   if (participants.size() == 1) {
     return proportion(participants.front());
@@ -15,7 +23,7 @@ Cell pooled_proportion(const std::vector<Proportion>& participants) {
   }
   Cell cell = counted(all);
   if (const auto over = beta_binomial_mean(participants)) {
-    cell.text += fmt::format(" (95 % CI {})", percent_range(over->interval));
+    cell.text += " " + over_participants(all, *over);
     cell.values.insert(cell.values.end(), {over->interval.low, over->interval.high});
   } else {
     cell.values.resize(cell.values.size() + 2);

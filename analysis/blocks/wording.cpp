@@ -22,7 +22,11 @@ std::string fraction(const Proportion& proportion) {
 }
 
 std::string percent(const Proportion& proportion) {
-  return proportion.trials == 0 ? "–" : fmt::format("{:.0f} %", 100.0 * proportion.value());
+  return proportion.trials == 0 ? "–" : percent(proportion.value());
+}
+
+std::string percent(double share) {
+  return fmt::format("{:.0f} %", 100.0 * share);
 }
 
 std::string fraction_and_percent(const Proportion& proportion) {

@@ -7,6 +7,7 @@ namespace tapstudy::analysis {
 // Number formatting common to all reports.
 std::string fraction(const Proportion& proportion);       // "43/80"
 std::string percent(const Proportion& proportion);        // "54 %", or "–" without trials
+std::string percent(double share);                        // likewise
 std::string with_interval(const Proportion& proportion);  // "43/80 = 54 % (95 % CI 43–64 %)"
 std::string fraction_and_percent(const Proportion& proportion);  // "43/80 = 54 %"
 // "43–64 %", with as many digits as its ends take to differ

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "analysis/discrimination/decision_task.hpp"
+#include "analysis/participants/mean_proportion.hpp"
 #include "analysis/statistics/distributions.hpp"
 #include "analysis/statistics/quantiles.hpp"
 #include "core/error.hpp"
@@ -75,21 +76,17 @@ std::optional<DifferentRates> rates_of(const Counts& counts) {
   return rates;
 }
 
-std::optional<MeanWithInterval> mean_d_prime(const std::vector<ParticipantDiscrimination>& people) {
-  std::vector<double> values;
-  for (const ParticipantDiscrimination& person : people) {
-    if (person.sensitivity && std::isfinite(person.sensitivity->d_prime)) {
-      values.push_back(person.sensitivity->d_prime);
-    }
-  }
-  if (values.size() < 2) {
+std::optional<DPrimeOfMean> d_prime_of_mean(const std::vector<ParticipantDiscrimination>& people,
+                                            const DecisionTask& task) {
+  std::vector<Proportion> correct;
+  std::ranges::transform(people, std::back_inserter(correct), &ParticipantDiscrimination::correct);
+  const auto over = beta_binomial_mean(correct);
+  if (!over) {
     return std::nullopt;
   }
-  const auto n = static_cast<double>(values.size());
-  const MeanAndSpread spread = mean_and_spread(values);
-  const double half = t_quantile(0.975, n - 1.0) * spread.standard_deviation / std::sqrt(n);
-  return MeanWithInterval{
-      spread.mean, {spread.mean - half, spread.mean + half}, static_cast<int>(values.size())};
+  return DPrimeOfMean{
+      d_prime_of(task, over->mean),
+      {d_prime_of(task, over->interval.low), d_prime_of(task, over->interval.high)}};
 }
 
 std::optional<AccuracyTest> accuracy_test(const std::vector<ParticipantDiscrimination>& people,
@@ -153,7 +150,9 @@ DiscriminationResults discrimination_results(const BlockDesign& design,
     }
     results.pairs.push_back(std::move(pair));
   }
-  results.mean_d_prime = mean_d_prime(results.participants);
+  if (task) {
+    results.d_prime_of_mean = d_prime_of_mean(results.participants, *task);
+  }
   if (design.premise.empty()) {
     results.test = accuracy_test(results.participants, design.guess_rate);
   }

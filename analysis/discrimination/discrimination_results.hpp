@@ -27,10 +27,9 @@ struct ParticipantDiscrimination {
   std::optional<DifferentRates> rates;     // where there are trials of both kinds
 };
 
-struct MeanWithInterval {
-  double mean{};
-  Interval interval;  // 95 %, by t with n - 1 degrees of freedom
-  int participants{};
+struct DPrimeOfMean {
+  double d_prime{};   // 0 where the proportion is at chance or below
+  Interval interval;  // 95 %; high may be infinity
 };
 
 // One-sided t test of the participants' proportions correct against chance.
@@ -46,11 +45,14 @@ struct DiscriminationResults {
     std::string stimuli;              // names, joined
     std::vector<Proportion> correct;  // of each participant
   };
-  std::vector<Pair> pairs;                       // by name
-  Proportion correct;                            // of all answers
-  std::optional<MeanWithInterval> mean_d_prime;  // of two participants or more
-  std::optional<AccuracyTest> test;              // unset for fewer than two, or without spread
-  const DecisionModelRow* model{};               // nullptr: none
+  std::vector<Pair> pairs;  // by name
+  Proportion correct;       // of all answers
+  // Of the mean proportion over participants and its interval (beta_binomial_mean), mapped through
+  // d'. Not the mean of the participants' d': each is 0 or above, so that guessing gave more than
+  // 0. Of two participants with answers or more.
+  std::optional<DPrimeOfMean> d_prime_of_mean;
+  std::optional<AccuracyTest> test;  // unset for fewer than two, or without spread
+  const DecisionModelRow* model{};   // nullptr: none
 };
 
 // Throws InvalidInput for answers that are neither right nor wrong, a guess rate that is not in (0,

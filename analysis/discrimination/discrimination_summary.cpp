@@ -51,14 +51,14 @@ ReportTable all_table(const BlockDesign& design, const DiscriminationResults& re
   ReportTable table{"all",
                     "All participants",
                     {proportion_column("correct", "correct"), column("chance", "chance"),
-                     column("participants with d'", "participants"),
-                     interval_column("mean of their d' (95 % CI)", "mean_d_prime")}};
+                     column("participants", "participants"),
+                     interval_column("d' of the mean (95 % CI)", "d_prime_of_mean")}};
   if (!results.participants.empty()) {
-    const auto& mean = results.mean_d_prime;
+    const auto& mean = results.d_prime_of_mean;
     table.rows.push_back(
         {pooled_proportion(correct_of(results)), share(design.guess_rate),
-         count(mean ? mean->participants : 0),
-         mean ? interval(mean->mean, mean->interval) : nothing(table.columns.back())});
+         count(static_cast<std::int64_t>(results.participants.size())),
+         mean ? interval(mean->d_prime, mean->interval) : nothing(table.columns.back())});
   }
   return table;
 }
@@ -125,8 +125,8 @@ std::vector<std::string> remarks_on(const BlockDesign& design,
   }
   if (results.model != nullptr) {
     remarks.push_back(fmt::format(
-        "d' by the decision model '{}' ({}), interval by that of the proportion; their mean with "
-        "an interval by t over participants.",
+        "d' by the decision model '{}' ({}), interval by that of the proportion; over participants "
+        "that of their mean proportion and of its interval.",
         results.model->name, results.model->summary));
   } else {
     remarks.push_back(

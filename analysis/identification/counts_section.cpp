@@ -58,7 +58,8 @@ void add_group(const IdentificationData& data, const Grouping& grouping, ReportT
     const auto over = beta_binomial_mean(counts.right[level]);
     shares.rows.push_back(
         {word(grouping.name), word(grouping.levels[level]), counted(all),
-         over ? Cell{percent_range(over->interval), {over->interval.low, over->interval.high}}
+         over ? Cell{fmt::format("{} ({})", percent(over->mean), percent_range(over->interval)),
+                     {over->mean, over->interval.low, over->interval.high}}
               : nothing(shares.columns.back())});
     add_cells(data, grouping.name, grouping.levels[level], counts.of_level[level], cells);
   }
@@ -71,7 +72,8 @@ ReportSection counts_section(const IdentificationData& data) {
                      {column("by", "by"),
                       column("", "level"),
                       counted_column("right", "right"),
-                      {"95 % CI over participants", {"interval_low", "interval_high"}}}};
+                      {"mean over participants (95 % CI)",
+                       {"mean_over_participants", "interval_low", "interval_high"}}}};
   shares.columns[1].heading = "level";
   ReportTable cells{"group_counts",
                     "Counts and shares of rows",

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "analysis/blocks/pooled_proportion.hpp"
 #include "analysis/blocks/wording.hpp"
 namespace tapstudy::analysis {
 std::string title_of(const FactorResult& result) {
@@ -14,8 +15,7 @@ std::string with_interval(const Proportion& pooled, const std::optional<MeanProp
     return "no answers";
   }
   const std::string counted = fraction_and_percent(pooled);
-  return over ? fmt::format("{} (95 % CI over {} participants {})", counted, over->participants,
-                            percent_range(over->interval))
+  return over ? counted + " " + over_participants(pooled, *over)
               : fmt::format("{} ({} if answers are independent)", counted,
                             percent_range(wilson_interval(pooled)));
 }

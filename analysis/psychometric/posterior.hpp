@@ -36,7 +36,7 @@ struct PsychometricPosterior {
 };
 
 // The posterior of beta-binomial answers on a grid that is narrowed to where the posterior is
-// (Schuett et al. 2016). With levels from low to high, range R = high - low and the smallest gap g
+// (Schütt et al. 2016). With levels from low to high, range R = high - low and the smallest gap g
 // on the shape's axis, the prior is the product of
 //   threshold  1 within [low, high], falling as a raised cosine to 0 at R/2 outside
 //   width      rising as a raised cosine from 0 at g to 1 at 2 g, falling from 1 at R to 0 at 3 R

@@ -21,9 +21,6 @@ constexpr std::array references{
               "Davidson, R. R. (1970). On extending the Bradley-Terry model to accommodate ties in "
               "paired comparison experiments. Journal of the American Statistical Association 65, "
               "317–328."},
-    Reference{"DerSimonian & Laird 1986",
-              "DerSimonian, R. & Laird, N. (1986). Meta-analysis in clinical trials. Controlled "
-              "Clinical Trials 7, 177–188."},
     Reference{"Efron 1987",
               "Efron, B. (1987). Better bootstrap confidence intervals. Journal of the American "
               "Statistical Association 82, 171–185."},
@@ -39,10 +36,6 @@ constexpr std::array references{
     Reference{"Hart and Staveland 1988",
               "Hart, S. G. & Staveland, L. E. (1988). Development of NASA-TLX (Task Load Index). "
               "In P. A. Hancock & N. Meshkati (eds.), Human Mental Workload, 139–183."},
-    Reference{
-        "Hartung & Knapp 2001",
-        "Hartung, J. & Knapp, G. (2001). A refined method for the meta-analysis of controlled "
-        "clinical trials with binary outcome. Statistics in Medicine 20, 3875–3889."},
     Reference{"Hautus 1995",
               "Hautus, M. J. (1995). Corrections for extreme proportions and their biasing effects "
               "on estimated values of d'. Behavior Research Methods 27, 46–51."},
@@ -77,7 +70,7 @@ constexpr std::array references{
     Reference{"Miller & Nicely 1955",
               "Miller, G. A. & Nicely, P. E. (1955). An analysis of perceptual confusions among "
               "some English consonants. Journal of the Acoustical Society of America 27, 338–352."},
-    Reference{"Schuett et al. 2016",
+    Reference{"Schütt et al. 2016",
               "Schütt, H. H., Harmeling, S., Macke, J. H. & Wichmann, F. A. (2016). Painfree and "
               "accurate Bayesian estimation of psychometric functions for (potentially) "
               "overdispersed data. Vision Research 122, 105–123."},
@@ -95,6 +88,9 @@ constexpr std::array references{
         "Williams 1949",
         "Williams, E. J. (1949). Experimental designs balanced for the estimation of residual "
         "effects of treatments. Australian Journal of Scientific Research A 2, 149–168."},
+    Reference{"Williams 1975",
+              "Williams, D. A. (1975). The analysis of binary responses from toxicological "
+              "experiments involving reproduction and teratogenicity. Biometrics 31, 949–952."},
     Reference{"Wilson 1927",
               "Wilson, E. B. (1927). Probable inference, the law of succession, and statistical "
               "inference. Journal of the American Statistical Association 22, 209–212."},

@@ -7,9 +7,10 @@
 #include <cmath>
 #include <future>
 #include <map>
-#include <numbers>
 #include <thread>
 
+#include "analysis/participants/mean_proportion.hpp"
+#include "analysis/statistics/quantiles.hpp"
 #include "analysis/thresholds/comparison_level.hpp"
 #include "core/error.hpp"
 namespace tapstudy::analysis {
@@ -116,25 +117,19 @@ void each_at_once(std::vector<ParticipantThreshold>& people, Task task) {
   }
 }
 
-// Standard errors are those on the shape's axis; of a linear one the logarithm's by the delta
-// method.
-std::vector<ParticipantEstimate> logarithms(const std::vector<ParticipantThreshold>& people,
-                                            core::PsychometricShape shape) {
-  std::vector<ParticipantEstimate> estimates;
+std::optional<MeanLogThreshold> mean_of(const std::vector<ParticipantThreshold>& people) {
+  std::vector<double> logarithms;
   for (const ParticipantThreshold& person : people) {
-    if (!person.estimate || person.estimate->curve.threshold <= 0.0) {
-      continue;
-    }
-    const PsychometricCurve& curve = person.estimate->curve;
-    const double error =
-        core::row_of(shape).is_logarithmic
-            ? curve.threshold_standard_error
-            : curve.threshold_standard_error / (curve.threshold * std::numbers::ln10);
-    if (std::isfinite(error) && error > 0.0) {
-      estimates.push_back({std::log10(curve.threshold), error});
+    if (person.estimate && person.estimate->curve.threshold > 0.0) {
+      logarithms.push_back(std::log10(person.estimate->curve.threshold));
     }
   }
-  return estimates;
+  if (logarithms.size() < 2) {
+    return std::nullopt;
+  }
+  const MeanAndSpread spread = mean_and_spread(logarithms);
+  return MeanLogThreshold{spread.mean, spread.standard_deviation, t_interval(logarithms),
+                          static_cast<int>(logarithms.size())};
 }
 }  // namespace
 
@@ -167,10 +162,7 @@ ThresholdResults participant_thresholds(const BlockDesign& design,
       add_posterior(person, model, fitted);
     }
   });
-  if (const auto estimates = logarithms(results.participants, design.shape); estimates.size() > 1) {
-    results.pooled_log = pooled(estimates);
-    results.pooled_participants = static_cast<int>(estimates.size());
-  }
+  results.mean_log = mean_of(results.participants);
   return results;
 }
 }  // namespace tapstudy::analysis

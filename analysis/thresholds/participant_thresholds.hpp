@@ -5,7 +5,6 @@
 
 #include "analysis/blocks/block_summary.hpp"
 #include "analysis/psychometric/inference.hpp"
-#include "analysis/psychometric/pooling.hpp"
 #include "analysis/psychometric/posterior.hpp"
 #include "analysis/thresholds/track_points.hpp"
 namespace tapstudy::analysis {
@@ -29,13 +28,20 @@ struct ParticipantThreshold {
   std::optional<PosteriorEstimates> posterior;  // unset also where it would take too long
 };
 
+// Over participants: each one's threshold counts the same. Standard errors of fits to adaptive
+// tracks are too small to weight them by, or to test by them whether participants differ.
+struct MeanLogThreshold {
+  double mean{};                // of log10 thresholds
+  double standard_deviation{};  // of the same: of participants and of their estimates' errors
+  Interval interval;            // 95 %, by t with participants - 1 degrees of freedom
+  int participants{};           // with a threshold
+};
+
 struct ThresholdResults {
   std::vector<ParticipantThreshold> participants;  // by name
   int draws{};                                     // of the tests of fit; 0: not made
   bool has_posteriors{};                           // they were computed
-  // The mean of log10 thresholds; unset for fewer than two participants with one.
-  std::optional<PooledEstimate> pooled_log;
-  int pooled_participants{};  // whose threshold has a standard error
+  std::optional<MeanLogThreshold> mean_log;        // of two thresholds or more
 };
 
 // The block's psychometric function with its guess rate, or a free one, and a lapse rate of up to

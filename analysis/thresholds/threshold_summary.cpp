@@ -7,7 +7,7 @@
 #include "analysis/thresholds/threshold_tables.hpp"
 namespace tapstudy::analysis {
 namespace {
-MainResult mean_threshold(const VariedAxis& axis, const PooledEstimate& log_mean) {
+MainResult mean_threshold(const VariedAxis& axis, const MeanLogThreshold& log_mean) {
   const auto from_log = [](double log) { return std::pow(10.0, log); };
   return {axis.is_fraction ? "Weber fraction of " + axis.name
                            : "just noticeable difference of " + axis.name,
@@ -26,8 +26,8 @@ std::shared_ptr<BlockSummary> summarise_thresholds(const BlockDesign& design,
   }
   summary->charts = threshold_charts(design, results);
   summary->remarks = threshold_remarks(design, results);
-  if (results.pooled_log) {
-    summary->main = {mean_threshold(*design.axis, *results.pooled_log)};
+  if (results.mean_log) {
+    summary->main = {mean_threshold(*design.axis, *results.mean_log)};
   }
   for (const PlannedHypothesis& planned : design.hypotheses) {
     summary->hypotheses.push_back(

@@ -70,20 +70,18 @@ ReportTable participants_table(const VariedAxis& axis, const ThresholdResults& r
 
 ReportTable pooled_table(const VariedAxis& axis, const ThresholdResults& results) {
   ReportTable table{"pooled",
-                    "Over participants: random-effects mean of the logarithms of the thresholds",
+                    "Over participants: geometric mean of the thresholds",
                     {column("participants", "participants")}};
   for (const Column& of_threshold : threshold_columns(axis)) {
     table.columns.push_back(of_threshold);
   }
-  table.columns.push_back(column("SD between, log10", "between_sd_log10"));
-  table.columns.push_back(column("all alike", "heterogeneity_p"));
-  if (results.pooled_log) {
-    const PooledEstimate& mean = *results.pooled_log;
-    std::vector<Cell> row{count(results.pooled_participants)};
+  table.columns.push_back(column("SD of log10 thresholds", "sd_log10"));
+  if (results.mean_log) {
+    const MeanLogThreshold& mean = *results.mean_log;
+    std::vector<Cell> row{count(mean.participants)};
     add_threshold(row, axis, std::pow(10.0, mean.mean),
                   {std::pow(10.0, mean.interval.low), std::pow(10.0, mean.interval.high)});
-    row.push_back(number(std::sqrt(mean.between_variance)));
-    row.push_back(probability(mean.heterogeneity_p));
+    row.push_back(number(mean.standard_deviation));
     table.rows.push_back(row);
   }
   return table;

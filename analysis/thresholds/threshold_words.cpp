@@ -46,15 +46,16 @@ std::vector<std::string> threshold_remarks(const BlockDesign& design,
           fmt::format("{} has no threshold: {}.", person.participant_id, person.no_threshold));
     }
   }
-  if (results.pooled_log) {
-    remarks.push_back(
-        "Mean over participants: logarithms of the thresholds, weighted by their variance within "
-        "and between participants (DerSimonian & Laird 1986), interval by Hartung & Knapp 2001. "
-        "Answers of participants are not put together as if of one.");
-    const int without = static_cast<int>(results.participants.size()) - results.pooled_participants;
+  if (results.mean_log) {
+    remarks.emplace_back(
+        "Mean over participants: of the logarithms of their thresholds, each counting the same, "
+        "interval by t. The standard deviation is that between participants and of their "
+        "estimates' errors together. Answers of participants are not put together as if of one.");
+    const int without =
+        static_cast<int>(results.participants.size()) - results.mean_log->participants;
     if (without > 0) {
       remarks.push_back(fmt::format(
-          "It leaves out {} without a threshold and its error, which biases it.",
+          "It leaves out {} without a threshold, which biases it.",
           without == 1 ? "the participant" : fmt::format("the {} participants", without)));
     }
   } else {
@@ -67,7 +68,7 @@ std::vector<std::string> threshold_remarks(const BlockDesign& design,
                         results.draws)
           : "Deviance tests are not made for so many levels.");
   remarks.emplace_back(results.has_posteriors
-                           ? "Posteriors: beta-binomial answers and the priors of Schuett et al. "
+                           ? "Posteriors: beta-binomial answers and the priors of Schütt et al. "
                              "2016, which limit the slope where the answers alone do not."
                            : "Posteriors are not computed for so many levels.");
   if (const std::string words = d_prime_words(design); !words.empty()) {

@@ -3,8 +3,11 @@
 
 #include "analysis/detection/decision_model.hpp"
 #include "analysis/detection/rates.hpp"
+#include "analysis/discrimination/discrimination_results.hpp"
+#include "analysis/participants/mean_proportion.hpp"
 #include "analysis/statistics/distributions.hpp"
 #include "core/error.hpp"
+#include "core/rng.hpp"
 #include "support/formats.hpp"
 #include "support/r_program.hpp"
 using namespace tapstudy;
@@ -58,25 +61,49 @@ TEST_CASE("each participant is tested by the exact binomial test, all by a t tes
   CHECK(json["all"][0]["correct_of"] == 90);
 }
 
-TEST_CASE("d' is that of the decision model, its mean has R's interval",
+TEST_CASE("d' is that of the decision model, over participants that of their mean proportion",
           "[analysis][discrimination]") {
   std::vector<results::AnswerRow> answers;
   const std::vector<int> right{18, 25, 22};
-  std::vector<double> d_primes;
+  std::vector<Proportion> proportions;
   for (std::size_t i = 0; i < right.size(); ++i) {
     add(answers, std::string(1, static_cast<char>('a' + i)), right[i], 30);
-    d_primes.push_back(sensitivity({DecisionModel::oddity, 3}, {right[i], 30}).d_prime);
+    proportions.push_back({right[i], 30});
   }
   const auto json = reported(statistic, design_of("oddity", 3), answers).json;
-  const Sensitivity first = sensitivity({DecisionModel::oddity, 3}, {18, 30});
+  const DecisionTask task{DecisionModel::oddity, 3};
+  const Sensitivity first = sensitivity(task, {18, 30});
   CHECK(json["participants"][0]["d_prime"].get<double>() == Approx(first.d_prime).epsilon(1e-9));
   CHECK(json["participants"][0]["d_prime_high"].get<double>() ==
         Approx(first.interval.high).epsilon(1e-9));
-  const auto r =
-      r_numbers("x <- " + testing::r_vector(d_primes) + "; out(mean(x), t.test(x)$conf.int)");
-  CHECK(json["all"][0]["mean_d_prime"].get<double>() == Approx(r[0]).epsilon(1e-9));
-  CHECK(json["all"][0]["mean_d_prime_low"].get<double>() == Approx(r[1]).epsilon(1e-9));
-  CHECK(json["all"][0]["mean_d_prime_high"].get<double>() == Approx(r[2]).epsilon(1e-9));
+  const auto mean = beta_binomial_mean(proportions);
+  const auto& all = json["all"][0];
+  CHECK(proportion_correct(task, all["d_prime_of_mean"].get<double>()) ==
+        Approx(mean->mean).epsilon(1e-9));
+  CHECK(proportion_correct(task, all["d_prime_of_mean_low"].get<double>()) ==
+        Approx(std::max(1.0 / 3.0, mean->interval.low)).epsilon(1e-9));  // at chance d' is 0
+  CHECK(proportion_correct(task, all["d_prime_of_mean_high"].get<double>()) ==
+        Approx(mean->interval.high).epsilon(1e-9));
+}
+
+TEST_CASE("where everybody guesses the interval of d' holds 0 as often as it says",
+          "[analysis][discrimination]") {
+  constexpr int studies = 200;
+  core::Rng rng{4};
+  int holding = 0;
+  for (int study = 0; study < studies; ++study) {
+    std::vector<results::AnswerRow> answers;
+    for (int person = 0; person < 12; ++person) {
+      int right = 0;
+      for (int trial = 0; trial < 24; ++trial) {
+        right += rng.below(3) == 0 ? 1 : 0;
+      }
+      add(answers, std::string(1, static_cast<char>('a' + person)), right, 24);
+    }
+    const auto results = discrimination_results(design_of("oddity", 3), answers);
+    holding += results.d_prime_of_mean->interval.low == 0.0 ? 1 : 0;
+  }
+  CHECK(holding >= 185);  // 97.5 % of them, fewer by chance once in 1000
 }
 
 TEST_CASE("where no decision model is known there is no d', and the report says so",

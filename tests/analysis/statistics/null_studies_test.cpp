@@ -10,7 +10,6 @@
 #include "analysis/participants/mean_proportion.hpp"
 #include "analysis/participants/paired_contrast.hpp"
 #include "analysis/psychometric/inference.hpp"
-#include "analysis/psychometric/pooling.hpp"
 #include "analysis/ratings/signed_rank.hpp"
 #include "analysis/similarity/similarity_choice.hpp"
 #include "analysis/statistics/independent_difference.hpp"
@@ -183,14 +182,6 @@ TEST_CASE("tests over participants have the probabilities that they say",
           "[analysis][statistics][slow]") {
   check_p("Friedman", Law::uniform,
           [](Rng& rng) { return friedman_test(unrelated_ratings(30, rng)).p; });
-  check_p("heterogeneity", Law::uniform, [](Rng& rng) {
-    std::vector<ParticipantEstimate> people;
-    for (int i = 0; i < 8; ++i) {
-      const double error = std::exp(rng.uniform());
-      people.push_back({error * rng.normal(), error});
-    }
-    return pooled(people).heterogeneity_p;
-  });
   BlockDesign design;
   design.name = "pairs";
   design.guess_rate = 0.5;
@@ -234,14 +225,6 @@ TEST_CASE("the deviance of answers that follow the fitted function is no rarer t
 TEST_CASE("intervals over participants who differ hold the truth as often as they say",
           "[analysis][statistics][slow]") {
   constexpr int least = 930;  // of 1000 at .95, fewer by chance once in 500
-  CHECK(holding_0([](Rng& rng) {
-          std::vector<ParticipantEstimate> people;
-          for (int i = 0; i < 8; ++i) {
-            const double error = 0.2 * std::exp(rng.uniform());
-            people.push_back({0.5 * rng.normal() + error * rng.normal(), error});
-          }
-          return pooled(people).interval;
-        }) >= least);
   CHECK(holding_0([](Rng& rng) {
           std::vector<double> normal;
           for (int i = 0; i < 8; ++i) {

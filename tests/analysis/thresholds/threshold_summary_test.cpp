@@ -4,11 +4,11 @@
 
 #include "analysis/detection/decision_model.hpp"
 #include "analysis/psychometric/inference.hpp"
-#include "analysis/psychometric/pooling.hpp"
 #include "analysis/psychometric/posterior.hpp"
 #include "core/error.hpp"
 #include "core/psychometric_function.hpp"
 #include "support/formats.hpp"
+#include "support/r_program.hpp"
 using namespace tapstudy;
 using namespace tapstudy::analysis;
 using Catch::Matchers::Contains;
@@ -176,26 +176,25 @@ TEST_CASE("comparisons below the standard have the thresholds of those above",
         Approx(above[0]["threshold"].get<double>()).epsilon(1e-9));
 }
 
-TEST_CASE("participants' thresholds are pooled by their logarithms, not as one observer",
+TEST_CASE("the mean threshold is R's of the participants' logarithms, not of one observer",
           "[analysis][thresholds]") {
   std::vector<results::AnswerRow> answers;
-  std::vector<ParticipantEstimate> estimates;
+  std::vector<double> logarithms;
   for (const auto& [name, threshold, seed] :
        std::vector<std::tuple<std::string, double, std::uint64_t>>{
            {"a", 0.05, 1}, {"b", 0.1, 2}, {"c", 0.2, 3}}) {
     const auto of_one = observer(name, threshold, 40, seed);
-    const PsychometricFit fit = fit_psychometric(model, levels_of(of_one));
-    estimates.push_back({std::log10(fit.curve->threshold), fit.curve->threshold_standard_error});
+    logarithms.push_back(std::log10(fit_psychometric(model, levels_of(of_one)).curve->threshold));
     answers = joined(answers, of_one);
   }
-  const PooledEstimate expected = pooled(estimates);
+  const auto r = testing::r_numbers("x <- " + testing::r_vector(logarithms) +
+                                    "; out(10^mean(x), 10^t.test(x)$conf.int, sd(x))");
   const auto row = reported(statistic, design_of(), answers).json["pooled"][0];
   CHECK(row["participants"] == 3);
-  CHECK(std::log10(row["threshold"].get<double>()) == Approx(expected.mean).epsilon(1e-9));
-  CHECK(std::log10(row["threshold_low"].get<double>()) ==
-        Approx(expected.interval.low).epsilon(1e-9));
-  CHECK(row["jnd_high"].get<double>() ==
-        Approx(standard * std::pow(10.0, expected.interval.high)).epsilon(1e-9));
+  CHECK(row["threshold"].get<double>() == Approx(r.at(0)).epsilon(1e-9));
+  CHECK(row["threshold_low"].get<double>() == Approx(r.at(1)).epsilon(1e-9));
+  CHECK(row["jnd_high"].get<double>() == Approx(standard * r.at(2)).epsilon(1e-9));
+  CHECK(row["sd_log10"].get<double>() == Approx(r.at(3)).epsilon(1e-9));
 }
 
 TEST_CASE("who has no threshold is given none, and every format says why",

@@ -17,6 +17,8 @@ struct StoredTrial {
 };
 struct StoredAnswer {
   std::int64_t id{};
+  bool is_correction{};
+  std::string given_by;
   ResponseRow row;
 };
 
@@ -57,10 +59,13 @@ std::vector<StoredAnswer> stored_answers(Store& store, std::int64_t trial_id) {
   std::vector<StoredAnswer> answers;
   store.each_row(
       fmt::format("SELECT response_id, response, is_correct, response_time_s, "
-                  "time_from_first_contact_s FROM response WHERE trial_id = {}",
+                  "time_from_first_contact_s, supersedes IS NOT NULL, given_by FROM response "
+                  "WHERE trial_id = {}",
                   trial_id),
       [&](Statement& row) {
         answers.push_back({row.integer(0),
+                           row.integer(5) != 0,
+                           row.text(6),
                            {row.text(1),
                             row.is_null(2) ? std::nullopt : std::optional{row.integer(2) != 0},
                             row.real(3),
@@ -94,6 +99,10 @@ class Comparison {
     for (const StoredAnswer& answer : stored_answers(*store_, trial.id)) {
       compare_times(answer, events);
       compare_rule(answer, alternatives);
+      if (!answer.is_correction) {
+        note(fmt::format("response {}: given_by", answer.id), answer.given_by,
+             results::to_text(GivenBy::participant));
+      }
     }
   }
   Recomputation result() { return std::move(result_); }

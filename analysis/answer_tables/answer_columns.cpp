@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <string_view>
 
@@ -21,10 +22,24 @@ struct AnswerFormat {
   Names participant;
   Names time;
   double time_unit_s;
+  std::vector<RowCondition> counted{};  // of the columns that there are
+  std::string_view block{};
 };
 
 const std::vector<AnswerFormat>& formats() {
   static const std::vector<AnswerFormat> table{
+      {{"participant_id", "is_practice", "is_catch", "is_excluded"},
+       {"stimulus"},
+       {"response"},
+       {"participant_id"},
+       {"response_time_s"},
+       1.0,
+       {{"is_practice", "0"},
+        {"is_catch", "0"},
+        {"is_excluded", "0"},
+        {"is_current", "1"},
+        {"status", "answered"}},
+       "block"},
       // psychopy.org, "Long-wide" data files
       {{"expName", "psychopyVersion"}, {"stimulus"}, {".keys"}, {"participant"}, {".rt"}, 1.0},
       // jspsych.org, "Data storage": rt and time_elapsed are in milliseconds
@@ -152,6 +167,16 @@ AnswerPlaces find_columns(const Header& header, const AnswerColumns& chosen,
                              ? chosen.time_unit_s
                              : unit_in(header[*places.time], format.time_unit_s);
   }
+  std::ranges::copy_if(format.counted, std::back_inserter(places.counted),
+                       [&](const RowCondition& one) { return has(header, one.column); });
+  if (!format.block.empty()) {
+    places.block = find(header, {"", "", {format.block}}, where);
+  }
+  const auto usual = std::ranges::find_if(header, [](const std::string& name) {
+    return std::ranges::any_of(std::array{"rt", "response_time", "reaction_time"},
+                               [&](const char* known) { return is_same_word(name, known); });
+  });
+  places.possible_time = places.time || usual == header.end() ? "" : *usual;
   return places;
 }
 

@@ -15,6 +15,12 @@ struct AnswerColumns {
   }
 };
 
+// A column and the value that it must have.
+struct RowCondition {
+  std::string column;
+  std::string value;
+};
+
 // Their places in a row, from 0.
 struct AnswerPlaces {
   std::size_t stimulus{};
@@ -23,12 +29,17 @@ struct AnswerPlaces {
   std::optional<std::size_t> time{};
   std::optional<std::size_t> mode{};  // as tapstudy exports it: real, pilot or simulated
   double time_unit_s{1.0};
+  // Of tapstudy's own exports: what a row that counts holds (no practice, no catch trial, …), and
+  // the block, of which there must be one.
+  std::vector<RowCondition> counted{};
+  std::optional<std::size_t> block{};
+  std::string possible_time{};  // a column that may hold times, of an unknown unit; empty: none
 };
 
-// Formats are told apart by columns that no other has: PsychoPy's wide CSV (answers are keys of the
-// one keyboard component), jsPsych's CSV (times in milliseconds), and any table with columns
-// `stimulus` and `response`. Throws InvalidInput with `where` if a column that is named is missing
-// or there twice, or if several could hold the answers.
+// Formats are told apart by columns that no other has: tapstudy's own exports, PsychoPy's wide CSV
+// (answers are keys of the one keyboard component), jsPsych's CSV (times in milliseconds), and any
+// table with columns `stimulus` and `response`. Throws InvalidInput with `where` if a column that
+// is named is missing or there twice, or if several could hold the answers.
 AnswerPlaces find_columns(const std::vector<std::string>& header, const AnswerColumns& chosen,
                           const std::string& where);
 // Whether the header is that of a table of answers, as far as its names say.

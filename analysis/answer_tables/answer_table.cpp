@@ -41,12 +41,10 @@ class AnswerReader {
         places_{
             find_columns(header(), reading.columns, to_text({&csv, csv.text.rows.front().line}))} {
     for (const RowCondition& condition : reading.conditions) {
-      const auto found = std::ranges::find(header(), condition.column);
-      if (found == header().end()) {
+      if (std::ranges::find(header(), condition.column) == header().end()) {
         refuse(csv.text.rows.front().line,
                fmt::format("has no column '{}', which --where names", condition.column));
       }
-      conditions_.emplace_back(static_cast<std::size_t>(found - header().begin()), condition.value);
     }
   }
 
@@ -58,21 +56,31 @@ class AnswerReader {
         refuse(row.line,
                fmt::format("has {} cells, the header has {}", row.cells.size(), header().size()));
       }
-      if (std::ranges::all_of(conditions_, [&](const auto& condition) {
-            return row.cells[condition.first] == condition.second;
-          })) {
-        ++table.rows;
-        if (is_missing(row.cells[places_.response])) {
-          ++table.unanswered;
-        } else {
-          table.answers.push_back(answer_of(row));
-          origins.push_back({&csv_, row.line});
-        }
+      if (meets(reading_.conditions, row)) {
+        add(row, table, origins);
       }
     }
+    table.possible_time = places_.possible_time;
   }
 
  private:
+  bool meets(const std::vector<RowCondition>& conditions, const CsvRow& row) const {
+    return std::ranges::all_of(conditions, [&](const RowCondition& condition) {
+      const auto column = std::ranges::find(header(), condition.column) - header().begin();
+      return row.cells[static_cast<std::size_t>(column)] == condition.value;
+    });
+  }
+  void add(const CsvRow& row, AnswerTable& table, std::vector<Origin>& origins) const {
+    ++table.rows;
+    if (!meets(places_.counted, row)) {
+      ++table.not_counted;
+    } else if (is_missing(row.cells[places_.response])) {
+      ++table.unanswered;
+    } else {
+      table.answers.push_back(answer_of(row));
+      origins.push_back({&csv_, row.line});
+    }
+  }
   const std::vector<std::string>& header() const { return csv_.text.rows.front().cells; }
   [[noreturn]] void refuse(int line, const std::string& what) const {
     throw core::InvalidInput{fmt::format("{}: {}", to_text({&csv_, line}), what)};
@@ -85,10 +93,12 @@ class AnswerReader {
                                                 : std::filesystem::path{csv_.file}.stem().string();
     answer.stimulus = row.cells[places_.stimulus];
     const std::string& cell = row.cells[places_.response];
-    if (answer.stimulus.empty() || answer.participant_id.empty()) {
-      refuse(row.line, fmt::format("has an answer, '{}', but no {}", cell,
-                                   answer.stimulus.empty() ? "stimulus" : "participant"));
+    if (is_missing(answer.stimulus) || is_missing(answer.participant_id)) {
+      refuse(row.line,
+             fmt::format("has an answer, '{}', but no {} (--where COLUMN=VALUE leaves rows out)",
+                         cell, is_missing(answer.stimulus) ? "stimulus" : "participant"));
     }
+    answer.block = places_.block ? row.cells[*places_.block] : "";
     const auto meaning = reading_.responses.find(cell);
     answer.response = meaning == reading_.responses.end() ? cell : meaning->second;
     answer.is_correct = answer.response == answer.stimulus;
@@ -127,7 +137,6 @@ class AnswerReader {
   const NamedCsv& csv_;
   const AnswerReading& reading_;
   AnswerPlaces places_;
-  std::vector<std::pair<std::size_t, std::string>> conditions_;
 };
 
 std::vector<Item> items_of(const std::set<std::string>& names) {
@@ -174,6 +183,18 @@ void check_responses(const std::vector<results::AnswerRow>& answers,
                     to_text(origins.front()), responses.size(), max_classes)};
   }
 }
+void check_is_one_block(const std::vector<results::AnswerRow>& answers,
+                        const std::vector<Origin>& origins) {
+  const auto other = std::ranges::find_if(answers, [&](const results::AnswerRow& answer) {
+    return answer.block != answers.front().block;
+  });
+  if (other != answers.end()) {
+    throw core::InvalidInput{
+        fmt::format("{}: is of block '{}', others are of '{}': name one by --where block={}",
+                    to_text(origins[static_cast<std::size_t>(other - answers.begin())]),
+                    other->block, answers.front().block, answers.front().block)};
+  }
+}
 }  // namespace
 
 AnswerTable read_answers(const std::vector<NamedCsv>& files, const AnswerReading& reading) {
@@ -197,6 +218,7 @@ AnswerTable read_answers(const std::vector<NamedCsv>& files, const AnswerReading
   if (table.answers.empty()) {
     throw core::InvalidInput{fmt::format("{}: holds no answers", files.front().file)};
   }
+  check_is_one_block(table.answers, origins);
   std::set<std::string> stimuli;
   for (const results::AnswerRow& answer : table.answers) {
     stimuli.insert(answer.stimulus);
@@ -208,6 +230,9 @@ AnswerTable read_answers(const std::vector<NamedCsv>& files, const AnswerReading
   check_responses(table.answers, origins, responses);
   table.stimuli = items_of(stimuli);
   table.responses = items_of(responses);
+  for (Item& response : table.responses) {
+    response.is_alternative = stimuli.contains(response.name);
+  }
   for (const results::AnswerRow& answer : table.answers) {
     if (answer.mode != results::Mode::real) {
       table.modes.insert(results::to_text(answer.mode));

@@ -9,12 +9,6 @@
 #include "analysis/statistics/csv_rows.hpp"
 #include "results/rows.hpp"
 namespace tapstudy::analysis {
-// A column and the value that it must have.
-struct RowCondition {
-  std::string column;
-  std::string value;
-};
-
 struct AnswerReading {
   AnswerColumns columns{};
   std::vector<RowCondition> conditions{};  // rows that fail one are other trials
@@ -29,8 +23,10 @@ struct AnswerTable {
   std::vector<Item> responses;              // by name
   std::set<std::string> modes;              // of them, but for real
   bool are_participants_known{};
-  std::size_t rows{};        // that meet the conditions
-  std::size_t unanswered{};  // of these: left out, for the answer is empty, NA, None or null
+  std::size_t rows{};         // that meet the conditions
+  std::size_t unanswered{};   // of these: left out, for the answer is empty, NA, None or null
+  std::size_t not_counted{};  // likewise: tapstudy's own practice, catch trials, excluded people …
+  std::string possible_time{};  // a column that was not read, but may hold times; empty: none
 };
 
 struct NamedCsv {
@@ -39,7 +35,8 @@ struct NamedCsv {
 };
 // Participants' answers follow one another as rows and files do. Throws InvalidInput with file:line
 // for an answer that is neither a stimulus nor one of `responses`, a time that is no number from 0,
-// a row with more or fewer cells than the header, more than 200 different answers, or no answers at
+// an answer without a stimulus, several blocks of one of tapstudy's own exports, a row with more or
+// fewer cells than the header, more than 200 different answers, or no answers at
 // all.
 AnswerTable read_answers(const std::vector<NamedCsv>& files, const AnswerReading& reading);
 }  // namespace tapstudy::analysis

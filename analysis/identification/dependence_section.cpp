@@ -90,7 +90,11 @@ ReportSection dependence_section(const MatrixOfParticipants& counted) {
   }
   add_independence(counted, *test, section);
   section.tables.push_back(residuals_table(matrix));
-  if (const auto square = by_right_response(matrix.stimuli, matrix.responses, matrix.counts)) {
+  if (matrix.alternatives() < static_cast<std::int64_t>(matrix.responses.size())) {
+    section.remarks.emplace_back(
+        "Agreement and symmetry are left out: some answers are right for no stimulus.");
+  } else if (const auto square =
+                 by_right_response(matrix.stimuli, matrix.responses, matrix.counts)) {
     add_square(*square, section);
   }
   if (const std::string warning = independence_warning(counted); !warning.empty()) {

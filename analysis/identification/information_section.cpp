@@ -9,8 +9,15 @@ namespace tapstudy::analysis {
 namespace {
 constexpr std::uint64_t information_seed = 3;
 
+// The entropy of what was presented.
 double most_bits(const ConfusionMatrix& matrix) {
-  return std::log2(static_cast<double>(std::min(matrix.stimuli.size(), matrix.responses.size())));
+  double bits = 0.0;
+  for (std::size_t i = 0; i < matrix.stimuli.size(); ++i) {
+    const double share =
+        static_cast<double>(matrix.row_total(i)) / static_cast<double>(matrix.total());
+    bits -= share > 0.0 ? share * std::log2(share) : 0.0;
+  }
+  return bits;
 }
 
 // Empty: enough.
@@ -92,8 +99,7 @@ std::vector<std::string> remarks_on(const MatrixOfParticipants& counted, const s
   }
   if (counted.are_known() || !refusal.empty()) {
     remarks.emplace_back(
-        "Fewer than 5 k² answers for k classes are too few for an estimate of information: what "
-        "guessing gives is then as large.");
+        "Fewer than 5 k² answers for k classes are too few for an estimate of information.");
   }
   return remarks;
 }

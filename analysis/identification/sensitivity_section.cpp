@@ -27,7 +27,7 @@ ReportTable against_rest(const std::string& name, const std::string& title,
 }
 
 ReportTable equivalent_table(const ConfusionMatrix& matrix) {
-  const auto alternatives = static_cast<int>(matrix.responses.size());
+  const auto alternatives = static_cast<int>(matrix.alternatives());
   const DecisionModelRow& model = *find_decision_model("forced_choice");
   ReportTable table{"equivalent_d_prime",
                     "Equivalent d' of m-alternative forced choice",

@@ -20,8 +20,7 @@ struct InformationTransfer {
 // Throws InvalidInput as totals_of does, and for a table without answers.
 InformationTransfer information_transfer(const CountTable& table);
 
-// Fewer answers than 5 k^2, for k classes, say next to nothing (a habit of the field, after Miller
-// 1955): what guessing gives is then as large as what is transferred.
+// Fewer answers than 5 k^2, for k classes, are too few (a habit of the field, after Miller 1955).
 std::int64_t fewest_answers_for_information(const CountTable& table);
 
 // The plug-in information that guessers with the same answers would give.

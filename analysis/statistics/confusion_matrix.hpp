@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <map>
 #include <optional>
 #include <string>
@@ -10,9 +11,12 @@ namespace tapstudy::analysis {
 struct Item {
   std::string name;
   std::string label;
-  std::map<std::string, std::string> factors;
+  std::map<std::string, std::string> factors{};
   std::string right{};      // of a stimulus: the response that is right, if not its own name
   std::string technique{};  // by which a stimulus was rendered; empty: not known
+  // Of a response: false where it is right for no stimulus ("unsure"), so that whoever guesses does
+  // not choose it, and it makes chance no smaller.
+  bool is_alternative{true};
   bool is_answered_by(const std::string& response) const {
     return response == (right.empty() ? name : right);
   }
@@ -29,7 +33,10 @@ struct ConfusionMatrix {
   void add(const std::string& stimulus, const std::string& response, std::int64_t times = 1);
   std::int64_t row_total(std::size_t stimulus) const;
   std::int64_t total() const;
-  double chance() const { return 1.0 / static_cast<double>(responses.size()); }
+  std::int64_t alternatives() const {
+    return std::ranges::count(responses, true, &Item::is_alternative);
+  }
+  double chance() const { return 1.0 / static_cast<double>(alternatives()); }
 };
 
 // Proportion of answers that are right for the presented stimulus.

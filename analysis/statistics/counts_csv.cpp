@@ -78,7 +78,9 @@ std::vector<Item> responses_of(const CsvRow& header, std::size_t first,
       refuse(file, header.line, fmt::format("response '{}' is there twice", name));
     }
     const auto stimulus = std::ranges::find(stimuli, name, &Item::name);
-    responses.push_back(stimulus != stimuli.end() ? *stimulus : Item{name, name, {}});
+    responses.push_back(stimulus != stimuli.end()
+                            ? *stimulus
+                            : Item{.name = name, .label = name, .is_alternative = false});
   }
   if (responses.size() < 2) {
     refuse(file, header.line, "has fewer than two responses");

@@ -157,8 +157,13 @@ class Identification final : public Task {
   }
   std::optional<bool> is_correct(const PlannedTrial& trial, const Block& block,
                                  const std::string& response) const override {
+    // a trial from a store may be of a block without such trials
+    if (trial.alternatives.empty() || (trial.is_catch && !block.catch_trials)) {
+      return std::nullopt;
+    }
     const auto& right = trial.is_catch ? block.catch_trials->expected : block.right_response;
-    return response == right.at(trial.alternatives.front().stimulus);
+    const auto found = right.find(trial.alternatives.front().stimulus);
+    return found == right.end() ? std::nullopt : std::optional{response == found->second};
   }
 
   // Asked for a factor, all that was presented is remembered: its levels are no plates.

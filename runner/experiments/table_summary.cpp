@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <set>
@@ -63,6 +64,20 @@ bool hold_answers(const std::vector<NamedCsv>& tables, const TableOptions& optio
           analysis::has_answers(tables.front().text.rows.front().cells));
 }
 
+void check_differ(const std::vector<NamedCsv>& tables) {
+  const auto is_same_row = [](const analysis::CsvRow& one, const analysis::CsvRow& other) {
+    return one.cells == other.cells;
+  };
+  for (auto one = tables.begin(); one != tables.end(); ++one) {
+    for (auto other = std::next(one); other != tables.end(); ++other) {
+      if (std::ranges::equal(one->text.rows, other->text.rows, is_same_row)) {
+        throw core::InvalidInput{
+            fmt::format("{}: holds the same rows as {}", other->file, one->file)};
+      }
+    }
+  }
+}
+
 Summary summary_of_answers(const std::vector<NamedCsv>& tables, const TableOptions& options,
                            const std::string& title) {
   const analysis::AnswerTable table = analysis::read_answers(tables, reading_of(options));
@@ -71,6 +86,18 @@ Summary summary_of_answers(const std::vector<NamedCsv>& tables, const TableOptio
   if (table.unanswered > 0) {
     summary.deviations.push_back(
         fmt::format("{} of {} rows have no answer and are left out", table.unanswered, table.rows));
+  }
+  if (table.not_counted > 0) {
+    summary.deviations.push_back(
+        fmt::format("{} of {} rows are left out: practice, catch trials, answers that were "
+                    "corrected, trials without an answer, or participants who are excluded",
+                    table.not_counted, table.rows));
+  }
+  if (!table.possible_time.empty()) {
+    summary.deviations.push_back(fmt::format(
+        "column '{0}' is not read: if it holds response times, --time-column {0} and --time-unit "
+        "say so",
+        table.possible_time));
   }
   return summary;
 }
@@ -81,6 +108,7 @@ Summary summary_of_tables(const std::vector<std::string>& files, const TableOpti
   for (const std::string& file : files) {
     tables.push_back(read_file(file));
   }
+  check_differ(tables);
   const std::string title = std::filesystem::path{files.front()}.stem().string();
   Summary summary =
       hold_answers(tables, options)

@@ -37,3 +37,12 @@ TEST_CASE("exported answers are counted as the study's own report counts them, a
   CHECK(read["participants"] == own["participants"]);
   CHECK(read["response_times"][0] == own["response_times"][0]);
 }
+
+TEST_CASE("a file that is named twice is refused, not counted twice", "[end_to_end]") {
+  const testing::TempDirectory directory;
+  testing::write(directory / "answers.csv", "participant,stimulus,response\nP01,a,a\nP01,b,a\n");
+  const auto run = testing::tapstudy(
+      {"report", "--counts", directory / "answers.csv", directory / "answers.csv"});
+  CHECK(run.exit_code == 2);
+  CHECK_THAT(run.standard_error, Catch::Matchers::Contains("holds the same rows as"));
+}

@@ -134,3 +134,34 @@ TEST_CASE("a table of answers that cannot be read is refused at its line",
   CHECK_THAT(refusal("stimulus,response\na,a\n", {{}, {{"task", "x"}}}), Contains("--where"));
   CHECK_THAT(refusal(data("psychopy.csv"), {{"plate"}}), Contains("could be meant"));
 }
+
+TEST_CASE("an answer that is right for no stimulus makes chance no smaller",
+          "[analysis][answer_tables]") {
+  AnswerReading reading;
+  reading.responses = {{"unsure", "unsure"}};
+  const AnswerTable table = answers_in("stimulus,response\na,a\nb,b\na,b\nb,unsure\n", reading);
+  ConfusionMatrix matrix{table.stimuli, table.responses};
+  CHECK(matrix.responses.size() == 3);
+  CHECK(matrix.chance() == 0.5);
+}
+
+TEST_CASE("of an export of its own only answers that count are read, of one block",
+          "[analysis][answer_tables]") {
+  const std::string header =
+      "participant_id,is_practice,is_catch,is_excluded,is_current,block,stimulus,response\n";
+  const std::string rows =
+      "P01,0,0,0,1,main,a,a\nP01,1,0,0,1,main,a,b\nP01,0,1,0,1,main,a,b\nP02,0,0,1,1,main,a,b\n"
+      "P01,0,0,0,0,main,b,a\nP01,0,0,0,1,main,b,b\n";
+  const AnswerTable table = answers_in(header + rows);
+  CHECK(table.answers.size() == 2);
+  CHECK(table.not_counted == 4);
+  CHECK_THAT(refusal(header + rows + "P01,0,0,0,1,other,a,a\n"),
+             Contains("answers.csv:8: is of block 'other'") && Contains("--where block=main"));
+}
+
+TEST_CASE("a missing stimulus is no class, and a column that may hold times is not guessed at",
+          "[analysis][answer_tables]") {
+  CHECK_THAT(refusal("stimulus,response\na,a\nNA,a\n"), Contains("answers.csv:3: has an answer"));
+  CHECK(answers_in("stimulus,response,rt\na,a,500\nb,b,700\n").possible_time == "rt");
+  CHECK(answers_in(plain).possible_time.empty());
+}

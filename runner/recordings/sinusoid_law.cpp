@@ -6,8 +6,8 @@
 #include <vector>
 namespace tapstudy::runner {
 namespace {
-// Acceleration moves the finger's mass; velocity and displacement of the surface are felt through
-// its spring and damper (eq. 17), at s = -decay + i omega.
+// The surface's motion is felt through the finger's spring and damper (paper eq. 17), whatever of it
+// was measured: at s = -decay + i omega displacement is velocity / s and acceleration / s^2.
 double newtons_per_unit(const SinusoidLaw& law, analysis::Quantity quantity,
                         const core::Finger& finger) {
   const std::complex<double> s{-law.decay_per_s.value,
@@ -15,7 +15,7 @@ double newtons_per_unit(const SinusoidLaw& law, analysis::Quantity quantity,
   const double per_metre = std::abs(finger.stiffness_n_per_m + finger.damping_n_s_per_m * s);
   switch (quantity) {
     case analysis::Quantity::acceleration:
-      return finger.mass_kg;
+      return per_metre / std::norm(s);
     case analysis::Quantity::velocity:
       return per_metre / std::abs(s);
     case analysis::Quantity::displacement:

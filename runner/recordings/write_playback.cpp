@@ -15,8 +15,9 @@ std::string samples_of(const Eigen::VectorXd& samples, double newtons_per_unit) 
 std::string playback_of(const TapIdentification& found, double finger_kg) {
   const double newtons_per_unit = finger_kg * found.question.si_per_unit;
   std::string text = fmt::format(
-      "# tapstudy identify: {} taps as forces of the protocol's finger. To be pasted over the key "
-      "of the same name.\n"
+      "# tapstudy identify: {} taps as the forces that give the protocol's finger the recorded\n"
+      "# accelerations, those of a fingertip or stylus; of a sensor on the plate they are too "
+      "large.\n# To be pasted over the key of the same name.\n"
       "recordings:\n  {}:\n    rate_hz: {:.9g}\n    taps:\n",
       found.taps.size(), found.question.stimulus, found.taps.front().whole.rate_hz);
   for (const IdentifiedTap& tap : found.taps) {

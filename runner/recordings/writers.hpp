@@ -21,8 +21,9 @@ std::string fixation_yaml(const core::Fixation& fixation, bool is_of_box);
 
 std::string json_of(const TapIdentification& found);
 
-// The taps as `recordings` of a protocol, of accelerations at one place with their speeds: forces
-// of `finger_kg` moving with the surface.
+// The taps as `recordings` of a protocol, of accelerations of a fingertip or stylus that tapped at
+// one place, with their speeds: the forces that give `finger_kg` these accelerations
+// (acceleration matching, Kuchenbecker, Fiene & Niemeyer 2006).
 std::string playback_of(const TapIdentification& found, double finger_kg);
 
 struct NamedFigure {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <complex>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -372,10 +373,15 @@ TEST_CASE("Young's modulus, damping and modes of a shelf are found in recordings
   const core::SinusoidShape& sinusoid = protocol.rendering.sinusoid;
   CHECK(sinusoid.decay_per_s ==
         Approx(json["sinusoid"]["decay_per_s"]["value"].get<double>()).epsilon(1e-4));
-  // acceleration times the finger's mass
-  CHECK(
-      sinusoid.amplitude_n_s_per_m ==
-      Approx(0.02 * json["sinusoid"]["amplitude_per_speed"]["value"].get<double>()).epsilon(1e-4));
+  // acceleration / s^2 is felt through the finger's spring and damper
+  const std::complex<double> pole{-sinusoid.decay_per_s,
+                                  2.0 * std::numbers::pi * sinusoid.frequency_hz};
+  const core::Finger& finger = protocol.rendering.finger;
+  const double newtons_per_unit =
+      std::abs((finger.stiffness_n_per_m + finger.damping_n_s_per_m * pole) / (pole * pole));
+  CHECK(sinusoid.amplitude_n_s_per_m ==
+        Approx(newtons_per_unit * json["sinusoid"]["amplitude_per_speed"]["value"].get<double>())
+            .epsilon(1e-3));
 }
 
 TEST_CASE("damping that Rayleigh's cannot be is given mode by mode",

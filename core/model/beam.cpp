@@ -12,6 +12,7 @@
 namespace tapstudy::core {
 namespace {
 constexpr double least_slenderness = 10.0;
+constexpr double least_length_over_width = 3.0;  // a wider one bends, and turns, as a plate
 constexpr std::size_t max_modes = 200;
 constexpr int stations = 256;  // along the touched face; shapes are linear between them
 
@@ -118,7 +119,8 @@ std::optional<Beam> beam_of(const Plate& plate) {
                                                  is_low(held[1].side) != is_low(side));
   const int axis = axis_of(side);
   const double length_m = box->size_m[axis];
-  if (!are_opposite || length_m < least_slenderness * box->size_m.z()) {
+  if (!are_opposite || length_m < least_slenderness * box->size_m.z() ||
+      length_m < least_length_over_width * box->size_m[1 - axis]) {
     return std::nullopt;
   }
   return Beam{axis,

@@ -17,12 +17,13 @@ struct Beam {
 };
 
 // nullopt if the plate is none: not a box, held in another way, or less long than ten times its
-// thickness, where shear is no longer small.
+// thickness, where shear is no longer small, or three times its width, where it bends as a plate.
 std::optional<Beam> beam_of(const Plate& plate);
 // What beam_of asks for, in words.
 inline constexpr const char* what_a_beam_is =
     "a plate with a side, or two opposite ones of left, right, front and back, held along x, y and "
-    "z by constraints, at least ten times as long from there as thick";
+    "z by constraints, at least ten times as long from there as thick and three "
+    "times as wide";
 
 // The modes below the band limit in closed form: w_n = (b_n)^2 sqrt(E I / (rho A)), with cos b L
 // cosh b L = -1 for one held end and +1 for two (Blevins 1979, table 8-1). Along z only.

@@ -6,8 +6,8 @@
 #include <vector>
 namespace tapstudy::runner {
 namespace {
-// The surface's motion is felt through the finger's spring and damper (paper eq. 17), whatever of it
-// was measured: at s = -decay + i omega displacement is velocity / s and acceleration / s^2.
+// The surface's motion is felt through the finger's spring and damper (paper eq. 17), whatever of
+// it was measured: at s = -decay + i omega displacement is velocity / s and acceleration / s^2.
 double newtons_per_unit(const SinusoidLaw& law, analysis::Quantity quantity,
                         const core::Finger& finger) {
   const std::complex<double> s{-law.decay_per_s.value,

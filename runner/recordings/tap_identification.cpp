@@ -265,7 +265,23 @@ class Identifier {
       result_.remarks.emplace_back(
           "how stiff the springs are cannot be told from these modes: the protocol's were kept");
     }
+    if (model.update) {
+      remark_on_shapes(*model.update);
+    }
     return model;
+  }
+
+  // They are matched by frequency, too.
+  void remark_on_shapes(const analysis::ModelUpdate& update) {
+    constexpr double least_assurance = 0.5;
+    for (const analysis::MatchedMode& one : update.matched) {
+      if (one.assurance && *one.assurance < least_assurance) {
+        result_.remarks.push_back(fmt::format(
+            "the mode at {:.6g} Hz hardly has the shape of the model's (MAC {:.2g}): are places, "
+            "force or speeds right?",
+            result_.modes[result_.agreed[one.measured]].frequency_hz.value, *one.assurance));
+      }
+    }
   }
 
   TapIdentification result_;

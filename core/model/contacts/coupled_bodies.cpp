@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
+#include "core/error.hpp"
 #include "core/model/elements/rigid_motions.hpp"
 #include "core/model/elements/surface_region.hpp"
 namespace tapstudy::core {
@@ -36,7 +38,35 @@ class Elongations {
     return elongations;
   }
 
+  // Axes are parallel, so that one shift of a body must bring all of its contacts with another
+  // together: else the springs would hold free bodies against turning.
+  void check_can_touch() const {
+    for (std::size_t i = 0; i < contacts_.springs.size(); ++i) {
+      for (std::size_t j = 0; j < i; ++j) {
+        const auto& one = contacts_.springs[i];
+        const auto& other = contacts_.springs[j];
+        if (one.from.body != other.from.body || one.to.body != other.to.body) {
+          continue;
+        }
+        const double apart_m = (shift_m(i) - shift_m(j)).norm();
+        if (apart_m > max_misplacement * larger_diagonal_m(one)) {
+          throw ModelError{fmt::format(
+              "contact springs {} and {} join the same two bodies at places that cannot lie on one "
+              "another at once: {:.3g} mm apart",
+              j + 1, i + 1, 1e3 * apart_m)};
+        }
+      }
+    }
+  }
+
  private:
+  struct NamedEnd {
+    const ContactSpring::End& end;
+    std::size_t spring;
+    const char* name;  // as in a protocol
+  };
+  static constexpr double max_misplacement = 0.02;  // of a body: discs are meshed coarsely
+
   Elongation along(Eigen::Index axis, std::size_t spring) const {
     const ContactSpring& joins = contacts_.springs[spring];
     const auto motions = 6 * static_cast<Eigen::Index>(system_.bodies.size());
@@ -46,21 +76,36 @@ class Elongations {
     add({joins.to, spring, "to"}, axis, -1.0, elongation);
     return elongation;
   }
+  double larger_diagonal_m(const ContactSpring& spring) const {
+    return std::max(bounds(shape_of(spring.from.body)).size_m().norm(),
+                    bounds(shape_of(spring.to.body)).size_m().norm());
+  }
+  // From one end of a spring to the other.
+  Vec3 shift_m(std::size_t spring) const {
+    const ContactSpring& joins = contacts_.springs[spring];
+    return mean_place_m({joins.to, spring, "to"}) - mean_place_m({joins.from, spring, "from"});
+  }
   const Shape& shape_of(std::size_t body) const {
     return body == 0 ? plate_.shape : contacts_.bodies.at(body - 1).shape;
   }
-  struct NamedEnd {
-    const ContactSpring::End& end;
-    std::size_t spring;
-    const char* name;  // as in a protocol
-  };
+  std::vector<Eigen::Index> nodes_at(const NamedEnd& named) const {
+    const ContactSpring::End& end = named.end;
+    return nodes_of(end.region, system_.bodies.at(end.body).mesh, shape_of(end.body),
+                    fmt::format("contact spring {}, {}", named.spring + 1, named.name));
+  }
+  Vec3 mean_place_m(const NamedEnd& named) const {
+    const TetMesh& mesh = system_.bodies.at(named.end.body).mesh;
+    Vec3 place_m = Vec3::Zero();
+    for (const NodeWeight& one : mean_weights(mesh, nodes_at(named))) {
+      place_m += one.weight * mesh.nodes_m.row(one.node).transpose();
+    }
+    return place_m;
+  }
   void add(const NamedEnd& named, Eigen::Index axis, double sign, Elongation& elongation) const {
     const ContactSpring::End& end = named.end;
     const DiscreteBody& body = system_.bodies.at(end.body);
     const RigidMotions motions{body.mesh};
-    const auto nodes = nodes_of(end.region, body.mesh, shape_of(end.body),
-                                fmt::format("contact spring {}, {}", named.spring + 1, named.name));
-    for (const NodeWeight& one : mean_weights(body.mesh, nodes)) {
+    for (const NodeWeight& one : mean_weights(body.mesh, nodes_at(named))) {
       const int dof = body.dofs.position[static_cast<std::size_t>(3 * one.node + axis)];
       if (dof >= 0) {
         elongation.weights.emplace_back(system_.first_dof[end.body] + dof, sign * one.weight);
@@ -124,7 +169,9 @@ CoupledBodies coupled(const Plate& plate, std::vector<DiscreteBody> bodies,
     resisted.block<6, 6>(6 * static_cast<Eigen::Index>(i), 6 * static_cast<Eigen::Index>(i)) =
         body.matrices.resisted_motions;
   }
-  system.elongations = Elongations{plate, contacts, system}.all();
+  const Elongations elongations{plate, contacts, system};
+  elongations.check_can_touch();
+  system.elongations = elongations.all();
   for (const Elongation& elongation : system.elongations) {
     add_spring(elongation, stiffness);
     resisted += elongation.motions * elongation.motions.transpose();

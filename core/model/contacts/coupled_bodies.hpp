@@ -22,7 +22,8 @@ struct CoupledBodies {
   StiffnessAndMass matrices;  // block-diagonal but for the springs
 };
 
-// Throws ModelError if a contact touches no node of its body.
+// Throws ModelError if a contact touches no node of its body, and if contacts of two bodies cannot
+// lie on one another at once.
 CoupledBodies coupled(const Plate& plate, std::vector<DiscreteBody> bodies,
                       const Contacts& contacts);
 }  // namespace tapstudy::core

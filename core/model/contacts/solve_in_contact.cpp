@@ -57,6 +57,7 @@ void set_energy_shares(const CoupledBodies& system, std::size_t springs, const M
         shapes.cwiseProduct(matrices.stiffness() * shapes).colwise().sum().array() /
         eigenvalues.transpose();
   }
+  found.strain_share = found.strain_share.cwiseMax(0.0);  // rounding, where a body hardly bends
   for (const Elongation& elongation : system.elongations) {
     const Eigen::Index row = bodies + static_cast<Eigen::Index>(elongation.spring);
     found.strain_share.row(row).array() +=

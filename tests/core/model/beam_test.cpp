@@ -125,3 +125,11 @@ TEST_CASE("what is no beam is refused", "[core][model][beam]") {
   PlateSpec soft = beam_held({Side::left}, 1e8);
   CHECK_THROWS_AS(build_plate_model(soft), ModelError);
 }
+
+TEST_CASE("what is wider than a third of its length bends as a plate, and is no beam",
+          "[core][model][beam]") {
+  PlateSpec plate = beam_held({Side::left});
+  CHECK(beam_of(plate));
+  plate.shape = Box{{length_m, 0.4 * length_m, thickness_m}};
+  CHECK_FALSE(beam_of(plate));
+}

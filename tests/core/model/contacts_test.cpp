@@ -301,3 +301,22 @@ TEST_CASE("models differ by every property of a contact, and of what is touched"
   alone.contacts.reset();
   CHECK(own != core::content_key(core::body_of(alone)));
 }
+
+TEST_CASE("contacts that no shift of a body brings together are refused", "[core][model]") {
+  core::PlateSpec spec = stiff_block(60.0);
+  core::BodyInContact other{block({0.1, 0.1, 0.05}, 2e-5), material_of(1e13, 2000.0, 0.01)};
+  const auto joined_at = [&](double further_m) {
+    core::Contacts contacts{{other}, {}};
+    for (const double x : {-0.03, 0.03}) {
+      const double to_x = x < 0.0 ? x : x + further_m;
+      contacts.springs.push_back({{0, disc(x, 0.0, core::Face::bottom)},
+                                  {1, disc(to_x, 0.0, core::Face::top)},
+                                  {1e5, 1e5, 1e5}});
+    }
+    spec.contacts = std::make_shared<const core::Contacts>(contacts);
+    return core::solve_body(core::body_of(spec)).modes.report.rigid_body_modes;
+  };
+  CHECK(joined_at(0.0) == 7);  // as one body, and a turn about the line of contacts
+  CHECK_THROWS_WITH(joined_at(0.01), Catch::Contains("contact springs 1 and 2") &&
+                                         Catch::Contains("cannot lie on one another"));
+}

@@ -245,6 +245,7 @@ struct AnswerRow {
   std::optional<double> mean_impact_speed_m_s{};      // unset without impacts
   double contact_s{};                                 // in contact, of the whole trial
   std::optional<double> first_setting{};              // where an adjustment started
+  std::optional<int> confidence{};                    // from 1; unset if not asked or not given
   std::optional<int> track{};  // of its block's procedures, from 1; follows from all answers
 };
 

@@ -23,7 +23,8 @@ std::vector<AnswerRow> Store::answers() {
                 "    FROM event WHERE event.trial_id = trial.trial_id "
                 "    AND kind IN ('contact', 'release')), "
                 "  (SELECT value FROM event WHERE event.trial_id = trial.trial_id "
-                "    AND kind = 'setting' ORDER BY t_s, rowid LIMIT 1) "
+                "    AND kind = 'setting' ORDER BY t_s, rowid LIMIT 1), "
+                "  current_response.confidence "
                 "FROM trial JOIN session USING (session_id) JOIN current_response USING (trial_id) "
                 "JOIN tick_statistics USING (trial_id) JOIN participant USING (participant_id) "
                 "WHERE status = 'answered' ORDER BY mode, participant_index, number"};
@@ -54,6 +55,8 @@ std::vector<AnswerRow> Store::answers() {
     answer.time_from_first_contact_s = row.is_null(21) ? std::nullopt : std::optional{row.real(21)};
     answer.mean_impact_speed_m_s = row.is_null(22) ? std::nullopt : std::optional{row.real(22)};
     answer.contact_s = row.real(23);
+    answer.confidence =
+        row.is_null(25) ? std::nullopt : std::optional{static_cast<int>(row.integer(25))};
     answer.first_setting = row.is_null(24) ? std::nullopt : std::optional{row.real(24)};
   }
   return answers;

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 
+#include "analysis/confidence/confidence_section.hpp"
 #include "analysis/course/course_section.hpp"
 #include "analysis/rendered/rendered_section.hpp"
+#include "runner/experiments/counted_answers.hpp"
 #include "runner/experiments/given_forms.hpp"
 #include "runner/experiments/rendered_study.hpp"
 #include "runner/experiments/track_results.hpp"
@@ -62,6 +64,26 @@ analysis::ReportSection course(const protocols::Protocol& protocol,
   }
   return analysis::course_section(participants, practice);
 }
+
+std::vector<analysis::ConfidenceScale> confidence_scales(const protocols::Protocol& protocol) {
+  std::vector<analysis::ConfidenceScale> scales;
+  for (const protocols::Block& block : protocol.blocks) {
+    if (block.confidence) {
+      const protocols::Confidence& asked = *block.confidence;
+      scales.push_back({block.name, asked.steps, asked.low, asked.high});
+    }
+  }
+  return scales;
+}
+
+std::vector<results::AnswerRow> all_counted_answers(const std::vector<StudyStore>& stores,
+                                                    results::Mode mode) {
+  std::vector<results::AnswerRow> all;
+  for (const StudyStore& each : stores) {
+    std::ranges::move(counted_answers(*each.store, mode), std::back_inserter(all));
+  }
+  return all;
+}
 }  // namespace
 
 std::vector<analysis::ReportSection> study_sections(const protocols::Protocol& protocol,
@@ -69,6 +91,7 @@ std::vector<analysis::ReportSection> study_sections(const protocols::Protocol& p
                                                     results::Mode mode) {
   return {
       course(protocol, stores, mode),
+      analysis::confidence_section(confidence_scales(protocol), all_counted_answers(stores, mode)),
       analysis::procedures_section(track_results(protocol, stores, mode)),
       analysis::questionnaires_section(questionnaires_of(protocol), given_answers(stores, mode)),
       analysis::rendered_section(rendered_study(protocol, stores, mode))};

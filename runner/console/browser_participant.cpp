@@ -91,10 +91,11 @@ void BrowserParticipant::get_ready(const TrialPrompt& prompt) {
 std::int64_t BrowserParticipant::show_trial(const TrialPrompt& prompt,
                                             const Exploration& exploration) {
   const std::size_t current = exploration.current();
-  return show({.kind = ScreenKind::trial,
-               .trial = TrialScreen{prompt, current, exploration.setting(), intervals(exploration),
-                                    notice_, correction_state_},
-               .scene = context_.scene(current)});
+  return show(
+      {.kind = ScreenKind::trial,
+       .trial = TrialScreen{prompt, current, exploration.setting(), intervals(exploration), notice_,
+                            std::exchange(correction_state_, CorrectionState::none)},
+       .scene = context_.scene(current)});
 }
 
 std::optional<std::string> BrowserParticipant::perform(const TrialPrompt& prompt,

@@ -140,7 +140,7 @@ std::string command_in(const std::string& text) {
   try {
     return parse_json(text).at("command").get<std::string>();
   } catch (const Json::exception&) {
-    throw core::InvalidInput{"is no command"};
+    throw core::InvalidInput{"is not a command"};
   }
 }
 }  // namespace tapstudy::runner

@@ -69,7 +69,7 @@ OperatorCommand parse_operator_command(const std::string& line) {
     std::vector<std::string_view> names;
     std::ranges::transform(actions, std::back_inserter(names), &ActionInfo::name);
     throw core::InvalidInput{
-        fmt::format("'{}' is no command (one of: {})", word, fmt::join(names, ", "))};
+        fmt::format("'{}' is not a command (one of: {})", word, fmt::join(names, ", "))};
   }
   std::string text = trimmed(command.substr(word.size()));
   const std::optional<int> trial = taken_trial(text);

@@ -5,7 +5,7 @@ import { cardOf } from "./answer_fields.js";
 import { word } from "./words.js";
 
 export function intervalCard({ label, option, group }) {
-  const name = el("span", { className: "interval" }, word("interval", { label }));
+  const name = el("span", { className: "interval" }, word("interval_name", { label }));
   if (option < 0) return el("div", { className: "alternative only-felt" }, name);
   return el("div", { className: "alternative" }, name, cardOf({ group, option, label }));
 }

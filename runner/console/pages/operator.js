@@ -70,7 +70,7 @@ async function start() {
   plots = new LivePlots(byId("plots"));
   onThemeChange(() => plots.draw());
   const handlers = { state: showState, live: (samples) => plots.add(samples) };
-  listen(handlers, () => state?.state === "ended", () => showForce("unknown"));
+  listen(handlers, () => ["ended", "stopped"].includes(state?.state), () => showForce("unknown"));
 }
 
 start();

@@ -63,10 +63,11 @@ void Journal::flush() {
 }
 
 // What other programs have appended since, too. Half a line at the end is cut off.
-void Journal::read_on(int descriptor) {
+bool Journal::read_on(int descriptor) {
   struct stat status {};
   fstat(descriptor, &status);
-  if (status.st_size < read_bytes_) {  // it is another file now
+  const bool is_the_same = status.st_size >= read_bytes_;
+  if (!is_the_same) {
     known_.clear();
     chain_.clear();
     read_bytes_ = 0;
@@ -87,6 +88,7 @@ void Journal::read_on(int descriptor) {
   if (begin < text.size() && ftruncate(descriptor, read_bytes_) != 0) {
     throw failure(file_, "cannot be written");
   }
+  return is_the_same;
 }
 
 std::string Journal::chained(const std::string& body) {
@@ -94,10 +96,12 @@ std::string Journal::chained(const std::string& body) {
   return join_line({body, chain_}) + "\n";
 }
 
-void Journal::complete(const std::function<StudyRow()>& study,
+bool Journal::complete(const std::function<StudyRow()>& study,
                        const std::vector<SessionRow>& sessions, const JournalEntries& entries) {
   const LockedFile file{file_};
-  read_on(file.descriptor());
+  if (!read_on(file.descriptor())) {
+    return false;
+  }
   std::vector<std::string> bodies;
   if (known_.empty()) {
     bodies.push_back(to_line(study()));
@@ -120,5 +124,6 @@ void Journal::complete(const std::function<StudyRow()>& study,
   }
   known_.insert(bodies.begin(), bodies.end());
   read_bytes_ += static_cast<std::int64_t>(text.size());
+  return true;
 }
 }  // namespace tapstudy::results

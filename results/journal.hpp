@@ -40,12 +40,13 @@ class Journal {
   // Throws StoreError if it cannot be written.
   void flush();
   // Appends what it does not hold yet; the study is asked for if it is new. Throws StoreError if it
-  // cannot be written; its end is then as it was before.
-  void complete(const std::function<StudyRow()>& study, const std::vector<SessionRow>& sessions,
+  // cannot be written; its end is then as it was before. False: nothing was appended, since lines
+  // that it once held are gone, with its file or its end; the next call begins with what is left.
+  bool complete(const std::function<StudyRow()>& study, const std::vector<SessionRow>& sessions,
                 const JournalEntries& entries);
 
  private:
-  void read_on(int descriptor);
+  bool read_on(int descriptor);  // false: it is another file now
   std::string chained(const std::string& body);
   std::string file_;
   Flush flush_{Flush::each_time};

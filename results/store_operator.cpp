@@ -7,8 +7,12 @@
 #include "results/store_error.hpp"
 namespace tapstudy::results {
 void Store::journal(const JournalEntries& entries, std::int64_t session_id) {
-  if (journal_) {
-    journal_->complete([this] { return study(); }, {session_of(session_id)}, entries);
+  if (!journal_) {
+    return;
+  }
+  const auto of_study = [this] { return study(); };
+  if (!journal_->complete(of_study, {session_of(session_id)}, entries)) {
+    journal_->complete(of_study, sessions(), entries_for_journal());
   }
 }
 

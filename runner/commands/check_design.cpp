@@ -45,10 +45,10 @@ void print_power(const protocols::Protocol& protocol, const protocols::Block& bl
   const int answers = participants * block.task->counted_answers(block);
   const int critical = analysis::critical_successes(answers, chance, alpha);
   fmt::print(
-      "    chance {:.0f} %; of {} answers {} must {} for p < .05 (one-sided, answers "
-      "independent)\n",
+      "    chance {:.0f} %; of {} answers {} must {} for p < .05 (one-sided exact binomial test of "
+      "all answers; a test over participants needs more where they are few or differ)\n",
       100.0 * chance, answers, critical, block.task->success());
-  fmt::print("    power if the truth is");
+  fmt::print("    power of that test if the truth is");
   for (const double above : {0.1, 0.2, 0.3}) {
     fmt::print("{} {:.0f} %: {:.2f}", above > 0.15 ? "," : "", 100.0 * (chance + above),
                analysis::binomial_power(answers, chance, alpha, chance + above));

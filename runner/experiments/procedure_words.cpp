@@ -9,6 +9,7 @@
 #include <set>
 #include <utility>
 
+#include "protocols/ordering.hpp"
 #include "protocols/schedule.hpp"
 #include "runner/devices/masking_noise.hpp"
 #include "runner/experiments/counted.hpp"
@@ -39,7 +40,19 @@ std::string rendering(const Protocol& protocol) {
       vibrates ? fmt::format("; modes of vibration up to {:g} Hz", protocol.band_limit_hz) : "");
 }
 
-const char* order_words(const Block& block) {
+// Balance holds for whole sets of orders.
+std::string williams_words(const Block& block, std::size_t participants) {
+  const auto orders = static_cast<std::size_t>(protocols::williams_sequences(
+      static_cast<int>(protocols::conditions(block)), block.repetitions));
+  return participants % orders == 0
+             ? ", in orders balanced for immediate sequence over participants (Williams 1949)"
+             : fmt::format(
+                   ", in orders of a balanced design (Williams 1949) that {} do not "
+                   "complete, of {} orders",
+                   counted(participants, "participant"), orders);
+}
+
+std::string order_words(const Block& block, std::size_t participants) {
   if (!block.task->uses_order()) {
     return "";
   }
@@ -51,7 +64,7 @@ const char* order_words(const Block& block) {
     case protocols::Order::shuffle_within_repetition:
       return ", in an order that was random within each repetition";
     case protocols::Order::williams:
-      return ", in orders balanced for immediate sequence over participants (Williams 1949)";
+      return williams_words(block, participants);
   }
   return "";
 }
@@ -96,14 +109,14 @@ std::string tap_words(const Block& block) {
               : "";
 }
 
-std::string block_words(const Block& block) {
+std::string block_words(const Block& block, std::size_t participants) {
   const bool may_end_early = block.criterion || block.comparison;
   const auto trials = static_cast<std::size_t>(protocols::planned_trials(block));
   return fmt::format(
       "'{}' ({} of {}{}, {}{}{}{}{}{})", block.name, block.task->name(),
       block.stimuli.size() == 1 ? "one stimulus" : fmt::format("{} stimuli", block.stimuli.size()),
       block.presented == protocols::Presented::real_plates ? ", the real plates themselves" : "",
-      may_end_early ? "at most " : "", counted(trials, "trial"), order_words(block),
+      may_end_early ? "at most " : "", counted(trials, "trial"), order_words(block, participants),
       level_words(block), tap_words(block), practice_words(block));
 }
 
@@ -167,8 +180,14 @@ std::string blinding(const Protocol& protocol) {
 
 std::string procedure_words(const Protocol& protocol,
                             const std::vector<results::SessionRow>& sessions) {
+  std::set<std::string> participants;
+  for (const results::SessionRow& session : sessions) {
+    participants.insert(session.participant_id);
+  }
   std::vector<std::string> blocks;
-  std::ranges::transform(protocol.blocks, std::back_inserter(blocks), block_words);
+  for (const Block& block : protocol.blocks) {
+    blocks.push_back(block_words(block, participants.size()));
+  }
   std::string text = apparatus(sessions) + rendering(protocol);
   text += fmt::format("Each participant did {}. ", fmt::join(blocks, ", then "));
   text += explorations(protocol);

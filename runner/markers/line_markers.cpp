@@ -8,7 +8,10 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
+#include <fstream>
 
+#include "core/number_in.hpp"
 #include "device/device.hpp"
 namespace tapstudy::runner {
 namespace {
@@ -24,6 +27,20 @@ void set_up_if_serial(int descriptor) {
   modes.c_cflag &= ~static_cast<tcflag_t>(CRTSCTS | CSTOPB | HUPCL);
   cfsetspeed(&modes, B115200);
   tcsetattr(descriptor, TCSANOW, &modes);
+}
+
+// A file that holds anything else would be spoiled by what is appended to it.
+void check_holds_markers(const std::string& path) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) {
+    return;
+  }
+  std::ifstream file{path};
+  std::string line;
+  if (std::getline(file, line) && !core::number_in<double>(line.substr(0, line.find('\t')))) {
+    throw device::DeviceError{
+        fmt::format("markers.lines: '{}' holds something other than markers", path)};
+  }
 }
 
 // A descriptor, or a negative errno.
@@ -42,7 +59,9 @@ int opened(const std::string& path) {
 
 class LineMarkers final : public MarkerOutput {
  public:
-  explicit LineMarkers(const std::string& path) : path_{path}, descriptor_{opened(path)} {
+  explicit LineMarkers(const std::string& path) : path_{path} {
+    check_holds_markers(path);
+    descriptor_ = opened(path);
     if (descriptor_ < 0 && descriptor_ != -ENXIO) {
       throw device::DeviceError{fmt::format("markers.lines: '{}' cannot be opened: {}", path,
                                             std::strerror(-descriptor_))};
@@ -96,7 +115,7 @@ class LineMarkers final : public MarkerOutput {
   }
 
   std::string path_;
-  int descriptor_;
+  int descriptor_{-1};
   std::string rest_;  // of the line that was begun last
 };
 }  // namespace

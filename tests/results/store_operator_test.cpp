@@ -136,6 +136,20 @@ TEST_CASE(
   CHECK(journalled.actions.size() == 2);
 }
 
+TEST_CASE("a journal that was deleted or cut off in a session is whole again after the next answer",
+          "[results][store]") {
+  const testing::TempDirectory directory;
+  auto [store, row] = begun_study(directory.path());
+  const std::string journal = directory / "answers.journal";
+  store.add_trial(small_study::trial(row.id, 1, "a"));
+  std::filesystem::remove(journal);
+  store.add_trial(small_study::trial(row.id, 2, "b"));
+  CHECK(to_lines(read_journal(directory.path()).entries) == to_lines(store.entries_for_journal()));
+  std::filesystem::resize_file(journal, std::filesystem::file_size(journal) / 2);
+  store.add_operator_action(action(row.id, "note", "who was here?"));
+  CHECK(to_lines(read_journal(directory.path()).entries) == to_lines(store.entries_for_journal()));
+}
+
 TEST_CASE(
     "a balanced order is used up by who has answered, or is in a session, and is not excluded",
     "[results][store]") {

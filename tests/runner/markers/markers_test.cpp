@@ -163,6 +163,9 @@ TEST_CASE("a file is made, and appended to", "[runner][markers]") {
   CHECK(runner::open_line_markers(file)->send(change) == Sent::yes);
   CHECK(runner::open_line_markers(file)->send(between) == Sent::yes);
   CHECK(testing::contents(file) == line + "13.500000\tresting\t-1\t\n");
+  testing::write(directory / "notes.txt", "not a marker\n");
+  CHECK_THROWS_WITH(runner::open_line_markers(directory / "notes.txt"),
+                    Contains("holds something other than markers"));
   CHECK_THROWS_WITH(runner::open_line_markers(directory / "no" + "/such"),
                     Contains("cannot be opened: No such file or directory"));
   CHECK_THROWS_WITH(runner::open_line_markers("/dev/no_such_port"),

@@ -148,6 +148,14 @@ Store::~Store() {
   }
 }
 
+namespace {
+// The line, from 1, from which two texts differ.
+std::ptrdiff_t first_difference(const std::string& one, const std::string& other) {
+  const auto [end, ignored] = std::ranges::mismatch(one, other);
+  return 1 + std::count(one.begin(), end, '\n');
+}
+}  // namespace
+
 // In one transaction: of two programs started concurrently one creates, the other finds it.
 void Store::create_or_check(const StudyRow& study) {
   Transaction all{database_};
@@ -156,9 +164,10 @@ void Store::create_or_check(const StudyRow& study) {
     const StudyRow stored = study_without_surfaces();
     if (stored.protocol_sha256 != study.protocol_sha256) {
       throw core::InvalidInput{
-          fmt::format("{}: holds the study of another protocol, '{}' (choose another --out; to "
-                      "change a running study, start a new one)",
-                      database_.file(), stored.title)};
+          fmt::format("{}: holds the study of another protocol, '{}', whose text differs from line "
+                      "{} on (choose another --out; to change a running study, start a new one)",
+                      database_.file(), stored.title,
+                      first_difference(stored.protocol_text, study.protocol_text))};
     }
     check_surfaces(study);
     return;

@@ -128,7 +128,9 @@ SolvedBody refine(const BodySpec& body, const ProgressHook& progress) {
     const auto held_m2 = held_areas_m2(solved.mesh, body.shape, body.fixations);
     unsettled = unsettled_region(held_before_m2, held_m2);
     held_before_m2 = held_m2;
-    if (before.size() == after.size() && has_settled(rounds, accuracy) && unsettled.empty()) {
+    const bool has_no_modes = rounds.size() > 1 && before.size() == 0 && after.size() == 0;
+    if (has_no_modes ||
+        (before.size() == after.size() && has_settled(rounds, accuracy) && unsettled.empty())) {
       solved.modes.report.refinement = rounds;
       solved.modes.report.cost = cost;
       return solved;

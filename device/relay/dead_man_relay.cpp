@@ -31,7 +31,7 @@ DeadManRelay::DeadManRelay(const std::string& port)
   cfsetspeed(&modes, B115200);
   if (!is_serial || tcsetattr(descriptor_, TCSANOW, &modes) != 0) {
     close(descriptor_);
-    throw refusal(port, "is no serial port");
+    throw refusal(port, "is not a serial port");
   }
   if (flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
     close(descriptor_);

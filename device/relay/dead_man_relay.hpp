@@ -9,7 +9,7 @@ namespace tapstudy::device {
 // force.
 class DeadManRelay {
  public:
-  // Throws DeviceError if the port cannot be opened, is no serial port, or is in use.
+  // Throws DeviceError if the port cannot be opened, is not a serial port, or is in use.
   explicit DeadManRelay(const std::string& port);
   ~DeadManRelay();
   DeadManRelay(const DeadManRelay&) = delete;

@@ -48,13 +48,27 @@ OpenBoard::OpenBoard(const UsbListing& listing, const BoardSettings& settings)
            settings.max_stall_s, settings.guardian_priority, relay ? relay->descriptor() : -1}},
       pipe{node, {}, settings.max_reply} {}
 
-void exchange_zero_force(OpenBoard& open) {
-  BoardReading ignored;
-  const UsbOutcome outcome = open.board->exchange(open.pipe, {}, ignored);
+namespace {
+BoardReading read_at_zero_force(OpenBoard& open) {
+  BoardReading reading;
+  const UsbOutcome outcome = open.board->exchange(open.pipe, {}, reading);
   if (outcome != UsbOutcome::ok) {
     throw DeviceError{fmt::format("SPIDAR-G6: the {} board does not answer: {}", open.board->name(),
                                   to_text(outcome))};
   }
+  return reading;
+}
+}  // namespace
+
+void exchange_zero_force(OpenBoard& open) {
+  static_cast<void>(read_at_zero_force(open));
+}
+
+int rotary_switch_of(const UsbListing& listing) {
+  OpenBoard open{listing};
+  open.pipe.clear_halt();
+  open.pipe.drain();
+  return read_at_zero_force(open).rotary_switch();
 }
 
 LatenessCount round_trips(OpenBoard& open) {

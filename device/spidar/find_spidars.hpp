@@ -38,6 +38,9 @@ struct OpenBoard {
 // Round-trip times of the board over a number of requests, at zero force. Throws DeviceError if it
 // does not reply.
 LatenessCount round_trips(OpenBoard& open);
+// The setting of the board's rotary switch, by one exchange at zero force, without a relay: the
+// amplifier of another board must stay off. Throws as OpenBoard and exchange_zero_force.
+int rotary_switch_of(const UsbListing& listing);
 // One exchange at zero force. Throws DeviceError if the board does not reply.
 void exchange_zero_force(OpenBoard& open);
 }  // namespace tapstudy::device

@@ -9,7 +9,7 @@
 namespace tapstudy::protocols {
 namespace {
 // -p ln p, 0 at p = 0.
-double surprise(double p) {
+double entropy_term(double p) {
   return p > 0.0 ? -p * std::log(p) : 0.0;
 }
 
@@ -86,11 +86,11 @@ std::vector<double> expected_entropies(const LikelihoodTable& table,
       }
       for (std::size_t s = 0; s < stimuli; ++s) {
         total[s] += mass[s];
-        entropies[s] += surprise(mass[s]);
+        entropies[s] += entropy_term(mass[s]);
       }
     }
     for (std::size_t s = 0; s < stimuli; ++s) {
-      entropies[s] -= surprise(total[s]);
+      entropies[s] -= entropy_term(total[s]);
     }
   }
   return entropies;

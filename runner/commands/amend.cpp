@@ -118,8 +118,7 @@ void amend(const AmendOptions& options) {
 }  // namespace
 
 void add_amend(CommandParser& line) {
-  Command command = line.add(
-      "amend", "Add the operator's word after a session: a note, a correction, an exclusion");
+  Command command = line.add("amend", "Add a note, a correction or an exclusion after a session");
   const auto options = std::make_shared<AmendOptions>();
   command.argument("directory", options->directory, "Directory of a study");
   command.argument("action", options->action,

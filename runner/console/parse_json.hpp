@@ -17,7 +17,7 @@ inline nlohmann::ordered_json parse_json(const std::string& text) {
       return true;
     });
   } catch (const Json::exception&) {
-    throw core::InvalidInput{"is no JSON"};
+    throw core::InvalidInput{"is not JSON"};
   }
 }
 }  // namespace tapstudy::runner

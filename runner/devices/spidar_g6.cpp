@@ -76,7 +76,6 @@ class SpidarDevice final : public SessionDevice {
         is_amplifier_sensed_{section_of(request.rig).is_amplifier_sensed},
         round_trip_{device::round_trips(open_)} {}
   device::Device& device() override { return spidar_; }
-  int rotary_switch() const { return spidar_.rotary_switch(); }
   std::optional<device::LatenessCount> round_trip() const override { return round_trip_; }
   void get_ready() override {
     if (!spidar_.is_homed()) {
@@ -146,10 +145,12 @@ class SpidarKind final : public DeviceKind {
       throw device::DeviceError{fmt::format(
           "{} SPIDAR-G6 are plugged in: say in the rig which (spidar.rotary_switch)", all.size())};
     }
+    if (!section.rotary_switch) {
+      return std::make_unique<SpidarDevice>(all.front(), request);
+    }
     for (const device::UsbListing& listing : all) {
-      std::unique_ptr<SpidarDevice> found = opened(listing, request, all.size());
-      if (found && (!section.rotary_switch || found->rotary_switch() == *section.rotary_switch)) {
-        return found;
+      if (is_set_to(*section.rotary_switch, listing, all.size())) {
+        return std::make_unique<SpidarDevice>(listing, request);
       }
     }
     throw device::DeviceError{
@@ -189,15 +190,14 @@ class SpidarKind final : public DeviceKind {
 
  private:
   // Of several boards, one that another session has claimed is passed over.
-  static std::unique_ptr<SpidarDevice> opened(const device::UsbListing& listing,
-                                              const DeviceRequest& request, std::size_t boards) {
+  static bool is_set_to(int rotary_switch, const device::UsbListing& listing, std::size_t boards) {
     try {
-      return std::make_unique<SpidarDevice>(listing, request);
+      return device::rotary_switch_of(listing) == rotary_switch;
     } catch (const device::ClaimedByAnother& refusal) {
       if (boards == 1) {
         throw;
       }
-      return nullptr;
+      return false;
     }
   }
   static void read(MapReader& reader, const protocols::RigText& rig, SpidarSection& section) {

@@ -3,11 +3,26 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 
 #include "core/rng.hpp"
 #include "protocols/schedule.hpp"
 namespace tapstudy::runner {
 namespace {
+// Participants may read one label for several stimuli; a reader of the report must not.
+std::vector<analysis::Item> told_apart(std::vector<analysis::Item> items) {
+  std::map<std::string, int> times;
+  for (const analysis::Item& item : items) {
+    ++times[item.label];
+  }
+  for (analysis::Item& item : items) {
+    if (times[item.label] > 1) {
+      item.label += " (" + item.name + ")";
+    }
+  }
+  return items;
+}
+
 std::vector<analysis::Item> presented_items(const protocols::Protocol& protocol,
                                             const protocols::Block& block) {
   std::vector<analysis::Item> items;
@@ -20,7 +35,7 @@ std::vector<analysis::Item> presented_items(const protocols::Protocol& protocol,
                          ? std::string{}
                          : std::string{stimulus.technique->name}});
   }
-  return items;
+  return told_apart(std::move(items));
 }
 
 // An answer that names a level says nothing about other factors.
@@ -35,7 +50,7 @@ std::vector<analysis::Item> answered_items(const protocols::Protocol& protocol,
       items.push_back({name, name, {{block.response_factor, name}}});
     }
   }
-  return items;
+  return told_apart(std::move(items));
 }
 
 constexpr int not_counted = -1;

@@ -35,7 +35,9 @@ std::vector<Column> columns_of_context() {
 
 std::vector<Column> columns_of_answers() {
   return {
-      {"response", text, "", "Answer as the task stores it, corrections applied"},
+      {"response", text, "",
+       "Answer as the task stores it; see response_meanings. Where a row is an answer, as it was "
+       "given; where it is a trial, with corrections"},
       {"is_correct", boolean, "", "Whether it is right; missing where no answer is right"},
       {"is_corrected", boolean, "", "The answer was corrected after it had been given"},
       {"first_response", text, "", "The answer as first given"},
@@ -154,7 +156,8 @@ std::vector<Column> columns_of_traces() {
       {"saturated", boolean, "", "The limiter changed the force"},
       {"fault_code", integer, "", "Fault in this tick; 0: none"},
       {"missed_replies", integer, "", "Replies of the device missing in a row"},
-      {"late", boolean, "", "The tick began more than half a period late"},
+      {"late", boolean, "",
+       "The tick began more than half a period late, or force rises again after a gap"},
   };
 }
 

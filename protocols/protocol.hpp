@@ -71,8 +71,8 @@ enum class AtLimit { requeue, give_up };
 // How sure a participant is, asked after each answer: 1 to steps.
 struct Confidence {
   int steps{5};
-  std::string low{"guessed"};
-  std::string high{"certain"};
+  std::string low;   // what 1 means
+  std::string high;  // what `steps` means
 };
 
 // A rest after every so many trials of a block, ended by the participant, after min_seconds at the

@@ -1,6 +1,22 @@
+#include <algorithm>
+
 #include "protocols/read_sections.hpp"
 namespace tapstudy::protocols {
 namespace {
+// Where the protocol has no words of its own, those of the pages' languages.
+void read_ends(MapReader& reader, Confidence& confidence) {
+  const std::vector<std::string> languages{"en", "de", "ja"};
+  const auto end = [&](const char* key, const std::vector<std::string>& usual) {
+    const bool is_given = reader.has(key);
+    const auto spoken = is_given
+                            ? languages.begin()
+                            : std::ranges::find(languages, reader.language_among(key, languages));
+    return reader.translated(key, usual.at(static_cast<std::size_t>(spoken - languages.begin())));
+  };
+  confidence.low = end("low", {"guessed", "geraten", "当て推量"});
+  confidence.high = end("high", {"certain", "sicher", "確信がある"});
+}
+
 using Presence = MapReader::Presence;
 
 Breaks read_breaks(MapReader& reader) {
@@ -30,8 +46,7 @@ void read_asides(MapReader& reader, Block& block) {
   reader.map("confidence", Presence::optional, [&](MapReader& inner) {
     Confidence confidence;
     confidence.steps = inner.integer("steps", 2, 7, confidence.steps);
-    confidence.low = inner.translated("low", confidence.low);
-    confidence.high = inner.translated("high", confidence.high);
+    read_ends(inner, confidence);
     block.confidence = confidence;
   });
   reader.map("breaks", Presence::optional,

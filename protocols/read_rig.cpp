@@ -149,6 +149,9 @@ Rig parse_rig(const std::string& text, const std::string& file, RigDevices devic
 }
 
 std::optional<core::Placement> placement_in_stored_rig(const std::string& rig_text) {
+  if (rig_text.empty()) {
+    return std::nullopt;
+  }
   const std::string file = "stored rig";
   Problems problems{file};
   MapReader top =

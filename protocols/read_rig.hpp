@@ -15,6 +15,7 @@ Rig parse_rig(const std::string& text, const std::string& file, RigDevices devic
 std::set<std::string> rig_keys_asked_for(const std::string& text, const std::string& file,
                                          RigDevices devices);
 // Where the plate lies, of the text that a session stores: its rig, and after "---" the device's
-// calibration. nullopt: where the protocol says. Throws InvalidInput if that text is broken.
+// calibration. nullopt: where the protocol says; also of an empty text. Throws InvalidInput if that
+// text is broken.
 std::optional<core::Placement> placement_in_stored_rig(const std::string& rig_text);
 }  // namespace tapstudy::protocols

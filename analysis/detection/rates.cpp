@@ -92,12 +92,4 @@ RatesSensitivity same_different_independent(double hit_rate, double false_alarm_
                                 false_alarm_rate);
 }
 
-RatesSensitivity abx_differencing_by_rates(double hit_rate, double false_alarm_rate) {
-  return by_unbiased_proportion(DecisionModel::abx_differencing, hit_rate, false_alarm_rate);
-}
-
-RatesSensitivity abx_independent_by_rates(double hit_rate, double false_alarm_rate) {
-  return by_unbiased_proportion(DecisionModel::abx_independent_observation, hit_rate,
-                                false_alarm_rate);
-}
 }  // namespace tapstudy::analysis

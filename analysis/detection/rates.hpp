@@ -33,7 +33,4 @@ RatesSensitivity same_different_differencing(double hit_rate, double false_alarm
 // Same/different by independent observations: the unbiased proportion Phi((z(H) - z(F)) / 2)
 // through the decision model of that name.
 RatesSensitivity same_different_independent(double hit_rate, double false_alarm_rate);
-// ABX by hits ("A" where X is A) and false alarms ("A" where X is B), in the same way.
-RatesSensitivity abx_differencing_by_rates(double hit_rate, double false_alarm_rate);
-RatesSensitivity abx_independent_by_rates(double hit_rate, double false_alarm_rate);
 }  // namespace tapstudy::analysis

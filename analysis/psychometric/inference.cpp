@@ -8,7 +8,6 @@
 
 #include "analysis/statistics/distributions.hpp"
 #include "analysis/statistics/numerics.hpp"
-#include "analysis/statistics/quantiles.hpp"
 #include "core/error.hpp"
 #include "core/rng.hpp"
 namespace tapstudy::analysis {
@@ -98,9 +97,6 @@ void each_draw(const PsychometricModel& model, const std::vector<Level>& levels,
   }
 }
 
-Interval percentiles(const std::vector<double>& values, double confidence) {
-  return {quantile(values, 0.5 * (1.0 - confidence)), quantile(values, 0.5 * (1.0 + confidence))};
-}
 }  // namespace
 
 PsychometricIntervals profile_intervals(const PsychometricModel& model,
@@ -128,25 +124,4 @@ GoodnessOfFit deviance_test(const PsychometricModel& model, const std::vector<Le
   return {fit.deviance, (1.0 + as_bad) / (draws + 1.0), draws};
 }
 
-BootstrapIntervals bootstrap_intervals(const PsychometricModel& model,
-                                       const std::vector<Level>& levels, int draws,
-                                       std::uint64_t seed, double confidence) {
-  check_confidence(confidence);
-  const PsychometricFit fit = fit_with_threshold(model, levels);
-  std::vector<double> thresholds;
-  std::vector<double> slopes;
-  each_draw(model, levels, fit, draws, seed, [&](const PsychometricFit& drawn) {
-    if (drawn.curve) {
-      thresholds.push_back(drawn.curve->threshold);
-      slopes.push_back(drawn.curve->slope);
-    }
-  });
-  const int found = static_cast<int>(thresholds.size());
-  if (2 * found < draws) {
-    throw core::InvalidInput{
-        fmt::format("only {} of {} draws have a threshold: too few for an interval", found, draws)};
-  }
-  return {
-      {percentiles(thresholds, confidence), percentiles(slopes, confidence)}, draws, draws - found};
-}
 }  // namespace tapstudy::analysis

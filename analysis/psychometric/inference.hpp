@@ -28,15 +28,4 @@ struct GoodnessOfFit {
 GoodnessOfFit deviance_test(const PsychometricModel& model, const std::vector<Level>& levels,
                             int draws, std::uint64_t seed);
 
-// Percentile intervals over answers drawn anew from the fitted function (Wichmann & Hill 2001b).
-struct BootstrapIntervals {
-  PsychometricIntervals intervals;
-  int draws{};
-  int without_threshold{};  // draws whose fit had another outcome than fitted, left out
-};
-// Throws InvalidInput as profile_intervals does, for draws < 1, and if fewer than half the draws
-// have a threshold.
-BootstrapIntervals bootstrap_intervals(const PsychometricModel& model,
-                                       const std::vector<Level>& levels, int draws,
-                                       std::uint64_t seed, double confidence = 0.95);
 }  // namespace tapstudy::analysis

@@ -62,16 +62,4 @@ FriedmanTest friedman_test(const RatingTable& ratings) {
   return test;
 }
 
-std::vector<Quartiles> condition_quartiles(const RatingTable& ratings) {
-  check_ratings(ratings);
-  std::vector<Quartiles> result;
-  for (std::size_t j = 0; j < ratings.front().size(); ++j) {
-    std::vector<double> column;
-    for (const std::vector<double>& row : ratings) {
-      column.push_back(row[j]);
-    }
-    result.push_back(quartiles(column));
-  }
-  return result;
-}
 }  // namespace tapstudy::analysis

@@ -1,7 +1,6 @@
 #pragma once
 #include <vector>
 
-#include "analysis/statistics/quantiles.hpp"
 namespace tapstudy::analysis {
 // Ratings or ranks of the same k conditions by each of n participants: ratings[participant]
 // [condition]. Functions throw InvalidInput unless there are two participants and two conditions
@@ -19,9 +18,6 @@ struct FriedmanTest {
 // participant, chi_squared = 12 sum (R_j - n (k + 1) / 2)^2 / (n k (k + 1) - sum (t^3 - t) / (k -
 // 1)). Throws InvalidInput also if every participant rates all conditions the same.
 FriedmanTest friedman_test(const RatingTable& ratings);
-
-// Quartiles of each condition over participants.
-std::vector<Quartiles> condition_quartiles(const RatingTable& ratings);
 
 // How participants rank conditions: of each condition the mean rank, and how often it was first
 // (rank 1, by the lowest value) alone or shared.

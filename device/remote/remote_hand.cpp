@@ -39,20 +39,28 @@ int connected_socket(std::uint16_t port) noexcept {
 RemoteHand::RemoteHand(std::uint16_t port, std::chrono::microseconds max_reply)
     : port_{port}, max_reply_{patience}, socket_{connected_socket(port)} {
   core::HandState ignored;
+  bool is_misunderstood = false;
   for (int i = 0; socket_ >= 0 && i < attempts; ++i) {
-    if (ask(ignored) == TickFault::none) {
+    const TickFault fault = ask(ignored);
+    if (fault == TickFault::none) {
       max_reply_ = max_reply;
       return;
     }
+    is_misunderstood = is_misunderstood || fault == TickFault::bad_reply;
     usleep(static_cast<useconds_t>(std::chrono::microseconds{patience}.count()));
   }
   if (socket_ >= 0) {
     close(socket_);
   }
-  throw DeviceError{fmt::format(
-      "remote: nobody answers at 127.0.0.1, UDP port {} (is the program that drives the device "
-      "running?)",
-      port)};
+  throw DeviceError{
+      is_misunderstood
+          ? fmt::format(
+                "remote: replies come from 127.0.0.1, UDP port {}, but not as version 1 or 2 "
+                "of the protocol (device/remote/packets.hpp)",
+                port)
+          : fmt::format("remote: nobody answers at 127.0.0.1, UDP port {} (is the program that "
+                        "drives the device running?)",
+                        port)};
 }
 
 RemoteHand::~RemoteHand() {

@@ -6,6 +6,10 @@ HERE = pathlib.Path(__file__).resolve().parent
 FILE = HERE / "rig.schema.json"
 NEEDED_BY_HARDWARE = ["max_hand_speed_m_s", "workspace_radius_m"]
 ONLY_OF_HARDWARE = [*NEEDED_BY_HARDWARE, "force_rise_s", "force_fall_s"]
+# Lateness without a limit is for hands that cannot be hurt.
+LIMITED_LATENESS = {
+    "properties": {"max_late_ticks_in_a_row": {"minimum": 1}, "max_stall_s": {"exclusiveMinimum": 0}}
+}
 
 
 def read(file):
@@ -24,6 +28,8 @@ def rule_of(device, sections):
         forbidden += ONLY_OF_HARDWARE
     if forbidden:
         then["properties"] = {key: False for key in forbidden}
+    if device["has_hardware"]:
+        then.setdefault("properties", {})["loop"] = LIMITED_LATENESS
     if required:
         then["required"] = required
     condition = {"properties": {"device": {"const": device["device"]}}, "required": ["device"]}

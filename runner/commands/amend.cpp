@@ -28,7 +28,7 @@ constexpr std::array amendments{OperatorAction::note, OperatorAction::correct,
                                 OperatorAction::exclude, OperatorAction::include};
 
 OperatorCommand amendment_in(const std::string& line) {
-  const OperatorCommand command = parse_operator_command(line);
+  const OperatorCommand command = parse_operator_command(line, amendments);
   if (std::ranges::find(amendments, command.action) == amendments.end()) {
     std::vector<std::string_view> names;
     std::ranges::transform(amendments, std::back_inserter(names), name);

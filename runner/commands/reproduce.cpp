@@ -38,9 +38,8 @@ void add_reproduce(CommandParser& line) {
   command.option("--out", options->out,
                  "Write reproduction.html and reproduction.json into this directory",
                  Need::required);
-  command.repeatable(
-      "--only", options->only,
-      fmt::format("A group of claims alone: {}", fmt::join(claim_group_names(), ", ")));
+  command.list("--only", options->only,
+               fmt::format("Groups of claims alone: {}", fmt::join(claim_group_names(), ", ")));
   command.flag("--quick", options->is_quick,
                "With fewer simulated participants: less sure, and sooner");
   command.option_with_default("--seed", options->seed, "Seed of all random streams");

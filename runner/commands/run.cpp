@@ -81,7 +81,9 @@ void warn_of_language(const protocols::Protocol& protocol, const RunOptions& opt
     warn(fmt::format("texts of the study that are not given in '{}': {}", options.language,
                      fmt::join(missing, ", ")));
   }
-  if (!options.console.empty() && !pages_speak(options.language)) {
+  if (options.console.empty() && options.language != "en") {
+    warn("the terminal's own words are English; the pages (--console) have other languages");
+  } else if (!pages_speak(options.language)) {
     warn(fmt::format("the pages' own words are not given in '{}': English", options.language));
   }
 }

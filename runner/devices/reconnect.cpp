@@ -15,12 +15,16 @@ std::unique_ptr<SessionDevice> reconnect(const std::string& what_happened,
       "\n{}.\nType quit to stop here; or check the device, its power and cable, and to continue,",
       what_happened);
   while (request.ask_operator(task)) {
-    if (kind.is_there()) {
-      broken
-          .reset();  // only one can hold the device, and its guardian may have repeated zero force
-      return kind.open(request);
-    }
     task = "It is not there yet. To try again,";
+    if (!kind.is_there()) {
+      continue;
+    }
+    broken.reset();  // only one can hold the device, and its guardian may have repeated zero force
+    try {
+      return kind.open(request);
+    } catch (const device::DeviceError& error) {  // enumerated, but not ready, or still held
+      task = fmt::format("{}. To try again,", error.what());
+    }
   }
   throw gives_up;
 }

@@ -61,13 +61,18 @@ std::string_view name(OperatorAction action) {
   return std::ranges::find(actions, action, &ActionInfo::action)->name;
 }
 
-OperatorCommand parse_operator_command(const std::string& line) {
+OperatorCommand parse_operator_command(const std::string& line,
+                                       std::span<const OperatorAction> offered) {
   const std::string command = trimmed(line);
   const std::string word = command.substr(0, command.find_first_of(" \t"));
   const auto found = std::ranges::find(actions, word, &ActionInfo::name);
   if (found == actions.end()) {
     std::vector<std::string_view> names;
-    std::ranges::transform(actions, std::back_inserter(names), &ActionInfo::name);
+    for (const ActionInfo& info : actions) {
+      if (offered.empty() || std::ranges::find(offered, info.action) != offered.end()) {
+        names.push_back(info.name);
+      }
+    }
     throw core::InvalidInput{
         fmt::format("'{}' is not a command (one of: {})", word, fmt::join(names, ", "))};
   }

@@ -37,5 +37,6 @@ struct OperatorCommand {
 };
 // "note the participant coughed", or with the trial that is meant, "skip @4 the string broke".
 // Throws InvalidInput naming what is allowed.
-OperatorCommand parse_operator_command(const std::string& line);
+OperatorCommand parse_operator_command(const std::string& line,
+                                       std::span<const OperatorAction> offered = {});
 }  // namespace tapstudy::runner

@@ -87,7 +87,7 @@ TEST_CASE("what cannot be amended is refused in one line, and nothing is stored"
   check_refused("sim-01", "include", "include is not possible now");
   check_refused("sim-01", "exclude", "REASON");
   check_refused("nobody", "note hello", "there is no 'nobody'");
-  check_refused("sim-01", "sing", "is not a command");
+  check_refused("sim-01", "sing", "is not a command (one of: correct, note, exclude, include)");
   CHECK(sql(directory, "SELECT count(*) FROM operator_action") == "0\n");
   CHECK(testing::tapstudy({"amend", directory / "nothing", "note x", "--participant", "a"})
             .exit_code == 2);

@@ -234,7 +234,7 @@ TEST_CASE("intervals are refused where a trial has one alternative or one that i
     CAPTURE(task);
     CHECK(result.exit_code == 2);
     CHECK_THAT(result.standard_error,
-               Contains("explore: intervals: the alternatives of a " + std::string{task}));
+               Contains("explore: intervals: the alternatives of " + std::string{task}));
   }
 }
 

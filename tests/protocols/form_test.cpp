@@ -72,3 +72,17 @@ TEST_CASE("NASA's task load index is asked in the language of the session, else 
   CHECK(read_protocol(study, "ja").forms.at("load").title == nasa_tlx("ja").title);
   CHECK(read_protocol(study).forms.at("load").title == nasa_tlx("en").title);
 }
+
+TEST_CASE("the ends of a confidence scale without words of its own are in the session's language",
+          "[protocols]") {
+  const tapstudy::testing::TempDirectory directory;
+  const std::string study = directory / "study.yaml";
+  tapstudy::testing::write(
+      study,
+      tapstudy::testing::replaced(
+          tapstudy::testing::contents(tapstudy::testing::shipped("paper/discrimination.yaml")),
+          "    task: identification", "    task: identification\n    confidence: {steps: 5}"));
+  CHECK(read_protocol(study).blocks.front().confidence->low == "guessed");
+  CHECK(read_protocol(study, "de").blocks.front().confidence->high == "sicher");
+  CHECK(read_protocol(study, "fr").blocks.front().confidence->high == "certain");
+}

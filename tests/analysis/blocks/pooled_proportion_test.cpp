@@ -16,7 +16,7 @@ TEST_CASE("the interval of pooled answers is that over participants, never the s
         std::vector<Value>{26, 48, 26.0 / 48.0, over->interval.low, over->interval.high});
   const Interval score = wilson_interval({26, 48});
   CHECK(over->interval.high - over->interval.low > 1.5 * (score.high - score.low));
-  CHECK_THAT(cell.text, Contains("26/48 = 54 % (95 % CI "));
+  CHECK_THAT(cell.text, Contains("26/48 = 54 % (mean over 6 participants 57 %, 95 % CI "));
 }
 
 TEST_CASE("answers of one participant have their score interval, of none no share",

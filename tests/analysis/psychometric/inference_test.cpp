@@ -57,27 +57,6 @@ TEST_CASE("intervals are wider with free lapses and infinite where answers set n
   CHECK(open.slope.low == 0.0);
 }
 
-TEST_CASE("bootstrap intervals of many trials are those of the profile",
-          "[analysis][psychometric]") {
-  std::vector<Level> many = yes_no_levels;
-  for (Level& level : many) {
-    level.answers.successes *= 10;
-    level.answers.trials *= 10;
-  }
-  const auto drawn = analysis::bootstrap_intervals(logistic, many, 2000, 5);
-  const auto profile = analysis::profile_intervals(logistic, many);
-  CHECK(drawn.without_threshold == 0);
-  const auto agree = [](const analysis::Interval& one, const analysis::Interval& other) {
-    const double width = other.high - other.low;
-    CHECK(one.low == Approx(other.low).margin(0.07 * width));
-    CHECK(one.high == Approx(other.high).margin(0.07 * width));
-  };
-  agree(drawn.intervals.threshold, profile.threshold);
-  agree(drawn.intervals.slope, profile.slope);
-  const auto again = analysis::bootstrap_intervals(logistic, many, 2000, 5);
-  CHECK(again.intervals.slope.low == drawn.intervals.slope.low);
-}
-
 TEST_CASE("with many trials a bootstrapped deviance is chi-squared", "[analysis][psychometric]") {
   constexpr int draws = 2000;
   // six levels, two parameters
@@ -105,7 +84,6 @@ TEST_CASE("a bad fit has a small p, an exact one a p of 1", "[analysis][psychome
 TEST_CASE("an interval is refused where there is no threshold", "[analysis][psychometric]") {
   const std::vector<Level> right{{1.0, {9, 9}}, {2.0, {9, 9}}};
   CHECK_THROWS_AS(analysis::profile_intervals(logistic, right), core::InvalidInput);
-  CHECK_THROWS_AS(analysis::bootstrap_intervals(logistic, right, 10, 1), core::InvalidInput);
   CHECK_THROWS_AS(analysis::profile_intervals(logistic, yes_no_levels, 1.0), core::InvalidInput);
   CHECK_THROWS_AS(analysis::deviance_test(logistic, yes_no_levels, 0, 1), core::InvalidInput);
 }

@@ -73,7 +73,7 @@ TEST_CASE("an answer that names no stimulus counts as an answer", "[analysis][co
       matrix_from("stimulus,factor:material,a,b,unsure\na,wood,11,3,6\nb,metal,2,5,13\n");
   CHECK(is(overall_accuracy(matrix), 16, 40));
   CHECK(is(factor_accuracy(matrix, "material"), 16, 40));
-  CHECK(matrix.chance() == Approx(1.0 / 3.0).epsilon(1e-9));
+  CHECK(matrix.chance() == Approx(1.0 / 2.0).epsilon(1e-9));
 }
 
 TEST_CASE("a column is a factor only if its header says so", "[analysis][confusion]") {

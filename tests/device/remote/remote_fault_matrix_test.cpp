@@ -223,3 +223,11 @@ TEST_CASE("a stop that a later reply contradicts is not confirmed", "[device][sa
   stage.trouble = Trouble::overload;
   CHECK(stage.hand.zero_force() == device::StopOutcome::unconfirmed);
 }
+
+TEST_CASE("a program that replies in another format is told from one that is not there",
+          "[device][remote]") {
+  MockProgram program;
+  program.trouble = Trouble::short_reply;
+  CHECK_THROWS_WITH((device::RemoteHand{program.port, std::chrono::milliseconds{5}}),
+                    Catch::Contains("but not as version 1 or 2"));
+}

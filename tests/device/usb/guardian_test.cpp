@@ -277,7 +277,8 @@ TEST_CASE("a port that is none, or is another's, is refused", "[device][guardian
   const SerialPort port;
   const device::DeadManRelay relay{port.name};
   CHECK_THROWS_WITH(device::DeadManRelay{port.name}, Catch::Matchers::Contains("another session"));
-  CHECK_THROWS_WITH(device::DeadManRelay{"/dev/null"}, Catch::Matchers::Contains("not a serial port"));
+  CHECK_THROWS_WITH(device::DeadManRelay{"/dev/null"},
+                    Catch::Matchers::Contains("not a serial port"));
   CHECK_THROWS_WITH(device::DeadManRelay{"/dev/ttyNone"},
                     Catch::Matchers::Contains("cannot be opened: No such file"));
 }

@@ -167,8 +167,11 @@ AnswerPlaces find_columns(const Header& header, const AnswerColumns& chosen,
                              ? chosen.time_unit_s
                              : unit_in(header[*places.time], format.time_unit_s);
   }
-  std::ranges::copy_if(format.counted, std::back_inserter(places.counted),
-                       [&](const RowCondition& one) { return has(header, one.column); });
+  for (const RowCondition& condition : format.counted) {
+    if (const auto place = find(header, {"", "", {condition.column}}, where)) {
+      places.counted.emplace_back(*place, condition.value);
+    }
+  }
   if (!format.block.empty()) {
     places.block = find(header, {"", "", {format.block}}, where);
   }

@@ -1,6 +1,7 @@
 #pragma once
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 namespace tapstudy::analysis {
 // Which columns of a table of answers hold what. Empty: those of the table's format.
@@ -31,7 +32,7 @@ struct AnswerPlaces {
   double time_unit_s{1.0};
   // Of tapstudy's own exports: what a row that counts holds (no practice, no catch trial, …), and
   // the block, of which there must be one.
-  std::vector<RowCondition> counted{};
+  std::vector<std::pair<std::size_t, std::string>> counted{};
   std::optional<std::size_t> block{};
   std::string possible_time{};  // a column that may hold times, of an unknown unit; empty: none
 };

@@ -41,10 +41,12 @@ class AnswerReader {
         places_{
             find_columns(header(), reading.columns, to_text({&csv, csv.text.rows.front().line}))} {
     for (const RowCondition& condition : reading.conditions) {
-      if (std::ranges::find(header(), condition.column) == header().end()) {
+      const auto found = std::ranges::find(header(), condition.column);
+      if (found == header().end()) {
         refuse(csv.text.rows.front().line,
                fmt::format("has no column '{}', which --where names", condition.column));
       }
+      conditions_.emplace_back(static_cast<std::size_t>(found - header().begin()), condition.value);
     }
   }
 
@@ -56,7 +58,7 @@ class AnswerReader {
         refuse(row.line,
                fmt::format("has {} cells, the header has {}", row.cells.size(), header().size()));
       }
-      if (meets(reading_.conditions, row)) {
+      if (meets(conditions_, row)) {
         add(row, table, origins);
       }
     }
@@ -64,10 +66,10 @@ class AnswerReader {
   }
 
  private:
-  bool meets(const std::vector<RowCondition>& conditions, const CsvRow& row) const {
-    return std::ranges::all_of(conditions, [&](const RowCondition& condition) {
-      const auto column = std::ranges::find(header(), condition.column) - header().begin();
-      return row.cells[static_cast<std::size_t>(column)] == condition.value;
+  using Conditions = std::vector<std::pair<std::size_t, std::string>>;  // place and value
+  static bool meets(const Conditions& conditions, const CsvRow& row) {
+    return std::ranges::all_of(conditions, [&](const auto& condition) {
+      return row.cells[condition.first] == condition.second;
     });
   }
   void add(const CsvRow& row, AnswerTable& table, std::vector<Origin>& origins) const {
@@ -137,6 +139,7 @@ class AnswerReader {
   const NamedCsv& csv_;
   const AnswerReading& reading_;
   AnswerPlaces places_;
+  Conditions conditions_;
 };
 
 std::vector<Item> items_of(const std::set<std::string>& names) {
@@ -183,6 +186,7 @@ void check_responses(const std::vector<results::AnswerRow>& answers,
                     to_text(origins.front()), responses.size(), max_classes)};
   }
 }
+
 void check_is_one_block(const std::vector<results::AnswerRow>& answers,
                         const std::vector<Origin>& origins) {
   const auto other = std::ranges::find_if(answers, [&](const results::AnswerRow& answer) {

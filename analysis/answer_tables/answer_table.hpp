@@ -36,7 +36,6 @@ struct NamedCsv {
 // Participants' answers follow one another as rows and files do. Throws InvalidInput with file:line
 // for an answer that is neither a stimulus nor one of `responses`, a time that is no number from 0,
 // an answer without a stimulus, several blocks of one of tapstudy's own exports, a row with more or
-// fewer cells than the header, more than 200 different answers, or no answers at
-// all.
+// fewer cells than the header, more than 200 different answers, or no answers at all.
 AnswerTable read_answers(const std::vector<NamedCsv>& files, const AnswerReading& reading);
 }  // namespace tapstudy::analysis

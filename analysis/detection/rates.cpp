@@ -31,14 +31,6 @@ Interval around(double centre, double standard_error) {
   return {centre - half_width, centre + half_width};
 }
 
-RatesSensitivity by_unbiased_proportion(DecisionModel model, double hit_rate,
-                                        double false_alarm_rate) {
-  check_rate(hit_rate);
-  check_rate(false_alarm_rate);
-  const double unbiased =
-      normal_cdf(0.5 * (normal_quantile(hit_rate) - normal_quantile(false_alarm_rate)));
-  return {d_prime_of({model, 2}, unbiased), hit_rate <= false_alarm_rate};
-}
 }  // namespace
 
 double log_linear_rate(const Proportion& answers) {
@@ -88,8 +80,11 @@ RatesSensitivity same_different_differencing(double hit_rate, double false_alarm
 }
 
 RatesSensitivity same_different_independent(double hit_rate, double false_alarm_rate) {
-  return by_unbiased_proportion(DecisionModel::same_different_independent_observation, hit_rate,
-                                false_alarm_rate);
+  check_rate(hit_rate);
+  check_rate(false_alarm_rate);
+  const double unbiased =
+      normal_cdf(0.5 * (normal_quantile(hit_rate) - normal_quantile(false_alarm_rate)));
+  return {d_prime_of({DecisionModel::same_different_independent_observation, 2}, unbiased),
+          hit_rate <= false_alarm_rate};
 }
-
 }  // namespace tapstudy::analysis

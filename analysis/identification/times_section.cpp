@@ -94,8 +94,7 @@ void add_conditional_accuracy(const IdentificationData& data, ReportSection& sec
   chart.x_label = "response time, s";
   chart.y_label = "share right";
   chart.y_range = {0.0, 1.0};
-  chart.levels = {
-      1.0 / static_cast<double>(std::ranges::count(data.responses, true, &Item::is_alternative))};
+  chart.levels = {1.0 / static_cast<double>(alternatives_among(data.responses))};
   std::vector<double> times;
   for (std::size_t i = 0; i < found.size(); ++i) {
     table.rows.push_back({count(static_cast<std::int64_t>(i) + 1), number(found[i].mean_time_s),

@@ -80,23 +80,6 @@ std::vector<Level> drawn_anew(const std::vector<Level>& levels, const std::vecto
   }
   return drawn;
 }
-
-// Fits of answers drawn anew from the maximum, one after the other.
-template <typename Visit>
-void each_draw(const PsychometricModel& model, const std::vector<Level>& levels,
-               const PsychometricFit& fit, int draws, std::uint64_t seed, Visit visit) {
-  if (draws < 1) {
-    throw core::InvalidInput{fmt::format("a bootstrap takes 1 draw or more, not {}", draws)};
-  }
-  const std::vector<Level> checked = checked_levels(levels, model.shape);
-  const BinomialLikelihood likelihood{model.shape, checked};
-  const std::vector<double> p = likelihood.proportions(fit.maximum.at);
-  core::Rng rng{seed};
-  for (int draw = 0; draw < draws; ++draw) {
-    visit(fit_psychometric(model, drawn_anew(checked, p, rng)));
-  }
-}
-
 }  // namespace
 
 PsychometricIntervals profile_intervals(const PsychometricModel& model,
@@ -116,11 +99,19 @@ PsychometricIntervals profile_intervals(const PsychometricModel& model,
 GoodnessOfFit deviance_test(const PsychometricModel& model, const std::vector<Level>& levels,
                             int draws, std::uint64_t seed) {
   const PsychometricFit fit = fit_psychometric(model, levels);
+  if (draws < 1) {
+    throw core::InvalidInput{fmt::format("a bootstrap takes 1 draw or more, not {}", draws)};
+  }
+  const std::vector<Level> checked = checked_levels(levels, model.shape);
+  const BinomialLikelihood likelihood{model.shape, checked};
+  const std::vector<double> p = likelihood.proportions(fit.maximum.at);
+  core::Rng rng{seed};
   int as_bad = 0;
-  each_draw(model, levels, fit, draws, seed, [&](const PsychometricFit& drawn) {
+  for (int draw = 0; draw < draws; ++draw) {
     // answers that fit exactly differ by rounding
+    const PsychometricFit drawn = fit_psychometric(model, drawn_anew(checked, p, rng));
     as_bad += drawn.deviance >= fit.deviance - 1e-9 ? 1 : 0;
-  });
+  }
   return {fit.deviance, (1.0 + as_bad) / (draws + 1.0), draws};
 }
 

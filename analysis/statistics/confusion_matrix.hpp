@@ -22,6 +22,10 @@ struct Item {
   }
 };
 
+inline std::int64_t alternatives_among(const std::vector<Item>& responses) {
+  return std::ranges::count(responses, true, &Item::is_alternative);
+}
+
 // counts[i][j]: how often stimulus i was answered with response j.
 struct ConfusionMatrix {
   std::vector<Item> stimuli;
@@ -33,9 +37,7 @@ struct ConfusionMatrix {
   void add(const std::string& stimulus, const std::string& response, std::int64_t times = 1);
   std::int64_t row_total(std::size_t stimulus) const;
   std::int64_t total() const;
-  std::int64_t alternatives() const {
-    return std::ranges::count(responses, true, &Item::is_alternative);
-  }
+  std::int64_t alternatives() const { return alternatives_among(responses); }
   double chance() const { return 1.0 / static_cast<double>(alternatives()); }
 };
 

@@ -6,10 +6,18 @@ namespace tapstudy::runner {
 namespace {
 using protocols::AnswerKind;
 
-// Blind labels are not stored: what they stood for in the trial is.
-bool is_stored_as_given(const protocols::Option& option, const protocols::Block& block) {
+// Blind labels are not: what they stood for in the trial is stored.
+std::vector<protocols::Option> stored_as_given(const protocols::Answers& answers,
+                                               const protocols::Block& block) {
   const auto trials = block.task->trials(block, {});
-  return !trials.empty() && block.task->response(trials.front(), block, option.name) == option.name;
+  if (answers.kind != AnswerKind::option || trials.empty()) {
+    return {};
+  }
+  std::vector<protocols::Option> options = answers.options;
+  std::erase_if(options, [&](const protocols::Option& option) {
+    return block.task->response(trials.front(), block, option.name) != option.name;
+  });
+  return options;
 }
 }  // namespace
 
@@ -23,10 +31,8 @@ std::vector<std::pair<std::string, std::string>> response_meanings(
     return {};
   }
   std::vector<std::pair<std::string, std::string>> meanings;
-  for (const protocols::Option& option : answers.options) {
-    if (answers.kind == AnswerKind::option && is_stored_as_given(option, block)) {
-      meanings.emplace_back(option.name, option.label);
-    }
+  for (const protocols::Option& option : stored_as_given(answers, block)) {
+    meanings.emplace_back(option.name, option.label);
   }
   if (meanings.size() < answers.options.size()) {
     for (const std::string& stimulus : protocols::all_presented(block)) {

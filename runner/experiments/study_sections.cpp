@@ -76,13 +76,15 @@ std::vector<analysis::ConfidenceScale> confidence_scales(const protocols::Protoc
   return scales;
 }
 
-std::vector<results::AnswerRow> all_counted_answers(const std::vector<StudyStore>& stores,
-                                                    results::Mode mode) {
-  std::vector<results::AnswerRow> all;
-  for (const StudyStore& each : stores) {
-    std::ranges::move(counted_answers(*each.store, mode), std::back_inserter(all));
+// Answers are read only where confidence was asked.
+analysis::ReportSection confidence(const protocols::Protocol& protocol,
+                                   const std::vector<StudyStore>& stores, results::Mode mode) {
+  const std::vector<analysis::ConfidenceScale> scales = confidence_scales(protocol);
+  std::vector<results::AnswerRow> answers;
+  for (std::size_t i = 0; i < stores.size() && !scales.empty(); ++i) {
+    std::ranges::move(counted_answers(*stores[i].store, mode), std::back_inserter(answers));
   }
-  return all;
+  return analysis::confidence_section(scales, answers);
 }
 }  // namespace
 
@@ -90,8 +92,7 @@ std::vector<analysis::ReportSection> study_sections(const protocols::Protocol& p
                                                     const std::vector<StudyStore>& stores,
                                                     results::Mode mode) {
   return {
-      course(protocol, stores, mode),
-      analysis::confidence_section(confidence_scales(protocol), all_counted_answers(stores, mode)),
+      course(protocol, stores, mode), confidence(protocol, stores, mode),
       analysis::procedures_section(track_results(protocol, stores, mode)),
       analysis::questionnaires_section(questionnaires_of(protocol), given_answers(stores, mode)),
       analysis::rendered_section(rendered_study(protocol, stores, mode))};

@@ -61,7 +61,7 @@ Participant::FormAnswers ConsoleParticipant::fill_in(const protocols::Form& form
     ask_to_stop();
     stop_if_asked();
   }
-  say("\n{}\n{}\n", form.title, marked_text(form.text, terminal_shows_bold()));
+  say("\n{}\n{}\n", form.title, marked_text(form.text, is_shown_by_terminal()));
   FormAnswers answers;
   for (const protocols::FormItem& item : form.items) {
     if (std::string answer = answer_to(item); !answer.empty()) {

@@ -66,7 +66,7 @@ void ConsoleParticipant::wait_while(const std::function<bool()>& is_paused) {
 
 void ConsoleParticipant::read(const std::string& instructions) {
   const std::string text = instructions.substr(0, instructions.find_last_not_of('\n') + 1);
-  say("\n{}\n", marked_text(text, terminal_shows_bold()));
+  say("\n{}\n", marked_text(text, is_shown_by_terminal()));
   wait_for_enter();
 }
 

@@ -277,7 +277,8 @@ class Identifier {
     for (const analysis::MatchedMode& one : update.matched) {
       if (one.assurance && *one.assurance < least_assurance) {
         result_.remarks.push_back(fmt::format(
-            "the mode at {:.6g} Hz hardly has the shape of the model's (MAC {:.2g}): are places, "
+            "the mode at {:.6g} Hz does not have the shape of the model's (MAC {:.2g}): are "
+            "places, "
             "force or speeds right?",
             result_.modes[result_.agreed[one.measured]].frequency_hz.value, *one.assurance));
       }

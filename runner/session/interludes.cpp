@@ -9,12 +9,12 @@ void Interludes::begin() {
 }
 
 // Also those of a block that an earlier session finished, but for its questionnaires.
-void Interludes::ask_after_blocks_before(const std::string& block) {
-  for (const protocols::Block& earlier : parts_.protocol.blocks) {
-    if (earlier.name == block) {
+void Interludes::ask_after_blocks(const std::optional<std::string>& up_to) {
+  for (const protocols::Block& block : parts_.protocol.blocks) {
+    if (block.name == up_to) {
       return;
     }
-    ask(earlier.forms_after, earlier.name);
+    ask(block.forms_after, block.name);
   }
 }
 
@@ -22,7 +22,7 @@ void Interludes::before(const protocols::PlannedTrial& trial) {
   begin();
   const protocols::Block& block = parts_.protocol.block(trial.block);
   if (block_ != trial.block) {
-    ask_after_blocks_before(trial.block);
+    ask_after_blocks(trial.block);
     block_ = trial.block;
     read(block.instructions, block.name);
     trials_since_rest_ = 0;
@@ -46,9 +46,7 @@ void Interludes::rest_if_due(const protocols::Block& block) {
 // A session that was interrupted just before its last questionnaires has no trial left.
 void Interludes::after_last_trial() {
   begin();
-  for (const protocols::Block& block : parts_.protocol.blocks) {
-    ask(block.forms_after, block.name);
-  }
+  ask_after_blocks(std::nullopt);
   ask(parts_.protocol.forms_after, asked_at_end);
 }
 

@@ -35,7 +35,8 @@ class Interludes {
 
  private:
   void begin();
-  void ask_after_blocks_before(const std::string& block);
+  // nullopt: after all blocks.
+  void ask_after_blocks(const std::optional<std::string>& up_to);
   void read(const std::string& text, const std::string& whose);
   void rest_if_due(const protocols::Block& block);
   void ask(const std::vector<std::string>& forms, const std::string& asked);

@@ -1,7 +1,5 @@
 #include "runner/terminal/marked_text.hpp"
 
-#include <unistd.h>
-
 #include <string_view>
 namespace tapstudy::runner {
 namespace {
@@ -40,9 +38,5 @@ std::string marked_text(std::string_view text, bool shows_bold) {
     shown += '\n';
     text.remove_prefix(end + 1);
   }
-}
-
-bool terminal_shows_bold() {
-  return isatty(STDERR_FILENO) == 1;
 }
 }  // namespace tapstudy::runner

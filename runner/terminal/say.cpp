@@ -12,8 +12,12 @@ void write_to_terminal(const std::string& text) noexcept {
   }
 }
 
+bool is_shown_by_terminal() noexcept {
+  return isatty(STDERR_FILENO) == 1;
+}
+
 void clear_screen() noexcept {
-  if (isatty(STDERR_FILENO) == 1) {
+  if (is_shown_by_terminal()) {
     write_to_terminal("\033[H\033[2J\033[3J");
   }
 }

@@ -8,6 +8,9 @@ namespace tapstudy::runner {
 // or whose reader has, asks the session to stop, so that an open trial is stored first.
 void write_to_terminal(const std::string& text) noexcept;
 
+// Whether what is written is shown by a terminal.
+bool is_shown_by_terminal() noexcept;
+
 // What a participant must not read: away with what the screen shows, and with what was scrolled off
 // it; nothing where it is no terminal.
 void clear_screen() noexcept;

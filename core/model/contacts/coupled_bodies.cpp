@@ -41,14 +41,16 @@ class Elongations {
   // Axes are parallel, so that one shift of a body must bring all of its contacts with another
   // together: else the springs would hold free bodies against turning.
   void check_can_touch() const {
+    std::vector<Vec3> shifts_m;
     for (std::size_t i = 0; i < contacts_.springs.size(); ++i) {
+      shifts_m.push_back(shift_m(i));
       for (std::size_t j = 0; j < i; ++j) {
         const auto& one = contacts_.springs[i];
         const auto& other = contacts_.springs[j];
         if (one.from.body != other.from.body || one.to.body != other.to.body) {
           continue;
         }
-        const double apart_m = (shift_m(i) - shift_m(j)).norm();
+        const double apart_m = (shifts_m[i] - shifts_m[j]).norm();
         if (apart_m > max_misplacement * larger_diagonal_m(one)) {
           throw ModelError{fmt::format(
               "contact springs {} and {} join the same two bodies at places that cannot lie on one "

@@ -78,6 +78,10 @@ void read_audio(MapReader& top, Rig& rig) {
   top.map("audio", Presence::optional, [&](MapReader& reader) {
     core::AudioOutput& audio = rig.audio.emplace();
     audio.card = reader.text("card", audio.card);
+    if (audio.card.find('|') !=
+        std::string::npos) {  // ALSA's plug-in `file` would run what follows
+      reader.reject("card", "names a command to run ('|')");
+    }
     audio.rate_hz = reader.integer("rate_hz", 8000, 192'000, audio.rate_hz);
     audio.gain_db = reader.number("gain_db", {-60.0, 60.0}, audio.gain_db);
   });

@@ -78,10 +78,14 @@ class Store {
 
   // The participant's latest session, to resume it.
   std::optional<SessionRow> latest_session(const std::string& participant_id);
+  // Whose name is this but for capital letters.
+  std::optional<std::string> participant_like(const std::string& participant_id);
   // The session in which a trial of that number was presented to the participant last.
   std::optional<std::int64_t> session_of_trial(const std::string& participant_id, int number);
   // Numbers of the trials that the participant has answered, in any session.
   std::vector<int> answered_trials(const std::string& participant_id);
+  // How often each trial was presented, by its number.
+  std::map<int, int> presentations(const std::string& participant_id);
   // Those that were presented, timed out or skipped, and not answered later.
   std::vector<UnansweredTrial> unanswered_trials(const std::string& participant_id);
   // Form and where it was asked, of all that the participant has answered.

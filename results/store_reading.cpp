@@ -167,6 +167,14 @@ std::optional<SessionRow> Store::latest_session(const std::string& participant_i
   return row.step() ? std::optional{session_from(row, database_.file())} : std::nullopt;
 }
 
+std::optional<std::string> Store::participant_like(const std::string& participant_id) {
+  Statement row{database_,
+                "SELECT participant_id FROM participant WHERE participant_id = ? COLLATE NOCASE "
+                "AND participant_id <> ?"};
+  row.bind(participant_id).bind(participant_id);
+  return row.step() ? std::optional{row.text(0)} : std::nullopt;
+}
+
 std::optional<std::int64_t> Store::session_of_trial(const std::string& participant_id, int number) {
   Statement row{database_,
                 "SELECT session_id FROM trial JOIN session USING (session_id) "
@@ -185,6 +193,18 @@ std::vector<int> Store::answered_trials(const std::string& participant_id) {
     numbers.push_back(static_cast<int>(row.integer(0)));
   }
   return numbers;
+}
+
+std::map<int, int> Store::presentations(const std::string& participant_id) {
+  Statement row{database_,
+                "SELECT number, max(attempt) FROM trial JOIN session USING (session_id) "
+                "WHERE participant_id = ? GROUP BY number"};
+  row.bind(participant_id);
+  std::map<int, int> attempts;
+  while (row.step()) {
+    attempts.emplace(static_cast<int>(row.integer(0)), static_cast<int>(row.integer(1)));
+  }
+  return attempts;
 }
 
 std::vector<UnansweredTrial> Store::unanswered_trials(const std::string& participant_id) {

@@ -26,8 +26,9 @@ struct HypothesisResult {
 struct MainResult {
   std::string name;  // with its unit
   double estimate{};
-  Interval range;             // 95 %, over participants
-  std::optional<double> p{};  // of the planned test, where there is one
+  Interval range;                  // 95 %, over participants
+  std::optional<double> p{};       // of the planned test, where there is one
+  std::optional<double> chance{};  // what guessing gives, of a share of right answers
 };
 
 // The alternatives of a trial as they were visited one after the other, by position from 0.

@@ -179,7 +179,8 @@ std::shared_ptr<BlockSummary> summarise_discrimination(const BlockDesign& design
   summary->remarks = remarks_on(design, results);
   if (const auto over = mean_proportion(correct_of(results))) {
     summary->main = {{"share of right answers", over->mean, over->interval,
-                      results.test ? std::optional{results.test->p} : std::nullopt}};
+                      results.test ? std::optional{results.test->p} : std::nullopt,
+                      design.guess_rate}};
   }
   for (const PlannedHypothesis& planned : design.hypotheses) {
     summary->hypotheses.push_back(tested(design, results, planned));

@@ -158,7 +158,7 @@ std::vector<MainResult> IdentificationSummary::main_results() const {
     return {};
   }
   return {{"accuracy", accuracy_over_participants->mean, accuracy_over_participants->interval,
-           chance_p}};
+           chance_p, matrix.chance()}};
 }
 
 std::shared_ptr<BlockSummary> summarise_identification(const BlockDesign& design,

@@ -1,8 +1,11 @@
 #include "analysis/report/comparison.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
+#include <iterator>
 #include <memory>
 
 #include "analysis/statistics/independent_difference.hpp"
@@ -41,6 +44,31 @@ void add_rows(const MainResult& first, const MainResult& second, const NamedSumm
       {word(first.name), word("difference"), interval(difference.value, difference.interval)});
 }
 
+void compare_chances(const MainResult& first, const MainResult& second, const NamedSummary& a,
+                     const NamedSummary& b, std::vector<std::string>& remarks) {
+  constexpr double rounding = 1e-9;
+  if (first.chance && second.chance && std::abs(*first.chance - *second.chance) > rounding) {
+    remarks.push_back(fmt::format(
+        "Guessing gives {:.3g} in {}, {:.3g} in {}: the difference is not one of the participants "
+        "alone.",
+        *first.chance, a.name, *second.chance, b.name));
+  }
+}
+
+// People of both studies answer more alike than different people do.
+std::string remark_on_people(const NamedSummary& a, const NamedSummary& b) {
+  std::vector<std::string> shared;
+  std::ranges::set_intersection(a.summary->participant_ids, b.summary->participant_ids,
+                                std::back_inserter(shared));
+  if (shared.empty()) {
+    return "The interval of the difference takes all participants for different people.";
+  }
+  return fmt::format(
+      "{} participant{} an id in both studies ({}): if the same people took part in both, the "
+      "interval of the difference does not hold, as it takes them for different people.",
+      shared.size(), shared.size() == 1 ? " has" : "s have", fmt::join(shared, ", "));
+}
+
 std::shared_ptr<TabularSummary> compare_blocks(const BlockSummary& first,
                                                const BlockSummary& second, const NamedSummary& a,
                                                const NamedSummary& b) {
@@ -58,13 +86,13 @@ std::shared_ptr<TabularSummary> compare_blocks(const BlockSummary& first,
     const auto other = std::ranges::find(others, result.name, &MainResult::name);
     if (other != others.end()) {
       add_rows(result, *other, a, b, table);
+      compare_chances(result, *other, a, b, compared->remarks);
     }
   }
   if (first.question != second.question) {
     compared->remarks.push_back(fmt::format("{} asked: {}", b.name, second.question));
   }
-  compared->remarks.emplace_back(
-      "The intervals of differences hold where no participant is in both studies.");
+  compared->remarks.push_back(remark_on_people(a, b));
   compared->parts.push_back(std::move(table));
   return compared;
 }

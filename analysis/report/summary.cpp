@@ -60,13 +60,12 @@ Summary summarise(const StudyDesign& design, const std::vector<AnswerRow>& answe
   summary.title = design.title;
   summary.notes = design.notes;
   std::set<std::string> modes;
-  std::set<std::string> participants;
   for (const AnswerRow& answer : answers) {
     modes.insert(results::to_text(answer.mode));
-    participants.insert(answer.participant_id);
+    summary.participant_ids.insert(answer.participant_id);
   }
   summary.modes = fmt::format("{}", fmt::join(modes, ", "));
-  summary.participants = static_cast<int>(participants.size());
+  summary.participants = static_cast<int>(summary.participant_ids.size());
   summary.loop = loop_quality(answers);
   std::vector<std::shared_ptr<BlockSummary>> blocks;
   for (const BlockDesign& block : design.blocks) {
@@ -116,10 +115,10 @@ Summary summarise(const AnswerTable& table, const std::string& title, std::strin
   Summary summary;
   summary.title = title;
   summary.modes = mode.empty() ? "answers" : "answers, " + mode;
-  std::set<std::string> participants;
-  std::ranges::transform(table.answers, std::inserter(participants, participants.end()),
-                         &AnswerRow::participant_id);
-  summary.participants = static_cast<int>(participants.size());
+  for (const AnswerRow& answer : table.answers) {
+    summary.participant_ids.insert(answer.participant_id);
+  }
+  summary.participants = static_cast<int>(summary.participant_ids.size());
   summary.blocks.push_back(std::make_shared<const IdentificationSummary>(
       design, identification_data(design, table.answers)));
   return summary;

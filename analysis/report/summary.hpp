@@ -2,6 +2,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -28,6 +29,7 @@ struct Summary {
   std::vector<std::string> excluded;    // participants, with the operator's reason
   std::vector<std::string> deviations;  // participants, with what was not as planned
   int participants{};
+  std::set<std::string> participant_ids{};  // where they are known
   std::vector<std::shared_ptr<const BlockSummary>> blocks;
   std::vector<ReportSection> sections;  // of the study as a whole
   std::optional<LoopQuality> loop;

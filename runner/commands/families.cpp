@@ -16,6 +16,21 @@ double megabytes(const core::BodyModes& body) {
   return bytes(body.shape) + bytes(body.touch_nodes_m) + bytes(body.touch_surface);
 }
 
+void print_crossings(const protocols::Protocol& protocol, const protocols::Stimulus& stimulus,
+                     const core::BodyModes& body) {
+  for (const protocols::AxisRange& range : stimulus.vary) {
+    const auto crossings = band_crossings(protocol, stimulus, range, body);
+    if (!crossings.empty()) {
+      fmt::print(
+          "    note: a mode crosses the band limit at {} {:.3g}{}: a difference across such a "
+          "value "
+          "is told by the mode\n",
+          range.axis->name, fmt::join(crossings, ", "),
+          range.axis->unit.empty() ? "" : fmt::format(" {}", range.axis->unit));
+    }
+  }
+}
+
 void print_cost(const protocols::Protocol& protocol, const protocols::Stimulus& stimulus,
                 ModelLibrary& models) {
   const BandEnds ends = band_ends(protocol, stimulus);
@@ -35,6 +50,7 @@ void print_cost(const protocols::Protocol& protocol, const protocols::Stimulus& 
   fmt::print("    {} to {} modes below {} Hz at its own values of table axes\n",
              fewest->model.frequency_hz.size(), most->model.frequency_hz.size(),
              protocol.band_limit_hz);
+  print_crossings(protocol, stimulus, *models.body_of(protocol, stimulus_with(protocol, stimulus)));
 }
 }  // namespace
 

@@ -1,5 +1,6 @@
 #include "runner/console/browser_participant.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <thread>
 #include <utility>
@@ -104,7 +105,7 @@ std::optional<std::string> BrowserParticipant::perform(const TrialPrompt& prompt
   std::size_t current = exploration.current();
   auto in_turn = intervals(exploration);
   std::int64_t number = show_trial(prompt, exploration);
-  seen_at_ = std::chrono::steady_clock::now();
+  asked_at_ = std::chrono::steady_clock::now();
   while (exploration.is_running() && !stop_was_asked()) {
     pause_if_left();
     tell_entered(prompt, exploration);
@@ -184,10 +185,8 @@ bool BrowserParticipant::follow_correction() {
 void BrowserParticipant::pause_if_left() {
   constexpr std::chrono::seconds patience{3};
   const auto now = std::chrono::steady_clock::now();
-  if (screens_.is_watched(now)) {
-    seen_at_ = now;
-  } else if (now - seen_at_ > patience) {
-    seen_at_ = now;
+  if (now - std::max(screens_.last_seen(now), asked_at_) > patience) {
+    asked_at_ = now;
     context_.pause("the participant's page is closed or does not answer");
   }
 }

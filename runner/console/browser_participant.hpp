@@ -60,6 +60,6 @@ class BrowserParticipant final : public Participant {
   std::optional<TooEarly> notice_;
   std::shared_future<void> correction_;  // that is being stored
   CorrectionState correction_state_{CorrectionState::none};
-  std::chrono::steady_clock::time_point seen_at_;
+  std::chrono::steady_clock::time_point asked_at_;  // whether somebody is there
 };
 }  // namespace tapstudy::runner

@@ -61,13 +61,13 @@ Reply ConsoleApi::post_alive(Role role) {
 
 void ConsoleApi::page_opened(Role role) {
   if (role == Role::participant) {
-    screens_.page_opened();
+    screens_.page_opened(std::chrono::steady_clock::now());
   }
 }
 
 void ConsoleApi::page_closed(Role role) {
   if (role == Role::participant) {
-    screens_.page_closed();
+    screens_.page_closed(std::chrono::steady_clock::now());
   }
 }
 

@@ -1,5 +1,6 @@
 #include "runner/console/screen_exchange.hpp"
 
+#include <algorithm>
 #include <utility>
 namespace tapstudy::runner {
 std::int64_t ScreenExchange::show(const Screen& screen) {
@@ -67,20 +68,25 @@ void ScreenExchange::page_is_alive(std::chrono::steady_clock::time_point now) {
   alive_at_ = now;
 }
 
-bool ScreenExchange::is_watched(std::chrono::steady_clock::time_point now) const {
-  constexpr std::chrono::seconds longest_silence{5};
-  const std::lock_guard lock{mutex_};
-  return open_pages_ > 0 && (!alive_at_ || now - *alive_at_ < longest_silence);
-}
-
-void ScreenExchange::page_opened() {
+void ScreenExchange::page_opened(std::chrono::steady_clock::time_point now) {
   const std::lock_guard lock{mutex_};
   ++open_pages_;
+  if (alive_at_) {
+    alive_at_ = now;
+  }
 }
 
-void ScreenExchange::page_closed() {
+void ScreenExchange::page_closed(std::chrono::steady_clock::time_point now) {
   const std::lock_guard lock{mutex_};
   --open_pages_;
+  closed_at_ = now;
+}
+
+std::chrono::steady_clock::time_point ScreenExchange::last_seen(
+    std::chrono::steady_clock::time_point now) const {
+  const std::lock_guard lock{mutex_};
+  const auto sign = alive_at_.value_or(now);
+  return open_pages_ > 0 ? sign : std::min(sign, closed_at_);
 }
 
 int ScreenExchange::open_pages() const {

@@ -36,9 +36,11 @@ class ScreenExchange {
   std::string post(std::int64_t number, const ScreenInput& input);
   // A page that says so now and then is gone once it is silent, though its connection is open.
   void page_is_alive(std::chrono::steady_clock::time_point now);
-  bool is_watched(std::chrono::steady_clock::time_point now) const;
-  void page_opened();
-  void page_closed();
+  void page_opened(std::chrono::steady_clock::time_point now);
+  void page_closed(std::chrono::steady_clock::time_point now);
+  // When there was last a sign of somebody who may be looking: now, if a page is open that never
+  // says so.
+  std::chrono::steady_clock::time_point last_seen(std::chrono::steady_clock::time_point now) const;
   int open_pages() const;
 
  private:
@@ -53,5 +55,6 @@ class ScreenExchange {
   bool is_closed_{false};
   int open_pages_{0};
   std::optional<std::chrono::steady_clock::time_point> alive_at_;
+  std::chrono::steady_clock::time_point closed_at_;
 };
 }  // namespace tapstudy::runner

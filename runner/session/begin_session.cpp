@@ -24,9 +24,16 @@ std::optional<results::SessionRow> earlier_session(const SessionRequest& request
                     "--resume, or choose another id)",
                     request.participant_id)};
   }
+  const auto alike = earlier ? std::nullopt : store.participant_like(request.participant_id);
   if (!earlier && request.resume == Resume::yes) {
-    throw core::InvalidInput{
-        fmt::format("participant '{}' has no session to resume", request.participant_id)};
+    throw core::InvalidInput{fmt::format("participant '{}' has no session to resume{}",
+                                         request.participant_id,
+                                         alike ? fmt::format(" ('{}' has)", *alike) : "")};
+  }
+  if (alike) {
+    throw core::InvalidInput{fmt::format(
+        "participant '{}': this study has a '{}' (ids must differ in more than capital letters)",
+        request.participant_id, *alike)};
   }
   return earlier;
 }
@@ -41,8 +48,8 @@ void resume(const results::SessionRow& earlier, const protocols::Protocol& proto
   session.row.resumes = earlier.id;
   session.resumed_since_utc = earlier.started_utc;
   const auto as_given = store.answers_as_given(earlier.participant_id);
-  session.earlier = {store.filled_forms(earlier.participant_id), PracticeRecord{as_given},
-                     as_given};
+  session.earlier = {store.filled_forms(earlier.participant_id), PracticeRecord{as_given}, as_given,
+                     store.presentations(earlier.participant_id)};
   const std::vector<int> answered = store.answered_trials(earlier.participant_id);
   session.done = {answered.begin(), answered.end()};
   for (const auto& trials : {given_up_trials(protocol, earlier.participant_id, store),

@@ -1,4 +1,5 @@
 #pragma once
+#include <map>
 #include <set>
 #include <string>
 #include <utility>
@@ -14,5 +15,6 @@ struct EarlierAnswers {
   FilledForms filled_forms{};
   PracticeRecord practice{};
   std::vector<results::JournalledAnswer> as_given{};  // in that order
+  std::map<int, int> attempts{};                      // of each trial, by its number
 };
 }  // namespace tapstudy::runner

@@ -43,7 +43,8 @@ class TrialEngine {
                     earlier.filled_forms},
         practice_{parts.protocol, parts.states, earlier.practice},
         as_given_{earlier.as_given},
-        recorder_{recorder} {}
+        recorder_{recorder},
+        attempts_{earlier.attempts} {}
 
   // Runs the trials not in `done`, adding each, until all are done or a fault ends one; called
   // again, it repeats that one. A trial that took too long comes again at the end of its block, if

@@ -52,6 +52,37 @@ BandEnds band_ends(const protocols::Protocol& protocol, const protocols::Stimulu
   return ends;
 }
 
+// By bisection of the axis: kappa of the limit is monotonic along each.
+std::vector<double> band_crossings(const protocols::Protocol& protocol,
+                                   const protocols::Stimulus& stimulus,
+                                   const protocols::AxisRange& range, const core::BodyModes& body) {
+  constexpr int halvings = 40;
+  if (range.axis->kind != protocols::AxisKind::scaled) {
+    return {};
+  }
+  const auto limit_at = [&](double share) {
+    return band_kappa_rad_per_m(
+        protocol,
+        stimulus_with(protocol, stimulus, {{std::string{range.axis->name}, range.at(share)}}));
+  };
+  std::vector<double> crossings;
+  for (const double kappa : body.kappa_rad_per_m) {
+    const bool is_in_at_first = kappa < limit_at(0.0);
+    if (is_in_at_first == (kappa < limit_at(1.0))) {
+      continue;
+    }
+    double low = 0.0;
+    double high = 1.0;
+    for (int i = 0; i < halvings; ++i) {
+      const double middle = (low + high) / 2.0;
+      ((kappa < limit_at(middle)) == is_in_at_first ? low : high) = middle;
+    }
+    crossings.push_back(range.at(high));
+  }
+  std::ranges::sort(crossings);
+  return crossings;
+}
+
 double largest_kappa_rad_per_m(const protocols::Protocol& protocol,
                                const protocols::Stimulus& stimulus) {
   return band_kappa_rad_per_m(

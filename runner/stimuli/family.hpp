@@ -13,6 +13,13 @@ struct BandEnds {
 };
 BandEnds band_ends(const protocols::Protocol& protocol, const protocols::Stimulus& stimulus);
 
+// The values of one of its scaled axes, ascending, at which a mode of the body crosses the band
+// limit while the other axes keep the stimulus's own: what is felt changes there by a whole mode,
+// and by little between.
+std::vector<double> band_crossings(const protocols::Protocol& protocol,
+                                   const protocols::Stimulus& stimulus,
+                                   const protocols::AxisRange& range, const core::BodyModes& body);
+
 // kappa of the band limit in the member with the most modes: its body is solved up to here.
 double largest_kappa_rad_per_m(const protocols::Protocol& protocol,
                                const protocols::Stimulus& stimulus);

@@ -41,6 +41,20 @@ TEST_CASE("two studies are compared by what their own reports say", "[end_to_end
   CHECK(rows[2]["estimate"].get<double>() ==
         Approx(rows[1]["estimate"].get<double>() - rows[0]["estimate"].get<double>()));
   CHECK(rows[2]["estimate_low"] < rows[2]["estimate"]);
+  CHECK_THAT(testing::contents((directory / "both") + "/report.html"),
+             Contains("3 participants have an id in both studies (1, 2, 3)"));
+}
+
+TEST_CASE("shares of right answers at other levels of chance are not compared without a word",
+          "[end_to_end]") {
+  const testing::TempDirectory directory;
+  testing::write(directory / "two.csv", few_answers);
+  testing::write(directory / "three.csv",
+                 "participant,stimulus,response\n5,a,a\n5,b,b\n5,c,c\n6,a,a\n6,b,b\n6,c,a\n");
+  const auto said =
+      testing::tapstudy({"report", "--compare", directory / "two.csv", directory / "three.csv"});
+  REQUIRE(said.exit_code == 0);
+  CHECK_THAT(said.standard_output, Contains("Guessing gives 0.5 in ") && Contains("0.333 in "));
 }
 
 TEST_CASE("studies with nothing in common are refused with the reasons", "[end_to_end]") {

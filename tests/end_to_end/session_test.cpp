@@ -69,6 +69,27 @@ TEST_CASE("a stopped session keeps its answers and is resumed at the next trial"
             "SELECT count(DISTINCT number), count(*) FROM trial "
             "WHERE status = 'answered'") == "8|8\n");
   CHECK(sql(directory, "SELECT count(DISTINCT planned_order) FROM session") == "1\n");
+  CHECK(sql(directory, "SELECT group_concat(attempt || status) FROM trial WHERE number = 4") ==
+        "1interrupted,2answered\n");
+}
+
+TEST_CASE("participants whose ids differ in capital letters alone are one mistyped",
+          "[end_to_end]") {
+  const TempDirectory directory;
+  session(directory, "reality_finger.yaml", "a\n");
+  const auto as_p01 = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> line{"run",   paper("reality_finger.yaml"), "--participant", "p01",
+                                  "--out", directory / "the_study"};
+    line.insert(line.end(), more.begin(), more.end());
+    return testing::tapstudy(line, "a\n");
+  };
+  const auto begun = as_p01({});
+  CHECK(begun.exit_code == 2);
+  CHECK_THAT(begun.standard_error, Contains("this study has a 'P01'"));
+  const auto resumed = as_p01({"--resume"});
+  CHECK(resumed.exit_code == 2);
+  CHECK_THAT(resumed.standard_error, Contains("'p01' has no session to resume ('P01' has)"));
+  CHECK(sql(directory, "SELECT count(*) FROM participant") == "1\n");
 }
 
 TEST_CASE("in a choice one switches freely and every visit is stored", "[end_to_end][threads]") {

@@ -319,6 +319,8 @@ TEST_CASE("schema and reader accept the same rigs", "[protocols][rig][schema][sl
       {"simulated_hand", "max_force_n: 10\n", "max_force_n: 10\nloop: {cpu: -1}\n"},
       {"simulated_hand", "max_force_n: 10\n", "max_force_n: 10\naudio: {card: \"hw:1,0\"}\n"},
       {"simulated_hand", "max_force_n: 10\n", "max_force_n: 10\naudio: {card: \"\"}\n"},
+      {"simulated_hand", "max_force_n: 10\n",
+       "max_force_n: 10\naudio: {card: \"file:FILE='|true',FORMAT=raw\"}\n"},
       {"simulated_hand", "max_force_n: 10\n", "max_force_n: 10\naudio: {rate_hz: 1}\n"},
       {"simulated_hand", "max_force_n: 10\n", "max_force_n: 10\naudio: {gain_db: 61}\n"},
       {"simulated_hand", "max_force_n: 10\n", "max_force_n: 10\naudio: {volume: 1}\n"},

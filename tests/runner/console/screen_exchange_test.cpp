@@ -49,20 +49,19 @@ TEST_CASE("a closed screen hands over what it has accepted and accepts nothing m
   CHECK_FALSE(screens.post(unanswered, second).empty());
 }
 
-TEST_CASE("a page that says it is alive is gone once it is silent", "[runner][console]") {
+TEST_CASE("a page was last seen when it last said so, or before it was closed",
+          "[runner][console]") {
   using std::chrono::seconds;
   ScreenExchange screens{"en", "a study"};
-  const std::chrono::steady_clock::time_point begin{};
-  CHECK_FALSE(screens.is_watched(begin));
-  screens.page_opened();
-  CHECK(screens.is_watched(begin + seconds{60}));  // one that never says so
+  const std::chrono::steady_clock::time_point begin{seconds{100}};
+  screens.page_opened(begin);
+  CHECK(screens.last_seen(begin + seconds{60}) == begin + seconds{60});  // it never says so
   screens.page_is_alive(begin);
-  CHECK(screens.is_watched(begin + seconds{4}));
-  CHECK_FALSE(screens.is_watched(begin + seconds{6}));
-  screens.page_is_alive(begin + seconds{6});
-  CHECK(screens.is_watched(begin + seconds{6}));
-  screens.page_closed();
-  CHECK_FALSE(screens.is_watched(begin + seconds{6}));
+  CHECK(screens.last_seen(begin + seconds{4}) == begin);
+  screens.page_closed(begin + seconds{4});
+  CHECK(screens.last_seen(begin + seconds{6}) == begin);
+  screens.page_opened(begin + seconds{7});  // loaded anew
+  CHECK(screens.last_seen(begin + seconds{8}) == begin + seconds{7});
 }
 
 TEST_CASE("a screen takes what can be done with it and nothing else", "[runner][console]") {

@@ -260,3 +260,32 @@ TEST_CASE("stimuli that share a plate share the body of their softest member",
   models.build_all(protocol);
   CHECK(models.bodies_solved() == 1);
 }
+
+TEST_CASE("a mode crosses the band limit where its frequency, as the root of E, reaches it",
+          "[runner][stimuli]") {
+  const auto protocol =
+      testing::varied_study({"youngs_modulus_pa: {from: 1.0e9, to: 9.0e9, spacing: log}"});
+  const protocols::Stimulus& stimulus = protocol.stimuli.front();
+  const auto range = std::ranges::find(stimulus.vary, std::string_view{"youngs_modulus_pa"},
+                                       [](const auto& axis) { return axis.axis->name; });
+  REQUIRE(range != stimulus.vary.end());
+  runner::ModelLibrary models{core::ModelCache{"", ""}};
+  models.build_all(protocol);
+  const auto softest = stimulus_at(protocol, stimulus, {{"youngs_modulus_pa", range->from}});
+  std::vector<double> crossings_pa;
+  for (const double frequency_hz : models.plate_of(protocol, softest)->model.frequency_hz) {
+    const double youngs_modulus_pa =
+        range->from * std::pow(protocol.band_limit_hz / frequency_hz, 2);
+    if (youngs_modulus_pa < range->to) {
+      crossings_pa.push_back(youngs_modulus_pa);
+    }
+  }
+  std::ranges::sort(crossings_pa);
+  REQUIRE(!crossings_pa.empty());
+  const auto found = runner::band_crossings(
+      protocol, stimulus, *range, *models.body_of(protocol, stimulus_with(protocol, stimulus)));
+  REQUIRE(found.size() == crossings_pa.size());
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    CHECK(found[i] == Approx(crossings_pa[i]).epsilon(1e-9));
+  }
+}

@@ -101,7 +101,21 @@ OrderConstraints read_constraints(MapReader& block) {
   return constraints;
 }
 
+bool has_catch_trials_of_its_own_stimuli(const Block& block) {
+  return block.catch_trials &&
+         std::ranges::any_of(block.catch_trials->expected, [&](const auto& expected) {
+           return std::ranges::find(block.stimuli, expected.first) != block.stimuli.end();
+         });
+}
+
 void check_constraints(MapReader& reader, const Block& block) {
+  if (block.order == Order::williams && has_catch_trials_of_its_own_stimuli(block)) {
+    reader.reject(
+        "catch_trials",
+        "of the block's own stimuli would unbalance which follows which (order: williams; "
+        "catch_trials of another stimulus keep it)");
+    return;
+  }
   if (!block.constraints.are_any()) {
     return;
   }
@@ -109,10 +123,7 @@ void check_constraints(MapReader& reader, const Block& block) {
     reader.reject("constraints", "are for random orders: this one is given");
     return;
   }
-  if (block.catch_trials &&
-      std::ranges::any_of(block.catch_trials->expected, [&](const auto& expected) {
-        return std::ranges::find(block.stimuli, expected.first) != block.stimuli.end();
-      })) {
+  if (has_catch_trials_of_its_own_stimuli(block)) {
     reader.reject("constraints",
                   "would be broken by catch trials of the block's own stimuli (catch_trials of "
                   "another stimulus keep them)");
@@ -162,18 +173,6 @@ void check_intervals(MapReader& reader, const Block& block) {
                               block.task->name(),
                               is_of_several ? "the last is changed while it is felt"
                                             : "a trial has only one"));
-  }
-}
-
-// Two answers that read alike cannot be told apart by who gives them.
-void check_labels_differ(MapReader& reader, const Protocol& protocol, const Block& block) {
-  std::map<std::string, std::string> name_of_label;
-  for (const Option& option : block.task->answers(block, protocol).options) {
-    const auto [known, is_new] = name_of_label.emplace(option.label, option.name);
-    if (!is_new) {
-      reader.reject(fmt::format("the answers '{}' and '{}' have the same label, '{}'",
-                                known->second, option.name, option.label));
-    }
   }
 }
 
@@ -266,6 +265,7 @@ void check_block(MapReader& reader, const Block& block, const Protocol& protocol
   if (block.task != nullptr && !block.stimuli.empty()) {
     check_constraints(reader, block);
     check_labels_differ(reader, protocol, block);
+    check_targets(reader, protocol, block);
     check_intervals(reader, block);
     check_criterion(reader, block);
   }

@@ -55,8 +55,9 @@ class Store {
   };
   using IsInSession = std::function<bool(const std::string& participant_id)>;
   // Of an existing participant, or the next free one of the mode. The order is the first that no
-  // other participant of the mode has: those who were excluded, or are no longer in a session and
-  // never answered, use none up.
+  // other participant of the mode has: those who were excluded, whose session the operator ended
+  // before its end, or who are no longer in a session and answered nothing that counts, use none
+  // up.
   // Throws InvalidInput if the participant is there already in another mode.
   Place place_of(const std::string& participant_id, Mode mode, const IsInSession& is_in_session);
   bool has_sessions(const std::string& participant_id);

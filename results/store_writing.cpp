@@ -10,6 +10,18 @@
 #include "results/trace_codec.hpp"
 namespace tapstudy::results {
 namespace fs = std::filesystem;
+using namespace std::string_literals;
+namespace {
+// Whose last session the operator ended with trials left; a planned order has a line for each.
+constexpr const char* withdrawn =
+    "SELECT participant_id FROM session AS last WHERE session_id = "
+    "  (SELECT max(session_id) FROM session WHERE participant_id = last.participant_id) "
+    " AND EXISTS (SELECT 1 FROM operator_action WHERE session_id = last.session_id "
+    "             AND action = 'end') "
+    " AND (SELECT count(DISTINCT number) FROM trial JOIN session USING (session_id) "
+    "      WHERE participant_id = last.participant_id AND status = 'answered') "
+    "  < length(planned_order) - length(replace(planned_order, char(10), ''))";
+}  // namespace
 
 Store::Place Store::place_of(const std::string& participant_id, Mode mode,
                              const IsInSession& is_in_session) {
@@ -35,13 +47,16 @@ int Store::next_participant_index(Mode mode) {
   return static_cast<int>(next.integer(0));
 }
 
+// Used by who has answered what counts, unless the operator ended their last session before its
+// end.
 int Store::free_order_index(Mode mode, const IsInSession& is_in_session) {
   const std::map<std::string, std::string> excluded = excluded_participants();
   Statement row{database_,
                 "SELECT participant_id, order_index, participant_id IN "
                 "  (SELECT participant_id FROM trial JOIN session USING (session_id) "
-                "   WHERE status = 'answered') "
-                "FROM participant WHERE mode = ?"};
+                "   WHERE status = 'answered' AND NOT is_practice) "
+                " AND participant_id NOT IN ("s +
+                    withdrawn + ") FROM participant WHERE mode = ?"};
   row.bind(to_text(mode));
   std::set<int> used;
   while (row.step()) {

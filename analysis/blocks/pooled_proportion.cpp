@@ -9,8 +9,8 @@ std::string over_participants(const Proportion& all, const BetaBinomialMean& ove
   return mean == percent(all.value())
              ? fmt::format("(95 % CI over {} participants {})", over.participants,
                            percent_range(over.interval))
-             : fmt::format("(mean over {} participants {}, 95 % CI {})", over.participants, mean,
-                           percent_range(over.interval));
+             : fmt::format("({} estimated over {} participants, 95 % CI {})", mean,
+                           over.participants, percent_range(over.interval));
 }
 
 Cell pooled_proportion(const std::vector<Proportion>& participants) {

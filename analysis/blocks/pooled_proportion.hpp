@@ -7,8 +7,7 @@
 #include "analysis/tables/cells.hpp"
 namespace tapstudy::analysis {
 // "(95 % CI over 4 participants 14–92 %)", of beta_binomial_mean; where its mean is not the share
-// of all answers together, "(mean over 4 participants 61 %, 95 % CI
-// 14–92 %)".
+// of all answers together, "(61 % estimated over 4 participants, 95 % CI 14–92 %)".
 std::string over_participants(const Proportion& all, const BetaBinomialMean& over);
 
 // What all participants answered, for a proportion_column: the counts together, with an interval

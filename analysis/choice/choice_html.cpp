@@ -6,8 +6,8 @@
 namespace tapstudy::analysis {
 void ChoiceSummary::write_html(std::ostream& out) const {
   const double chance = 1.0 / static_cast<double>(alternatives.size());
-  out << "<div class=scroll tabindex=0 role=region aria-label=Choices>"
-         "<table class=accuracy><thead><tr><th></th><th>chosen</th><th></th><th>visits</th>"
+  out << "<div class=scroll tabindex=0 role=group aria-label=Choices>"
+         "<table class=accuracy><thead><tr><td></td><th>chosen</th><td></td><th>visits</th>"
          "<th>time tried</th></tr></thead>\n";
   for (const AlternativeResult& result : alternatives) {
     core::print(
@@ -18,15 +18,15 @@ void ChoiceSummary::write_html(std::ostream& out) const {
             : "",
         result.visits, result.dwell_s);
   }
-  core::print(out,
-              "</table></div>\n<p class=note>Intervals: 95 %, of all alternatives at once (Goodman "
-              "1965); in the tables also those of Sison and Glaz (1995).</p>\n<p>All alternatives "
-              "equally likely: {}.{}</p>\n",
-              escaped(multinomial_words(*this)),
-              has_repeated_choices
-                  ? fmt::format(" Of {} choices each participant has one vote: {}.", choices.size(),
-                                words_of(vote))
-                  : "");
+  core::print(
+      out,
+      "</table></div>\n<p class=note>Intervals: 95 %, of all alternatives at once "
+      "(Goodman 1965); in the tables also others (Sison & Glaz 1995).</p>\n<p>All alternatives "
+      "equally likely: {}.{}</p>\n",
+      escaped(multinomial_words(*this)),
+      has_repeated_choices ? fmt::format(" Of {} choices each participant has one vote: {}.",
+                                         choices.size(), words_of(vote))
+                           : "");
   write_hypotheses_html(out, hypotheses);
   write_sections_html(out, sections, block);
 }

@@ -5,9 +5,9 @@ std::vector<ReportTable> ChoiceSummary::report_tables() const {
   ReportTable table{"votes",
                     "Choices",
                     {column("stimulus", "stimulus"), proportion_column("chosen", "chosen"),
-                     interval_column("simultaneous 95 % CI (Goodman)", "goodman"),
-                     interval_column("(Sison and Glaz)", "sison_glaz"), column("visits", "visits"),
-                     column("time there, s", "dwell_s")}};
+                     interval_column("simultaneous 95 % CI (Goodman 1965)", "goodman"),
+                     interval_column("(Sison & Glaz 1995)", "sison_glaz"),
+                     column("visits", "visits"), column("time there, s", "dwell_s")}};
   for (const AlternativeResult& result : alternatives) {
     const Cell simultaneous = result.interval ? interval(result.chosen.value(), *result.interval)
                                               : nothing(table.columns[2]);

@@ -76,10 +76,14 @@ std::optional<DifferentRates> rates_of(const Counts& counts) {
   return rates;
 }
 
-std::optional<DPrimeOfMean> d_prime_of_mean(const std::vector<ParticipantDiscrimination>& people,
-                                            const DecisionTask& task) {
+std::vector<Proportion> correct_of(const std::vector<ParticipantDiscrimination>& people) {
   std::vector<Proportion> correct;
   std::ranges::transform(people, std::back_inserter(correct), &ParticipantDiscrimination::correct);
+  return correct;
+}
+
+std::optional<DPrimeOfMean> d_prime_of_mean(const std::vector<Proportion>& correct,
+                                            const DecisionTask& task) {
   const auto over = beta_binomial_mean(correct);
   if (!over) {
     return std::nullopt;
@@ -143,15 +147,20 @@ DiscriminationResults discrimination_results(const BlockDesign& design,
   for (const auto& [name, counts] : people) {
     results.participants.push_back(participant_of(design, name, counts, task));
   }
+  const bool are_same_presented = std::ranges::any_of(
+      results.participants, [](const auto& person) { return person.rates.has_value(); });
   for (const auto& [stimuli, correct] : pairs) {
     DiscriminationResults::Pair pair{stimuli, {}};
     for (const auto& [name, of_participant] : correct) {
       pair.correct.push_back(of_participant);
     }
+    if (task && !are_same_presented) {
+      pair.d_prime = d_prime_of_mean(pair.correct, *task);
+    }
     results.pairs.push_back(std::move(pair));
   }
   if (task) {
-    results.d_prime_of_mean = d_prime_of_mean(results.participants, *task);
+    results.d_prime_of_mean = d_prime_of_mean(correct_of(results.participants), *task);
   }
   if (design.premise.empty()) {
     results.test = accuracy_test(results.participants, design.guess_rate);

@@ -44,6 +44,9 @@ struct DiscriminationResults {
   struct Pair {
     std::string stimuli;              // names, joined
     std::vector<Proportion> correct;  // of each participant
+    // Of the mean proportion, as d_prime_of_mean; unset also where pairs of the same are presented,
+    // whose answers belong to it.
+    std::optional<DPrimeOfMean> d_prime{};
   };
   std::vector<Pair> pairs;  // by name
   Proportion correct;       // of all answers

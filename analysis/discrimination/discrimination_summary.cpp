@@ -40,7 +40,7 @@ ReportTable participants_table(const DiscriminationResults& results) {
   return table;
 }
 
-std::vector<Proportion> correct_of(const DiscriminationResults& results) {
+std::vector<Proportion> correct_of_all(const DiscriminationResults& results) {
   std::vector<Proportion> correct;
   std::ranges::transform(results.participants, std::back_inserter(correct),
                          &ParticipantDiscrimination::correct);
@@ -56,7 +56,7 @@ ReportTable all_table(const BlockDesign& design, const DiscriminationResults& re
   if (!results.participants.empty()) {
     const auto& mean = results.d_prime_of_mean;
     table.rows.push_back(
-        {pooled_proportion(correct_of(results)), share(design.guess_rate),
+        {pooled_proportion(correct_of_all(results)), share(design.guess_rate),
          count(static_cast<std::int64_t>(results.participants.size())),
          mean ? interval(mean->d_prime, mean->interval) : nothing(table.columns.back())});
   }
@@ -66,9 +66,13 @@ ReportTable all_table(const BlockDesign& design, const DiscriminationResults& re
 ReportTable pairs_table(const DiscriminationResults& results) {
   ReportTable table{"stimuli",
                     "Stimuli that were presented together",
-                    {column("stimuli", "stimuli"), proportion_column("correct", "correct")}};
+                    {column("stimuli", "stimuli"), proportion_column("correct", "correct"),
+                     interval_column("d' of the mean (95 % CI)", "d_prime")}};
   for (const DiscriminationResults::Pair& pair : results.pairs) {
-    table.rows.push_back({word(pair.stimuli), pooled_proportion(pair.correct)});
+    table.rows.push_back(
+        {word(pair.stimuli), pooled_proportion(pair.correct),
+         pair.d_prime ? interval(pair.d_prime->d_prime, pair.d_prime->interval)
+                      : nothing(table.columns.back())});
   }
   return table;
 }
@@ -133,6 +137,11 @@ std::vector<std::string> remarks_on(const BlockDesign& design,
         fmt::format("There is no d': no decision model is known for {} with a chance of {:.3g}.",
                     design.task, design.guess_rate));
   }
+  if (results.model != nullptr && results.pairs.size() > 1) {
+    remarks.emplace_back(
+        "d' is of all pairs of stimuli together: of none of them, where some are told apart better "
+        "than others.");
+  }
   for (const ParticipantDiscrimination& person : results.participants) {
     const std::string remark = person.sensitivity ? remark_on(*person.sensitivity) : "";
     if (!remark.empty()) {
@@ -141,6 +150,10 @@ std::vector<std::string> remarks_on(const BlockDesign& design,
   }
   if (std::ranges::any_of(results.participants,
                           [](const auto& person) { return person.rates.has_value(); })) {
+    remarks.emplace_back(
+        "The d' of proportions correct takes participants for unbiased, and is too small where "
+        "they "
+        "are not: that by rates is not.");
     remarks.emplace_back(
         "By rates: k + 1/2 in n + 1 (Hautus 1995); d' is 0 where there are no more hits than false "
         "alarms. Bias c above 0: \"same\" is preferred.");
@@ -177,7 +190,7 @@ std::shared_ptr<BlockSummary> summarise_discrimination(const BlockDesign& design
                     pairs_table(results),       rates_table(results),
                     models_table(results),      answer_counts_table(rows.answers)};
   summary->remarks = remarks_on(design, results);
-  if (const auto over = mean_proportion(correct_of(results))) {
+  if (const auto over = mean_proportion(correct_of_all(results))) {
     summary->main = {{"share of right answers", over->mean, over->interval,
                       results.test ? std::optional{results.test->p} : std::nullopt,
                       design.guess_rate}};

@@ -41,18 +41,20 @@ void estimate(ParticipantEquality& person, const BlockDesign& design) {
   const PsychometricModel model = equality_model(design);
   try {
     const PsychometricFit fit = fit_psychometric(model, person.levels);
-    if (!fit.curve) {
+    const bool is_step = fit.outcome == FitOutcome::step;
+    if (!fit.curve && !is_step) {
       person.no_estimate = explanation(fit.outcome);
       return;
     }
     const PsychometricIntervals intervals = profile_intervals(model, person.levels);
-    person.estimate = {*fit.curve,
-                       intervals.threshold,
-                       jnd_at(model.shape, fit.curve->slope),
-                       {jnd_at(model.shape, intervals.slope.high),
-                        intervals.slope.low > 0.0 ? jnd_at(model.shape, intervals.slope.low)
-                                                  : std::numeric_limits<double>::infinity()},
-                       std::nullopt};
+    person.estimate = {
+        is_step ? step_curve(model, person.levels) : *fit.curve,
+        intervals.threshold,
+        is_step ? std::nullopt : std::optional{jnd_at(model.shape, fit.curve->slope)},
+        {jnd_at(model.shape, intervals.slope.high), intervals.slope.low > 0.0
+                                                        ? jnd_at(model.shape, intervals.slope.low)
+                                                        : std::numeric_limits<double>::infinity()},
+        std::nullopt};
     if (!design.is_for_main_results) {
       person.estimate->goodness = deviance_test(model, person.levels, draws_of_fit, test_seed);
     }
@@ -67,11 +69,15 @@ void add_means(EqualityResults& results) {
   for (const ParticipantEquality& person : results.participants) {
     if (person.estimate) {
       equalities.push_back(person.estimate->curve.threshold);
-      log_jnds.push_back(std::log10(person.estimate->jnd));
+      if (person.estimate->jnd) {
+        log_jnds.push_back(std::log10(*person.estimate->jnd));
+      }
     }
   }
   if (equalities.size() > 1) {
     results.equality = paired_contrast(equalities, test_seed);
+  }
+  if (log_jnds.size() > 1) {
     results.log_jnd = paired_contrast(log_jnds, test_seed);
   }
 }

@@ -16,8 +16,8 @@ namespace tapstudy::analysis {
 // from F = 0.25 to F = 0.75 the just noticeable difference (JND).
 struct EqualityEstimate {
   PsychometricCurve curve;
-  Interval equality;  // 95 %, by profile likelihood; of levels
-  double jnd{};       // a level
+  Interval equality;          // 95 %, by profile likelihood; of levels
+  std::optional<double> jnd;  // a level; unset where the answers change in a step: below its limit
   Interval jnd_interval;
   std::optional<GoodnessOfFit> goodness;  // unset where only main results are wanted
 };

@@ -38,7 +38,9 @@ ReportTable participants_table(const VariedAxis& axis, const EqualityResults& re
     if (const auto& of = person.estimate) {
       row.push_back(interval(value_at(axis, of->curve.threshold), values_at(axis, of->equality)));
       row.push_back(interval(of->curve.threshold, of->equality));
-      row.push_back(interval(of->jnd, of->jnd_interval));
+      row.push_back(of->jnd ? interval(*of->jnd, of->jnd_interval)
+                            : Cell{fmt::format("below {}", rounded(of->jnd_interval.high)),
+                                   {Value{}, 0.0, of->jnd_interval.high}});
       row.push_back(probability(of->goodness ? std::optional{of->goodness->p} : std::nullopt));
     } else {
       std::ranges::transform(estimate_columns(), std::back_inserter(row),
@@ -67,7 +69,9 @@ ReportTable over_participants_table(const BlockDesign& design, const EqualityRes
         {count(equality.participants),
          interval(to_value(equality.mean), map(equality.interval, to_value)),
          interval(equality.mean, equality.interval),
-         interval(from_log(results.log_jnd->mean), map(results.log_jnd->interval, from_log)),
+         results.log_jnd
+             ? interval(from_log(results.log_jnd->mean), map(results.log_jnd->interval, from_log))
+             : nothing(table.columns[3]),
          probability(design.premise.empty() ? std::optional{equality.p} : std::nullopt)});
   }
   return table;
@@ -113,6 +117,16 @@ std::vector<std::string> remarks_on(const BlockDesign& design, const EqualityRes
       remarks.push_back(fmt::format("{} has no point of equality: {}.", person.participant_id,
                                     person.no_estimate));
     }
+  }
+  const auto steps = std::ranges::count_if(results.participants, [](const auto& person) {
+    return person.estimate && !person.estimate->jnd;
+  });
+  if (steps > 0) {
+    remarks.push_back(fmt::format(
+        "Answers of {} change within one step between levels: their PSE is the middle of those "
+        "that are equally likely, their JND has no lower limit, and the mean JND leaves them out, "
+        "which makes it too large.",
+        steps == 1 ? "one participant" : fmt::format("{} participants", steps)));
   }
   if (!results.equality) {
     remarks.emplace_back("No mean over participants: it takes two with a point of equality.");

@@ -6,9 +6,12 @@
 #include "analysis/agreement/kappa.hpp"
 #include "analysis/agreement/symmetry.hpp"
 #include "analysis/identification/matrix_sections.hpp"
+#include "analysis/participants/paired_contrast.hpp"
+#include "analysis/ratings/signed_rank.hpp"
 namespace tapstudy::analysis {
 namespace {
 constexpr std::uint64_t dependence_seed = 4;
+constexpr std::uint64_t naming_seed = 8;
 
 void add_independence(const MatrixOfParticipants& counted, const Independence& test,
                       ReportSection& section) {
@@ -55,7 +58,7 @@ ReportTable residuals_table(const ConfusionMatrix& matrix) {
 void add_square(const CountTable& square, ReportSection& section) {
   ReportTable kappas{"kappa",
                      "Agreement of answers with stimuli",
-                     {interval_column("Cohen's κ (95 %, answers independent)", "kappa"),
+                     {interval_column("κ (Cohen 1960; 95 %, answers independent)", "kappa"),
                       column("standard error", "standard_error")}};
   if (const auto kappa = cohens_kappa(square)) {
     kappas.rows.push_back({interval(kappa->kappa, kappa->interval), number(kappa->standard_error)});
@@ -78,6 +81,51 @@ void add_square(const CountTable& square, ReportSection& section) {
   section.tables.push_back(kappas);
   section.tables.push_back(symmetry);
 }
+
+// Of each class and participant: the share of answers less the share of presentations.
+ReportTable naming_table(const MatrixOfParticipants& counted) {
+  ReportTable table{"naming",
+                    "Named more or less often than presented",
+                    {column("class", "class"),
+                     interval_column("share named less share presented (95 % CI, t)", "difference"),
+                     column("participants", "participants"), column("permutation", "p"),
+                     column("after Holm", "p_holm")}};
+  const ConfusionMatrix& matrix = counted.matrix;
+  std::vector<std::vector<double>> differences(matrix.responses.size());
+  for (const ParticipantCounts& person : counted.participants) {
+    const auto square = by_right_response(matrix.stimuli, matrix.responses, person.counts);
+    const TableTotals totals = totals_of(*square);
+    for (std::size_t j = 0; j < differences.size(); ++j) {
+      differences[j].push_back(static_cast<double>(totals.columns[j] - totals.rows[j]) /
+                               static_cast<double>(totals.all));
+    }
+  }
+  std::vector<PairedContrast> contrasts;
+  std::vector<double> p;
+  for (const std::vector<double>& of_class : differences) {
+    contrasts.push_back(paired_contrast(of_class, naming_seed));
+    p.push_back(contrasts.back().p);
+  }
+  const std::vector<double> adjusted = holm_adjusted(p);
+  for (std::size_t j = 0; j < contrasts.size(); ++j) {
+    table.rows.push_back(
+        {word(matrix.responses[j].name), interval(contrasts[j].mean, contrasts[j].interval),
+         count(contrasts[j].participants), probability(p[j]), probability(adjusted[j])});
+  }
+  return table;
+}
+
+void add_naming(const MatrixOfParticipants& counted, ReportSection& section) {
+  section.remarks.emplace_back(
+      "Bowker's and Stuart and Maxwell's variances let presentations vary as answers do: where the "
+      "protocol fixes how often a stimulus is presented, these tests reject too seldom.");
+  if (counted.participants.size() > 1) {
+    section.tables.push_back(naming_table(counted));
+    section.remarks.emplace_back(
+        "A bias to name a class is tested over participants, by flipping the signs of their "
+        "differences.");
+  }
+}
 }  // namespace
 
 ReportSection dependence_section(const MatrixOfParticipants& counted) {
@@ -96,6 +144,7 @@ ReportSection dependence_section(const MatrixOfParticipants& counted) {
   } else if (const auto square =
                  by_right_response(matrix.stimuli, matrix.responses, matrix.counts)) {
     add_square(*square, section);
+    add_naming(counted, section);
   }
   if (const std::string warning = independence_warning(counted); !warning.empty()) {
     section.remarks.push_back(warning);

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 
 #include "analysis/blocks/html_parts.hpp"
@@ -9,19 +10,33 @@
 #include "core/print.hpp"
 namespace tapstudy::analysis {
 namespace {
-// White to deep blue; the text turns white where the cell is dark.
+// Of a colour as sRGB has it: what contrast is made of (WCAG 2.1).
+double luminance(const std::array<int, 3>& colour) {
+  constexpr std::array<double, 3> weights{0.2126, 0.7152, 0.0722};
+  double sum = 0.0;
+  for (std::size_t i = 0; i < colour.size(); ++i) {
+    const double part = colour[i] / 255.0;
+    sum += weights[i] * (part <= 0.03928 ? part / 12.92 : std::pow((part + 0.055) / 1.055, 2.4));
+  }
+  return sum;
+}
+
+// White to deep blue; the text is white or black, whichever stands out more.
 std::string cell_style(double share) {
   const double x = std::sqrt(share);
   const auto mix = [&](int from, int to) {
     return static_cast<int>(std::lround(from + x * (to - from)));
   };
-  return fmt::format("background:rgb({},{},{});color:{}", mix(247, 8), mix(251, 69), mix(255, 148),
-                     share > 0.35 ? "#fff" : "#123");
+  const std::array<int, 3> colour{mix(247, 8), mix(251, 69), mix(255, 148)};
+  const double ground = luminance(colour) + 0.05;
+  return fmt::format("background:rgb({},{},{});color:{}", colour[0], colour[1], colour[2],
+                     1.05 / ground > ground / 0.05 ? "#fff" : "#000");
 }
 
 void write_matrix_html(std::ostream& out, const ConfusionMatrix& matrix) {
-  out << "<table class=matrix><caption>Rows: presented. Columns: answered. Each cell: count and "
-         "share of its row.</caption><thead><tr><th></th>";
+  out << "<div class=scroll tabindex=0 role=group aria-label=\"Confusion matrix\">"
+         "<table class=matrix><caption>Rows: presented. Columns: answered. Each cell: count and "
+         "share of its row.</caption><thead><tr><td></td>";
   for (const Item& response : matrix.responses) {
     core::print(out, "<th scope=col>{}</th>", escaped(response.label));
   }
@@ -37,7 +52,7 @@ void write_matrix_html(std::ostream& out, const ConfusionMatrix& matrix) {
     }
     core::print(out, "<td class=total>{}</td></tr>\n", matrix.row_total(i));
   }
-  out << "</tbody></table>\n";
+  out << "</tbody></table></div>\n";
 }
 
 void write_share_row(std::ostream& out, const FactorResult& result) {

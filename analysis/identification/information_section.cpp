@@ -9,7 +9,7 @@ namespace tapstudy::analysis {
 namespace {
 constexpr std::uint64_t information_seed = 3;
 
-// The entropy of what was presented.
+// The entropy of what was presented, or the logarithm of the number of answers if there are fewer.
 double most_bits(const ConfusionMatrix& matrix) {
   double bits = 0.0;
   for (std::size_t i = 0; i < matrix.stimuli.size(); ++i) {
@@ -17,7 +17,7 @@ double most_bits(const ConfusionMatrix& matrix) {
         static_cast<double>(matrix.row_total(i)) / static_cast<double>(matrix.total());
     bits -= share > 0.0 ? share * std::log2(share) : 0.0;
   }
-  return bits;
+  return std::min(bits, std::log2(static_cast<double>(matrix.responses.size())));
 }
 
 // Empty: enough.
@@ -79,6 +79,7 @@ ReportTable pooled_table(const MatrixOfParticipants& counted, const std::string&
 }
 
 std::vector<std::string> remarks_on(const MatrixOfParticipants& counted, const std::string& refusal,
+                                    double corrected_bits,
                                     const std::optional<GuessedInformation>& guessed) {
   std::vector<std::string> remarks{
       guessed ? fmt::format(
@@ -93,9 +94,15 @@ std::vector<std::string> remarks_on(const MatrixOfParticipants& counted, const s
                     counted.randomisation.words)};
   if (refusal.empty() && counted.participants.size() > 1) {
     remarks.emplace_back(
-        "The interval is a jackknife over five participants or more of the corrected value and of "
+        "The interval is a jackknife (Tukey 1958) over five participants or more of the corrected "
+        "value and of "
         "the logit of its share. Pooling participants who confuse differently transfers less than "
         "each of them does.");
+  }
+  if (refusal.empty() && corrected_bits > most_bits(counted.matrix)) {
+    remarks.emplace_back(
+        "The correction takes the value above the most that is possible: answers were nearly "
+        "without error.");
   }
   if (counted.are_known() || !refusal.empty()) {
     remarks.emplace_back(
@@ -132,7 +139,7 @@ InformationSection information_section(const MatrixOfParticipants& counted) {
   if (counted.are_known()) {
     result.section.tables.push_back(participants_table(counted));
   }
-  result.section.remarks = remarks_on(counted, refusal, guessed);
+  result.section.remarks = remarks_on(counted, refusal, transfer.miller_madow_bits, guessed);
   result.sentence = sentence_of(transfer, most_bits(counted.matrix), refusal, guessed);
   return result;
 }

@@ -7,6 +7,8 @@
 #include "analysis/similarity/similarity_choice.hpp"
 namespace tapstudy::analysis {
 namespace {
+constexpr std::uint64_t similarity_seed = 5;
+
 ReportTable biases_table(const std::vector<Item>& classes, const SimilarityChoice& model) {
   ReportTable table{"biases",
                     "Response biases of the similarity-choice model",
@@ -31,15 +33,21 @@ ReportTable similarities_table(const std::vector<Item>& classes, const Similarit
   return table;
 }
 
-ReportTable fit_table(const SimilarityChoice& model) {
-  ReportTable table{"similarity_fit",
-                    "Fit of the similarity-choice model",
-                    {column("G²", "g_squared"), column("df", "degrees_of_freedom"),
-                     column("p (answers independent)", "p")}};
-  const bool is_tested = model.degrees_of_freedom > 0;
-  table.rows.push_back(
-      {number(model.g_squared), count(model.degrees_of_freedom),
-       is_tested ? probability(model.p) : nothing(table.columns.back(), "no freedom left")});
+ReportTable fit_table(const CountTable& square, const SimilarityChoice& model) {
+  ReportTable table{
+      "similarity_fit",
+      "Fit of the similarity-choice model",
+      {column("G²", "g_squared"), column("df", "degrees_of_freedom"),
+       column("p (answers independent)", "p"), column("", "draws"), column("", "asymptotic_p")}};
+  std::vector<Cell>& row = table.rows.emplace_back(
+      std::vector{number(model.g_squared), count(model.degrees_of_freedom)});
+  if (model.degrees_of_freedom > 0) {
+    const ConditionalFit fit = conditional_fit(square, model, similarity_seed);
+    row.insert(row.end(), {probability(fit.p), count(fit.draws), probability(model.p)});
+  } else {
+    row.insert(row.end(),
+               {nothing(table.columns[2], "no freedom left"), count(0), nothing(table.columns[4])});
+  }
   return table;
 }
 
@@ -58,7 +66,7 @@ void add_map(const std::vector<Item>& classes, const SimilarityChoice& model,
     Chart chart;
     chart.caption = fmt::format(
         "Classes on a map, far apart where seldom confused: distances -ln η, classical "
-        "scaling, {:.0f} % in two dimensions.",
+        "scaling (Torgerson 1952), {:.0f} % in two dimensions.",
         100.0 * map.explained);
     chart.alternative = "Map of the classes";
     std::vector<double> all;
@@ -96,11 +104,12 @@ ReportSection similarity_section(const MatrixOfParticipants& counted) {
     return section;
   }
   section.tables = {biases_table(matrix.responses, model),
-                    similarities_table(matrix.responses, model), fit_table(model)};
+                    similarities_table(matrix.responses, model), fit_table(*square, model)};
   section.remarks.emplace_back(
       "Similarity-choice model (Luce 1963): class i is answered with j in proportion to bias b(j) "
       "times similarity η(i, j), by maximum likelihood; biases add up to 1, η(i, i) = 1. A small p "
-      "of G² says that the model does not describe the answers.");
+      "of G², given the totals (Besag & Clifford 1989), says that the model does not describe the "
+      "answers.");
   add_map(matrix.responses, model, section);
   return section;
 }

@@ -62,12 +62,14 @@ MagnitudeOfValue mean_at(const OnAxis& value,
 
 void add_power_law(StimulusMagnitudes& of, const Logarithms& logarithms) {
   std::map<std::string, Estimates> people;
+  std::map<std::string, std::size_t> judged_values;
   for (const auto& [value, of_people] : logarithms) {
     if (!value) {
       of.no_power_law = "its trials have no value on an axis";
       return;
     }
     for (const auto& [name, estimates] : of_people) {
+      ++judged_values[name];
       for (const double logarithm : estimates) {
         people[name].push_back({*value, std::pow(10.0, logarithm)});
       }
@@ -75,6 +77,10 @@ void add_power_law(StimulusMagnitudes& of, const Logarithms& logarithms) {
   }
   std::vector<Estimates> all;
   for (const auto& [name, estimates] : people) {
+    if (judged_values[name] < logarithms.size()) {
+      of.incomplete.push_back(name);
+      continue;
+    }
     of.participants.push_back(name);
     all.push_back(estimates);
   }

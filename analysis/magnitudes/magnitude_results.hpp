@@ -17,8 +17,10 @@ struct MagnitudeOfValue {
 
 struct StimulusMagnitudes {
   std::string stimulus;
-  std::vector<MagnitudeOfValue> values;   // from low to high
-  std::vector<std::string> participants;  // by name; of whom the exponents are
+  std::vector<MagnitudeOfValue> values;  // from low to high
+  std::vector<std::string>
+      participants;                     // by name, who judged all values: theirs are the exponents
+  std::vector<std::string> incomplete;  // by name, who did not
   std::optional<PowerLaw> power_law;
   std::string no_power_law;  // why there is none; empty: there is
 };

@@ -1,6 +1,7 @@
 #include "analysis/magnitudes/magnitude_summary.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cmath>
 
@@ -82,6 +83,11 @@ std::vector<std::string> remarks_on(const BlockDesign& design, const Magnitudes&
       "Each participant's repeated estimates of a value count as their geometric mean. Exponents "
       "by least squares of logarithms; the interval is by t over the participants' exponents."};
   for (const StimulusMagnitudes& of : results) {
+    if (!of.incomplete.empty()) {
+      remarks.push_back(
+          fmt::format("The exponent of {} leaves out who did not judge all values: {}.",
+                      of.stimulus, fmt::join(of.incomplete, ", ")));
+    }
     if (!of.power_law) {
       remarks.push_back(fmt::format("{} has no exponent: {}.", of.stimulus, of.no_power_law));
     }

@@ -1,11 +1,13 @@
 #include "analysis/modal_identification/repeated_modes.hpp"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <map>
 #include <numeric>
 
+#include "analysis/modal_identification/assignment.hpp"
 #include "analysis/participants/mean_proportion.hpp"
 #include "analysis/statistics/distributions.hpp"
 #include "analysis/statistics/quantiles.hpp"
@@ -27,26 +29,28 @@ double frequency_of(const Sighting& one) {
   return one.mode->fitted.pole.frequency_hz;
 }
 
-Sightings sightings_in(const std::vector<TapModes>& taps) {
+Sightings sightings_in(const TapModes& tap, std::size_t number) {
   Sightings all;
-  for (std::size_t i = 0; i < taps.size(); ++i) {
-    for (const TapMode& mode : taps[i].modes) {
-      all.push_back({i, &mode, taps[i].fit.degrees_of_freedom});
-    }
+  for (const TapMode& mode : tap.modes) {
+    all.push_back({number, &mode, tap.fit.degrees_of_freedom});
   }
-  std::ranges::stable_sort(all, std::ranges::greater{},
-                           [](const Sighting& one) { return one.mode->fitted.significance; });
   return all;
 }
 
-bool is_of(const Sightings& group, const Sighting& one) {
-  const FittedMode& first = group.front().mode->fitted;
+const FittedMode& most_significant(const Sightings& group) {
+  return std::ranges::max_element(group, {},
+                                  [](const Sighting& one) { return one.mode->fitted.significance; })
+      ->mode->fitted;
+}
+
+// Of their frequencies, over what may lie between those of one mode: up to 1 for the same.
+double distance(const Sightings& group, const Sighting& one) {
+  const FittedMode& known = most_significant(group);
   const double tolerance =
-      std::max({same_frequency * first.pole.frequency_hz,
-                std::abs(first.pole.damping_ratio) / 3.0 * first.pole.frequency_hz,
-                4.0 * std::hypot(first.frequency_error_hz, one.mode->fitted.frequency_error_hz)});
-  return std::abs(frequency_of(one) - first.pole.frequency_hz) <= tolerance &&
-         std::ranges::find(group, one.tap, &Sighting::tap) == group.end();
+      std::max({same_frequency * known.pole.frequency_hz,
+                std::abs(known.pole.damping_ratio) / 3.0 * known.pole.frequency_hz,
+                4.0 * std::hypot(known.frequency_error_hz, one.mode->fitted.frequency_error_hz)});
+  return std::abs(frequency_of(one) - known.pole.frequency_hz) / tolerance;
 }
 
 double norm_of(const std::vector<double>& errors) {
@@ -57,22 +61,40 @@ double norm_of(const std::vector<double>& errors) {
   return std::sqrt(squares);
 }
 
-std::vector<Sightings> groups_of(const Sightings& all) {
+// Each of one tap's modes is of another group, or of a new one: together so that they are nearest.
+void add_to_groups(const Sightings& of_tap, std::vector<Sightings>& groups) {
+  constexpr double never = 1e3;
+  const auto rows = static_cast<Eigen::Index>(of_tap.size());
+  const auto known = static_cast<Eigen::Index>(groups.size());
+  Eigen::MatrixXd cost = Eigen::MatrixXd::Constant(rows, known + rows, never);
+  for (Eigen::Index i = 0; i < rows; ++i) {
+    for (Eigen::Index j = 0; j < known; ++j) {
+      const double far =
+          distance(groups[static_cast<std::size_t>(j)], of_tap[static_cast<std::size_t>(i)]);
+      cost(i, j) = far <= 1.0 ? far : never;
+    }
+    cost(i, known + i) = 1.0;
+  }
+  const std::vector<std::size_t> chosen = least_cost_assignment(cost);
+  for (std::size_t i = 0; i < of_tap.size(); ++i) {
+    if (chosen[i] < static_cast<std::size_t>(known)) {
+      groups[chosen[i]].push_back(of_tap[i]);
+    } else {
+      groups.push_back({of_tap[i]});
+    }
+  }
+}
+
+// Taps that show most modes come first: they tell close ones apart.
+std::vector<Sightings> groups_of(const std::vector<TapModes>& taps) {
+  std::vector<Sightings> of_taps;
+  for (std::size_t i = 0; i < taps.size(); ++i) {
+    of_taps.push_back(sightings_in(taps[i], i));
+  }
+  std::ranges::stable_sort(of_taps, std::ranges::greater{}, &Sightings::size);
   std::vector<Sightings> groups;
-  for (const Sighting& one : all) {
-    Sightings* nearest = nullptr;
-    double least = 0.0;
-    for (Sightings& group : groups) {
-      const double distance = std::abs(frequency_of(group.front()) - frequency_of(one));
-      if (is_of(group, one) && (nearest == nullptr || distance < least)) {
-        nearest = &group;
-        least = distance;
-      }
-    }
-    if (nearest == nullptr) {
-      nearest = &groups.emplace_back();
-    }
-    nearest->push_back(one);
+  for (const Sightings& of_tap : of_taps) {
+    add_to_groups(of_tap, groups);
   }
   return groups;
 }
@@ -145,6 +167,8 @@ RepeatedMode summary_of(const Sightings& group, std::size_t taps, const std::vec
   mode.frequency_hz =
       estimate_over_taps(mode.frequencies_hz, of_impacts.frequency_errors_hz, freedom);
   mode.damping_ratio = estimate_over_taps(mode.ratios, of_impacts.ratio_errors, freedom);
+  mode.degrees_of_freedom =
+      mode.ratios.size() > 1 ? static_cast<double>(mode.ratios.size()) - 1.0 : freedom;
   return mode;
 }
 }  // namespace
@@ -176,7 +200,7 @@ Estimate estimate_over_taps(const std::vector<double>& values, const std::vector
 std::vector<RepeatedMode> modes_over_taps(const std::vector<TapModes>& taps,
                                           const std::vector<int>& impacts) {
   std::vector<RepeatedMode> modes;
-  for (const Sightings& group : groups_of(sightings_in(taps))) {
+  for (const Sightings& group : groups_of(taps)) {
     modes.push_back(summary_of(group, taps.size(), impacts));
   }
   std::ranges::sort(modes, {}, [](const RepeatedMode& mode) { return mode.frequency_hz.value; });

@@ -19,6 +19,7 @@ Estimate estimate_over_taps(const std::vector<double>& values, const std::vector
 struct RepeatedMode {
   Estimate frequency_hz;
   Estimate damping_ratio;
+  double degrees_of_freedom{};  // of their standard errors
   Standing standing{Standing::doubtful};
   std::string why;
   int taps{};                          // that show it
@@ -28,11 +29,12 @@ struct RepeatedMode {
 };
 
 // Modes of different taps are one if their frequencies differ by 2 % at most (a third of the
-// half-power bandwidth or four standard errors if that is more); the most significant come first,
-// and each tap has one at most. A mode is agreed if at least half of the taps that show it say so,
-// and, of several taps, two do; its estimates are of these taps alone. Ascending frequency.
-// impacts: of each tap the number of its impact, where several channels show the same one: what
-// they say is averaged, since they vary together. Empty: each tap is an impact of its own.
+// half-power bandwidth or four standard errors if that is more); each tap shows one at most, and of
+// several close ones each the nearest, all together. A mode is agreed if at least half of the taps
+// that show it say so, and, of several taps, two do; its estimates are of these taps alone.
+// Ascending frequency. impacts: of each tap the number of its impact, where several channels show
+// the same one: what they say is averaged, since they vary together. Empty: each tap is an impact
+// of its own.
 std::vector<RepeatedMode> modes_over_taps(const std::vector<TapModes>& taps,
                                           const std::vector<int>& impacts = {});
 }  // namespace tapstudy::analysis

@@ -23,7 +23,7 @@ void check_confidence(double confidence) {
 PsychometricFit fit_with_threshold(const PsychometricModel& model,
                                    const std::vector<Level>& levels) {
   PsychometricFit fit = fit_psychometric(model, levels);
-  if (!fit.curve) {
+  if (!fit.curve && fit.outcome != FitOutcome::step) {
     throw core::InvalidInput{
         fmt::format("there is no interval without a threshold: {}", explanation(fit.outcome))};
   }
@@ -94,6 +94,27 @@ PsychometricIntervals profile_intervals(const PsychometricModel& model,
            from_axis(model.shape, profile.end(threshold_at, step, infinity))},
           {std::exp(profile.end(log_slope_at, -0.1, -infinity)),
            std::exp(profile.end(log_slope_at, 0.1, infinity))}};
+}
+
+PsychometricCurve step_curve(const PsychometricModel& model, const std::vector<Level>& levels) {
+  constexpr double as_likely = 1e-3;
+  const PsychometricFit fit = fit_psychometric(model, levels);
+  if (fit.outcome != FitOutcome::step) {
+    throw core::InvalidInput{fmt::format("is no step: {}", explanation(fit.outcome))};
+  }
+  const BinomialLikelihood likelihood{model.shape, checked_levels(levels, model.shape)};
+  const PsychometricBox box = search_box(model, likelihood.levels());
+  const Profile profile{likelihood, box, fit.maximum, as_likely};
+  const double step = 0.1 * axis_range(likelihood.levels(), model.shape).smallest_gap;
+  const double low = profile.end(threshold_at, -step, box.low[threshold_at]);
+  const double high = profile.end(threshold_at, step, box.high[threshold_at]);
+  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+  return {from_axis(model.shape, 0.5 * (low + high)),
+          std::exp(box.high[log_slope_at]),
+          fit.maximum.at[guess_at],
+          fit.maximum.at[lapse_at],
+          unknown,
+          unknown};
 }
 
 GoodnessOfFit deviance_test(const PsychometricModel& model, const std::vector<Level>& levels,

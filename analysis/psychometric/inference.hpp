@@ -11,10 +11,15 @@ struct PsychometricIntervals {
   Interval threshold;
   Interval slope;
 };
-// Throws InvalidInput as fit_psychometric does, where no threshold was found (outcome not fitted),
-// and for a confidence outside (0, 1).
+// Throws InvalidInput as fit_psychometric does, where no threshold was found (an outcome other than
+// fitted and step), and for a confidence outside (0, 1).
 PsychometricIntervals profile_intervals(const PsychometricModel& model,
                                         const std::vector<Level>& levels, double confidence = 0.95);
+
+// Where the outcome is a step: its threshold is the middle, on the shape's axis, of those that are
+// as likely as the likeliest, its slope the steepest that the search box holds; standard errors
+// NaN. Throws InvalidInput as fit_psychometric does, and for other outcomes.
+PsychometricCurve step_curve(const PsychometricModel& model, const std::vector<Level>& levels);
 
 struct GoodnessOfFit {
   double deviance{};

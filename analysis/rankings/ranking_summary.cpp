@@ -42,10 +42,11 @@ ReportTable stimuli_table(const RankingResults& results) {
 ReportTable pairs_table(const RankingResults& results) {
   const Column of_difference =
       interval_column("log worth, difference (95 %, answers independent)", "difference");
-  ReportTable table{"pairs",
-                    "Pairs of stimuli: Wilcoxon signed-rank tests of participants' mean places",
-                    {column("first", "first"), column("second", "second"), of_difference,
-                     column("p", "p"), column("by Holm", "p_holm"), column("exact", "is_exact")}};
+  ReportTable table{
+      "pairs",
+      "Pairs of stimuli: signed-rank tests (Wilcoxon 1945) of participants' mean places",
+      {column("first", "first"), column("second", "second"), of_difference, column("p", "p"),
+       column("by Holm", "p_holm"), column("exact", "is_exact")}};
   for (const PairwiseTest& pair : results.pairwise) {
     Cell of_worths = nothing(of_difference);
     if (results.worths) {
@@ -82,7 +83,8 @@ std::vector<std::string> remarks_on(const RankingResults& results) {
   }
   return {
       results.no_worths.empty()
-          ? "Worths by Plackett and Luce: each place goes to one of the stimuli that are left in "
+          ? "Worths (Plackett 1975; Luce 1959): each place goes to one of the stimuli that are "
+            "left in "
             "proportion to its worth. Natural logarithms, mean 0, by maximum likelihood; intervals "
             "of plus or minus 1.96 standard errors take all rankings as independent."
           : "There are no worths: " + results.no_worths + ".",

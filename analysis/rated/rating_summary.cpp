@@ -36,7 +36,7 @@ ReportTable stimuli_table(const BlockDesign& design, const RatingResults& result
 
 ReportTable pairs_table(const RatingResults& results) {
   ReportTable table{"pairs",
-                    "Pairs of stimuli: Wilcoxon signed-rank tests",
+                    "Pairs of stimuli: signed-rank tests (Wilcoxon 1945)",
                     {column("first", "first"), column("second", "second"), column("V", "v"),
                      column("pairs that differ", "differing"), column("p", "p"),
                      column("by Holm", "p_holm"), column("exact", "is_exact")}};

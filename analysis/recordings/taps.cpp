@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "analysis/recordings/innovation.hpp"
 #include "analysis/statistics/quantiles.hpp"
 #include "core/error.hpp"
 namespace tapstudy::analysis {
@@ -18,6 +19,9 @@ constexpr double onset_ratio = 10.0;
 constexpr double rise_ratio = 2.0;
 constexpr double end_ratio = 2.0;
 constexpr double envelope_s = 0.05;
+constexpr double surprise_ratio = 4.0;
+constexpr std::size_t settled_frames = 6;
+constexpr std::size_t look_back_frames = 125;
 constexpr double one_impact_s = 0.03;
 constexpr double peak_search_s = 0.01;
 constexpr std::size_t min_decay = 64;
@@ -31,6 +35,7 @@ std::size_t samples_in(double seconds, double rate_hz) {
 struct Energies {
   std::size_t frame{};  // samples
   std::vector<double> of_frame;
+  std::vector<double> innovations;  // likewise, see innovation_energies
   double floor{};
 
   double of_group(std::size_t first) const {
@@ -42,7 +47,7 @@ struct Energies {
 };
 
 Energies energies_of(const std::vector<double>& centred, double rate_hz) {
-  Energies energies{std::max(min_frame, samples_in(frame_s, rate_hz)), {}, 0.0};
+  Energies energies{std::max(min_frame, samples_in(frame_s, rate_hz)), {}, {}, 0.0};
   for (std::size_t i = 0; i + energies.frame <= centred.size(); i += energies.frame) {
     double sum = 0.0;
     for (std::size_t k = i; k < i + energies.frame; ++k) {
@@ -50,6 +55,7 @@ Energies energies_of(const std::vector<double>& centred, double rate_hz) {
     }
     energies.of_frame.push_back(sum / static_cast<double>(energies.frame));
   }
+  energies.innovations = innovation_energies(centred, rate_hz, energies.frame);
   std::vector<double> groups;
   for (std::size_t i = 0; i < energies.of_frame.size(); i += frames_per_group) {
     groups.push_back(energies.of_group(i));
@@ -57,6 +63,23 @@ Energies energies_of(const std::vector<double>& centred, double rate_hz) {
   const double loudest = *std::ranges::max_element(energies.of_frame);
   energies.floor = std::max(quantile(groups, 0.2), 1e-12 * loudest);
   return energies;
+}
+
+// Modes that beat, and slow ones, rise again and again while they ring: an impact is also not what
+// the motion before foretells.
+bool is_surprising(std::size_t frame, std::size_t last_impact, const Energies& energies) {
+  const std::size_t first = std::max(last_impact + settled_frames,
+                                     frame > look_back_frames ? frame - look_back_frames : 0);
+  if (first + 2 > frame) {
+    return true;
+  }
+  const auto at = [&](std::size_t i) {
+    return energies.innovations.begin() + static_cast<std::ptrdiff_t>(i);
+  };
+  const std::vector<double> before(at(first), at(frame - 1));
+  const std::size_t end = std::min(frame + 2, energies.innovations.size());
+  const double now = *std::max_element(at(frame - 1), at(end));
+  return now > surprise_ratio * quantile(before, 0.8);
 }
 
 std::vector<std::size_t> frames_of_impacts(const Energies& energies, double rate_hz) {
@@ -68,7 +91,8 @@ std::vector<std::size_t> frames_of_impacts(const Energies& energies, double rate
   for (std::size_t j = 0; j < energies.of_frame.size(); ++j) {
     const double energy = energies.of_frame[j];
     const bool is_new = impacts.empty() || j - impacts.back() > one_impact;
-    if (is_new && energy > onset_ratio * energies.floor && energy > rise_ratio * envelope) {
+    if (is_new && energy > onset_ratio * energies.floor && energy > rise_ratio * envelope &&
+        (impacts.empty() || is_surprising(j, impacts.back(), energies))) {
       impacts.push_back(j);
     }
     envelope = std::max(energy, fall * envelope);
@@ -76,7 +100,8 @@ std::vector<std::size_t> frames_of_impacts(const Energies& energies, double rate
   return impacts;
 }
 
-// The first sample above the noise and above what rang in the frames before.
+// The first sample above the noise and above what rang in the frames before, from where on the
+// energy stays above the noise: single samples of noise exceed it by chance.
 std::size_t onset_near(std::size_t frame, const Energies& energies,
                        const std::vector<double>& centred) {
   const std::size_t first = (frame > 0 ? frame - 1 : 0) * energies.frame;
@@ -87,7 +112,15 @@ std::size_t onset_near(std::size_t frame, const Energies& energies,
   }
   std::size_t i = first;
   const std::size_t end = (frame + 1) * energies.frame;
-  while (i + 1 < end && std::abs(centred[i]) <= limit) {
+  const auto stays = [&](std::size_t from) {
+    const std::size_t to = std::min(from + energies.frame, centred.size());
+    double sum = 0.0;
+    for (std::size_t k = from; k < to; ++k) {
+      sum += centred[k] * centred[k];
+    }
+    return sum > onset_ratio / 2.0 * energies.floor * static_cast<double>(to - from);
+  };
+  while (i + 1 < end && (std::abs(centred[i]) <= limit || !stays(i))) {
     ++i;
   }
   return i;

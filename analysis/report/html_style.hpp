@@ -7,7 +7,7 @@ h1{font-size:1.6rem}h2{font-size:1.2rem;margin-top:2rem}h3{font-size:1rem;margin
 table{border-collapse:collapse}caption{text-align:left;color:#567;font-size:.85rem;padding-bottom:.4rem}
 .matrix th{font-weight:500;padding:.4rem .7rem;text-align:right}.matrix thead th{text-align:center;max-width:9rem}
 .matrix td{width:7rem;height:4rem;text-align:center;border:2px solid #fff}
-.matrix td b{display:block;font-size:1.2rem}.matrix td span{font-size:.8rem;opacity:.85}
+.matrix td b{display:block;font-size:1.2rem}.matrix td span{font-size:.8rem}
 .matrix td.correct{outline:2px solid #1b2733;outline-offset:-3px}
 .matrix .total{width:3rem;color:#567;text-align:center}
 .accuracy th{font-weight:500;text-align:left;padding:.2rem 1rem .2rem 0}.accuracy td{padding:.2rem 1rem .2rem 0}
@@ -25,7 +25,7 @@ figure{margin:0}figcaption{font-size:.85rem;color:#567}.chart{width:100%;height:
 section>h3{font-size:1.1rem;border-top:1px solid #cdd6df;padding-top:.6rem}section .data~h3,section>h3~h3{font-size:1rem;border:0;padding:0}
 .note,.provenance{font-size:.85rem;color:#567}.provenance th{text-align:left;font-weight:500;padding-right:1rem;vertical-align:top}
 .provenance td{word-break:break-all}.notes{white-space:pre-line}
-@media (max-width:600px){table{display:block;overflow-x:auto}.accuracy td{white-space:normal;padding-right:.5rem}.accuracy th{padding-right:.5rem;overflow-wrap:anywhere}.accuracy th[scope=row]{min-width:5.5rem}.accuracy thead th{overflow-wrap:normal}
+@media (max-width:600px){.accuracy td{white-space:normal;padding-right:.5rem}.accuracy th{padding-right:.5rem;overflow-wrap:anywhere}.accuracy th[scope=row]{min-width:5.5rem}.accuracy thead th{overflow-wrap:normal}
   .dot{width:72px}
   .matrix td{width:4rem;min-width:3.5rem;height:3rem}.matrix th{padding:.3rem}h1{font-size:1.3rem}}
 @media screen and (prefers-color-scheme:dark){:root{color-scheme:dark}body{background:#14191f;color:#dde5ec}
@@ -33,6 +33,9 @@ section>h3{font-size:1.1rem;border-top:1px solid #cdd6df;padding-top:.6rem}secti
   .matrix td{border-color:#14191f}.matrix td.correct{outline-color:#dde5ec}.contents a{color:#8ab8e6}section>h3{border-color:#3a4754}
   .dot .axis{stroke:#3a4754}.dot .chance,.chart .chance,.chart .mark{stroke:#ef8a80}.dot .interval,.chart .interval{stroke:#6baed6}.dot circle{fill:#6baed6}
   .chart .line{stroke:#b9c9d6}.chart .band{fill:#274a68}.chart circle{fill:#6baed6;stroke:#6baed6}.chart circle.open{fill:#14191f}}
-@media print{body{margin:0}.matrix td,.simulated{print-color-adjust:exact;-webkit-print-color-adjust:exact}}
+@media print{body{margin:0;max-width:none;font-size:11pt}.scroll{overflow:visible}
+  .data{width:100%;font-size:8pt}.data th,.data td,.accuracy td{white-space:normal;overflow-wrap:anywhere;padding-right:.4rem}
+  .data thead th{min-width:0}.charts{grid-template-columns:repeat(2,1fr)}figure,tr{break-inside:avoid}h2,h3{break-after:avoid}
+  .matrix td{width:auto}.matrix td,.simulated{print-color-adjust:exact;-webkit-print-color-adjust:exact}}
 )css";
 }  // namespace tapstudy::analysis

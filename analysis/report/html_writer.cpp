@@ -40,7 +40,9 @@ void write_body(std::ostream& out, const Summary& summary) {
   std::ostringstream body;
   write_contents(body, summary);
   for (const auto& block : summary.blocks) {
-    if (!block->block.empty()) {
+    if (block->block.empty()) {
+      body << "<h2>Answers</h2>\n";
+    } else {
       core::print(body, "<h2 id=\"block-{0}\">{0}</h2>\n<p>{1}</p>\n", escaped(block->block),
                   escaped(block->question));
     }
@@ -64,11 +66,12 @@ void write_body(std::ostream& out, const Summary& summary) {
 }  // namespace
 
 void write_html(std::ostream& out, const Summary& summary) {
-  core::print(out,
-              "<!DOCTYPE html>\n<html lang=en><head><meta charset=utf-8><meta name=viewport "
-              "content=\"width=device-width\"><title>{}</title><style>{}</style></head><body>\n"
-              "<h1>{}</h1>\n",
-              escaped(summary.title), html_style, escaped(summary.title));
+  core::print(
+      out,
+      "<!DOCTYPE html>\n<html lang=en><head><meta charset=utf-8><meta name=viewport "
+      "content=\"width=device-width\"><title>{}</title><style>{}</style></head><body><main>\n"
+      "<h1>{}</h1>\n",
+      escaped(summary.title), html_style, escaped(summary.title));
   if (const std::string warning = banner(summary); !warning.empty()) {
     core::print(out, "<p class=simulated>{}</p>\n", escaped(warning));
   }
@@ -96,6 +99,6 @@ void write_html(std::ostream& out, const Summary& summary) {
     }
     out << "</table>\n";
   }
-  out << "</body></html>\n";
+  out << "</main></body></html>\n";
 }
 }  // namespace tapstudy::analysis

@@ -11,12 +11,18 @@ constexpr std::array references{
     Reference{"Berger 1982",
               "Berger, R. L. (1982). Multiparameter hypothesis testing and acceptance sampling. "
               "Technometrics 24, 295–300."},
+    Reference{"Besag & Clifford 1989",
+              "Besag, J. & Clifford, P. (1989). Generalized Monte Carlo significance tests. "
+              "Biometrika 76, 633–642."},
     Reference{"Bowker 1948",
               "Bowker, A. H. (1948). A test for symmetry in contingency tables. Journal of the "
               "American Statistical Association 43, 572–574."},
     Reference{"Bradley & Terry 1952",
               "Bradley, R. A. & Terry, M. E. (1952). Rank analysis of incomplete block designs: I. "
               "The method of paired comparisons. Biometrika 39, 324–345."},
+    Reference{"Cohen 1960",
+              "Cohen, J. (1960). A coefficient of agreement for nominal scales. Educational and "
+              "Psychological Measurement 20, 37–46."},
     Reference{"Davidson 1970",
               "Davidson, R. R. (1970). On extending the Bradley-Terry model to accommodate ties in "
               "paired comparison experiments. Journal of the American Statistical Association 65, "
@@ -25,11 +31,18 @@ constexpr std::array references{
               "Efron, B. (1987). Better bootstrap confidence intervals. Journal of the American "
               "Statistical Association 82, 171–185."},
     Reference{
+        "Friedman 1937",
+        "Friedman, M. (1937). The use of ranks to avoid the assumption of normality implicit in "
+        "the analysis of variance. Journal of the American Statistical Association 32, 675–701."},
+    Reference{
         "Frijters 1979",
         "Frijters, J. E. R. (1979). Variations of the triangular method and the relationship "
         "of its unidimensional probabilistic models to three-alternative forced-choice signal "
         "detection theory models. British Journal of Mathematical and Statistical Psychology "
         "32, 229–241."},
+    Reference{"Goodman 1965",
+              "Goodman, L. A. (1965). On simultaneous confidence intervals for multinomial "
+              "proportions. Technometrics 7, 247–254."},
     Reference{"Hart 2006",
               "Hart, S. G. (2006). NASA-Task Load Index (NASA-TLX); 20 years later. Proceedings of "
               "the Human Factors and Ergonomics Society 50, 904–908."},
@@ -49,6 +62,9 @@ constexpr std::array references{
     Reference{"Kaernbach 1991",
               "Kaernbach, C. (1991). Simple adaptive testing with the weighted up-down method. "
               "Perception & Psychophysics 49, 227–229."},
+    Reference{"Kendall & Babington Smith 1939",
+              "Kendall, M. G. & Babington Smith, B. (1939). The problem of m rankings. Annals of "
+              "Mathematical Statistics 10, 275–287."},
     Reference{"Kendall & Babington Smith 1940",
               "Kendall, M. G. & Babington Smith, B. (1940). On the method of paired comparisons. "
               "Biometrika 31, 324–345."},
@@ -61,6 +77,8 @@ constexpr std::array references{
     Reference{"Liesefeld & Janczyk 2019",
               "Liesefeld, H. R. & Janczyk, M. (2019). Combining speed and accuracy to control for "
               "speed-accuracy trade-offs(?). Behavior Research Methods 51, 40–60."},
+    Reference{"Luce 1959",
+              "Luce, R. D. (1959). Individual Choice Behavior: A Theoretical Analysis. Wiley."},
     Reference{"Luce 1963",
               "Luce, R. D. (1963). Detection and recognition. In R. D. Luce, R. R. Bush & E. "
               "Galanter (eds.), Handbook of Mathematical Psychology 1, 103–189."},
@@ -70,10 +88,17 @@ constexpr std::array references{
     Reference{"Miller & Nicely 1955",
               "Miller, G. A. & Nicely, P. E. (1955). An analysis of perceptual confusions among "
               "some English consonants. Journal of the Acoustical Society of America 27, 338–352."},
+    Reference{"Plackett 1975",
+              "Plackett, R. L. (1975). The analysis of permutations. Journal of the Royal "
+              "Statistical Society C 24, 193–202."},
     Reference{"Schütt et al. 2016",
               "Schütt, H. H., Harmeling, S., Macke, J. H. & Wichmann, F. A. (2016). Painfree and "
               "accurate Bayesian estimation of psychometric functions for (potentially) "
               "overdispersed data. Vision Research 122, 105–123."},
+    Reference{"Sison & Glaz 1995",
+              "Sison, C. P. & Glaz, J. (1995). Simultaneous confidence intervals and sample size "
+              "determination for multinomial proportions. Journal of the American Statistical "
+              "Association 90, 366–369."},
     Reference{
         "Stuart 1955",
         "Stuart, A. (1955). A test for homogeneity of the marginal distributions in a two-way "
@@ -81,9 +106,18 @@ constexpr std::array references{
     Reference{"Thurstone 1927",
               "Thurstone, L. L. (1927). A law of comparative judgment. Psychological Review 34, "
               "273–286."},
+    Reference{"Torgerson 1952",
+              "Torgerson, W. S. (1952). Multidimensional scaling: I. Theory and method. "
+              "Psychometrika 17, 401–419."},
+    Reference{"Tukey 1958",
+              "Tukey, J. W. (1958). Bias and confidence in not quite large samples (abstract). "
+              "Annals of Mathematical Statistics 29, 614."},
     Reference{"Watson 2017",
               "Watson, A. B. (2017). QUEST+: A general multidimensional Bayesian adaptive "
               "psychometric method. Journal of Vision 17(3), 10."},
+    Reference{"Wilcoxon 1945",
+              "Wilcoxon, F. (1945). Individual comparisons by ranking methods. Biometrics Bulletin "
+              "1, 80–83."},
     Reference{
         "Williams 1949",
         "Williams, E. J. (1949). Experimental designs balanced for the estimation of residual "

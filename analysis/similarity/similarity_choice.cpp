@@ -8,6 +8,7 @@
 namespace tapstudy::analysis {
 namespace {
 constexpr std::size_t most_classes = 40;
+
 constexpr int most_rounds = 50'000;
 constexpr double tolerance = 1e-12;  // of a round's largest change, relative
 
@@ -51,6 +52,20 @@ double fit_once(const Eigen::MatrixXd& counts, Factors& factors) {
     }
   }
   return change;
+}
+
+// Until it has settled; the last round's change.
+double fit(const Eigen::MatrixXd& counts, Factors& factors) {
+  double change = 1.0;
+  for (int round = 0; round < most_rounds && change > tolerance; ++round) {
+    change = fit_once(counts, factors);
+  }
+  return change;
+}
+
+Factors unfitted(Eigen::Index size) {
+  return {Eigen::VectorXd::Ones(size), Eigen::VectorXd::Ones(size),
+          Eigen::MatrixXd::Ones(size, size)};
 }
 
 double deviance(const Eigen::MatrixXd& counts, const Eigen::MatrixXd& fitted) {
@@ -107,14 +122,9 @@ SimilarityChoice similarity_choice(const CountTable& table) {
   }
   const Eigen::MatrixXd counts = as_matrix(table);
   const Eigen::Index size = counts.rows();
-  Factors factors{Eigen::VectorXd::Ones(size), Eigen::VectorXd::Ones(size),
-                  Eigen::MatrixXd::Ones(size, size)};
-  double change = 1.0;
-  for (int round = 0; round < most_rounds && change > tolerance; ++round) {
-    change = fit_once(counts, factors);
-  }
+  Factors factors = unfitted(size);
   constexpr double close_enough = 1e-6;
-  if (!(change < close_enough)) {
+  if (!(fit(counts, factors) < close_enough)) {
     result.refusal = "the fit of the similarity-choice model does not settle";
     return result;
   }

@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -16,9 +17,22 @@ struct SimilarityChoice {
   double g_squared{};                             // 2 sum n_ij ln(n_ij / fitted)
   // (k - 1)(k - 2) / 2 less the pairs that were never confused, not below 0
   int degrees_of_freedom{};
-  double p{};  // of g_squared; 1 without degrees of freedom; all answers count as independent
+  // Of g_squared, for large counts; 1 without degrees of freedom. All answers count as independent.
+  double p{};
 };
 // Refused for fewer than two classes or more than 40, for a class that was never answered right,
 // and where the fit does not settle. Throws InvalidInput as totals_of_square does.
 SimilarityChoice similarity_choice(const CountTable& table);
+
+// Of g_squared given the totals of rows, columns and pairs, where counts are too small for
+// chi-squared: exact, whatever the parameters, by a Markov chain over the tables with these totals
+// (Agresti 1992) from which as many are drawn before as after the table itself, at a random place
+// (Besag & Clifford 1989). Its steps add 1 along a cycle of classes and take 1 along its reverse.
+// All answers count as independent. Of more answers than it is for: the p of chi-squared, no draws.
+struct ConditionalFit {
+  double p{};
+  int draws{};
+};
+ConditionalFit conditional_fit(const CountTable& table, const SimilarityChoice& model,
+                               std::uint64_t seed);
 }  // namespace tapstudy::analysis

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <boost/math/distributions/chi_squared.hpp>
+#include <boost/math/distributions/fisher_f.hpp>
+#include <boost/math/distributions/gamma.hpp>
 #include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
@@ -47,6 +49,19 @@ double chi_squared_p(double x, double degrees_of_freedom) {
   check_degrees(degrees_of_freedom);
   const boost::math::chi_squared distribution{degrees_of_freedom};
   return x > 0.0 ? boost::math::cdf(boost::math::complement(distribution, x)) : 1.0;
+}
+
+double f_p(double f, double numerator_freedom, double denominator_freedom) {
+  check_degrees(numerator_freedom);
+  check_degrees(denominator_freedom);
+  const boost::math::fisher_f distribution{numerator_freedom, denominator_freedom};
+  return f > 0.0 ? boost::math::cdf(boost::math::complement(distribution, f)) : 1.0;
+}
+
+double gamma_quantile(double probability, double shape) {
+  check_probability(probability);
+  check_degrees(shape);
+  return boost::math::quantile(boost::math::gamma_distribution<>{shape}, probability);
 }
 
 double chi_squared_quantile(double probability, double degrees_of_freedom) {

@@ -9,6 +9,10 @@ double normal_quantile(double probability);
 // P(X >= x); 1 for x <= 0
 double chi_squared_p(double x, double degrees_of_freedom);
 double chi_squared_quantile(double probability, double degrees_of_freedom);
+// P(F >= f) of Fisher's F
+double f_p(double f, double numerator_freedom, double denominator_freedom);
+// Of the gamma distribution with scale 1; probability in (0, 1), shape above 0
+double gamma_quantile(double probability, double shape);
 // probability in (0, 1)
 double t_quantile(double probability, double degrees_of_freedom);
 // P(T >= t) of Student's t

@@ -73,7 +73,9 @@ void write_sections_html(std::ostream& out, const std::vector<ReportSection>& se
                          const std::string& anchor) {
   const auto id_of = [&](std::size_t i) { return fmt::format("{}-{}", anchor, i + 1); };
   const bool is_long = std::ranges::count_if(sections, has_content) > 1;
-  out << (is_long ? "<nav class=contents aria-label=Contents><ul>\n" : "");
+  if (is_long) {
+    core::print(out, "<nav class=contents aria-label=\"Contents of {}\"><ul>\n", escaped(anchor));
+  }
   for (std::size_t i = 0; i < sections.size(); ++i) {
     if (is_long && has_content(sections[i])) {
       core::print(out, "<li><a href=\"#{}\">{}</a></li>\n", escaped(id_of(i)),

@@ -24,7 +24,7 @@ void write_row(std::ostream& out, const ReportTable& table, const std::vector<Ce
 
 void write_table_html(std::ostream& out, const ReportTable& table) {
   core::print(out,
-              "<h3>{0}</h3><div class=scroll tabindex=0 role=region aria-label=\"{0}\">"
+              "<h3>{0}</h3><div class=scroll tabindex=0 role=group aria-label=\"{0}\">"
               "<table class=data><thead><tr>",
               escaped(table.title));
   for (const Column& column : table.columns) {

@@ -72,12 +72,13 @@ void estimate(ParticipantThreshold& person, const PsychometricModel& model,
               const std::vector<Level>& levels, int draws) {
   try {
     const PsychometricFit fit = fit_psychometric(model, levels);
-    if (!fit.curve) {
+    const bool is_step = fit.outcome == FitOutcome::step;
+    if (!fit.curve && !is_step) {
       person.no_threshold = explanation(fit.outcome);
       return;
     }
-    const PsychometricCurve& curve = *fit.curve;
-    person.estimate = {curve, profile_intervals(model, levels),
+    const PsychometricCurve curve = is_step ? step_curve(model, levels) : *fit.curve;
+    person.estimate = {curve, profile_intervals(model, levels), is_step,
                        core::proportion(model.shape, curve.threshold, curve.threshold, curve.slope,
                                         curve.guess, curve.lapse),
                        std::nullopt};

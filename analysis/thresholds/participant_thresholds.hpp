@@ -13,6 +13,7 @@ namespace tapstudy::analysis {
 struct ThresholdEstimate {
   PsychometricCurve curve;
   PsychometricIntervals intervals;        // 95 %, by profile likelihood
+  bool is_step{};                         // the slope has no upper limit, and is not estimated
   double proportion_at_threshold{};       // correct
   std::optional<GoodnessOfFit> goodness;  // unset where it would take too long
 };

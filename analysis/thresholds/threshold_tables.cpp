@@ -87,6 +87,12 @@ ReportTable pooled_table(const VariedAxis& axis, const ThresholdResults& results
   return table;
 }
 
+Cell slope_cell(const ThresholdEstimate& of) {
+  return of.is_step ? Cell{fmt::format("above {}", rounded(of.intervals.slope.low)),
+                           {Value{}, of.intervals.slope.low, of.intervals.slope.high}}
+                    : interval(of.curve.slope, of.intervals.slope);
+}
+
 ReportTable fits_table(const BlockDesign& design, const ThresholdResults& results) {
   ReportTable table{
       "fits",
@@ -96,8 +102,8 @@ ReportTable fits_table(const BlockDesign& design, const ThresholdResults& result
   for (const ParticipantThreshold& person : results.participants) {
     if (const auto& of = person.estimate) {
       table.rows.push_back(
-          {word(person.participant_id), interval(of->curve.slope, of->intervals.slope),
-           number(of->curve.guess), number(of->curve.lapse, 2),
+          {word(person.participant_id), slope_cell(*of), number(of->curve.guess),
+           number(of->curve.lapse, 2),
            probability(of->goodness ? std::optional{of->goodness->p} : std::nullopt)});
     }
   }
@@ -126,10 +132,16 @@ ReportTable posteriors_table(const ThresholdResults& results) {
   return table;
 }
 
-// d' of the answers at one level; by hits and false alarms where participants set their own rate.
+constexpr std::int64_t fewest_answers = 5;  // corrected rates of fewer say little else
+
+// d' of the answers at one level, if they are not too few; by hits and false alarms where
+// participants set their own rate.
 Cell d_prime_at(const Level& level, const ParticipantThreshold& person,
                 const std::optional<DecisionTask>& task, bool has_own_guess_rate,
                 const Column& of_d_prime) {
+  if (level.answers.trials < fewest_answers) {
+    return nothing(of_d_prime);
+  }
   if (!has_own_guess_rate) {
     if (!task) {
       return nothing(of_d_prime);

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "analysis/detection/decision_model.hpp"
 #include "analysis/thresholds/threshold_tables.hpp"
 namespace tapstudy::analysis {
@@ -45,6 +47,14 @@ std::vector<std::string> threshold_remarks(const BlockDesign& design,
       remarks.push_back(
           fmt::format("{} has no threshold: {}.", person.participant_id, person.no_threshold));
     }
+  }
+  if (std::ranges::any_of(results.participants, [](const ParticipantThreshold& person) {
+        return person.estimate && person.estimate->is_step;
+      })) {
+    remarks.emplace_back(
+        "A slope that is only known to be above a limit: the answers change within one step "
+        "between "
+        "levels. The threshold is then the middle of those that are equally likely.");
   }
   if (results.mean_log) {
     remarks.emplace_back(

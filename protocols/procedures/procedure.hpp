@@ -93,6 +93,8 @@ class TrackSettings {
   virtual std::optional<std::pair<double, double>> guess_rates() const { return std::nullopt; }
   // The psychometric function that it takes answers to follow; nullopt: it assumes none.
   virtual std::optional<core::PsychometricShape> shape() const { return std::nullopt; }
+  // The proportion correct at which it settles; nullopt: at none.
+  virtual std::optional<double> settles_at() const { return std::nullopt; }
   // Whether right answers lead to lower levels.
   virtual bool is_harder_below() const { return true; }
   virtual std::unique_ptr<Track> start(std::uint64_t seed) const = 0;

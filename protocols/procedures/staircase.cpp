@@ -24,6 +24,7 @@ class StaircaseStart final : public TrackSettings {
   std::vector<std::pair<double, double>> ranges() const override {
     return {{settings_.min, settings_.max}};
   }
+  std::optional<double> settles_at() const override { return staircase_target(settings_); }
   bool is_harder_below() const override { return settings_.is_harder_below; }
   std::string words() const override {
     const std::string rule = settings_.easier_per_harder == 1.0
@@ -140,6 +141,10 @@ void check_room(MapReader& reader, const StaircaseSettings& settings) {
   const double high = offset_of(settings, settings.max);
   if (settings.first_step * std::max(1.0, settings.easier_per_harder) > high - low) {
     reader.reject("first_step", "leads from one limit to the other: there is no room to move");
+  }
+  const double largest = settings.first_step * std::max(1.0, settings.easier_per_harder);
+  if (largest * static_cast<double>(settings.max_trials) < std::min(-low, high)) {
+    reader.reject("first_step", "is so small that no limit can be reached before it stops");
   }
   const double smallest = settings.min_step * std::min(1.0, settings.easier_per_harder);
   if (value_at(settings, low + smallest) == settings.min ||

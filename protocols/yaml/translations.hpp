@@ -1,5 +1,6 @@
 #pragma once
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 namespace tapstudy::protocols {
@@ -13,5 +14,7 @@ struct Translations {
 // The key paths of those that are given in some languages, but not in this one.
 std::vector<std::string> texts_without(const std::string& language,
                                        const Translations& translations);
+// All languages that a text is given in.
+std::set<std::string> languages_of(const Translations& translations);
 bool is_language(const std::string& text);
 }  // namespace tapstudy::protocols

@@ -107,12 +107,16 @@ void MapReader::list(const std::string& key, Presence presence, const ReadMap& r
 
 void MapReader::finish() {
   std::vector<std::string> seen;
+  std::vector<std::string> allowed = known_;
+  std::ranges::copy_if(looked_for_, std::back_inserter(allowed), [&](const std::string& key) {
+    return std::ranges::find(allowed, key) == allowed.end();
+  });
   for (const auto& entry : *node_) {
     const std::string key = entry.first.IsScalar() ? entry.first.Scalar() : "?";
     if (std::ranges::find(known_, key) == known_.end()) {
       reject_at(entry.first, path_of(key),
-                fmt::format("is not a known key (one of: {}{})", fmt::join(known_, ", "),
-                            did_you_mean(key, known_)));
+                fmt::format("is not a known key (one of: {}{})", fmt::join(allowed, ", "),
+                            did_you_mean(key, allowed)));
     } else if (std::ranges::find(seen, key) != seen.end()) {
       reject_at(entry.first, path_of(key), "is there twice");
     }

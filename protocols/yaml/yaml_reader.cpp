@@ -95,7 +95,8 @@ std::string MapReader::stated_at(const std::string& key) const {
   return problems_->place(std::max(0, mark.line), std::max(0, mark.column), path_of(key));
 }
 
-bool MapReader::has(const std::string& key) const {
+bool MapReader::has(const std::string& key) {
+  looked_for_.push_back(key);
   const YAML::Node& whole = *node_;
   return whole[key].IsDefined();
 }

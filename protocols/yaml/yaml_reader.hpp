@@ -46,7 +46,7 @@ class MapReader {
   MapReader& operator=(MapReader&& other) = delete;
 
   enum class Presence { required, optional };
-  bool has(const std::string& key) const;
+  bool has(const std::string& key);
   double number(const std::string& key, const Range& range, std::optional<double> otherwise = {});
   int integer(const std::string& key, int low, int high, std::optional<int> otherwise = {});
   bool yes_or_no(const std::string& key, std::optional<bool> otherwise = {});
@@ -151,6 +151,7 @@ class MapReader {
   std::string pattern_;
   bool has_free_names_{false};
   std::vector<std::string> known_;
+  std::vector<std::string> looked_for_;  // by `has`: keys that may be given, read or not
   Problems* problems_;
   Translations* translations_;  // nullptr: one language is all that is read
 };

@@ -12,6 +12,14 @@ bool is_language(const std::string& text) {
   return text.size() == 2 && std::ranges::all_of(text, is_small_letter);
 }
 
+std::set<std::string> languages_of(const Translations& translations) {
+  std::set<std::string> all;
+  for (const auto& [path, languages] : translations.given) {
+    all.insert(languages.begin(), languages.end());
+  }
+  return all;
+}
+
 std::vector<std::string> texts_without(const std::string& language,
                                        const Translations& translations) {
   std::vector<std::string> paths;

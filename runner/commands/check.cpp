@@ -148,6 +148,9 @@ void run_check(const CheckOptions& options) {
     check_fits(protocol, *rig);
     delay_ticks = kind_of(*rig).delay_ticks(*rig);
   }
+  for (const std::string& language : protocols::languages_of(protocol.translations)) {
+    protocols::read_protocol(options.protocol, language);  // what only its sessions would meet
+  }
   print_design(protocol, options.participants);
   ModelLibrary models;
   print_models(protocol, models);

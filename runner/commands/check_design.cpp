@@ -157,12 +157,9 @@ void print_screens(const protocols::Protocol& protocol) {
 }
 
 void print_languages(const protocols::Protocol& protocol) {
-  std::set<std::string> all;
-  std::size_t in_one = 0;
-  for (const auto& [path, languages] : protocol.translations.given) {
-    all.insert(languages.begin(), languages.end());
-    in_one += languages.empty() ? 1 : 0;
-  }
+  const std::set<std::string> all = protocols::languages_of(protocol.translations);
+  const auto in_one = std::ranges::count_if(protocol.translations.given,
+                                            [](const auto& text) { return text.second.empty(); });
   if (all.empty()) {
     return;
   }

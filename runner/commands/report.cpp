@@ -12,6 +12,7 @@
 #include "analysis/report/comparison.hpp"
 #include "analysis/report/figure_files.hpp"
 #include "analysis/report/selection.hpp"
+#include "analysis/report/table_files.hpp"
 #include "analysis/report/writers.hpp"
 #include "analysis/statistics/counts_csv.hpp"
 #include "core/error.hpp"
@@ -88,16 +89,6 @@ std::vector<std::string> listed(const std::string& words, const std::string& opt
   return csv.rows.empty() ? std::vector<std::string>{} : csv.rows.front().cells;
 }
 
-// A table that leaves its report still says whose answers it holds.
-std::string table_text(const Summary& summary, const analysis::CsvTable& table) {
-  std::ostringstream text;
-  if (!banner(summary).empty()) {
-    text << analysis::mode_mark << summary.modes << '\n';
-  }
-  table.write(text);
-  return text.str();
-}
-
 void write_files(const ReportOptions& options, const Summary& summary) {
   const auto figure_files = analysis::figure_files(summary);
   std::vector<core::NewFile> files;
@@ -112,14 +103,8 @@ void write_files(const ReportOptions& options, const Summary& summary) {
   add("report.html", written(analysis::write_html));
   add("report.json", written(analysis::write_json));
   add("tables.tex", written(analysis::write_latex));
-  for (const auto& block : summary.blocks) {
-    for (const analysis::CsvTable& table : block->tables()) {
-      add(block->block.empty() ? table.name : block->block + "_" + table.name,
-          table_text(summary, table));
-    }
-  }
-  for (const analysis::CsvTable& table : analysis::csv_of(summary.sections)) {
-    add(table.name, table_text(summary, table));
+  for (analysis::TableFile& table : analysis::table_files(summary)) {
+    add(table.name, std::move(table.text));
   }
   for (const analysis::FigureFile& figure : figure_files) {
     add("figures/" + figure.name + ".svg", figure.svg);

@@ -12,6 +12,7 @@
 #include "results/store.hpp"
 #include "results/store_error.hpp"
 #include "runner/commands/commands.hpp"
+#include "runner/experiments/published_report.hpp"
 #include "runner/experiments/stored_protocol.hpp"
 #include "runner/experiments/stored_trial.hpp"
 #include "runner/terminal/logging.hpp"
@@ -100,8 +101,29 @@ std::string print_compared(const results::JournalEntries& in_store,
   if (missing > 0) {
     return fmt::format("{} answers or actions are not the same in both", missing);
   }
-  fmt::print("the two agree\n");
+  fmt::print("their answers and actions agree\n");
   return "";
+}
+
+// Likewise.
+std::string print_published(const PublishedReport& report) {
+  if (!report.is_there) {
+    return "";
+  }
+  if (!report.not_compared.empty()) {
+    fmt::print("report.json      not compared: {}\n", report.not_compared);
+    return "";
+  }
+  constexpr std::size_t max_printed = 20;
+  for (std::size_t i = 0; i < std::min(report.differences.size(), max_printed); ++i) {
+    fmt::print("differs: {}\n", report.differences[i]);
+  }
+  if (report.differences.empty()) {
+    fmt::print("report.json      and its tables: what a report made anew has\n");
+    return "";
+  }
+  return fmt::format("{} values of its report are not what a report made anew has (is it older?)",
+                     report.differences.size());
 }
 
 void verify(const VerifyOptions& options) {
@@ -116,6 +138,10 @@ void verify(const VerifyOptions& options) {
       print_heads(results::differing_heads(store.study(), store.sessions(), journal)),
       print_compared(in_store, journal.entries)};
   std::erase(wrong, "");
+  if (wrong.empty()) {  // else a report made anew would be wrong, too
+    wrong.push_back(print_published(published_report(options.directory, store)));
+    std::erase(wrong, "");
+  }
   if (!wrong.empty()) {
     throw results::StoreError{fmt::format("{}: {}", options.directory, fmt::join(wrong, "; "))};
   }

@@ -81,7 +81,7 @@ void BrowserParticipant::arrive() {
 }
 
 void BrowserParticipant::get_ready(const TrialPrompt& prompt) {
-  progress_ = TrialProgress{prompt.number - 1, prompt.total, prompt.block->is_practice};
+  progress_ = prompt.progress;
   notice_.reset();
   correction_ = {};
   correction_state_ = CorrectionState::none;
@@ -236,6 +236,7 @@ void BrowserParticipant::skipped(const TrialPrompt& /*prompt*/) {
 }
 
 void BrowserParticipant::saved(const TrialPrompt& prompt) {
-  progress_ = TrialProgress{prompt.number, prompt.total, prompt.block->is_practice};
+  progress_ = prompt.progress;
+  ++progress_->done;
 }
 }  // namespace tapstudy::runner

@@ -157,9 +157,10 @@ mg_context* listening_at(const ServerAddress& address, Door door, void* user) {
   callbacks.log_message = [](const mg_connection*, const char*) { return 1; };
   mg_context* const context = mg_start(&callbacks, user, options.data());
   if (context == nullptr) {
-    throw core::InvalidInput{fmt::format(
-        "--console: {} cannot be listened to (is the port in use, is the address this machine's?)",
-        listening)};
+    throw core::InvalidInput{
+        fmt::format("--console: {} cannot be listened to (is the port in use, is it an IPv4 "
+                    "address of this machine?)",
+                    listening)};
   }
   return context;
 }

@@ -89,8 +89,8 @@ std::string state_json(const SessionInView& session, const DeskView& desk,
       {"mode", session.mode},
       {"is_blind", session.is_blind},
       {"state", session.state},
-      {"progress", desk.trial ? Json{{"done", desk.trial->prompt.number - 1},
-                                     {"total", desk.trial->prompt.total}}
+      {"progress", desk.trial ? Json{{"done", desk.trial->prompt.progress.done},
+                                     {"total", desk.trial->prompt.progress.total}}
                               : Json{}},
       {"trial", desk.trial ? json_of(*desk.trial, desk.current, session.is_blind) : Json{}},
       {"last_answer", desk.last_answer ? json_of(*desk.last_answer, session.is_blind) : Json{}},

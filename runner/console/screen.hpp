@@ -43,12 +43,6 @@ struct FeedbackScreen {
   bool is_correct{};
   std::string right;
 };
-struct TrialProgress {
-  int done{};
-  int total{};
-  bool is_practice{};
-};
-
 // What the participant sees.
 struct Screen {
   ScreenKind kind{ScreenKind::wait};

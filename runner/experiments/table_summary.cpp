@@ -9,6 +9,7 @@
 #include <set>
 
 #include "analysis/answer_tables/answer_table.hpp"
+#include "analysis/answer_tables/json_rows.hpp"
 #include "analysis/statistics/counts_csv.hpp"
 #include "core/error.hpp"
 #include "protocols/tasks/shipped_tasks.hpp"
@@ -22,7 +23,8 @@ NamedCsv read_file(const std::string& file) {
   if (!text) {
     throw core::InvalidInput{file + ": cannot be read"};
   }
-  return {file, analysis::read_csv(text, file)};
+  return {file, analysis::is_json_list(text) ? analysis::read_json_rows(text, file)
+                                             : analysis::read_csv(text, file)};
 }
 
 std::pair<std::string, std::string> split(const std::string& text) {

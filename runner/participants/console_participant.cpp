@@ -138,6 +138,7 @@ bool ConsoleParticipant::saves_again(const std::string& cause) {
 }
 
 void ConsoleParticipant::saved(const TrialPrompt& prompt) {
-  say("  saved, {} of {}\n", prompt.number, prompt.total);
+  say("  saved, {} of {}{}\n", prompt.progress.done + 1, prompt.progress.total,
+      prompt.progress.is_practice ? " for practice" : "");
 }
 }  // namespace tapstudy::runner

@@ -11,9 +11,17 @@
 #include "runner/trial_loop/exploration.hpp"
 namespace tapstudy::runner {
 // A trial as presented to the participant. Does not disclose the rendered stimulus.
+// How far a participant is: of the practice while it lasts, then of the trials that count.
+struct TrialProgress {
+  int done{};  // and need not come again
+  int total{};
+  bool is_practice{};
+};
+
 struct TrialPrompt {
   int number{};
-  int total{};
+  int total{};  // of the session
+  TrialProgress progress{};
   const protocols::Block* block{};
   protocols::Answers answers;  // the allowed ones
   std::vector<std::string>

@@ -1,8 +1,11 @@
 #include "runner/recordings/sinusoid_law.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <complex>
+#include <map>
 #include <numbers>
+#include <string>
 #include <vector>
 namespace tapstudy::runner {
 namespace {
@@ -24,53 +27,90 @@ double newtons_per_unit(const SinusoidLaw& law, analysis::Quantity quantity,
   return per_metre;
 }
 
-struct FittedTaps {
-  std::vector<double> decays;
-  std::vector<double> decay_errors;
-  std::vector<double> frequencies;
-  std::vector<double> frequency_errors;
-  std::vector<double> speeds;      // of those whose speed is known
-  std::vector<double> amplitudes;  // likewise, SI
-  double explained{};              // sum
-};
+using Fits = std::vector<const IdentifiedTap*>;
 
-FittedTaps fitted_taps(const TapIdentification& found) {
-  FittedTaps taps;
+// By impact: its channels vary together.
+std::map<int, Fits> fits_of(const TapIdentification& found) {
+  std::map<int, Fits> fits;
   for (const IdentifiedTap& tap : found.taps) {
-    if (!tap.sinusoid || tap.sinusoid->explained < min_explained_by_sinusoid) {
-      continue;
-    }
-    taps.decays.push_back(tap.sinusoid->decay_per_s);
-    taps.decay_errors.push_back(tap.sinusoid->decay_error_per_s);
-    taps.frequencies.push_back(tap.sinusoid->frequency_hz);
-    taps.frequency_errors.push_back(tap.sinusoid->frequency_error_hz);
-    taps.explained += tap.sinusoid->explained;
-    if (tap.speed_m_s) {
-      taps.speeds.push_back(*tap.speed_m_s);
-      taps.amplitudes.push_back(tap.sinusoid->amplitude * found.question.si_per_unit);
+    if (tap.sinusoid && tap.sinusoid->explained >= min_explained_by_sinusoid) {
+      fits[tap.impact].push_back(&tap);
     }
   }
-  return taps;
+  return fits;
+}
+
+double mean_of(const Fits& channels, double analysis::FittedSinusoid::*value) {
+  double sum = 0.0;
+  for (const IdentifiedTap* const tap : channels) {
+    sum += (*tap->sinusoid).*value;
+  }
+  return sum / static_cast<double>(channels.size());
+}
+
+analysis::Estimate over_impacts(const std::map<int, Fits>& fits,
+                                double analysis::FittedSinusoid::*value,
+                                double analysis::FittedSinusoid::*error) {
+  constexpr double many = 1e6;  // degrees of freedom of one tap's samples
+  std::vector<double> values;
+  std::vector<double> errors;
+  for (const auto& [impact, channels] : fits) {
+    values.push_back(mean_of(channels, value));
+    errors.push_back(mean_of(channels, error));
+  }
+  return analysis::estimate_over_taps(values, errors, many);
+}
+
+bool is_of_one_sensor(const std::map<int, Fits>& fits) {
+  const std::string& first = fits.begin()->second.front()->channel;
+  return std::ranges::all_of(fits, [&](const auto& of_impact) {
+    return std::ranges::all_of(of_impact.second,
+                               [&](const IdentifiedTap* tap) { return tap->channel == first; });
+  });
+}
+
+// Amplitudes by the speeds of impact, SI; none where speeds are not known.
+void add_amplitudes(const TapIdentification& found, const std::map<int, Fits>& fits,
+                    SinusoidLaw& law) {
+  std::vector<double> speeds;
+  std::vector<double> amplitudes;
+  for (const auto& [impact, channels] : fits) {
+    if (channels.front()->speed_m_s) {
+      speeds.push_back(*channels.front()->speed_m_s);
+      amplitudes.push_back(channels.front()->sinusoid->amplitude * found.question.si_per_unit);
+    }
+  }
+  if (!speeds.empty()) {
+    law.amplitude_per_speed = analysis::amplitude_per_speed(speeds, amplitudes);
+    law.line = analysis::amplitude_line(speeds, amplitudes);
+  }
 }
 }  // namespace
 
 std::optional<SinusoidLaw> sinusoid_law(const TapIdentification& found,
                                         const std::optional<core::Finger>& finger) {
-  constexpr double many = 1e6;  // degrees of freedom of one tap's samples
-  const FittedTaps taps = fitted_taps(found);
-  if (taps.decays.empty()) {
+  const std::map<int, Fits> fits = fits_of(found);
+  if (fits.empty()) {
     return std::nullopt;
   }
   SinusoidLaw law;
-  law.explained = taps.explained / static_cast<double>(taps.decays.size());
-  law.decay_per_s = analysis::estimate_over_taps(taps.decays, taps.decay_errors, many);
-  law.frequency_hz = analysis::estimate_over_taps(taps.frequencies, taps.frequency_errors, many);
-  if (taps.speeds.empty()) {
-    return law;
+  int taps = 0;
+  for (const auto& [impact, channels] : fits) {
+    for (const IdentifiedTap* const tap : channels) {
+      law.explained += tap->sinusoid->explained;
+      ++taps;
+    }
   }
-  law.amplitude_per_speed = analysis::amplitude_per_speed(taps.speeds, taps.amplitudes);
-  law.line = analysis::amplitude_line(taps.speeds, taps.amplitudes);
-  if (finger) {
+  law.explained /= taps;
+  law.decay_per_s = over_impacts(fits, &analysis::FittedSinusoid::decay_per_s,
+                                 &analysis::FittedSinusoid::decay_error_per_s);
+  law.frequency_hz = over_impacts(fits, &analysis::FittedSinusoid::frequency_hz,
+                                  &analysis::FittedSinusoid::frequency_error_hz);
+  law.is_of_one_sensor = is_of_one_sensor(fits);
+  if (law.is_of_one_sensor) {
+    add_amplitudes(found, fits, law);
+  }
+  if (finger && law.amplitude_per_speed) {
     law.amplitude_n_s_per_m =
         law.amplitude_per_speed->value * newtons_per_unit(law, found.question.quantity, *finger);
   }

@@ -8,7 +8,8 @@ namespace tapstudy::runner {
 inline constexpr double min_explained_by_sinusoid = 0.5;
 
 // One law of all taps (Okamura et al. 1998): decay, frequency, and where speeds are known the
-// amplitude by speed; finger: that makes forces of it, of a protocol. nullopt if no tap is left.
+// amplitude of one sensor by speed; finger: that makes forces of it, of a protocol. nullopt if no
+// tap is left.
 std::optional<SinusoidLaw> sinusoid_law(const TapIdentification& found,
                                         const std::optional<core::Finger>& finger);
 }  // namespace tapstudy::runner

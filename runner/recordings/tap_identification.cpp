@@ -234,7 +234,8 @@ class Identifier {
       if (mode.standing == analysis::Standing::agreed) {
         result_.agreed.push_back(i);
         ratios.push_back({mode.frequency_hz.value, mode.damping_ratio.value,
-                          std::max(mode.damping_ratio.standard_error, 1e-12)});
+                          std::max(mode.damping_ratio.standard_error, 1e-12),
+                          mode.degrees_of_freedom});
       }
     }
     result_.rayleigh = analysis::fit_rayleigh(ratios);

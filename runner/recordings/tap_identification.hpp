@@ -52,7 +52,8 @@ struct IdentifiedTap {
 struct SinusoidLaw {
   analysis::Estimate decay_per_s;
   analysis::Estimate frequency_hz;
-  double explained{};                                     // of the taps' energy, on average
+  double explained{};       // of the taps' energy, on average
+  bool is_of_one_sensor{};  // of several no amplitude: each has its own
   std::optional<analysis::Estimate> amplitude_per_speed;  // SI unit of the quantity per m/s
   std::optional<analysis::AmplitudeLine> line;            // amplitude = offset + slope * speed
   std::optional<double> amplitude_n_s_per_m;  // as the protocol's finger makes a force of it

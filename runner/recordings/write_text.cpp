@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "runner/recordings/writers.hpp"
 namespace tapstudy::runner {
@@ -66,7 +67,13 @@ void print_sinusoid(const SinusoidLaw& law) {
       interval(law.frequency_hz), 100.0 * law.explained);
   if (law.amplitude_per_speed) {
     fmt::print("  amplitude per impact speed {:.4g} ({}), SI\n", law.amplitude_per_speed->value,
-               interval(*law.amplitude_per_speed));
+               std::isfinite(law.amplitude_per_speed->interval.high)
+                   ? interval(*law.amplitude_per_speed)
+                   : "one tap: no interval");
+  }
+  if (!law.is_of_one_sensor) {
+    fmt::print(
+        "  no amplitude by speed: the recordings are of several sensors (--column takes one)\n");
   }
   if (law.line) {
     fmt::print("  by a line: {:.4g} ({}) + {:.4g} ({}) per m/s{}\n", law.line->offset.value,

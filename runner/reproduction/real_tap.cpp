@@ -98,8 +98,9 @@ std::vector<FeltTap> felt_tap(const protocols::Protocol& protocol, const std::st
 double level_db(const FeltTap& tap) {
   double power = 0.0;
   for (const double level : tap.level_db) {
-    power += std::pow(10.0, level / 10.0) - 1.0;
+    power += std::pow(10.0, level / 10.0) - 1.0;  // as features_of adds it
   }
-  return 10.0 * std::log10(1.0 + power);
+  constexpr double least = 1e-12;
+  return 10.0 * std::log10(std::max(power, least));
 }
 }  // namespace tapstudy::runner

@@ -36,7 +36,7 @@ protocols::Rig unlimited_rig();
 std::vector<FeltTap> felt_tap(const protocols::Protocol& protocol, const std::string& stimulus,
                               const std::string& point, double speed_m_s, ModelLibrary& models);
 
-// Level of one felt tap: the power of all its third octaves, early and late, in decibels above the
-// observer's threshold.
+// Level of one felt tap: the power of all its third octaves, early and late, in decibels of the
+// observer's threshold; below 0 where nothing is felt.
 double level_db(const FeltTap& tap);
 }  // namespace tapstudy::runner

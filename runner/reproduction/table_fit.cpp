@@ -1,12 +1,16 @@
 #include "runner/reproduction/table_fit.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
+#include "analysis/statistics/distributions.hpp"
 #include "core/rng.hpp"
 namespace tapstudy::runner {
 namespace {
 using Row = std::vector<std::int64_t>;
+constexpr double added = 0.5;  // to each count (Jeffreys)
 
 std::int64_t total_of(const Row& row) {
   return std::accumulate(row.begin(), row.end(), std::int64_t{0});
@@ -41,10 +45,41 @@ Row drawn(std::int64_t answers, const std::vector<double>& probabilities, core::
   }
   return row;
 }
+// Dirichlet: gamma variates over their sum.
+std::vector<double> drawn_shares(const Row& answers, core::Rng& rng) {
+  std::vector<double> shares;
+  for (const std::int64_t count : answers) {
+    const double uniform = std::max(rng.uniform(), std::numeric_limits<double>::min());
+    shares.push_back(analysis::gamma_quantile(uniform, static_cast<double>(count) + added));
+  }
+  const double all = std::accumulate(shares.begin(), shares.end(), 0.0);
+  for (double& share : shares) {
+    share /= all;
+  }
+  return shares;
+}
+
+// Of tables whose rows are drawn from these shares, as rare under the probabilities as the counts.
+template <class SharesOf>
+double share_as_rare(const analysis::CountTable& counts, const Rows& rows,
+                     const Probabilities& probabilities, std::uint64_t seed, SharesOf shares_of) {
+  constexpr int draws = 4000;
+  constexpr double rounding = 1e-9;
+  core::Rng rng{core::derived_seed(seed, core::Purpose::resampling)};
+  const double observed = log_probability(counts, rows, probabilities);
+  analysis::CountTable table = counts;
+  int as_rare = 0;
+  for (int draw = 0; draw < draws; ++draw) {
+    for (const std::size_t i : rows) {
+      table[i] = drawn(total_of(counts[i]), shares_of(i, rng), rng);
+    }
+    as_rare += log_probability(table, rows, probabilities) <= observed + rounding ? 1 : 0;
+  }
+  return (as_rare + 1.0) / (draws + 1.0);
+}
 }  // namespace
 
 Probabilities probabilities_of(const analysis::CountTable& answers) {
-  constexpr double added = 0.5;
   Probabilities probabilities;
   for (const Row& row : answers) {
     const double all = static_cast<double>(total_of(row)) + added * static_cast<double>(row.size());
@@ -70,18 +105,14 @@ double log_likelihood(const analysis::CountTable& counts, const Rows& rows,
 
 double multinomial_p(const analysis::CountTable& counts, const Rows& rows,
                      const Probabilities& probabilities, std::uint64_t seed) {
-  constexpr int draws = 4000;
-  constexpr double rounding = 1e-9;
-  core::Rng rng{core::derived_seed(seed, core::Purpose::resampling)};
-  const double observed = log_probability(counts, rows, probabilities);
-  analysis::CountTable table = counts;
-  int as_rare = 0;
-  for (int draw = 0; draw < draws; ++draw) {
-    for (const std::size_t i : rows) {
-      table[i] = drawn(total_of(counts[i]), probabilities[i], rng);
-    }
-    as_rare += log_probability(table, rows, probabilities) <= observed + rounding ? 1 : 0;
-  }
-  return (as_rare + 1.0) / (draws + 1.0);
+  return share_as_rare(counts, rows, probabilities, seed,
+                       [&](std::size_t row, core::Rng& /*rng*/) { return probabilities[row]; });
+}
+
+double predictive_p(const analysis::CountTable& counts, const Rows& rows,
+                    const analysis::CountTable& answers, std::uint64_t seed) {
+  return share_as_rare(
+      counts, rows, probabilities_of(answers), seed,
+      [&](std::size_t row, core::Rng& rng) { return drawn_shares(answers[row], rng); });
 }
 }  // namespace tapstudy::runner

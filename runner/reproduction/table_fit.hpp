@@ -20,4 +20,10 @@ double log_likelihood(const analysis::CountTable& counts, const Rows& rows,
 // share that is no more probable than these, both increased by one (Davison & Hinkley 1997).
 double multinomial_p(const analysis::CountTable& counts, const Rows& rows,
                      const Probabilities& probabilities, std::uint64_t seed);
+
+// The same where the probabilities are known from so many answers only: each table is drawn from
+// probabilities that are drawn before, of their posterior, Dirichlet with the answers and a half
+// added to each.
+double predictive_p(const analysis::CountTable& counts, const Rows& rows,
+                    const analysis::CountTable& answers, std::uint64_t seed);
 }  // namespace tapstudy::runner

@@ -8,6 +8,7 @@
 #include <iterator>
 
 #include "results/store_error.hpp"
+#include "runner/session/trial_progress.hpp"
 #include "runner/session/trial_record.hpp"
 #include "runner/terminal/exit_code.hpp"
 #include "runner/terminal/logging.hpp"
@@ -23,15 +24,6 @@ bool has_late_impact(const TrialResult& result) {
   });
 }
 }  // namespace
-
-std::string to_text(const Interruption& interruption) {
-  return fmt::format(
-      "trial {}: {}; {}, {}", interruption.trial, core::to_text(interruption.fault),
-      interruption.is_force_off
-          ? "force is off"
-          : fmt::format("{} (the device did not confirm zero force)", device::force_may_be_on),
-      interruption.is_answered ? "the answer is stored" : "the trial is stored as interrupted");
-}
 
 std::optional<Interruption> TrialEngine::run(const protocols::Schedule& schedule,
                                              std::set<int>& done_trials) {
@@ -81,7 +73,7 @@ std::optional<Interruption> TrialEngine::run_all(const protocols::Schedule& sche
       continue;
     }
     interludes_.before(trial);
-    const Outcome outcome = run_until_it_counts(trial, static_cast<int>(schedule.size()));
+    const Outcome outcome = run_until_it_counts(trial, {schedule, done_trials});
     if (outcome.is_requeued) {
       const auto next_block = std::ranges::find_if(
           waiting, [&](const PlannedTrial& other) { return other.block != trial.block; });
@@ -98,10 +90,11 @@ std::optional<Interruption> TrialEngine::run_all(const protocols::Schedule& sche
   return std::nullopt;
 }
 
-TrialPrompt TrialEngine::prompt_of(const PlannedTrial& trial, int total) const {
+TrialPrompt TrialEngine::prompt_of(const PlannedTrial& trial, const Course& course) const {
   const protocols::Block& block = parts_.protocol.block(trial.block);
   return {trial.number,
-          total,
+          static_cast<int>(course.schedule.size()),
+          progress_at(trial, course.schedule, course.done, parts_.protocol),
           &block,
           trial.task->answers(block, parts_.protocol),
           trial.task->alternative_labels(trial),
@@ -117,12 +110,13 @@ std::optional<TrialPrompt::Previous> TrialEngine::correctable() const {
                                }};
 }
 
-TrialEngine::Outcome TrialEngine::run_until_it_counts(const PlannedTrial& trial, int total) {
+TrialEngine::Outcome TrialEngine::run_until_it_counts(const PlannedTrial& trial,
+                                                      const Course& course) {
   Outcome outcome;
   do {
     parts_.participant.arrive();
     wait_while_paused();
-    outcome = run_trial(trial, total);
+    outcome = run_trial(trial, course);
   } while (outcome.is_repeated);
   return outcome;
 }
@@ -248,9 +242,9 @@ void TrialEngine::note_answer(const PlannedTrial& trial, const TrialPrompt& prom
   practice_.add(trial, response);
 }
 
-TrialEngine::Outcome TrialEngine::run_trial(const PlannedTrial& planned, int total) {
+TrialEngine::Outcome TrialEngine::run_trial(const PlannedTrial& planned, const Course& course) {
   const PlannedTrial trial = adaptive_->with_values(planned);
-  const TrialPrompt prompt = prompt_of(trial, total);
+  const TrialPrompt prompt = prompt_of(trial, course);
   const protocols::Block& block = parts_.protocol.block(trial.block);
   Presentation presentation = present({trial, prompt, attempts_[trial.number] + 1}, parts_);
   ticks_ += presentation.result.loop.ticks;
@@ -286,7 +280,7 @@ TrialEngine::Outcome TrialEngine::run_trial(const PlannedTrial& planned, int tot
     case Ending::interrupted:
       throw Stopped{fmt::format(
           "stopped in trial {} of {}; every answer given so far is kept (go on with --resume)",
-          trial.number, total)};
+          trial.number, prompt.total)};
     case Ending::answered:
       break;
   }

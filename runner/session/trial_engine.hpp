@@ -7,12 +7,12 @@
 #include <string>
 #include <vector>
 
-#include "core/tick_fault.hpp"
 #include "protocols/schedule.hpp"
 #include "results/recorder.hpp"
 #include "runner/participants/participant.hpp"
 #include "runner/session/adaptive_blocks.hpp"
 #include "runner/session/interludes.hpp"
+#include "runner/session/interruption.hpp"
 #include "runner/session/practice.hpp"
 #include "runner/session/presentation.hpp"
 #include "runner/session/session_states.hpp"
@@ -21,15 +21,6 @@
 #include "runner/stimuli/model_library.hpp"
 #include "runner/trial_loop/trial_loop.hpp"
 namespace tapstudy::runner {
-// A trial ended by a fault, and stored. The fault may have occurred after the answer.
-struct Interruption {
-  int trial{};
-  core::TickFault fault{};
-  bool is_answered{};
-  bool is_force_off{};  // confirmed by the device, or taken from its guardian
-};
-std::string to_text(const Interruption& interruption);
-
 // Takes one participant through a schedule, trial by trial: builds its stimuli, renders them while
 // the participant explores, and stores the complete trial.
 class TrialEngine {
@@ -73,13 +64,17 @@ class TrialEngine {
   void store(const protocols::PlannedTrial& trial, Presentation presentation, Ending ending);
   void note_answer(const protocols::PlannedTrial& trial, const TrialPrompt& prompt,
                    const std::string& response);
-  Outcome run_trial(const protocols::PlannedTrial& planned, int total);
-  Outcome run_until_it_counts(const protocols::PlannedTrial& trial, int total);
+  struct Course {
+    const protocols::Schedule& schedule;
+    const std::set<int>& done;
+  };
+  Outcome run_trial(const protocols::PlannedTrial& planned, const Course& course);
+  Outcome run_until_it_counts(const protocols::PlannedTrial& trial, const Course& course);
   void save(const std::shared_ptr<const results::TrialRecord>& record);
   void save(std::vector<results::FormAnswerRow> answers);
   // Until it succeeds, or the operator gives up: then throws StoreError.
   void retry(const std::function<void()>& write);
-  TrialPrompt prompt_of(const protocols::PlannedTrial& trial, int total) const;
+  TrialPrompt prompt_of(const protocols::PlannedTrial& trial, const Course& course) const;
   std::optional<TrialPrompt::Previous> correctable() const;
 
   SessionParts parts_;

@@ -39,6 +39,13 @@ TEST_CASE("what was confirmed on a screen is stored once, however often the prog
   pass("kill_test.py");
 }
 
+#if !TAPSTUDY_SANITIZED  // what is drawn does not depend on it
+TEST_CASE("a report is readable to everybody, on a screen, a phone and paper",
+          "[end_to_end][pages][slow]") {
+  pass("report_test.py");
+}
+#endif
+
 #if !TAPSTUDY_SANITIZED  // the mocked kernel is not theirs
 TEST_CASE("a SPIDAR is homed by the operator's command while the participant is at a page",
           "[end_to_end][pages][slow]") {

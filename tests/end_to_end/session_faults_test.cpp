@@ -107,7 +107,8 @@ TEST_CASE("verify compares what is stored twice, and a report is made from eithe
       "rm */*_exploration.csv */loop_quality.csv */rendered_*.csv && diff <(cat one/*.csv) <(cat "
       "two/*.csv) && echo same");  // taps and ticks are in the database alone
   INFO(result.standard_error);
-  CHECK_THAT(result.standard_output, Contains("the two agree") && Contains("same\n"));
+  CHECK_THAT(result.standard_output,
+             Contains("their answers and actions agree") && Contains("same\n"));
   CHECK_THAT(result.standard_error, Contains("made from answers.journal alone"));
   sql(directory, "UPDATE response SET response = 'mdf_two' WHERE response_id = 3");
   const auto changed = shell(directory, "tapstudy verify $out; echo $?");

@@ -1,10 +1,12 @@
 #include <catch2/catch.hpp>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <regex>
 
 #include "support/processes.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;
+using namespace nlohmann::literals;
 
 TEST_CASE("a simulated study takes the disk that check says it will", "[end_to_end]") {
   const testing::TempDirectory directory;
@@ -39,4 +41,43 @@ TEST_CASE("verify notices what was changed of a study, its sessions or its stati
   const auto verified = testing::tapstudy({"verify", directory / "s"});
   CHECK(verified.exit_code == 5);
   CHECK_THAT(verified.standard_output, Catch::Contains("differs: ") && Catch::Contains(words));
+}
+
+TEST_CASE("verify makes the report anew and names the numbers that were changed", "[end_to_end]") {
+  const testing::TempDirectory directory;
+  const std::string study = directory / "s";
+  const auto simulate = [&](const char* participants) {
+    return testing::tapstudy({"simulate", testing::shipped("paper/discrimination.yaml").string(),
+                              "--participants", participants, "--seed", "1", "--out", study});
+  };
+  REQUIRE(simulate("3").exit_code == 0);
+  REQUIRE(testing::tapstudy({"report", study}).exit_code == 0);
+  const auto sound = testing::tapstudy({"verify", study});
+  CHECK(sound.exit_code == 0);
+  CHECK_THAT(sound.standard_output, Catch::Contains("what a report made anew has"));
+  const std::string report = study + "/report.json";
+  const auto json = nlohmann::json::parse(testing::contents(report));
+  const auto changed = [&](const nlohmann::json::json_pointer& at) {
+    nlohmann::json other = json;
+    other[at] = other[at].get<int>() + 1;
+    testing::write(report, other.dump());
+    const auto verified = testing::tapstudy({"verify", study});
+    CHECK(verified.exit_code == 5);
+    CHECK_THAT(verified.standard_output, Catch::Contains("differs: report.json /blocks/"));
+    testing::write(report, json.dump());
+  };
+  changed("/blocks/0/accuracy/successes"_json_pointer);
+  changed("/blocks/0/counts/1/2"_json_pointer);
+  CHECK(testing::tapstudy({"verify", study}).exit_code == 0);
+  const std::string table = study + "/discrimination_confusion.csv";
+  testing::write(table, testing::contents(table) + "x,0,0,0,0\n");
+  const auto verified = testing::tapstudy({"verify", study});
+  CHECK(verified.exit_code == 5);
+  CHECK_THAT(verified.standard_output, Catch::Contains("discrimination_confusion.csv: is not"));
+  std::filesystem::remove(table);
+  nlohmann::json older = json;
+  older["participants"] = 2;
+  testing::write(report, older.dump());
+  CHECK_THAT(testing::tapstudy({"verify", study}).standard_output,
+             Catch::Contains("not compared: it was made of fewer participants"));
 }

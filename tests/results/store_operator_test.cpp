@@ -20,6 +20,7 @@ OperatorActionRow action(std::int64_t session_id, const std::string& name,
 SessionRow add_participant(Store& store, const std::string& id,
                            const Store::IsInSession& is_in_session) {
   SessionRow row = small_study::session(id);
+  row.planned_order = "1 main 1 a\n2 main 1 b\n";
   const Store::Place place = store.place_of(id, Mode::real, is_in_session);
   row.participant_index = place.participant_index;
   row.order_index = place.order_index;
@@ -151,7 +152,8 @@ TEST_CASE("a journal that was deleted or cut off in a session is whole again aft
 }
 
 TEST_CASE(
-    "a balanced order is used up by who has answered, or is in a session, and is not excluded",
+    "a balanced order is used up by who has answered, or is in a session, and has neither been "
+    "excluded nor withdrawn",
     "[results][store]") {
   const testing::TempDirectory directory;
   Store store = Store::open_or_create(directory.path(), small_study::study);
@@ -166,7 +168,13 @@ TEST_CASE(
   CHECK(excluded.order_index == 2);
   store.add_trial(small_study::trial(excluded.id, 1, "a"));
   store.add_operator_action(action(excluded.id, "exclude", "asleep"));
-  CHECK(add_participant(store, "P05", is_p02).order_index == 2);
+  const SessionRow withdrawn = add_participant(store, "P05", is_p02);
+  CHECK(withdrawn.order_index == 2);
+  store.add_trial(small_study::trial(withdrawn.id, 7, "a"));
+  CHECK(add_participant(store, "P06", is_p02).order_index == 3);
+  CHECK(store.place_of("P07", Mode::real, is_p02).order_index == 3);  // P06 answered nothing
+  store.add_operator_action(action(withdrawn.id, "end", "went home"));
+  CHECK(store.place_of("P07", Mode::real, is_p02).order_index == 2);
   CHECK(store.place_of("P03", Mode::real, is_p02).order_index == 1);  // if resumed
   CHECK(store.place_of("Q01", Mode::pilot, is_p02).order_index == 0);
 }

@@ -141,7 +141,8 @@ double checked_worst(const std::vector<Residual>& all) {
     if (!one.is_accepted()) {
       throw ModelError{
           fmt::format("modes: a mode has a residual of {:.1e} (at most {:.1e}): are some "
-                      "elements too flat, or is the body too soft for the band?",
+                      "elements too flat, or is the body, or what holds it, too soft beside its "
+                      "stiffest element?",
                       one.found, std::max(one.allowed, accepted_residual))};
     }
     worst = std::max(worst, one.found);

@@ -74,9 +74,8 @@ const replay = () => actBeside("replay_intervals", null, "not_switched");
 const adjust = (setting) => actBeside("adjust", setting, "not_switched");
 const correct = (text) => actBeside("correct", text, "correction_failed");
 
-function identity({ kind, number, trial, form }) {
+function identity({ kind, number, trial }) {
   if (kind === "trial") return JSON.stringify([kind, trial.number, trial.question, trial.answers, trial.alternatives]);
-  if (kind === "form") return JSON.stringify([kind, form]);
   return JSON.stringify([kind, number]);
 }
 

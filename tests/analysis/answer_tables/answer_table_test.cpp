@@ -4,6 +4,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "analysis/answer_tables/json_rows.hpp"
 #include "analysis/report/summary.hpp"
 #include "core/error.hpp"
 #include "support/texts.hpp"
@@ -62,6 +63,17 @@ TEST_CASE("PsychoPy's, jsPsych's and a plain table of the same answers read the 
   CHECK(expected.size() == 3);
   CHECK(lines_of(answers_in(data("psychopy.csv"), psychopy)) == expected);
   CHECK(lines_of(answers_in(data("jspsych.csv"), jspsych)) == expected);
+  std::istringstream json{data("jspsych.json")};
+  REQUIRE(is_json_list(json));
+  CHECK(lines_of(read_answers({{"jspsych.json", read_json_rows(json, "jspsych.json")}}, jspsych)) ==
+        expected);
+}
+
+TEST_CASE("JSON that is no list of trials is refused", "[analysis][answer_tables]") {
+  for (const char* const text : {"[", "[]", "[1, 2]", "[{\"a\": 1}, 2]", "[{\"a\": 1}] x"}) {
+    std::istringstream json{text};
+    CHECK_THROWS_WITH(read_json_rows(json, "trials.json"), Contains("trials.json: is no "));
+  }
 }
 
 TEST_CASE("rows without an answer are counted and left out", "[analysis][answer_tables]") {

@@ -19,7 +19,7 @@ TEST_CASE("the interval of pooled answers is that over participants, never the s
   const Interval score = wilson_interval({26, 48});
   CHECK(over->interval.high - over->interval.low > 1.5 * (score.high - score.low));
   CHECK_THAT(cell.text,
-             Contains(fmt::format("26/48 = 54 % (mean over 6 participants {:.0f} %, 95 % CI ",
+             Contains(fmt::format("26/48 = 54 % ({:.0f} % estimated over 6 participants, 95 % CI ",
                                   100.0 * over->mean)));
 }
 

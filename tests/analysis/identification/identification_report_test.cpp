@@ -94,6 +94,50 @@ BlockDesign drawn(BlockDesign design, int repetitions) {
 }
 }  // namespace
 
+TEST_CASE("a class that all participants name too often is found over participants, as R tests it",
+          "[analysis][identification][r]") {
+  const BlockDesign design = drawn(four_plates(), 4);
+  auto answers = answers_of(design, 6, 4, 0.4, 3);
+  std::vector<double> more(6, 0.0);
+  for (std::size_t i = 0; i < answers.size(); ++i) {
+    if (i % 4 == 0) {
+      answers[i].response = "acrylic_two";
+      answers[i].is_correct = answers[i].stimulus == answers[i].response;
+    }
+    more[i / 16] += ((answers[i].response == "acrylic_two" ? 1.0 : 0.0) - 0.25) / 16.0;
+  }
+  const auto named = reported(statistic, design, answers).json["naming"];
+  REQUIRE(named.size() == 4);
+  std::string r = "d <- c(";
+  for (const double difference : more) {
+    r += fmt::format("{}{:.17g}", difference == more.front() && r.back() == '(' ? "" : ", ",
+                     difference);
+  }
+  const auto expected =
+      r_numbers(r +
+                "); s <- as.matrix(expand.grid(rep(list(c(-1, 1)), length(d)))); t <- t.test(d);"
+                "out(mean(d), t$conf.int, mean(abs(s %*% d) >= abs(sum(d)) - 1e-12))");
+  CHECK(named[0]["difference"].get<double>() == Approx(expected[0]));
+  CHECK(named[0]["difference_low"].get<double>() == Approx(expected[1]));
+  CHECK(named[0]["p"].get<double>() == Approx(expected[3]));
+  CHECK(named[0]["p"].get<double>() < 0.05);
+}
+
+TEST_CASE("four stimuli with two answers transfer one bit at most", "[analysis][identification]") {
+  BlockDesign design = four_plates();
+  design.responses = {{"acrylic", "acrylic", {}}, {"mdf", "mdf", {}}};
+  auto answers = answers_of(four_plates(), 2, 4, 1.0, 1);
+  for (Item& stimulus : design.stimuli) {
+    stimulus.right = stimulus.name.substr(0, stimulus.name.find('_'));
+  }
+  for (results::AnswerRow& answer : answers) {
+    answer.response = answer.stimulus.substr(0, answer.stimulus.find('_'));
+  }
+  const auto information = reported(statistic, design, answers).json["information"][0];
+  CHECK(information["most_bits"].get<double>() == 1.0);
+  CHECK(information["bits"].get<double>() == Approx(1.0));
+}
+
 TEST_CASE(
     "where several participants answered, no interval of accuracy treats answers as "
     "independent without saying so",

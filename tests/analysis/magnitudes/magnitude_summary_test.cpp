@@ -110,6 +110,21 @@ TEST_CASE("where no exponent can be had the report says why and gives the means"
   CHECK_THAT(reported(statistic, design_of(), {}).text, Contains("There are no answers"));
 }
 
+TEST_CASE("who did not judge all values is left out of the exponent, by name",
+          "[analysis][magnitudes]") {
+  auto answers = estimates(0.6, 4);
+  const std::size_t lacks = answers.size();
+  std::erase_if(answers, [](const results::AnswerRow& answer) {
+    return answer.participant_id == "p7" &&
+           answer.alternatives[0].axis_values.at("youngs_modulus_pa") == moduli.back();
+  });
+  REQUIRE(answers.size() == lacks - 2);
+  const auto formats = reported(statistic, design_of(), answers);
+  CHECK_THAT(formats.text, Contains("leaves out who did not judge all values: p7"));
+  std::erase_if(answers, [](const auto& answer) { return answer.participant_id == "p7"; });
+  CHECK(formats.json["power_law"] == reported(statistic, design_of(), answers).json["power_law"]);
+}
+
 TEST_CASE("a modulus beside what is judged changes nothing but what is judged",
           "[analysis][magnitudes]") {
   auto answers = estimates(0.6, 4);

@@ -100,6 +100,66 @@ TEST_CASE("planted Rayleigh coefficients lie inside 95 % of their intervals",
   CHECK(beta >= low);
 }
 
+TEST_CASE(
+    "so they do where errors are known from few taps alone, and true laws are seldom rejected",
+    "[analysis][modal_identification]") {
+  const core::RayleighDamping planted{30.0, 4e-5};
+  const auto modes = GENERATE(std::size_t{2}, std::size_t{3}, std::size_t{5});
+  const int taps = GENERATE(2, 3, 6);
+  core::Rng rng{8};
+  constexpr int fits = 400;
+  int alpha = 0;
+  int beta = 0;
+  int rejected = 0;
+  for (int i = 0; i < fits; ++i) {
+    auto measured = ratios_of(planted, 0.1);
+    measured.erase(measured.begin() + 1, measured.end() - static_cast<std::ptrdiff_t>(modes - 1));
+    for (MeasuredRatio& one : measured) {
+      std::vector<double> of_taps;
+      for (int tap = 0; tap < taps; ++tap) {
+        of_taps.push_back(one.ratio * (1.0 + 0.1 * rng.normal()));
+      }
+      const Estimate over =
+          estimate_over_taps(of_taps, std::vector<double>(of_taps.size(), 1e-9), 100.0);
+      one = {one.frequency_hz, over.value, over.standard_error, taps - 1.0};
+    }
+    const auto fit = fit_rayleigh(measured);
+    alpha += holds(fit->alpha_per_s.interval, planted.alpha_per_s) ? 1 : 0;
+    beta += holds(fit->beta_s.interval, planted.beta_s) ? 1 : 0;
+    rejected += fit->p && *fit->p < 0.05 ? 1 : 0;
+  }
+  const double by_chance = 3.3 * std::sqrt(fits * 0.95 * 0.05);
+  CHECK(alpha >= 0.95 * fits - by_chance);
+  CHECK(beta >= 0.95 * fits - by_chance);
+  CHECK(rejected <= 0.05 * fits + by_chance);
+}
+
+TEST_CASE("close modes are told apart over taps of which each shows another best",
+          "[analysis][modal_identification]") {
+  const auto tap = [](double first_hz, double second_hz, double first_significance) {
+    TapModes modes;
+    for (const auto& [frequency_hz, significance] :
+         {std::pair{first_hz, first_significance}, {second_hz, 1000.0 - first_significance}}) {
+      TapMode& mode = modes.modes.emplace_back();
+      mode.fitted.pole = {frequency_hz, 0.003};
+      mode.fitted.frequency_error_hz = 0.001;
+      mode.fitted.ratio_error = 1e-5;
+      mode.fitted.significance = significance;
+      mode.standing = Standing::agreed;
+    }
+    return modes;
+  };
+  TapModes alone = tap(100.002, 101.5, 400.0);
+  alone.modes.pop_back();
+  const auto modes = modes_over_taps(
+      {alone, tap(100.0, 101.5, 900.0), tap(100.001, 101.501, 100.0), tap(99.999, 101.499, 700.0)});
+  REQUIRE(modes.size() == 2);
+  CHECK(modes[0].frequency_hz.value == Approx(100.0).margin(0.002));
+  CHECK(modes[1].frequency_hz.value == Approx(101.5).margin(0.002));
+  CHECK(modes[0].taps == 4);
+  CHECK(modes[1].taps == 3);
+}
+
 TEST_CASE("a coefficient is never negative", "[analysis][modal_identification]") {
   // falls faster than 1 / omega
   const auto fit = fit_rayleigh({{50.0, 0.08, 0.001}, {100.0, 0.03, 0.001}, {200.0, 0.01, 0.001}});

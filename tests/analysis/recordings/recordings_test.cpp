@@ -141,6 +141,22 @@ TEST_CASE("a tap in the ring of another is cut off from it, and that is said",
   CHECK_THAT(found.remarks.front(), Contains("0.300 s is cut at the next one"));
 }
 
+TEST_CASE("modes that beat, and slow ones, ring on after their impacts and are no new ones",
+          "[analysis][recordings]") {
+  using Modes = std::vector<testing::PlantedMode>;
+  const auto modes = GENERATE(values<Modes>({{{{62.0, 0.01}, 1.0}, {{72.0, 0.01}, 1.0}},
+                                             {{{40.0, 0.01}, 1.0}, {{46.0, 0.01}, 0.9}},
+                                             {{{100.0, 0.005}, 1.0}, {{110.0, 0.005}, 1.0}},
+                                             {{{7.0, 0.02}, 1.0}, {{180.0, 0.02}, 0.5}},
+                                             {{{80.0, 0.002}, 1.0}}}));
+  const double rate_hz = GENERATE(2000.0, 8000.0);
+  const double noise = GENERATE(0.001, 0.03);
+  const Recording recording =
+      testing::planted_recording(modes, {1.3, 2.5, 3.7}, rate_hz, 5.0, noise, 3);
+  CAPTURE(modes.front().pole.frequency_hz, rate_hz, noise);
+  CHECK(find_taps(recording, {}).impacts == 3);
+}
+
 TEST_CASE("noise and hum hold no tap, in words", "[analysis][recordings]") {
   Recording recording = testing::planted_recording(plate, {}, 4000.0, 3.0, 1.0, 6);
   CHECK_THROWS_WITH(find_taps(recording, {}), Contains("planted.csv: holds no tap"));

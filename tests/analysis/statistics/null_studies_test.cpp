@@ -151,6 +151,27 @@ TEST_CASE("tests of tables have uniform probabilities where what they test is tr
           [&](Rng& rng) { return similarity_choice(table_of(chosen, answers, rng)).p; });
 }
 
+TEST_CASE("the similarity-choice model is not rejected too often where errors are few",
+          "[analysis][statistics][slow]") {
+  constexpr int of_each = 40;
+  constexpr int small_studies = 300;
+  check_p(
+      "similarity choice, given the totals", Law::not_smaller,
+      [&](Rng& rng) {
+        CountTable table(classes, std::vector<std::int64_t>(classes, 0));
+        for (std::size_t i = 0; i < classes; ++i) {
+          Shares row(classes, 0.1 / 3.0);
+          row[i] = 0.9;
+          for (int answer = 0; answer < of_each; ++answer) {
+            ++table[i][drawn(row, rng)];
+          }
+        }
+        const SimilarityChoice model = similarity_choice(table);
+        return model.degrees_of_freedom > 0 ? conditional_fit(table, model, rng()).p : 1.0;
+      },
+      small_studies);
+}
+
 TEST_CASE("exact tests have no smaller probabilities than they say, whatever participants' biases",
           "[analysis][statistics][slow]") {
   check_p("one person, binomial", Law::not_smaller, [](Rng& rng) {

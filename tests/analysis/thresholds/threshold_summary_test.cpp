@@ -8,6 +8,7 @@
 #include "core/error.hpp"
 #include "core/psychometric_function.hpp"
 #include "support/formats.hpp"
+#include "support/python_program.hpp"
 #include "support/r_program.hpp"
 using namespace tapstudy;
 using namespace tapstudy::analysis;
@@ -103,7 +104,7 @@ TEST_CASE("a report's interval holds the threshold of a simulated observer",
   CHECK(json["pooled"][0]["threshold"].get<double>() == Approx(0.1).epsilon(0.1));
 }
 
-TEST_CASE("answers that fit a step have no threshold of greatest likelihood but a posterior one",
+TEST_CASE("answers that fit a step have a threshold in it, with the profile's interval by NumPy",
           "[analysis][thresholds]") {
   std::vector<results::AnswerRow> answers;
   for (int i = 0; i < 40; ++i) {
@@ -113,9 +114,24 @@ TEST_CASE("answers that fit a step have no threshold of greatest likelihood but 
     }
   }
   const auto json = reported(statistic, design_of(), answers).json;
-  CHECK(json["participants"][0]["threshold"].is_null());
-  CHECK(json["participants"][0]["no_threshold_because"] == explanation(FitOutcome::step));
-  CHECK(json["fits"].empty());
+  const auto& person = json["participants"][0];
+  CHECK(person["threshold"].get<double>() == Approx(std::sqrt(0.1 * 0.15)).epsilon(0.05));
+  const auto ends = testing::python_numbers(
+      "x = np.array([0.02, 0.03, 0.045, 0.07, 0.1, 0.15, 0.22, 0.33, 0.5])\n"
+      "k = np.where(x > 0.12, 40, 20)\n"
+      "s = np.logspace(-1, 3, 1500)[:, None]\n"
+      "def best(t):\n"
+      "  f = 1 - np.exp(-np.exp(np.minimum(s * np.log(x / t), 50)))\n"
+      "  p = np.clip(0.5 + 0.5 * f, 1e-12, 1 - 1e-12)\n"  // no lapse is likeliest
+      "  return (k * np.log(p) + (40 - k) * np.log(1 - p)).sum(1).max()\n"
+      "t = np.exp(np.linspace(np.log(0.05), np.log(0.2), 2001))\n"
+      "l = np.array([best(v) for v in t])\n"
+      "inside = t[l > l.max() - 3.841459 / 2]\n"
+      "out(inside.min(), inside.max())");
+  CHECK(person["threshold_low"].get<double>() == Approx(ends[0]).epsilon(2e-3));
+  CHECK(person["threshold_high"].get<double>() == Approx(ends[1]).epsilon(2e-3));
+  CHECK(json["fits"][0]["slope"].is_null());
+  CHECK(json["fits"][0]["slope_low"].get<double>() > 1.0);
   CHECK(json["posteriors"][0]["posterior_threshold"].get<double>() > 0.1);
   CHECK(json["posteriors"][0]["posterior_threshold"].get<double>() < 0.15);
 }

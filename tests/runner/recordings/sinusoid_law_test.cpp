@@ -5,6 +5,31 @@
 #include <numbers>
 using namespace tapstudy;
 
+TEST_CASE("sensors of one impact are one tap, and each has an amplitude of its own",
+          "[runner][identify]") {
+  runner::TapIdentification found;
+  for (int impact = 1; impact <= 3; ++impact) {
+    for (const std::string channel : {"tip", "nail"}) {
+      runner::IdentifiedTap tap;
+      tap.impact = impact;
+      tap.channel = channel;
+      tap.speed_m_s = 0.1 * impact;
+      tap.sinusoid = analysis::FittedSinusoid{};
+      tap.sinusoid->amplitude = (channel == "tip" ? 50.0 : 10.0) * *tap.speed_m_s;
+      tap.sinusoid->decay_per_s = 118.0 + 2.0 * impact;
+      tap.sinusoid->frequency_hz = 180.0;
+      tap.sinusoid->explained = 1.0;
+      found.taps.push_back(tap);
+    }
+  }
+  const auto both = runner::sinusoid_law(found, {});
+  std::erase_if(found.taps, [](const auto& tap) { return tap.channel == "nail"; });
+  const auto tip = runner::sinusoid_law(found, {});
+  CHECK(both->decay_per_s.interval.high == Approx(tip->decay_per_s.interval.high));
+  CHECK_FALSE(both->amplitude_per_speed);
+  CHECK(tip->amplitude_per_speed->value == Approx(50.0));
+}
+
 TEST_CASE("one motion of a surface is one force on the finger, whichever sensor measured it",
           "[runner][identify]") {
   const core::Finger finger{0.058, 300.0, 3.0};

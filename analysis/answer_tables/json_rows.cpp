@@ -1,0 +1,69 @@
+#include "analysis/answer_tables/json_rows.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+#include "core/error.hpp"
+namespace tapstudy::analysis {
+namespace {
+using Json = nlohmann::ordered_json;
+
+Json list_in(std::istream& text, const std::string& file) {
+  std::string bytes;
+  for (char c = 0; text.get(c);) {
+    bytes += c;
+    if (bytes.size() > max_csv_bytes) {
+      throw core::InvalidInput{file + ": is larger than 64 MB"};
+    }
+  }
+  Json list;
+  try {
+    list = Json::parse(bytes);
+  } catch (const Json::parse_error& error) {
+    throw core::InvalidInput{fmt::format("{}: is no JSON: at byte {}", file, error.byte)};
+  }
+  if (!list.is_array() || list.empty() ||
+      !std::ranges::all_of(list, [](const Json& one) { return one.is_object(); })) {
+    throw core::InvalidInput{file + ": is no list of objects in JSON, one for each trial"};
+  }
+  return list;
+}
+
+std::string cell_of(const Json& value) {
+  if (value.is_null()) {
+    return "";
+  }
+  return value.is_string() ? value.get<std::string>() : value.dump();
+}
+}  // namespace
+
+bool is_json_list(std::istream& text) {
+  text >> std::ws;
+  return text.peek() == '[';
+}
+
+CsvText read_json_rows(std::istream& text, const std::string& file) {
+  const Json list = list_in(text, file);
+  CsvText table;
+  CsvRow header{1, {}};
+  for (const Json& object : list) {
+    for (const auto& [key, value] : object.items()) {
+      if (std::ranges::find(header.cells, key) == header.cells.end()) {
+        header.cells.push_back(key);
+      }
+    }
+  }
+  table.rows.push_back(header);
+  for (const Json& object : list) {
+    CsvRow row{static_cast<int>(table.rows.size()), {}};
+    for (const std::string& key : header.cells) {
+      row.cells.push_back(object.contains(key) ? cell_of(object.at(key)) : "");
+    }
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+}  // namespace tapstudy::analysis

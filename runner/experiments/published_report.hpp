@@ -1,0 +1,16 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "results/store.hpp"
+namespace tapstudy::runner {
+// A report that lies in a study's directory, against one made anew from the stored answers.
+struct PublishedReport {
+  bool is_there{};
+  std::string not_compared{};              // why, in words; empty: it was
+  std::vector<std::string> differences{};  // "report.json /blocks/0/…: 61, made anew 41", files
+};
+// Compares what report.json and the tables beside it hold; where it was made is left out, and what
+// it leaves out (--only) is not missed. Throws StoreError if report.json is none.
+PublishedReport published_report(const std::string& directory, results::Store& store);
+}  // namespace tapstudy::runner

@@ -22,6 +22,7 @@ std::vector<Column> columns_of_context() {
       {"number", integer, "",
        "Number of the trial in the participant's order, from 1; missing between trials"},
       {"attempt", integer, "", "1, and one more each time that the trial was presented again"},
+      {"track", integer, "", "Which of the block's procedures chose the level, from 1 as listed"},
       {"repetition", integer, "", "Repetition of the stimulus within its block, from 1"},
       {"is_practice", boolean, "", "Practice: not to be analysed with the study's trials"},
       {"is_catch", boolean, "", "Catch trial, there to see who attends"},

@@ -16,6 +16,7 @@
 #include "runner/experiments/response_meanings.hpp"
 #include "runner/experiments/stimulus_tables.hpp"
 #include "runner/experiments/stored_protocol.hpp"
+#include "runner/experiments/track_results.hpp"
 #include "runner/stimuli/model_library.hpp"
 #include "runner/terminal/logging.hpp"
 namespace tapstudy::runner {
@@ -88,6 +89,7 @@ results::StudyExport study_export(results::Store& store, bool has_tables) {
   }
   std::vector<results::Table> tables = results::study_tables(store, units_of_axes());
   std::ranges::move(stimuli.tables, std::back_inserter(tables));
+  tables.push_back(tracks_table(protocol, store));
   return {{study.title, study.protocol_sha256,
            fmt::format("tapstudy {} ({})", program_version(), git_hash())},
           study.protocol_text,

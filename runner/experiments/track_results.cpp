@@ -7,6 +7,7 @@
 #include <set>
 
 #include "protocols/schedule.hpp"
+#include "results/export/columns.hpp"
 #include "runner/session/adaptive_blocks.hpp"
 namespace tapstudy::runner {
 namespace {
@@ -121,5 +122,20 @@ void set_tracks(const protocols::Protocol& protocol, results::Store& store,
       answer.track = track ? std::optional{static_cast<int>(*track) + 1} : std::nullopt;
     }
   }
+}
+
+results::Table tracks_table(const protocols::Protocol& protocol, results::Store& store) {
+  std::vector<results::AnswerRow> answers = store.answers();
+  set_tracks(protocol, store, answers);
+  std::vector<results::Row> rows;
+  for (const results::AnswerRow& answer : answers) {
+    if (answer.track) {
+      rows.push_back({answer.trial_id, answer.participant_id, answer.block,
+                      std::int64_t{answer.number}, std::int64_t{*answer.track}});
+    }
+  }
+  return results::table_of("tracks", "A row an answered trial whose level a procedure chose.",
+                           results::known_columns("trial_id participant_id block number track"),
+                           std::move(rows));
 }
 }  // namespace tapstudy::runner

@@ -46,3 +46,24 @@ TEST_CASE("a file that is named twice is refused, not counted twice", "[end_to_e
   CHECK(run.exit_code == 2);
   CHECK_THAT(run.standard_error, Catch::Matchers::Contains("holds the same rows as"));
 }
+
+TEST_CASE("an export says which of interleaved staircases chose each level", "[end_to_end]") {
+  const testing::TempDirectory directory;
+  const std::string study = directory / "s";
+  REQUIRE(testing::tapstudy({"simulate", testing::shipped("examples/damping_jnd.yaml").string(),
+                             "--participants", "1", "--seed", "2", "--out", study})
+              .exit_code == 0);
+  REQUIRE(testing::tapstudy({"export", study, "--out", directory / "e"}).exit_code == 0);
+  REQUIRE(testing::tapstudy({"report", study}).exit_code == 0);
+  // one line for each answer in either, of the same trials and tracks
+  const auto both = testing::run_program(
+      {"/usr/bin/python3", "-c",
+       "import csv, sys\n"
+       "exported = [(r['number'], r['track']) for r in csv.DictReader(open(sys.argv[1]))]\n"
+       "reported = [(r['trial'], r['track']) for r in csv.DictReader(\n"
+       "  line for line in open(sys.argv[2]) if not line.startswith('#'))]\n"
+       "print(sorted(exported) == sorted(reported), len(set(t for _, t in exported)))\n",
+       (directory / "e") + "/tracks.csv", study + "/damping_tracks.csv"});
+  INFO(both.standard_error);
+  CHECK(both.standard_output == "True 2\n");
+}

@@ -153,12 +153,19 @@ class TapFinder {
     energies_ = energies_of(centred_, recording.rate_hz);
   }
 
-  FoundTaps find() {
-    found_.noise_rms = std::sqrt(energies_.floor);
-    std::vector<std::size_t> onsets;
+  std::vector<std::size_t> onsets() const {
+    std::vector<std::size_t> found;
     for (const std::size_t frame : frames_of_impacts(energies_, recording_.rate_hz)) {
-      onsets.push_back(onset_near(frame, energies_, centred_));
+      found.push_back(onset_near(frame, energies_, centred_));
     }
+    if (found.empty()) {
+      throw core::InvalidInput{refusal(0)};
+    }
+    return found;
+  }
+
+  FoundTaps find(const std::vector<std::size_t>& onsets) {
+    found_.noise_rms = std::sqrt(energies_.floor);
     found_.impacts = static_cast<int>(onsets.size());
     for (std::size_t k = 0; k < onsets.size(); ++k) {
       impact_ = static_cast<int>(k) + 1;
@@ -245,11 +252,27 @@ class TapFinder {
 };
 }  // namespace
 
-FoundTaps find_taps(const Recording& recording, const TapFinding& finding) {
+namespace {
+void check_length(const Recording& recording) {
   if (recording.samples.size() < min_samples) {
     throw core::InvalidInput{fmt::format("{}: has {} samples (at least {})", recording.file,
                                          recording.samples.size(), min_samples)};
   }
-  return TapFinder{recording, finding}.find();
+}
+}  // namespace
+
+FoundTaps find_taps(const Recording& recording, const TapFinding& finding) {
+  return taps_at(impact_onsets(recording), recording, finding);
+}
+
+FoundTaps taps_at(const std::vector<std::size_t>& onsets, const Recording& recording,
+                  const TapFinding& finding) {
+  check_length(recording);
+  return TapFinder{recording, finding}.find(onsets);
+}
+
+std::vector<std::size_t> impact_onsets(const Recording& recording) {
+  check_length(recording);
+  return TapFinder{recording, {}}.onsets();
 }
 }  // namespace tapstudy::analysis

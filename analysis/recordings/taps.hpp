@@ -30,6 +30,12 @@ struct FoundTaps {
 // (rail_samples), if there are any. Decays below 64 samples or 20 ms are left out with a remark.
 // Throws InvalidInput with the file if none is left.
 FoundTaps find_taps(const Recording& recording, const TapFinding& finding);
+// The same where the sample numbers of the impacts are known: from the force, of which nothing
+// rings on.
+FoundTaps taps_at(const std::vector<std::size_t>& onsets, const Recording& recording,
+                  const TapFinding& finding);
+// Of the impacts that find_taps finds; throws InvalidInput if there is none.
+std::vector<std::size_t> impact_onsets(const Recording& recording);
 
 // Sample numbers where the sensor was at its limit: runs of three and more samples at the largest
 // or smallest value of all into which the signal does not run smoothly (next to it, it moves by

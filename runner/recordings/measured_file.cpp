@@ -43,13 +43,25 @@ MeasuredFile read_measured_file(const std::string& file, const TapQuestion& ques
   return measured;
 }
 
+namespace {
+std::vector<std::size_t> strikes_in(const analysis::Recording& force) {
+  try {
+    return analysis::impact_onsets(force);
+  } catch (const core::InvalidInput& error) {
+    throw core::InvalidInput{fmt::format("{} (the force, {})", error.what(), force.channel)};
+  }
+}
+}  // namespace
+
 analysis::FoundTaps find_taps(const MeasuredFile& measured, const analysis::TapFinding& finding) {
+  const auto struck = measured.force ? std::optional{strikes_in(*measured.force)} : std::nullopt;
   std::optional<analysis::FoundTaps> clearest;
   double most = 0.0;
   std::exception_ptr none;
   for (const analysis::Recording& channel : measured.channels) {
     try {
-      analysis::FoundTaps found = analysis::find_taps(channel, finding);
+      analysis::FoundTaps found = struck ? analysis::taps_at(*struck, channel, finding)
+                                         : analysis::find_taps(channel, finding);
       const double over_noise = largest(channel) / std::max(found.noise_rms, 1e-300);
       if (!clearest || over_noise > most) {
         most = over_noise;

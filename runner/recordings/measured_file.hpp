@@ -14,7 +14,8 @@ struct MeasuredFile {
 MeasuredFile read_measured_file(const std::string& file, const TapQuestion& question);
 
 // Of the channel in which taps stand out most from the noise; they are the same in all channels.
-// Throws InvalidInput if no channel has one.
+// Where a force was recorded, an impact is where it strikes. Throws InvalidInput if no channel, or
+// the force, has one.
 analysis::FoundTaps find_taps(const MeasuredFile& measured, const analysis::TapFinding& finding);
 
 // The force of an impact, above what it was before, for as long as it acts near the tap's onset.

@@ -466,6 +466,7 @@ TEST_CASE("a force that does not strike, or is taken for a sensor, is refused in
     CHECK_THAT(run.standard_error, Contains(words));
     CHECK_FALSE(std::filesystem::exists(shelf_taps.out));
   };
-  refused({"--column", "acceleration", "--force-column", "force"}, "shows no force at the tap at");
+  refused({"--column", "acceleration", "--force-column", "force"},
+          "holds no tap: all samples are the same (the force, force)");
   refused({"--column", "force", "--force-column", "force"}, "'force' is named twice");
 }

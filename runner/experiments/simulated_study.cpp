@@ -87,7 +87,8 @@ class Workers {
     Workers workers{sessions, work};
     {
       std::vector<std::jthread> threads;
-      for (unsigned int i = 0; i < std::max(1U, std::thread::hardware_concurrency()); ++i) {
+      // one more than there are processors: each waits while its trial is stored
+      for (unsigned int i = 0; i <= std::max(1U, std::thread::hardware_concurrency()); ++i) {
         threads.emplace_back([&] { workers.run_worker(); });
       }
     }

@@ -69,10 +69,9 @@ ReportTable pairs_table(const DiscriminationResults& results) {
                     {column("stimuli", "stimuli"), proportion_column("correct", "correct"),
                      interval_column("d' of the mean (95 % CI)", "d_prime")}};
   for (const DiscriminationResults::Pair& pair : results.pairs) {
-    table.rows.push_back(
-        {word(pair.stimuli), pooled_proportion(pair.correct),
-         pair.d_prime ? interval(pair.d_prime->d_prime, pair.d_prime->interval)
-                      : nothing(table.columns.back())});
+    table.rows.push_back({word(pair.stimuli), pooled_proportion(pair.correct),
+                          pair.d_prime ? interval(pair.d_prime->d_prime, pair.d_prime->interval)
+                                       : nothing(table.columns.back())});
   }
   return table;
 }

@@ -87,7 +87,8 @@ class Store {
   std::vector<int> answered_trials(const std::string& participant_id);
   // How often each trial was presented, by its number.
   std::map<int, int> presentations(const std::string& participant_id);
-  // Those that were presented, timed out or skipped, and not answered later.
+  // Those that were presented, timed out or skipped, and not answered later; in the order in which
+  // that was last.
   std::vector<UnansweredTrial> unanswered_trials(const std::string& participant_id);
   // Form and where it was asked, of all that the participant has answered.
   std::set<std::pair<std::string, std::string>> filled_forms(const std::string& participant_id);

@@ -212,7 +212,7 @@ std::vector<UnansweredTrial> Store::unanswered_trials(const std::string& partici
   Statement row{database_,
                 "SELECT number, block, max(status = 'skipped') FROM trial "
                 "JOIN session USING (session_id) WHERE participant_id = ? "
-                "AND status IN ('timed_out', 'skipped') GROUP BY number, block ORDER BY number"};
+                "AND status IN ('timed_out', 'skipped') GROUP BY number, block ORDER BY max(trial_id)"};
   row.bind(participant_id);
   std::vector<UnansweredTrial> trials;
   while (row.step()) {

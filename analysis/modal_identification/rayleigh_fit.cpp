@@ -132,6 +132,43 @@ double mean_freedom(const std::vector<MeasuredRatio>& measured) {
   }
   return sum / static_cast<double>(measured.size());
 }
+
+// known: the degrees of freedom of the errors
+double misfit_p(const RayleighFit& fit, double known) {
+  return known < few ? f_p(fit.chi_squared / fit.degrees_of_freedom, fit.degrees_of_freedom, known)
+                     : chi_squared_p(fit.chi_squared, fit.degrees_of_freedom);
+}
+
+Estimate estimate_of(Eigen::Index i, const Coefficients& found,
+                     const std::vector<MeasuredRatio>& measured, const RayleighFit& fit) {
+  const bool is_misfit = fit.degrees_of_freedom > 0.0 && fit.chi_squared > fit.degrees_of_freedom;
+  const double scale = is_misfit ? std::sqrt(fit.chi_squared / fit.degrees_of_freedom) : 1.0;
+  double freedom = freedom_of(found.shares.row(i), measured);
+  if (is_misfit && !(freedom < few)) {
+    freedom = fit.degrees_of_freedom;
+  }
+  const double factor =
+      std::isfinite(freedom) ? t_quantile(0.975, freedom) : normal_quantile(0.975);
+  const double error = scale * std::sqrt(found.variance[i]);
+  return {found.value[i],
+          error,
+          {std::max(0.0, found.unbounded[i] - factor * error),
+           std::max(0.0, found.unbounded[i] + factor * error)},
+          std::nullopt};
+}
+
+void add_misfits(const Coefficients& found, const std::vector<MeasuredRatio>& measured,
+                 RayleighFit& fit) {
+  for (const MeasuredRatio& one : measured) {
+    const double omega = 2.0 * std::numbers::pi * one.frequency_hz;
+    fit.fitted_ratios.push_back(0.5 * (found.value[0] / omega + found.value[1] * omega));
+    const double misfit = std::abs(fit.fitted_ratios.back() / one.ratio - 1.0);
+    if (misfit >= fit.largest_misfit) {
+      fit.largest_misfit = misfit;
+      fit.at_hz = one.frequency_hz;
+    }
+  }
+}
 }  // namespace
 
 std::optional<RayleighFit> fit_rayleigh(const std::vector<MeasuredRatio>& as_measured) {
@@ -147,37 +184,12 @@ std::optional<RayleighFit> fit_rayleigh(const std::vector<MeasuredRatio>& as_mea
   fit.is_bounded = found.free < 2;
   fit.chi_squared = found.chi_squared;
   fit.degrees_of_freedom = static_cast<double>(measured.size()) - found.free;
-  const bool is_misfit = fit.degrees_of_freedom > 0.0 && fit.chi_squared > fit.degrees_of_freedom;
-  const double scale = is_misfit ? std::sqrt(fit.chi_squared / fit.degrees_of_freedom) : 1.0;
-  const double known = mean_freedom(measured);
   if (fit.degrees_of_freedom > 0.0) {
-    fit.p = known < few
-                ? f_p(fit.chi_squared / fit.degrees_of_freedom, fit.degrees_of_freedom, known)
-                : chi_squared_p(fit.chi_squared, fit.degrees_of_freedom);
+    fit.p = misfit_p(fit, mean_freedom(measured));
   }
-  const auto estimate = [&](Eigen::Index i) {
-    const double freedom = freedom_of(found.shares.row(i), measured);
-    const double factor = is_misfit && !(freedom < few) ? t_quantile(0.975, fit.degrees_of_freedom)
-                          : std::isfinite(freedom)      ? t_quantile(0.975, freedom)
-                                                        : normal_quantile(0.975);
-    const double error = scale * std::sqrt(found.variance[i]);
-    return Estimate{found.value[i],
-                    error,
-                    {std::max(0.0, found.unbounded[i] - factor * error),
-                     std::max(0.0, found.unbounded[i] + factor * error)},
-                    std::nullopt};
-  };
-  fit.alpha_per_s = estimate(0);
-  fit.beta_s = estimate(1);
-  for (const MeasuredRatio& one : measured) {
-    const double omega = 2.0 * std::numbers::pi * one.frequency_hz;
-    fit.fitted_ratios.push_back(0.5 * (found.value[0] / omega + found.value[1] * omega));
-    const double misfit = std::abs(fit.fitted_ratios.back() / one.ratio - 1.0);
-    if (misfit >= fit.largest_misfit) {
-      fit.largest_misfit = misfit;
-      fit.at_hz = one.frequency_hz;
-    }
-  }
+  fit.alpha_per_s = estimate_of(0, found, measured, fit);
+  fit.beta_s = estimate_of(1, found, measured, fit);
+  add_misfits(found, measured, fit);
   return fit;
 }
 }  // namespace tapstudy::analysis

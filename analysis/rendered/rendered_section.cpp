@@ -232,9 +232,10 @@ ReportSection rendered_section(const RenderedStudy& study) {
   section.name = "rendered";
   section.tables = {stimuli_table(study), models_table(study), modes_table(study)};
   if (study.traced_trials > 0) {
-    section.tables.insert(section.tables.end(),
-                          {taps_table(study), forces_table(study), points_table(study),
-                           waveforms_table(study), spectra_table(study)});
+    section.tables.insert(
+        section.tables.end(),
+        {taps_table(study), participants_taps_table(study.participants), forces_table(study),
+         points_table(study), waveforms_table(study), spectra_table(study)});
     add_rendered_charts(study, section);
     const TapWindow window = study.taps.empty() ? TapWindow{} : study.taps.front().all.window();
     section.remarks.push_back(fmt::format(

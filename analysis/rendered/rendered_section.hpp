@@ -1,10 +1,12 @@
 #pragma once
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "analysis/rendered/felt_taps.hpp"
+#include "analysis/rendered/participants_taps.hpp"
 #include "analysis/tables/sections.hpp"
 namespace tapstudy::analysis {
 // What is known of the finite element model that rendered a stimulus.
@@ -47,14 +49,16 @@ struct StimulusTaps {
 
 struct RenderedStudy {
   std::vector<RenderedStimulus> stimuli;
-  std::vector<StimulusTaps> taps;  // as many
-  std::int64_t trials{};           // that count
-  std::int64_t traced_trials{};    // of these, with a trace
+  std::vector<StimulusTaps> taps;                           // as many
+  std::map<std::string, TapsOfParticipant> participants{};  // by id
+  std::int64_t trials{};                                    // that count
+  std::int64_t traced_trials{};                             // of these, with a trace
 };
 
 // What was rendered: the stimuli and their models, and of every tap that counts the force after the
 // impact, its spectrum, speed and peak. Tables rendered_stimuli, rendered_models, rendered_modes,
-// rendered_taps, rendered_forces, rendered_points, rendered_waveforms, rendered_spectra.
+// rendered_taps, rendered_participants, rendered_forces, rendered_points, rendered_waveforms,
+// rendered_spectra.
 ReportSection rendered_section(const RenderedStudy& study);
 
 // Those of rendered_section: of every stimulus the distribution of speed and peak force, and the

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "analysis/statistics/proportion.hpp"
@@ -81,8 +83,34 @@ const char* words(protocols::Side side) {
   return "on either side";
 }
 
+// A staircase steps from what it asked for: where few values are built, its estimate says little.
+void warn_of_coarse_table(const protocols::Stimulus& family,
+                          const protocols::Comparison& comparison,
+                          const protocols::TrackSettings& track) {
+  constexpr std::ptrdiff_t enough = 8;
+  const auto range = std::ranges::find(family.vary, comparison.axis,
+                                       [](const auto& of) { return std::string{of.axis->name}; });
+  if (range == family.vary.end() || range->table.empty() || !track.settles_at()) {
+    return;
+  }
+  const auto [low, high] = track.ranges().front();
+  const double one = comparison.value_at(low);
+  const double other = comparison.value_at(high);
+  const double rounding = 1e-9 * std::max(std::abs(one), std::abs(other));
+  const auto built = std::ranges::count_if(range->table, [&](double value) {
+    return std::min(one, other) - rounding <= value && value <= std::max(one, other) + rounding;
+  });
+  if (built < enough) {
+    fmt::print(
+        "    warning: {} values of {} are built between its limits: its estimate is off by up to "
+        "half of their distance\n",
+        built, comparison.axis);
+  }
+}
+
 // guess_rate: unset where participants set their own.
-void print_procedures(const protocols::Comparison& comparison, std::optional<double> guess_rate) {
+void print_procedures(const protocols::Stimulus& family, const protocols::Comparison& comparison,
+                      std::optional<double> guess_rate) {
   for (const auto& track : comparison.tracks) {
     const auto [low, high] = track->ranges().front();
     fmt::print("    at most {} trials of {}: {} against {:.6g}, from {:.6g} to {:.6g}\n",
@@ -93,6 +121,7 @@ void print_procedures(const protocols::Comparison& comparison, std::optional<dou
       fmt::print("      each at one of several {}, from {:.6g} to {:.6g}\n",
                  comparison.further_axes[i], least, greatest);
     }
+    warn_of_coarse_table(family, comparison, *track);
     const bool starts_from_0 = comparison.side == protocols::Side::either;
     if (guess_rate) {
       warn_of_guess_rate(*track, starts_from_0 ? 0.0 : *guess_rate);
@@ -126,7 +155,7 @@ void print_blocks(const protocols::Protocol& protocol, int participants) {
     }
     warn_of_balance(block, participants);
     if (block.comparison) {
-      print_procedures(*block.comparison,
+      print_procedures(protocol.stimulus(block.stimuli.front()), *block.comparison,
                        block.task->has_own_guess_rate()
                            ? std::nullopt
                            : std::optional{block.task->guess_rate(block, protocol)});

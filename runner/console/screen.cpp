@@ -49,6 +49,7 @@ Json json_of(const TrialScreen& trial) {
   return {
       {"number", trial.prompt.number},
       {"question", trial.prompt.block->question},
+      {"asks_confidence", trial.prompt.block->confidence.has_value()},
       {"answers", answers_json(trial.prompt.answers)},
       {"previous", trial.prompt.previous ? answers_json(trial.prompt.previous->answers) : Json{}},
       {"correction", corrections.at(static_cast<std::size_t>(trial.correction))},

@@ -126,6 +126,13 @@ class TapSorter {
     }
     analysis::StimulusTaps& taps = study_.taps[place->second];
     taps.all.add(tap);
+    analysis::TapsOfParticipant& own = study_.participants[trial_->participant_id];
+    own.speeds_m_s.push_back(tap.speed_m_s);
+    own.peaks_n.push_back(taps.all.commanded().peaks_n.back());
+    own.contact_s +=
+        static_cast<double>(std::ranges::count_if(
+            tap.ticks, [](const analysis::FeltTick& tick) { return tick.is_touching; })) /
+        protocol_.rate_hz;
     const core::HandState hand{{tap.position_m[0], tap.position_m[1], tap.position_m[2]}, {}};
     const Eigen::Vector2d at_m = placement_.to_plate(hand).position_m.head<2>();
     const auto distance_m = [&](const analysis::PointTaps& point) {

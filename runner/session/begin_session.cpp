@@ -48,8 +48,14 @@ void resume(const results::SessionRow& earlier, const protocols::Protocol& proto
   session.row.resumes = earlier.id;
   session.resumed_since_utc = earlier.started_utc;
   const auto as_given = store.answers_as_given(earlier.participant_id);
-  session.earlier = {store.filled_forms(earlier.participant_id), PracticeRecord{as_given}, as_given,
-                     store.presentations(earlier.participant_id)};
+  session.earlier = {store.filled_forms(earlier.participant_id),
+                     PracticeRecord{as_given},
+                     as_given,
+                     store.presentations(earlier.participant_id),
+                     {}};
+  for (const results::UnansweredTrial& trial : store.unanswered_trials(earlier.participant_id)) {
+    session.earlier.requeued.push_back(trial.number);
+  }
   const std::vector<int> answered = store.answered_trials(earlier.participant_id);
   session.done = {answered.begin(), answered.end()};
   for (const auto& trials : {given_up_trials(protocol, earlier.participant_id, store),

@@ -16,5 +16,6 @@ struct EarlierAnswers {
   PracticeRecord practice{};
   std::vector<results::JournalledAnswer> as_given{};  // in that order
   std::map<int, int> attempts{};                      // of each trial, by its number
+  std::vector<int> requeued{};                        // trials to come again, the last one last
 };
 }  // namespace tapstudy::runner

@@ -3,13 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <deque>
 #include <exception>
-#include <iterator>
 
 #include "results/store_error.hpp"
 #include "runner/session/trial_progress.hpp"
 #include "runner/session/trial_record.hpp"
+#include "runner/session/waiting_trials.hpp"
 #include "runner/terminal/exit_code.hpp"
 #include "runner/terminal/logging.hpp"
 #include "runner/terminal/stop_signal.hpp"
@@ -60,10 +59,7 @@ std::optional<Interruption> TrialEngine::run_all(const protocols::Schedule& sche
   if (!adaptive_) {
     adaptive_.emplace(parts_.protocol, parts_.seed, schedule, as_given_);
   }
-  std::deque<PlannedTrial> waiting;
-  std::ranges::copy_if(schedule, std::back_inserter(waiting), [&](const PlannedTrial& trial) {
-    return !done_trials.contains(trial.number);
-  });
+  std::deque<PlannedTrial> waiting = waiting_trials(schedule, done_trials, requeued_);
   while (!waiting.empty()) {
     stop_if_asked();
     const PlannedTrial trial = waiting.front();
@@ -75,9 +71,9 @@ std::optional<Interruption> TrialEngine::run_all(const protocols::Schedule& sche
     interludes_.before(trial);
     const Outcome outcome = run_until_it_counts(trial, {schedule, done_trials});
     if (outcome.is_requeued) {
-      const auto next_block = std::ranges::find_if(
-          waiting, [&](const PlannedTrial& other) { return other.block != trial.block; });
-      waiting.insert(next_block, trial);
+      std::erase(requeued_, trial.number);
+      requeued_.push_back(trial.number);
+      put_at_end_of_block(trial, waiting);
       continue;
     }
     if (!outcome.interruption || outcome.interruption->is_answered) {

@@ -35,7 +35,8 @@ class TrialEngine {
         practice_{parts.protocol, parts.states, earlier.practice},
         as_given_{earlier.as_given},
         recorder_{recorder},
-        attempts_{earlier.attempts} {}
+        attempts_{earlier.attempts},
+        requeued_{earlier.requeued} {}
 
   // Runs the trials not in `done`, adding each, until all are done or a fault ends one; called
   // again, it repeats that one. A trial that took too long comes again at the end of its block, if
@@ -85,6 +86,7 @@ class TrialEngine {
   results::Recorder& recorder_;
   std::optional<AnswerInView> last_answer_;
   std::map<int, int> attempts_;  // by the trial's number
+  std::vector<int> requeued_;    // trials, the last one last
   std::map<int, int> repeats_after_late_impacts_;
   std::int64_t ticks_{0};
   int trials_{0};

@@ -5,9 +5,10 @@ import { pickedValue } from "./radio_cards.js";
 import { word } from "./words.js";
 
 // answerIn(element): the answer as text, null as long as there is none: `missing` is said then.
+// label: of the button; an answer that is stored only with what is asked next is not confirmed yet.
 // entered(answer) is called as it changes; send(value as text) once there is one and it is confirmed.
-export function question({ title, className, body, say, send, answerIn = pickedValue, missing = word("pick_first"), entered = () => {} }) {
-  const confirm = el("button", { type: "submit", className: "main", id: "confirm", "aria-disabled": "true" }, word("confirm"));
+export function question({ title, className, body, say, send, answerIn = pickedValue, missing = word("pick_first"), entered = () => {}, label = word("confirm") }) {
+  const confirm = el("button", { type: "submit", className: "main", id: "confirm", "aria-disabled": "true" }, label);
   const element = el("form", { className, noValidate: true, autocomplete: "off" },
     el("fieldset", {}, el("legend", {}, el("h1", { tabIndex: -1 }, title)), ...body),
     confirm);

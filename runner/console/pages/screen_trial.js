@@ -87,6 +87,7 @@ export function trialScreen({ trial }, { send, entered, feel, adjust, replay, co
     say,
     answerIn: field.answerIn,
     missing: field.missing,
+    label: word(trial.asks_confidence ? "go_on" : "confirm"),
     entered: answers.kind === "setting" ? () => {} : entered,  // a setting is an event of its own
     send: (value) => send("answer", value),
   });

@@ -13,6 +13,7 @@ import sys
 
 import numpy as np
 import yaml
+from scipy import stats
 
 sys.path.insert(0, os.path.join(os.path.dirname(__file__), "../../../results"))
 sys.dont_write_bytecode = True
@@ -73,8 +74,10 @@ def main(study, report, protocol):
     by_stimulus = collections.defaultdict(list)
     by_point = collections.defaultdict(list)
     connection = sqlite3.connect(database)
-    for (trial,) in connection.execute("SELECT trial_id FROM v_trials WHERE status = 'answered' AND "
-                                       "NOT is_practice AND NOT is_catch AND NOT is_excluded"):
+    by_participant = collections.defaultdict(list)
+    for trial, person in connection.execute(
+            "SELECT trial_id, participant_id FROM v_trials WHERE status = 'answered' AND "
+            "NOT is_practice AND NOT is_catch AND NOT is_excluded"):
         names = [name for (name,) in connection.execute(
             "SELECT stimulus FROM alternative WHERE trial_id = ? ORDER BY position", (trial,))]
         for tap in taps_of(read_trace.trace(database, trial)):
@@ -83,10 +86,27 @@ def main(study, report, protocol):
             at = np.array([hand[0], -hand[2]]) / scale
             far = {name: np.hypot(*(np.array(place) - at)) for name, place in points.items()}
             by_stimulus[stimulus].append(tap)
+            by_participant[person].append(tap)
             by_point[stimulus, min(far, key=far.get)].append((tap, min(far.values())))
     assert len(by_stimulus) > 1
     check_stimuli(said, by_stimulus)
+    check_participants(said, by_participant)
     check_points(said, by_point)
+
+
+def check_participants(said, by_participant):
+    *people, mean = said["rendered_participants"]
+    assert [row["participant_id"] for row in people] == sorted(by_participant)
+    for row in people:
+        taps = by_participant[row["participant_id"]]
+        peaks = [np.max(np.linalg.norm([tap[f"force_{axis}_n"] for axis in "xyz"], axis=0))
+                 for tap in taps]
+        close(row["peak_n"], np.median(peaks), "peak_n")
+        close(row["contact_s"], np.mean([tap["touching"].sum() / 1000 for tap in taps]), "contact_s")
+    peaks = [row["peak_n"] for row in people]
+    half = stats.t.ppf(0.975, len(peaks) - 1) * stats.sem(peaks)
+    close([mean["peak_n_low"], mean["peak_n"], mean["peak_n_high"]],
+          [np.mean(peaks) - half, np.mean(peaks), np.mean(peaks) + half], "mean peak_n")
 
 
 def check_stimuli(said, by_stimulus):

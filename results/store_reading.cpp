@@ -209,10 +209,11 @@ std::map<int, int> Store::presentations(const std::string& participant_id) {
 
 std::vector<UnansweredTrial> Store::unanswered_trials(const std::string& participant_id) {
   const std::vector<int> answered = answered_trials(participant_id);
-  Statement row{database_,
-                "SELECT number, block, max(status = 'skipped') FROM trial "
-                "JOIN session USING (session_id) WHERE participant_id = ? "
-                "AND status IN ('timed_out', 'skipped') GROUP BY number, block ORDER BY max(trial_id)"};
+  Statement row{
+      database_,
+      "SELECT number, block, max(status = 'skipped') FROM trial "
+      "JOIN session USING (session_id) WHERE participant_id = ? "
+      "AND status IN ('timed_out', 'skipped') GROUP BY number, block ORDER BY max(trial_id)"};
   row.bind(participant_id);
   std::vector<UnansweredTrial> trials;
   while (row.step()) {

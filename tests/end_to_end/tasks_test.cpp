@@ -103,6 +103,54 @@ TEST_CASE("alternatives that are physically the same are told apart by chance in
   CHECK(by_stimulus == Approx(1.0 / 3.0).margin(margin));
 }
 
+TEST_CASE("alternatives that are physically the same are named, chosen and rated alike",
+          "[end_to_end][slow]") {
+  const TempDirectory directory;
+  const std::string text = testing::contents(testing::source("tests/data/same_alternatives.yaml"));
+  testing::write(
+      directory / "study.yaml",
+      text.substr(0, text.find("blocks:\n")) +
+          "blocks:\n"
+          "  - {name: named, task: identification, question: Which one, stimuli: [one, other, "
+          "third], "
+          "repetitions: 75}\n"
+          "  - {name: chosen, task: choice, question: Which one, stimuli: [one, other, third], "
+          "repetitions: 225}\n"
+          "  - {name: rated, task: rating, question: How real, stimuli: [one, other, third], "
+          "steps: 7, low: not, high: fully, repetitions: 75}\n" +
+          text.substr(text.find("simulation:")));
+  REQUIRE(testing::tapstudy({"simulate", directory / "study.yaml", "--participants", "9", "--seed",
+                             "4", "--out", directory / "study"})
+              .exit_code == 0);
+  std::istringstream shares{
+      sql(directory,
+          "SELECT avg(is_correct), (SELECT avg(response = 'one') FROM current_response JOIN trial "
+          "USING (trial_id) WHERE block = 'chosen'), (SELECT avg(response = 'other') FROM "
+          "current_response JOIN trial USING (trial_id) WHERE block = 'chosen') "
+          "FROM current_response JOIN trial USING (trial_id) WHERE block = 'named'")};
+  double right = 0.0;
+  double one = 0.0;
+  double other = 0.0;
+  shares >> right >> one >> other;
+  const double margin = 4.0 * std::sqrt(2.0 / 9.0 / (9.0 * 225.0));
+  CHECK(right == Approx(1.0 / 3.0).margin(margin));
+  CHECK(one == Approx(1.0 / 3.0).margin(margin));
+  CHECK(other == Approx(1.0 / 3.0).margin(margin));
+  // of ratings the variance within a participant, which is all that can differ by stimulus
+  std::istringstream ratings{
+      sql(directory,
+          "WITH rated AS (SELECT participant_id, stimulus, CAST(response AS REAL) AS r FROM "
+          "v_answers WHERE block = 'rated'), own AS (SELECT participant_id, avg(r) AS mean FROM "
+          "rated GROUP BY participant_id), away AS (SELECT stimulus, r - mean AS d FROM rated JOIN "
+          "own USING (participant_id)) SELECT max(m), avg(v) FROM (SELECT abs(avg(d)) AS m, "
+          "avg(d * d) AS v FROM away GROUP BY stimulus)")};
+  double farthest = 1.0;
+  double variance = 0.0;
+  ratings >> farthest >> variance;
+  CHECK(variance > 0.0);
+  CHECK(farthest < 4.0 * std::sqrt(variance / (9.0 * 75.0)));
+}
+
 TEST_CASE("two of the same are called different in one of six cases, the simulated criterion",
           "[end_to_end][slow]") {
   const TempDirectory directory;

@@ -151,6 +151,31 @@ TEST_CASE("alternatives that are physically the same are named, chosen and rated
   CHECK(farthest < 4.0 * std::sqrt(variance / (9.0 * 75.0)));
 }
 
+TEST_CASE("when an interval begins and ends says nothing of what is in it", "[end_to_end]") {
+  const TempDirectory directory;
+  std::string text =
+      testing::replaced(testing::contents(testing::source("tests/data/same_alternatives.yaml")),
+                        "other: {plate: held, material: mdf, technique: sinusoid}",
+                        "other: {plate: held, material: mdf, technique: fem}");
+  text =
+      text.substr(0, text.find("blocks:\n")) +
+      "blocks:\n"
+      "  - {name: odd, task: odd_one_out, question: Odd, stimuli: [one, other], repetitions: 10, "
+      "explore: {intervals: {seconds: 0.8, gap_seconds: 0.2}}}\n" +
+      testing::replaced(text.substr(text.find("simulation:")),
+                        ", reality: sinusoid, reference: one", "");
+  testing::write(directory / "study.yaml", text);
+  REQUIRE(testing::tapstudy({"simulate", directory / "study.yaml", "--participants", "2", "--seed",
+                             "4", "--out", directory / "study"})
+              .exit_code == 0);
+  // each of three begins and ends at one time, whichever of the two is in it
+  CHECK(sql(directory,
+            "SELECT count(DISTINCT kind || value || ' ' || round(t_s, 9)), "
+            "count(DISTINCT kind || value || stimulus) FROM event JOIN alternative ON "
+            "alternative.trial_id = event.trial_id AND position = value "
+            "WHERE kind IN ('interval', 'interval_end')") == "6 12\n");
+}
+
 TEST_CASE("two of the same are called different in one of six cases, the simulated criterion",
           "[end_to_end][slow]") {
   const TempDirectory directory;

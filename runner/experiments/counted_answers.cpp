@@ -1,5 +1,6 @@
 #include "runner/experiments/counted_answers.hpp"
 
+#include <algorithm>
 #include <map>
 #include <string>
 #include <utility>
@@ -11,6 +12,9 @@ std::vector<results::AnswerRow> counted_answers(results::Store& store, results::
     return answer.mode != mode || answer.is_practice || answer.is_catch ||
            excluded.contains(answer.participant_id);
   });
+  // simulated participants take part at the same time: sums over them must not depend on who is
+  // first
+  std::ranges::stable_sort(answers, {}, &results::AnswerRow::participant_index);
   results::AlternativesOfTrials alternatives = store.alternatives();
   for (results::AnswerRow& answer : answers) {
     answer.alternatives = std::move(alternatives[answer.trial_id]);

@@ -273,7 +273,8 @@ TEST_CASE("a mode crosses the band limit where its frequency, as the root of E, 
   models.build_all(protocol);
   const auto softest = stimulus_at(protocol, stimulus, {{"youngs_modulus_pa", range->from}});
   std::vector<double> crossings_pa;
-  for (const double frequency_hz : models.plate_of(protocol, softest)->model.frequency_hz) {
+  const auto plate = models.plate_of(protocol, softest);  // a member is not kept
+  for (const double frequency_hz : plate->model.frequency_hz) {
     const double youngs_modulus_pa =
         range->from * std::pow(protocol.band_limit_hz / frequency_hz, 2);
     if (youngs_modulus_pa < range->to) {

@@ -105,7 +105,7 @@ PsychometricCurve step_curve(const PsychometricModel& model, const std::vector<L
   const BinomialLikelihood likelihood{model.shape, checked_levels(levels, model.shape)};
   const PsychometricBox box = search_box(model, likelihood.levels());
   const Profile profile{likelihood, box, fit.maximum, as_likely};
-  const double step = 0.1 * axis_range(likelihood.levels(), model.shape).smallest_gap;
+  const double step = 0.1 * axis_range(likelihood.levels(), model.shape).length();
   const double low = profile.end(threshold_at, -step, box.low[threshold_at]);
   const double high = profile.end(threshold_at, step, box.high[threshold_at]);
   constexpr double unknown = std::numeric_limits<double>::quiet_NaN();

@@ -9,7 +9,7 @@
 #include <cstdlib>
 #include <map>
 
-#include "analysis/psychometric/fit.hpp"
+#include "analysis/psychometric/inference.hpp"
 #include "analysis/statistics/quantiles.hpp"
 #include "support/known_observer.hpp"
 #include "support/procedures.hpp"
@@ -74,8 +74,11 @@ Estimates estimates(const std::string& yaml, int runs) {
     for (const analysis::Level& level : levels) {
       found.trials += static_cast<double>(level.answers.trials) / runs;
     }
-    if (const auto fit = analysis::fit_psychometric(model, levels); fit.curve) {
-      found.threshold_db.push_back(20.0 * std::log10(fit.curve->threshold / of_observer.threshold));
+    const auto fit = analysis::fit_psychometric(model, levels);
+    const bool is_step = fit.outcome == analysis::FitOutcome::step;
+    if (fit.curve || is_step) {  // as reports do
+      const auto curve = is_step ? analysis::step_curve(model, levels) : *fit.curve;
+      found.threshold_db.push_back(20.0 * std::log10(curve.threshold / of_observer.threshold));
     }
   }
   return found;

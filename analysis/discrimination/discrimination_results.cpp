@@ -76,12 +76,6 @@ std::optional<DifferentRates> rates_of(const Counts& counts) {
   return rates;
 }
 
-std::vector<Proportion> correct_of(const std::vector<ParticipantDiscrimination>& people) {
-  std::vector<Proportion> correct;
-  std::ranges::transform(people, std::back_inserter(correct), &ParticipantDiscrimination::correct);
-  return correct;
-}
-
 std::optional<DPrimeOfMean> d_prime_of_mean(const std::vector<Proportion>& correct,
                                             const DecisionTask& task) {
   const auto over = beta_binomial_mean(correct);
@@ -124,6 +118,12 @@ ParticipantDiscrimination participant_of(const BlockDesign& design, const std::s
   return person;
 }
 }  // namespace
+
+std::vector<Proportion> correct_of(const std::vector<ParticipantDiscrimination>& people) {
+  std::vector<Proportion> correct;
+  std::ranges::transform(people, std::back_inserter(correct), &ParticipantDiscrimination::correct);
+  return correct;
+}
 
 DiscriminationResults discrimination_results(const BlockDesign& design,
                                              const std::vector<AnswerRow>& answers) {

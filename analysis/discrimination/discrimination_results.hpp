@@ -39,6 +39,9 @@ struct AccuracyTest {
   double p{};
 };
 
+// In the same order.
+std::vector<Proportion> correct_of(const std::vector<ParticipantDiscrimination>& people);
+
 struct DiscriminationResults {
   std::vector<ParticipantDiscrimination> participants;  // by name
   struct Pair {

@@ -40,13 +40,6 @@ ReportTable participants_table(const DiscriminationResults& results) {
   return table;
 }
 
-std::vector<Proportion> correct_of_all(const DiscriminationResults& results) {
-  std::vector<Proportion> correct;
-  std::ranges::transform(results.participants, std::back_inserter(correct),
-                         &ParticipantDiscrimination::correct);
-  return correct;
-}
-
 ReportTable all_table(const BlockDesign& design, const DiscriminationResults& results) {
   ReportTable table{"all",
                     "All participants",
@@ -56,7 +49,7 @@ ReportTable all_table(const BlockDesign& design, const DiscriminationResults& re
   if (!results.participants.empty()) {
     const auto& mean = results.d_prime_of_mean;
     table.rows.push_back(
-        {pooled_proportion(correct_of_all(results)), share(design.guess_rate),
+        {pooled_proportion(correct_of(results.participants)), share(design.guess_rate),
          count(static_cast<std::int64_t>(results.participants.size())),
          mean ? interval(mean->d_prime, mean->interval) : nothing(table.columns.back())});
   }
@@ -189,7 +182,7 @@ std::shared_ptr<BlockSummary> summarise_discrimination(const BlockDesign& design
                     pairs_table(results),       rates_table(results),
                     models_table(results),      answer_counts_table(rows.answers)};
   summary->remarks = remarks_on(design, results);
-  if (const auto over = mean_proportion(correct_of_all(results))) {
+  if (const auto over = mean_proportion(correct_of(results.participants))) {
     summary->main = {{"share of right answers", over->mean, over->interval,
                       results.test ? std::optional{results.test->p} : std::nullopt,
                       design.guess_rate}};

@@ -41,16 +41,16 @@ void estimate(ParticipantEquality& person, const BlockDesign& design) {
   const PsychometricModel model = equality_model(design);
   try {
     const PsychometricFit fit = fit_psychometric(model, person.levels);
-    const bool is_step = fit.outcome == FitOutcome::step;
-    if (!fit.curve && !is_step) {
+    const auto curve = curve_with_threshold(model, person.levels, fit);
+    if (!curve) {
       person.no_estimate = explanation(fit.outcome);
       return;
     }
     const PsychometricIntervals intervals = profile_intervals(model, person.levels);
     person.estimate = {
-        is_step ? step_curve(model, person.levels) : *fit.curve,
+        *curve,
         intervals.threshold,
-        is_step ? std::nullopt : std::optional{jnd_at(model.shape, fit.curve->slope)},
+        fit.curve ? std::optional{jnd_at(model.shape, fit.curve->slope)} : std::nullopt,
         {jnd_at(model.shape, intervals.slope.high), intervals.slope.low > 0.0
                                                         ? jnd_at(model.shape, intervals.slope.low)
                                                         : std::numeric_limits<double>::infinity()},

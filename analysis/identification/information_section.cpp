@@ -95,8 +95,8 @@ std::vector<std::string> remarks_on(const MatrixOfParticipants& counted, const s
   if (refusal.empty() && counted.participants.size() > 1) {
     remarks.emplace_back(
         "The interval is a jackknife (Tukey 1958) over five participants or more of the corrected "
-        "value and of "
-        "the logit of its share. Pooling participants who confuse differently transfers less than "
+        "value and of the logit of its share. Pooling participants who confuse differently "
+        "transfers less than "
         "each of them does.");
   }
   if (refusal.empty() && corrected_bits > most_bits(counted.matrix)) {

@@ -18,7 +18,8 @@ enum class FitOutcome {
   no_successes,     // at any level
   no_increase,      // a constant proportion is as likely as any increasing function
   step,             // a step between or at levels is as likely: the slope has no upper limit, and
-                    // the threshold is known as step_curve and profile_intervals say
+                    // the threshold is known as curve_with_threshold and
+                    // profile_intervals say
   threshold_below,  // the threshold lies below the lowest level
   threshold_above   // above the highest
 };

@@ -96,11 +96,12 @@ PsychometricIntervals profile_intervals(const PsychometricModel& model,
            std::exp(profile.end(log_slope_at, 0.1, infinity))}};
 }
 
-PsychometricCurve step_curve(const PsychometricModel& model, const std::vector<Level>& levels) {
+std::optional<PsychometricCurve> curve_with_threshold(const PsychometricModel& model,
+                                                      const std::vector<Level>& levels,
+                                                      const PsychometricFit& fit) {
   constexpr double as_likely = 1e-3;
-  const PsychometricFit fit = fit_psychometric(model, levels);
   if (fit.outcome != FitOutcome::step) {
-    throw core::InvalidInput{fmt::format("is no step: {}", explanation(fit.outcome))};
+    return fit.curve;
   }
   const BinomialLikelihood likelihood{model.shape, checked_levels(levels, model.shape)};
   const PsychometricBox box = search_box(model, likelihood.levels());
@@ -109,12 +110,12 @@ PsychometricCurve step_curve(const PsychometricModel& model, const std::vector<L
   const double low = profile.end(threshold_at, -step, box.low[threshold_at]);
   const double high = profile.end(threshold_at, step, box.high[threshold_at]);
   constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-  return {from_axis(model.shape, 0.5 * (low + high)),
-          std::exp(box.high[log_slope_at]),
-          fit.maximum.at[guess_at],
-          fit.maximum.at[lapse_at],
-          unknown,
-          unknown};
+  return PsychometricCurve{from_axis(model.shape, 0.5 * (low + high)),
+                           std::exp(box.high[log_slope_at]),
+                           fit.maximum.at[guess_at],
+                           fit.maximum.at[lapse_at],
+                           unknown,
+                           unknown};
 }
 
 GoodnessOfFit deviance_test(const PsychometricModel& model, const std::vector<Level>& levels,

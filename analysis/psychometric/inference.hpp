@@ -16,10 +16,12 @@ struct PsychometricIntervals {
 PsychometricIntervals profile_intervals(const PsychometricModel& model,
                                         const std::vector<Level>& levels, double confidence = 0.95);
 
-// Where the outcome is a step: its threshold is the middle, on the shape's axis, of those that are
-// as likely as the likeliest, its slope the steepest that the search box holds; standard errors
-// NaN. Throws InvalidInput as fit_psychometric does, and for other outcomes.
-PsychometricCurve step_curve(const PsychometricModel& model, const std::vector<Level>& levels);
+// The curve of a fit to these levels that determines a threshold, else nullopt. Where the outcome
+// is a step: its threshold is the middle, on the shape's axis, of those that are as likely as the
+// likeliest, its slope the steepest that the search box holds; standard errors NaN.
+std::optional<PsychometricCurve> curve_with_threshold(const PsychometricModel& model,
+                                                      const std::vector<Level>& levels,
+                                                      const PsychometricFit& fit);
 
 struct GoodnessOfFit {
   double deviance{};

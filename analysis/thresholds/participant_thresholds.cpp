@@ -72,15 +72,14 @@ void estimate(ParticipantThreshold& person, const PsychometricModel& model,
               const std::vector<Level>& levels, int draws) {
   try {
     const PsychometricFit fit = fit_psychometric(model, levels);
-    const bool is_step = fit.outcome == FitOutcome::step;
-    if (!fit.curve && !is_step) {
+    const auto curve = curve_with_threshold(model, levels, fit);
+    if (!curve) {
       person.no_threshold = explanation(fit.outcome);
       return;
     }
-    const PsychometricCurve curve = is_step ? step_curve(model, levels) : *fit.curve;
-    person.estimate = {curve, profile_intervals(model, levels), is_step,
-                       core::proportion(model.shape, curve.threshold, curve.threshold, curve.slope,
-                                        curve.guess, curve.lapse),
+    person.estimate = {*curve, profile_intervals(model, levels), fit.outcome == FitOutcome::step,
+                       core::proportion(model.shape, curve->threshold, curve->threshold,
+                                        curve->slope, curve->guess, curve->lapse),
                        std::nullopt};
     if (draws > 0) {
       person.estimate->goodness = deviance_test(model, levels, draws, draws_seed);

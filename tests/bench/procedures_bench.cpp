@@ -75,10 +75,8 @@ Estimates estimates(const std::string& yaml, int runs) {
       found.trials += static_cast<double>(level.answers.trials) / runs;
     }
     const auto fit = analysis::fit_psychometric(model, levels);
-    const bool is_step = fit.outcome == analysis::FitOutcome::step;
-    if (fit.curve || is_step) {  // as reports do
-      const auto curve = is_step ? analysis::step_curve(model, levels) : *fit.curve;
-      found.threshold_db.push_back(20.0 * std::log10(curve.threshold / of_observer.threshold));
+    if (const auto curve = analysis::curve_with_threshold(model, levels, fit)) {
+      found.threshold_db.push_back(20.0 * std::log10(curve->threshold / of_observer.threshold));
     }
   }
   return found;

@@ -53,6 +53,12 @@ std::string levels(const TempDirectory& directory) {
              "JOIN trial USING (trial_id) WHERE is_comparison AND status = 'answered' "
              "ORDER BY trial_id");
 }
+
+// The materials and plates of that study with other blocks.
+std::string with_blocks(const std::string& study, const std::string& blocks) {
+  return study.substr(0, study.find("blocks:\n")) + "blocks:\n" + blocks +
+         study.substr(study.find("simulation:"));
+}
 }  // namespace
 
 TEST_CASE("alternatives that are physically the same are told apart by chance in every task",
@@ -109,16 +115,14 @@ TEST_CASE("alternatives that are physically the same are named, chosen and rated
   const std::string text = testing::contents(testing::source("tests/data/same_alternatives.yaml"));
   testing::write(
       directory / "study.yaml",
-      text.substr(0, text.find("blocks:\n")) +
-          "blocks:\n"
+      with_blocks(
+          text,
           "  - {name: named, task: identification, question: Which one, stimuli: [one, other, "
-          "third], "
-          "repetitions: 75}\n"
+          "third], repetitions: 75}\n"
           "  - {name: chosen, task: choice, question: Which one, stimuli: [one, other, third], "
           "repetitions: 225}\n"
           "  - {name: rated, task: rating, question: How real, stimuli: [one, other, third], "
-          "steps: 7, low: not, high: fully, repetitions: 75}\n" +
-          text.substr(text.find("simulation:")));
+          "steps: 7, low: not, high: fully, repetitions: 75}\n"));
   REQUIRE(testing::tapstudy({"simulate", directory / "study.yaml", "--participants", "9", "--seed",
                              "4", "--out", directory / "study"})
               .exit_code == 0);
@@ -157,13 +161,11 @@ TEST_CASE("when an interval begins and ends says nothing of what is in it", "[en
       testing::replaced(testing::contents(testing::source("tests/data/same_alternatives.yaml")),
                         "other: {plate: held, material: mdf, technique: sinusoid}",
                         "other: {plate: held, material: mdf, technique: fem}");
-  text =
-      text.substr(0, text.find("blocks:\n")) +
-      "blocks:\n"
-      "  - {name: odd, task: odd_one_out, question: Odd, stimuli: [one, other], repetitions: 10, "
-      "explore: {intervals: {seconds: 0.8, gap_seconds: 0.2}}}\n" +
-      testing::replaced(text.substr(text.find("simulation:")),
-                        ", reality: sinusoid, reference: one", "");
+  text = testing::replaced(
+      with_blocks(text,
+                  "  - {name: odd, task: odd_one_out, question: Odd, stimuli: [one, other], "
+                  "repetitions: 10, explore: {intervals: {seconds: 0.8, gap_seconds: 0.2}}}\n"),
+      ", reality: sinusoid, reference: one", "");
   testing::write(directory / "study.yaml", text);
   REQUIRE(testing::tapstudy({"simulate", directory / "study.yaml", "--participants", "2", "--seed",
                              "4", "--out", directory / "study"})
@@ -347,9 +349,9 @@ TEST_CASE("a stronger sinusoid is estimated higher by who only feels it", "[end_
   const TempDirectory directory;
   const std::string file = directory / "study.yaml";
   std::string text = testing::contents(testing::source("tests/data/same_alternatives.yaml"));
-  text.replace(text.find("blocks:"), text.find("simulation:") - text.find("blocks:"),
-               "blocks:\n  - {name: strength, task: magnitude, question: Strong, stimuli: "
-               "[family], values: [0.06, 0.6, 6], repetitions: 20}\n");
+  text = with_blocks(text,
+                     "  - {name: strength, task: magnitude, question: Strong, stimuli: [family], "
+                     "values: [0.06, 0.6, 6], repetitions: 20}\n");
   text = testing::replaced(text, "{from: 3, to: 6}", "{from: 0.06, to: 6}");
   testing::write(file, testing::replaced(text, ", reference: one", ""));
   REQUIRE(testing::tapstudy({"simulate", file, "--participants", "6", "--seed", "3", "--out",

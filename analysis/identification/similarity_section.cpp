@@ -108,8 +108,9 @@ ReportSection similarity_section(const MatrixOfParticipants& counted) {
   section.remarks.emplace_back(
       "Similarity-choice model (Luce 1963): class i is answered with j in proportion to bias b(j) "
       "times similarity η(i, j), by maximum likelihood; biases add up to 1, η(i, i) = 1. A small p "
-      "of G², given the totals (Besag & Clifford 1989), says that the model does not describe the "
-      "answers.");
+      "of G², of up to 5000 answers given the totals (Besag & Clifford 1989), of more by "
+      "chi-squared, "
+      "says that the model does not describe the answers.");
   add_map(matrix.responses, model, section);
   return section;
 }

@@ -11,8 +11,6 @@
 #include "core/plain_text.hpp"
 namespace tapstudy::protocols {
 namespace {
-constexpr std::size_t max_text = 5000;
-
 std::vector<std::string> names_of(const std::vector<Option>& options) {
   std::vector<std::string> names;
   std::ranges::transform(options, std::back_inserter(names), &Option::name);
@@ -49,8 +47,8 @@ std::string wrong_with(const FormItem& item, const std::string& answer) {
       break;
   }
   if (!core::is_plain_text(answer)) {
-    return "not text: UTF-8 without control characters is";
+    return "must be UTF-8 text without control characters";
   }
-  return answer.size() <= max_text ? "" : fmt::format("at most {} characters", max_text);
+  return core::character_count(answer) <= max_form_text ? "" : fmt::format("at most {} characters", max_form_text);
 }
 }  // namespace tapstudy::protocols

@@ -3,6 +3,8 @@
 #include <string_view>
 #include <vector>
 namespace tapstudy::protocols {
+inline constexpr std::size_t max_form_text = 5000;  // characters
+
 //   likert  one of so many steps, from 1
 //   scale   a mark on a line, from 0 (low) to 1 (high): a visual analogue scale
 //   number  from min to max

@@ -53,7 +53,7 @@ struct Stimulus {
   AxisValues rendering{};                               // its own, where not the study's
   std::vector<AxisRange> vary{};                        // each axis once
   std::string vary_stated_at{};                         // as a Material's
-  bool is_vary_refused{false};  // while a file is read in which it was rejected
+  bool is_vary_refused{false};  // while a file is read in which an axis of it was rejected
   // False while a file is read in which one of these names was rejected.
   bool is_complete() const { return plate && material && technique != nullptr; }
 };

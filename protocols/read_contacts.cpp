@@ -121,12 +121,12 @@ Contacts read_set(MapReader& reader, const Protocol& protocol) {
     }
     read_body(name, body, protocol, contacts, ends);
   });
-  reader.list("springs", Presence::required, [&](MapReader& inner) {
+  reader.list("springs", Presence::at_least_one, [&](MapReader& inner) {
     const auto spring = read_spring(inner, ends);
     are_ends_known = are_ends_known && spring;
     contacts.springs.push_back(spring.value_or(core::ContactSpring{}));
   });
-  if (are_ends_known) {
+  if (are_ends_known && !contacts.springs.empty()) {
     check_are_joined(reader, contacts, bodies);
   }
   return contacts;

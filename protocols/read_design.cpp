@@ -124,9 +124,7 @@ void read_stimuli(MapReader& top, Protocol& protocol) {
     check_technique(reader, stimulus, protocol);
     check_contacts(reader, stimulus, protocol);
     stimulus.rendering = read_own_rendering(reader, stimulus, protocol);
-    stimulus.vary = read_vary(reader, stimulus, protocol);
-    stimulus.vary_stated_at = reader.stated_at("vary");
-    stimulus.is_vary_refused = reader.has("vary") && stimulus.vary.empty();
+    read_vary(reader, protocol, stimulus);
     protocol.stimuli.push_back(stimulus);
   });
   check_points(top, protocol);
@@ -152,6 +150,8 @@ void read_hypotheses(MapReader& top, Protocol& protocol) {
     }
     if (is_known && block->task->claim() != hypothesis.claim) {
       reader.reject("claim", "does not fit the task of the block");
+    } else if (is_known && block->comparison) {
+      reader.reject("block", "has procedures: its threshold is estimated, and no claim is tested");
     }
     protocol.hypotheses.push_back(hypothesis);
   });

@@ -53,7 +53,7 @@ Form read_form(const std::string& name, MapReader& reader) {
   } else {
     form.title = reader.translated("title");
     form.text = reader.translated_paragraphs("text", "");
-    reader.list("items", Presence::required, [&](MapReader& inner) {
+    reader.list("items", Presence::at_least_one, [&](MapReader& inner) {
       const FormItem item = read_item(inner);
       if (std::ranges::find(form.items, item.name, &FormItem::name) != form.items.end()) {
         inner.reject("name", fmt::format("'{}' is the name of an earlier item", item.name));

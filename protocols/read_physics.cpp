@@ -12,7 +12,7 @@ using Presence = MapReader::Presence;
 
 core::Damping read_fit(MapReader& damping) {
   core::FittedDamping fitted;
-  damping.list("measured", Presence::required, [&](MapReader& point) {
+  damping.list("measured", Presence::at_least_one, [&](MapReader& point) {
     fitted.points.push_back({point.number("frequency_hz", Range::positive(1e5)),
                              point.number("ratio", allowed::damping_ratio)});
   });

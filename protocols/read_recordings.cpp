@@ -26,11 +26,8 @@ void read_recordings(MapReader& top, Protocol& protocol) {
       "recordings", MapReader::Presence::optional, [&](const std::string& name, MapReader& reader) {
         core::RecordedTaps recorded;
         recorded.rate_hz = reader.number("rate_hz", {100.0, 200'000.0});
-        reader.list("taps", MapReader::Presence::required,
+        reader.list("taps", MapReader::Presence::at_least_one,
                     [&](MapReader& tap) { recorded.taps.push_back(read_tap(tap)); });
-        if (reader.has("taps") && recorded.taps.empty()) {
-          reader.reject("taps", "has none");
-        }
         protocol.recordings[name] = std::make_shared<const core::RecordedTaps>(std::move(recorded));
       });
 }

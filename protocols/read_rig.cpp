@@ -90,16 +90,13 @@ void read_audio(MapReader& top, Rig& rig) {
 void read_response(MapReader& top, Rig& rig) {
   top.map("vibration_response", Presence::optional, [&](MapReader& reader) {
     core::DeviceResponse response;
-    reader.list("points", Presence::required, [&](MapReader& point) {
+    reader.list("points", Presence::at_least_one, [&](MapReader& point) {
       const double frequency_hz = point.number("frequency_hz", Range::positive(1e5));
       if (!response.points.empty() && frequency_hz <= response.points.back().frequency_hz) {
         point.reject("frequency_hz", "is not above that of the point before");
       }
       response.points.push_back({frequency_hz, point.number("gain", {1e-3, 1e3})});
     });
-    if (reader.has("points") && response.points.empty()) {
-      reader.reject("points", "has none");
-    }
     response.max_boost = reader.number("max_boost", {1.0, 100.0}, response.max_boost);
     rig.vibration_response = std::make_shared<const core::DeviceResponse>(std::move(response));
   });

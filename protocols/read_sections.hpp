@@ -26,8 +26,7 @@ void read_stimuli(MapReader& top, Protocol& protocol);
 // The axes of a stimulus whose other keys are read.
 AxisValues read_own_rendering(MapReader& stimulus_reader, const Stimulus& stimulus,
                               const Protocol& protocol);
-std::vector<AxisRange> read_vary(MapReader& stimulus_reader, const Stimulus& stimulus,
-                                 const Protocol& protocol);
+void read_vary(MapReader& stimulus_reader, const Protocol& protocol, Stimulus& stimulus);
 void read_forms(MapReader& top, Protocol& protocol);
 std::vector<std::string> read_form_names(MapReader& reader, const std::string& key,
                                          const Protocol& protocol);

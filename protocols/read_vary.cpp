@@ -136,22 +136,22 @@ AxisValues read_own_rendering(MapReader& stimulus_reader, const Stimulus& stimul
   return values;
 }
 
-std::vector<AxisRange> read_vary(MapReader& stimulus_reader, const Stimulus& stimulus,
-                                 const Protocol& protocol) {
-  std::vector<AxisRange> ranges;
+void read_vary(MapReader& stimulus_reader, const Protocol& protocol, Stimulus& stimulus) {
   const PresentedStimulus own = stimulus_with(protocol, whole(stimulus));
+  std::size_t named = 0;
   stimulus_reader.map("vary", Presence::optional, [&](MapReader& vary) {
-    bool is_named = false;
     for (const Axis& axis : axes()) {
-      is_named = is_named || vary.has(std::string{axis.name});
+      named += vary.has(std::string{axis.name}) ? 1 : 0;
       vary.map(std::string{axis.name}, Presence::optional,
-               [&](MapReader& reader) { read_axis(reader, axis, own, ranges); });
+               [&](MapReader& reader) { read_axis(reader, axis, own, stimulus.vary); });
     }
-    if (!is_named) {
+    if (named == 0) {
       vary.reject(fmt::format("names no axis (one of: {})", fmt::join(axis_names(), ", ")));
     }
-    check_models(vary, ranges, own);
+    check_models(vary, stimulus.vary, own);
   });
-  return ranges;
+  stimulus.vary_stated_at = stimulus_reader.stated_at("vary");
+  stimulus.is_vary_refused =
+      stimulus_reader.has("vary") && (stimulus.vary.empty() || stimulus.vary.size() < named);
 }
 }  // namespace tapstudy::protocols

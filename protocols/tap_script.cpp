@@ -55,7 +55,7 @@ TapScript parse_tap_script(const std::string& text, const std::string& file, con
   TapScript script;
   script.rest_s = top.number("rest_s", {0.0, long_script_s}, 0.3);
   bool is_down = false;
-  top.list("steps", Presence::required, [&](MapReader& reader) {
+  top.list("steps", Presence::at_least_one, [&](MapReader& reader) {
     const TapStep step = read_step(reader, plate);
     if (step.action == Action::strike && is_down) {
       reader.reject("do", "strikes with a finger that is down (release it first)");
@@ -66,9 +66,6 @@ TapScript parse_tap_script(const std::string& text, const std::string& file, con
     is_down = step.action != Action::release;
     script.steps.push_back(step);
   });
-  if (top.has("steps") && script.steps.empty()) {
-    top.reject("steps", "has none");
-  }
   top.finish();
   problems.throw_if_any();
   return script;

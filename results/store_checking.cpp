@@ -6,6 +6,7 @@
 #include <string>
 
 #include "results/schema.hpp"
+#include "core/plain_text.hpp"
 #include "results/store.hpp"
 #include "results/store_error.hpp"
 
@@ -49,8 +50,8 @@ void Store::check_schema() {
   const std::set<std::string> found = objects_of(database_);
   for (const std::string& object : found) {
     if (!known.contains(object)) {
-      throw StoreError{fmt::format("{}: holds what tapstudy did not put there: {}",
-                                   database_.file(), object.substr(0, 80))};
+      throw StoreError{fmt::format("{}: contains a schema object that is not tapstudy's: {}",
+                                   database_.file(), core::cut_to(object, 80))};
     }
   }
   if (found.size() != known.size()) {

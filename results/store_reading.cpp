@@ -5,6 +5,7 @@
 #include <charconv>
 
 #include "results/compression.hpp"
+#include "core/plain_text.hpp"
 #include "results/store.hpp"
 #include "results/store_error.hpp"
 #include "results/trace_codec.hpp"
@@ -17,7 +18,7 @@ std::uint64_t seed_from(const std::string& text, const std::string& where) {
   const auto [stopped, error] = std::from_chars(text.data(), end, seed);
   if (error != std::errc{} || stopped != end) {
     throw StoreError{
-        fmt::format("{}: the seed '{}' is no whole number below 2^64", where, text.substr(0, 80))};
+        fmt::format("{}: the seed '{}' is no whole number below 2^64", where, core::cut_to(text, 80))};
   }
   return seed;
 }
@@ -197,8 +198,13 @@ std::vector<int> Store::answered_trials(const std::string& participant_id) {
 
 std::map<int, int> Store::presentations(const std::string& participant_id) {
   Statement row{database_,
-                "SELECT number, max(attempt) FROM trial JOIN session USING (session_id) "
-                "WHERE participant_id = ? GROUP BY number"};
+                "SELECT number, max(attempts) FROM ("
+                "  SELECT number, max(attempt) AS attempts FROM trial "
+                "    JOIN session USING (session_id) WHERE participant_id = ?1 GROUP BY number "
+                "  UNION ALL SELECT number, count(*) FROM session_event "
+                "    JOIN session USING (session_id) "
+                "    WHERE participant_id = ?1 AND state = 'exploring' GROUP BY number) "
+                "GROUP BY number"};
   row.bind(participant_id);
   std::map<int, int> attempts;
   while (row.step()) {

@@ -81,7 +81,7 @@ std::optional<MeanOfSettings> mean_of(const std::vector<double>& values, Back ba
       back(mean_and_spread(values).mean), {}, {}, static_cast<int>(values.size())};
   if (values.size() > 1) {
     result.interval = both(t_interval(values));
-    if (const auto bootstrap = bca_interval(values, draws, seed)) {
+    if (const auto bootstrap = bootstrap_interval(values, draws, seed)) {
       result.bootstrap = both(*bootstrap);
     }
   }

@@ -1,9 +1,9 @@
 #include "analysis/agreement/symmetry.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 
 #include "analysis/statistics/distributions.hpp"
+#include "core/algebra/lapack.hpp"
 namespace tapstudy::analysis {
 std::optional<ChiSquaredTest> bowker_test(const CountTable& table) {
   totals_of_square(table);
@@ -40,14 +40,14 @@ std::optional<ChiSquaredTest> stuart_maxwell_test(const CountTable& table) {
   }
   // The whole matrix is singular, for differences add up to 0: within its range the inverse gives
   // the same as without one class.
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver{covariance};
-  const double largest = std::max(solver.eigenvalues().maxCoeff(), 0.0);
-  const Eigen::VectorXd along = solver.eigenvectors().transpose() * difference;
+  const core::EigenPairs pairs = core::symmetric_eigenpairs(covariance);
+  const double largest = std::max(pairs.values.maxCoeff(), 0.0);
+  const Eigen::VectorXd along = pairs.vectors.transpose() * difference;
   double sum = 0.0;
   int rank = 0;
   for (Eigen::Index i = 0; i < size; ++i) {
-    if (solver.eigenvalues()(i) > 1e-10 * largest) {
-      sum += along(i) * along(i) / solver.eigenvalues()(i);
+    if (pairs.values(i) > 1e-10 * largest) {
+      sum += along(i) * along(i) / pairs.values(i);
       ++rank;
     }
   }

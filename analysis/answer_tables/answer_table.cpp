@@ -116,19 +116,12 @@ class AnswerReader {
     }
     return results::Mode::real;
   }
-  // Where cells are separated by semicolons a comma is a decimal one.
-  std::string with_point(std::string cell) const {
-    if (csv_.text.separator == ';') {
-      std::ranges::replace(cell, ',', '.');
-    }
-    return cell;
-  }
   double time_of(const CsvRow& row) const {
     if (!places_.time || is_missing(row.cells[*places_.time])) {
       return std::numeric_limits<double>::quiet_NaN();
     }
     const std::string& cell = row.cells[*places_.time];
-    const auto value = core::number_in<double>(with_point(cell));
+    const auto value = csv_.text.number(cell);
     if (!value || !(*value >= 0.0 && std::isfinite(*value))) {
       refuse(row.line, fmt::format("'{}' in column '{}' is not a time from 0", cell,
                                    header()[*places_.time]));

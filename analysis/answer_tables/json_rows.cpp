@@ -40,9 +40,11 @@ std::string cell_of(const Json& value) {
 }
 }  // namespace
 
-bool is_json_list(std::istream& text) {
-  text >> std::ws;
-  return text.peek() == '[';
+bool is_json_list(std::string_view text) {
+  constexpr std::string_view byte_order_mark{"\xef\xbb\xbf"};
+  text.remove_prefix(text.starts_with(byte_order_mark) ? byte_order_mark.size() : 0);
+  const auto first = text.find_first_not_of(" \t\r\n");
+  return first != std::string_view::npos && text[first] == '[';
 }
 
 CsvText read_json_rows(std::istream& text, const std::string& file) {

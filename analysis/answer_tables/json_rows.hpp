@@ -1,11 +1,12 @@
 #pragma once
 #include <istream>
 #include <string>
+#include <string_view>
 
 #include "analysis/statistics/csv_rows.hpp"
 namespace tapstudy::analysis {
 // Whether the text begins as a list does in JSON. Reads nothing else of it.
-bool is_json_list(std::istream& text);
+bool is_json_list(std::string_view text);
 
 // A list of objects, as jsPsych saves its data, as the table that it would be in CSV: a column for
 // each key that any has, a row for each object, numbered as its line. What is null or missing is

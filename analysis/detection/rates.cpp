@@ -49,7 +49,9 @@ YesNoSensitivity yes_no_sensitivity(const Proportion& hits, const Proportion& fa
   YesNoSensitivity result;
   result.d_prime = hit_z - false_alarm_z;
   result.d_prime_interval = around(result.d_prime, spread);
-  result.criterion = -0.5 * (hit_z + false_alarm_z);
+  const double sum = hit_z + false_alarm_z;
+  const double rounding = 1e-14 * (std::abs(hit_z) + std::abs(false_alarm_z));
+  result.criterion = std::abs(sum) <= rounding ? 0.0 : -0.5 * sum;
   result.criterion_interval = around(result.criterion, 0.5 * spread);
   result.is_below_chance = result.d_prime < 0.0;
   return result;

@@ -21,12 +21,12 @@ ReportTable estimates_table(const IdentificationSummary& summary) {
       "accuracy_estimates",
       "Right answers over participants",
       {column("right", "right"), column("answers", "answers"), column("of all", "share"),
-       column("chance", "chance"), column("mean of participants", "mean_of_participants"),
+       column("chance", "chance"), column("above chance", "p"),
+       column("mean of participants", "mean_of_participants"),
        range_column("95 % CI, beta-binomial", "beta_binomial"), range_column("95 % CI, t", "t"),
        range_column("95 % CI, bootstrap", "bootstrap"),
        column("intra-class correlation", "intraclass_correlation"),
-       range_column("were answers independent (Wilson)", "independent_wilson"),
-       column("above chance", "p")}};
+       range_column("were answers independent (Wilson)", "independent_wilson")}};
   std::vector<FactorResult> results{{"all answers", "", summary.accuracy, summary.matrix.chance(),
                                      summary.accuracy_over_participants}};
   results.front().p = summary.chance_p;
@@ -40,15 +40,32 @@ ReportTable estimates_table(const IdentificationSummary& summary) {
                           {fraction(result.accuracy), {result.accuracy.trials}},
                           {percent(result.accuracy), {result.accuracy.value()}},
                           share(result.chance),
+                          probability(result.p),
                           over ? share(over->mean_of_shares) : number(std::nullopt),
                           range_cell(over ? std::optional{over->interval} : std::nullopt),
                           range_cell(over ? over->t : std::nullopt),
                           range_cell(over ? over->bootstrap : std::nullopt),
                           over ? number(over->intraclass_correlation) : number(std::nullopt),
-                          range_cell(wilson_interval(result.accuracy)),
-                          probability(result.p)});
+                          range_cell(wilson_interval(result.accuracy))});
   }
   return table;
+}
+
+bool has_other_answers(const IdentificationSummary& summary) {
+  return summary.matrix.share_of_alternatives() < 1.0;
+}
+
+void add_remark_on_chance(const IdentificationSummary& summary, ReportSection& section) {
+  if (has_other_answers(summary)) {
+    section.remarks.emplace_back(
+        "Some answers name no stimulus, and count as wrong. Chance is that of somebody who gives "
+        "such answers as often and else guesses; the exact binomial test of each participant, "
+        "which supposes that every answer is a guess among the stimuli, is left out.");
+  } else {
+    section.remarks.emplace_back(
+        "A participant's exact binomial probability supposes that without any feeling each answer "
+        "is right by the chance given, one-sided, not adjusted for the number of participants.");
+  }
 }
 
 ReportTable participants_table(const IdentificationSummary& summary) {
@@ -67,18 +84,20 @@ ReportTable participants_table(const IdentificationSummary& summary) {
 
 ReportSection accuracy_section(const IdentificationSummary& summary) {
   ReportSection section{"Accuracy"};
-  section.tables = {estimates_table(summary), participants_table(summary)};
+  section.tables = {estimates_table(summary)};
+  if (!has_other_answers(summary)) {
+    section.tables.push_back(participants_table(summary));
+  }
   if (summary.accuracy_over_participants) {
     section.remarks.emplace_back(
         "95 % intervals hold for participants of whom these are a sample: profile likelihood of a "
         "beta-binomial distribution (Williams 1975) with the quantile of t for the number of "
-        "participants; t and the bootstrap (BCa, Efron 1987) over participants' shares are given "
-        "beside it. Wilson's interval would hold if all answers were independent of one another.");
+        "participants, which holds the mean in more than 95 % of studies where participants are "
+        "few; t and the bootstrap (BCa, Efron 1987, expanded after Hesterberg 2015) over "
+        "participants' shares are given beside it. Wilson's interval would hold if all answers were independent of one another.");
   }
   section.remarks.push_back("All answers against chance: " + summary.chance_test + ".");
-  section.remarks.emplace_back(
-      "A participant's exact binomial probability supposes that without any feeling each answer "
-      "is right by the chance given, one-sided, not adjusted for the number of participants.");
+  add_remark_on_chance(summary, section);
   return section;
 }
 }  // namespace tapstudy::analysis

@@ -33,7 +33,8 @@ ReportTable equivalent_table(const ConfusionMatrix& matrix) {
                     "Equivalent d' of m-alternative forced choice",
                     {column("alternatives", "alternatives"), d_prime_column()}};
   const Proportion correct = overall_accuracy(matrix);
-  if (correct.trials > 0 && alternatives >= model.fewest_alternatives &&
+  if (correct.trials > 0 && matrix.share_of_alternatives() == 1.0 &&
+      alternatives >= model.fewest_alternatives &&
       alternatives <= model.most_alternatives) {
     const Sensitivity of = sensitivity({model.model, alternatives}, correct);
     table.rows.push_back({count(alternatives), interval(of.d_prime, of.interval)});
@@ -69,11 +70,19 @@ ReportSection sensitivity_section(const MatrixOfParticipants& counted) {
     }
   }
   section.tables.push_back(levels);
+  for (const std::string& factor : factors_of_one_level(matrix)) {
+    section.remarks.push_back(
+        fmt::format("Factor {} is left out: all stimuli have the same level of it.", factor));
+  }
   section.tables.push_back(equivalent_table(matrix));
   section.remarks.emplace_back(
       "d' = z(hits) - z(false alarms) and c = -(z(hits) + z(false alarms)) / 2 with rates "
       "corrected by (k + 1/2) / (n + 1) (Hautus 1995); c above 0: the class is named too seldom. "
       "The equivalent d' supposes an observer without preferences.");
+  if (matrix.share_of_alternatives() < 1.0) {
+    section.remarks.emplace_back(
+        "Some answers name no stimulus: the choice was not forced, and has no equivalent d'.");
+  }
   if (const std::string warning = independence_warning(counted); !warning.empty()) {
     section.remarks.push_back(warning);
   }

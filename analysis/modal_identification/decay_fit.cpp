@@ -1,12 +1,13 @@
 #include "analysis/modal_identification/decay_fit.hpp"
 
 #include <Eigen/Cholesky>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "analysis/modal_identification/cut_exponential.hpp"
+#include "core/algebra/lapack.hpp"
 #include "core/error.hpp"
 namespace tapstudy::analysis {
 namespace {
@@ -50,10 +51,15 @@ class DecayModel {
       set_pair(state.basis, 2 * k, cut_exponential(log_of_pole(logs, k), spectrum_));
     }
     state.basis.rightCols(nuisance_.cols()) = nuisance_;
+    if (!state.basis.allFinite()) {  // a pole that grows beyond all bounds fits nothing
+      state.shares = Eigen::VectorXd::Zero(state.basis.cols());
+      state.residual = data_;
+      state.sum_of_squares = std::numeric_limits<double>::infinity();
+      return state;
+    }
     const Eigen::RowVectorXd size = state.basis.colwise().norm().cwiseMax(1e-300);
-    const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> factor{state.basis *
-                                                             size.cwiseInverse().asDiagonal()};
-    state.shares = factor.solve(data_).cwiseQuotient(size.transpose());
+    state.shares = core::least_squares(state.basis * size.cwiseInverse().asDiagonal(), data_)
+                       .solution.cwiseQuotient(size.transpose());
     state.residual = data_ - state.basis * state.shares;
     state.sum_of_squares = state.residual.squaredNorm();
     return state;
@@ -194,8 +200,7 @@ DecayFit fit_decay(const BandSpectrum& spectrum, const std::vector<Pole>& start,
   const Normal normal = normal_equations(model.jacobian(state), state.residual);
   const double variance = state.sum_of_squares / freedom;
   const Eigen::VectorXd scale = normal.size.cwiseInverse();
-  const Eigen::MatrixXd inverse =
-      normal.matrix.completeOrthogonalDecomposition().pseudoInverse() * variance;
+  const Eigen::MatrixXd inverse = core::pseudo_inverse(normal.matrix) * variance;
   const Eigen::MatrixXd covariance = scale.asDiagonal() * inverse * scale.asDiagonal();
   for (Eigen::Index k = 0; k < model.poles(); ++k) {
     fit.modes.push_back(mode_of(model, state, covariance, spectrum.rate_hz, k));

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
@@ -78,9 +77,8 @@ MatrixPencil matrix_pencil(const FreeDecay& decay, const Band& band, int max_ord
   const int last = std::min(
       {max_order, result.significant_order + further_orders, static_cast<int>(pencil) - 2});
   for (int order = 2; order <= last; order += 2) {
-    const Eigen::EigenSolver<Eigen::MatrixXd> solver{shift_matrix(pairs.vectors.rightCols(order)),
-                                                     false};
-    result.orders.push_back({order, poles_in(solver.eigenvalues(), slow.rate_hz, band)});
+    const Eigen::VectorXcd z = core::eigenvalues(shift_matrix(pairs.vectors.rightCols(order)));
+    result.orders.push_back({order, poles_in(z, slow.rate_hz, band)});
   }
   return result;
 }

@@ -185,7 +185,9 @@ std::optional<RayleighFit> fit_rayleigh(const std::vector<MeasuredRatio>& as_mea
   fit.chi_squared = found.chi_squared;
   fit.degrees_of_freedom = static_cast<double>(measured.size()) - found.free;
   if (fit.degrees_of_freedom > 0.0) {
-    fit.p = misfit_p(fit, mean_freedom(measured));
+    const double known = mean_freedom(measured);
+    fit.p_is_of_f = known < few;
+    fit.p = misfit_p(fit, known);
   }
   fit.alpha_per_s = estimate_of(0, found, measured, fit);
   fit.beta_s = estimate_of(1, found, measured, fit);

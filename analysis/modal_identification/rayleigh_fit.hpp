@@ -20,7 +20,8 @@ struct RayleighFit {
   std::vector<double> fitted_ratios;  // in the order given
   double chi_squared{};               // of the misfits over their standard errors
   double degrees_of_freedom{};        // 0 of two modes: nothing says whether Rayleigh damping fits
-  std::optional<double> p;            // by F, if errors are estimates; unset likewise
+  std::optional<double> p;            // unset likewise
+  bool p_is_of_f{};                   // not of chi-squared: the errors are estimates themselves
   double largest_misfit{};            // |fitted / measured - 1|
   double at_hz{};
   bool is_bounded{};  // a coefficient would have been negative, and was held at 0

@@ -192,7 +192,7 @@ Estimate estimate_over_taps(const std::vector<double>& values, const std::vector
   estimate.interval = {estimate.value - half, estimate.value + half};
   if (values.size() >= min_taps_to_resample) {
     estimate.bootstrap =
-        bca_interval(values, bootstrap_draws, bootstrap_seed, expanded_tail(values.size()));
+        bootstrap_interval(values, bootstrap_draws, bootstrap_seed);
   }
   return estimate;
 }

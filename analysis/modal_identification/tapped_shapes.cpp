@@ -1,11 +1,12 @@
 #include "analysis/modal_identification/tapped_shapes.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <complex>
 #include <map>
 #include <utility>
+
+#include "core/algebra/lapack.hpp"
 namespace tapstudy::analysis {
 namespace {
 using Complex = std::complex<double>;
@@ -154,7 +155,7 @@ Eigen::VectorXcd amplitudes_of(const FreeDecay& decay, const std::vector<Pole>& 
       parts(n, 2 * mode + 1) = -z.imag();
     }
   }
-  const Eigen::VectorXd found = parts.colPivHouseholderQr().solve(decay.samples);
+  const Eigen::VectorXd found = core::least_squares(parts, decay.samples).solution;
   Eigen::VectorXcd amplitudes(modes);
   for (Eigen::Index mode = 0; mode < modes; ++mode) {
     amplitudes[mode] = {found[2 * mode], found[2 * mode + 1]};

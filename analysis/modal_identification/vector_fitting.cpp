@@ -1,11 +1,10 @@
 #include "analysis/modal_identification/vector_fitting.hpp"
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
+#include "core/algebra/lapack.hpp"
 #include "core/error.hpp"
 namespace tapstudy::analysis {
 namespace {
@@ -63,8 +62,7 @@ Poles zeros_of(const Poles& poles, const Eigen::VectorXd& c) {
     b[row++] = 1.0;
   }
   Poles zeros;
-  const Eigen::EigenSolver<Eigen::MatrixXd> solver{A - b * c.transpose(), false};
-  for (Complex z : solver.eigenvalues()) {
+  for (Complex z : core::eigenvalues(A - b * c.transpose())) {
     if (std::abs(z) > 1.0) {
       z = 1.0 / std::conj(z);
     }
@@ -93,10 +91,13 @@ Poles relocated(const Poles& poles, const Eigen::ArrayXcd& z, const Eigen::Vecto
   system.col(n + 2) = z / (z - 1.0);
   system.rightCols(n) = -(values.asDiagonal() * fractions);
   const Eigen::MatrixXd real = stacked(system);
+  if (!real.allFinite()) {  // a pole on a frequency of the spectrum: there is nothing to relocate
+    return {};
+  }
   const Eigen::VectorXd size = real.colwise().norm().cwiseMax(1e-300).transpose();
-  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> factor{real * size.cwiseInverse().asDiagonal()};
   const Eigen::VectorXd solution =
-      factor.solve(Eigen::VectorXd{stacked(values)}).cwiseQuotient(size);
+      core::least_squares(real * size.cwiseInverse().asDiagonal(), stacked(values))
+          .solution.cwiseQuotient(size);
   return zeros_of(poles, solution.tail(n));
 }
 

@@ -140,15 +140,20 @@ std::optional<Interval> bca_interval(const std::vector<double>& values, int draw
   const double bias = normal_quantile(below / static_cast<double>(draws));
   const double a = acceleration(values);
   const auto level = [&](double z) {
-    return normal_cdf(bias + (bias + z) / (1.0 - a * (bias + z)));
+    const double shrunk = 1.0 - a * (bias + z);
+    return shrunk > 0.0 ? normal_cdf(bias + (bias + z) / shrunk) : z > 0.0 ? 1.0 : 0.0;
   };
-  const double z = normal_quantile(1.0 - tail);
+  const double z = -normal_quantile(tail);
   return Interval{quantile(means, level(-z)), quantile(means, level(z))};
 }
 
-double expanded_tail(std::size_t values) {
-  const auto n = static_cast<double>(values);
-  return normal_cdf(-std::sqrt(n / (n - 1.0)) * t_quantile(0.975, n - 1.0));
+std::optional<Interval> bootstrap_interval(const std::vector<double>& values, int draws,
+                                           std::uint64_t seed) {
+  check_values(values);
+  const auto n = static_cast<double>(values.size());
+  const double expanded_tail =
+      normal_cdf(-std::sqrt(n / (n - 1.0)) * t_quantile(0.975, n - 1.0));
+  return bca_interval(values, draws, seed, expanded_tail);
 }
 
 std::optional<BetaBinomialMean> beta_binomial_mean(const std::vector<Proportion>& participants) {
@@ -182,7 +187,9 @@ std::optional<MeanProportion> mean_proportion(const std::vector<Proportion>& par
   MeanProportion result{*model, mean_of(shares), {}, {}};
   if (!are_equal(shares)) {
     result.t = within_shares(t_interval(shares));
-    result.bootstrap = bca_interval(shares, bootstrap_draws, bootstrap_seed);
+    if (const auto bootstrap = bootstrap_interval(shares, bootstrap_draws, bootstrap_seed)) {
+      result.bootstrap = within_shares(*bootstrap);
+    }
   }
   return result;
 }

@@ -85,7 +85,7 @@ std::vector<Cell> score_row(const Questionnaire& form, const std::string& asked,
   } else {
     row.push_back(interval(mean_and_spread(values).mean, t_interval(values)));
   }
-  const auto bootstrap = values.size() > 1 ? bca_interval(values, draws, seed) : std::nullopt;
+  const auto bootstrap = values.size() > 1 ? bootstrap_interval(values, draws, seed) : std::nullopt;
   row.push_back(bootstrap ? Cell{rounded(bootstrap->low) + " to " + rounded(bootstrap->high),
                                  {bootstrap->low, bootstrap->high}}
                           : nothing(table.columns[5]));

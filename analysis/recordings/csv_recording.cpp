@@ -19,25 +19,30 @@ constexpr double max_rate_difference = 0.01;
   throw core::InvalidInput{fmt::format("{}:{}: {}", file, line, what)};
 }
 
-std::optional<double> number_in(std::string cell, bool has_decimal_comma) {
-  if (has_decimal_comma) {
-    std::ranges::replace(cell, ',', '.');
-  }
-  return core::number_in<double>(std::string_view{cell}.substr(cell.starts_with('+') ? 1 : 0));
-}
-
 std::string lower_case(std::string text) {
   std::ranges::transform(text, text.begin(),
                          [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return text;
 }
 
+// The micro sign, and the Greek letter mu.
+std::string with_ascii_micro(const std::string& text) {
+  std::string ascii;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const bool is_micro = text.compare(i, 2, "\u00b5") == 0 || text.compare(i, 2, "\u03bc") == 0;
+    ascii += is_micro ? 'u' : text[i];
+    i += is_micro ? 1 : 0;
+  }
+  return ascii;
+}
+
 // Seconds per unit of a time column's header: "t", "time", "Time (ms)", "time_us", "t [s]" ...;
 // 0: the header is not that of a time.
 double seconds_per_unit(const std::string& header) {
   std::string letters;
-  for (const char c : lower_case(header)) {
-    letters += std::isalpha(static_cast<unsigned char>(c)) != 0 ? c : ' ';
+  for (const char c : lower_case(with_ascii_micro(header))) {
+    const auto byte = static_cast<unsigned char>(c);
+    letters += byte >= 0x80 || std::isalpha(byte) != 0 ? c : ' ';
   }
   std::istringstream stream{letters};
   std::string word;
@@ -57,15 +62,13 @@ double seconds_per_unit(const std::string& header) {
 class Table {
  public:
   Table(CsvText text, std::string file)
-      : rows_{std::move(text.rows)},
-        file_{std::move(file)},
-        has_decimal_comma_{text.separator != ','} {
-    if (rows_.empty()) {
+      : text_{std::move(text)}, file_{std::move(file)} {
+    if (text_.rows.empty()) {
       refuse(file_, 1, "holds no values");
     }
-    const CsvRow& first = rows_.front();
+    const CsvRow& first = text_.rows.front();
     if (std::ranges::none_of(first.cells, [&](const std::string& cell) {
-          return number_in(cell, has_decimal_comma_).has_value();
+          return text_.number(cell).has_value();
         })) {
       headers_ = first.cells;
       first_row_ = 1;
@@ -74,12 +77,12 @@ class Table {
   }
 
   std::size_t columns() const { return columns_; }
-  std::size_t rows() const { return rows_.size() - first_row_; }
+  std::size_t rows() const { return text_.rows.size() - first_row_; }
   bool has_headers() const { return !headers_.empty(); }
   const std::vector<std::string>& headers() const { return headers_; }
   const std::string& file() const { return file_; }
-  int line(std::size_t row) const { return rows_[first_row_ + row].line; }
-  int last_line() const { return rows_.back().line; }
+  int line(std::size_t row) const { return text_.rows[first_row_ + row].line; }
+  int last_line() const { return text_.rows.back().line; }
   std::string title(std::size_t column) const {
     return has_headers() ? headers_[column] : fmt::format("column {}", column + 1);
   }
@@ -87,13 +90,13 @@ class Table {
   std::vector<double> values(std::size_t column) const {
     std::vector<double> all;
     all.reserve(rows());
-    for (std::size_t i = first_row_; i < rows_.size(); ++i) {
-      const CsvRow& row = rows_[i];
+    for (std::size_t i = first_row_; i < text_.rows.size(); ++i) {
+      const CsvRow& row = text_.rows[i];
       if (row.cells.size() != columns_) {
         refuse(file_, row.line,
                fmt::format("has {} cells, the first row {}", row.cells.size(), columns_));
       }
-      const std::optional<double> value = number_in(row.cells[column], has_decimal_comma_);
+      const std::optional<double> value = text_.number(row.cells[column]);
       if (!value || !std::isfinite(*value)) {
         refuse(file_, row.line, fmt::format("'{}' is not a finite number", row.cells[column]));
       }
@@ -103,9 +106,8 @@ class Table {
   }
 
  private:
-  std::vector<CsvRow> rows_;
+  CsvText text_;
   std::string file_;
-  bool has_decimal_comma_;
   std::vector<std::string> headers_;
   std::size_t first_row_{0};
   std::size_t columns_{0};

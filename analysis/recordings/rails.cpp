@@ -8,6 +8,9 @@ namespace tapstudy::analysis {
 namespace {
 constexpr std::size_t min_run = 3;
 constexpr double smooth_steps = 3.0;
+constexpr std::size_t min_noisy_run = 4;
+constexpr double noise_tolerance = 3.0;
+constexpr double limited_steps = 6.0;
 
 // The least difference between successive samples, 0 if all are equal.
 double resolution_of(const std::vector<double>& samples) {
@@ -28,23 +31,31 @@ double step_beside(const std::vector<double>& samples, std::size_t begin, std::s
   return std::max(before, after);
 }
 
-void add_runs_at(double extreme, const std::vector<double>& samples, double resolution,
-                 std::vector<std::size_t>& rails) {
+// Runs within a tolerance of the extreme; is_rail gets the run's end points.
+template <class IsRail>
+void add_runs_at(double extreme, double tolerance, const std::vector<double>& samples,
+                 IsRail is_rail, std::vector<std::size_t>& rails) {
   for (std::size_t i = 0; i < samples.size();) {
     std::size_t end = i;
-    while (end < samples.size() && samples[end] == extreme) {
+    while (end < samples.size() && std::abs(samples[end] - extreme) <= tolerance) {
       ++end;
     }
-    if (end - i >= min_run && step_beside(samples, i, end) > smooth_steps * resolution) {
+    if (end > i && is_rail(i, end)) {
       rails.resize(rails.size() + end - i);
       std::iota(rails.end() - static_cast<std::ptrdiff_t>(end - i), rails.end(), i);
     }
     i = std::max(end, i + 1);
   }
 }
+
+double spread_of(const std::vector<double>& samples, std::size_t begin, std::size_t end) {
+  const auto at = [&](std::size_t i) { return samples.begin() + static_cast<std::ptrdiff_t>(i); };
+  const auto [low, high] = std::minmax_element(at(begin), at(end));
+  return *high - *low;
+}
 }  // namespace
 
-std::vector<std::size_t> rail_samples(const std::vector<double>& samples) {
+std::vector<std::size_t> rail_samples(const std::vector<double>& samples, double noise_rms) {
   std::vector<std::size_t> rails;
   if (samples.empty()) {
     return rails;
@@ -54,9 +65,23 @@ std::vector<std::size_t> rail_samples(const std::vector<double>& samples) {
     return rails;
   }
   const double resolution = resolution_of(samples);
-  add_runs_at(high, samples, resolution, rails);
-  add_runs_at(low, samples, resolution, rails);
+  const auto is_flat = [&](std::size_t begin, std::size_t end) {
+    return end - begin >= min_run &&
+           step_beside(samples, begin, end) > smooth_steps * resolution;
+  };
+  // A smooth peak moves at the end of the run by at most three times what it does within it.
+  const auto is_limited = [&](std::size_t begin, std::size_t end) {
+    return end - begin >= min_noisy_run &&
+           step_beside(samples, begin, end) >
+               limited_steps * std::max(spread_of(samples, begin, end), resolution);
+  };
+  for (const double extreme : {low, high}) {
+    add_runs_at(extreme, 0.0, samples, is_flat, rails);
+    add_runs_at(extreme, noise_tolerance * noise_rms, samples, is_limited, rails);
+  }
   std::ranges::sort(rails);
+  const auto twice = std::ranges::unique(rails);
+  rails.erase(twice.begin(), twice.end());
   return rails;
 }
 }  // namespace tapstudy::analysis

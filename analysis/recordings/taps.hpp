@@ -21,24 +21,37 @@ struct FoundTaps {
   std::vector<std::string> remarks;  // what was left out, and why
 };
 
+// Where something struck. What strikes again within 30 ms is the same impact: `last_blow` is then
+// where it did so last, otherwise the onset.
+struct Impact {
+  std::size_t onset{};
+  std::size_t last_blow{};
+};
+
 // Energies of frames of 2 ms (8 samples at least) against the noise floor, the 20 % quantile of
 // the energies of ten frames each. An impact exceeds it tenfold, and twice what earlier taps left,
 // taken to fall by e in 50 ms at the slowest, and is no continuation of what rang before: a linear
-// prediction errs there four times as much as a quarter of a second before (in energy). Two impacts
-// within 30 ms are one. A free decay ends at the next impact, where its energy has fallen to twice
+// prediction errs there four times as much as a quarter of a second before (in energy). Within what
+// still rings louder, only an error sixteen times as large tells a new impact. Two impacts within 30 ms
+// are one. A free decay ends at the next impact, where its energy has fallen to twice
 // the noise floor, or after max_s. It begins after samples at the rails of the sensor
 // (rail_samples), if there are any. Decays below 64 samples or 20 ms are left out with a remark.
 // Throws InvalidInput with the file if none is left.
 FoundTaps find_taps(const Recording& recording, const TapFinding& finding);
-// The same where the sample numbers of the impacts are known: from the force, of which nothing
-// rings on.
-FoundTaps taps_at(const std::vector<std::size_t>& onsets, const Recording& recording,
+// The same where the impacts are known.
+FoundTaps taps_at(const std::vector<Impact>& impacts, const Recording& recording,
                   const TapFinding& finding);
-// Of the impacts that find_taps finds; throws InvalidInput if there is none.
-std::vector<std::size_t> impact_onsets(const Recording& recording);
+// The impacts of a force, of which nothing rings on: each time it leaves its resting value (the
+// median) by a tenth of the most that it does, having been back within 3 % for 1 ms. Throws
+// InvalidInput as find_taps if there is none.
+std::vector<Impact> force_impacts(const Recording& force);
+// The standard deviation of the quietest fifth of a recording.
+double noise_rms(const Recording& recording);
 
 // Sample numbers where the sensor was at its limit: runs of three and more samples at the largest
 // or smallest value of all into which the signal does not run smoothly (next to it, it moves by
-// more than three steps of the converter's resolution).
-std::vector<std::size_t> rail_samples(const std::vector<double>& samples);
+// more than three steps of the converter's resolution); and runs of four and more within three
+// times the noise of these values, as a limited amplifier in front of a noisy converter gives them,
+// next to which the signal moves by more than six times what it does within the run.
+std::vector<std::size_t> rail_samples(const std::vector<double>& samples, double noise_rms);
 }  // namespace tapstudy::analysis

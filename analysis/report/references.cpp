@@ -52,6 +52,10 @@ constexpr std::array references{
     Reference{"Hautus 1995",
               "Hautus, M. J. (1995). Corrections for extreme proportions and their biasing effects "
               "on estimated values of d'. Behavior Research Methods 27, 46–51."},
+    Reference{"Hesterberg 2015",
+              "Hesterberg, T. C. (2015). What teachers should know about the bootstrap: Resampling "
+              "in the undergraduate statistics curriculum. The American Statistician 69, "
+              "371–386."},
     Reference{"Holm 1979",
               "Holm, S. (1979). A simple sequentially rejective multiple test procedure. "
               "Scandinavian Journal of Statistics 6, 65–70."},

@@ -1,9 +1,9 @@
 #include "analysis/similarity/scaling.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
+#include "core/algebra/lapack.hpp"
 #include "core/error.hpp"
 namespace tapstudy::analysis {
 namespace {
@@ -45,14 +45,14 @@ ScaledMap classical_scaling(const std::vector<std::vector<double>>& distances, i
       products(i, j) = -0.5 * (squares(i, j) - means(i) - means(j) + means.mean());
     }
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver{products};
-  const double all = solver.eigenvalues().cwiseAbs().sum();
+  const core::EigenPairs pairs = core::symmetric_eigenpairs(products);
+  const double all = pairs.values.cwiseAbs().sum();
   ScaledMap map;
   map.points.assign(static_cast<std::size_t>(size), {});
   for (Eigen::Index d = 0; d < dimensions; ++d) {
     const Eigen::Index place = size - 1 - d;  // they ascend
-    const double eigenvalue = solver.eigenvalues()(place);
-    const Eigen::VectorXd axis = solver.eigenvectors().col(place);
+    const double eigenvalue = pairs.values(place);
+    const Eigen::VectorXd axis = pairs.vectors.col(place);
     const double sign = axis.maxCoeff() < -axis.minCoeff() ? -1.0 : 1.0;
     const double length = sign * std::sqrt(std::max(0.0, eigenvalue));
     map.eigenvalues.push_back(eigenvalue);

@@ -44,6 +44,28 @@ Agrees same_level(const std::string& factor) {
     return level != response.factors.end() && stimulus.factors.at(factor) == level->second;
   };
 }
+
+// The factors of every stimulus whose number of different levels is wanted.
+std::vector<std::string> factors_where(const ConfusionMatrix& matrix,
+                                       const std::function<bool(std::size_t levels)>& is_wanted) {
+  std::map<std::string, std::map<std::string, std::size_t>> stimuli_at;  // factor → level → count
+  for (const Item& item : matrix.stimuli) {
+    for (const auto& [factor, level] : item.factors) {
+      ++stimuli_at[factor][level];
+    }
+  }
+  std::vector<std::string> names;
+  for (const auto& [factor, levels] : stimuli_at) {
+    std::size_t stimuli = 0;
+    for (const auto& [level, count] : levels) {
+      stimuli += count;
+    }
+    if (stimuli == matrix.stimuli.size() && is_wanted(levels.size())) {
+      names.push_back(factor);
+    }
+  }
+  return names;
+}
 }  // namespace
 
 ConfusionMatrix::ConfusionMatrix(std::vector<Item> of_stimuli, std::vector<Item> of_responses)
@@ -67,6 +89,17 @@ std::int64_t ConfusionMatrix::total() const {
     sum += row_total(i);
   }
   return sum;
+}
+
+double ConfusionMatrix::share_of_alternatives() const {
+  std::int64_t named = 0;
+  for (const std::vector<std::int64_t>& row : counts) {
+    for (std::size_t j = 0; j < responses.size(); ++j) {
+      named += responses[j].is_alternative ? row[j] : 0;
+    }
+  }
+  const std::int64_t all = total();
+  return all > 0 ? static_cast<double>(named) / static_cast<double>(all) : 1.0;
 }
 
 Proportion overall_accuracy(const ConfusionMatrix& matrix) {
@@ -95,33 +128,22 @@ double factor_chance(const ConfusionMatrix& matrix, const std::string& factor,
   double possible = 0.0;
   for (std::size_t i = 0; i < matrix.stimuli.size(); ++i) {
     for (const Item& response : matrix.responses) {
-      if (counts(matrix.stimuli[i], response)) {
+      if (response.is_alternative && counts(matrix.stimuli[i], response)) {
         const auto weight = static_cast<double>(matrix.row_total(i));
         possible += weight;
         agreeing += agrees(matrix.stimuli[i], response) ? weight : 0.0;
       }
     }
   }
-  return possible > 0.0 ? agreeing / possible : 0.0;
+  const double share = given.empty() ? matrix.share_of_alternatives() : 1.0;
+  return possible > 0.0 ? share * agreeing / possible : 0.0;
 }
 
 std::vector<std::string> factors_of(const ConfusionMatrix& matrix) {
-  std::vector<std::string> names;
-  if (matrix.stimuli.empty()) {
-    return names;
-  }
-  for (const auto& [factor, level] : matrix.stimuli.front().factors) {
-    bool is_everywhere = true;
-    bool has_levels = false;
-    for (const Item& item : matrix.stimuli) {
-      const auto found = item.factors.find(factor);
-      is_everywhere = is_everywhere && found != item.factors.end();
-      has_levels = has_levels || (is_everywhere && found->second != level);
-    }
-    if (is_everywhere && has_levels) {
-      names.push_back(factor);
-    }
-  }
-  return names;
+  return factors_where(matrix, [](std::size_t levels) { return levels > 1; });
+}
+
+std::vector<std::string> factors_of_one_level(const ConfusionMatrix& matrix) {
+  return factors_where(matrix, [](std::size_t levels) { return levels == 1; });
 }
 }  // namespace tapstudy::analysis

@@ -14,8 +14,7 @@ struct Item {
   std::map<std::string, std::string> factors{};
   std::string right{};      // of a stimulus: the response that is right, if not its own name
   std::string technique{};  // by which a stimulus was rendered; empty: not known
-  // Of a response: false where it is right for no stimulus ("unsure"), so that whoever guesses does
-  // not choose it, and it makes chance no smaller.
+  // Of a response: false where it is right for no stimulus ("unsure").
   bool is_alternative{true};
   bool is_answered_by(const std::string& response) const {
     return response == (right.empty() ? name : right);
@@ -38,7 +37,11 @@ struct ConfusionMatrix {
   std::int64_t row_total(std::size_t stimulus) const;
   std::int64_t total() const;
   std::int64_t alternatives() const { return alternatives_among(responses); }
-  double chance() const { return 1.0 / static_cast<double>(alternatives()); }
+  // Of all answers, those that name an alternative; 1 if there are none.
+  double share_of_alternatives() const;
+  // The share of right answers of somebody who guesses among the alternatives, and says as often as
+  // these participants did what is none of them.
+  double chance() const { return share_of_alternatives() / static_cast<double>(alternatives()); }
 };
 
 // Proportion of answers that are right for the presented stimulus.
@@ -48,11 +51,13 @@ Proportion factor_accuracy(const ConfusionMatrix& matrix, const std::string& fac
 // The same, only among answers that are correct in another factor.
 Proportion conditional_accuracy(const ConfusionMatrix& matrix, const std::string& factor,
                                 const std::string& given);
-// Probability that a random response agrees in the factor, given that it agrees in another (given
-// may be empty), with stimuli weighted by how often they were presented.
+// Probability that a guess as that of ConfusionMatrix::chance agrees in the factor, given that it
+// agrees in another (given may be empty), with stimuli weighted by how often they were presented.
 double factor_chance(const ConfusionMatrix& matrix, const std::string& factor,
                      const std::string& given);
 // The factors that every stimulus has a level of, and not all the same one. A response without a
 // level agrees with none.
 std::vector<std::string> factors_of(const ConfusionMatrix& matrix);
+// Those of which all stimuli have the same level.
+std::vector<std::string> factors_of_one_level(const ConfusionMatrix& matrix);
 }  // namespace tapstudy::analysis

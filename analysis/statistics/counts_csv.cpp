@@ -1,8 +1,10 @@
 #include "analysis/statistics/counts_csv.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <iterator>
 #include <span>
 
 #include "analysis/statistics/csv_rows.hpp"
@@ -88,6 +90,24 @@ std::vector<Item> responses_of(const CsvRow& header, std::size_t first,
   return responses;
 }
 
+// Otherwise a misspelt name would be a stimulus that is never recognised.
+void check_is_named(const std::vector<Item>& stimuli, const std::vector<Item>& responses,
+                    const std::vector<CsvRow>& lines, const std::string& file) {
+  std::vector<std::string> names;
+  std::ranges::transform(responses, std::back_inserter(names), &Item::name);
+  for (std::size_t i = 0; i < stimuli.size(); ++i) {
+    if (!has_name(responses, stimuli[i].name)) {
+      refuse(file, lines[i + 1].line,
+             fmt::format("no response is called '{}' (these are: {}; one that was never given is a "
+                         "column of zeros)",
+                         stimuli[i].name, fmt::join(names, ", ")));
+    }
+  }
+  if (stimuli.size() < 2) {
+    refuse(file, lines.back().line, "is the only stimulus: there is nothing to tell apart");
+  }
+}
+
 ConfusionMatrix from_matrix(const std::vector<CsvRow>& lines, const std::string& file) {
   const std::vector<std::string>& header = lines.front().cells;
   if (std::max(lines.size(), header.size()) > max_classes) {
@@ -103,6 +123,7 @@ ConfusionMatrix from_matrix(const std::vector<CsvRow>& lines, const std::string&
     }
   }
   ConfusionMatrix matrix{stimuli, responses_of(lines.front(), first, stimuli, file)};
+  check_is_named(stimuli, matrix.responses, lines, file);
   for (const CsvRow& line : std::span{lines}.subspan(1)) {
     for (std::size_t column = first; column < header.size(); ++column) {
       matrix.add(line.cells[0], header[column], count_in(line.cells[column], file, line.line));

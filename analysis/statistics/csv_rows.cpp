@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/error.hpp"
+#include "core/number_in.hpp"
 namespace tapstudy::analysis {
 namespace {
 constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
@@ -130,6 +131,13 @@ class CsvReader {
   std::size_t size_{0};
 };
 }  // namespace
+
+std::optional<double> CsvText::number(std::string cell) const {
+  if (separator != ',') {
+    std::ranges::replace(cell, ',', '.');
+  }
+  return core::number_in<double>(std::string_view{cell}.substr(cell.starts_with('+') ? 1 : 0));
+}
 
 CsvText read_csv(std::istream& text, const std::string& file) {
   return CsvReader{file}.read(text);

@@ -1,6 +1,7 @@
 #pragma once
 #include <cstddef>
 #include <istream>
+#include <optional>
 #include <string>
 #include <vector>
 namespace tapstudy::analysis {
@@ -13,6 +14,9 @@ struct CsvText {
   char separator{','};
   std::vector<std::string> comments;  // lines before the first row that start with #
   std::vector<CsvRow> rows;
+  // A cell as a number; where commas do not separate cells, one is a decimal comma. Unset if it is
+  // none.
+  std::optional<double> number(std::string cell) const;
 };
 
 inline constexpr std::size_t max_csv_bytes = 64'000'000;

@@ -14,7 +14,7 @@ lapack_int as_lapack_int(Eigen::Index size) {
   return static_cast<lapack_int>(size);
 }
 
-constexpr const char* eigenproblem = "modes: the dense eigenvalue solver";
+constexpr const char* eigenproblem = "the dense eigenvalue solver";
 
 // LAPACK: info > 0 indicates where the routine failed, info < 0 an argument that is not a number.
 void check(lapack_int info, const char* problem, const char* routine) {
@@ -48,6 +48,31 @@ EigenPairs symmetric_eigenpairs(Eigen::MatrixXd A, Eigen::MatrixXd B) {
   return pairs;
 }
 
+Eigen::VectorXcd eigenvalues(Eigen::MatrixXd A) {
+  const lapack_int n = as_lapack_int(A.rows());
+  Eigen::VectorXd real{A.rows()};
+  Eigen::VectorXd imaginary{A.rows()};
+  if (n > 0) {
+    check(LAPACKE_dgeev(LAPACK_COL_MAJOR, 'N', 'N', n, A.data(), n, real.data(), imaginary.data(),
+                        nullptr, 1, nullptr, 1),
+          eigenproblem, "dgeev");
+  }
+  Eigen::VectorXcd values{A.rows()};
+  values.real() = real;
+  values.imag() = imaginary;
+  return values;
+}
+
+Eigen::MatrixXd pseudo_inverse(Eigen::MatrixXd A) {
+  const EigenPairs pairs = symmetric_eigenpairs(std::move(A));
+  const double largest = pairs.values.size() > 0 ? pairs.values.cwiseAbs().maxCoeff() : 0.0;
+  const double negligible = static_cast<double>(pairs.values.size()) *
+                            std::numeric_limits<double>::epsilon() * largest;
+  const Eigen::VectorXd inverses =
+      pairs.values.unaryExpr([&](double value) { return value > negligible ? 1.0 / value : 0.0; });
+  return pairs.vectors * inverses.asDiagonal() * pairs.vectors.transpose();
+}
+
 LeastSquares least_squares(Eigen::MatrixXd A, Eigen::VectorXd b) {
   const lapack_int rows = as_lapack_int(A.rows());
   const lapack_int columns = as_lapack_int(A.cols());
@@ -56,7 +81,7 @@ LeastSquares least_squares(Eigen::MatrixXd A, Eigen::VectorXd b) {
   lapack_int rank = 0;
   check(LAPACKE_dgelsy(LAPACK_COL_MAJOR, rows, columns, 1, A.data(), rows, b.data(), rows,
                        pivots.data(), least_share, &rank),
-        "damping: the least-squares fit", "dgelsy");
+        "the least-squares fit", "dgelsy");
   return {b.head(columns), static_cast<int>(rank)};
 }
 }  // namespace tapstudy::core

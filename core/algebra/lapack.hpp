@@ -15,6 +15,14 @@ EigenPairs symmetric_eigenpairs(Eigen::MatrixXd A);
 // Throws ModelError also if B is not positive definite.
 EigenPairs symmetric_eigenpairs(Eigen::MatrixXd A, Eigen::MatrixXd B);
 
+// The eigenvalues of any real square matrix, in no order; complex ones in conjugate pairs.
+// Throws ModelError if the iteration does not converge or an entry is not a number.
+Eigen::VectorXcd eigenvalues(Eigen::MatrixXd A);
+
+// The Moore-Penrose inverse of a symmetric positive semidefinite matrix; only its lower triangle is
+// read. Throws ModelError as symmetric_eigenpairs does.
+Eigen::MatrixXd pseudo_inverse(Eigen::MatrixXd A);
+
 struct LeastSquares {
   Eigen::VectorXd solution;  // of least norm among those that minimise |A x - b|
   int rank{};

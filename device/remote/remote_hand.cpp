@@ -19,6 +19,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 constexpr double max_zero_force_n = 0.01;
 constexpr int attempts = 40;
+constexpr int max_released_replies = 30;  // after a silence, until the other program holds again
 constexpr std::chrono::milliseconds patience{50};  // timeout per attempt
 
 int connected_socket(std::uint16_t port) noexcept {
@@ -128,18 +129,20 @@ TickFault RemoteHand::begin() noexcept {
   held_.forget();
   exerted_.forget();
   is_holding_ = false;
+  released_replies_ = 0;
   detail_.missed_replies = 0;
   return TickFault::none;
 }
 
-// Between trials nobody asks, so that the first reply may tell of a release.
+// Between trials nobody asks, so that the first replies may report a release; not all of them.
 TickFault RemoteHand::fault_of_report() noexcept {
   const std::uint32_t status = status_.value_or(motors_on);
   if ((status & motors_on) == 0) {
     return TickFault::amplifier_off;
   }
   const bool has_released = (status & has_let_go) != 0;
-  if (has_released && is_holding_) {
+  released_replies_ = has_released ? released_replies_ + 1 : 0;
+  if (has_released && (is_holding_ || released_replies_ > max_released_replies)) {
     return TickFault::force_released;
   }
   is_holding_ = is_holding_ || !has_released;
@@ -165,17 +168,32 @@ TickFault RemoteHand::write(const core::Vec3& force_n) noexcept {
   return send(false);
 }
 
-std::optional<bool> RemoteHand::lets_go_after(std::chrono::milliseconds silence) noexcept {
-  status_.reset();
-  core::HandState ignored;
-  if (ask(ignored) != TickFault::none) {
-    return std::nullopt;
+// The first reply may still report a release in an earlier silence.
+RemoteHand::Release RemoteHand::release_after(std::chrono::milliseconds silence) noexcept {
+  const auto reported = [this]() -> std::optional<bool> {
+    status_.reset();
+    core::HandState ignored;
+    if (ask(ignored) != TickFault::none || !status_) {
+      return std::nullopt;
+    }
+    return (*status_ & has_let_go) != 0;
+  };
+  std::optional<bool> before;
+  for (int i = 0; i < max_released_replies; ++i) {
+    before = reported();
+    if (!before) {
+      return Release::not_reported;
+    }
+    if (!*before) {
+      break;
+    }
+  }
+  if (*before) {
+    return Release::always_reported;
   }
   std::this_thread::sleep_for(silence);
-  if (ask(ignored) != TickFault::none || !status_) {
-    return std::nullopt;
-  }
-  return (*status_ & has_let_go) != 0;
+  const std::optional<bool> after = reported();
+  return !after ? Release::not_reported : *after ? Release::released : Release::held;
 }
 
 // Confirmed by a reply to a request that carried zero force, and that does not tell of another; the

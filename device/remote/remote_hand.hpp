@@ -26,9 +26,14 @@ class RemoteHand final : public Device {
   StopOutcome emergency_stop() noexcept override { return zero_force(); }
   DeviceDetail detail() const noexcept override { return detail_; }
   std::string description() const override;
-  // Falls silent for so long, and asks whether the other program has let go of the force meanwhile.
-  // nullopt: its replies do not tell (version 1), or there was none.
-  std::optional<bool> lets_go_after(std::chrono::milliseconds silence) noexcept;
+  // Falls silent for so long, and asks whether the other program has released the force meanwhile.
+  enum class Release {
+    released,
+    held,
+    always_reported,  // while it is asked, too: the report says nothing
+    not_reported      // by version 1; or there was no reply
+  };
+  Release release_after(std::chrono::milliseconds silence) noexcept;
 
  private:
   core::TickFault send(bool wants_reply) noexcept;
@@ -44,7 +49,8 @@ class RemoteHand final : public Device {
   core::Vec3 force_n_{core::Vec3::Zero()};
   HeldHand held_;
   ExertedForce exerted_;
-  bool is_holding_{false};  // a reply of this trial told so
+  bool is_holding_{false};    // a reply of this trial reported so
+  int released_replies_{0};  // of this trial, in a row
   std::optional<std::uint32_t> status_;
   DeviceDetail detail_;
 };

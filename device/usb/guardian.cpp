@@ -18,6 +18,7 @@
 #include <memory>
 
 #include "device/device.hpp"
+#include "device/usb/inherited_sockets.hpp"
 namespace tapstudy::device {
 namespace {
 constexpr unsigned packet_time_out_ms = 20;
@@ -175,6 +176,7 @@ Guardian::Guardian(const UsbNode& node, GuardianSettings settings) : channel_{sh
   if (child_ == 0) {
     setsid();  // detached from Ctrl-C at the terminal
     close(ends[1]);
+    close_named_sockets();
     Watchdog{ends[0], node.descriptor(), settings, *channel_}.run();
   }
   close(ends[0]);

@@ -46,7 +46,7 @@ class StaircaseStart final : public TrackSettings {
 double read_step(MapReader& reader, const std::string& key, StepKind kind,
                  std::optional<double> otherwise) {
   const double step = reader.number(key, Range::positive(largest_value), otherwise);
-  if (kind == StepKind::factor && step <= 1.0) {
+  if (reader.has(key) && kind == StepKind::factor && step <= 1.0) {
     reader.reject(key, "is not above 1, as a factor must be to move");
   }
   return step;

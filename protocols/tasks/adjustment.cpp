@@ -73,11 +73,6 @@ void read_reference(MapReader& reader, const Protocol& protocol, const Block& bl
   }
 }
 
-bool is_vary_refused(const Protocol& protocol, const std::string& stimulus) {
-  const auto found = std::ranges::find(protocol.stimuli, stimulus, &Stimulus::name);
-  return found != protocol.stimuli.end() && found->is_vary_refused;
-}
-
 std::optional<Adjustment> read_adjustment(MapReader& reader, const Protocol& protocol,
                                           const Block& block) {
   const std::vector<std::string> axes = block.stimuli.size() == 1
@@ -89,12 +84,12 @@ std::optional<Adjustment> read_adjustment(MapReader& reader, const Protocol& pro
     for (const char* const key : {"axis", "standard", "reference"}) {
       reader.text(key, "");
     }
-    if (block.stimuli.size() != 1 || !is_vary_refused(protocol, block.stimuli.front())) {
+    if (block.stimuli.size() != 1 || !is_vary_refused(protocol, block)) {
       reader.reject("stimuli", "an adjustment moves one stimulus, which must have `vary`");
     }
     return std::nullopt;
   }
-  adjustment.axis = read_axis(reader, axes);
+  adjustment.axis = read_axis(reader, protocol, block, axes);
   if (std::ranges::find(axes, adjustment.axis) != axes.end() && !asked.empty()) {
     adjustment.values =
         presented_on_axis(reader, "settings", protocol, block, {adjustment.axis, asked});

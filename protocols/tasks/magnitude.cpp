@@ -23,7 +23,7 @@ std::optional<ValuesOnAxis> read_values(MapReader& reader, const Protocol& proto
   }
   const std::vector<std::string> axes =
       block.stimuli.empty() ? std::vector<std::string>{} : axes_of(protocol, block.stimuli.front());
-  const std::string axis = read_axis(reader, axes);
+  const std::string axis = read_axis(reader, protocol, block, axes);
   const std::vector<double> asked =
       reader.number_list("values", {-largest_magnitude_value, largest_magnitude_value});
   if (axes.empty()) {

@@ -16,7 +16,18 @@ std::vector<std::string> axes_of(const Protocol& protocol, const std::string& st
   return names;
 }
 
-std::string read_axis(MapReader& reader, const std::vector<std::string>& axes) {
+bool is_vary_refused(const Protocol& protocol, const Block& block) {
+  return std::ranges::any_of(block.stimuli, [&](const std::string& name) {
+    const auto found = std::ranges::find(protocol.stimuli, name, &Stimulus::name);
+    return found != protocol.stimuli.end() && found->is_vary_refused;
+  });
+}
+
+std::string read_axis(MapReader& reader, const Protocol& protocol, const Block& block,
+                      const std::vector<std::string>& axes) {
+  if (reader.has("axis") && is_vary_refused(protocol, block)) {
+    return reader.text("axis");
+  }
   return reader.word("axis", "axis of the stimuli", axes,
                      axes.size() == 1 ? std::optional{axes.front()} : std::nullopt);
 }

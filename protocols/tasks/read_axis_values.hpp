@@ -8,8 +8,13 @@ namespace tapstudy::protocols {
 // Names of the axes along which a stimulus varies; none of one that there is not.
 std::vector<std::string> axes_of(const Protocol& protocol, const std::string& stimulus);
 
-// The key `axis`, which may be left out where there is one. Problems go to the reader.
-std::string read_axis(MapReader& reader, const std::vector<std::string>& axes);
+// Whether something in `vary` of a stimulus of the block was rejected, which was reported there.
+bool is_vary_refused(const Protocol& protocol, const Block& block);
+
+// The key `axis`, which may be left out where there is one. Problems go to the reader, unless
+// is_vary_refused: then the axis may be the one that was rejected.
+std::string read_axis(MapReader& reader, const Protocol& protocol, const Block& block,
+                      const std::vector<std::string>& axes);
 
 // These values of every stimulus of the block as they are presented: a table has its own. Empty,
 // and rejected under this key, if they cannot be presented or are not in increasing order then;

@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/error.hpp"
 #include "protocols/axes/presented_stimulus.hpp"
+#include "protocols/tasks/read_axis_values.hpp"
 namespace tapstudy::protocols {
 namespace {
 constexpr double any = 1e15;
@@ -18,23 +20,7 @@ const Stimulus* family_of(const Protocol& protocol, const Block& block) {
   return found == protocol.stimuli.end() || found->vary.empty() ? nullptr : &*found;
 }
 
-// What is wrong with its `vary` was said where that was read.
-bool is_refused_family(const Protocol& protocol, const Block& block) {
-  return block.stimuli.size() == 1 &&
-         std::ranges::any_of(protocol.stimuli, [&](const Stimulus& one) {
-           return one.name == block.stimuli.front() && one.is_vary_refused;
-         });
-}
-
-std::vector<std::string> axes_of(const Stimulus& family) {
-  std::vector<std::string> names;
-  for (const AxisRange& range : family.vary) {
-    names.emplace_back(range.axis->name);
-  }
-  return names;
-}
-
-// Whether it can be presented; a table must hold a standard itself.
+// Whether it can be presented.
 bool check_value(MapReader& reader, const std::string& key, const Protocol& protocol,
                  const Stimulus& family, const std::string& axis, double value) {
   try {
@@ -44,6 +30,25 @@ bool check_value(MapReader& reader, const std::string& key, const Protocol& prot
     reader.reject(key, error.what());
     return false;
   }
+}
+
+// Whether the standard is presented as it is given. A table's nearest value in its place would be
+// another standard: levels, what is right, and thresholds would be those of a plate that nobody felt.
+bool check_standard(MapReader& reader, const Protocol& protocol, const Stimulus& family,
+                    const Comparison& comparison) {
+  const double standard = comparison.standard;
+  if (!check_value(reader, "standard", protocol, family, comparison.axis, standard)) {
+    return false;
+  }
+  const double presented =
+      presented_values(protocol, family, {{comparison.axis, standard}}).at(comparison.axis);
+  const bool is_built = std::abs(presented - standard) <= 1e-9 * std::abs(standard);
+  if (!is_built) {
+    reader.reject("standard", fmt::format("{:.6g} is not among the values of {} that are built "
+                                          "(the nearest is {:.6g})",
+                                          standard, comparison.axis, presented));
+  }
+  return is_built;
 }
 
 void check_further_axes(MapReader& reader, const Protocol& protocol, const Stimulus& family,
@@ -112,7 +117,7 @@ std::vector<std::string> read_further_axes(MapReader& reader, const std::vector<
 // Where the standard cannot be presented, which is said already, procedures are only read.
 void read_tracks(MapReader& reader, const Protocol& protocol, const Stimulus* usable_family,
                  Comparison& comparison) {
-  reader.list("procedures", MapReader::Presence::required, [&](MapReader& inner) {
+  reader.list("procedures", MapReader::Presence::at_least_one, [&](MapReader& inner) {
     const auto track = read_procedure(inner);
     if (track == nullptr) {
       return;
@@ -155,11 +160,9 @@ std::optional<Comparison> read_comparison(MapReader& reader, const Protocol& pro
   Comparison comparison;
   const Stimulus* const family = family_of(protocol, block);
   const std::vector<std::string> axes =
-      family == nullptr ? std::vector<std::string>{} : axes_of(*family);
-  const bool has_one_axis = axes.size() == 1;
+      family == nullptr ? std::vector<std::string>{} : axes_of(protocol, family->name);
   if (family != nullptr) {
-    comparison.axis = reader.word("axis", "axis of the stimulus", axes,
-                                  has_one_axis ? std::optional{axes.front()} : std::nullopt);
+    comparison.axis = read_axis(reader, protocol, block, axes);
     comparison.further_axes = read_further_axes(reader, axes, comparison.axis);
   }
   const bool is_known =
@@ -174,14 +177,13 @@ std::optional<Comparison> read_comparison(MapReader& reader, const Protocol& pro
   if (comparison.side == Side::either && sides == Sides::one) {
     reader.reject("comparison", "lies on one side of the standard: above or below");
   }
-  const bool is_usable = is_known && check_value(reader, "standard", protocol, *family,
-                                                 comparison.axis, comparison.standard);
+  const bool is_usable = is_known && check_standard(reader, protocol, *family, comparison);
   if (is_usable && comparison.is_fraction && comparison.standard <= 0.0) {
     reader.reject("level", "fractions are of a standard above 0");
   }
   read_tracks(reader, protocol, is_usable ? family : nullptr, comparison);
   read_function(reader, comparison);
-  if (family == nullptr && !is_refused_family(protocol, block)) {
+  if (family == nullptr && !is_vary_refused(protocol, block)) {
     reader.reject("stimuli", "procedures vary one stimulus, which must have `vary`");
   }
   return comparison.tracks.empty() ? std::nullopt : std::optional{comparison};

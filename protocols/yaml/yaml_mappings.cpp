@@ -20,13 +20,13 @@ void MapReader::read_inner(const YAML::Node& node, const std::string& path,
 }
 
 void MapReader::map(const std::string& key, Presence presence, const ReadMap& read) {
-  if (const auto node = find(key, presence == Presence::required)) {
+  if (const auto node = find(key, presence != Presence::optional)) {
     read_inner(*node, path_of(key), pattern_of(key), read);
   }
 }
 
 std::optional<YAML::Node> MapReader::find_map(const std::string& key, Presence presence) {
-  auto node = find(key, presence == Presence::required);
+  auto node = find(key, presence != Presence::optional);
   if (node && (!node->IsMap() || node->size() == 0)) {
     reject_at(*node, path_of(key), "is not a mapping with at least one name");
     return std::nullopt;
@@ -92,13 +92,16 @@ void MapReader::each_named(
 }
 
 void MapReader::list(const std::string& key, Presence presence, const ReadMap& read) {
-  const auto node = find(key, presence == Presence::required);
+  const auto node = find(key, presence != Presence::optional);
   if (!node) {
     return;
   }
   if (!node->IsSequence()) {
     reject_at(*node, path_of(key), fmt::format("{} is not a list", kind_of(*node)));
     return;
+  }
+  if (presence == Presence::at_least_one && node->size() == 0) {
+    reject_at(*node, path_of(key), "is empty (at least one)");
   }
   for (std::size_t i = 0; i < node->size(); ++i) {
     read_inner((*node)[i], fmt::format("{}[{}]", path_of(key), i), pattern_of(key) + "[]", read);

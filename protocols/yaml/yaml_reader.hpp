@@ -45,7 +45,7 @@ class MapReader {
   MapReader& operator=(const MapReader& other) = delete;
   MapReader& operator=(MapReader&& other) = delete;
 
-  enum class Presence { required, optional };
+  enum class Presence { required, at_least_one, optional };  // at_least_one: of a list
   bool has(const std::string& key);
   double number(const std::string& key, const Range& range, std::optional<double> otherwise = {});
   int integer(const std::string& key, int low, int high, std::optional<int> otherwise = {});

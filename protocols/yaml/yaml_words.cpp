@@ -5,16 +5,18 @@
 
 #include <algorithm>
 #include <cctype>
+
+#include "core/plain_text.hpp"
 namespace tapstudy::protocols {
 namespace {
 constexpr std::size_t max_echo = 60;
 }
 
 std::string printable(const std::string& text) {
-  std::string safe = text.substr(0, max_echo);
+  std::string safe = core::shortened(text, max_echo);
   std::ranges::replace_if(
       safe, [](unsigned char c) { return std::iscntrl(c) != 0; }, '?');
-  return text.size() > max_echo ? safe + "…" : safe;
+  return safe;
 }
 
 bool has_control_characters(const std::string& text) {

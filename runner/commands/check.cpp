@@ -125,8 +125,8 @@ void print_simulated(const SimulatedDesign& design, const protocols::Protocol& p
   }
   if (results.empty()) {
     fmt::print(
-        "  no block has a result that is one number: what simulated participants choose, prefer "
-        "and rate follows from the protocol's reference\n");
+        "  no simulated study had a result that is one number: no threshold could be found, or what "
+        "participants choose, prefer and rate follows from the protocol's reference alone\n");
   }
 }
 

@@ -110,6 +110,10 @@ void write_files(const ReportOptions& options, const Summary& summary) {
     add("figures/" + figure.name + ".svg", figure.svg);
     add("figures/" + figure.name + ".pdf", analysis::pdf_of_svg(figure.svg));
   }
+  if (!options.replace && fs::exists(files.front().name)) {
+    throw core::InvalidInput{files.front().name +
+                             ": exists already (--replace replaces it, --out takes another place)"};
+  }
   core::write_all_or_none(files, options.replace ? core::Existing::replaced : core::Existing::kept);
   const std::size_t figures = figure_files.size();
   for (std::size_t i = 0; i + 2 * figures < files.size(); ++i) {

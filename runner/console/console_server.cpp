@@ -16,7 +16,7 @@ namespace tapstudy::runner {
 namespace {
 constexpr int max_streams = 8;         // of each role
 constexpr const char* threads = "64";  // one for each open stream, the rest for requests
-constexpr long long max_body_bytes = 65536;
+constexpr long long max_body_bytes = 262'144;  // a form of ten texts, four bytes a character
 constexpr std::chrono::milliseconds frame{16};
 constexpr std::chrono::seconds keep_alive_interval{3};
 

@@ -63,17 +63,25 @@ class RemoteKind final : public DeviceKind {
   }
   std::string tried_release(const protocols::Rig& rig) const override {
     RemoteDevice opened{dynamic_cast<const RemoteSection&>(*rig.section)};
-    const auto lets_go = opened.hand().lets_go_after(tried_silence);
-    if (!lets_go) {
-      return "the other program does not tell, or did not reply (version 1 cannot): try it by hand";
+    using Release = device::RemoteHand::Release;
+    switch (opened.hand().release_after(tried_silence)) {
+      case Release::held:
+        throw device::DeviceError{fmt::format(
+            "remote: the other program did not release the force after {} ms without requests",
+            tried_silence.count())};
+      case Release::always_reported:
+        throw device::DeviceError{
+            "remote: the other program reports a released force in every reply: it must report it "
+            "only after a silence (device/remote/packets.hpp)"};
+      case Release::not_reported:
+        break;
+      case Release::released:
+        return fmt::format("the other program reports that it released the force after {} ms "
+                           "without requests",
+                           tried_silence.count());
     }
-    if (!*lets_go) {
-      throw device::DeviceError{fmt::format(
-          "remote: the other program did not let go of the force after {} ms of silence",
-          tried_silence.count())};
-    }
-    return fmt::format("the other program lets go of the force after {} ms of silence",
-                       tried_silence.count());
+    return "the other program does not report this, or did not reply (version 1 cannot report "
+           "it): test it manually";
   }
   std::unique_ptr<SessionDevice> open(const DeviceRequest& request) const override {
     return std::make_unique<RemoteDevice>(dynamic_cast<const RemoteSection&>(*request.rig.section));

@@ -11,6 +11,7 @@
 #include "analysis/report/table_files.hpp"
 #include "analysis/report/writers.hpp"
 #include "core/error.hpp"
+#include "core/plain_text.hpp"
 #include "results/store_error.hpp"
 #include "runner/experiments/study_summary.hpp"
 namespace tapstudy::runner {
@@ -20,8 +21,8 @@ namespace fs = std::filesystem;
 
 std::string shortened(const ordered_json& value) {
   constexpr std::size_t longest = 60;
-  const std::string text = value.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
-  return text.size() <= longest ? text : text.substr(0, longest) + "…";
+  return core::shortened(value.dump(-1, ' ', false, ordered_json::error_handler_t::replace),
+                         longest);
 }
 
 // What the first says that the second does not.

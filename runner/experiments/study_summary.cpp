@@ -268,8 +268,10 @@ Summary summary_of_study(const std::vector<StudyStore>& stores, Mode mode, Detai
     directories.push_back(each.directory);
   }
   if (all.answers.empty()) {
-    throw core::InvalidInput{fmt::format("{}: no answers of {} participants to report",
-                                         fmt::join(directories, ", "), results::to_text(mode))};
+    throw core::InvalidInput{fmt::format(
+        "{}: no answers of {} participants to report{}", fmt::join(directories, ", "),
+        results::to_text(mode),
+        all.excluded.empty() ? "" : fmt::format(" ({} excluded)", all.excluded.size()))};
   }
   analysis::StudyDesign design = design_of(protocol, mode);
   if (detail == Detail::main_results) {

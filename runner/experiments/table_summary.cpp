@@ -6,7 +6,10 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <set>
+#include <sstream>
+#include <utility>
 
 #include "analysis/answer_tables/answer_table.hpp"
 #include "analysis/answer_tables/json_rows.hpp"
@@ -23,8 +26,10 @@ NamedCsv read_file(const std::string& file) {
   if (!text) {
     throw core::InvalidInput{file + ": cannot be read"};
   }
-  return {file, analysis::is_json_list(text) ? analysis::read_json_rows(text, file)
-                                             : analysis::read_csv(text, file)};
+  std::string bytes{std::istreambuf_iterator<char>{text}, {}};
+  const bool is_json = analysis::is_json_list(bytes);
+  std::istringstream whole{std::move(bytes)};
+  return {file, is_json ? analysis::read_json_rows(whole, file) : analysis::read_csv(whole, file)};
 }
 
 std::pair<std::string, std::string> split(const std::string& text) {

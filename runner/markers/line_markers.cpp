@@ -12,6 +12,7 @@
 #include <fstream>
 
 #include "core/number_in.hpp"
+#include "core/plain_text.hpp"
 #include "device/device.hpp"
 namespace tapstudy::runner {
 namespace {
@@ -121,7 +122,7 @@ class LineMarkers final : public MarkerOutput {
 }  // namespace
 
 std::string line_of(const results::SessionEventRow& change) {
-  std::string detail = change.detail.substr(0, max_detail_bytes);
+  std::string detail = core::cut_to(change.detail, max_detail_bytes);
   std::ranges::replace_if(
       detail, [](unsigned char byte) { return byte < ' '; }, ' ');
   return fmt::format("{:.6f}\t{}\t{}\t{}\n", change.t_s, change.state, change.number.value_or(-1),

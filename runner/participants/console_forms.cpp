@@ -57,7 +57,7 @@ std::string ConsoleParticipant::answer_to(const protocols::FormItem& item) {
 }
 
 Participant::FormAnswers ConsoleParticipant::fill_in(const protocols::Form& form) {
-  if (input_.forget_typed_ahead()) {
+  if (forget_typed_ahead()) {
     ask_to_stop();
     stop_if_asked();
   }

@@ -21,13 +21,11 @@ std::optional<std::size_t> number_in(const std::string& word, std::size_t most) 
 
 std::optional<std::string> ConsoleParticipant::next_of_participant(
     const std::function<bool()>& keep_waiting) {
-  while (auto line = input_.next([&] { return keep_waiting() && !stop_was_asked(); })) {
-    if (!line->starts_with(':')) {
-      return line;
-    }
-    say("  {}\n> ", obey_(line->substr(1)));
-  }
-  return std::nullopt;
+  return commands_.next_of_participant(input_, keep_waiting);
+}
+
+bool ConsoleParticipant::forget_typed_ahead() {
+  return commands_.heed(input_.forget_typed_ahead());
 }
 
 // A script is not asked: its lines are answers.
@@ -37,7 +35,7 @@ void ConsoleParticipant::wait_for_enter(std::chrono::steady_clock::time_point la
   }
   const auto is_early = [&] { return std::chrono::steady_clock::now() < latest; };
   say("\nTo go on, press Enter. ");
-  bool has_quit = input_.forget_typed_ahead();
+  bool has_quit = forget_typed_ahead();
   while (!has_quit) {
     const auto line = next_of_participant(is_early);
     if (line ? line->empty() : !is_early()) {
@@ -85,7 +83,7 @@ void ConsoleParticipant::rest(const protocols::Breaks& breaks) {
 // Without one at the end of input, or when the session is to stop: the answer is stored all the
 // same.
 std::optional<int> ConsoleParticipant::confidence(const protocols::Confidence& scale) {
-  if (input_.forget_typed_ahead()) {
+  if (forget_typed_ahead()) {
     ask_to_stop();
     return std::nullopt;
   }
@@ -126,15 +124,21 @@ void ConsoleParticipant::timed_out(const TrialPrompt& prompt, bool is_presented_
   wait_for_enter();  // or trials would run on without anybody
 }
 
-// Only an empty line is a yes: an answer that was typed ahead is not.
+// Only an empty line is a yes: an answer that was typed ahead is not. Nothing but quit gives up what
+// was answered.
 bool ConsoleParticipant::saves_again(const std::string& cause) {
-  say("\n{}\n  The trial is not stored yet, but kept. Press Enter to try again, or type quit: ",
-      cause);
-  if (input_.forget_typed_ahead()) {
+  constexpr std::string_view how{"Press Enter to try again, or type quit: "};
+  say("\n{}\n  What was entered is not stored yet, but kept. {}", cause, how);
+  if (forget_typed_ahead()) {
     return false;
   }
-  const auto line = next_of_participant([] { return true; });
-  return line && line->empty();
+  while (const auto line = next_of_participant([] { return true; })) {
+    if (line->empty() || asks_to_quit(*line)) {
+      return line->empty();
+    }
+    say("  {}", how);
+  }
+  return false;
 }
 
 void ConsoleParticipant::saved(const TrialPrompt& prompt) {

@@ -5,6 +5,7 @@
 #include "runner/participants/participant.hpp"
 #include "runner/participants/typed_intervals.hpp"
 #include "runner/terminal/line_input.hpp"
+#include "runner/terminal/typed_commands.hpp"
 namespace tapstudy::runner {
 // A person at the terminal. Questions go to stderr, answers come from the input: an answer as
 // protocols::answer_in takes it; in trials with several alternatives, a label to feel that one and
@@ -14,10 +15,9 @@ namespace tapstudy::runner {
 class ConsoleParticipant final : public Participant {
  public:
   // move_hand is called before each trial; it starts the taps of a simulated hand if there is no
-  // device for the person to hold. obey gets the operator's command and returns what to tell.
-  using Obey = std::function<std::string(const std::string& command)>;
-  ConsoleParticipant(LineInput& input, std::function<void()> move_hand, Obey obey)
-      : input_{input}, move_hand_{std::move(move_hand)}, obey_{std::move(obey)} {}
+  // device for the person to hold.
+  ConsoleParticipant(LineInput& input, TypedCommands& commands, std::function<void()> move_hand)
+      : input_{input}, commands_{commands}, move_hand_{std::move(move_hand)} {}
   void read(const std::string& instructions) override;
   void rest(const protocols::Breaks& breaks) override;
   bool fills_in_forms() const override { return true; }
@@ -40,6 +40,8 @@ class ConsoleParticipant final : public Participant {
   std::string answer_to(const protocols::FormItem& item);
   // The participant's next line; the operator's are obeyed.
   std::optional<std::string> next_of_participant(const std::function<bool()>& keep_waiting);
+  // The participant's type-ahead is dropped, the operator's obeyed; whether quit was typed.
+  bool forget_typed_ahead();
   // A script cannot be asked to tap first: its next line waits until the plate was touched.
   void let_script_wait(const TrialPrompt& prompt, std::size_t alternative,
                        Exploration& exploration) const;
@@ -56,8 +58,8 @@ class ConsoleParticipant final : public Participant {
                                                        Exploration& exploration);
 
   LineInput& input_;
+  TypedCommands& commands_;
   std::function<void()> move_hand_;
-  Obey obey_;
   std::optional<TypedIntervals> intervals_;  // of the trial
 };
 }  // namespace tapstudy::runner

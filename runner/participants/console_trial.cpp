@@ -23,7 +23,7 @@ std::optional<std::size_t> index_of(const std::string& label,
 
 void ConsoleParticipant::get_ready(const TrialPrompt& prompt) {
   move_hand_();
-  if (input_.forget_typed_ahead()) {
+  if (forget_typed_ahead()) {
     ask_to_stop();
   }
   say("\nTrial {} of {}{}. {}\n", prompt.number, prompt.total,

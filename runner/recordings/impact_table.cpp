@@ -21,7 +21,7 @@ class ImpactTable {
     if (!text) {
       throw core::InvalidInput{file + ": cannot be read"};
     }
-    rows_ = analysis::read_csv(text, file).rows;
+    text_ = analysis::read_csv(text, file);
   }
 
   // of_number: whether a number can be one of this column's; what: how it is called.
@@ -30,12 +30,12 @@ class ImpactTable {
                              const std::string& what) const {
     const std::size_t place = place_of(name);
     std::vector<double> values;
-    for (std::size_t i = 1; i < rows_.size(); ++i) {
-      const auto& cells = rows_[i].cells;
+    for (std::size_t i = 1; i < text_.rows.size(); ++i) {
+      const auto& cells = text_.rows[i].cells;
       const auto value =
-          place < cells.size() ? core::number_in<double>(cells[place]) : std::nullopt;
+          place < cells.size() ? text_.number(cells[place]) : std::nullopt;
       if (!value || !of_number(*value)) {
-        throw core::InvalidInput{fmt::format("{}:{}: '{}' is not {}", file_, rows_[i].line,
+        throw core::InvalidInput{fmt::format("{}:{}: '{}' is not {}", file_, text_.rows[i].line,
                                              place < cells.size() ? cells[place] : "", what)};
       }
       values.push_back(*value);
@@ -45,8 +45,8 @@ class ImpactTable {
 
  private:
   std::size_t place_of(const std::string& name) const {
-    if (!rows_.empty()) {
-      const auto& header = rows_.front().cells;
+    if (!text_.rows.empty()) {
+      const auto& header = text_.rows.front().cells;
       const auto found = std::ranges::find(header, name);
       if (found != header.end()) {
         return static_cast<std::size_t>(found - header.begin());
@@ -56,7 +56,7 @@ class ImpactTable {
   }
 
   std::string file_;
-  std::vector<analysis::CsvRow> rows_;
+  analysis::CsvText text_;
 };
 }  // namespace
 

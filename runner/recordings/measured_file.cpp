@@ -44,9 +44,9 @@ MeasuredFile read_measured_file(const std::string& file, const TapQuestion& ques
 }
 
 namespace {
-std::vector<std::size_t> strikes_in(const analysis::Recording& force) {
+std::vector<analysis::Impact> strikes_in(const analysis::Recording& force) {
   try {
-    return analysis::impact_onsets(force);
+    return analysis::force_impacts(force);
   } catch (const core::InvalidInput& error) {
     throw core::InvalidInput{fmt::format("{} (the force, {})", error.what(), force.channel)};
   }
@@ -129,7 +129,7 @@ ImpactForce impact_force(const analysis::Recording& force, const analysis::Tap& 
                                          force.file, force.channel,
                                          static_cast<double>(tap.onset) / force.rate_hz)};
   }
-  const std::vector<std::size_t> rails = analysis::rail_samples(force.samples);
+  const std::vector<std::size_t> rails = analysis::rail_samples(force.samples, analysis::noise_rms(force));
   return {std::abs(sum_n) / force.rate_hz, moment / sum_n / force.rate_hz,
           std::ranges::any_of(rails,
                               [&](std::size_t i) { return pulse.first <= i && i < pulse.last; })};

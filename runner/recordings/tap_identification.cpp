@@ -9,6 +9,7 @@
 #include "analysis/modal_identification/tapped_shapes.hpp"
 #include "core/error.hpp"
 #include "protocols/read_protocol.hpp"
+#include "runner/recordings/fit_remarks.hpp"
 #include "runner/recordings/impact_table.hpp"
 #include "runner/recordings/measured_file.hpp"
 #include "runner/recordings/sinusoid_law.hpp"
@@ -129,6 +130,7 @@ class Identifier {
                                             recording.file, one.time_s, error.what()));
       return false;
     }
+    one.noise_rms = analysis::noise_rms(recording);
     const Band wide{result_.band.low_hz,
                     std::max(result_.band.high_hz,
                              std::min(default_high_hz, usable_rate_share * recording.rate_hz))};
@@ -225,6 +227,7 @@ class Identifier {
         tap.modes = analysis::identify_modes(tap.decay, finding);
       }
     }
+    add_remarks(remarks_on_residuals(result_.taps));
     std::vector<int> impacts;
     std::ranges::transform(result_.taps, std::back_inserter(impacts), &IdentifiedTap::impact);
     result_.modes = analysis::modes_over_taps(modes_of_taps(), impacts);
@@ -255,6 +258,10 @@ class Identifier {
     }
   }
 
+  void add_remarks(const std::vector<std::string>& remarks) {
+    result_.remarks.insert(result_.remarks.end(), remarks.begin(), remarks.end());
+  }
+
   ModelComparison compared_with_model() {
     MeasuredModes measured{{}, measured_shapes()};
     for (const std::size_t i : result_.agreed) {
@@ -267,23 +274,9 @@ class Identifier {
           "how stiff the springs are cannot be told from these modes: the protocol's were kept");
     }
     if (model.update) {
-      remark_on_shapes(*model.update);
+      add_remarks(remarks_on_shapes(*model.update, result_));
     }
     return model;
-  }
-
-  // They are matched by frequency, too.
-  void remark_on_shapes(const analysis::ModelUpdate& update) {
-    constexpr double least_assurance = 0.5;
-    for (const analysis::MatchedMode& one : update.matched) {
-      if (one.assurance && *one.assurance < least_assurance) {
-        result_.remarks.push_back(fmt::format(
-            "the mode at {:.6g} Hz does not have the shape of the model's (MAC {:.2g}): are "
-            "places, "
-            "force or speeds right?",
-            result_.modes[result_.agreed[one.measured]].frequency_hz.value, *one.assurance));
-      }
-    }
   }
 
   TapIdentification result_;

@@ -40,6 +40,7 @@ struct IdentifiedTap {
   analysis::Tap tap;
   int impact{};               // over all recordings, from 1; the same in all channels
   double time_s{};            // of the impact
+  double noise_rms{};         // of the recording
   analysis::FreeDecay decay;  // in the recording's unit, about its mean
   analysis::FreeDecay whole;  // from the impact on
   analysis::TapModes modes;

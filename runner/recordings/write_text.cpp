@@ -47,8 +47,9 @@ void print_rayleigh(const analysis::RayleighFit& fit) {
              fit.alpha_per_s.value, interval(fit.alpha_per_s), fit.beta_s.value,
              interval(fit.beta_s));
   if (fit.p) {
-    fmt::print("  chi-squared {:.3g} of {:g} degrees of freedom, p {:.2g}; ", fit.chi_squared,
-               fit.degrees_of_freedom, *fit.p);
+    fmt::print("  chi-squared {:.3g} of {:g} degrees of freedom, p {:.2g}{}; ", fit.chi_squared,
+               fit.degrees_of_freedom, *fit.p,
+               fit.p_is_of_f ? " (by F: the ratios' errors are of few taps)" : "");
   } else {
     fmt::print("  two modes cannot say whether it fits; ");
   }

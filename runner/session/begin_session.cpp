@@ -78,9 +78,10 @@ BegunSession begin_session(const SessionRequest& request, const protocols::Proto
   // sessions begun at the same time must not get the same index
   store.in_one_transaction([&] {
     const auto earlier = earlier_session(request, store);
-    if (earlier && request.order_index) {
+    if (earlier && (request.order_index || request.seed)) {
       throw core::InvalidInput{
-          "--row: the order of a participant who resumes is the one begun with"};
+          fmt::format("--{}: cannot be combined with --resume, which keeps the stored order",
+                      request.order_index ? "row" : "seed")};
     }
     const auto place = store.place_of(plan.participant_id, plan.mode, [&](const std::string& id) {
       return is_in_session(store.directory(), id);

@@ -72,7 +72,10 @@ LiveOutcome run_live_session(const LiveSession& live) {
   if (live.rig.has_hardware) {
     inhibitor.emplace();
   }
-  AskOperator ask_operator = [&](const std::string& task) { return asked_and_done(input, task); };
+  TypedCommands commands;
+  AskOperator ask_operator = [&](const std::string& task) {
+    return asked_and_done(input, commands, task);
+  };
   const DeviceRequest device_request{live.protocol, live.rig,
                                      [&](const std::string& task) { return ask_operator(task); }};
   std::unique_ptr<SessionDevice> device = kind_of(live.rig).open(device_request);
@@ -87,7 +90,7 @@ LiveOutcome run_live_session(const LiveSession& live) {
   say_what_was_found(session);
   device->begin_session(session.row.seed);
   const auto masking = masking_player(std::move(card), live.protocol, live.rig, session.row.seed);
-  LiveTrials{{live, settings, models, device_request, input, ask_operator, masking.get(), markers,
+  LiveTrials{{live, settings, models, device_request, input, commands, ask_operator, masking.get(), markers,
               store, session},
              std::move(device)}
       .run();

@@ -12,6 +12,7 @@
 #include "runner/console/operator_terminal.hpp"
 #include "runner/devices/masking_noise.hpp"
 #include "runner/devices/reconnect.hpp"
+#include "runner/terminal/operator_prompt.hpp"
 #include "runner/terminal/say.hpp"
 namespace tapstudy::runner {
 namespace {
@@ -23,13 +24,23 @@ void introduce(const Console& console) {
   say("here: {}, status, watch, quit\n", fmt::join(names, ", "));
 }
 
-// At once, so that the trial's supervisor does not wait for the disk.
-std::string obeyed(OperatorDesk& desk, const std::string& command) {
-  try {
-    return desk.post(parse_operator_command(command)).said;
-  } catch (const core::InvalidInput& error) {
-    return error.what();
-  }
+TypedCommands commands_to(OperatorDesk& desk) {
+  return TypedCommands{[&desk](const std::string& command) -> TypedCommands::Posted {
+    OperatorDesk::Posted posted = desk.post(parse_operator_command(command));
+    return {std::move(posted.said), std::move(posted.stored)};
+  }};
+}
+
+// The participant may still be at the screen, and must not read which plate comes; nor may the
+// participant's Enter, pressed twice, say that it was mounted.
+bool is_mounted(const LiveTrials::Parts& parts, const std::string& task) {
+  const bool is_operator_there =
+      asked_and_done(parts.input, parts.commands, "\nPlease call the operator. Operator:", "ready");
+  clear_screen();
+  const bool is_done =
+      is_operator_there && asked_and_done(parts.input, parts.commands, task + " Then", "mounted");
+  clear_screen();
+  return is_done;
 }
 
 bool is_excluded(const LiveTrials::Parts& parts) {
@@ -51,6 +62,23 @@ std::optional<MaskingInView> masking_in_view(const LiveTrials::Parts& parts) {
   }
   return view;
 }
+
+// No command is possible once the desk is gone, and each that was given has its outcome said.
+class CommandsEnd {
+ public:
+  explicit CommandsEnd(TypedCommands& commands) : commands_{commands} {}
+  ~CommandsEnd() {
+    commands_.finish();
+    commands_ = TypedCommands{};
+  }
+  CommandsEnd(const CommandsEnd&) = delete;
+  CommandsEnd& operator=(const CommandsEnd&) = delete;
+  CommandsEnd(CommandsEnd&&) = delete;
+  CommandsEnd& operator=(CommandsEnd&&) = delete;
+
+ private:
+  TypedCommands& commands_;
+};
 
 std::unique_ptr<Console> console_of(const LiveTrials::Parts& parts, OperatorDesk& desk,
                                     std::function<void()> move_hand) {
@@ -102,8 +130,7 @@ LiveTrials::LiveTrials(const Parts& parts, std::unique_ptr<SessionDevice> device
             recorder_},
       tap_markers_{parts.session.row.id,
                    [this](const results::SessionEventRow& marker) { parts_.markers.send(marker); }},
-      at_terminal_{parts.input, [this] { device_->get_ready(); },
-                   [this](const std::string& command) { return obeyed(desk_, command); }},
+      at_terminal_{parts.input, parts.commands, [this] { device_->get_ready(); }},
       console_{console_of(parts, desk_, [this] { device_->get_ready(); })},
       states_{parts.session.row.id, [this] { return now_s(); },
               [this](const results::SessionEventRow& change) {
@@ -112,15 +139,14 @@ LiveTrials::LiveTrials(const Parts& parts, std::unique_ptr<SessionDevice> device
                 if (console_) {
                   console_->note_state(change);
                 }
+                if (change.state == name(SessionState::exploring)) {
+                  store_presentation();
+                }
               }},
       masked_idle_loop_{masked(idle_loop_, parts, masking_marker())},
       real_plates_{parts.live.protocol,
                    [this](const std::string& task) {
-                     const bool is_done = parts_.ask_operator(task);
-                     if (is_done && !console_) {
-                       clear_screen();  // the participant reads it next
-                     }
-                     return is_done;
+                     return console_ ? parts_.ask_operator(task) : is_mounted(parts_, task);
                    },
                    loop_of(idle_loop_, masked_idle_loop_)},
       engine_{{parts.live.protocol, parts.models, loop_of(live_loop_, masked_loop_), real_plates_,
@@ -132,6 +158,7 @@ LiveTrials::LiveTrials(const Parts& parts, std::unique_ptr<SessionDevice> device
                }},
               recorder_,
               parts.session.earlier} {
+  parts_.commands = commands_to(desk_);
   live_loop_.watch([this](const core::TraceSample& sample, Clock::time_point at) {
     if (console_) {
       console_->watch(sample);
@@ -146,6 +173,12 @@ std::function<void(std::string_view, const std::string&)> LiveTrials::masking_ma
   };
 }
 
+// Otherwise a presentation would leave no trace if the program were killed in it. The trial does not
+// wait for the disk; if it is full, storing the trial will say so.
+void LiveTrials::store_presentation() {
+  recorder_.note(states_.take_events());
+}
+
 double LiveTrials::now_s() const {
   return std::chrono::duration<double>(Clock::now() - begun_).count();
 }
@@ -155,6 +188,7 @@ void LiveTrials::run() {
   if (console_) {
     terminal.emplace(parts_.input, desk_, console_->api());
   }
+  const CommandsEnd commands_end{parts_.commands};
   while (const auto interruption = engine_.run(parts_.session.schedule, parts_.session.done)) {
     device_ = reconnect(to_text(*interruption), parts_.device_request, std::move(device_));
     device_->begin_session(parts_.session.row.seed);

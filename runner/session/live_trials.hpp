@@ -32,6 +32,7 @@ class LiveTrials {
     ModelLibrary& models;
     const DeviceRequest& device_request;
     LineInput& input;              // of the terminal
+    TypedCommands& commands;       // typed there; possible from now on
     AskOperator& ask_operator;     // of device_request: changed where there are pages
     device::AudioPlayer* masking;  // nullptr: no noise
     Markers& markers;
@@ -45,6 +46,7 @@ class LiveTrials {
  private:
   using Clock = std::chrono::steady_clock;
   double now_s() const;  // from the session's begin
+  void store_presentation();
   std::function<void(std::string_view state, const std::string& detail)> masking_marker();
 
   Parts parts_;

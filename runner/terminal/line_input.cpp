@@ -24,6 +24,10 @@ bool asks_to_quit(const std::string& line) {
   return word == "quit";
 }
 
+bool is_of_operator(const std::string& line) {
+  return line.starts_with(':');
+}
+
 // The line that is too long is dropped whole: its tail would be taken for an answer.
 std::optional<std::string> LineInput::take_line() {
   const auto end = received_.find('\n');
@@ -49,20 +53,42 @@ bool LineInput::is_terminal() const {
   return isatty(descriptor_) != 0;
 }
 
-// What was typed ahead answers a question that nobody had seen; only a wish to stop is heeded.
-bool LineInput::forget_typed_ahead() {
-  if (!is_terminal()) {
-    return false;
+// A terminal hands over whole lines only, except while it is not in canonical mode.
+void LineInput::receive_unfinished_line() {
+  termios by_line{};
+  if (tcgetattr(descriptor_, &by_line) != 0) {
+    return;
   }
-  bool has_quit = false;
+  termios by_character = by_line;
+  by_character.c_lflag &= ~static_cast<tcflag_t>(ICANON);
+  by_character.c_cc[VMIN] = 0;
+  by_character.c_cc[VTIME] = 0;
+  tcsetattr(descriptor_, TCSANOW, &by_character);
   while (receive(0)) {
   }
-  while (const auto line = take_line()) {
-    has_quit = has_quit || asks_to_quit(*line);
+  tcsetattr(descriptor_, TCSANOW, &by_line);
+}
+
+// An answer that was typed ahead is to a question that nobody had seen. Half a line of the
+// operator's must not be dropped: its other half would be taken for an answer.
+TypedAhead LineInput::forget_typed_ahead() {
+  TypedAhead typed;
+  if (!is_terminal()) {
+    return typed;
   }
-  tcflush(descriptor_, TCIFLUSH);
-  received_.clear();
-  return has_quit;
+  while (receive(0)) {
+  }
+  receive_unfinished_line();
+  while (auto line = take_line()) {
+    typed.has_quit = typed.has_quit || asks_to_quit(*line);
+    if (is_of_operator(*line)) {
+      typed.of_operator.push_back(std::move(*line));
+    }
+  }
+  if (!is_of_operator(received_)) {
+    received_.clear();
+  }
+  return typed;
 }
 
 // Whether anything arrived within this time.

@@ -18,7 +18,7 @@ std::string OperatorAtTerminal::next_line(const std::function<void()>& keep_wait
 }
 
 void OperatorAtTerminal::please(const std::string& task) {
-  if (!asked_and_done(input_, task + ", then")) {
+  if (!asked_and_done(input_, commands_, task + ", then")) {
     throw Stopped{"stopped; nothing was written"};
   }
 }

@@ -3,6 +3,7 @@
 
 #include "device/spidar/calibration_operator.hpp"
 #include "runner/terminal/line_input.hpp"
+#include "runner/terminal/typed_commands.hpp"
 namespace tapstudy::runner {
 // The operator at the terminal: tasks go to stderr, measured values come from the input.
 // Throws Stopped at end of input or when the operator asks to stop.
@@ -17,5 +18,6 @@ class OperatorAtTerminal final : public device::CalibrationOperator {
  private:
   std::string next_line(const std::function<void()>& keep_waiting);
   LineInput& input_;
+  TypedCommands commands_;  // none: no session is running
 };
 }  // namespace tapstudy::runner

@@ -36,22 +36,35 @@ function rangeProblem(item, value) {
   return word("between", { min, max });
 }
 
+const isDecimal = (text) => /^[+-]?(\d+\.?\d*|\.\d+)$/.test(text);
+
+// A field of type number drops a decimal comma where the browser speaks a language with points: 2,5
+// would be 25.
 function number(item, id) {
-  const input = el("input", { type: "number", id, step: "any", inputMode: "decimal", min: item.min, max: item.max });
-  const value = () => (input.value === "" ? null : Number(input.value));
+  const input = el("input", { type: "text", id, className: "number", inputMode: "decimal", autocomplete: "off" });
+  const typed = () => input.value.trim().replace(",", ".");
   return {
     body: input,
-    value,
+    value: () => (isDecimal(typed()) ? Number(typed()) : null),
     problem: () => {
-      if (input.validity.badInput) return word("not_a_number");
-      return value() === null ? null : rangeProblem(item, value());
+      if (typed() === "") return null;
+      return isDecimal(typed()) ? rangeProblem(item, Number(typed())) : word("not_a_number");
     },
   };
 }
 
+// As protocols/form.cpp takes it.
+const maxCharacters = 5000;
+const controlCharacters = /[\u0000-\u0008\u000b\u000c\u000e-\u001f\u007f-\u009f]/g;
+
 function text(item, id) {
   const input = el("textarea", { id, rows: 3 });
-  return { body: input, value: () => (input.value.trim() === "" ? null : input.value) };
+  const typed = () => input.value.replace(controlCharacters, "");
+  return {
+    body: input,
+    value: () => (typed().trim() === "" ? null : typed()),
+    problem: () => ([...typed()].length > maxCharacters ? word("too_long", { max: maxCharacters }) : null),
+  };
 }
 
 const makers = { likert, scale, number, single_choice: singleChoice, text };

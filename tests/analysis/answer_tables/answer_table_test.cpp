@@ -64,7 +64,7 @@ TEST_CASE("PsychoPy's, jsPsych's and a plain table of the same answers read the 
   CHECK(lines_of(answers_in(data("psychopy.csv"), psychopy)) == expected);
   CHECK(lines_of(answers_in(data("jspsych.csv"), jspsych)) == expected);
   std::istringstream json{data("jspsych.json")};
-  REQUIRE(is_json_list(json));
+  REQUIRE(is_json_list(json.str()));
   CHECK(lines_of(read_answers({{"jspsych.json", read_json_rows(json, "jspsych.json")}}, jspsych)) ==
         expected);
 }

@@ -59,6 +59,8 @@ TEST_CASE("a table is the same recording whatever its separator, header and unit
       GENERATE(read(table("time,acc,other", ',', 1.0, false), {0.0, "acc"}),
                read(table("Time (ms);acc;other", ';', 1e3, true), {0.0, "acc"}),
                read(table("t_us\tacc\tother", '\t', 1e6, false), {2000.0, "acc"}),
+               read(table("Time (\u00b5s),acc,other", ',', 1e6, false), {2000.0, "acc"}),
+               read(table("time [\u03bcs],acc,other", ',', 1e6, false), {2000.0, "acc"}),
                read(table("# a comment\n# another", ',', 1.0, false), {0.0, "2"}),
                read(table("index,acc,other", ',', 1.0, false), {2000.0, "acc"}));
   CHECK(recording.rate_hz == Approx(2000.0));
@@ -141,6 +143,40 @@ TEST_CASE("a tap in the ring of another is cut off from it, and that is said",
   CHECK_THAT(found.remarks.front(), Contains("0.300 s is cut at the next one"));
 }
 
+TEST_CASE("a second blow is found while the first still rings", "[analysis][recordings]") {
+  const double gap_s = GENERATE(0.045, 0.07);
+  const Recording recording = testing::planted_recording(
+      plate, {0.3, 0.3 + gap_s, 1.1, 1.1 + gap_s}, 8192.0, 2.5, 0.001, 3);
+  CAPTURE(gap_s);
+  CHECK(find_taps(recording, {}).impacts == 4);
+}
+
+TEST_CASE("what strikes twice within 30 ms is one impact, whose decay begins after the last blow",
+          "[analysis][recordings]") {
+  const double rate_hz = 8192.0;
+  const double second_s = GENERATE(0.012, 0.025, 0.04);
+  const std::vector<double> blows_s{0.3, 0.3 + second_s, 1.1};
+  Recording force = testing::planted_recording({}, {}, rate_hz, 2.5, 0.01, 5);
+  for (const double blow_s : blows_s) {
+    for (double t_s = 0.0; t_s < 0.001; t_s += 1.0 / rate_hz) {
+      force.samples[static_cast<std::size_t>(std::lround((blow_s + t_s) * rate_hz))] +=
+          10.0 * std::sin(std::numbers::pi * t_s / 0.001);
+    }
+  }
+  const std::vector<Impact> impacts = force_impacts(force);
+  CAPTURE(second_s);
+  REQUIRE(impacts.size() == (second_s < 0.03 ? 2U : 3U));
+  CHECK(static_cast<double>(impacts.front().onset) / rate_hz == Approx(0.3).margin(5e-4));
+  if (second_s < 0.03) {
+    CHECK(static_cast<double>(impacts.front().last_blow) / rate_hz ==
+          Approx(0.3 + second_s).margin(5e-4));
+    const FoundTaps found = taps_at(
+        impacts, testing::planted_recording(plate, blows_s, rate_hz, 2.5, 0.001, 6), {});
+    CHECK(found.taps.front().begin > impacts.front().last_blow);
+    CHECK_THAT(found.remarks.front(), Contains("struck again"));
+  }
+}
+
 TEST_CASE("modes that beat, and slow ones, ring on after their impacts and are no new ones",
           "[analysis][recordings]") {
   using Modes = std::vector<testing::PlantedMode>;
@@ -171,17 +207,40 @@ TEST_CASE("noise and hum hold no tap, in words", "[analysis][recordings]") {
 
 TEST_CASE("a decay begins after the last sample at the sensor's limit", "[analysis][recordings]") {
   Recording recording = testing::planted_recording(plate, {0.5}, 4000.0, 2.0, 0.001, 4);
-  CHECK(rail_samples(recording.samples).empty());
+  CHECK(rail_samples(recording.samples, 0.0).empty());
   for (double& sample : recording.samples) {
     sample = std::clamp(sample, -0.5, 0.5);
   }
-  const auto rails = rail_samples(recording.samples);
+  const auto rails = rail_samples(recording.samples, 0.0);
   REQUIRE_FALSE(rails.empty());
   const FoundTaps found = find_taps(recording, {});
   REQUIRE(found.taps.size() == 1);
   CHECK(found.taps.front().begin > rails.back());
   REQUIRE(found.remarks.size() == 1);
   CHECK_THAT(found.remarks.front(), Contains("is clipped"));
+}
+
+TEST_CASE("an amplifier's limit is found through the noise of the converter after it",
+          "[analysis][recordings]") {
+  Recording recording = testing::planted_recording(plate, {0.5}, 8000.0, 2.0, 0.0, 4);
+  core::Rng rng{8};
+  const double noise = 1e-4;
+  CHECK(rail_samples(recording.samples, noise).empty());
+  for (double& sample : recording.samples) {
+    sample = std::clamp(sample, -0.5, 0.5) + noise * rng.normal();
+  }
+  CHECK_FALSE(rail_samples(recording.samples, noise).empty());
+  CHECK(rail_samples(recording.samples, 0.0).empty());  // not two samples are equal
+}
+
+TEST_CASE("a recording of less than ten frames is too short, at any rate",
+          "[analysis][recordings]") {
+  for (const double rate_hz : {48'000.0, 1e6}) {
+    for (const std::size_t samples : {64U, 95U, 900U}) {
+      const Recording recording{"short.csv", "", rate_hz, std::vector<double>(samples, 1.0), {}};
+      CHECK_THROWS_WITH(find_taps(recording, {}), Contains("short.csv: has"));
+    }
+  }
 }
 
 TEST_CASE("a smooth crest that the converter's steps flatten is not clipped",
@@ -192,5 +251,5 @@ TEST_CASE("a smooth crest that the converter's steps flatten is not clipped",
   }
   const double crest = *std::ranges::max_element(samples);
   CHECK(std::ranges::count(samples, crest) > 3);
-  CHECK(rail_samples(samples).empty());
+  CHECK(rail_samples(samples, 0.0).empty());
 }

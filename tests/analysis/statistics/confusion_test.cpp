@@ -73,7 +73,29 @@ TEST_CASE("an answer that names no stimulus counts as an answer", "[analysis][co
       matrix_from("stimulus,factor:material,a,b,unsure\na,wood,11,3,6\nb,metal,2,5,13\n");
   CHECK(is(overall_accuracy(matrix), 16, 40));
   CHECK(is(factor_accuracy(matrix, "material"), 16, 40));
-  CHECK(matrix.chance() == Approx(1.0 / 2.0).epsilon(1e-9));
+}
+
+TEST_CASE("chance is what guessing gives to those who say as often that they do not know",
+          "[analysis][confusion]") {
+  // 19 of 40 answers are "unsure": of the 21 others a guess is right half of the time
+  const ConfusionMatrix matrix =
+      matrix_from("stimulus,factor:material,a,b,unsure\na,wood,11,3,6\nb,metal,2,5,13\n");
+  CHECK(matrix.chance() == Approx(21.0 / 40.0 / 2.0).epsilon(1e-9));
+  CHECK(factor_chance(matrix, "material", "") == Approx(matrix.chance()).epsilon(1e-9));
+  const Summary summary = summarise(matrix, "a table", "tell_apart", "");
+  std::ostringstream html;
+  write_html(html, summary);
+  CHECK_THAT(html.str(), Contains("the choice was not forced"));
+}
+
+TEST_CASE("a factor of one level is left out with a word", "[analysis][confusion]") {
+  const ConfusionMatrix matrix =
+      matrix_from("stimulus,factor:m,factor:n,a,b\na,x,u,5,3\nb,x,v,2,6\n");
+  CHECK(factors_of(matrix) == std::vector<std::string>{"n"});
+  CHECK(factors_of_one_level(matrix) == std::vector<std::string>{"m"});
+  std::ostringstream html;
+  write_html(html, summarise(matrix, "a table", "tell_apart", ""));
+  CHECK_THAT(html.str(), Contains("Factor m is left out"));
 }
 
 TEST_CASE("a column is a factor only if its header says so", "[analysis][confusion]") {
@@ -167,6 +189,9 @@ TEST_CASE("a table that is no confusion matrix is refused at its line", "[analys
   CHECK_THAT(refusal("stimulus,factor:material\na,wood\nb,metal\n"), Contains("fewer than two"));
   CHECK_THAT(refusal("stimulus,a,a,b\na,1,2,3\nb,1,2,3\n"), Contains("'a' is there twice"));
   CHECK_THAT(refusal("stimulus,a,b\na,2147483647,1\nb,1,2\n"), Contains("is not a count"));
+  CHECK_THAT(refusal("stimulus,mdf_tree,b\nmdf_three,3,1\nb,1,2\n"),
+             Contains("counts.csv:2: no response is called 'mdf_three'") && Contains("mdf_tree"));
+  CHECK_THAT(refusal("stimulus,a,b\na,3,1\n"), Contains("counts.csv:2: is the only stimulus"));
 }
 
 TEST_CASE("reports of an empty row or an unanswered block say so", "[analysis][report]") {

@@ -166,7 +166,8 @@ TEST_CASE("the example bridge lets go of the force when nobody asks", "[device][
   const std::uint16_t port = free_port();
   const ExampleBridge bridge{port};
   device::RemoteHand hand{port, std::chrono::milliseconds{100}};
-  CHECK(hand.lets_go_after(std::chrono::milliseconds{150}) == true);
+  CHECK(hand.release_after(std::chrono::milliseconds{150}) ==
+        device::RemoteHand::Release::released);
 }
 
 TEST_CASE("a remote stop is confirmed by a reply, or it is not a stop",

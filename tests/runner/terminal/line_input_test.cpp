@@ -7,6 +7,7 @@
 #include <array>
 #include <catch2/catch.hpp>
 #include <string>
+#include <vector>
 
 #include "runner/terminal/no_flow_control.hpp"
 using namespace tapstudy;
@@ -42,7 +43,7 @@ TEST_CASE("what was typed at a terminal before the question does not answer it",
   runner::LineInput input{terminal.program};
   type(terminal.keyboard, "1\n2\n3\n");
   REQUIRE(line_of(input) == "1");
-  CHECK_FALSE(input.forget_typed_ahead());
+  CHECK_FALSE(input.forget_typed_ahead().has_quit);
   CHECK(line_of(input) == "nothing");
   type(terminal.keyboard, "4\n");
   CHECK(line_of(input) == "4");
@@ -52,15 +53,40 @@ TEST_CASE("quit typed ahead is heeded, whatever else was", "[runner][terminal]")
   const Terminal terminal;
   runner::LineInput input{terminal.program};
   type(terminal.keyboard, "1\n Quit \n3");
-  CHECK(input.forget_typed_ahead());
-  CHECK_FALSE(input.forget_typed_ahead());
+  CHECK(input.forget_typed_ahead().has_quit);
+  CHECK_FALSE(input.forget_typed_ahead().has_quit);
+}
+
+TEST_CASE("the operator's lines are not dropped with what was typed ahead", "[runner][terminal]") {
+  const Terminal terminal;
+  runner::LineInput input{terminal.program};
+  type(terminal.keyboard, "1\n:pause\n2\n:note she coughed\n");
+  CHECK(input.forget_typed_ahead().of_operator ==
+        std::vector<std::string>{":pause", ":note she coughed"});
+  CHECK(line_of(input) == "nothing");
+}
+
+TEST_CASE("half a line of the operator's is kept until its end comes, half an answer is not",
+          "[runner][terminal]") {
+  const Terminal terminal;
+  runner::LineInput input{terminal.program};
+  type(terminal.keyboard, ":correct @1 ");
+  CHECK(input.forget_typed_ahead().of_operator.empty());
+  type(terminal.keyboard, "2\n");
+  CHECK(line_of(input) == ":correct @1 2");
+  type(terminal.keyboard, "1");
+  CHECK(input.forget_typed_ahead().of_operator.empty());
+  type(terminal.keyboard, "\n");
+  CHECK(line_of(input).empty());
 }
 
 TEST_CASE("a line that is too long is no answer, nor is its tail", "[runner][terminal]") {
   std::array<int, 2> ends{};
   REQUIRE(pipe(ends.data()) == 0);
   runner::LineInput input{ends[0]};
-  type(ends[1], std::string(9000, 'x') + "\n2\n");
+  std::string text(9000, 'x');
+  text += "\n2\n";
+  type(ends[1], text);
   close(ends[1]);
   const auto next = [&] { return input.next([] { return true; }).value_or("nothing"); };
   CHECK_THAT(next(), Catch::Matchers::Contains("too long"));
@@ -75,7 +101,7 @@ TEST_CASE("what a file holds is not typed ahead", "[runner][terminal]") {
   type(ends[1], "1\n2\n");
   close(ends[1]);
   CHECK(line_of(input) == "1");
-  CHECK_FALSE(input.forget_typed_ahead());
+  CHECK_FALSE(input.forget_typed_ahead().has_quit);
   CHECK(line_of(input) == "2");
   CHECK(line_of(input) == "nothing");
   close(ends[0]);

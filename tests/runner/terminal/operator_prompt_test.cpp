@@ -32,10 +32,11 @@ class Typed {
  private:
   int end_{-1};
 };
-bool is_done(const std::string& typed) {
+bool is_done(const std::string& typed, const std::string& word = "") {
   const Typed operator_typed{typed};
   runner::LineInput input{operator_typed.end()};
-  return runner::asked_and_done(input, "Do it and");
+  runner::TypedCommands commands;
+  return runner::asked_and_done(input, commands, "Do it and", word);
 }
 double measured(const std::string& typed) {
   const Typed operator_typed{typed};
@@ -52,6 +53,29 @@ TEST_CASE("Enter alone says that it is done; quit and the end of the input that 
   CHECK_FALSE(is_done("quit\n\n"));
   CHECK_FALSE(is_done("what?\nquit\n\n"));
   CHECK_FALSE(is_done(""));
+}
+
+TEST_CASE("where a word is asked for, Enter alone does not say that it is done",
+          "[runner][terminal]") {
+  CHECK(is_done("mounted\n", "mounted"));
+  CHECK(is_done("\n\nmounted\n", "mounted"));
+  CHECK_FALSE(is_done("\n\n", "mounted"));
+  CHECK_FALSE(is_done("quit\nmounted\n", "mounted"));
+}
+
+TEST_CASE("the operator's commands are obeyed at a prompt, and what could not be stored is said",
+          "[runner][terminal]") {
+  const Typed typed{":note a scratch\n:note nonsense\nmounted\n"};
+  runner::LineInput input{typed.end()};
+  std::vector<std::string> given;
+  runner::TypedCommands commands{[&](const std::string& command) {
+    given.push_back(command);
+    std::promise<void> stored;
+    stored.set_value();
+    return runner::TypedCommands::Posted{command, stored.get_future().share()};
+  }};
+  CHECK(runner::asked_and_done(input, commands, "Mount it and", "mounted"));
+  CHECK(given == std::vector<std::string>{"note a scratch", "note nonsense"});
 }
 
 TEST_CASE("a measurement is a number in its range, asked for until it is one",

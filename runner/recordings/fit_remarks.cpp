@@ -1,0 +1,42 @@
+#include "runner/recordings/fit_remarks.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+namespace tapstudy::runner {
+namespace {
+constexpr double min_explained = 0.998;
+constexpr double max_over_noise = 4.0;
+constexpr double min_assurance = 0.5;
+}  // namespace
+
+std::vector<std::string> remarks_on_residuals(const std::vector<IdentifiedTap>& taps) {
+  std::vector<std::string> remarks;
+  for (const IdentifiedTap& tap : taps) {
+    const analysis::DecayFit& fit = tap.modes.fit;
+    const double over_noise = fit.noise / std::max(tap.noise_rms, 1e-300);
+    if (fit.explained < min_explained && over_noise > max_over_noise) {
+      remarks.push_back(fmt::format(
+          "{}: of the tap at {:.3f} s the modes explain only {:.1f} % of the energy, and what is "
+          "left is {:.0f} times the recording's noise (struck twice, limited by the amplifier, or "
+          "not linear?): do not rely on its modes",
+          tap.file, tap.time_s, 100.0 * fit.explained, over_noise));
+    }
+  }
+  return remarks;
+}
+
+std::vector<std::string> remarks_on_shapes(const analysis::ModelUpdate& update,
+                                           const TapIdentification& identified) {
+  std::vector<std::string> remarks;
+  for (const analysis::MatchedMode& one : update.matched) {
+    if (one.assurance && *one.assurance < min_assurance) {
+      remarks.push_back(fmt::format(
+          "the mode at {:.6g} Hz does not have the shape of the model's (MAC {:.2g}): are places, "
+          "force or speeds right?",
+          identified.modes[identified.agreed[one.measured]].frequency_hz.value, *one.assurance));
+    }
+  }
+  return remarks;
+}
+}  // namespace tapstudy::runner

@@ -35,15 +35,15 @@ const char* to_text(TickFault fault) noexcept {
     case TickFault::force_not_followed:
       return "the device reports a force far from the one it was sent";
     case TickFault::force_released:
-      return "the device released the force, for want of requests";
+      return "the device released the force because no requests arrived";
     case TickFault::tensions_unsolved:
       return "no string tensions were found for the force";
     case TickFault::too_late:
       return "the loop was late too many times in a row";
     case TickFault::stood_still:
-      return "the program stood still, its guardian took the force off";
+      return "the program stalled; the watchdog removed the force";
     case TickFault::guardian_lost:
-      return "the process that guards the force has ended";
+      return "the watchdog process has ended";
     case TickFault::heartbeat_lost:
       return "the program around the loop stood still";
   }

@@ -23,7 +23,7 @@ class HeldHand {
     debt_ -= debt_ > 0 ? 1 : 0;
   }
   // False where nothing is known, or has stood in for too long.
-  bool stands_in(core::HandState& hand) noexcept {
+  bool use_last_reading(core::HandState& hand) noexcept {
     if (!hand_ || missed_replies_ == max_missed_replies ||
         debt_ >= replies_for_a_missed_one * max_missed_in_debt) {
       return false;

@@ -49,6 +49,8 @@ std::string wrong_with(const FormItem& item, const std::string& answer) {
   if (!core::is_plain_text(answer)) {
     return "must be UTF-8 text without control characters";
   }
-  return core::character_count(answer) <= max_form_text ? "" : fmt::format("at most {} characters", max_form_text);
+  return core::character_count(answer) <= max_form_text
+             ? ""
+             : fmt::format("at most {} characters", max_form_text);
 }
 }  // namespace tapstudy::protocols

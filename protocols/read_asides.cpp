@@ -28,7 +28,7 @@ Breaks read_breaks(MapReader& reader) {
     breaks.every_seconds = reader.number("every_seconds", {10.0, 36000.0});
   }
   if (!breaks.every_trials && !breaks.every_seconds) {
-    reader.reject("every_trials", "is missing, and every_seconds too: a break comes after one");
+    reader.reject("every_trials", "is missing, and so is every_seconds (give one of them)");
   }
   breaks.min_seconds = reader.number("min_seconds", {0.0, 3600.0}, breaks.min_seconds);
   if (reader.has("max_seconds")) {
@@ -53,7 +53,7 @@ void read_asides(MapReader& reader, Block& block) {
              [&](MapReader& inner) { block.breaks = read_breaks(inner); });
   block.gives_feedback = reader.yes_or_no("feedback", false);
   if (block.gives_feedback && !block.is_practice) {
-    reader.reject("feedback", "is for practice: elsewhere it teaches the answers");
+    reader.reject("feedback", "is for practice: elsewhere it would train participants");
   }
 }
 }  // namespace tapstudy::protocols

@@ -110,10 +110,9 @@ bool has_catch_trials_of_its_own_stimuli(const Block& block) {
 
 void check_constraints(MapReader& reader, const Block& block) {
   if (block.order == Order::williams && has_catch_trials_of_its_own_stimuli(block)) {
-    reader.reject(
-        "catch_trials",
-        "of the block's own stimuli would unbalance which follows which (order: williams; "
-        "catch_trials of another stimulus keep it)");
+    reader.reject("catch_trials",
+                  "of the block's own stimuli would break first-order balance (order: williams; "
+                  "catch_trials of another stimulus keep it)");
     return;
   }
   if (!block.constraints.are_any()) {
@@ -249,7 +248,7 @@ Block read_block(MapReader& reader, const Protocol& protocol) {
     block.task->read(reader, protocol, block);
     check_presented(reader, protocol, block);
     if (block.gives_feedback && block.allows_correction) {
-      reader.reject("correction", "would be of an answer whose right one was told by feedback");
+      reader.reject("correction", "cannot be combined with feedback");
     }
     if (block.gives_feedback && !block.task->has_correct_answer()) {
       reader.reject("feedback", fmt::format("the task {} has no right answer", block.task->name()));

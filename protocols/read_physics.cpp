@@ -72,7 +72,7 @@ core::SinusoidShape::ByPlace read_by_place(MapReader& reader) {
   by_place.from_m = {from_m.x(), from_m.y()};
   by_place.to_m = {to_m.x(), to_m.y()};
   if (from_m == to_m) {
-    reader.reject("to_m", "is from_m: there is no way from one to the other");
+    reader.reject("to_m", "is the same as from_m");
   }
   const Range factor{0.01, 100.0};
   by_place.amplitude_factor = reader.number("amplitude_factor", factor, 1.0);

@@ -63,15 +63,23 @@ void read_simulation(MapReader& top, Protocol& protocol) {
   const bool needs_reference = std::ranges::any_of(protocol.blocks, [](const Block& block) {
     return block.task != nullptr && block.task->needs_reference();
   });
-  const Presence needed = needs_reference ? Presence::required : Presence::optional;
-  top.map("simulation", needed, [&](MapReader& section) {
+  const auto check_is_there = [&](MapReader& reader, const char* key) {
+    if (needs_reference && !reader.has(key)) {
+      reader.reject(key,
+                    "is missing (its observer.reference: the stimulus that simulated participants "
+                    "take for reality, where no answer is right)");
+    }
+  };
+  check_is_there(top, "simulation");
+  top.map("simulation", Presence::optional, [&](MapReader& section) {
     section.map("hand", Presence::optional,
                 [&](MapReader& reader) { read_hand(reader, simulation.hand); });
     section.map("taps", Presence::optional,
                 [&](MapReader& reader) { read_taps(reader, protocol, simulation.taps); });
     section.map("people", Presence::optional,
                 [&](MapReader& reader) { read_people(reader, simulation.people); });
-    section.map("observer", needed, [&](MapReader& reader) {
+    check_is_there(section, "observer");
+    section.map("observer", Presence::optional, [&](MapReader& reader) {
       read_observer(reader, protocol, needs_reference, simulation.observer);
     });
   });

@@ -5,8 +5,8 @@
 #include <set>
 #include <string>
 
-#include "results/schema.hpp"
 #include "core/plain_text.hpp"
+#include "results/schema.hpp"
 #include "results/store.hpp"
 #include "results/store_error.hpp"
 

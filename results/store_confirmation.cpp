@@ -46,13 +46,14 @@ void Store::check_has_not_moved() {
   if (database_.has_moved()) {
     if (!fs::exists(file, error) && fs::is_directory(fs::absolute(file).parent_path(), error)) {
       write_anew();
-      throw StoreRewritten{fmt::format(
-          "{}: was deleted meanwhile; all that it held is in a new file of that name (go on with "
-          "--resume)",
-          database_.file())};
+      throw StoreRewritten{
+          fmt::format("{}: was deleted during the session; its contents are in a new file of that "
+                      "name (go on with "
+                      "--resume)",
+                      database_.file())};
     }
     throw StoreError{fmt::format(
-        "{}: is no longer where it was (put it back: all answers are in the file that was moved)",
+        "{}: was moved or replaced (put it back: all answers are in the file that was moved)",
         database_.file())};
   }
 }

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <charconv>
 
-#include "results/compression.hpp"
 #include "core/plain_text.hpp"
+#include "results/compression.hpp"
 #include "results/store.hpp"
 #include "results/store_error.hpp"
 #include "results/trace_codec.hpp"
@@ -17,8 +17,8 @@ std::uint64_t seed_from(const std::string& text, const std::string& where) {
   const char* const end = text.data() + text.size();
   const auto [stopped, error] = std::from_chars(text.data(), end, seed);
   if (error != std::errc{} || stopped != end) {
-    throw StoreError{
-        fmt::format("{}: the seed '{}' is no whole number below 2^64", where, core::cut_to(text, 80))};
+    throw StoreError{fmt::format("{}: the seed '{}' is no whole number below 2^64", where,
+                                 core::cut_to(text, 80))};
   }
   return seed;
 }

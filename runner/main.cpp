@@ -6,6 +6,7 @@
 #include <exception>
 #include <iostream>
 #include <new>
+#include <system_error>
 
 #include "core/bounded_child.hpp"
 #include "core/error.hpp"
@@ -30,14 +31,16 @@ ExitCode code_of(const std::exception& error) {
   if (dynamic_cast<const tapstudy::runner::Stopped*>(&error) != nullptr) {
     return ExitCode::stopped;
   }
-  return ExitCode::wrong_input;
+  const bool is_of_input = dynamic_cast<const tapstudy::core::Error*>(&error) != nullptr ||
+                           dynamic_cast<const std::system_error*>(&error) != nullptr;
+  return is_of_input ? ExitCode::wrong_input : ExitCode::internal_error;
 }
 // Detects output that did not reach its file or pipe.
 void check_results_arrived() {
   std::cout.flush();
   if (!std::cout || std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
     throw tapstudy::results::StoreError{
-        errno == EPIPE ? "standard output: whoever read it has gone"
+        errno == EPIPE ? "standard output: the reader closed the pipe"
                        : "standard output: writing failed (is the disk full?)"};
   }
 }

@@ -29,8 +29,9 @@ struct ParticipantSettings {
 
 struct MeanOfSettings {
   double mean{};
-  std::optional<Interval> interval;   // 95 %, by t over participants; unset for fewer than two
-  std::optional<Interval> bootstrap;  // 95 %, by bootstrap_interval; unset likewise, and of equal values
+  std::optional<Interval> interval;  // 95 %, by t over participants; unset for fewer than two
+  std::optional<Interval>
+      bootstrap;  // 95 %, by bootstrap_interval; unset likewise, and of equal values
   int participants{};
 };
 

@@ -56,7 +56,7 @@ struct CsvTable {
 class BlockSummary {
  public:
   explicit BlockSummary(const BlockDesign& design)
-      : block{design.name}, task{design.task}, question{design.question} {}
+      : block{design.name}, part_of{design.part_of}, task{design.task}, question{design.question} {}
   virtual ~BlockSummary() = default;
   BlockSummary(const BlockSummary&) = default;
   BlockSummary& operator=(const BlockSummary&) = default;
@@ -76,7 +76,8 @@ class BlockSummary {
   // Empty: the answers do not determine it.
   virtual std::vector<MainResult> main_results() const { return {}; }
 
-  std::string block;  // empty where only a table of counts is known
+  std::string block;    // empty where only a table of counts is known
+  std::string part_of;  // the whole block, of which this is a part; empty: it is whole
   std::string task;
   std::string question;
   std::vector<HypothesisResult> hypotheses;

@@ -19,7 +19,7 @@ const Column& d_prime_column() {
 
 std::string remark_on(const Sensitivity& sensitivity) {
   if (sensitivity.is_perfect) {
-    return "all right: d' of half a wrong answer";
+    return "all correct: d' computed with half an error";
   }
   return sensitivity.is_below_chance ? "below chance: d' is 0" : "";
 }
@@ -143,7 +143,7 @@ std::vector<std::string> remarks_on(const BlockDesign& design,
   if (std::ranges::any_of(results.participants,
                           [](const auto& person) { return person.rates.has_value(); })) {
     remarks.emplace_back(
-        "The d' of proportions correct takes participants for unbiased, and is too small where "
+        "The d' of proportions correct assumes unbiased participants, and is too small where "
         "they "
         "are not: that by rates is not.");
     remarks.emplace_back(

@@ -94,7 +94,8 @@ ReportSection accuracy_section(const IdentificationSummary& summary) {
         "beta-binomial distribution (Williams 1975) with the quantile of t for the number of "
         "participants, which holds the mean in more than 95 % of studies where participants are "
         "few; t and the bootstrap (BCa, Efron 1987, expanded after Hesterberg 2015) over "
-        "participants' shares are given beside it. Wilson's interval would hold if all answers were independent of one another.");
+        "participants' shares are given beside it. Wilson's interval would hold if all answers "
+        "were independent of one another.");
   }
   section.remarks.push_back("All answers against chance: " + summary.chance_test + ".");
   add_remark_on_chance(summary, section);

@@ -34,8 +34,7 @@ ReportTable equivalent_table(const ConfusionMatrix& matrix) {
                     {column("alternatives", "alternatives"), d_prime_column()}};
   const Proportion correct = overall_accuracy(matrix);
   if (correct.trials > 0 && matrix.share_of_alternatives() == 1.0 &&
-      alternatives >= model.fewest_alternatives &&
-      alternatives <= model.most_alternatives) {
+      alternatives >= model.fewest_alternatives && alternatives <= model.most_alternatives) {
     const Sensitivity of = sensitivity({model.model, alternatives}, correct);
     table.rows.push_back({count(alternatives), interval(of.d_prime, of.interval)});
   }

@@ -191,8 +191,7 @@ Estimate estimate_over_taps(const std::vector<double>& values, const std::vector
   const double half = t_quantile(0.975, freedom) * error;
   estimate.interval = {estimate.value - half, estimate.value + half};
   if (values.size() >= min_taps_to_resample) {
-    estimate.bootstrap =
-        bootstrap_interval(values, bootstrap_draws, bootstrap_seed);
+    estimate.bootstrap = bootstrap_interval(values, bootstrap_draws, bootstrap_seed);
   }
   return estimate;
 }

@@ -151,8 +151,7 @@ std::optional<Interval> bootstrap_interval(const std::vector<double>& values, in
                                            std::uint64_t seed) {
   check_values(values);
   const auto n = static_cast<double>(values.size());
-  const double expanded_tail =
-      normal_cdf(-std::sqrt(n / (n - 1.0)) * t_quantile(0.975, n - 1.0));
+  const double expanded_tail = normal_cdf(-std::sqrt(n / (n - 1.0)) * t_quantile(0.975, n - 1.0));
   return bca_interval(values, draws, seed, expanded_tail);
 }
 

@@ -61,15 +61,13 @@ double seconds_per_unit(const std::string& header) {
 // Rows of numbers below an optional header.
 class Table {
  public:
-  Table(CsvText text, std::string file)
-      : text_{std::move(text)}, file_{std::move(file)} {
+  Table(CsvText text, std::string file) : text_{std::move(text)}, file_{std::move(file)} {
     if (text_.rows.empty()) {
       refuse(file_, 1, "holds no values");
     }
     const CsvRow& first = text_.rows.front();
-    if (std::ranges::none_of(first.cells, [&](const std::string& cell) {
-          return text_.number(cell).has_value();
-        })) {
+    if (std::ranges::none_of(
+            first.cells, [&](const std::string& cell) { return text_.number(cell).has_value(); })) {
       headers_ = first.cells;
       first_row_ = 1;
     }

@@ -124,8 +124,8 @@ std::vector<Impact> sensor_impacts(const Energies& energies, const std::vector<d
 
 std::vector<Impact> force_pulses(const std::vector<double>& centred, double noise_rms,
                                  double rate_hz) {
-  const double most = std::abs(*std::ranges::max_element(
-      centred, {}, [](double sample) { return std::abs(sample); }));
+  const double most = std::abs(
+      *std::ranges::max_element(centred, {}, [](double sample) { return std::abs(sample); }));
   const double begins = std::max(pulse_share * most, pulse_over_noise * noise_rms);
   const double rests = resting_share * begins;
   const std::size_t pause = samples_in(pulse_pause_s, rate_hz) + 1;

@@ -66,8 +66,7 @@ std::vector<std::size_t> rail_samples(const std::vector<double>& samples, double
   }
   const double resolution = resolution_of(samples);
   const auto is_flat = [&](std::size_t begin, std::size_t end) {
-    return end - begin >= min_run &&
-           step_beside(samples, begin, end) > smooth_steps * resolution;
+    return end - begin >= min_run && step_beside(samples, begin, end) > smooth_steps * resolution;
   };
   // A smooth peak moves at the end of the run by at most three times what it does within it.
   const auto is_limited = [&](std::size_t begin, std::size_t end) {

@@ -33,9 +33,7 @@ std::size_t end_of_decay(const Energies& energies, std::size_t begin, std::size_
 class TapFinder {
  public:
   TapFinder(const Recording& recording, const TapFinding& finding)
-      : recording_{recording},
-        finding_{finding},
-        centred_{recording.samples} {
+      : recording_{recording}, finding_{finding}, centred_{recording.samples} {
     const double middle = quantile(recording.samples, 0.5);
     for (double& sample : centred_) {
       sample -= middle;
@@ -82,10 +80,9 @@ class TapFinder {
   std::size_t begin_of_decay(const Impact& impact, std::size_t last) {
     const std::size_t onset = impact.last_blow;
     if (onset != impact.onset) {
-      found_.remarks.push_back(
-          fmt::format("{} struck again {:.4f} s later: its decay is taken from there on",
-                      at(impact.onset),
-                      static_cast<double>(onset - impact.onset) / recording_.rate_hz));
+      found_.remarks.push_back(fmt::format(
+          "{} struck again {:.4f} s later: its decay is taken from there on", at(impact.onset),
+          static_cast<double>(onset - impact.onset) / recording_.rate_hz));
     }
     const auto magnitude = [&](std::size_t i) { return std::abs(centred_[i]); };
     std::size_t peak = onset;
@@ -164,11 +161,11 @@ void check_length(const Recording& recording) {
   }
   const std::size_t least = frames_per_group * frame_of(recording.rate_hz);
   if (recording.samples.size() < least) {
-    throw core::InvalidInput{fmt::format(
-        "{}: has {} samples at {:g} Hz, {:.3g} s (at least {:.3g} s)", recording.file,
-        recording.samples.size(), recording.rate_hz,
-        static_cast<double>(recording.samples.size()) / recording.rate_hz,
-        static_cast<double>(least) / recording.rate_hz)};
+    throw core::InvalidInput{
+        fmt::format("{}: has {} samples at {:g} Hz, {:.3g} s (at least {:.3g} s)", recording.file,
+                    recording.samples.size(), recording.rate_hz,
+                    static_cast<double>(recording.samples.size()) / recording.rate_hz,
+                    static_cast<double>(least) / recording.rate_hz)};
   }
 }
 }  // namespace

@@ -35,6 +35,7 @@ std::vector<double> further_values(const BlockDesign& design, const AnswerRow& a
 
 BlockDesign at(const BlockDesign& whole, const std::vector<double>& values) {
   BlockDesign part = whole;
+  part.part_of = whole.name;
   std::vector<std::string> words;
   for (std::size_t i = 0; i < values.size(); ++i) {
     part.name += fmt::format("_at_{}_{}", whole.further_axes[i], digits(values[i]));

@@ -66,8 +66,8 @@ Eigen::VectorXcd eigenvalues(Eigen::MatrixXd A) {
 Eigen::MatrixXd pseudo_inverse(Eigen::MatrixXd A) {
   const EigenPairs pairs = symmetric_eigenpairs(std::move(A));
   const double largest = pairs.values.size() > 0 ? pairs.values.cwiseAbs().maxCoeff() : 0.0;
-  const double negligible = static_cast<double>(pairs.values.size()) *
-                            std::numeric_limits<double>::epsilon() * largest;
+  const double negligible =
+      static_cast<double>(pairs.values.size()) * std::numeric_limits<double>::epsilon() * largest;
   const Eigen::VectorXd inverses =
       pairs.values.unaryExpr([&](double value) { return value > negligible ? 1.0 / value : 0.0; });
   return pairs.vectors * inverses.asDiagonal() * pairs.vectors.transpose();

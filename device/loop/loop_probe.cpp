@@ -78,7 +78,7 @@ ProbedLoop probe_loop(const core::RealtimeRequest& request, Nanoseconds period, 
   std::jthread{[&] {
     try {
       run_probe(request, period, ticks, work, probed);
-    } catch (const core::Error&) {
+    } catch (...) {
       failure = std::current_exception();
     }
   }}.join();

@@ -37,7 +37,7 @@ struct RemoteReply {
 };
 // Bits of the status.
 inline constexpr std::uint32_t motors_on = 1U;
-inline constexpr std::uint32_t has_let_go = 2U;  // after a silence, before this request
+inline constexpr std::uint32_t force_was_released = 2U;  // after a silence, before this request
 inline constexpr std::size_t request_bytes = 36;
 inline constexpr std::size_t reply_bytes = 60;
 inline constexpr std::size_t reply_bytes_of_version_2 = 88;

@@ -140,7 +140,7 @@ TickFault RemoteHand::fault_of_report() noexcept {
   if ((status & motors_on) == 0) {
     return TickFault::amplifier_off;
   }
-  const bool has_released = (status & has_let_go) != 0;
+  const bool has_released = (status & force_was_released) != 0;
   released_replies_ = has_released ? released_replies_ + 1 : 0;
   if (has_released && (is_holding_ || released_replies_ > max_released_replies)) {
     return TickFault::force_released;
@@ -151,7 +151,7 @@ TickFault RemoteHand::fault_of_report() noexcept {
 
 TickFault RemoteHand::read(core::HandState& hand, double /*elapsed_s*/) noexcept {
   const TickFault fault = ask(hand);
-  if (fault == TickFault::no_reply && held_.stands_in(hand)) {
+  if (fault == TickFault::no_reply && held_.use_last_reading(hand)) {
     detail_.missed_replies = held_.missed_replies();
     return TickFault::none;
   }
@@ -176,7 +176,7 @@ RemoteHand::Release RemoteHand::release_after(std::chrono::milliseconds silence)
     if (ask(ignored) != TickFault::none || !status_) {
       return std::nullopt;
     }
-    return (*status_ & has_let_go) != 0;
+    return (*status_ & force_was_released) != 0;
   };
   std::optional<bool> before;
   for (int i = 0; i < max_released_replies; ++i) {

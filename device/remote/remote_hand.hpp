@@ -49,7 +49,7 @@ class RemoteHand final : public Device {
   core::Vec3 force_n_{core::Vec3::Zero()};
   HeldHand held_;
   ExertedForce exerted_;
-  bool is_holding_{false};    // a reply of this trial reported so
+  bool is_holding_{false};   // a reply of this trial reported so
   int released_replies_{0};  // of this trial, in a row
   std::optional<std::uint32_t> status_;
   DeviceDetail detail_;

@@ -34,7 +34,7 @@ class Pull {
         person_{person},
         started_{clock.now()} {
     if (!is_guardian_alive(watchdog_)) {
-      throw DeviceError{"SPIDAR-G6: the process that guards the force has ended"};
+      throw DeviceError{"SPIDAR-G6: the watchdog process has ended"};
     }
     watchdog_.begin();
   }
@@ -59,8 +59,8 @@ class Pull {
       throw DeviceError{"SPIDAR-G6: the program stood still and its guardian took the force off"};
     }
     if (1e-9 * static_cast<double>(clock_.now() - started_) > max_pull_s) {
-      throw DeviceError{
-          fmt::format("SPIDAR-G6: a string has pulled for {} s without an answer", max_pull_s)};
+      throw DeviceError{fmt::format(
+          "SPIDAR-G6: a string was under tension for {} s without operator input", max_pull_s)};
     }
   }
 

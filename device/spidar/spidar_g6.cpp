@@ -31,7 +31,7 @@ SpidarG6::SpidarG6(UsbPipe& pipe, SpidarBoard& board, SpidarSettings settings)
   }
   // a second exchange, because the first may echo an earlier program's command
   if (const TickFault fault = exchange(settings_.dt_s); fault != TickFault::none) {
-    throw DeviceError{fmt::format("SPIDAR-G6: the {} board answers nonsense: {}", board_name_,
+    throw DeviceError{fmt::format("SPIDAR-G6: the {} board sent an invalid reply: {}", board_name_,
                                   core::to_text(fault))};
   }
 }
@@ -100,7 +100,7 @@ TickFault SpidarG6::read(core::HandState& hand, double elapsed_s) noexcept {
   unread_s_ += elapsed_s;
   const TickFault fault = exchange(elapsed_s);
   // without an echo a late reply could not be told from the right one
-  if (fault == TickFault::no_reply && link_.can_miss_a_reply() && held_.stands_in(hand)) {
+  if (fault == TickFault::no_reply && link_.can_miss_a_reply() && held_.use_last_reading(hand)) {
     detail_.missed_replies = held_.missed_replies();
     return TickFault::none;
   }

@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <csignal>
 #include <cstring>
 #include <memory>
@@ -23,9 +24,9 @@ namespace tapstudy::device {
 namespace {
 constexpr unsigned packet_time_out_ms = 20;
 constexpr int round_ms = 5;
-constexpr int rounds_a_sign_of_life = 2;
-constexpr int max_farewell_rounds = 60'000 / round_ms;  // a minute
-constexpr int max_wait_for_farewell_ms = 200;
+constexpr int rounds_per_heartbeat = 2;
+constexpr std::chrono::seconds max_final{60};
+constexpr int max_wait_for_end_ms = 200;
 
 // Raising one's own score needs no privilege; if it fails, all processes are equally likely to be
 // killed when memory runs out.
@@ -55,19 +56,20 @@ class Watchdog {
     }
     ask_for_realtime();
     set_oom_score("0");  // not the program's own
-    while (lives_on()) {
+    while (is_parent_alive()) {
       poll();
       channel_.complete_round();
     }
-    say_farewell();
+    send_final_zero_force();
     _exit(0);
   }
 
  private:
   // Until the kernel has taken zero force three times: nobody else can say it now.
-  void say_farewell() noexcept {
+  void send_final_zero_force() noexcept {
+    const auto end = std::chrono::steady_clock::now() + max_final;
     int taken = 0;
-    for (int i = 0; i < max_farewell_rounds && taken < zero_force_packets; ++i) {
+    for (int i = 0; taken < zero_force_packets && std::chrono::steady_clock::now() < end; ++i) {
       taken += send_zero_force() ? 1 : 0;
       if (taken == 0 && errno == ENODEV) {
         return;
@@ -86,7 +88,7 @@ class Watchdog {
     mlockall(MCL_CURRENT | MCL_ONFAULT);  // only what it touches, not the program's whole image
   }
   // Waits for one polling cycle; false once the pipe is closed.
-  bool lives_on() const noexcept {
+  bool is_parent_alive() const noexcept {
     pollfd waiting{life_, POLLIN, 0};
     if (::poll(&waiting, 1, round_ms) <= 0) {
       return true;
@@ -108,11 +110,11 @@ class Watchdog {
     if ((is_stalled || channel_.must_repeat()) && send_zero_force()) {
       channel_.note_zero_taken();
     }
-    if (++round_ % rounds_a_sign_of_life == 0) {
-      give_sign_of_life();
+    if (++round_ % rounds_per_heartbeat == 0) {
+      send_relay_heartbeat();
     }
   }
-  void give_sign_of_life() const noexcept {
+  void send_relay_heartbeat() const noexcept {
     if (settings_.relay >= 0 && channel_.may_close_relay()) {
       static_cast<void>(!write(settings_.relay, "\x55", 1));
     }
@@ -191,7 +193,7 @@ Guardian::Guardian(const UsbNode& node, GuardianSettings settings) : channel_{sh
 // The child ends by itself once zero force was taken, or stays to repeat it.
 Guardian::~Guardian() {
   close(life_);
-  for (int waited_ms = 0; waited_ms < max_wait_for_farewell_ms; ++waited_ms) {
+  for (int waited_ms = 0; waited_ms < max_wait_for_end_ms; ++waited_ms) {
     int status = 0;
     const pid_t ended = waitpid(child_, &status, WNOHANG);
     if (ended == child_ || (ended < 0 && errno != EINTR)) {

@@ -103,7 +103,7 @@ void read_stop(MapReader& top, StaircaseSettings& settings) {
   settings.estimate_reversals =
       static_cast<std::size_t>(top.integer("estimate_reversals", 2, max_staircase_reversals));
   if (settings.estimate_reversals % 2 != 0) {
-    top.reject("estimate_reversals", "is odd: peaks and valleys would not be as many");
+    top.reject("estimate_reversals", "is odd: as many peaks as valleys are averaged");
   }
   const std::size_t attainable = settings.max_reversals.value_or(settings.max_trials);
   if (settings.estimate_reversals > std::min(attainable, settings.max_trials)) {

@@ -33,7 +33,8 @@ bool check_value(MapReader& reader, const std::string& key, const Protocol& prot
 }
 
 // Whether the standard is presented as it is given. A table's nearest value in its place would be
-// another standard: levels, what is right, and thresholds would be those of a plate that nobody felt.
+// another standard: levels, what is right, and thresholds would be those of a plate that nobody
+// felt.
 bool check_standard(MapReader& reader, const Protocol& protocol, const Stimulus& family,
                     const Comparison& comparison) {
   const double standard = comparison.standard;
@@ -81,7 +82,7 @@ void check_track(MapReader& reader, const Protocol& protocol, const Stimulus& fa
     return;
   }
   if (comparison.side != Side::either && !track.is_harder_below()) {
-    reader.reject("after_correct", "makes it easier: the greater a level, the easier it is");
+    reader.reject("after_correct", "must be decrease: greater levels are easier");
     return;
   }
   for (const double level : {low, high}) {

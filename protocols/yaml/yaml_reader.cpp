@@ -56,8 +56,9 @@ MapReader MapReader::whole_file(const std::string& text, const std::string& file
     }
     return reader;
   } catch (const YAML::Exception& error) {
-    throw core::InvalidInput{fmt::format("{}:{}:{}: not YAML: {} (a text with any of ? : , # [ {{ goes in quotes)", file, error.mark.line + 1,
-                                         error.mark.column + 1, error.msg)};
+    throw core::InvalidInput{
+        fmt::format("{}:{}:{}: not YAML: {} (a text with any of ? : , # [ {{ goes in quotes)", file,
+                    error.mark.line + 1, error.mark.column + 1, error.msg)};
   }
 }
 

@@ -74,7 +74,7 @@ std::vector<Column> columns_of_conduct() {
       {"fault", text, "", "Fault that ended the trial; empty: none"},
       {"t_s", real, "s",
        "Time of the event: from the first tick of the trial; of session events, questionnaires and"
-       " operator actions from the begin of the session"},
+       " operator actions from the start of the session"},
       {"kind", text, "",
        "contact, impact, late_impact, release, switch (to an alternative), setting (of the "
        "adjusted alternative), interval (its go signal), interval_end, interval_replay (of all "
@@ -94,7 +94,7 @@ std::vector<Column> columns_of_conduct() {
       {"visits", integer, "", "How often the alternative was switched to"},
       {"total_dwell_s", real, "s", "How long the alternative was presented, all visits together"},
       {"visit", integer, "", "Number of the visit in its trial, from 1"},
-      {"begin_s", real, "s", "Begin of the visit, from the first tick of the trial"},
+      {"begin_s", real, "s", "Start of the visit, from the first tick of the trial"},
       {"end_s", real, "s", "End of the visit: the next switch or the end of the trial"},
       {"dwell_s", real, "s", "Duration of the visit"},
   };

@@ -22,36 +22,39 @@ struct Source {
   "trial_id " WHO "block task number attempt is_practice is_catch presented status "
 
 constexpr std::array sources{
-    Source{"sessions", "A row a session.",
+    Source{"sessions", "One row per session.",
            WHO "participant_index order_index resumes started_utc language rate_hz device "
                "scheduler program_version git_hash compiler seed planned_order rig_text doctor",
            "v_sessions ORDER BY session_id"},
-    Source{"trials", "A row each time that a trial was presented.",
+    Source{"trials", "One row per presentation of a trial.",
            WHICH_TRIAL
            "repetition stimulus response is_correct is_corrected first_response first_is_correct "
            "given_by confidence response_time_s time_from_first_contact_s duration_s "
            "first_contact_s contacts impacts late_impacts max_impact_speed_m_s ticks late_ticks "
            "skipped_ticks saturated_ticks dropped_samples lateness_p999_s worst_lateness_s fault",
            "v_trials ORDER BY trial_id"},
-    Source{"answers", "A row an answer as given, and a row a correction of one.",
+    Source{"answers", "One row per answer as given, and one per correction.",
            "response_id " WHICH_TRIAL
            "stimulus response is_correct response_time_s time_from_first_contact_s confidence "
            "given_by is_correction supersedes is_current",
            "v_answers ORDER BY response_id"},
-    Source{"visits",
-           "A row each time that an alternative was switched to, until the next switch or the end "
-           "of the trial.",
-           WHICH_TRIAL "visit position label stimulus begin_s end_s dwell_s",
-           "v_visits ORDER BY trial_id, visit"},
-    Source{"events", "A row an event of a trial.", WHICH_TRIAL "t_s kind value",
+    Source{
+        "visits",
+        "One row each time that an alternative was switched to, until the next switch or the end "
+        "of the trial.",
+        WHICH_TRIAL "visit position label stimulus begin_s end_s dwell_s",
+        "v_visits ORDER BY trial_id, visit"},
+    Source{"events", "One row per event of a trial.", WHICH_TRIAL "t_s kind value",
            "event JOIN trial_context USING (trial_id) ORDER BY trial_id, t_s, event.rowid"},
-    Source{"session_events", "A row a change of a session's state.", WHO "t_s state number detail",
+    Source{"session_events", "One row per change of a session's state.",
+           WHO "t_s state number detail",
            "session_event JOIN v_sessions USING (session_id) "
            "ORDER BY session_id, t_s, session_event.rowid"},
-    Source{"questionnaires", "A row an item of a questionnaire.", WHO "t_s form asked item answer",
+    Source{"questionnaires", "One row per item of a questionnaire.",
+           WHO "t_s form asked item answer",
            "form_answer JOIN v_sessions USING (session_id) "
            "ORDER BY session_id, t_s, form_answer.rowid"},
-    Source{"operator_actions", "A row an action of the operator.",
+    Source{"operator_actions", "One row per action of the operator.",
            "action_id " WHO "t_s action number detail",
            "operator_action JOIN v_sessions USING (session_id) ORDER BY action_id"},
 };

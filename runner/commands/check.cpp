@@ -38,7 +38,7 @@ void warn_of_overdamped_modes(const protocols::Protocol& protocol, ModelLibrary&
         (models.plate_of(protocol, stimulus_with(protocol, stimulus))->model.damping_ratio > 1.0)
             .any()) {
       fmt::print(
-          "  warning: {} has overdamped modes, which Newmark may let alternate at half the rate "
+          "  warning: {} has overdamped modes, for which Newmark may oscillate at half the rate "
           "(integrator: exact does not)\n",
           stimulus.name);
     }
@@ -106,7 +106,7 @@ void print_simulated(const SimulatedDesign& design, const protocols::Protocol& p
   check_trial_length(protocol);
   listen_for_stop();
   const auto results = simulate_design(design, protocol);
-  fmt::print("\n{} simulated studies of {} participants, who are as `simulation` says\n",
+  fmt::print("\n{} simulated studies of {} participants, with the parameters of `simulation`\n",
              design.studies, design.participants);
   for (const ResultOfDesign& result : results) {
     fmt::print("  {}: {} {:.3g}{}; median width of the 95 % intervals {:.2g}", result.block,
@@ -125,7 +125,8 @@ void print_simulated(const SimulatedDesign& design, const protocols::Protocol& p
   }
   if (results.empty()) {
     fmt::print(
-        "  no simulated study had a result that is one number: no threshold could be found, or what "
+        "  no simulated study had a result that is one number: no threshold could be found, or "
+        "what "
         "participants choose, prefer and rate follows from the protocol's reference alone\n");
   }
 }

@@ -160,9 +160,10 @@ void add_export(CommandParser& line) {
                  "csv (default): a directory of tidy tables and their data dictionary (CSV on the "
                  "Web); hdf5: one file of the same tables and all traces; bids: a dataset of the "
                  "Brain Imaging Data Structure, without names, notes and free text");
-  command.flag("--traces", options->wants_traces,
-               "csv: every tick too, a file a trial (about 200 bytes a tick); the other formats "
-               "have them always");
+  command.flag(
+      "--traces", options->wants_traces,
+      "csv: every tick too, one file per trial (about 200 bytes a tick); the other formats "
+      "always have them");
   command.on_run([options] { run_export(*options); });
 }
 }  // namespace tapstudy::runner

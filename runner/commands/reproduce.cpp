@@ -41,7 +41,7 @@ void add_reproduce(CommandParser& line) {
   command.list("--only", options->only,
                fmt::format("Groups of claims alone: {}", fmt::join(claim_group_names(), ", ")));
   command.flag("--quick", options->is_quick,
-               "With fewer simulated participants: less sure, and sooner");
+               "With fewer simulated participants: less accurate, but faster");
   command.option_with_default("--seed", options->seed, "Seed of all random streams");
   command.on_run([options] { run_reproduce(*options); });
 }

@@ -46,8 +46,14 @@ std::optional<ConsoleRequest> console_of(const RunOptions& options) {
     return std::nullopt;
   }
   constexpr int max_port = 65535;
+  constexpr int first_unprivileged_port = 1024;
   ConsoleRequest request;
   request.address.port = number_for("--console", options.console, 0, max_port);
+  if (request.address.port > 0 && request.address.port < first_unprivileged_port) {
+    throw core::InvalidInput{
+        fmt::format("--console: port {} is reserved (0: any free port, or {} to {})",
+                    request.address.port, first_unprivileged_port, max_port)};
+  }
   request.language = options.language;
   if (!options.listen.empty()) {
     request.address.host = options.listen;
@@ -128,12 +134,12 @@ void add_run(CommandParser& line) {
   command.option("--rig", options->rig, "Device and limits (YAML); else a simulated hand");
   command.option("--seed", options->seed, "Seed of the order; drawn and stored if not given");
   command.option("--row", options->row,
-                 "Which of the balanced orders, from 1; else the first that nobody has");
+                 "Which of the balanced orders, from 1; default: the first unused one");
   command.option_with_or_without_value(
       "--console", options->console, "0",
-      "Serve a page each for participant and operator, at this port or a free one");
+      "Serve one page for the participant and one for the operator, on this port or a free one");
   command.option("--listen", options->listen,
-                 "Address of this machine to serve the pages at; else only to itself");
+                 "Address of this machine to serve the pages on; default: the loopback only");
   command.option("--language", options->language,
                  "Of what the participant reads: en, ja, …; else English, or as before");
   command.flag("--resume", options->resume, "Resume the participant's last session");

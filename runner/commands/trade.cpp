@@ -61,7 +61,7 @@ void add_trade(CommandParser& line) {
   command.number_within("--level-tolerance-db", options->tolerance.level_db, 1e-6, 100.0,
                         "Largest error of the vibration's level");
   command.flag("--quick", options->is_quick,
-               "Without the finest mesh: less sure, and some ten times sooner");
+               "Without the finest mesh: less accurate, about ten times faster");
   command.flag("--json", options->wants_json, "Output as JSON");
   command.option("--out", options->out,
                  "Write trade.csv, trade.json, trade.svg and stability.csv into this directory");

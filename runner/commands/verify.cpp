@@ -74,9 +74,9 @@ std::string print_recomputed(const results::Recomputation& recomputed) {
              recomputed.unknown_blocks == 0 ? ""
                                             : fmt::format(" ({} of blocks that the protocol lacks)",
                                                           recomputed.unknown_blocks));
-  return differences.empty() ? ""
-                             : fmt::format("{} values are not what their traces and answers give",
-                                           differences.size());
+  return differences.empty()
+             ? ""
+             : fmt::format("{} stored values differ from those recomputed", differences.size());
 }
 
 // Likewise.
@@ -92,8 +92,7 @@ std::string print_heads(const std::vector<std::string>& differences) {
 // The journal against the database; likewise.
 std::string print_compared(const results::JournalEntries& in_store,
                            const results::JournalEntries& in_journal) {
-  fmt::print("answers.journal  {} answers: every line follows from the one before\n",
-             in_journal.answers.size());
+  fmt::print("answers.journal  {} answers: hash chain intact\n", in_journal.answers.size());
   const auto stored = lines_of(in_store);
   const auto journalled = lines_of(in_journal);
   const int missing = print_missing(stored, journalled, "answers.journal") +
@@ -119,10 +118,10 @@ std::string print_published(const PublishedReport& report) {
     fmt::print("differs: {}\n", report.differences[i]);
   }
   if (report.differences.empty()) {
-    fmt::print("report.json      and its tables: what a report made anew has\n");
+    fmt::print("report.json      and its tables: identical to a regenerated report\n");
     return "";
   }
-  return fmt::format("{} values of its report are not what a report made anew has (is it older?)",
+  return fmt::format("{} values of its report differ from a regenerated one (is it older?)",
                      report.differences.size());
 }
 

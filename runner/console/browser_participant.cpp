@@ -107,7 +107,7 @@ std::optional<std::string> BrowserParticipant::perform(const TrialPrompt& prompt
   std::int64_t number = show_trial(prompt, exploration);
   asked_at_ = std::chrono::steady_clock::now();
   while (exploration.is_running() && !stop_was_asked()) {
-    pause_if_left();
+    pause_if_page_silent();
     tell_entered(prompt, exploration);
     auto input = screens_.take(number);
     // by the operator, or as intervals begin and end
@@ -182,7 +182,7 @@ bool BrowserParticipant::follow_correction() {
 }
 
 // Force is not left on for somebody who may have gone.
-void BrowserParticipant::pause_if_left() {
+void BrowserParticipant::pause_if_page_silent() {
   constexpr std::chrono::seconds patience{3};
   const auto now = std::chrono::steady_clock::now();
   if (now - std::max(screens_.last_seen(now), asked_at_) > patience) {

@@ -50,7 +50,7 @@ class BrowserParticipant final : public Participant {
   void tell_entered(const TrialPrompt& prompt, Exploration& exploration);
   void act_on(const ScreenInput& input, const TrialPrompt& prompt, Exploration& exploration);
   std::optional<std::string> last_word(const TrialPrompt& prompt, Exploration& exploration);
-  void pause_if_left();
+  void pause_if_page_silent();
   // Whether there is something new to show of it.
   bool follow_correction();
 

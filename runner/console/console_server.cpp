@@ -14,8 +14,8 @@
 #include "core/error.hpp"
 namespace tapstudy::runner {
 namespace {
-constexpr int max_streams = 8;         // of each role
-constexpr const char* threads = "64";  // one for each open stream, the rest for requests
+constexpr int max_streams = 8;                 // of each role
+constexpr const char* threads = "64";          // one for each open stream, the rest for requests
 constexpr long long max_body_bytes = 262'144;  // a form of ten texts, four bytes a character
 constexpr std::chrono::milliseconds frame{16};
 constexpr std::chrono::seconds keep_alive_interval{3};
@@ -23,7 +23,7 @@ constexpr std::chrono::seconds keep_alive_interval{3};
 std::string random_token() {
   std::array<unsigned char, 16> bytes{};
   if (getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size())) {
-    throw core::InvalidInput{"--console: this machine gives no random numbers"};
+    throw core::InvalidInput{"--console: no random numbers are available"};
   }
   std::string token;
   for (const unsigned char byte : bytes) {
@@ -67,7 +67,7 @@ int send(mg_connection* connection, const Reply& reply) {
 }
 
 Reply refusal(int status) {
-  return {status, "text/plain; charset=utf-8", "Not here.\n"};
+  return {status, "text/plain; charset=utf-8", "Not available.\n"};
 }
 
 // nullopt: too long, or not whole.

@@ -76,9 +76,10 @@ class RemoteKind final : public DeviceKind {
       case Release::not_reported:
         break;
       case Release::released:
-        return fmt::format("the other program reports that it released the force after {} ms "
-                           "without requests",
-                           tried_silence.count());
+        return fmt::format(
+            "the other program reports that it released the force after {} ms "
+            "without requests",
+            tried_silence.count());
     }
     return "the other program does not report this, or did not reply (version 1 cannot report "
            "it): test it manually";

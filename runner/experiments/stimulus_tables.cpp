@@ -76,7 +76,7 @@ results::Table stimuli_table(const Protocol& protocol) {
          stimulus.contacts ? Cell{name_in(protocol.contacts, stimulus.contacts)} : Cell{}});
     rows.push_back(std::move(row));
   }
-  return results::table_of("stimuli", "A row a stimulus of the protocol.", std::move(columns),
+  return results::table_of("stimuli", "One row per stimulus of the protocol.", std::move(columns),
                            std::move(rows));
 }
 
@@ -122,7 +122,7 @@ results::Table items_table(const Protocol& protocol) {
     }
   }
   return results::table_of(
-      "questionnaire_items", "A row an item of the protocol's questionnaires.",
+      "questionnaire_items", "One row per item of the protocol's questionnaires.",
       results::known_columns("form item item_kind question steps low high options"),
       std::move(rows));
 }
@@ -141,12 +141,12 @@ StimulusTables stimulus_tables(const Protocol& protocol, const core::ModelCache&
       without_model.push_back(stimulus.name);
     }
   }
-  return {
-      {stimuli_table(protocol),
-       results::table_of("modes", "A row a mode of vibration of a stimulus, below the band limit.",
-                         results::known_columns("stimulus mode_number frequency_hz damping_ratio"),
-                         std::move(modes)),
-       items_table(protocol), response_meanings_table(protocol)},
-      without_model};
+  return {{stimuli_table(protocol),
+           results::table_of(
+               "modes", "One row per mode of vibration of a stimulus, below the band limit.",
+               results::known_columns("stimulus mode_number frequency_hz damping_ratio"),
+               std::move(modes)),
+           items_table(protocol), response_meanings_table(protocol)},
+          without_model};
 }
 }  // namespace tapstudy::runner

@@ -27,7 +27,7 @@ void Markers::send(const results::SessionEventRow& change) {
   const std::lock_guard lock{mutex_};
   for (Counted& counted : outputs_) {
     if (counted.output->send(change) == Sent::no && counted.lost++ == 0) {
-      warn(fmt::format("markers, {}: '{}' is lost (nobody takes it); the session goes on",
+      warn(fmt::format("markers, {}: '{}' could not be delivered; the session continues",
                        counted.output->name(), change.state));
     }
   }

@@ -82,10 +82,10 @@ OperatorCommand parse_operator_command(const std::string& line,
     throw core::InvalidInput{fmt::format("{} {}", found->name, found->help)};
   }
   if (!text.empty() && found->text == ActionText::none) {
-    throw core::InvalidInput{fmt::format("{} takes nothing more", found->name)};
+    throw core::InvalidInput{fmt::format("{} takes no argument", found->name)};
   }
   if (!core::is_plain_text(text)) {
-    throw core::InvalidInput{"not text: UTF-8 without control characters is"};
+    throw core::InvalidInput{"must be UTF-8 text without control characters"};
   }
   if (text.size() > max_text) {
     throw core::InvalidInput{fmt::format("at most {} characters", max_text)};

@@ -77,7 +77,7 @@ void OperatorDesk::check_is_possible(const OperatorCommand& command) const {
   if (command.action == OperatorAction::switch_to) {
     number_up_to(trial_->prompt.alternative_labels.size(), command.text);
     if (trial_->prompt.block->explore.intervals) {
-      throw core::InvalidInput{"the alternatives come one after the other, by themselves"};
+      throw core::InvalidInput{"the alternatives are presented in sequence automatically"};
     }
   }
 }

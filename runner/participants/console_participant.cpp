@@ -124,8 +124,8 @@ void ConsoleParticipant::timed_out(const TrialPrompt& prompt, bool is_presented_
   wait_for_enter();  // or trials would run on without anybody
 }
 
-// Only an empty line is a yes: an answer that was typed ahead is not. Nothing but quit gives up what
-// was answered.
+// Only an empty line is a yes: an answer that was typed ahead is not. Nothing but quit gives up
+// what was answered.
 bool ConsoleParticipant::saves_again(const std::string& cause) {
   constexpr std::string_view how{"Press Enter to try again, or type quit: "};
   say("\n{}\n  What was entered is not stored yet, but kept. {}", cause, how);

@@ -46,7 +46,7 @@ class ConsoleParticipant final : public Participant {
   void let_script_wait(const TrialPrompt& prompt, std::size_t alternative,
                        Exploration& exploration) const;
   // Or to hear out all intervals.
-  void let_script_attend(const TrialPrompt& prompt, Exploration& exploration);
+  void wait_for_intervals(const TrialPrompt& prompt, Exploration& exploration);
   bool passes_time_until(const std::function<bool()>& is_done, Exploration& exploration) const;
   std::optional<std::string> next_line(const TrialPrompt& prompt, Exploration& exploration);
   // "correct 2": whether the word was that.

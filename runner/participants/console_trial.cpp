@@ -126,14 +126,14 @@ void ConsoleParticipant::let_script_wait(const TrialPrompt& prompt, std::size_t 
   const double until_s = exploration.time_s() + script_patience_s + limits.min_seconds;
   while (passes_time_until(is_done, exploration)) {
     if (exploration.time_s() > until_s) {
-      say("  the plate was tapped {} of {} times in {:.0f} s: nobody is there\n",
+      say("  the plate was tapped {} of {} times in {:.0f} s: no response, stopping\n",
           exploration.contacts(alternative), limits.min_contacts, script_patience_s);
       ask_to_stop();
     }
   }
 }
 
-void ConsoleParticipant::let_script_attend(const TrialPrompt& prompt, Exploration& exploration) {
+void ConsoleParticipant::wait_for_intervals(const TrialPrompt& prompt, Exploration& exploration) {
   const IntervalState* const state = exploration.intervals();
   if (state == nullptr) {
     return;
@@ -146,7 +146,8 @@ void ConsoleParticipant::let_script_attend(const TrialPrompt& prompt, Exploratio
   while (passes_time_until(is_over, exploration)) {
     intervals_->announce(exploration);
     if (exploration.time_s() > until_s) {
-      say("  an interval was not tapped in for {:.0f} s: nobody is there\n", script_patience_s);
+      say("  an interval was not tapped in for {:.0f} s: no response, stopping\n",
+          script_patience_s);
       ask_to_stop();
     }
   }
@@ -168,7 +169,7 @@ std::optional<std::string> ConsoleParticipant::answer_among_alternatives(const T
                                                                          Exploration& exploration) {
   const std::vector<std::string>& labels = prompt.alternative_labels;
   while (const auto line = next_line(prompt, exploration)) {
-    let_script_attend(prompt, exploration);
+    wait_for_intervals(prompt, exploration);
     if (auto answer = answer_typed(*line, prompt, exploration)) {
       return answer;
     }
@@ -206,12 +207,12 @@ bool ConsoleParticipant::adjusts(const std::string& line, const TrialPrompt& pro
   const std::ptrdiff_t to = std::clamp<std::ptrdiff_t>(from + *moved, 0, last);
   const std::string& label = prompt.alternative_labels.back();
   if (to == from) {
-    say("  {} goes no further that way\n", label);
+    say("  {} is at its limit in that direction\n", label);
     return true;
   }
   exploration.adjust(static_cast<std::size_t>(to));
   say("  {} is changed (takes effect once the finger is off the plate){}\n", label,
-      to == from + *moved ? "" : fmt::format("; {} goes no further that way", label));
+      to == from + *moved ? "" : fmt::format("; {} is at its limit in that direction", label));
   let_script_wait(prompt, prompt.alternative_labels.size() - 1, exploration);
   return true;
 }

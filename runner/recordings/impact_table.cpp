@@ -32,8 +32,7 @@ class ImpactTable {
     std::vector<double> values;
     for (std::size_t i = 1; i < text_.rows.size(); ++i) {
       const auto& cells = text_.rows[i].cells;
-      const auto value =
-          place < cells.size() ? text_.number(cells[place]) : std::nullopt;
+      const auto value = place < cells.size() ? text_.number(cells[place]) : std::nullopt;
       if (!value || !of_number(*value)) {
         throw core::InvalidInput{fmt::format("{}:{}: '{}' is not {}", file_, text_.rows[i].line,
                                              place < cells.size() ? cells[place] : "", what)};

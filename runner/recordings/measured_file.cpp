@@ -129,7 +129,8 @@ ImpactForce impact_force(const analysis::Recording& force, const analysis::Tap& 
                                          force.file, force.channel,
                                          static_cast<double>(tap.onset) / force.rate_hz)};
   }
-  const std::vector<std::size_t> rails = analysis::rail_samples(force.samples, analysis::noise_rms(force));
+  const std::vector<std::size_t> rails =
+      analysis::rail_samples(force.samples, analysis::noise_rms(force));
   return {std::abs(sum_n) / force.rate_hz, moment / sum_n / force.rate_hz,
           std::ranges::any_of(rails,
                               [&](std::size_t i) { return pulse.first <= i && i < pulse.last; })};

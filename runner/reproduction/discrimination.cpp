@@ -113,6 +113,13 @@ Method cross_validated(const Bench& bench, const ConfusionMatrix& table, const S
   return method;
 }
 
+std::string what_command_shows(const std::vector<Simulated>& studies) {
+  return fmt::format(
+      "The command simulates the protocol's own noise, {} dB; another is a line of the protocol, "
+      "simulation.observer.noise_db. 5 mm thick: as recommended, with {}.",
+      studies.front().protocol.simulation.observer.noise_db, how_thin);
+}
+
 Claim table_of_observer(const Bench& bench, const ConfusionMatrix& table,
                         const std::vector<Simulated>& studies) {
   Claim claim{
@@ -127,10 +134,7 @@ Claim table_of_observer(const Bench& bench, const ConfusionMatrix& table,
   for (const Simulated& study : studies) {
     claim.methods.push_back(cross_validated(bench, table, study));
   }
-  claim.remarks.push_back(fmt::format(
-      "The command simulates the protocol's own noise, {} dB; another is a line of the protocol, "
-      "simulation.observer.noise_db. 5 mm thick: as recommended, with {}.",
-      studies.front().protocol.simulation.observer.noise_db, how_thin));
+  claim.remarks.push_back(what_command_shows(studies));
   return claim;
 }
 
@@ -173,6 +177,7 @@ Claim structure_well_material_less(const Bench& bench, const ConfusionMatrix& ta
                    "%"),
           within(100.0 * interval.low, 100.0 * interval.high, "material right", material, "%")}});
   }
+  claim.remarks.push_back(what_command_shows(studies));
   return claim;
 }
 

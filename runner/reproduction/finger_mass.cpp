@@ -152,6 +152,9 @@ Claim too_small(const std::vector<Levels>& all) {
     return std::vector{at_most(-far_db, levels.plate + ": 5.8 g over a real tap",
                                levels.light_over_real_db, "dB")};
   });
+  claim.remarks.emplace_back(
+      "The command taps with the protocol's finger of 58 g; the light one is a line of the "
+      "protocol, finger.mass_kg: 0.0058.");
   return claim;
 }
 

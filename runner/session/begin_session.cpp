@@ -32,7 +32,7 @@ std::optional<results::SessionRow> earlier_session(const SessionRequest& request
   }
   if (alike) {
     throw core::InvalidInput{fmt::format(
-        "participant '{}': this study has a '{}' (ids must differ in more than capital letters)",
+        "participant '{}': this study has a '{}' (ids must differ by more than letter case)",
         request.participant_id, *alike)};
   }
   return earlier;

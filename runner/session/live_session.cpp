@@ -90,8 +90,8 @@ LiveOutcome run_live_session(const LiveSession& live) {
   say_what_was_found(session);
   device->begin_session(session.row.seed);
   const auto masking = masking_player(std::move(card), live.protocol, live.rig, session.row.seed);
-  LiveTrials{{live, settings, models, device_request, input, commands, ask_operator, masking.get(), markers,
-              store, session},
+  LiveTrials{{live, settings, models, device_request, input, commands, ask_operator, masking.get(),
+              markers, store, session},
              std::move(device)}
       .run();
   const std::string& id = session.row.participant_id;

@@ -9,6 +9,7 @@
 
 #include "core/error.hpp"
 #include "core/sha256.hpp"
+#include "results/export/csv_file.hpp"
 #include "runner/build_info.hpp"
 #include "runner/participants/scripted_taps.hpp"
 namespace tapstudy::runner {
@@ -50,6 +51,10 @@ void check_participant_id(const std::string& id) {
   const auto is_allowed = [](unsigned char c) {
     return std::isalnum(c) != 0 || c == '-' || c == '_' || c == '.';
   };
+  if (id == results::missing_in_csv) {
+    throw core::InvalidInput{
+        fmt::format("--participant: '{}' means a missing value in tables", id)};
+  }
   if (id.empty() || id.size() > 64 || !std::ranges::all_of(id, is_allowed)) {
     throw core::InvalidInput{fmt::format(
         "--participant: '{}' is not allowed (1 to 64 letters, digits, '-', '_' or '.')", id)};

@@ -4,6 +4,7 @@ namespace tapstudy::runner {
 // Exit status of the process.
 enum class ExitCode {
   done = 0,
+  internal_error = 1,  // a defect of the program, or not enough memory
   wrong_input = 2,
   device_failed = 3,
   model_failed = 4,

@@ -25,10 +25,10 @@ SessionLock::SessionLock(const std::string& what, const std::string& refusal)
   if (bind(socket_, reinterpret_cast<const sockaddr*>(&address), size) != 0) {
     const int error = errno;
     close(socket_);
-    throw core::InvalidInput{error == EADDRINUSE
-                                 ? refusal
-                                 : fmt::format("whether this is the only session is not known: {}",
-                                               std::strerror(error))};
+    throw core::InvalidInput{
+        error == EADDRINUSE
+            ? refusal
+            : fmt::format("cannot check for another running session: {}", std::strerror(error))};
   }
 }
 

@@ -7,8 +7,9 @@
 
 #include "runner/terminal/line_input.hpp"
 namespace tapstudy::runner {
-// The operator's commands among the lines of a terminal at which a participant answers. The terminal
-// does not wait until a command is stored: what became of it is said as soon as it is known.
+// The operator's commands among the lines of a terminal at which a participant answers. The
+// terminal does not wait until a command is stored: what became of it is said as soon as it is
+// known.
 class TypedCommands {
  public:
   struct Posted {

@@ -21,7 +21,8 @@ std::string sql(const TempDirectory& directory, const std::string& query) {
       .standard_output;
 }
 const std::string practised = "2\n2\n2\n2\n1\n";  // right is every second, then two in a row
-const std::string controlled = "ready\nmounted\n1\nready\nmounted\n2\n";      // each plate is mounted first
+const std::string controlled =
+    "ready\nmounted\n1\nready\nmounted\n2\n";  // each plate is mounted first
 }  // namespace
 
 TEST_CASE("practice ends with the answer that meets its criterion", "[end_to_end][threads]") {

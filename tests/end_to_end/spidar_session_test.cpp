@@ -49,7 +49,7 @@ class Laboratory {
         return result.standard_error.find(words) != std::string::npos;
       };
       const bool is_guardian_killed = !options.empty() && options[0] == "--kill-guardian-after";
-      const bool is_guardian_late = says("the process that guards the force has ended");
+      const bool is_guardian_late = says("the watchdog process has ended");
       const bool is_kernel_gone = says("libumockdev") || says("GLib-ERROR") || report.is_null();
       if (!is_kernel_gone && (is_guardian_killed || !is_guardian_late)) {
         break;
@@ -195,7 +195,7 @@ TEST_CASE("without its guardian the program renders no force", "[end_to_end][usb
   const auto result = laboratory.session({"--kill-guardian-after", "990"});
   INFO(result.standard_error);
   REQUIRE(result.exit_code == 0);  // the device was opened anew, with another
-  CHECK_THAT(result.standard_error, Contains("the process that guards the force has ended"));
+  CHECK_THAT(result.standard_error, Contains("the watchdog process has ended"));
 }
 
 TEST_CASE("unplugged in a trial, all is kept, and plugged in again the trial is repeated",

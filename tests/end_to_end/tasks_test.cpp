@@ -501,7 +501,7 @@ TEST_CASE("at the terminal + and - move the stimulus, = answers as it is set, ea
         Approx(expected).epsilon(1e-6));
   CHECK(sql(directory, "SELECT count(*) FROM event WHERE kind = 'setting'") == "4\n");
   CHECK(sql(directory, "SELECT count(*), count(DISTINCT label) FROM alternative") == "12 2\n");
-  CHECK_THAT(result.standard_error, Contains("B goes no further that way") &&
+  CHECK_THAT(result.standard_error, Contains("B is at its limit in that direction") &&
                                         Contains("+ or - to change B, = when it is set"));
   CHECK(testing::tapstudy({"verify", directory / "study"}).exit_code == 0);
 }
@@ -621,7 +621,7 @@ TEST_CASE("what cannot be compared is refused at its line", "[end_to_end]") {
       {"    stimuli: [family]\n", "    stimuli: [one]\n", "which must have `vary`"},
       {"    stimuli: [family]\n", "    stimuli: [family]\n    standard: 2\n", "standard"},
       {"    stimuli: [family]\n", "    stimuli: [family]\n    axis: thickness_m\n",
-       "is not a known axis of the stimulus"},
+       "is not a known axis of the stimuli"},
       {"    stimuli: [family]\n", "    stimuli: [family]\n    repetitions: 2\n",
        "is what the procedures make it"},
       {"    procedures:\n      - constant: {values: [0.0], repetitions: 240}\n", "",

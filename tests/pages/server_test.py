@@ -101,11 +101,11 @@ class ServerTest(unittest.TestCase):
         self.assertEqual(self.session.rows("SELECT detail FROM operator_action"), [("x",)])
 
     def test_bodies_that_are_no_input_are_refused(self):
-        deep = b'{"action":"answer","screen":1,"value":' + 20000 * b"[" + 20000 * b"]" + b"}"
+        deep = b'{"action":"answer","screen":1,"value":' + 120000 * b"[" + 120000 * b"]" + b"}"
         self.assertEqual(self.ask(self.of_operator.path + "input", "POST",
                                   deep.replace(b"value", b"command"), {"X-Tapstudy": "1"})[0], 409)
         for body, allowed in ((b"", (409,)), (b"{", (409,)), (b"\xff\xfe", (409,)), (deep, (409,)),
-                              (b"x" * 70000, (413,))):
+                              (b"x" * 270000, (413,))):
             status = self.ask(self.at.path + "input", "POST", body, {"X-Tapstudy": "1"})[0]
             self.assertIn(status, allowed)
         self.assertEqual(self.post(self.of_operator, {"command": "note " + "x" * 3000})[0], 409)

@@ -311,7 +311,7 @@ class WholeSession(unittest.TestCase):
             browser.move_by_mouse(self.driver, 1)
         for _ in range(12):
             up()
-        browser.wait_for_status(self.driver, "B goes no further that way")
+        browser.wait_for_status(self.driver, "B is at its limit in that direction")
         browser.wait_until(self.driver, "B to be felt", lambda: browser.current_screen(self.driver)["felt"] == 1)
         if by_keys:
             browser.press(self.driver, "-")

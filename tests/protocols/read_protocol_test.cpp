@@ -35,7 +35,7 @@ TEST_CASE("a comma where a document should begin is no endless row of documents"
 }
 
 TEST_CASE("every shipped protocol can be read", "[protocols]") {
-  for (const char* const folder : {"paper", "recommended"}) {
+  for (const char* const folder : {"paper", "recommended", "examples"}) {
     for (const auto& entry : std::filesystem::directory_iterator{testing::shipped(folder)}) {
       if (entry.path().extension() == ".yaml") {
         INFO(entry.path().string());

@@ -41,8 +41,8 @@ TEST_CASE("a standard that is not built is refused, for another plate would be p
 
 TEST_CASE("a block without procedures, where they are named, is refused", "[protocols][tasks]") {
   std::string text = testing::contents(testing::shipped("examples/stiffness_jnd.yaml"));
-  text = testing::replaced(text.substr(0, text.find("    procedures:")),
-                           "    task: comparison\n", "    task: comparison\n    procedures: []\n");
+  text = testing::replaced(text.substr(0, text.find("    procedures:")), "    task: comparison\n",
+                           "    task: comparison\n    procedures: []\n");
   CHECK_THROWS_WITH(protocols::parse_protocol(text, "study.yaml"),
                     Contains("procedures: is empty (at least one)"));
 }

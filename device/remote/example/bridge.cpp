@@ -106,7 +106,7 @@ class Bridge {
 
  private:
   void note_silence() {
-    has_let_go_ = true;
+    has_released_ = true;
     force_n_ = {};
     if (++silences_ == silences_until_forgotten && has_sender_) {
       sockaddr nobody{};
@@ -129,8 +129,8 @@ class Bridge {
     }
   }
   void reply() {
-    const std::uint32_t status = 1U | (has_let_go_ ? 2U : 0U);
-    has_let_go_ = false;
+    const std::uint32_t status = 1U | (has_released_ ? 2U : 0U);
+    has_released_ = false;
     std::array<char, 88> reply{'T', 'A', 'P', 'R', 2};
     std::memcpy(reply.data() + 8, &number_, 4);
     std::memcpy(reply.data() + 12, finger_.position_m.data(), 24);
@@ -143,7 +143,7 @@ class Bridge {
   int socket_;
   sockaddr_in sender_{};
   bool has_sender_ = false;
-  bool has_let_go_ = false;
+  bool has_released_ = false;
   int silences_ = 0;
   std::uint32_t number_ = 0;
   std::array<double, 3> force_n_{};

@@ -195,8 +195,9 @@ TEST_CASE(
       by_bootstrap += result->bootstrap && holds(*result->bootstrap) ? 1 : 0;
       pooled += holds(wilson_interval(all)) ? 1 : 0;
     }
-    fmt::print("  intra-class correlation {}: covered {} (t {}, bootstrap {}, pooled Wilson {}) of {}\n",
-               intraclass, ours, by_t, by_bootstrap, pooled, studies);
+    fmt::print(
+        "  intra-class correlation {}: covered {} (t {}, bootstrap {}, pooled Wilson {}) of {}\n",
+        intraclass, ours, by_t, by_bootstrap, pooled, studies);
     CHECK(ours >= (0.95 - 3.0 * error) * studies);
     CHECK(ours >= by_t - 3.0 * error * studies);
     CHECK(by_bootstrap >= by_t - 3.0 * error * studies);

@@ -170,8 +170,8 @@ TEST_CASE("what strikes twice within 30 ms is one impact, whose decay begins aft
   if (second_s < 0.03) {
     CHECK(static_cast<double>(impacts.front().last_blow) / rate_hz ==
           Approx(0.3 + second_s).margin(5e-4));
-    const FoundTaps found = taps_at(
-        impacts, testing::planted_recording(plate, blows_s, rate_hz, 2.5, 0.001, 6), {});
+    const FoundTaps found =
+        taps_at(impacts, testing::planted_recording(plate, blows_s, rate_hz, 2.5, 0.001, 6), {});
     CHECK(found.taps.front().begin > impacts.front().last_blow);
     CHECK_THAT(found.remarks.front(), Contains("struck again"));
   }

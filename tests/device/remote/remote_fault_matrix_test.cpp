@@ -96,7 +96,8 @@ class MockProgram {
     std::array<std::uint8_t, 88> reply{'T', 'A', 'P', 'R', 1};
     reply[4] = tells_of_force() ? 2 : 1;
     const std::uint32_t on = trouble == Trouble::no_power ? 0 : device::motors_on;
-    const std::uint32_t status = on | (trouble == Trouble::releases ? device::has_let_go : 0);
+    const std::uint32_t status =
+        on | (trouble == Trouble::releases ? device::force_was_released : 0);
     std::memcpy(reply.data() + 60, &status, sizeof status);
     const double told_n = trouble == Trouble::overload ? 80.0
                           : trouble == Trouble::limp   ? 0.0

@@ -282,10 +282,8 @@ JournalContent read_journal(const std::string& directory) {
     ++number;
     const JournalLine line = split_line(text);
     if (line.chain != chain_of(chain, line.body)) {
-      throw StoreError{
-          fmt::format("{}, line {}: the hash chain is broken: this line was changed, or one before "
-                      "it removed or inserted",
-                      file, number)};
+      throw StoreError{fmt::format(
+          "{}, line {}: was changed, or a line before it was (hash chain broken)", file, number)};
     }
     chain = line.chain;
     try {

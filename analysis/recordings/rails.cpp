@@ -72,7 +72,7 @@ std::vector<std::size_t> rail_samples(const std::vector<double>& samples, double
   const auto is_limited = [&](std::size_t begin, std::size_t end) {
     return end - begin >= min_noisy_run &&
            step_beside(samples, begin, end) >
-               limited_steps * std::max(spread_of(samples, begin, end), resolution);
+               limited_steps * std::max({spread_of(samples, begin, end), resolution, noise_rms});
   };
   for (const double extreme : {low, high}) {
     add_runs_at(extreme, 0.0, samples, is_flat, rails);

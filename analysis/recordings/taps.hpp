@@ -52,6 +52,6 @@ double noise_rms(const Recording& recording);
 // or smallest value of all into which the signal does not run smoothly (next to it, it moves by
 // more than three steps of the converter's resolution); and runs of four and more within three
 // times the noise of these values, as a limited amplifier in front of a noisy converter gives them,
-// next to which the signal moves by more than six times what it does within the run.
+// next to which the signal moves by more than six times the noise, and what it does within the run.
 std::vector<std::size_t> rail_samples(const std::vector<double>& samples, double noise_rms);
 }  // namespace tapstudy::analysis

@@ -26,6 +26,10 @@ class DeviceKind : public protocols::RigDevice {
   virtual void check(const protocols::Rig& /*rig*/) const {}
   // Throws DeviceError if it does not reply, InvalidInput if the rig refers to what does not exist.
   virtual std::unique_ptr<SessionDevice> open(const DeviceRequest& request) const = 0;
+  // Whether it can hold its grip there, in the device frame.
+  virtual bool reaches(const protocols::Rig& /*rig*/, const core::Vec3& /*at_m*/) const {
+    return true;
+  }
   // Whether it is present and could be opened now.
   virtual bool is_there() const { return true; }
   // How many ticks later than a force is computed it is exerted: it lowers the stability bound of

@@ -28,16 +28,18 @@ void check_workspace(const protocols::Protocol& protocol, const protocols::Rig& 
       const auto z_m = top.at_m(at_m);
       const core::Vec3 on_device_m = placement.scaled(plate->lateral_ratio)
                                          .point_to_device({at_m.x(), at_m.y(), z_m.value_or(0.0)});
-      if (z_m && on_device_m.norm() > rig.gate.workspace_radius_m) {
-        out_of_reach += fmt::format("\n  {} on plate '{}' is {:.1f} mm from the device's middle",
-                                    point, name, 1e3 * on_device_m.norm());
+      const bool is_outside = on_device_m.norm() > rig.gate.workspace_radius_m;
+      if (z_m && (is_outside || !kind_of(rig).reaches(rig, on_device_m))) {
+        out_of_reach += fmt::format("\n  {} on plate '{}' is {:.1f} mm from the device's middle{}",
+                                    point, name, 1e3 * on_device_m.norm(),
+                                    is_outside ? "" : ", where the device cannot hold its grip");
       }
     }
   }
   if (!out_of_reach.empty()) {
     throw core::InvalidInput{
-        fmt::format("these tapping points lie beyond workspace_radius_m, {:.1f} mm (lower "
-                    "lateral_scale, in placement {}, or move origin_m):{}",
+        fmt::format("these tapping points lie beyond workspace_radius_m, {:.1f} mm, or the "
+                    "device's reach (lower lateral_scale, in placement {}, or move origin_m):{}",
                     1e3 * rig.gate.workspace_radius_m, placement.lateral_scale, out_of_reach)};
   }
 }

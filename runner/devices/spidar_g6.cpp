@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "device/spidar/find_spidars.hpp"
+#include "device/spidar/tensions.hpp"
 #include "protocols/spidar_calibration.hpp"
 #include "protocols/yaml/text_file.hpp"
 #include "protocols/yaml/yaml_reader.hpp"
@@ -136,6 +137,11 @@ class SpidarKind final : public DeviceKind {
   }
   void check(const protocols::Rig& rig) const override {
     device::check_calibration(section_of(rig).calibration);
+  }
+  bool reaches(const protocols::Rig& rig, const core::Vec3& at_m) const override {
+    const device::SpidarGeometry geometry = device::spidar_geometry(section_of(rig).type);
+    return device::closure_margin(device::strings_at(
+               geometry, {device::with_z_turned(at_m), Eigen::Matrix3d::Identity()})) > 0.0;
   }
 
   std::unique_ptr<SessionDevice> open(const DeviceRequest& request) const override {

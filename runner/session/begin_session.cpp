@@ -38,6 +38,18 @@ std::optional<results::SessionRow> earlier_session(const SessionRequest& request
   return earlier;
 }
 
+// The order of a participant who resumes is the stored one.
+void check_keeps_order(const SessionRequest& request, const results::SessionRow& earlier) {
+  if (request.order_index) {
+    throw core::InvalidInput{"--row: cannot be combined with --resume, which keeps the order"};
+  }
+  if (request.seed && *request.seed != earlier.seed) {
+    throw core::InvalidInput{fmt::format(
+        "--seed: this participant's order was drawn with seed {}, and --resume keeps it",
+        earlier.seed)};
+  }
+}
+
 void resume(const results::SessionRow& earlier, const protocols::Protocol& protocol,
             results::Store& store, BegunSession& session) {
   if (earlier.planned_order != session.row.planned_order) {
@@ -78,10 +90,8 @@ BegunSession begin_session(const SessionRequest& request, const protocols::Proto
   // sessions begun at the same time must not get the same index
   store.in_one_transaction([&] {
     const auto earlier = earlier_session(request, store);
-    if (earlier && (request.order_index || request.seed)) {
-      throw core::InvalidInput{
-          fmt::format("--{}: cannot be combined with --resume, which keeps the stored order",
-                      request.order_index ? "row" : "seed")};
+    if (earlier) {
+      check_keeps_order(request, *earlier);
     }
     const auto place = store.place_of(plan.participant_id, plan.mode, [&](const std::string& id) {
       return is_in_session(store.directory(), id);

@@ -81,8 +81,8 @@ TEST_CASE("what cannot be amended is refused in one line, and nothing is stored"
   check_refused("sim-01", "correct 2", "which trial?");
   check_refused("sim-01", "correct @99 2", "trial 99 was not presented");
   check_refused("sim-01", "exclude @3 asleep", "concerns the participant, not a trial");
-  check_refused("sim-01", "note \xff\xfe", "not text");
-  check_refused("sim-01", "note \033[31mred", "not text");
+  check_refused("sim-01", "note \xff\xfe", "must be UTF-8 text");
+  check_refused("sim-01", "note \033[31mred", "must be UTF-8 text");
   check_refused("sim-01", "correct @3 9", "'9' is not a number from 1 to 4");
   check_refused("sim-01", "include", "include is not possible now");
   check_refused("sim-01", "exclude", "REASON");

@@ -67,7 +67,7 @@ TEST_CASE("catch trials, labels and corrections that contradict are refused at t
       {"expected: {hard_held: acrylic}", "expected: {hard_held: oak}", "cannot be answered"},
       {"mdf: {en: wood fibre, de: Holzfaser}", "mdf: acrylic", "have the same label"},
       {"    criterion:", "    feedback: true\n    correction: true\n    criterion:",
-       "told by feedback"},
+       "cannot be combined with feedback"},
       {"correct: 2, of_last: 2", "correct: 3, of_last: 2", "no 3 can be right"},
       {"    presented: real\n", "    presented: real\n    explore: {min_contacts: 1}\n",
        "contacts are not measured"},

@@ -98,7 +98,7 @@ TEST_CASE("a device that cannot be used is one clear error, and no force is ever
       {{"--boards", "2"}, "2 SPIDAR-G6 are plugged in: say in the rig which"},
       {{"--forbidden"}, "no permission (copy device/udev/70-tapstudy.rules"},
       {{"--silent"}, "does not answer: no reply in time"},
-      {{"--nonsense"}, "answers nonsense: the device got what was never sent"},
+      {{"--nonsense"}, "sent an invalid reply: the device got what was never sent"},
   }));
   Laboratory laboratory;
   const auto result = laboratory.session(options);

@@ -25,7 +25,7 @@ std::string said_of(const std::string& study, const std::string& column, const s
   const auto run = testing::tapstudy({"verify", study});
   set(back);
   CHECK(run.exit_code == 5);
-  CHECK_THAT(run.standard_error, Contains("1 values"));
+  CHECK_THAT(run.standard_error, Contains("1 stored values"));
   return run.standard_output;
 }
 }  // namespace

@@ -198,7 +198,8 @@ TEST_CASE("discrimination refuses what it cannot count and says what it assumes"
                   core::InvalidInput);
   const auto formats = reported(statistic, design_of("abx_differencing", 2), answers);
   CHECK_THAT(formats.text, Contains("as independent"));
-  CHECK_THAT(formats.html, Contains("a: all right: d&#39; of") || Contains("a: all right: d' of"));
+  CHECK_THAT(formats.html, Contains("a: all correct: d&#39; computed") ||
+                               Contains("a: all correct: d' computed"));
   CHECK_THAT(formats.text, Contains("b: below chance: d' is 0."));
   CHECK(formats.json["participants"][0]["d_prime_high"] == "inf");
   CHECK(testing::longest_line(formats.text) <= 100);

@@ -217,6 +217,17 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("a program that reports a released force in every reply is not believed",
+          "[device][safety][remote]") {
+  Stage stage;
+  stage.is_version_2 = true;
+  stage.trouble = Trouble::releases;
+  CHECK(stage.hand.release_after(std::chrono::milliseconds{20}) ==
+        device::RemoteHand::Release::always_reported);
+  stage.loop.tick(200);
+  CHECK(stage.loop.loop->report().stopped_by == TickFault::force_released);
+}
+
 TEST_CASE("a stop that a later reply contradicts is not confirmed", "[device][safety][remote]") {
   Stage stage;
   stage.is_version_2 = true;

@@ -179,7 +179,7 @@ TEST_CASE("a string under calibration pulls under watch, and for a minute at mos
   }};
   person.length_ = [&] { bench.count.at(0) += 6000; };
   const auto [why, said] = GENERATE(table<std::string, std::string>(
-      {{"a minute has passed", "pulled for 60 s"}, {"stood still", "took the force off"}}));
+      {{"a minute has passed", "under tension for 60 s"}, {"stood still", "took the force off"}}));
   reason = why;
   CHECK_THROWS_WITH(
       device::calibrate_spidar(*bench.board, bench.pipe, bench.watchdog, bench.clock, person),
@@ -217,7 +217,7 @@ TEST_CASE("without a guardian no string pulls, and one that cannot be let go is 
     bench.guardian = {};
     CHECK_THROWS_WITH(
         device::calibrate_spidar(*bench.board, bench.pipe, bench.watchdog, bench.clock, person),
-        Contains("guards the force has ended"));
+        Contains("watchdog process has ended"));
     CHECK(bench.max_dac_counts == 0);
   }
   SECTION("no reply to zero force") {

@@ -45,6 +45,27 @@ TEST_CASE("a rig with hardware brings its limits and its device's calibration", 
   CHECK(rig.max_late_ticks_in_a_row == 20);
 }
 
+TEST_CASE("tapping points outside the frame of the strings are out of reach, whatever the rig says",
+          "[runner][rig][safety]") {
+  const testing::TempDirectory directory;
+  testing::write(directory / "spidar_calibration.yaml", calibration_text());
+  const protocols::Protocol protocol =
+      protocols::read_protocol(testing::shipped("paper/discrimination.yaml"));
+  const auto refusal_at = [&](const std::string& lateral_scale) -> std::string {
+    std::string text = replaced(rig_text(), "workspace_radius_m: 0.02", "workspace_radius_m: 0.5");
+    text = replaced(text, "lateral_scale: 0.05", "lateral_scale: " + lateral_scale);
+    testing::write(directory / "rig.yaml", text);
+    try {
+      runner::check_fits(protocol, runner::read_rig(directory / "rig.yaml"));
+    } catch (const core::InvalidInput& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  CHECK(refusal_at("0.05") == "accepted");  // 1.7 cm from the middle
+  CHECK_THAT(refusal_at("1"), Contains("the device cannot hold its grip"));  // 34 cm; the frame: 12
+}
+
 TEST_CASE("a rig with hardware must have limits and a calibration", "[runner][rig]") {
   struct Case {
     const char* from;

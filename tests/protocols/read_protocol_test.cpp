@@ -64,7 +64,8 @@ TEST_CASE("a sinusoid by place leads from one place to another, and does not ali
                                 by_place + "}}\n  penalty_stiffness_n_per_m:"));
   };
   CHECK(with("from_m: [0, 0], to_m: [0.1, 0], frequency_factor: 1.5") == "accepted");
-  CHECK_THAT(with("from_m: [0, 0], to_m: [0, 0]"), Contains("by_place.to_m: is the same as from_m"));
+  CHECK_THAT(with("from_m: [0, 0], to_m: [0, 0]"),
+             Contains("by_place.to_m: is the same as from_m"));
   CHECK_THAT(with("from_m: [0, 0], to_m: [0.1, 0], frequency_factor: 2"),
              Contains("rendering.sinusoid: its frequency is not below half of rate_hz"));
 }

@@ -79,8 +79,7 @@ std::vector<std::size_t> rail_samples(const std::vector<double>& samples, double
     add_runs_at(extreme, noise_tolerance * noise_rms, samples, is_limited, rails);
   }
   std::ranges::sort(rails);
-  const auto twice = std::ranges::unique(rails);
-  rails.erase(twice.begin(), twice.end());
+  rails.erase(std::unique(rails.begin(), rails.end()), rails.end());
   return rails;
 }
 }  // namespace tapstudy::analysis

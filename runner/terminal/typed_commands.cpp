@@ -36,9 +36,9 @@ void TypedCommands::obey(const std::string& line) {
 }
 
 void TypedCommands::say_outcomes() {
-  const auto known = std::ranges::stable_partition(open_, std::not_fn(is_known));
-  std::ranges::for_each(known, say_outcome);
-  open_.erase(known.begin(), known.end());
+  const auto known = std::stable_partition(open_.begin(), open_.end(), std::not_fn(is_known));
+  std::for_each(known, open_.end(), say_outcome);
+  open_.erase(known, open_.end());
 }
 
 bool TypedCommands::heed(const TypedAhead& typed) {

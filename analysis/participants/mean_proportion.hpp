@@ -37,7 +37,7 @@ std::optional<Interval> bca_interval(const std::vector<double>& values, int draw
                                      std::uint64_t seed, double tail);
 // The 95 % interval of a mean by that bootstrap. Its tails are expanded for few values (Hesterberg
 // 2015), as far as the bootstrap's own spread, too small by sqrt(1 - 1 / n), would make it shorter
-// than that by t: of five values it would hold the mean in 86 % of samples. Throws and unset as
+// than that by t: of five values it would hold the mean in 83 % of samples. Throws and unset as
 // bca_interval.
 std::optional<Interval> bootstrap_interval(const std::vector<double>& values, int draws,
                                            std::uint64_t seed);

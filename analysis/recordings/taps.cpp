@@ -172,7 +172,8 @@ void check_length(const Recording& recording) {
 
 FoundTaps find_taps(const Recording& recording, const TapFinding& finding) {
   check_length(recording);
-  return taps_at(TapFinder{recording, {}}.impacts(), recording, finding);
+  TapFinder finder{recording, finding};
+  return finder.find(finder.impacts());
 }
 
 FoundTaps taps_at(const std::vector<Impact>& impacts, const Recording& recording,

@@ -98,6 +98,8 @@ class Identifier {
     for (const std::string& remark : found.remarks) {
       result_.remarks.push_back(file.channels.front().file + ": " + remark);
     }
+    std::vector<double> noise_rms;  // of each channel
+    std::ranges::transform(file.channels, std::back_inserter(noise_rms), analysis::noise_rms);
     for (const analysis::Tap& tap : found.taps) {
       hook_(fmt::format("tap {} of {}", tap.impact, file.channels.front().file));
       const auto force = file.force ? std::optional{impact_force(*file.force, tap)} : std::nullopt;
@@ -105,8 +107,9 @@ class Identifier {
         result_.remarks.push_back(fmt::format("{}: the force of the tap at {:.3f} s is clipped",
                                               file.force->file, force->centre_s));
       }
-      for (const analysis::Recording& channel : file.channels) {
-        if (add(channel, tap)) {
+      for (std::size_t i = 0; i < file.channels.size(); ++i) {
+        if (add(file.channels[i], tap)) {
+          result_.taps.back().noise_rms = noise_rms[i];
           result_.taps.back().impact = before + tap.impact;
           result_.taps.back().force = force;
         }
@@ -130,7 +133,6 @@ class Identifier {
                                             recording.file, one.time_s, error.what()));
       return false;
     }
-    one.noise_rms = analysis::noise_rms(recording);
     const Band wide{result_.band.low_hz,
                     std::max(result_.band.high_hz,
                              std::min(default_high_hz, usable_rate_share * recording.rate_hz))};

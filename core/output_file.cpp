@@ -1,24 +1,79 @@
 #include "core/output_file.hpp"
 
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
 #include <algorithm>
+#include <cerrno>
 #include <filesystem>
+#include <set>
+#include <stdexcept>
+#include <system_error>
 
 #include "core/error.hpp"
 namespace tapstudy::core {
 namespace {
 namespace fs = std::filesystem;
 
-void write_file(const std::string& file, const Write& write) {
-  std::ofstream stream{file, std::ios::binary};
-  if (!stream) {
-    throw InvalidInput{file + ": cannot be written"};
+// A file that did not exist before, and will not again unless it is kept.
+class CreatedFile {
+ public:
+  explicit CreatedFile(const std::string& file)
+      : name_{file},
+        descriptor_{open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666)} {
+    if (descriptor_ < 0) {
+      throw InvalidInput{
+          fmt::format("{}: cannot be written: {}", file, std::generic_category().message(errno))};
+    }
   }
-  write(stream);
-  stream.close();
-  if (!stream) {
-    std::error_code ignored;
-    fs::remove(file, ignored);
-    throw InvalidInput{file + ": writing failed (is the disk full?)"};
+  ~CreatedFile() {
+    close(descriptor_);
+    if (!is_kept_) {
+      std::error_code ignored;
+      fs::remove(name_, ignored);
+    }
+  }
+  CreatedFile(const CreatedFile&) = delete;
+  CreatedFile& operator=(const CreatedFile&) = delete;
+  CreatedFile(CreatedFile&&) = delete;
+  CreatedFile& operator=(CreatedFile&&) = delete;
+
+  void write(const Write& write) {
+    std::ofstream stream{name_, std::ios::binary};
+    write(stream);
+    stream.close();
+    check(!stream.fail());
+  }
+  void sync() const { check(fsync(descriptor_) == 0); }
+  void keep() { is_kept_ = true; }
+
+ private:
+  void check(bool is_written) const {
+    if (!is_written) {
+      throw InvalidInput{name_ + ": writing failed (is the disk full?)"};
+    }
+  }
+
+  std::string name_;
+  int descriptor_;
+  bool is_kept_{false};
+};
+
+void check_is_replaceable(const std::string& file) {
+  std::error_code error;
+  const fs::file_type type = fs::status(file, error).type();
+  if (type != fs::file_type::not_found && type != fs::file_type::regular) {
+    throw InvalidInput{file + ": is no regular file and is not replaced"};
+  }
+}
+
+void check_names_differ(const std::vector<NewFile>& files) {
+  std::set<std::string> names;
+  for (const NewFile& file : files) {
+    if (!names.insert(file.name).second) {
+      throw std::logic_error{file.name + ": two files of one name"};
+    }
   }
 }
 
@@ -26,11 +81,20 @@ std::string unfinished(const std::string& file) {
   return file + ".unfinished";
 }
 
+void write_unfinished(const NewFile& file) {
+  std::error_code ignored;
+  fs::remove(unfinished(file.name), ignored);  // of a program that was killed
+  CreatedFile created{unfinished(file.name)};
+  created.write([&](std::ostream& out) { out << file.text; });
+  created.sync();
+  created.keep();
+}
+
 // The folders that were not there before.
 class MadeFolders {
  public:
   void make_for(const std::string& file) {
-    const fs::path folder = fs::absolute(file).parent_path();
+    const fs::path folder = fs::absolute(file).lexically_normal().parent_path();
     std::error_code error;
     std::vector<fs::path> missing;
     for (fs::path at = folder; !fs::exists(at, error) && at != at.root_path();
@@ -39,7 +103,8 @@ class MadeFolders {
     }
     std::ranges::reverse(missing);
     for (const fs::path& at : missing) {
-      if (!fs::create_directory(at, error)) {
+      fs::create_directory(at, error);
+      if (error) {
         throw InvalidInput{at.string() + ": cannot be made a directory: " + error.message()};
       }
       made_.push_back(at);
@@ -77,29 +142,25 @@ void check_is_new(const std::string& file) {
 
 void write_new_file(const std::string& file, const Write& write) {
   check_is_new(file);
-  write_file(file, write);
+  CreatedFile created{file};
+  created.write(write);
+  created.keep();
 }
 
 void write_new_file(const std::string& file, const std::string& text) {
   write_new_file(file, [&](std::ostream& out) { out << text; });
 }
 
-void replace_file(const std::string& file, const Write& write) {
-  write_file(unfinished(file), write);
-  finish(file);
-}
-
 void write_all_or_none(const std::vector<NewFile>& files, Existing existing) {
+  check_names_differ(files);
   MadeFolders folders;
   try {
     std::ranges::for_each(files, [&](const NewFile& file) { folders.make_for(file.name); });
-    if (existing == Existing::kept) {
-      std::ranges::for_each(files, check_is_new, &NewFile::name);
-    }
-    for (const NewFile& file : files) {
-      write_file(unfinished(file.name), [&](std::ostream& out) { out << file.text; });
-    }
-  } catch (const InvalidInput&) {
+    std::ranges::for_each(files, existing == Existing::kept ? check_is_new : check_is_replaceable,
+                          &NewFile::name);
+    std::ranges::for_each(files, write_unfinished);
+    std::ranges::for_each(files, finish, &NewFile::name);
+  } catch (...) {
     for (const NewFile& file : files) {
       std::error_code ignored;
       fs::remove(unfinished(file.name), ignored);
@@ -107,6 +168,5 @@ void write_all_or_none(const std::vector<NewFile>& files, Existing existing) {
     folders.remove();
     throw;
   }
-  std::ranges::for_each(files, finish, &NewFile::name);
 }
 }  // namespace tapstudy::core

@@ -13,8 +13,6 @@ void check_is_new(const std::string& file);
 // cannot be created, or could not be written completely.
 void write_new_file(const std::string& file, const Write& write);
 void write_new_file(const std::string& file, const std::string& text);
-// The same, but replaces an existing file once the new one is completely on disk.
-void replace_file(const std::string& file, const Write& write);
 
 struct NewFile {
   std::string name;
@@ -23,6 +21,6 @@ struct NewFile {
 enum class Existing { kept, replaced };
 // Writes files that belong together: all are on the disk before any appears under its name. Makes
 // the folders that they need. Throws InvalidInput, and leaves what was there and no more, if one
-// exists and is to be kept, or cannot be written.
+// exists and is to be kept, is no regular file, or cannot be written.
 void write_all_or_none(const std::vector<NewFile>& files, Existing existing);
 }  // namespace tapstudy::core

@@ -38,58 +38,6 @@ std::vector<std::string> task_names() {
   return names;
 }
 
-void read_intervals(MapReader& explore, ExploreLimits& limits) {
-  explore.map("intervals", Presence::optional, [&](MapReader& reader) {
-    Intervals intervals;
-    intervals.seconds = reader.number("seconds", Range::positive(60.0));
-    intervals.gap_seconds = reader.number("gap_seconds", {0.0, 60.0}, intervals.gap_seconds);
-    intervals.max_replays = reader.integer("max_replays", 0, 100, intervals.max_replays);
-    limits.intervals = intervals;
-  });
-}
-
-void read_scripted_taps(MapReader& explore, const Protocol& protocol, Presented presented,
-                        ExploreLimits& limits) {
-  explore.map("scripted_taps", Presence::optional, [&](MapReader& reader) {
-    ScriptedTaps taps;
-    taps.point = reader.word("point", "tapping point", keys_of(protocol.tapping_points_m));
-    taps.speed_m_s = reader.number("speed_m_s", {0.02, 1.0});
-    taps.dwell_s = reader.number("dwell_s", {0.02, 10.0}, taps.dwell_s);
-    taps.pause_s = reader.number("pause_s", {0.2, 10.0}, taps.pause_s);
-    limits.scripted_taps = taps;
-  });
-  if (limits.scripted_taps && presented == Presented::real_plates) {
-    explore.reject("scripted_taps", "are felt through the device: real plates are tapped by hand");
-  }
-}
-
-// How often a real plate is touched is not measured.
-ExploreLimits read_explore(MapReader& block, const Protocol& protocol, Presented presented) {
-  ExploreLimits limits;
-  if (presented == Presented::real_plates) {
-    limits.min_contacts = 0;
-  }
-  block.map("explore", Presence::optional, [&](MapReader& reader) {
-    limits.min_contacts = reader.integer("min_contacts", 0, 1000, limits.min_contacts);
-    if (presented == Presented::real_plates && limits.min_contacts > 0) {
-      reader.reject("min_contacts", "is 0 with real plates: their contacts are not measured");
-    }
-    limits.must_visit_all = reader.yes_or_no("visit_all", limits.must_visit_all);
-    limits.min_seconds = reader.number("min_seconds", {0.0, 3600.0}, limits.min_seconds);
-    if (reader.has("max_seconds")) {
-      limits.max_seconds = reader.number("max_seconds", Range::positive(3600.0));
-      if (*limits.max_seconds <= limits.min_seconds) {
-        reader.reject("max_seconds", "is not above min_seconds");
-      }
-    }
-    limits.at_limit = reader.one_of<AtLimit>(
-        "at_limit", {{"requeue", AtLimit::requeue}, {"give_up", AtLimit::give_up}}, "requeue");
-    read_intervals(reader, limits);
-    read_scripted_taps(reader, protocol, presented, limits);
-  });
-  return limits;
-}
-
 OrderConstraints read_constraints(MapReader& block) {
   OrderConstraints constraints;
   block.map("constraints", Presence::optional, [&](MapReader& reader) {
@@ -152,26 +100,6 @@ void read_practice(MapReader& reader, Block& block) {
   });
   if (block.criterion && !block.is_practice) {
     reader.reject("criterion", "is for practice: it ends a block by how well it is answered");
-  }
-}
-
-// What is one after the other cannot be of one thing, nor be changed while it is felt.
-void check_intervals(MapReader& reader, const Block& block) {
-  if (!block.explore.intervals) {
-    return;
-  }
-  const auto trials = block.task->trials(block, {});
-  if (trials.empty()) {
-    return;
-  }
-  const bool is_of_several = trials.front().alternatives.size() > 1;
-  if (!is_of_several || block.task->settings(trials.front(), block)) {
-    reader.reject("explore",
-                  fmt::format("intervals: the alternatives of {} cannot come one after the "
-                              "other: {}",
-                              block.task->name(),
-                              is_of_several ? "the last is changed while it is felt"
-                                            : "a trial has only one"));
   }
 }
 
@@ -261,18 +189,16 @@ Block read_block(MapReader& reader, const Protocol& protocol) {
 }
 
 void check_block(MapReader& reader, const Block& block, const Protocol& protocol) {
-  if (block.task != nullptr && !block.stimuli.empty()) {
+  if (block.order == Order::williams && conditions(block) < 2) {
+    reader.reject("order", "a Williams order needs at least two stimuli");
+  } else if (block.task != nullptr && !block.stimuli.empty()) {
     check_constraints(reader, block);
     check_labels_differ(reader, protocol, block);
     check_targets(reader, protocol, block);
-    check_intervals(reader, block);
     check_criterion(reader, block);
   }
   if (std::ranges::find(protocol.blocks, block.name, &Block::name) != protocol.blocks.end()) {
     reader.reject("name", fmt::format("'{}' is the name of an earlier block", block.name));
-  }
-  if (block.order == Order::williams && conditions(block) < 2) {
-    reader.reject("order", "a Williams order needs at least two stimuli");
   }
   if (block.stimuli.size() > 26) {
     reader.reject("stimuli", "a block has at most 26 stimuli");
@@ -285,8 +211,12 @@ void read_blocks(MapReader& top, Protocol& protocol) {
   protocol.counterbalancing_seed =
       static_cast<std::uint64_t>(top.integer("counterbalancing_seed", 0, max_seed, 1));
   top.list("blocks", Presence::optional, [&](MapReader& reader) {
+    const std::size_t earlier_problems = reader.problems_in_file();
     const Block block = read_block(reader, protocol);
     check_block(reader, block, protocol);
+    if (reader.problems_in_file() == earlier_problems) {  // only such a block can be drawn
+      check_intervals(reader, block);
+    }
     protocol.blocks.push_back(block);
   });
   if (!protocol.blocks.empty()) {

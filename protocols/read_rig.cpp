@@ -32,6 +32,15 @@ void read_loop(MapReader& top, Rig& rig) {
   });
 }
 
+void check_reply_time(MapReader& top, const Rig& rig) {
+  if (rig.section && rig.max_stall_s > 0.0 &&
+      2.0 * rig.section->max_reply_time_s() > rig.max_stall_s) {
+    top.reject("loop", fmt::format("max_stall_s: {} s is below twice the device's max_reply_s, {} "
+                                   "s: a single missing reply would be a stall",
+                                   rig.max_stall_s, rig.section->max_reply_time_s()));
+  }
+}
+
 // Motion limits are mandatory for hardware; simulated and recorded hands cannot be hurt.
 void read_limits_of_motion(MapReader& top, core::GateSettings& gate) {
   gate.max_hand_speed_m_s = top.number("max_hand_speed_m_s", Range::positive(10.0));
@@ -133,6 +142,7 @@ Rig parse(const std::string& text, const std::string& file, RigDevices devices,
   }
   read_response(top, rig);
   read_loop(top, rig);
+  check_reply_time(top, rig);
   read_placement(top, Presence::optional,
                  [&](const core::Placement& placement) { rig.placement = placement; });
   read_audio(top, rig);
@@ -155,8 +165,7 @@ std::optional<core::Placement> placement_in_stored_rig(const std::string& rig_te
   }
   const std::string file = "stored rig";
   Problems problems{file};
-  MapReader top =
-      MapReader::whole_file(rig_text.substr(0, rig_text.find("\n---\n")), file, problems);
+  MapReader top = MapReader::first_document(rig_text, file, problems);  // a calibration follows
   std::optional<core::Placement> placement;
   read_placement(top, Presence::optional, [&](const core::Placement& own) { placement = own; });
   problems.throw_if_any();

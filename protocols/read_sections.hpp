@@ -34,6 +34,9 @@ void read_display(MapReader& top, Protocol& protocol);
 void read_blocks(MapReader& top, Protocol& protocol);
 // Of a block: what a participant reads and is asked besides the trials' question.
 void read_asides(MapReader& block_reader, Block& block);
+ExploreLimits read_explore(MapReader& block_reader, const Protocol& protocol, Presented presented);
+// Of a block that is otherwise without problems.
+void check_intervals(MapReader& block_reader, const Block& block);
 // Two answers that read alike cannot be told apart by who gives them.
 void check_labels_differ(MapReader& block_reader, const Protocol& protocol, const Block& block);
 // Where as much is right by guessing, answers do not depend on the level, and a staircase wanders.

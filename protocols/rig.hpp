@@ -12,6 +12,8 @@ namespace tapstudy::protocols {
 // Base class of the device-specific settings in a rig.
 struct DeviceSection {
   virtual ~DeviceSection() = default;
+  // How long a tick may wait for the device; 0 for one that replies at once.
+  virtual double max_reply_time_s() const { return 0.0; }
 };
 
 // Who is told of a session's changes of state: runner/markers/README.md.

@@ -37,12 +37,26 @@ auto Recorder::queue(Act act, HasTrace has_trace) -> std::future<decltype(act())
 }
 
 std::future<SaveOutcome> Recorder::save(std::shared_ptr<const TrialRecord> record) {
-  return queue([this, record = std::move(record)] { return store_.add_trial(*record); },
-               HasTrace::yes);
+  return queue(
+      [this, record = std::move(record)] {
+        store_events();
+        return store_.add_trial(*record);
+      },
+      HasTrace::yes);
 }
 
 std::future<void> Recorder::note(std::vector<SessionEventRow> events) {
-  return queue([this, events = std::move(events)] { store_.add_session_events(events); });
+  return queue([this, events = std::move(events)] {
+    events_.insert(events_.end(), events.begin(), events.end());
+    store_events();
+  });
+}
+
+void Recorder::store_events() {
+  if (!events_.empty()) {
+    store_.add_session_events(events_);
+    events_.clear();
+  }
 }
 
 std::future<void> Recorder::note(OperatorActionRow action) {

@@ -8,6 +8,7 @@
 #include <mutex>
 #include <stop_token>
 #include <thread>
+#include <vector>
 
 #include "results/store.hpp"
 #include "results/trace_collector.hpp"
@@ -25,7 +26,8 @@ class Recorder {
   // same record may be saved again.
   std::future<SaveOutcome> save(std::shared_ptr<const TrialRecord> record);
 
-  // Ready once the events are stored, or carries the StoreError.
+  // Ready once the events are stored, or carries the StoreError: they are kept then, and stored
+  // with the next events or the next trial, whose save fails otherwise.
   std::future<void> note(std::vector<SessionEventRow> events);
   std::future<void> note(OperatorActionRow action);
   std::future<void> save_form(std::vector<FormAnswerRow> answers);
@@ -46,8 +48,10 @@ class Recorder {
   template <class Act>
   auto queue(Act act, HasTrace has_trace = HasTrace::no) -> std::future<decltype(act())>;
   void drain_followed() noexcept;
+  void store_events();
 
   Store& store_;
+  std::vector<SessionEventRow> events_;  // not stored yet; of the recorder's thread
   std::mutex mutex_;
   std::condition_variable_any arrived_;
   std::deque<Write> pending_;

@@ -2,7 +2,7 @@
 namespace tapstudy::results {
 // PRAGMA application_id of a study's database ("taps") and PRAGMA user_version of its schema.
 inline constexpr int application_id = 0x74617073;
-inline constexpr int schema_version = 10;
+inline constexpr int schema_version = 11;
 
 // Tables hold each fact once; the views v_… are for reading by hand and for exports.
 inline constexpr const char* schema_sql = R"sql(
@@ -44,6 +44,7 @@ CREATE TABLE session (
   compiler TEXT NOT NULL,
   started_utc TEXT NOT NULL
 ) STRICT;
+CREATE INDEX session_of_participant ON session (participant_id);
 CREATE TABLE trial (
   trial_id INTEGER PRIMARY KEY,
   session_id INTEGER NOT NULL REFERENCES session,

@@ -53,13 +53,17 @@ class Store {
     int participant_index;
     int order_index;
   };
-  using IsInSession = std::function<bool(const std::string& participant_id)>;
+  // What the store does not know of other participants.
+  struct Others {
+    std::function<bool(const std::string& participant_id)> is_in_session;
+    std::function<bool(const std::string& participant_id)> has_trials_left;
+  };
   // Of an existing participant, or the next free one of the mode. The order is the first that no
   // other participant of the mode has: those who were excluded, whose session the operator ended
-  // before its end, or who are no longer in a session and answered nothing that counts, use none
+  // with trials left, or who are no longer in a session and answered nothing that counts, use none
   // up.
   // Throws InvalidInput if the participant is there already in another mode.
-  Place place_of(const std::string& participant_id, Mode mode, const IsInSession& is_in_session);
+  Place place_of(const std::string& participant_id, Mode mode, const Others& others);
   bool has_sessions(const std::string& participant_id);
   // No other program adds anything while `act` runs; all that it adds is kept, or nothing.
   void in_one_transaction(const std::function<void()>& act);
@@ -138,7 +142,7 @@ class Store {
                        const std::function<void(JournalEntries&)>& insert);
   void check_has_not_moved();
   int next_participant_index(Mode mode);
-  int free_order_index(Mode mode, const IsInSession& is_in_session);
+  int free_order_index(Mode mode, const Others& others);
   std::vector<AlternativeRow> alternatives_of(std::int64_t trial_id);
   AlternativesOfTrials alternatives_where(const char* condition,
                                           std::optional<std::int64_t> trial_id);

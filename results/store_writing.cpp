@@ -12,25 +12,21 @@ namespace tapstudy::results {
 namespace fs = std::filesystem;
 using namespace std::string_literals;
 namespace {
-// Whose last session the operator ended with trials left; a planned order has a line for each.
-constexpr const char* withdrawn =
+// Whose last session the operator ended.
+constexpr const char* ended_by_operator =
     "SELECT participant_id FROM session AS last WHERE session_id = "
     "  (SELECT max(session_id) FROM session WHERE participant_id = last.participant_id) "
     " AND EXISTS (SELECT 1 FROM operator_action WHERE session_id = last.session_id "
-    "             AND action = 'end') "
-    " AND (SELECT count(DISTINCT number) FROM trial JOIN session USING (session_id) "
-    "      WHERE participant_id = last.participant_id AND status = 'answered') "
-    "  < length(planned_order) - length(replace(planned_order, char(10), ''))";
+    "             AND action = 'end')";
 }  // namespace
 
-Store::Place Store::place_of(const std::string& participant_id, Mode mode,
-                             const IsInSession& is_in_session) {
+Store::Place Store::place_of(const std::string& participant_id, Mode mode, const Others& others) {
   Statement row{
       database_,
       "SELECT participant_index, order_index, mode FROM participant WHERE participant_id = ?"};
   row.bind(participant_id);
   if (!row.step()) {
-    return {next_participant_index(mode), free_order_index(mode, is_in_session)};
+    return {next_participant_index(mode), free_order_index(mode, others)};
   }
   if (row.text(2) != to_text(mode)) {
     throw core::InvalidInput{
@@ -49,20 +45,23 @@ int Store::next_participant_index(Mode mode) {
 
 // Used by who has answered what counts, unless the operator ended their last session before its
 // end.
-int Store::free_order_index(Mode mode, const IsInSession& is_in_session) {
+int Store::free_order_index(Mode mode, const Others& others) {
   const std::map<std::string, std::string> excluded = excluded_participants();
   Statement row{database_,
                 "SELECT participant_id, order_index, participant_id IN "
                 "  (SELECT participant_id FROM trial JOIN session USING (session_id) "
-                "   WHERE status = 'answered' AND NOT is_practice) "
-                " AND participant_id NOT IN ("s +
-                    withdrawn + ") FROM participant WHERE mode = ?"};
+                "   WHERE status = 'answered' AND NOT is_practice), participant_id IN ("s +
+                    ended_by_operator + ") FROM participant WHERE mode = ?"};
   row.bind(to_text(mode));
   std::set<int> used;
   while (row.step()) {
     const std::string participant_id = row.text(0);
     const bool has_answered = row.integer(2) != 0;
-    if (!excluded.contains(participant_id) && (has_answered || is_in_session(participant_id))) {
+    const bool was_ended = row.integer(3) != 0;
+    const bool keeps_order =
+        (has_answered && !(was_ended && others.has_trials_left(participant_id))) ||
+        others.is_in_session(participant_id);
+    if (keeps_order && !excluded.contains(participant_id)) {
       used.insert(static_cast<int>(row.integer(1)));
     }
   }

@@ -8,6 +8,7 @@
 #include <new>
 #include <system_error>
 
+#include "core/algebra/blas_threads.hpp"
 #include "core/bounded_child.hpp"
 #include "core/error.hpp"
 #include "device/device.hpp"
@@ -69,6 +70,7 @@ int main(int argc, char** argv) {
   tapstudy::core::serve_if_child(argc, argv);
   open_standard_descriptors();
   survive_failed_writing();
+  tapstudy::core::use_one_blas_thread();
   try {
     tapstudy::runner::set_up_logging();
     const ExitCode code = tapstudy::runner::run_command_line(argc, argv);

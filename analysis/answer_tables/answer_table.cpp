@@ -29,7 +29,7 @@ struct Origin {
   int line{};
 };
 std::string to_text(const Origin& origin) {
-  return fmt::format("{}:{}", origin.csv->file, origin.line);
+  return origin.csv->text.place(origin.csv->file, origin.line);
 }
 
 // Reads one file.

@@ -12,16 +12,9 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json list_in(std::istream& text, const std::string& file) {
-  std::string bytes;
-  for (char c = 0; text.get(c);) {
-    bytes += c;
-    if (bytes.size() > max_csv_bytes) {
-      throw core::InvalidInput{file + ": is larger than 64 MB"};
-    }
-  }
   Json list;
   try {
-    list = Json::parse(bytes);
+    list = Json::parse(table_text(text, file));
   } catch (const Json::parse_error& error) {
     throw core::InvalidInput{fmt::format("{}: is no JSON: at byte {}", file, error.byte)};
   }
@@ -50,6 +43,7 @@ bool is_json_list(std::string_view text) {
 CsvText read_json_rows(std::istream& text, const std::string& file) {
   const Json list = list_in(text, file);
   CsvText table;
+  table.has_objects = true;
   CsvRow header{1, {}};
   for (const Json& object : list) {
     for (const auto& [key, value] : object.items()) {

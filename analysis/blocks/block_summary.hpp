@@ -37,6 +37,10 @@ struct VisitOrder {
   std::vector<int> positions;
 };
 
+// Those of these answers' trials.
+std::vector<VisitOrder> orders_of(const std::vector<VisitOrder>& all,
+                                  const std::vector<results::AnswerRow>& answers);
+
 // The rows of one block.
 struct BlockRows {
   std::vector<results::AnswerRow> answers;

@@ -39,20 +39,48 @@ double normal_p(int n, double v, double ties) {
 }
 }  // namespace
 
-SignedRankTest signed_rank_test(const std::vector<double>& differences) {
-  std::vector<double> sizes;
-  std::vector<bool> is_positive;
+namespace {
+void check_finite(const std::vector<double>& differences) {
   for (const double one : differences) {
     if (!std::isfinite(one)) {
       throw core::InvalidInput{fmt::format("a difference is a finite number, not {}", one)};
     }
-    if (one != 0.0) {
-      sizes.push_back(std::abs(one));
-      is_positive.push_back(one > 0.0);
-    }
   }
+}
+
+// Sizes that are equal but for rounding, as 0.3 - 0.1 and 0.7 - 0.5 are, become equal, or 0.
+std::vector<double> sizes_without_rounding(const std::vector<double>& differences) {
+  constexpr double rounding = 1e-9;
+  std::vector<double*> ascending;
+  std::vector<double> sizes = differences;
+  for (double& size : sizes) {
+    size = std::abs(size);
+    ascending.push_back(&size);
+  }
+  std::ranges::sort(ascending, {}, [](const double* size) { return *size; });
+  const double tolerance = rounding * *ascending.back();
+  double level = 0.0;
+  for (double* const size : ascending) {
+    level = *size - level <= tolerance ? level : *size;
+    *size = level;
+  }
+  return sizes;
+}
+}  // namespace
+
+SignedRankTest signed_rank_test(const std::vector<double>& differences) {
   if (differences.empty()) {
     throw core::InvalidInput{"a signed rank test takes one difference or more"};
+  }
+  check_finite(differences);
+  const std::vector<double> all_sizes = sizes_without_rounding(differences);
+  std::vector<double> sizes;
+  std::vector<bool> is_positive;
+  for (std::size_t i = 0; i < differences.size(); ++i) {
+    if (all_sizes[i] > 0.0) {
+      sizes.push_back(all_sizes[i]);
+      is_positive.push_back(differences[i] > 0.0);
+    }
   }
   SignedRankTest test;
   test.pairs = static_cast<int>(sizes.size());

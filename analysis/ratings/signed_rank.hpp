@@ -11,7 +11,8 @@ struct SignedRankTest {
   int pairs{};              // whose difference is not 0
   bool is_exact{};
 };
-// Wilcoxon 1945 on differences; those of 0 are left out. For fewer than 50 others exact, given the
+// Wilcoxon 1945 on differences; those of 0 are left out, and those that are equal to nine digits of
+// the largest are ties. For fewer than 50 others exact, given the
 // mid-ranks of ties; else by the normal distribution with correction for ties and continuity.
 // Throws InvalidInput for no or not finite differences.
 SignedRankTest signed_rank_test(const std::vector<double>& differences);

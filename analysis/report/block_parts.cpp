@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <iterator>
 #include <map>
 
 #include "core/error.hpp"
@@ -43,16 +42,6 @@ BlockDesign at(const BlockDesign& whole, const std::vector<double>& values) {
   }
   part.question += fmt::format(" ({})", fmt::join(words, ", "));
   return part;
-}
-
-// The orders of these answers' trials.
-std::vector<VisitOrder> orders_of(const std::vector<VisitOrder>& all,
-                                  const std::vector<AnswerRow>& answers) {
-  std::vector<VisitOrder> own;
-  std::ranges::copy_if(all, std::back_inserter(own), [&](const VisitOrder& order) {
-    return std::ranges::find(answers, order.trial_id, &AnswerRow::trial_id) != answers.end();
-  });
-  return own;
 }
 }  // namespace
 

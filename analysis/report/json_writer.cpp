@@ -4,6 +4,12 @@
 #include "analysis/report/writers.hpp"
 namespace tapstudy::analysis {
 using Json = nlohmann::ordered_json;
+namespace {
+// A file's name need not be UTF-8.
+std::string text_of(const Json& json, int indent) {
+  return json.dump(indent, ' ', false, Json::error_handler_t::replace);
+}
+}  // namespace
 
 void write_json(std::ostream& out, const Summary& summary) {
   Json json{{"schema_version", 1},
@@ -32,7 +38,7 @@ void write_json(std::ostream& out, const Summary& summary) {
     json["provenance"][key] = value;
   }
   json["methods"] = methods(summary);
-  json["references"] = references_in(json.dump(-1, ' ', false));
-  out << json.dump(2) << '\n';
+  json["references"] = references_in(text_of(json, -1));
+  out << text_of(json, 2) << '\n';
 }
 }  // namespace tapstudy::analysis

@@ -34,11 +34,6 @@ void adjust(const std::vector<std::shared_ptr<BlockSummary>>& blocks) {
   }
 }
 
-bool is_answered_in(const BlockRows& rows, const VisitOrder& order) {
-  return std::ranges::find(rows.answers, order.trial_id, &AnswerRow::trial_id) !=
-         rows.answers.end();
-}
-
 LoopQuality loop_quality(const std::vector<AnswerRow>& answers) {
   LoopQuality quality;
   for (const AnswerRow& answer : answers) {
@@ -74,8 +69,7 @@ Summary summarise(const StudyDesign& design, const std::vector<AnswerRow>& answe
                          [&](const AnswerRow& answer) { return answer.block == block.name; });
     std::ranges::copy_if(visits, std::back_inserter(rows.visits),
                          [&](const VisitRow& visit) { return visit.block == block.name; });
-    std::ranges::copy_if(presentations.orders, std::back_inserter(rows.orders),
-                         [&](const VisitOrder& order) { return is_answered_in(rows, order); });
+    rows.orders = orders_of(presentations.orders, rows.answers);
     const auto missing = presentations.missing_replies.find(block.name);
     rows.missing_replies = missing == presentations.missing_replies.end() ? 0 : missing->second;
     for (const BlockPart& part : parts_at_further_values(block, rows)) {

@@ -5,6 +5,8 @@
 #include <utf8cpp/utf8.h>
 
 #include <algorithm>
+#include <array>
+#include <sstream>
 #include <string_view>
 #include <utility>
 
@@ -41,8 +43,9 @@ class CsvReader {
   CsvReader(CsvReader&&) = delete;
   CsvReader& operator=(CsvReader&&) = delete;
 
-  CsvText read(std::istream& text) {
-    for (std::string line; next_line(text, line);) {
+  CsvText read(const std::string& text) {
+    std::istringstream lines{text};
+    for (std::string line; std::getline(lines, line);) {
       ++line_;
       if (line_ == 1 && line.starts_with(byte_order_mark)) {
         line.erase(0, byte_order_mark.size());
@@ -67,24 +70,6 @@ class CsvReader {
   }
 
  private:
-  // A device such as /dev/zero has no line ends.
-  bool next_line(std::istream& text, std::string& line) {
-    line.clear();
-    using Traits = std::istream::traits_type;
-    std::streambuf& from = *text.rdbuf();
-    for (int next = from.sbumpc(); next != Traits::eof(); next = from.sbumpc()) {
-      const char c = Traits::to_char_type(next);
-      if (++size_ > max_csv_bytes) {
-        throw core::InvalidInput{
-            fmt::format("{}: is larger than {} MB", file_, max_csv_bytes / 1'000'000)};
-      }
-      if (c == '\n') {
-        return true;
-      }
-      line += c;
-    }
-    return !line.empty();
-  }
   void check_characters(const std::string& line) const {
     if (!utf8::is_valid(line.begin(), line.end())) {
       throw core::InvalidInput{fmt::format("{}:{}: is not UTF-8 text", file_, line_)};
@@ -128,7 +113,6 @@ class CsvReader {
   bool is_inside_row_{false};
   CsvRow row_;
   CsvText text_;
-  std::size_t size_{0};
 };
 }  // namespace
 
@@ -139,8 +123,27 @@ std::optional<double> CsvText::number(std::string cell) const {
   return core::number_in<double>(std::string_view{cell}.substr(cell.starts_with('+') ? 1 : 0));
 }
 
+std::string CsvText::place(const std::string& file, int row) const {
+  return fmt::format("{}{}{}", file, has_objects ? ", object " : ":", row);
+}
+
+// A device such as /dev/zero has no end.
+std::string table_text(std::istream& text, const std::string& file) {
+  constexpr std::size_t max_bytes = 64'000'000;
+  std::string bytes;
+  std::array<char, 65'536> part{};
+  while (text.read(part.data(), part.size()) || text.gcount() > 0) {
+    bytes.append(part.data(), static_cast<std::size_t>(text.gcount()));
+    if (bytes.size() > max_bytes) {
+      throw core::InvalidInput{
+          fmt::format("{}: is larger than {} MB", file, max_bytes / 1'000'000)};
+    }
+  }
+  return bytes;
+}
+
 CsvText read_csv(std::istream& text, const std::string& file) {
-  return CsvReader{file}.read(text);
+  return CsvReader{file}.read(table_text(text, file));
 }
 
 std::string csv_cell(const std::string& text) {

@@ -12,14 +12,18 @@ struct CsvRow {
 
 struct CsvText {
   char separator{','};
+  bool has_objects{false};            // instead of lines: of a list in JSON, counted from 1
   std::vector<std::string> comments;  // lines before the first row that start with #
   std::vector<CsvRow> rows;
   // A cell as a number; where commas do not separate cells, one is a decimal comma. Unset if it is
   // none.
   std::optional<double> number(std::string cell) const;
+  // "file:3", or "file, object 3".
+  std::string place(const std::string& file, int row) const;
 };
 
-inline constexpr std::size_t max_csv_bytes = 64'000'000;
+// All of a table's file. Throws InvalidInput beyond 64 MB.
+std::string table_text(std::istream& text, const std::string& file);
 
 // Comma-separated values (RFC 4180), or separated by tabulators or semicolons where the header has
 // any: cells in double quotes may hold separators, quotes and line ends; spaces around other cells

@@ -40,6 +40,13 @@ void ForceGate::rise_again() noexcept {
   }
 }
 
+void ForceGate::fall_to(double max_share) noexcept {
+  if (max_share < share_) {
+    share_ = max_share;
+    is_rising_again_ = state_ == State::rendering && settings_.force_rise_s > 0.0;
+  }
+}
+
 void ForceGate::stop() noexcept {
   if (state_ != State::at_rest) {
     state_ = State::stopping;
@@ -72,7 +79,7 @@ PassedForce ForceGate::pass(const core::Vec3& wanted_n, const core::HandState& h
     return {core::Vec3::Zero(), true, fault};
   }
   advance(wanted_n.norm());
-  share_ = std::min(share_, max_share);
+  fall_to(max_share);
   const core::LimitedForce limited =
       core::limit_force(share_ * wanted_n, previous_n_, settings_.limits, dt_s_);
   previous_n_ = limited.force_n;

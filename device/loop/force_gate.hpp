@@ -29,6 +29,7 @@ class ForceGate {
   // Starts the ramp down to zero force.
   void stop() noexcept;
   State state() const noexcept { return state_; }
+  // Less than the wanted force passes, as a result of either.
   bool is_rising_again() const noexcept { return is_rising_again_; }
 
  private:
@@ -36,6 +37,7 @@ class ForceGate {
                            double elapsed_s) const noexcept;
   bool has_jumped(const core::Vec3& position_m, double elapsed_s) const noexcept;
   void advance(double wanted_size_n) noexcept;
+  void fall_to(double max_share) noexcept;
 
   core::GateSettings settings_;
   double dt_s_;

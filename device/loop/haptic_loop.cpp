@@ -156,6 +156,7 @@ core::TraceSample HapticLoop::unread_sample(Nanoseconds now) const noexcept {
   sample.velocity_m_s.fill(unknown);
   sample.pose_residual_m = unknown;
   sample.closure_margin = unknown;
+  sample.achieved_n.fill(unknown);
   sample.motor_voltage_v = unknown;
   return sample;
 }

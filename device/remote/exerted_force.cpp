@@ -9,7 +9,6 @@ constexpr double peak_kept_a_tick = 0.9;  // a tenth is left after 22 ticks
 constexpr double max_ratio = 2.0;
 constexpr double margin_n = 1.0;
 constexpr int max_ticks_above = 2;
-constexpr double noticeable_n = 0.5;  // less may be lost in friction
 constexpr double min_ratio = 0.05;
 constexpr int max_ticks_without = 30;
 }  // namespace

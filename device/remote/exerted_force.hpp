@@ -2,6 +2,9 @@
 #include "core/haptic_state.hpp"
 #include "core/tick_fault.hpp"
 namespace tapstudy::device {
+// Of a measured force: less may be an offset, noise, or lost in friction.
+inline constexpr double noticeable_n = 0.5;
+
 // Compares the force that a device reports with the force that it was sent: a report far above, in
 // three ticks running, or of almost nothing for 30 ticks of force, is a fault. Both margins are
 // wide, since devices measure late and coarsely. One that reports nothing (NaN) is not judged.

@@ -17,7 +17,8 @@ namespace tapstudy::device {
 using core::TickFault;
 namespace {
 using Clock = std::chrono::steady_clock;
-constexpr double max_zero_force_n = 0.01;
+constexpr double untold = std::numeric_limits<double>::quiet_NaN();
+constexpr int max_zero_force_requests = 30;  // a device may measure its force late
 constexpr int attempts = 40;
 constexpr int max_released_replies = 30;  // after a silence, until the other program holds again
 constexpr std::chrono::milliseconds patience{50};  // timeout per attempt
@@ -112,7 +113,6 @@ TickFault RemoteHand::receive(core::HandState& hand) noexcept {
     if (reply->number == number_) {
       hand = reply->hand;
       status_ = reply->status;
-      constexpr double untold = std::numeric_limits<double>::quiet_NaN();
       detail_.achieved_n = reply->exerted_n.value_or(core::Vec3::Constant(untold));
       return TickFault::none;
     }
@@ -153,6 +153,7 @@ TickFault RemoteHand::read(core::HandState& hand, double /*elapsed_s*/) noexcept
   const TickFault fault = ask(hand);
   if (fault == TickFault::no_reply && held_.use_last_reading(hand)) {
     detail_.missed_replies = held_.missed_replies();
+    detail_.achieved_n.setConstant(untold);
     return TickFault::none;
   }
   if (fault != TickFault::none) {
@@ -196,17 +197,21 @@ RemoteHand::Release RemoteHand::release_after(std::chrono::milliseconds silence)
   return !after ? Release::not_reported : *after ? Release::released : Release::held;
 }
 
-// Confirmed by a reply to a request that carried zero force, and that does not tell of another; the
-// last one counts.
+// Confirmed by a reply to a request that carried zero force, and that does not report another; the
+// last one counts. While another is reported, it is asked again every millisecond.
 StopOutcome RemoteHand::zero_force() noexcept {
   force_n_ = core::Vec3::Zero();
-  StopOutcome outcome = StopOutcome::unconfirmed;
-  for (int i = 0; i < zero_force_packets; ++i) {
+  bool has_replied = true;
+  bool is_exerted = false;
+  for (int i = 0;
+       i < zero_force_packets || (has_replied && is_exerted && i < max_zero_force_requests); ++i) {
+    if (i >= zero_force_packets) {
+      std::this_thread::sleep_for(std::chrono::milliseconds{1});
+    }
     core::HandState ignored;
-    const bool is_told = ask(ignored) == TickFault::none;
-    const bool is_exerted = detail_.achieved_n.norm() > max_zero_force_n;  // not so if untold, NaN
-    outcome = is_told && !is_exerted ? StopOutcome::confirmed : StopOutcome::unconfirmed;
+    has_replied = ask(ignored) == TickFault::none;
+    is_exerted = detail_.achieved_n.norm() >= noticeable_n;  // not so if it is not reported, NaN
   }
-  return outcome;
+  return has_replied && !is_exerted ? StopOutcome::confirmed : StopOutcome::unconfirmed;
 }
 }  // namespace tapstudy::device

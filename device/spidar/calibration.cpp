@@ -3,45 +3,58 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <vector>
 
 #include "core/error.hpp"
 namespace tapstudy::device {
 namespace {
 constexpr double max_ratio = 3.0;
 
-void check_alike(const char* what, std::array<double, strings> of_string) {
-  for (double& value : of_string) {
-    value = std::abs(value);
-  }
+double dac_counts_per_newton(const core::StringCalibration& string) {
+  return string.volts_per_newton * string.dac_counts_per_volt;
+}
+
+std::optional<std::string> unlikeness_in(const char* what, const std::vector<double>& of_string) {
   const auto [smallest, largest] = std::ranges::minmax_element(of_string);
-  if (*largest > max_ratio * *smallest) {
-    throw core::InvalidInput{fmt::format(
-        "calibration: {} is {:.3g} for string {} and {:.3g} for string {} (motors of one kind do "
-        "not differ more than threefold: measure again)",
-        what, *smallest, smallest - of_string.begin() + 1, *largest,
-        largest - of_string.begin() + 1)};
+  if (*largest <= max_ratio * *smallest) {
+    return std::nullopt;
   }
+  return fmt::format(
+      "{} is {:.3g} for string {} and {:.3g} for string {} (motors of one kind do not differ more "
+      "than threefold: measure again)",
+      what, *smallest, smallest - of_string.begin() + 1, *largest, largest - of_string.begin() + 1);
 }
 }  // namespace
 
-void check_calibration(const core::SpidarCalibration& calibration) {
-  std::array<double, strings> metres_per_count{};
-  std::array<double, strings> counts_per_newton{};
-  for (std::size_t i = 0; i < calibration.strings.size(); ++i) {
-    const core::StringCalibration& string = calibration.strings.at(i);
-    metres_per_count.at(i) = string.metres_per_count;
-    counts_per_newton.at(i) = string.volts_per_newton * string.dac_counts_per_volt;
+std::optional<std::string> unlikeness(std::span<const core::StringCalibration> measured) {
+  std::vector<double> metres_per_count;
+  std::vector<double> counts_per_newton;
+  for (const core::StringCalibration& string : measured) {
+    metres_per_count.push_back(std::abs(string.metres_per_count));
+    counts_per_newton.push_back(dac_counts_per_newton(string));
   }
-  check_alike("metres_per_count", metres_per_count);
-  check_alike("volts_per_newton times dac_counts_per_volt", counts_per_newton);
-  const double needed = calibration.max_tension_n * std::ranges::max(counts_per_newton);
-  if (needed > max_dac_counts) {
-    throw core::InvalidInput{
-        fmt::format("calibration: max_tension_n, {} N, would take {:.0f} DAC counts (the board has "
-                    "{}: lower it, or measure again)",
-                    calibration.max_tension_n, needed, max_dac_counts)};
+  const auto in_lengths = unlikeness_in("metres_per_count", metres_per_count);
+  return in_lengths
+             ? in_lengths
+             : unlikeness_in("volts_per_newton times dac_counts_per_volt", counts_per_newton);
+}
+
+double highest_tension_n(const core::SpidarCalibration& calibration) {
+  const auto weakest = std::ranges::max_element(calibration.strings, {}, dac_counts_per_newton);
+  return max_dac_counts / dac_counts_per_newton(*weakest);
+}
+
+void check_calibration(const core::SpidarCalibration& calibration) {
+  if (const auto in = unlikeness(calibration.strings)) {
+    throw core::InvalidInput{"calibration: " + *in};
+  }
+  const double highest_n = highest_tension_n(calibration);
+  if (calibration.max_tension_n > highest_n) {
+    throw core::InvalidInput{fmt::format(
+        "calibration: max_tension_n, {} N, is above {:.4g} N, which take all {} DAC counts of the "
+        "board (lower it, or measure again)",
+        calibration.max_tension_n, highest_n, max_dac_counts)};
   }
 }
 

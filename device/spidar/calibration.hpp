@@ -1,10 +1,17 @@
 #pragma once
+#include <optional>
+#include <span>
+#include <string>
+
 #include "core/settings/spidar_calibration.hpp"
 #include "device/spidar/board.hpp"
 #include "device/spidar/geometry.hpp"
 namespace tapstudy::device {
-// Throws InvalidInput if the calibration is implausible: motors of one kind that differ by more
-// than a factor of three, or a maximum tension beyond the board's range of DAC counts.
+// In what strings of one frame differ by more than a factor of three, as motors of one kind do not.
+std::optional<std::string> unlikeness(std::span<const core::StringCalibration> measured);
+// The highest tension that the board's range of DAC counts allows for every string.
+double highest_tension_n(const core::SpidarCalibration& calibration);
+// Throws InvalidInput if the strings are unlike, or if max_tension_n is above the highest.
 void check_calibration(const core::SpidarCalibration& calibration);
 
 // The DAC counts for a tension, clamped to the converter's range.

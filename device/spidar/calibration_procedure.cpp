@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <optional>
+#include <span>
 
 #include "device/device.hpp"
 #include "device/spidar/calibration.hpp"
@@ -80,6 +83,7 @@ class Calibration {
       : board_{board}, pipe_{pipe}, watchdog_{watchdog}, clock_{clock}, person_{person} {
     BoardReading reading;
     check(board_.begin(pipe_, reading));
+    watchdog_.allow_power();
   }
   ~Calibration() {
     BoardReading ignored;
@@ -90,20 +94,21 @@ class Calibration {
   Calibration(Calibration&&) = delete;
   Calibration& operator=(Calibration&&) = delete;
 
-  StringCalibration measure(std::size_t string) {
-    const double metres_per_count = measure_length(string);
-    const double weak_n = force_at(string, calibration_dac_counts / 2);
-    const double strong_n = force_at(string, calibration_dac_counts);
-    const double newtons_per_dac_count = (strong_n - weak_n) / (0.5 * calibration_dac_counts);
-    const double offset_n = strong_n - newtons_per_dac_count * calibration_dac_counts;
-    if (!(newtons_per_dac_count > 0.0) || std::abs(offset_n) > max_offset * strong_n) {
-      throw DeviceError{fmt::format(
-          "string {}: {} N and {} N at outputs of {} and {} are not proportional (is the gauge "
-          "held still? is the amplifier on?)",
-          string + 1, weak_n, strong_n, calibration_dac_counts / 2, calibration_dac_counts)};
+  // Into the next place, until it is plausible.
+  void measure_next(std::span<StringCalibration> up_to_next) {
+    StringCalibration& next = up_to_next.back();
+    while (true) {
+      const std::optional<StringCalibration> measured = measured_once(up_to_next.size());
+      if (measured) {
+        next = *measured;
+        const auto in = unlikeness(up_to_next);
+        if (!in) {
+          return;
+        }
+        person_.warn(*in);
+      }
+      person_.warn(fmt::format("String {} once more:", up_to_next.size()));
     }
-    return {metres_per_count, 1.0 / (newtons_per_dac_count * dac_counts_per_volt),
-            dac_counts_per_volt};
   }
 
  private:
@@ -117,25 +122,46 @@ class Calibration {
     check(board_.exchange(pipe_, dac_counts, reading));
     return reading;
   }
-  double measure_length(std::size_t string) {
+  // Nothing if a reading is implausible, which the operator is told. Strings count from 1.
+  std::optional<StringCalibration> measured_once(std::size_t string) {
+    const std::optional<double> metres_per_count = measured_length(string);
+    if (!metres_per_count) {
+      return std::nullopt;
+    }
+    const double weak_n = force_at(string, calibration_dac_counts / 2);
+    const double strong_n = force_at(string, calibration_dac_counts);
+    const double newtons_per_dac_count = (strong_n - weak_n) / (0.5 * calibration_dac_counts);
+    const double offset_n = strong_n - newtons_per_dac_count * calibration_dac_counts;
+    if (!(newtons_per_dac_count > 0.0) || std::abs(offset_n) > max_offset * strong_n) {
+      person_.warn(fmt::format(
+          "string {}: {} N and {} N at outputs of {} and {} are not proportional (is the gauge "
+          "held still? is the amplifier on?)",
+          string, weak_n, strong_n, calibration_dac_counts / 2, calibration_dac_counts));
+      return std::nullopt;
+    }
+    return StringCalibration{*metres_per_count, 1.0 / (newtons_per_dac_count * dac_counts_per_volt),
+                             dac_counts_per_volt};
+  }
+  std::optional<double> measured_length(std::size_t string) {  // per encoder count, m
     UnwrappedCounters counters{board_.counter_bits()};
-    person_.please(fmt::format("\nString {} of 8. Let it wind in completely", string + 1));
+    person_.please(fmt::format("\nString {} of 8. Let it wind in completely", string));
     counters.take(put_out({}).counter);
     const double length_m = person_.how_much(
         "Pull it out by about 0.1 m, hold it, and enter the length in metres", max_pull_m, [] {});
     counters.take(put_out({}).counter);
-    const std::int64_t counts = counters.counts().at(string);
+    const std::int64_t counts = counters.counts().at(string - 1);
     if (std::abs(counts) < min_counts) {
-      throw DeviceError{fmt::format(
+      person_.warn(fmt::format(
           "string {}: its encoder counted {} for {} m (is it this string? is the encoder plugged "
           "in?)",
-          string + 1, counts, length_m)};
+          string, counts, length_m));
+      return std::nullopt;
     }
     return length_m / static_cast<double>(counts);
   }
   double force_at(std::size_t string, int output) {
     DacCounts dac_counts{};
-    dac_counts.at(string) = static_cast<std::uint16_t>(output);
+    dac_counts.at(string - 1) = static_cast<std::uint16_t>(output);
     const Pull pull{board_, pipe_, watchdog_, clock_, person_};
     pull.check_goes_on();
     put_out(dac_counts);
@@ -158,9 +184,10 @@ core::SpidarCalibration calibrate_spidar(SpidarBoard& board, UsbPipe& pipe,
                                          CalibrationOperator& person) {
   Calibration procedure{board, pipe, watchdog, clock, person};
   core::SpidarCalibration calibration{min_tension_n, max_tension_n, {}};
-  for (std::size_t i = 0; i < calibration.strings.size(); ++i) {
-    calibration.strings.at(i) = procedure.measure(i);
+  for (std::size_t i = 1; i <= calibration.strings.size(); ++i) {
+    procedure.measure_next(std::span{calibration.strings}.first(i));
   }
+  calibration.max_tension_n = std::min(max_tension_n, highest_tension_n(calibration));
   return calibration;
 }
 }  // namespace tapstudy::device

@@ -13,12 +13,13 @@ inline constexpr double max_pull_s = 60.0;
 
 // Calibrates one string after the other: it is pulled out by a measured length, which gives metres
 // per encoder count and the encoder's sign; then held by a force gauge at two outputs, whose
-// difference gives newtons per DAC count and cancels the friction common to both. All outputs are
-// zero at the end, also on error. While a string pulls, the guardian monitors the program, which
-// sends its heartbeat as long as the operator can be asked. Tensions are limited to 0.3 to 10 N
-// (editable afterwards). Throws DeviceError if the board fails, if an encoder does not move, if the
-// force is not proportional to the output, if a string has pulled for max_pull_s, or if the
-// guardian took the force off.
+// difference gives newtons per DAC count and cancels the friction common to both. A string is
+// measured again where its encoder did not move, where the force is not proportional to the output,
+// or where it is unlike the strings before. All outputs are zero at the end, also on error. While a
+// string pulls, the guardian monitors the program, which sends its heartbeat as long as the
+// operator can be asked. Tensions are limited to 0.3 to 10 N, or to what the board can put out
+// (editable afterwards). Throws DeviceError if the board fails, if a string has pulled for
+// max_pull_s, or if the guardian took the force off.
 core::SpidarCalibration calibrate_spidar(SpidarBoard& board, UsbPipe& pipe,
                                          WatchdogChannel& watchdog, TickClock& clock,
                                          CalibrationOperator& person);

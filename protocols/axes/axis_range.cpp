@@ -8,13 +8,14 @@
 #include <string>
 
 #include "core/error.hpp"
+#include "core/number_in.hpp"
 namespace tapstudy::protocols {
 namespace {
 constexpr double rounding = 1e-9;  // of a value computed through logarithms, relative
 
 // 0.06 instead of 0.060000000000000005, as a study would state it.
 double written_short(double value) {
-  return std::stod(fmt::format("{:.12g}", value));
+  return core::number_in<double>(fmt::format("{:.12g}", value)).value_or(value);
 }
 
 double distance(double a, double b, Spacing spacing) {

@@ -10,6 +10,7 @@ class Problems {
   explicit Problems(std::string file) : file_{std::move(file)} {}
   // line and column count from 0. Of one key the first problem is kept: others follow from it.
   void add(int line, int column, const std::string& key_path, const std::string& what);
+  std::size_t count() const { return problems_.size(); }
   // "file:line:column: key.path"
   std::string place(int line, int column, const std::string& key_path) const;
   // Throws InvalidInput if there are any, one line per problem, `file:line:column: key.path: what`,

@@ -41,25 +41,41 @@ MapReader::MapReader(const YAML::Node& node, std::string path, std::string patte
 MapReader::~MapReader() = default;
 MapReader::MapReader(MapReader&& other) noexcept = default;
 
-MapReader MapReader::whole_file(const std::string& text, const std::string& file,
-                                Problems& problems, Translations* translations) {
+namespace {
+// The first document; `check` is of the text as YAML.
+YAML::Node loaded(const std::string& text, const std::string& file,
+                  const std::function<void()>& check) {
   if (!utf8::is_valid(text.begin(), text.end())) {
     throw core::InvalidInput{fmt::format("{}:1:1: not UTF-8 text", file)};
   }
   try {
-    if (holds_two_documents(text)) {
-      throw core::InvalidInput{fmt::format("{}: holds more than one YAML document", file)};
-    }
-    MapReader reader{YAML::Load(text), "", "", problems, translations};
-    if (!reader.node_->IsMap()) {
+    check();
+    YAML::Node document = YAML::Load(text);
+    if (!document.IsMap()) {
       throw core::InvalidInput{fmt::format("{}:1:1: not a mapping of keys to values", file)};
     }
-    return reader;
+    return document;
   } catch (const YAML::Exception& error) {
     throw core::InvalidInput{
         fmt::format("{}:{}:{}: not YAML: {} (a text with any of ? : , # [ {{ goes in quotes)", file,
                     error.mark.line + 1, error.mark.column + 1, error.msg)};
   }
+}
+}  // namespace
+
+MapReader MapReader::whole_file(const std::string& text, const std::string& file,
+                                Problems& problems, Translations* translations) {
+  const auto check_is_one = [&] {
+    if (holds_two_documents(text)) {
+      throw core::InvalidInput{fmt::format("{}: holds more than one YAML document", file)};
+    }
+  };
+  return {loaded(text, file, check_is_one), "", "", problems, translations};
+}
+
+MapReader MapReader::first_document(const std::string& text, const std::string& file,
+                                    Problems& problems, Translations* translations) {
+  return {loaded(text, file, [] {}), "", "", problems, translations};
 }
 
 std::string MapReader::path_of(const std::string& key) const {

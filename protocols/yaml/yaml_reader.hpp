@@ -39,6 +39,9 @@ class MapReader {
   // The whole file. Throws InvalidInput if it cannot be read or is not YAML.
   static MapReader whole_file(const std::string& text, const std::string& file, Problems& problems,
                               Translations* translations = nullptr);
+  // The same, but only the first of the documents in it is read.
+  static MapReader first_document(const std::string& text, const std::string& file,
+                                  Problems& problems, Translations* translations = nullptr);
   ~MapReader();
   MapReader(MapReader&& other) noexcept;
   MapReader(const MapReader& other) = delete;
@@ -117,6 +120,7 @@ class MapReader {
   // A problem with this mapping as a whole, or with one of its keys.
   void reject(const std::string& what);
   void reject(const std::string& key, const std::string& what);
+  std::size_t problems_in_file() const { return problems_->count(); }  // so far
   void finish();
 
  private:

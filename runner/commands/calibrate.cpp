@@ -2,6 +2,7 @@
 #include <unistd.h>
 
 #include <memory>
+#include <sstream>
 
 #include "core/output_file.hpp"
 #include "device/spidar/calibration_procedure.hpp"
@@ -16,6 +17,7 @@ namespace {
 struct CalibrateOptions {
   std::string type;
   std::string out;
+  std::string relay;
 };
 
 void run_calibrate(const CalibrateOptions& options) {
@@ -24,7 +26,7 @@ void run_calibrate(const CalibrateOptions& options) {
   const device::UsbListing listing = device::find_only_spidar();
   listen_for_stop();
   // the terminal is polled less often than a haptic loop beats
-  device::OpenBoard open{listing, {.max_stall_s = 0.5}};
+  device::OpenBoard open{listing, {.max_stall_s = 0.5, .relay = options.relay}};
   LineInput input{STDIN_FILENO};
   OperatorAtTerminal person{input};
   say("You need a ruler and a force gauge. Strings are numbered as in the frame's drawing, "
@@ -33,9 +35,9 @@ void run_calibrate(const CalibrateOptions& options) {
   device::MonotonicClock clock;
   const core::SpidarCalibration calibration =
       device::calibrate_spidar(*open.board, open.pipe, open.guardian.channel(), clock, person);
-  core::write_new_file(options.out, [&](std::ostream& out) {
-    protocols::write_calibration(out, options.type, calibration);
-  });
+  std::ostringstream text;
+  protocols::write_calibration(text, options.type, calibration);
+  core::write_all_or_none({{options.out, text.str()}}, core::Existing::kept);
   fmt::print("{}\n", options.out);
 }
 }  // namespace
@@ -46,6 +48,7 @@ void add_calibrate(CommandParser& line) {
   const auto options = std::make_shared<CalibrateOptions>();
   command.option("--type", options->type, "Type of the frame: X3R or X3L", Need::required);
   command.option("--out", options->out, "The calibration file to write", Need::required);
+  command.option("--relay", options->relay, "Serial port of a dead-man relay, as in the rig");
   command.on_run([options] { run_calibrate(*options); });
 }
 }  // namespace tapstudy::runner

@@ -77,7 +77,8 @@ TapQuestion question_of(const IdentifyOptions& options) {
 
 void run_identify(const IdentifyOptions& options) {
   const TapQuestion question = question_of(options);
-  if (std::filesystem::exists(options.out)) {
+  std::error_code error;
+  if (std::filesystem::exists(options.out, error)) {
     throw core::InvalidInput{options.out + ": exists already (a new directory is needed)"};
   }
   const TapIdentification found = [&] {

@@ -110,7 +110,8 @@ void write_files(const ReportOptions& options, const Summary& summary) {
     add("figures/" + figure.name + ".svg", figure.svg);
     add("figures/" + figure.name + ".pdf", analysis::pdf_of_svg(figure.svg));
   }
-  if (!options.replace && fs::exists(files.front().name)) {
+  std::error_code error;
+  if (!options.replace && fs::exists(files.front().name, error)) {
     throw core::InvalidInput{files.front().name +
                              ": exists already (--replace replaces it, --out takes another place)"};
   }
@@ -141,8 +142,9 @@ TableOptions table_options(const ReportOptions& options) {
 
 // A study's directory, or a table.
 Summary summary_of_either(const ReportOptions& options, const std::string& path) {
-  return fs::is_directory(path) ? summary_of_directories(options, {path})
-                                : summary_of_tables({path}, table_options(options));
+  std::error_code error;
+  return fs::is_directory(path, error) ? summary_of_directories(options, {path})
+                                       : summary_of_tables({path}, table_options(options));
 }
 
 Summary summary_of_comparison(const ReportOptions& options) {

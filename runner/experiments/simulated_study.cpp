@@ -48,8 +48,8 @@ std::vector<PlannedSession> add_sessions(const SimulatedStudy& study,
         "simulated hand",
         "virtual time",
         ""};
-    const auto place = store.place_of(plan.participant_id, plan.mode,
-                                      [](const std::string& /*all of them*/) { return true; });
+    const auto all_of_them = [](const std::string& /*id*/) { return true; };
+    const auto place = store.place_of(plan.participant_id, plan.mode, {all_of_them, all_of_them});
     plan.participant_index = place.participant_index;
     plan.order_index = place.order_index;
     if (store.has_sessions(plan.participant_id)) {

@@ -56,19 +56,17 @@ std::vector<results::SessionRow> sessions_of(const std::vector<results::SessionR
 std::vector<std::string> unfinished(results::Store& store, const protocols::Protocol& protocol,
                                     const std::vector<results::SessionRow>& sessions, Mode mode) {
   const std::map<std::string, std::string> excluded = store.excluded_participants();
-  std::map<std::string, std::ptrdiff_t> planned;
+  std::set<std::string> participants;
   for (const results::SessionRow& session : sessions) {
     if (session.mode == mode && !excluded.contains(session.participant_id)) {
-      planned[session.participant_id] = std::ranges::count(session.planned_order, '\n');
+      participants.insert(session.participant_id);
     }
   }
   std::vector<std::string> found;
-  for (const auto& [participant, trials] : planned) {
-    const auto done = std::ssize(store.answered_trials(participant)) +
-                      std::ssize(given_up_trials(protocol, participant, store)) +
-                      std::ssize(unneeded_trials(protocol, participant, store));
-    if (done < trials) {
-      found.push_back(fmt::format("{}: {} of {} trials", participant, done, trials));
+  for (const std::string& participant : participants) {
+    const TrialsDone trials = trials_done(protocol, participant, store);
+    if (!trials.are_all()) {
+      found.push_back(fmt::format("{}: {} of {} trials", participant, trials.done, trials.planned));
     }
   }
   return found;
@@ -168,15 +166,18 @@ StoredResults stored_results(results::Store& store, const protocols::Protocol& p
   if (detail == Detail::all) {  // which replays the procedures
     set_tracks(protocol, store, found.answers);
   }
+  std::set<std::string> participants;
+  for (const results::AnswerRow& answer : found.answers) {
+    participants.insert(answer.participant_id);
+  }
   found.visits = store.visits();
   std::erase_if(found.visits, [&](const results::VisitRow& visit) {
-    return std::ranges::find(found.answers, visit.participant_id,
-                             &results::AnswerRow::participant_id) == found.answers.end();
+    return !participants.contains(visit.participant_id);
   });
   found.unfinished = unfinished(store, protocol, found.sessions, mode);
   found.excluded = excluded_of(excluded, found.sessions, mode);
   found.deviations = deviations_of(store, excluded, mode);
-  found.presentations = {visit_orders(store),
+  found.presentations = {analysis::orders_of(visit_orders(store), found.answers),
                          missing_replies(store, excluded, found.sessions, mode)};
   return found;
 }

@@ -26,7 +26,7 @@ NamedCsv read_file(const std::string& file) {
   if (!text) {
     throw core::InvalidInput{file + ": cannot be read"};
   }
-  std::string bytes{std::istreambuf_iterator<char>{text}, {}};
+  std::string bytes = analysis::table_text(text, file);
   const bool is_json = analysis::is_json_list(bytes);
   std::istringstream whole{std::move(bytes)};
   return {file, is_json ? analysis::read_json_rows(whole, file) : analysis::read_csv(whole, file)};

@@ -92,13 +92,16 @@ class LineMarkers final : public MarkerOutput {
   }
 
  private:
-  // What a full port has not taken of a line goes out before the next one.
+  static bool is_full(int error) {
+    return error == EAGAIN || error == ENOSPC || error == EDQUOT || error == EFBIG;
+  }
+  // What a full port, or disk, has not taken of a line goes out before the next one.
   bool has_written_rest() {
     while (!rest_.empty()) {
       const ssize_t written = write(descriptor_, rest_.data(), rest_.size());
       if (written > 0) {
         rest_.erase(0, static_cast<std::size_t>(written));
-      } else if (written == 0 || errno == EAGAIN) {
+      } else if (written == 0 || is_full(errno)) {
         return false;
       } else if (errno != EINTR) {
         forget();

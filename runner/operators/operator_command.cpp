@@ -87,7 +87,7 @@ OperatorCommand parse_operator_command(const std::string& line,
   if (!core::is_plain_text(text)) {
     throw core::InvalidInput{"must be UTF-8 text without control characters"};
   }
-  if (text.size() > max_text) {
+  if (core::character_count(text) > max_text) {
     throw core::InvalidInput{fmt::format("at most {} characters", max_text)};
   }
   return {found->action, std::move(text), trial};

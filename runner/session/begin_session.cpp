@@ -93,9 +93,10 @@ BegunSession begin_session(const SessionRequest& request, const protocols::Proto
     if (earlier) {
       check_keeps_order(request, *earlier);
     }
-    const auto place = store.place_of(plan.participant_id, plan.mode, [&](const std::string& id) {
-      return is_in_session(store.directory(), id);
-    });
+    const auto place = store.place_of(
+        plan.participant_id, plan.mode,
+        {[&](const std::string& id) { return is_in_session(store.directory(), id); },
+         [&](const std::string& id) { return !trials_done(protocol, id, store).are_all(); }});
     plan.participant_index = place.participant_index;
     plan.order_index =
         earlier ? place.order_index : request.order_index.value_or(place.order_index);

@@ -1,6 +1,7 @@
 #include "runner/session/given_up_trials.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <set>
 
 #include "protocols/schedule.hpp"
@@ -49,5 +50,14 @@ std::vector<int> unneeded_trials(const protocols::Protocol& protocol,
     }
   }
   return unneeded;
+}
+
+TrialsDone trials_done(const protocols::Protocol& protocol, const std::string& participant_id,
+                       results::Store& store) {
+  const auto session = store.latest_session(participant_id);
+  return {std::ssize(store.answered_trials(participant_id)) +
+              std::ssize(given_up_trials(protocol, participant_id, store)) +
+              std::ssize(unneeded_trials(protocol, participant_id, store)),
+          session ? std::ranges::count(session->planned_order, '\n') : 0};
 }
 }  // namespace tapstudy::runner

@@ -1,4 +1,5 @@
 #pragma once
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -13,4 +14,14 @@ std::vector<int> given_up_trials(const protocols::Protocol& protocol,
 // procedures were finished.
 std::vector<int> unneeded_trials(const protocols::Protocol& protocol,
                                  const std::string& participant_id, results::Store& store);
+
+// Of the trials planned for a participant's latest session, those that need not be presented any
+// more: answered, given up or unneeded.
+struct TrialsDone {
+  std::ptrdiff_t done{};
+  std::ptrdiff_t planned{};
+  bool are_all() const { return done >= planned; }
+};
+TrialsDone trials_done(const protocols::Protocol& protocol, const std::string& participant_id,
+                       results::Store& store);
 }  // namespace tapstudy::runner

@@ -174,7 +174,8 @@ std::function<void(std::string_view, const std::string&)> LiveTrials::masking_ma
 }
 
 // Otherwise a presentation would leave no trace if the program were killed in it. The trial does
-// not wait for the disk; if it is full, storing the trial will say so.
+// not wait for the disk: what it refuses is stored with the trial, or the operator hears of it
+// then.
 void LiveTrials::store_presentation() {
   recorder_.note(states_.take_events());
 }

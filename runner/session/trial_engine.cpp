@@ -50,7 +50,7 @@ void TrialEngine::note_events() {
   try {
     recorder_.note(parts_.states.take_events()).get();
   } catch (const results::StoreError& error) {
-    warn(fmt::format("the session's latest changes of state are not stored: {}", error.what()));
+    warn(fmt::format("the session's latest changes of state are not stored yet: {}", error.what()));
   }
 }
 

@@ -176,7 +176,7 @@ TEST_CASE("a session runs on a device that another program drives, and can be re
   testing::write(directory / "rig.yaml",
                  testing::replaced(testing::contents(testing::shipped("rigs/remote.yaml")),
                                    "port: 50607, max_reply_s: 0.003",
-                                   fmt::format("port: {}, max_reply_s: 0.1", port)) +
+                                   fmt::format("port: {}, max_reply_s: 0.05", port)) +
                      "loop: {max_late_ticks_in_a_row: 1000000, max_stall_s: 0.1}\n");
   const auto live = testing::run_program(
       {"/usr/bin/python3", testing::source("tests/support/with_logind.py"), "/bin/bash", "-c",

@@ -109,3 +109,19 @@ TEST_CASE("the methods of a report say what the protocol asked for and what it r
   CHECK_THAT(masked, Contains("screen did not show what was presented"));
   CHECK_THAT(masked, !Contains("letters"));
 }
+
+TEST_CASE(
+    "a block that is called as a part of the report is keeps its tables apart from that part's",
+    "[end_to_end][report]") {
+  const testing::TempDirectory directory;
+  const std::string study = directory / "study";
+  testing::write(directory / "study.yaml",
+                 testing::replaced(testing::contents(testing::source("tests/data/every_task.yaml")),
+                                   "name: rating,", "name: rendered,"));
+  REQUIRE(testing::tapstudy({"simulate", directory / "study.yaml", "--participants", "1", "--seed",
+                             "1", "--out", study})
+              .exit_code == 0);
+  REQUIRE(testing::tapstudy({"report", study}).exit_code == 0);
+  CHECK_THAT(testing::contents(study + "/rendered_stimuli.csv"), Contains("taps"));
+  CHECK_THAT(testing::contents(study + "/block_rendered_stimuli.csv"), Contains("median"));
+}

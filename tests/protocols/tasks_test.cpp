@@ -3,6 +3,7 @@
 #include <map>
 #include <set>
 
+#include "core/error.hpp"
 #include "protocols/read_protocol.hpp"
 #include "protocols/schedule.hpp"
 #include "support/texts.hpp"
@@ -74,6 +75,38 @@ TEST_CASE("exactly one answer is right where one is, and it names what differs",
       CHECK(right_of(trial).empty());
     }
   }
+}
+
+TEST_CASE(
+    "intervals that leave no time for an answer, or cannot be drawn, are refused where they are",
+    "[protocols][tasks]") {
+  const auto refusal = [](const std::string& block, const std::string& other) -> std::string {
+    std::string text = testing::contents(testing::source("tests/data/every_task.yaml"));
+    const auto at = text.find("  - {name: " + block + ",");
+    text.replace(at, text.find('\n', at) - at, "  - {name: " + block + ", " + other + "}");
+    try {
+      protocols::parse_protocol(text, "study.yaml");
+    } catch (const core::InvalidInput& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  const std::string pair = "task: paired, question: \"Which?\", stimuli: [one, other], explore: ";
+  CHECK_THAT(
+      refusal("paired", pair + "{max_seconds: 5, intervals: {seconds: 2, gap_seconds: 0.5}}"),
+      Contains("explore: max_seconds: is over before an answer is possible: the intervals "
+               "take 5 s"));
+  CHECK(refusal("paired", pair + "{max_seconds: 6, intervals: {seconds: 2, gap_seconds: 0.5}}") ==
+        "accepted");
+  CHECK_THAT(refusal("paired",
+                     "task: identification, question: \"Which?\", stimuli: [one], order: williams, "
+                     "explore: {intervals: {seconds: 2}}"),
+             Contains("order: a Williams order needs at least two stimuli"));
+  CHECK_THAT(
+      refusal("adjustment",
+              "task: adjustment, question: \"Equal?\", stimuli: [one], settings: {from: 1.0e-310, "
+              "to: 6, count: 3}, explore: {intervals: {seconds: 2}}"),
+      Contains("blocks[10]"));
 }
 
 TEST_CASE("every stimulus is the sample equally often with its match at every place",

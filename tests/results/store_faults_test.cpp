@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "core/rng.hpp"
+#include "results/recorder.hpp"
 #include "results/store_error.hpp"
 #include "support/processes.hpp"
 #include "support/small_study.hpp"
@@ -117,6 +118,29 @@ TEST_CASE("of fifty write errors at different places none loses or doubles a con
   }
   std::signal(SIGXFSZ, usual_handler);
   CHECK(failures >= 40);
+}
+
+TEST_CASE("changes of state that a full disk refused are stored once, before the next trial",
+          "[results][recorder][store]") {
+  const testing::TempDirectory directory;
+  auto [store, row] = begun_study(directory.path());
+  const auto usual_handler = std::signal(SIGXFSZ, SIG_IGN);
+  rlimit usual{};
+  REQUIRE(getrlimit(RLIMIT_FSIZE, &usual) == 0);
+  Recorder recorder{store};
+  const rlimit full{1, usual.rlim_max};
+  setrlimit(RLIMIT_FSIZE, &full);
+  CHECK_THROWS_AS(recorder.note({{row.id, 1.0, "exploring", 1, ""}}).get(), StoreError);
+  const auto first = std::make_shared<const TrialRecord>(trial(row.id, 1, "a"));
+  CHECK_THROWS_AS(recorder.save(first).get(), StoreError);
+  setrlimit(RLIMIT_FSIZE, &usual);
+  std::signal(SIGXFSZ, usual_handler);
+  recorder.save(first).get();
+  recorder.note({{row.id, 2.0, "answering", 1, ""}}).get();
+  Database stored{directory.path() + "/study.db", Database::Access::read};
+  Statement states{stored, "SELECT group_concat(state, ' ') FROM session_event"};
+  REQUIRE(states.step());
+  CHECK(states.text(0) == "exploring answering");
 }
 
 TEST_CASE("a file that a dead program left half changed is read as it was before the change",

@@ -17,11 +17,10 @@ OperatorActionRow action(std::int64_t session_id, const std::string& name,
   return {session_id, 1.0, name, std::nullopt, detail};
 }
 
-SessionRow add_participant(Store& store, const std::string& id,
-                           const Store::IsInSession& is_in_session) {
+SessionRow add_participant(Store& store, const std::string& id, const Store::Others& others) {
   SessionRow row = small_study::session(id);
   row.planned_order = "1 main 1 a\n2 main 1 b\n";
-  const Store::Place place = store.place_of(id, Mode::real, is_in_session);
+  const Store::Place place = store.place_of(id, Mode::real, others);
   row.participant_index = place.participant_index;
   row.order_index = place.order_index;
   store.add_session(row);
@@ -157,7 +156,9 @@ TEST_CASE(
     "[results][store]") {
   const testing::TempDirectory directory;
   Store store = Store::open_or_create(directory.path(), small_study::study);
-  const auto is_p02 = [](const std::string& id) { return id == "P02"; };
+  bool has_trials_left = true;
+  const Store::Others is_p02{[](const std::string& id) { return id == "P02"; },
+                             [&](const std::string& /*id*/) { return has_trials_left; }};
   const SessionRow killed = add_participant(store, "P01", is_p02);
   const SessionRow active = add_participant(store, "P02", is_p02);
   CHECK(active.order_index == killed.order_index);  // who was never asked anything keeps no order
@@ -175,6 +176,8 @@ TEST_CASE(
   CHECK(store.place_of("P07", Mode::real, is_p02).order_index == 3);  // P06 answered nothing
   store.add_operator_action(action(withdrawn.id, "end", "went home"));
   CHECK(store.place_of("P07", Mode::real, is_p02).order_index == 2);
+  has_trials_left = false;  // ended after the last trial: nobody withdrew
+  CHECK(store.place_of("P07", Mode::real, is_p02).order_index == 3);
   CHECK(store.place_of("P03", Mode::real, is_p02).order_index == 1);  // if resumed
   CHECK(store.place_of("Q01", Mode::pilot, is_p02).order_index == 0);
 }

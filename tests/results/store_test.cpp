@@ -82,7 +82,8 @@ TEST_CASE("participants are counted once and keep to one mode", "[results][store
   const testing::TempDirectory directory;
   Store store = Store::open_or_create(directory.path(), study);
   const auto place_of = [&](const std::string& id, Mode mode) {
-    return store.place_of(id, mode, [](const std::string& /*id*/) { return false; });
+    const auto nobody = [](const std::string& /*id*/) { return false; };
+    return store.place_of(id, mode, {nobody, nobody});
   };
   CHECK(place_of("P01", Mode::real).participant_index == 0);
   SessionRow first = session("P01");

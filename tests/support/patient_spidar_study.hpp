@@ -29,6 +29,6 @@ inline void write_patient_spidar_study(const TempDirectory& directory) {
                                              {"fifo_priority: 80", "fifo_priority: 0"},
                                              {"max_late_ticks_in_a_row: 20",
                                               "max_late_ticks_in_a_row: 1000000, max_stall_s: 0.1"},
-                                             {"max_reply_s: 0.003}", "max_reply_s: 0.1}"}}));
+                                             {"max_reply_s: 0.003}", "max_reply_s: 0.05}"}}));
 }
 }  // namespace tapstudy::testing

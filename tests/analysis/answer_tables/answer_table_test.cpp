@@ -76,6 +76,14 @@ TEST_CASE("JSON that is no list of trials is refused", "[analysis][answer_tables
   }
 }
 
+TEST_CASE("an error in a list of trials names the trial, for it has no lines",
+          "[analysis][answer_tables]") {
+  std::istringstream json{
+      R"([{"stimulus": "a", "response": "a"}, {"stimulus": "", "response": "a"}])"};
+  const std::vector<NamedCsv> tables{{"trials.json", read_json_rows(json, "trials.json")}};
+  CHECK_THROWS_WITH(read_answers(tables, {}), Contains("trials.json, object 2: has an answer"));
+}
+
 TEST_CASE("rows without an answer are counted and left out", "[analysis][answer_tables]") {
   AnswerReading reading = keys_of_plates();
   reading.conditions = {{"task", "plate"}};

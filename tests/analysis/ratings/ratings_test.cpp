@@ -73,8 +73,9 @@ TEST_CASE("signed rank tests of pairs and Holm's adjustment are coin's and R's",
         testing::r_numbers(testing::exact_signed_rank_p + r_table(ratings) + R"(
 p <- c()
 for (i in 1:3) for (j in (i + 1):4) {
-  w <- suppressWarnings(wilcox.test(m[, i], m[, j], paired = TRUE))
-  out(w$statistic); p <- c(p, exact_signed_rank_p(m[, i] - m[, j]))
+  d <- round(m[, i] - m[, j], 9)  # else ties are broken by rounding
+  w <- suppressWarnings(wilcox.test(d))
+  out(w$statistic); p <- c(p, exact_signed_rank_p(d))
 }
 out(p, p.adjust(p, 'holm'))
 )");
@@ -120,6 +121,24 @@ TEST_CASE(
   }
   CHECK(analysis::signed_rank_test(coarse).pairs == 9);
   CHECK_FALSE(analysis::signed_rank_test({0.0, 0.0}).p);
+}
+
+TEST_CASE("marks a hundredth apart are tied as their hundredths are, though not in binary",
+          "[analysis][ratings]") {
+  const std::vector<std::pair<int, int>> hundredths{{40, 15}, {45, 35}, {60, 70}, {30, 30},
+                                                    {55, 60}, {55, 65}, {60, 70}, {55, 50},
+                                                    {40, 40}, {45, 35}};
+  std::vector<double> of_marks;
+  std::vector<double> of_hundredths;
+  for (const auto& [one, other] : hundredths) {
+    of_marks.push_back(one / 100.0 - other / 100.0);
+    of_hundredths.push_back(one - other);
+  }
+  const auto marks = analysis::signed_rank_test(of_marks);
+  const auto whole = analysis::signed_rank_test(of_hundredths);
+  CHECK(marks.positive_ranks == whole.positive_ranks);
+  CHECK(marks.pairs == 8);
+  CHECK(marks.p == whole.p);
 }
 
 TEST_CASE("ratings that cannot be compared are refused", "[analysis][ratings]") {

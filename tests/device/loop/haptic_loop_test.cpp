@@ -176,7 +176,9 @@ TEST_CASE("a tick with a fault is stored with what was read, not with zeros", "[
     device::HapticLoop loop = bench.loop();
     loop.run_ticks(10);
     REQUIRE(loop.report().stopped_by == core::TickFault::too_late);
-    CHECK(std::isnan(bench.samples().back().position_m[1]));
+    const core::TraceSample unread = bench.samples().back();
+    CHECK(std::isnan(unread.position_m[1]));
+    CHECK(std::isnan(unread.achieved_n[1]));
   }
 }
 
@@ -438,8 +440,10 @@ TEST_CASE("after missing replies force rises again from where it faded to",
   bench.hand.missed_replies = 0;
   loop.run_ticks(10);
   CHECK(bench.hand.last_force_n.y() == Approx(2.0 + 6.0 * 0.1).epsilon(0.01));
+  CHECK(bench.samples().back().late);  // an impact would be too weak
   loop.run_ticks(100);
   CHECK(bench.hand.last_force_n.y() == Approx(6.0));
+  CHECK_FALSE(bench.samples().back().late);
 }
 
 TEST_CASE("a device that cannot begin gets no tick", "[device][loop][safety]") {

@@ -12,7 +12,9 @@
 #include <cstring>
 #include <limits>
 #include <thread>
+#include <vector>
 
+#include "core/rng.hpp"
 #include "device/remote/packets.hpp"
 #include "device/remote/remote_hand.hpp"
 #include "support/staged_loop.hpp"
@@ -32,6 +34,8 @@ enum class Trouble {
   no_power,
   overload,     // exerts far more than it was sent
   limp,         // exerts nothing
+  coarse,       // its gauge is noisy
+  late,         // its gauge is 10 replies late
   releases,     // as after a silence
   every_other,  // request is answered
   gone
@@ -99,9 +103,7 @@ class MockProgram {
     const std::uint32_t status =
         on | (trouble == Trouble::releases ? device::force_was_released : 0);
     std::memcpy(reply.data() + 60, &status, sizeof status);
-    const double told_n = trouble == Trouble::overload ? 80.0
-                          : trouble == Trouble::limp   ? 0.0
-                                                       : exerted_n.load();
+    const double told_n = measured_n();
     std::memcpy(reply.data() + 72, &told_n, sizeof told_n);
     std::copy_n(request.begin() + 8, 4, reply.begin() + 8);
     reply[8] = static_cast<std::uint8_t>(reply[8] - (trouble == Trouble::old_number ? 1 : 0));
@@ -112,6 +114,24 @@ class MockProgram {
     return reply;
   }
 
+  double measured_n() {
+    gauge_n_.push_back(exerted_n);
+    switch (trouble.load()) {
+      case Trouble::overload:
+        return 80.0;
+      case Trouble::limp:
+        return 0.0;
+      case Trouble::coarse:
+        return exerted_n + 0.1 * rng_.normal();
+      case Trouble::late:
+        return gauge_n_.size() > 10 ? gauge_n_[gauge_n_.size() - 11] : 0.0;
+      default:
+        return exerted_n;
+    }
+  }
+
+  core::Rng rng_{1};
+  std::vector<double> gauge_n_;
   int requests_{0};
   int socket_{socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)};
   std::jthread thread_;
@@ -234,6 +254,20 @@ TEST_CASE("a stop that a later reply contradicts is not confirmed", "[device][sa
   CHECK(stage.hand.zero_force() == device::StopOutcome::confirmed);
   stage.trouble = Trouble::overload;
   CHECK(stage.hand.zero_force() == device::StopOutcome::unconfirmed);
+}
+
+TEST_CASE("a stop is confirmed though the device measures its force coarsely or late",
+          "[device][safety][remote]") {
+  for (const Trouble trouble : {Trouble::coarse, Trouble::late}) {
+    CAPTURE(static_cast<int>(trouble));
+    Stage stage;
+    stage.is_version_2 = true;
+    stage.press();
+    stage.trouble = trouble;
+    for (int i = 0; i < 20; ++i) {
+      REQUIRE(stage.hand.zero_force() == device::StopOutcome::confirmed);
+    }
+  }
 }
 
 TEST_CASE("a program that replies in another format is told from one that is not there",

@@ -8,6 +8,7 @@
 
 #include "core/error.hpp"
 #include "device/device.hpp"
+#include "device/spidar/calibration.hpp"
 #include "protocols/spidar_calibration.hpp"
 #include "support/texts.hpp"
 #include "support/usb/spidar_on_bus.hpp"
@@ -20,6 +21,7 @@ struct Workbench {
   std::array<int, 8> count{};
   std::array<int, 8> dac_counts{};
   int max_dac_counts{0};
+  double newtons_per_count_scale{1.0};
   testing::FakeBus bus{device::cyverse_vendor, device::sh4_product,
                        [this](auto request) { return reply(request); }};
   device::UsbNode node{testing::node_of(bus)};
@@ -55,10 +57,12 @@ struct Workbench {
 };
 
 // Does what is asked, on the string whose turn it is.
-class SkilledOperator final : public device::CalibrationOperator {
+class SkilledOperator : public device::CalibrationOperator {
  public:
   explicit SkilledOperator(Workbench& bench) : bench_{bench} {}
-  void please(const std::string& /*task*/) override { ++string_; }
+  void please(const std::string& task) override {
+    string_ = std::stoi(task.substr(task.find("String ") + 7)) - 1;
+  }
   double how_much(const std::string& task, double /*max*/,
                   const std::function<void()>& keep_waiting) override {
     const auto i = static_cast<std::size_t>(string_);
@@ -67,7 +71,9 @@ class SkilledOperator final : public device::CalibrationOperator {
       bench_.count.at(i) += static_cast<int>(0.1 / Workbench::metres_per_count(i));
       return 0.1;
     }
-    return Workbench::newtons_per_dac_count(i) * bench_.dac_counts.at(i) + Workbench::friction_n;
+    return bench_.newtons_per_count_scale * Workbench::newtons_per_dac_count(i) *
+               bench_.dac_counts.at(i) +
+           bench_.newtons_per_count_scale * Workbench::friction_n;
   }
 
  private:
@@ -75,13 +81,39 @@ class SkilledOperator final : public device::CalibrationOperator {
   int string_{-1};
 };
 
+// Whose one answer, counted from 1, is another: a slip of the pen.
+class SlippingOperator final : public SkilledOperator {
+ public:
+  SlippingOperator(Workbench& bench, int slip, double factor)
+      : SkilledOperator{bench}, slip_{slip}, factor_{factor} {}
+  double how_much(const std::string& task, double max,
+                  const std::function<void()>& keep_waiting) override {
+    const double right = SkilledOperator::how_much(task, max, keep_waiting);
+    return ++answers_ == slip_ ? factor_ * right : right;
+  }
+  void warn(const std::string& what) noexcept override { warnings += what + "\n"; }
+  std::string warnings;
+
+ private:
+  int slip_;
+  double factor_;
+  int answers_{0};
+};
+
+// Pulls no string, and gives up at the second time.
 class IdleOperator final : public device::CalibrationOperator {
  public:
-  void please(const std::string& /*task*/) override {}
+  void please(const std::string& /*task*/) override {
+    if (!warnings.empty()) {
+      throw core::InvalidInput{"gave up"};
+    }
+  }
   double how_much(const std::string& /*task*/, double /*max*/,
                   const std::function<void()>& /*keep_waiting*/) override {
     return 0.1;
   }
+  void warn(const std::string& what) noexcept override { warnings += what; }
+  std::string warnings;
 };
 }  // namespace
 
@@ -120,13 +152,42 @@ TEST_CASE("what calibration writes, a rig reads", "[device][calibration]") {
   }
 }
 
-TEST_CASE("an encoder that does not move ends calibration, with all outputs zero",
+TEST_CASE("an implausible reading costs one string, not the whole calibration",
+          "[device][calibration]") {
+  const auto [slip, factor, said] = GENERATE(table<int, double, std::string>(
+      {{6, 10.0, "are not proportional"},   // the gauge at string 2, stronger output
+       {5, 0.01, "are not proportional"},   // at the weaker one
+       {7, 4.0, "metres_per_count is"}}));  // the ruler at string 3
+  Workbench bench;
+  SlippingOperator person{bench, slip, factor};
+  const auto strings =
+      device::calibrate_spidar(*bench.board, bench.pipe, bench.watchdog, bench.clock, person)
+          .strings;
+  CHECK_THAT(person.warnings, Contains(said));
+  for (std::size_t i = 0; i < 8; ++i) {
+    CHECK(strings.at(i).metres_per_count == Approx(Workbench::metres_per_count(i)).epsilon(1e-3));
+  }
+}
+
+TEST_CASE("calibration asks for no more tension than the board can put out, so a rig accepts it",
+          "[device][calibration]") {
+  Workbench bench;
+  SkilledOperator person{bench};
+  bench.newtons_per_count_scale = 0.3;
+  const core::SpidarCalibration measured =
+      device::calibrate_spidar(*bench.board, bench.pipe, bench.watchdog, bench.clock, person);
+  CHECK(measured.max_tension_n == Approx(4095 * 0.3 * 0.006).epsilon(1e-9));
+  CHECK_NOTHROW(device::check_calibration(measured));
+}
+
+TEST_CASE("an encoder that does not move is told, and all outputs are zero when calibration ends",
           "[device][calibration]") {
   Workbench bench;
   IdleOperator person;
   CHECK_THROWS_WITH(
       device::calibrate_spidar(*bench.board, bench.pipe, bench.watchdog, bench.clock, person),
-      Contains("string 1: its encoder counted 0"));
+      "gave up");
+  CHECK_THAT(person.warnings, Contains("string 1: its encoder counted 0"));
   CHECK(std::ranges::all_of(bench.dac_counts, [](int dac_counts) { return dac_counts == 0; }));
 }
 

@@ -4,6 +4,7 @@
 
 #include "core/error.hpp"
 #include "protocols/read_protocol.hpp"
+#include "protocols/read_rig.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;
 using Catch::Matchers::Contains;
@@ -82,6 +83,7 @@ TEST_CASE("a rig with hardware must have limits and a calibration", "[runner][ri
       {"device: spidar-g6", "device: spidar-g7", "did you mean 'spidar-g6'?"},
       {"force_rise_s: 0.5", "force_rise_s: 0", "force_rise_s: 0 is not allowed"},
       {"max_force_n: 5", "max_force_n: .nan", "max_force_n: nan is not allowed"},
+      {"max_reply_s: 0.003", "max_reply_s: 0.05", "a single missing reply would be a stall"},
   }));
   INFO(from << " → " << to);
   CHECK_THAT(refusal(replaced(rig_text(), from, to), calibration_text()), Contains(said));
@@ -106,6 +108,18 @@ TEST_CASE("a calibration that is another device's, incomplete or nonsense is ref
   }));
   INFO(from << " → " << to);
   CHECK_THAT(refusal(rig_text(), replaced(calibration_text(), from, to)), Contains(said));
+}
+
+TEST_CASE("a stored rig's placement is read wherever its document begins, before its calibration",
+          "[runner][rig]") {
+  const std::string rig = replaced(rig_text(), "lateral_scale: 0.05", "lateral_scale: 0.07");
+  for (const char* const before : {"", "---\n", "# ours\n---\n"}) {
+    CAPTURE(before);
+    const auto placement =
+        protocols::placement_in_stored_rig(before + rig + "\n---\n" + calibration_text());
+    REQUIRE(placement);
+    CHECK(placement->lateral_scale == 0.07);
+  }
 }
 
 TEST_CASE("the simulated hand needs neither", "[runner][rig]") {

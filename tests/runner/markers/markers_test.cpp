@@ -4,6 +4,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <lo/lo.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <termios.h>
 #include <unistd.h>
@@ -170,6 +171,24 @@ TEST_CASE("a file is made, and appended to", "[runner][markers]") {
                     Contains("cannot be opened: No such file or directory"));
   CHECK_THROWS_WITH(runner::open_line_markers("/dev/no_such_port"),
                     Contains("cannot be opened: No such file or directory"));
+}
+
+TEST_CASE("a line that a full disk cut is finished once there is space, and torn by no other",
+          "[runner][markers]") {
+  const TempDirectory directory;
+  const auto usual_handler = std::signal(SIGXFSZ, SIG_IGN);
+  rlimit usual{};
+  REQUIRE(getrlimit(RLIMIT_FSIZE, &usual) == 0);
+  const auto markers = runner::open_line_markers(directory / "markers.txt");
+  const rlimit full{line.size() + 10, usual.rlim_max};
+  setrlimit(RLIMIT_FSIZE, &full);
+  CHECK(markers->send(change) == Sent::yes);
+  CHECK(markers->send(change) == Sent::yes);  // in part
+  CHECK(markers->send(between) == Sent::no);
+  setrlimit(RLIMIT_FSIZE, &usual);
+  std::signal(SIGXFSZ, usual_handler);
+  CHECK(markers->send(change) == Sent::yes);
+  CHECK(testing::contents(directory / "markers.txt") == line + line + line);
 }
 
 TEST_CASE("a serial port is set up raw at 115 200 baud and gets the lines", "[runner][markers]") {

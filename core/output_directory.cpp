@@ -57,6 +57,17 @@ void rename_to_new(const std::string& from, const std::string& to) {
 }
 }  // namespace
 
+void make_directories(const std::string& directory) {
+  std::error_code error;
+  fs::create_directories(directory, error);
+  if (error) {
+    throw InvalidInput{fmt::format("{}: cannot be made: {}", directory, error.message())};
+  }
+  if (!fs::is_directory(directory, error) || access(directory.c_str(), W_OK | X_OK) != 0) {
+    throw InvalidInput{directory + ": is no directory that can be written to"};
+  }
+}
+
 void write_new_directory(const std::string& directory,
                          const std::function<void(const std::string& unfinished)>& fill) {
   const std::string final_name = without_slash(directory);

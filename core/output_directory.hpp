@@ -2,6 +2,9 @@
 #include <functional>
 #include <string>
 namespace tapstudy::core {
+// Makes the directory, and those above it, where they are not there. Throws InvalidInput if it
+// cannot be made or nothing can be written into it.
+void make_directories(const std::string& directory);
 // Makes a new directory all at once: `fill` writes into an unfinished one beside it, given its
 // name, which gets the final name when everything is in it. What remains of a killed program is
 // called NAME.unfinished-… and never read.

@@ -75,10 +75,8 @@ struct Confidence {
   std::string high;  // what `steps` means
 };
 
-// A rest after every so many trials of a block, ended by the participant, after min_seconds at the
-// earliest.
-// After so many trials, or so much time since the last rest or the block's begin, whichever is
-// first.
+// A rest after so many trials of a block, or so much time since the last rest or the block's start,
+// whichever comes first. The participant ends it, at the earliest after min_seconds.
 struct Breaks {
   std::optional<int> every_trials{};
   std::optional<double> every_seconds{};

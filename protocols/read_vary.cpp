@@ -7,19 +7,12 @@
 #include <utility>
 
 #include "protocols/axes/presented_stimulus.hpp"
+#include "protocols/axes/read_spaced.hpp"
 #include "protocols/read_sections.hpp"
 namespace tapstudy::protocols {
 namespace {
 using Presence = MapReader::Presence;
 constexpr int max_count = 1000;
-
-void read_ends(MapReader& reader, const Range& allowed, AxisRange& range) {
-  range.from = reader.number("from", allowed);
-  range.to = reader.number("to", allowed);
-  if (!(range.from < range.to)) {
-    reader.reject("from", fmt::format("{} is not below to, {}", range.from, range.to));
-  }
-}
 
 void check_listed(MapReader& reader, const std::vector<double>& ascending) {
   if (const auto twice = std::ranges::adjacent_find(ascending); twice != ascending.end()) {
@@ -27,34 +20,53 @@ void check_listed(MapReader& reader, const std::vector<double>& ascending) {
   }
 }
 
-void read_table(MapReader& reader, const Range& allowed, AxisRange& range) {
-  if (reader.has("values")) {
-    range.table = reader.number_list("values", allowed);
-    std::ranges::sort(range.table);
-    check_listed(reader, range.table);
-    range.from = range.table.empty() ? 0.0 : range.table.front();
-    range.to = range.table.empty() ? 0.0 : range.table.back();
-  } else {
-    read_ends(reader, allowed, range);
-    const int count = reader.integer("count", 2, max_count);
-    range.table = spaced(range.from, range.to, count, range.spacing);
-  }
-}
-
-AxisRange read_range(MapReader& reader, const Axis& axis, const Range& allowed) {
-  AxisRange range;
-  range.axis = &axis;
+bool read_listed(MapReader& reader, const Range& allowed, AxisRange& range) {
+  const std::size_t earlier_problems = reader.problems_in_file();
+  range.table = reader.number_list("values", allowed);
   range.spacing = reader.one_of<Spacing>(
       "spacing", {{"linear", Spacing::linear}, {"log", Spacing::log}}, "linear");
-  if (axis.kind == AxisKind::tabled) {
-    read_table(reader, allowed, range);
-  } else {
-    read_ends(reader, allowed, range);
+  std::ranges::sort(range.table);
+  check_listed(reader, range.table);
+  if (reader.problems_in_file() > earlier_problems) {
+    return false;
   }
+  range.from = range.table.front();
+  range.to = range.table.back();
   if (range.spacing == Spacing::log && range.from <= 0.0) {
     reader.reject("spacing", fmt::format("log needs values above 0, not {}", range.from));
   }
-  return range;
+  return reader.problems_in_file() == earlier_problems;
+}
+
+bool read_table(MapReader& reader, const Range& allowed, AxisRange& range) {
+  const auto spaced = read_spaced(reader, {"from", "to"}, allowed, max_count);
+  if (spaced) {
+    range.table = spaced->values;
+    range.spacing = spaced->spacing;
+    range.from = range.table.front();
+    range.to = range.table.back();
+  }
+  return spaced.has_value();
+}
+
+bool read_interval(MapReader& reader, const Range& allowed, AxisRange& range) {
+  const auto ends = read_ends(reader, {"from", "to"}, allowed);
+  if (ends) {
+    range.from = ends->low;
+    range.to = ends->high;
+    range.spacing = ends->spacing;
+  }
+  return ends.has_value();
+}
+
+// nullopt: a problem was noted.
+std::optional<AxisRange> read_range(MapReader& reader, const Axis& axis, const Range& allowed) {
+  AxisRange range;
+  range.axis = &axis;
+  const bool is_whole = axis.kind != AxisKind::tabled ? read_interval(reader, allowed, range)
+                        : reader.has("values")        ? read_listed(reader, allowed, range)
+                                                      : read_table(reader, allowed, range);
+  return is_whole ? std::optional{range} : std::nullopt;
 }
 
 // Where a name was rejected, something in its place, so that reading can continue.
@@ -101,11 +113,11 @@ std::string why_refused(const Axis& axis, const PresentedStimulus& own) {
 void read_axis(MapReader& reader, const Axis& axis, const PresentedStimulus& own,
                std::vector<AxisRange>& ranges) {
   const std::string why = why_refused(axis, own);
-  const AxisRange range = read_range(reader, axis, why.empty() ? axis.allowed(own) : any_number());
-  if (why.empty()) {
-    ranges.push_back(range);
-  } else {
+  const auto range = read_range(reader, axis, why.empty() ? axis.allowed(own) : any_number());
+  if (!why.empty()) {
     reader.reject(why);
+  } else if (range) {
+    ranges.push_back(*range);
   }
 }
 }  // namespace

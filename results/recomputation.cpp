@@ -33,9 +33,8 @@ std::vector<StoredTrial> stored_trials(Store& store) {
         trials.push_back(
             {row.integer(0),
              row.text(1),
-             {row.integer(2), static_cast<int>(row.integer(3)), static_cast<int>(row.integer(4)),
-              row.text(5), row.text(6), row.integer(7) != 0, static_cast<int>(row.integer(8)),
-              row.text(9), row.real(10), row.integer(11) != 0, row.integer(12) != 0},
+             {row.integer(2), row.small(3), row.small(4), row.text(5), row.text(6), row.flag(7),
+              row.small(8), row.text(9), row.real(10), row.flag(11), row.flag(12)},
              row.integer(13),
              row.integer(14),
              row.integer(15)});
@@ -63,14 +62,11 @@ std::vector<StoredAnswer> stored_answers(Store& store, std::int64_t trial_id) {
                   "WHERE trial_id = {}",
                   trial_id),
       [&](Statement& row) {
-        answers.push_back({row.integer(0),
-                           row.integer(5) != 0,
-                           row.text(6),
-                           {row.text(1),
-                            row.is_null(2) ? std::nullopt : std::optional{row.integer(2) != 0},
-                            row.real(3),
-                            row.is_null(4) ? std::nullopt : std::optional{row.real(4)},
-                            {}}});
+        answers.push_back(
+            {row.integer(0),
+             row.flag(5),
+             row.text(6),
+             {row.text(1), row.optional_flag(2), row.real(3), row.optional_real(4), {}}});
       });
   return answers;
 }

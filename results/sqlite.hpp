@@ -77,8 +77,21 @@ class Statement {
   std::int64_t integer(int column);
   double real(int column);
   std::vector<std::byte> bytes(int column);
+  int small(int column) { return static_cast<int>(integer(column)); }
+  bool flag(int column) { return integer(column) != 0; }
+  // Unset where the column is NULL.
+  std::optional<double> optional_real(int column) { return unless_null(column, &Statement::real); }
+  std::optional<int> optional_int(int column) { return unless_null(column, &Statement::small); }
+  std::optional<bool> optional_flag(int column) { return unless_null(column, &Statement::flag); }
+  std::optional<std::string> optional_text(int column) {
+    return unless_null(column, &Statement::text);
+  }
 
  private:
+  template <class Value>
+  std::optional<Value> unless_null(int column, Value (Statement::*read)(int)) {
+    return is_null(column) ? std::nullopt : std::optional{(this->*read)(column)};
+  }
   void check(int code) const;
   struct Finalise {
     void operator()(sqlite3_stmt* handle) const;

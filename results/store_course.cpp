@@ -1,16 +1,6 @@
 // How the sessions of each participant went.
 #include "results/store.hpp"
 namespace tapstudy::results {
-namespace {
-std::optional<double> real_or_unset(Statement& row, int column) {
-  return row.is_null(column) ? std::nullopt : std::optional{row.real(column)};
-}
-
-int small(Statement& row, int column) {
-  return static_cast<int>(row.integer(column));
-}
-}  // namespace
-
 std::vector<ParticipantCourseRow> Store::participant_courses() {
   Statement row{database_,
                 "SELECT participant_id, mode, exclusion_reason, "
@@ -23,8 +13,8 @@ std::vector<ParticipantCourseRow> Store::participant_courses() {
     ParticipantCourseRow course;
     course.participant_id = row.text(0);
     course.mode = mode_from(row.text(1));
-    course.exclusion_reason = row.is_null(2) ? std::nullopt : std::optional{row.text(2)};
-    course.sessions = small(row, 3);
+    course.exclusion_reason = row.optional_text(2);
+    course.sessions = row.small(3);
     courses.push_back(course);
   }
   for (ParticipantCourseRow& course : courses) {
@@ -52,15 +42,15 @@ void Store::add_presentations(ParticipantCourseRow& course) {
                 "  count(*) FILTER (WHERE status = 'answered' AND is_catch AND is_correct) "
                 "FROM own LEFT JOIN current_response USING (trial_id)"};
   row.bind(course.participant_id).step();
-  course.answered = small(row, 0);
-  course.interrupted = small(row, 1);
-  course.repeated = small(row, 2);
-  course.skipped = small(row, 3);
-  course.timed_out = small(row, 4);
-  course.given_up = small(row, 5);
-  course.corrected = small(row, 6);
-  course.catch_trials = small(row, 7);
-  course.catch_right = small(row, 8);
+  course.answered = row.small(0);
+  course.interrupted = row.small(1);
+  course.repeated = row.small(2);
+  course.skipped = row.small(3);
+  course.timed_out = row.small(4);
+  course.given_up = row.small(5);
+  course.corrected = row.small(6);
+  course.catch_trials = row.small(7);
+  course.catch_right = row.small(8);
 }
 
 void Store::add_loop(ParticipantCourseRow& course) {
@@ -98,12 +88,12 @@ void Store::add_masking(ParticipantCourseRow& course) {
                 "FROM event JOIN trial USING (trial_id) JOIN session USING (session_id) "
                 "WHERE participant_id = ?"};
   row.bind(course.participant_id).step();
-  course.masked_trials = small(row, 0);
-  course.masking_low_db = real_or_unset(row, 1);
-  course.masking_high_db = real_or_unset(row, 2);
+  course.masked_trials = row.small(0);
+  course.masking_low_db = row.optional_real(1);
+  course.masking_high_db = row.optional_real(2);
   course.masking_gaps = row.integer(3);
   course.masking_cut_samples = row.integer(4);
-  course.masking_lost = small(row, 5);
+  course.masking_lost = row.small(5);
 }
 
 void Store::add_form_items(ParticipantCourseRow& course) {
@@ -111,7 +101,7 @@ void Store::add_form_items(ParticipantCourseRow& course) {
                 "SELECT count(*), count(*) - count(answer) FROM form_answer "
                 "JOIN session USING (session_id) WHERE participant_id = ?"};
   row.bind(course.participant_id).step();
-  course.form_items = small(row, 0);
-  course.form_items_left_out = small(row, 1);
+  course.form_items = row.small(0);
+  course.form_items_left_out = row.small(1);
 }
 }  // namespace tapstudy::results

@@ -43,8 +43,8 @@ std::vector<FormAnswerRow> Store::forms_for_journal() {
       "SELECT session_id, t_s, form, asked, item, answer FROM form_answer ORDER BY rowid"};
   std::vector<FormAnswerRow> answers;
   while (row.step()) {
-    answers.push_back({row.integer(0), row.real(1), row.text(2), row.text(3), row.text(4),
-                       row.is_null(5) ? std::nullopt : std::optional{row.text(5)}});
+    answers.push_back(
+        {row.integer(0), row.real(1), row.text(2), row.text(3), row.text(4), row.optional_text(5)});
   }
   return answers;
 }

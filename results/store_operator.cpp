@@ -111,10 +111,8 @@ std::vector<DeviationRow> Store::deviations() {
                 "ORDER BY mode, participant_index"};
   std::vector<DeviationRow> deviations;
   while (row.step()) {
-    deviations.push_back({row.text(0), mode_from(row.text(1)), static_cast<int>(row.integer(2)),
-                          static_cast<int>(row.integer(3)), static_cast<int>(row.integer(4)),
-                          static_cast<int>(row.integer(5)), static_cast<int>(row.integer(6)),
-                          static_cast<int>(row.integer(7))});
+    deviations.push_back({row.text(0), mode_from(row.text(1)), row.small(2), row.small(3),
+                          row.small(4), row.small(5), row.small(6), row.small(7)});
   }
   return deviations;
 }
@@ -140,9 +138,8 @@ std::vector<CorrectionRow> Store::corrections_for_journal() {
                 "JOIN trial USING (trial_id) WHERE supersedes IS NOT NULL ORDER BY response_id"};
   std::vector<CorrectionRow> corrections;
   while (row.step()) {
-    corrections.push_back({row.integer(0), static_cast<int>(row.integer(1)), row.text(2),
-                           row.is_null(3) ? std::nullopt : std::optional{row.integer(3) != 0},
-                           given_by_from(row.text(4)), static_cast<int>(row.integer(5))});
+    corrections.push_back({row.integer(0), row.small(1), row.text(2), row.optional_flag(3),
+                           given_by_from(row.text(4)), row.small(5)});
   }
   return corrections;
 }
@@ -153,10 +150,7 @@ std::vector<OperatorActionRow> Store::actions_for_journal() {
                 "ORDER BY action_id"};
   std::vector<OperatorActionRow> actions;
   while (row.step()) {
-    actions.push_back(
-        {row.integer(0), row.real(1), row.text(2),
-         row.is_null(3) ? std::nullopt : std::optional{static_cast<int>(row.integer(3))},
-         row.text(4)});
+    actions.push_back({row.integer(0), row.real(1), row.text(2), row.optional_int(3), row.text(4)});
   }
   return actions;
 }

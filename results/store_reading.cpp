@@ -32,13 +32,13 @@ SessionRow session_from(Statement& row, const std::string& file) {
   SessionRow session;
   session.id = row.integer(0);
   session.participant_id = row.text(1);
-  session.participant_index = static_cast<int>(row.integer(2));
-  session.order_index = static_cast<int>(row.integer(3));
+  session.participant_index = row.small(2);
+  session.order_index = row.small(3);
   session.mode = mode_from(row.text(4));
   session.seed = seed_from(row.text(5), fmt::format("{}: session {}", file, session.id));
   session.planned_order = row.text(6);
   session.language = row.text(7);
-  session.resumes = row.integer(8) != 0 ? std::optional{row.integer(8)} : std::nullopt;
+  session.resumes = row.flag(8) ? std::optional{row.integer(8)} : std::nullopt;
   session.rate_hz = row.real(9);
   session.rig_text = row.text(10);
   session.device = row.text(11);
@@ -101,21 +101,11 @@ std::vector<JournalledAnswer> Store::journalled_answers(Statement& row) {
   std::vector<JournalledAnswer> answers;
   while (row.step()) {
     JournalledAnswer answer;
-    answer.trial = {row.integer(1),
-                    static_cast<int>(row.integer(2)),
-                    static_cast<int>(row.integer(3)),
-                    row.text(4),
-                    row.text(5),
-                    row.integer(6) != 0,
-                    static_cast<int>(row.integer(7)),
-                    row.text(8),
-                    row.real(9),
-                    row.integer(15) != 0,
-                    row.integer(16) != 0};
-    answer.response = {
-        row.text(10), row.is_null(11) ? std::nullopt : std::optional{row.integer(11) != 0},
-        row.real(12), row.is_null(13) ? std::nullopt : std::optional{row.real(13)},
-        row.is_null(14) ? std::nullopt : std::optional{static_cast<int>(row.integer(14))}};
+    answer.trial = {row.integer(1), row.small(2), row.small(3), row.text(4),
+                    row.text(5),    row.flag(6),  row.small(7), row.text(8),
+                    row.real(9),    row.flag(15), row.flag(16)};
+    answer.response = {row.text(10), row.optional_flag(11), row.real(12), row.optional_real(13),
+                       row.optional_int(14)};
     answer.alternatives = alternatives_of(row.integer(0));
     answers.push_back(std::move(answer));
   }
@@ -145,7 +135,7 @@ AlternativesOfTrials Store::alternatives_where(const char* condition,
   AlternativesOfTrials alternatives;
   while (row.step()) {
     alternatives[row.integer(0)].push_back(
-        {static_cast<int>(row.integer(1)), row.text(2), row.text(3), {}, row.integer(4) != 0});
+        {row.small(1), row.text(2), row.text(3), {}, row.flag(4)});
   }
   while (value.step()) {
     std::vector<AlternativeRow>& of_trial = alternatives[value.integer(0)];
@@ -191,7 +181,7 @@ std::vector<int> Store::answered_trials(const std::string& participant_id) {
   row.bind(participant_id);
   std::vector<int> numbers;
   while (row.step()) {
-    numbers.push_back(static_cast<int>(row.integer(0)));
+    numbers.push_back(row.small(0));
   }
   return numbers;
 }
@@ -208,7 +198,7 @@ std::map<int, int> Store::presentations(const std::string& participant_id) {
   row.bind(participant_id);
   std::map<int, int> attempts;
   while (row.step()) {
-    attempts.emplace(static_cast<int>(row.integer(0)), static_cast<int>(row.integer(1)));
+    attempts.emplace(row.small(0), row.small(1));
   }
   return attempts;
 }
@@ -223,9 +213,9 @@ std::vector<UnansweredTrial> Store::unanswered_trials(const std::string& partici
   row.bind(participant_id);
   std::vector<UnansweredTrial> trials;
   while (row.step()) {
-    const int number = static_cast<int>(row.integer(0));
+    const int number = row.small(0);
     if (!std::ranges::binary_search(answered, number)) {
-      trials.push_back({number, row.text(1), row.integer(2) != 0});
+      trials.push_back({number, row.text(1), row.flag(2)});
     }
   }
   return trials;

@@ -33,7 +33,7 @@ Store::Place Store::place_of(const std::string& participant_id, Mode mode, const
         fmt::format("participant '{}' is in this study already, in {} sessions (choose another id)",
                     participant_id, row.text(2))};
   }
-  return {static_cast<int>(row.integer(0)), static_cast<int>(row.integer(1))};
+  return {row.small(0), row.small(1)};
 }
 
 int Store::next_participant_index(Mode mode) {
@@ -56,13 +56,13 @@ int Store::free_order_index(Mode mode, const Others& others) {
   std::set<int> used;
   while (row.step()) {
     const std::string participant_id = row.text(0);
-    const bool has_answered = row.integer(2) != 0;
-    const bool was_ended = row.integer(3) != 0;
+    const bool has_answered = row.flag(2);
+    const bool was_ended = row.flag(3);
     const bool keeps_order =
         (has_answered && !(was_ended && others.has_trials_left(participant_id))) ||
         others.is_in_session(participant_id);
     if (keeps_order && !excluded.contains(participant_id)) {
-      used.insert(static_cast<int>(row.integer(1)));
+      used.insert(row.small(1));
     }
   }
   int free = 0;

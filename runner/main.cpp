@@ -1,6 +1,7 @@
 #include <fcntl.h>
+#include <poll.h>
+#include <unistd.h>
 
-#include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <exception>
@@ -36,13 +37,19 @@ ExitCode code_of(const std::exception& error) {
                            dynamic_cast<const std::system_error*>(&error) != nullptr;
   return is_of_input ? ExitCode::wrong_input : ExitCode::internal_error;
 }
+// Not by errno: much may have happened since the write that failed.
+bool has_reader_gone() {
+  pollfd output{STDOUT_FILENO, POLLOUT, 0};
+  return poll(&output, 1, 0) == 1 && (output.revents & POLLERR) != 0;
+}
+
 // Detects output that did not reach its file or pipe.
 void check_results_arrived() {
   std::cout.flush();
   if (!std::cout || std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
     throw tapstudy::results::StoreError{
-        errno == EPIPE ? "standard output: the reader closed the pipe"
-                       : "standard output: writing failed (is the disk full?)"};
+        has_reader_gone() ? "standard output: the reader closed the pipe"
+                          : "standard output: writing failed (is the disk full?)"};
   }
 }
 // Else a file or a socket opened later would take the place of a closed one, and be written to.

@@ -51,7 +51,7 @@ std::string p_value(const HypothesisResult& result) {
   if (!result.p) {
     return "not tested";
   }
-  return result.p_floor > 0.0 ? fmt::format("p < 1/{:.0f}", 1.0 / result.p_floor)
+  return result.p_floor > 0.0 ? fmt::format("p ≤ 1/{:.0f}", 1.0 / result.p_floor)
                               : p_value(*result.p);
 }
 

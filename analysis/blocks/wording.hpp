@@ -13,6 +13,6 @@ std::string fraction_and_percent(const Proportion& proportion);  // "43/80 = 54 
 // "43–64 %", with as many digits as its ends take to differ
 std::string percent_range(const Interval& shares);
 std::string p_value(double p);  // "p = .020", "p < .001"
-// The same, "p < 1/10000" where only a bound is known, or "not tested".
+// The same, "p ≤ 1/10000" where only a bound is known, or "not tested".
 std::string p_value(const HypothesisResult& result);
 }  // namespace tapstudy::analysis

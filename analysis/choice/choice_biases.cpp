@@ -5,7 +5,7 @@
 #include <map>
 #include <set>
 
-#include "analysis/resampling/random_table.hpp"
+#include "analysis/statistics/log_factorial.hpp"
 #include "core/error.hpp"
 namespace tapstudy::analysis {
 namespace {
@@ -27,10 +27,8 @@ void count_visited(const VisitOrder& order, std::size_t chosen, std::size_t alte
     return;
   }
   const int position = static_cast<int>(chosen);
-  ++biases.first_visited.trials;
-  ++biases.last_visited.trials;
-  biases.first_visited.successes += order.positions.front() == position ? 1 : 0;
-  biases.last_visited.successes += order.positions.back() == position ? 1 : 0;
+  biases.first_visited.add(order.positions.front() == position);
+  biases.last_visited.add(order.positions.back() == position);
 }
 
 std::map<std::int64_t, const VisitOrder*> by_trial(const BlockRows& rows) {

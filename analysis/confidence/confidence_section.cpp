@@ -27,9 +27,7 @@ std::map<int, Given> given_in(const std::string& block,
     ++step.answers;
     step.participants.insert(answer.participant_id);
     if (answer.is_correct) {
-      Proportion& right = step.right[answer.participant_id];
-      ++right.trials;
-      right.successes += *answer.is_correct ? 1 : 0;
+      step.right[answer.participant_id].add(*answer.is_correct);
     }
   }
   return steps;

@@ -25,11 +25,6 @@ struct Counts {
   Proportion correct_of_same;
 };
 
-void add(Proportion& counted, bool is_success) {
-  ++counted.trials;
-  counted.successes += is_success ? 1 : 0;
-}
-
 bool is_of_different(const AnswerRow& answer) {
   return std::ranges::any_of(answer.alternatives, [&](const AlternativeRow& alternative) {
     const AlternativeRow& first = answer.alternatives.front();
@@ -136,12 +131,13 @@ DiscriminationResults discrimination_results(const BlockDesign& design,
   for (const AnswerRow& answer : answers) {
     check(design, answer);
     Counts& counts = people[answer.participant_id];
-    add(counts.correct, *answer.is_correct);
-    add(results.correct, *answer.is_correct);
+    counts.correct.add(*answer.is_correct);
+    results.correct.add(*answer.is_correct);
     if (!answer.alternatives.empty()) {
-      add(is_of_different(answer) ? counts.correct_of_different : counts.correct_of_same,
-          *answer.is_correct);
-      add(pairs[stimuli_of(answer)][answer.participant_id], *answer.is_correct);
+      Proportion& of_kind =
+          is_of_different(answer) ? counts.correct_of_different : counts.correct_of_same;
+      of_kind.add(*answer.is_correct);
+      pairs[stimuli_of(answer)][answer.participant_id].add(*answer.is_correct);
     }
   }
   for (const auto& [name, counts] : people) {

@@ -72,11 +72,10 @@ ReportSection contrasts_section(const IdentificationData& data) {
     const std::vector<double> adjusted = holm_adjusted(p);
     for (std::size_t i = 0; i < contrasts.size(); ++i) {
       const PairedContrast& result = contrasts[i].result;
-      table.rows.push_back(
-          {word(contrasts[i].group), word(contrasts[i].first), word(contrasts[i].second),
-           result.interval ? interval(result.mean, *result.interval)
-                           : Cell{rounded(result.mean), {result.mean, Value{}, Value{}}},
-           count(result.participants), probability(result.p), probability(adjusted[i])});
+      table.rows.push_back({word(contrasts[i].group), word(contrasts[i].first),
+                            word(contrasts[i].second), interval(result.mean, result.interval),
+                            count(result.participants), probability(result.p),
+                            probability(adjusted[i])});
     }
   }
   section.tables.push_back(table);

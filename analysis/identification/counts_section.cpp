@@ -39,9 +39,7 @@ GroupCounts counted(const IdentificationData& data, const Grouping& grouping) {
     for (const IdentifiedTrial& trial : data.participants[person].trials) {
       const std::size_t level = grouping.level_of(trial);
       ++counts.of_level[level][trial.stimulus][trial.response];
-      Proportion& right = counts.right[level][person];
-      ++right.trials;
-      right.successes += trial.is_right ? 1 : 0;
+      counts.right[level][person].add(trial.is_right);
     }
   }
   return counts;

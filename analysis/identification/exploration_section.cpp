@@ -27,9 +27,7 @@ Cell mean_cell(const IdentificationData& data, std::optional<std::size_t> stimul
   if (means.empty()) {
     return {"–", {Value{}, Value{}, Value{}}};
   }
-  const double mean = mean_and_spread(means).mean;
-  return means.size() > 1 ? interval(mean, t_interval(means))
-                          : Cell{rounded(mean), {mean, Value{}, Value{}}};
+  return mean_with_interval(means);
 }
 
 std::vector<Cell> row_of(const IdentificationData& data, const std::string& name,

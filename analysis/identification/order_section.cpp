@@ -36,9 +36,7 @@ void add_learning(const IdentificationData& data, ReportSection& section) {
                     {interval_column("change (95 % CI, t)", "change"),
                      column("participants", "participants"), column("permutation", "p")}};
   if (const auto learning = learning_of(data)) {
-    table.rows.push_back({learning->interval
-                              ? interval(learning->mean, *learning->interval)
-                              : Cell{rounded(learning->mean), {learning->mean, Value{}, Value{}}},
+    table.rows.push_back({interval(learning->mean, learning->interval),
                           count(learning->participants), probability(learning->p)});
     section.remarks.emplace_back(
         "Learning: each participant's slope of right answers over the presentations of a stimulus, "

@@ -33,11 +33,9 @@ void add_times(const IdentificationData& data, const std::string& what, const st
     return;
   }
   const Quartiles quarters = quartiles(all);
-  const double mean = mean_and_spread(medians).mean;
   table.rows.push_back({word(what), word(from), count(static_cast<std::int64_t>(all.size())),
-                        medians.size() > 1 ? interval(mean, t_interval(medians))
-                                           : Cell{rounded(mean), {mean, Value{}, Value{}}},
-                        number(quarters.low), number(quarters.median), number(quarters.high)});
+                        mean_with_interval(medians), number(quarters.low), number(quarters.median),
+                        number(quarters.high)});
 }
 
 ReportTable times_table(const IdentificationData& data) {

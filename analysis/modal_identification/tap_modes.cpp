@@ -14,9 +14,9 @@ namespace tapstudy::analysis {
 namespace {
 constexpr double min_significance = 25.0;
 constexpr double max_ratio = 0.7;
-// How far a tone falls within the tap, in nepers. Below the first it is steady; what falls by less
-// than the second must do so for certain, and not be where the mains hum.
-constexpr double steady_fall = 0.25;
+// How far a tone falls within the tap, in nepers. Below the first it is steady, or drifts; what
+// falls by less than the second must do so for certain, and not be where the mains hum.
+constexpr double steady_fall = 0.15;
 constexpr double plain_fall = 0.5;
 constexpr double min_decay_z = 2.0;
 constexpr double min_slow_decay_z = 4.0;
@@ -150,24 +150,34 @@ std::string hum_at(const FittedMode& mode) {
   return {};
 }
 
+double decay_per_s(const FittedMode& mode) {
+  return mode.pole.damping_ratio * 2.0 * std::numbers::pi * mode.pole.frequency_hz;
+}
+
 bool is_line(const FittedMode& mode, double duration_s) {
-  const double decay_per_s =
-      mode.pole.damping_ratio * 2.0 * std::numbers::pi * mode.pole.frequency_hz;
-  const double fall = decay_per_s * duration_s;
+  const double fall = decay_per_s(mode) * duration_s;
+  const double z = decay_per_s(mode) / mode.decay_error_per_s;
   if (fall >= plain_fall) {
-    return decay_per_s < min_decay_z * mode.decay_error_per_s;
+    return z < min_decay_z;
   }
-  return fall < steady_fall || decay_per_s < min_slow_decay_z * mode.decay_error_per_s ||
-         !hum_at(mode).empty();
+  return fall < steady_fall || z < min_slow_decay_z || !hum_at(mode).empty();
+}
+
+bool grows(const FittedMode& mode, double duration_s) {
+  return decay_per_s(mode) * duration_s <= -plain_fall &&
+         decay_per_s(mode) < -min_slow_decay_z * mode.decay_error_per_s;
 }
 
 TapMode judged(const FittedMode& fitted, const Candidate& candidate, double duration_s) {
   TapMode mode{fitted, Standing::agreed, {}, candidate.by_rational_fit, candidate.stable_orders};
-  if (is_line(fitted, duration_s)) {
+  if (grows(fitted, duration_s)) {
+    mode.standing = Standing::doubtful;
+    mode.why = "grows: no free decay";
+  } else if (is_line(fitted, duration_s)) {
     mode.standing = Standing::line;
     mode.why = hum_at(fitted);
     if (mode.why.empty()) {
-      mode.why = "does not decay within the tap: a steady tone";
+      mode.why = "hardly decays within the tap: a steady tone, or a mode that takes --longest";
     }
   } else if (candidate.stable_orders == 0) {
     mode.standing = Standing::doubtful;
@@ -185,13 +195,22 @@ const char* name(Standing standing) {
   return names.at(static_cast<std::size_t>(standing));
 }
 
+namespace {
+// A mode has four unknowns, a line two; each value of the spectrum gives two numbers.
+std::size_t most_modes(const BandSpectrum& spectrum, const std::vector<double>& lines_hz) {
+  const Eigen::Index values = spectrum.values.size();
+  const auto beside_lines = (2 * values - 5 - 2 * std::ssize(lines_hz)) / 4;
+  return static_cast<std::size_t>(std::clamp<Eigen::Index>(beside_lines, 0, (values - 4) / 3));
+}
+}  // namespace
+
 TapModes identify_modes(const FreeDecay& decay, const ModeFinding& finding) {
   const Band wide{0.8 * finding.band.low_hz,
                   std::min(1.25 * finding.band.high_hz, 0.47 * decay.rate_hz)};
   TapModes result;
   result.pencil = matrix_pencil(decay, wide, finding.max_order);
   result.spectrum = band_spectrum(decay, wide);
-  const auto room = static_cast<std::size_t>((result.spectrum.values.size() - 4) / 3);
+  const std::size_t room = most_modes(result.spectrum, finding.lines_hz);
   std::vector<StablePole> stable = stable_poles(result.pencil.orders);
   std::ranges::stable_sort(stable, std::ranges::greater{}, &StablePole::orders);
   stable.resize(std::min(stable.size(), room));

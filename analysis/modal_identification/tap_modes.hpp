@@ -36,8 +36,9 @@ struct ModeFinding {
 // felt inside; poles whose amplitude is not significant (chi-squared below 25) are dropped, the
 // weakest first. What remains is agreed if both methods found it: frequencies within 1 % (a third
 // of the half-power bandwidth or four standard errors if that is more), damping ratios within a
-// quarter (or 0.003, or four standard errors). What falls by less than a half of its logarithm over
-// the tap, or not significantly, is a line. Throws InvalidInput for decays that are too short.
+// quarter (or 0.003, or four standard errors). What falls by less than 14 % over the tap, or not
+// significantly, is a line; by less than 40 %, also where a harmonic of the mains is. Throws
+// InvalidInput for decays that are too short.
 TapModes identify_modes(const FreeDecay& decay, const ModeFinding& finding);
 
 // Lines that some taps show and this one does not, within 1 % of any mode of its own: beside a mode

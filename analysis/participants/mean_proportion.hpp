@@ -42,6 +42,6 @@ std::optional<Interval> bca_interval(const std::vector<double>& values, int draw
 std::optional<Interval> bootstrap_interval(const std::vector<double>& values, int draws,
                                            std::uint64_t seed);
 
-// mean +- t s / sqrt n, 95 %. Throws InvalidInput for fewer than two values.
+// mean +- t s / sqrt n, 95 %. Throws InvalidInput for fewer than two finite values.
 Interval t_interval(const std::vector<double>& values);
 }  // namespace tapstudy::analysis

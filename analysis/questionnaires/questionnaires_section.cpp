@@ -78,13 +78,7 @@ std::vector<Cell> score_row(const Questionnaire& form, const std::string& asked,
   const std::vector<double> values = sorted_scores(scores);
   std::vector<Cell> row{word(form.name), word(asked), count(std::ssize(values)),
                         count(scores.incomplete)};
-  if (values.empty()) {
-    row.push_back(nothing(table.columns[4]));
-  } else if (values.size() == 1) {
-    row.push_back({rounded(values.front()), {values.front(), Value{}, Value{}}});
-  } else {
-    row.push_back(interval(mean_and_spread(values).mean, t_interval(values)));
-  }
+  row.push_back(values.empty() ? nothing(table.columns[4]) : mean_with_interval(values));
   const auto bootstrap = values.size() > 1 ? bootstrap_interval(values, draws, seed) : std::nullopt;
   row.push_back(bootstrap ? Cell{rounded(bootstrap->low) + " to " + rounded(bootstrap->high),
                                  {bootstrap->low, bootstrap->high}}

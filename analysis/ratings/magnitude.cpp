@@ -6,7 +6,7 @@
 #include <cmath>
 #include <map>
 
-#include "analysis/statistics/distributions.hpp"
+#include "analysis/participants/mean_proportion.hpp"
 #include "analysis/statistics/quantiles.hpp"
 #include "core/error.hpp"
 namespace tapstudy::analysis {
@@ -118,11 +118,7 @@ PowerLaw power_law(const std::vector<Estimates>& participants) {
   law.exponent = line.slope;
   law.log_constant = line.intercept;
   law.r_squared = line.r_squared;
-  const MeanAndSpread exponents = mean_and_spread(law.participant_exponents);
-  const auto n = static_cast<double>(participants.size());
-  const double half_width =
-      t_quantile(0.975, n - 1.0) * exponents.standard_deviation / std::sqrt(n);
-  law.exponent_interval = {exponents.mean - half_width, exponents.mean + half_width};
+  law.exponent_interval = t_interval(law.participant_exponents);
   return law;
 }
 }  // namespace tapstudy::analysis

@@ -30,17 +30,21 @@ std::size_t end_of_decay(const Energies& energies, std::size_t begin, std::size_
   return last;
 }
 
+std::vector<double> without(double offset, std::vector<double> samples) {
+  for (double& sample : samples) {
+    sample -= offset;
+  }
+  return samples;
+}
+
 class TapFinder {
  public:
   TapFinder(const Recording& recording, const TapFinding& finding)
-      : recording_{recording}, finding_{finding}, centred_{recording.samples} {
-    const double middle = quantile(recording.samples, 0.5);
-    for (double& sample : centred_) {
-      sample -= middle;
-    }
-    energies_ = energies_of(centred_, recording.rate_hz);
-    rails_ = rail_samples(recording.samples, noise_rms());
-  }
+      : recording_{recording},
+        finding_{finding},
+        centred_{without(quantile(recording.samples, 0.5), recording.samples)},
+        energies_{energies_of(centred_, recording.rate_hz)},
+        rails_{rail_samples(recording.samples, noise_rms())} {}
 
   double noise_rms() const { return std::sqrt(energies_.floor); }
 
@@ -146,8 +150,8 @@ class TapFinder {
   const Recording& recording_;
   TapFinding finding_;
   std::vector<double> centred_;
-  std::vector<std::size_t> rails_;
   Energies energies_;
+  std::vector<std::size_t> rails_;
   FoundTaps found_;
   int impact_{0};
 };
@@ -187,8 +191,10 @@ std::vector<Impact> force_impacts(const Recording& force) {
   return TapFinder{force, {}}.pulses();
 }
 
-double noise_rms(const Recording& recording) {
+Resting resting(const Recording& recording) {
   check_length(recording);
-  return TapFinder{recording, {}}.noise_rms();
+  const double value = quantile(recording.samples, 0.5);
+  return {value,
+          std::sqrt(energies_of(without(value, recording.samples), recording.rate_hz).floor)};
 }
 }  // namespace tapstudy::analysis

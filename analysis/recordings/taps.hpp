@@ -45,8 +45,13 @@ FoundTaps taps_at(const std::vector<Impact>& impacts, const Recording& recording
 // median) by a tenth of the most that it does, having been back within 3 % for 1 ms. Throws
 // InvalidInput as find_taps if there is none.
 std::vector<Impact> force_impacts(const Recording& force);
-// The standard deviation of the quietest fifth of a recording.
-double noise_rms(const Recording& recording);
+// What a channel shows where nothing rings: its median, and the standard deviation of its quietest
+// fifth.
+struct Resting {
+  double value{};
+  double noise_rms{};
+};
+Resting resting(const Recording& recording);
 
 // Sample numbers where the sensor was at its limit: runs of three and more samples at the largest
 // or smallest value of all into which the signal does not run smoothly (next to it, it moves by

@@ -2,9 +2,6 @@
 #include "analysis/statistics/count_table.hpp"
 #include "core/rng.hpp"
 namespace tapstudy::analysis {
-// ln n!, n >= 0, from any thread: a table below 1024, Stirling's series above (to 1e-15, relative).
-double log_factorial(std::int64_t n);
-
 // How many of `drawn` without replacement are marked, of a population of which so many are:
 // hypergeometric, by inversion outward from the mode. marked and drawn in [0, population].
 std::int64_t random_hypergeometric(std::int64_t marked, std::int64_t drawn, std::int64_t population,

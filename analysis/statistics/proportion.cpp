@@ -10,10 +10,6 @@ namespace tapstudy::analysis {
 namespace {
 constexpr double max_outcomes = 1e6;
 
-double log_factorial(int n) {
-  return std::lgamma(static_cast<double>(n) + 1.0);
-}
-
 double log_probability(const std::vector<int>& counts, int total) {
   double log_p = log_factorial(total) - total * std::log(static_cast<double>(counts.size()));
   for (const int count : counts) {

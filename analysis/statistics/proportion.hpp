@@ -15,6 +15,10 @@ struct Proportion {
   double value() const {  // trials > 0
     return static_cast<double>(successes) / static_cast<double>(trials);
   }
+  void add(bool is_success) {
+    ++trials;
+    successes += is_success ? 1 : 0;
+  }
 };
 
 Proportion sum(const std::vector<Proportion>& parts);

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numeric>
 
-#include "analysis/resampling/random_table.hpp"
 #include "analysis/statistics/distributions.hpp"
+#include "analysis/statistics/log_factorial.hpp"
 #include "core/error.hpp"
 namespace tapstudy::analysis {
 namespace {

@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "analysis/blocks/wording.hpp"
+#include "analysis/participants/mean_proportion.hpp"
+#include "analysis/statistics/quantiles.hpp"
 namespace tapstudy::analysis {
 std::string rounded(double value, int significant_digits) {
   if (std::isnan(value)) {
@@ -62,6 +64,11 @@ Cell interval(double value, const Interval& interval) {
 
 Cell interval(double value, const std::optional<Interval>& range) {
   return range ? interval(value, *range) : Cell{rounded(value), {value, Value{}, Value{}}};
+}
+
+Cell mean_with_interval(const std::vector<double>& values) {
+  return interval(mean_and_spread(values).mean,
+                  values.size() > 1 ? std::optional{t_interval(values)} : std::nullopt);
 }
 
 Cell proportion(const Proportion& proportion) {

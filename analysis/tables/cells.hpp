@@ -46,6 +46,8 @@ Cell probability(const std::optional<double>& p);
 Cell interval(double value, const Interval& interval);
 // Of one that may have no interval.
 Cell interval(double value, const std::optional<Interval>& interval);
+// Of the mean of one value or more; by t of two or more.
+Cell mean_with_interval(const std::vector<double>& values);
 // Values: successes, trials, their ratio and its 95 % score interval.
 Cell proportion(const Proportion& proportion);
 // Values: successes, trials, their ratio. "43/80 = 54 %"

@@ -39,7 +39,6 @@ void count_at(std::vector<Level>& levels, double level, bool is_success) {
   if (at == levels.end() || at->value != level) {
     at = levels.insert(at, {level, {}});
   }
-  ++at->answers.trials;
-  at->answers.successes += is_success ? 1 : 0;
+  at->answers.add(is_success);
 }
 }  // namespace tapstudy::analysis

@@ -23,11 +23,6 @@ constexpr double max_own_guess = 0.85;
 // Levels of all participants together; about a hundred take a second of one processor.
 constexpr std::size_t most_levels_examined = 1000;
 
-void add(Proportion& counted, bool is_success) {
-  ++counted.trials;
-  counted.successes += is_success ? 1 : 0;
-}
-
 void add_answer(ParticipantThreshold& person, const BlockDesign& design, const AnswerRow& answer) {
   if (!answer.is_correct) {
     throw core::InvalidInput{
@@ -36,11 +31,11 @@ void add_answer(ParticipantThreshold& person, const BlockDesign& design, const A
   }
   const std::optional<double> level = comparison_level(design, answer);
   if (!level) {
-    add(person.false_alarms, !*answer.is_correct);
+    person.false_alarms.add(!*answer.is_correct);
     return;
   }
   add_track_point(person.track, answer, *level, *answer.is_correct);
-  add(person.correct, *answer.is_correct);
+  person.correct.add(*answer.is_correct);
   count_at(person.levels, *level, *answer.is_correct);
 }
 

@@ -20,7 +20,9 @@ std::vector<double> levels_of(const ThresholdResults& results) {
 
 Chart function_chart(const ParticipantThreshold& person, const BlockDesign& design,
                      const Interval& range, bool is_logarithmic) {
-  Chart chart{fmt::format("{}: correct at each level; areas by trials", person.participant_id),
+  Chart chart{fmt::format("{}: correct at each level, areas by trials; curve: fit; bar: "
+                          "threshold, 95 %; dashed: guessing",
+                          person.participant_id),
               "",
               "level",
               "correct",

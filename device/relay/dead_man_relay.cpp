@@ -3,13 +3,13 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/file.h>
-#include <termios.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
 
 #include "device/device.hpp"
+#include "device/relay/serial_port.hpp"
 namespace tapstudy::device {
 namespace {
 DeviceError refusal(const std::string& port, const std::string& why) {
@@ -23,13 +23,7 @@ DeadManRelay::DeadManRelay(const std::string& port)
   if (descriptor_ < 0) {
     throw refusal(port, fmt::format("cannot be opened: {}", std::strerror(errno)));
   }
-  termios modes{};
-  const bool is_serial = tcgetattr(descriptor_, &modes) == 0;
-  cfmakeraw(&modes);
-  modes.c_cflag |= static_cast<tcflag_t>(CLOCAL);
-  modes.c_cflag &= ~static_cast<tcflag_t>(CRTSCTS | CSTOPB | HUPCL);
-  cfsetspeed(&modes, B115200);
-  if (!is_serial || tcsetattr(descriptor_, TCSANOW, &modes) != 0) {
+  if (!set_up_serial_port(descriptor_)) {
     close(descriptor_);
     throw refusal(port, "is not a serial port");
   }

@@ -60,7 +60,11 @@ DeviceError refusal(const char* what, int error) {
 // A reusable transfer with its own buffer. It has the linkage of the pipe's members.
 class Transfer {
  public:
-  Transfer() : transfer_{libusb_alloc_transfer(0)} {}
+  Transfer() : transfer_{libusb_alloc_transfer(0)} {
+    if (transfer_ == nullptr) {
+      throw DeviceError{"USB: not enough memory for a transfer"};
+    }
+  }
   ~Transfer() {
     if (!is_under_way()) {  // else the kernel may still write to it: leak it
       libusb_free_transfer(transfer_);
@@ -108,62 +112,87 @@ class Transfer {
   int has_ended_{1};
 };
 
+// They have the linkage of the pipe's members, too.
+struct ExitLibrary {
+  void operator()(libusb_context* context) const { libusb_exit(context); }
+};
+using Context = std::unique_ptr<libusb_context, ExitLibrary>;
+struct CloseDevice {
+  void operator()(libusb_device_handle* device) const { libusb_close(device); }
+};
+using OpenDevice = std::unique_ptr<libusb_device_handle, CloseDevice>;
+
+namespace {
+Context started_library() {
+  libusb_context* context = nullptr;
+  if (const int error = libusb_init(&context); error != LIBUSB_SUCCESS) {
+    throw refusal("the library cannot be started", error);
+  }
+  return Context{context};
+}
+
+OpenDevice opened(libusb_context* context, const UsbNode& node) {
+  libusb_device_handle* device = nullptr;
+  const int error = libusb_wrap_sys_device(context, node.descriptor(), &device);
+  if (error != LIBUSB_SUCCESS) {
+    throw refusal("the device cannot be opened", error);
+  }
+  return OpenDevice{device};
+}
+
+void claim(libusb_device_handle* device) {
+  const int error = libusb_claim_interface(device, interface_number);
+  if (error == LIBUSB_SUCCESS) {
+    return;
+  }
+  constexpr const char* what = "the device cannot be claimed (does another program use it?)";
+  if (error == LIBUSB_ERROR_BUSY) {
+    throw ClaimedByAnother{refusal(what, error).what()};
+  }
+  throw refusal(what, error);
+}
+}  // namespace
+
 struct LibusbPipe::Libusb {
-  libusb_context* context{};
-  libusb_device_handle* device{};
+  Context owned_context;
+  OpenDevice owned_device;
+  libusb_context* context;
+  libusb_device_handle* device;
   BulkEndpoints endpoints;
   unsigned time_out_ms;
-  std::unique_ptr<Transfer> request;
-  std::unique_ptr<Transfer> reply;
+  Transfer request;
+  Transfer reply;
   std::array<std::uint8_t, max_packet_bytes> request_bytes{};
   std::array<std::uint8_t, max_packet_bytes> reply_bytes{};
 
   Libusb(const UsbNode& node, const BulkEndpoints& both, std::chrono::milliseconds time_out)
-      : endpoints{both}, time_out_ms{static_cast<unsigned>(time_out.count())} {
-    if (const int error = libusb_init(&context); error != LIBUSB_SUCCESS) {
-      throw refusal("the library cannot be started", error);
-    }
-    int error = libusb_wrap_sys_device(context, node.descriptor(), &device);
-    if (error != LIBUSB_SUCCESS) {
-      libusb_exit(context);
-      throw refusal("the device cannot be opened", error);
-    }
-    error = libusb_claim_interface(device, interface_number);
-    if (error != LIBUSB_SUCCESS) {
-      libusb_close(device);
-      libusb_exit(context);
-      constexpr const char* what = "the device cannot be claimed (does another program use it?)";
-      if (error == LIBUSB_ERROR_BUSY) {
-        throw ClaimedByAnother{refusal(what, error).what()};
-      }
-      throw refusal(what, error);
-    }
-    request = std::make_unique<Transfer>();
-    reply = std::make_unique<Transfer>();
+      : owned_context{started_library()},
+        owned_device{opened(owned_context.get(), node)},
+        context{owned_context.get()},
+        device{owned_device.get()},
+        endpoints{both},
+        time_out_ms{static_cast<unsigned>(time_out.count())} {
+    claim(device);
   }
   ~Libusb() {
-    request->cancel();
-    reply->cancel();
-    static_cast<void>(request->wait(context));
-    static_cast<void>(reply->wait(context));
-    request.reset();
-    reply.reset();
+    request.cancel();
+    reply.cancel();
+    static_cast<void>(request.wait(context));
+    static_cast<void>(reply.wait(context));
     libusb_release_interface(device, interface_number);
-    libusb_close(device);
-    libusb_exit(context);
   }
   Libusb(const Libusb&) = delete;
   Libusb& operator=(const Libusb&) = delete;
   Libusb(Libusb&&) = delete;
   Libusb& operator=(Libusb&&) = delete;
 
-  bool is_idle() const noexcept { return !request->is_under_way() && !reply->is_under_way(); }
+  bool is_idle() const noexcept { return !request.is_under_way() && !reply.is_under_way(); }
   UsbOutcome submit_request(std::span<const std::uint8_t> out) noexcept {
     std::ranges::copy(out, request_bytes.begin());
-    return request->submit(device, endpoints.out, request_bytes.data(), out.size(), time_out_ms);
+    return request.submit(device, endpoints.out, request_bytes.data(), out.size(), time_out_ms);
   }
   UsbOutcome submit_reply(std::size_t size, unsigned patience_ms) noexcept {
-    return reply->submit(device, endpoints.in, reply_bytes.data(), size, patience_ms);
+    return reply.submit(device, endpoints.in, reply_bytes.data(), size, patience_ms);
   }
 };
 
@@ -174,11 +203,11 @@ LibusbPipe::LibusbPipe(const UsbNode& node, const BulkEndpoints& endpoints,
 LibusbPipe::~LibusbPipe() = default;
 
 UsbOutcome LibusbPipe::send(std::span<const std::uint8_t> out) noexcept {
-  if (libusb_->request->is_under_way() || out.size() > max_packet_bytes) {
+  if (libusb_->request.is_under_way() || out.size() > max_packet_bytes) {
     return UsbOutcome::failed;
   }
   const UsbOutcome outcome = libusb_->submit_request(out);
-  return outcome == UsbOutcome::ok ? libusb_->request->wait(libusb_->context) : outcome;
+  return outcome == UsbOutcome::ok ? libusb_->request.wait(libusb_->context) : outcome;
 }
 
 UsbOutcome LibusbPipe::exchange(std::span<const std::uint8_t> out,
@@ -192,14 +221,14 @@ UsbOutcome LibusbPipe::exchange(std::span<const std::uint8_t> out,
   }
   const UsbOutcome submitted = libusb_->submit_request(out);
   if (submitted != UsbOutcome::ok) {
-    libusb_->reply->cancel();
+    libusb_->reply.cancel();
   }
   const UsbOutcome sent =
-      submitted == UsbOutcome::ok ? libusb_->request->wait(libusb_->context) : submitted;
+      submitted == UsbOutcome::ok ? libusb_->request.wait(libusb_->context) : submitted;
   if (sent != UsbOutcome::ok) {
-    libusb_->reply->cancel();
+    libusb_->reply.cancel();
   }
-  const UsbOutcome received = libusb_->reply->wait(libusb_->context);
+  const UsbOutcome received = libusb_->reply.wait(libusb_->context);
   std::ranges::copy(std::span{libusb_->reply_bytes}.first(in.size()), in.begin());
   return sent != UsbOutcome::ok ? sent : received;
 }
@@ -212,7 +241,7 @@ UsbOutcome LibusbPipe::receive(std::span<std::uint8_t> in) noexcept {
       outcome != UsbOutcome::ok) {
     return outcome;
   }
-  const UsbOutcome received = libusb_->reply->wait(libusb_->context);
+  const UsbOutcome received = libusb_->reply.wait(libusb_->context);
   std::ranges::copy(std::span{libusb_->reply_bytes}.first(in.size()), in.begin());
   return received;
 }
@@ -225,7 +254,7 @@ void LibusbPipe::clear_halt() noexcept {
 void LibusbPipe::drain() noexcept {
   for (int i = 0; i < max_stale_replies && libusb_->is_idle(); ++i) {
     if (libusb_->submit_reply(max_packet_bytes, 1) != UsbOutcome::ok ||
-        libusb_->reply->wait(libusb_->context) == UsbOutcome::timed_out) {
+        libusb_->reply.wait(libusb_->context) == UsbOutcome::timed_out) {
       return;
     }
   }

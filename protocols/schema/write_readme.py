@@ -113,6 +113,8 @@ def list_range(schema):
     low, high = schema.get("minItems", 0), schema.get("maxItems")
     kind = "mappings" if "properties" in items else "names"
     words = []
+    if "object" in items.get("type", []):
+        kind = "texts, each one or one for each language"
     if items.get("type") == "number":
         kind = "numbers"
         words.append("each " + bounds(items))

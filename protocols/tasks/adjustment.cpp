@@ -5,6 +5,7 @@
 
 #include "core/error.hpp"
 #include "protocols/axes/presented_stimulus.hpp"
+#include "protocols/axes/read_spaced.hpp"
 #include "protocols/read_sections.hpp"
 #include "protocols/tasks/preference_task.hpp"
 #include "protocols/tasks/read_axis_values.hpp"
@@ -18,17 +19,12 @@ constexpr double largest_adjusted_value = 1e15;
 std::vector<double> read_settings(MapReader& reader, Spacing& spacing) {
   std::vector<double> values;
   reader.map("settings", MapReader::Presence::required, [&](MapReader& inner) {
-    const double from = inner.number("from", {-largest_adjusted_value, largest_adjusted_value});
-    const double to = inner.number("to", {-largest_adjusted_value, largest_adjusted_value});
-    const int count = inner.integer("count", 2, static_cast<int>(max_settings));
-    spacing = inner.one_of<Spacing>("spacing", {{"linear", Spacing::linear}, {"log", Spacing::log}},
-                                    "linear");
-    if (!(from < to)) {
-      inner.reject("from", fmt::format("{} is not below to, {}", from, to));
-    } else if (spacing == Spacing::log && from <= 0.0) {
-      inner.reject("spacing", fmt::format("log needs values above 0, not {}", from));
-    } else if (count >= 2) {
-      values = spaced(from, to, count, spacing);
+    const auto read =
+        read_spaced(inner, {"from", "to"}, {-largest_adjusted_value, largest_adjusted_value},
+                    static_cast<int>(max_settings));
+    if (read) {
+      values = read->values;
+      spacing = read->spacing;
     }
   });
   return values;

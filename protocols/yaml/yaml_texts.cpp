@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "core/plain_text.hpp"
 #include "protocols/yaml/yaml_reader.hpp"
 #include "protocols/yaml/yaml_words.hpp"
 namespace tapstudy::protocols {
@@ -32,10 +33,10 @@ std::vector<std::string> texts_without(const std::string& language,
 }
 
 std::string MapReader::text_at(const YAML::Node& node, const std::string& path, Lines lines) {
-  if (lines == Lines::several && node.IsScalar()) {
-    return node.Scalar();
-  }
-  if (!node.IsScalar() || node.Scalar().empty() || has_control_characters(node.Scalar())) {
+  const bool is_text = node.IsScalar() && core::is_plain_text(node.Scalar());
+  const bool is_line = is_text && !node.Scalar().empty() &&
+                       node.Scalar().find_first_of("\n\r\t") == std::string::npos;
+  if (lines == Lines::one ? !is_line : !is_text) {
     reject_at(node, path,
               fmt::format("{} is not {}", kind_of(node),
                           lines == Lines::one ? "one line of text" : "text"));

@@ -19,10 +19,6 @@ std::string printable(const std::string& text) {
   return safe;
 }
 
-bool has_control_characters(const std::string& text) {
-  return std::ranges::any_of(text, [](unsigned char c) { return std::iscntrl(c) != 0; });
-}
-
 std::string kind_of(const YAML::Node& node) {
   switch (node.Type()) {
     case YAML::NodeType::Undefined:

@@ -27,10 +27,9 @@ std::vector<Session> all_sessions(Store& store) {
         if (sessions.empty() || sessions.back().id != row.integer(0)) {
           sessions.push_back({row.text(1), row.integer(0), {}});
         }
-        sessions.back().events.push_back(
-            {{row.real(2), std::monostate{}, row.text(3),
-              row.is_null(4) ? Cell{} : Cell{row.integer(4)}},
-             row.is_null(5) ? std::nullopt : std::optional{row.text(5)}});
+        sessions.back().events.push_back({{row.real(2), std::monostate{}, row.text(3),
+                                           row.is_null(4) ? Cell{} : Cell{row.integer(4)}},
+                                          row.optional_text(5)});
       });
   return sessions;
 }

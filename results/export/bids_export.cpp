@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "core/error.hpp"
+#include "core/output_directory.hpp"
 #include "core/output_file.hpp"
 #include "results/export/bids_events.hpp"
 #include "results/export/bids_labels.hpp"
@@ -57,14 +58,6 @@ void each_row(Store& store, const std::vector<Column>& columns, const std::strin
   std::ranges::transform(columns, std::back_inserter(names), &Column::name);
   store.each_row(fmt::format("SELECT {} FROM {}", fmt::join(names, ", "), from),
                  [&](Statement& statement) { show(statement, row_from(statement, columns)); });
-}
-
-void make_directories(const fs::path& directory) {
-  std::error_code error;
-  fs::create_directories(directory, error);
-  if (error) {
-    throw core::InvalidInput{directory.string() + ": cannot be made: " + error.message()};
-  }
 }
 
 std::vector<std::string> texts(Store& store, const std::string& select) {
@@ -146,7 +139,7 @@ class Dataset {
 
   void write_phenotypes() {
     for (const Phenotype& tool : phenotypes(*store_, study_->forms, labels_.participants.by_name)) {
-      make_directories(root_ / "phenotype");
+      core::make_directories((root_ / "phenotype").string());
       core::write_new_file(root_ / "phenotype" / (tool.name + ".tsv"), tool.table);
       core::write_new_file(root_ / "phenotype" / (tool.name + ".json"), tool.sidecar);
     }
@@ -190,7 +183,7 @@ class Dataset {
       text += (text.empty() ? header() : "") + tsv_line(row);
     });
     for (const auto& [file, text] : files) {
-      make_directories(file.parent_path());
+      core::make_directories(file.parent_path().string());
       core::write_new_file(file, text);
     }
   }

@@ -1,6 +1,7 @@
 #include <filesystem>
 
 #include "core/error.hpp"
+#include "core/output_directory.hpp"
 #include "core/output_file.hpp"
 #include "results/export/csv_file.hpp"
 #include "results/export/study_export.hpp"
@@ -14,19 +15,12 @@ void write_table(const fs::path& file, const Table& table) {
   core::write_new_file(file.string(), [&](std::ostream& out) { write_csv(out, table); });
 }
 
-void make_directory(const fs::path& directory) {
-  std::error_code error;
-  if (!fs::create_directory(directory, error)) {
-    throw core::InvalidInput{directory.string() + ": cannot be made: " + error.message()};
-  }
-}
-
 void write_traces(const fs::path& directory, Store& store, const StudyExport& study,
                   std::vector<DescribedFile>& files) {
   if (study.trials.empty()) {
     return;
   }
-  make_directory(directory / "traces");
+  core::make_directories((directory / "traces").string());
   for (const std::int64_t trial : study.trials) {
     const Table trace = trace_table(store, trial);
     const std::string name = "traces/" + trace.name + ".csv";

@@ -1,10 +1,9 @@
 #include "runner/accuracy/writers.hpp"
 
-#include <unistd.h>
-
 #include <filesystem>
 
 #include "core/error.hpp"
+#include "core/output_directory.hpp"
 #include "core/output_file.hpp"
 namespace tapstudy::runner {
 namespace {
@@ -14,12 +13,7 @@ std::string in(const std::string& directory, const char* name) {
 }  // namespace
 
 void make_room(const std::string& directory) {
-  std::error_code error;
-  std::filesystem::create_directories(directory, error);
-  if (!std::filesystem::is_directory(directory, error) ||
-      access(directory.c_str(), W_OK | X_OK) != 0) {
-    throw core::InvalidInput{"--out: " + directory + " cannot be created as a directory"};
-  }
+  core::make_directories(directory);
   for (const char* const name : {"trade.csv", "stability.csv", "trade.json", "trade.svg"}) {
     core::check_is_new(in(directory, name));
   }

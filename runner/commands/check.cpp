@@ -62,12 +62,13 @@ void print_models(const protocols::Protocol& protocol, ModelLibrary& models) {
         : models.bodies_used() > used_before
             ? fmt::format("from the cache, where it took {:.3f} s", report.cost.total_s())
             : "scaled from the same body";
-    fmt::print("  {}: {}, {} modes below {} Hz, {}\n", stimulus.name,
+    const Eigen::Index modes = plate->model.frequency_hz.size();
+    fmt::print("  {}: {}, {} mode{} below {} Hz, {}\n", stimulus.name,
                stimulus.technique->needs_beam()
                    ? std::string{"a beam, in closed form"}
                    : fmt::format("{} {} tetrahedra, {} dof", report.tets,
                                  report.order == 2 ? "quadratic" : "linear", report.dofs),
-               plate->model.frequency_hz.size(), protocol.band_limit_hz, cost);
+               modes, modes == 1 ? "" : "s", protocol.band_limit_hz, cost);
   }
   warn_of_overdamped_modes(protocol, models);
   if (models.bodies_used() == 0) {

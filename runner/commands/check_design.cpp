@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 
 #include "analysis/statistics/proportion.hpp"
@@ -140,6 +141,18 @@ std::string heading(const protocols::Block& block, int trials) {
                      block.comparison ? "at most " : "", trials);
 }
 
+void warn_of_block_order(const protocols::Protocol& protocol) {
+  std::map<const protocols::Task*, int> blocks_of;
+  for (const protocols::Block& block : protocol.blocks) {
+    blocks_of[block.task] += block.is_practice ? 0 : 1;
+  }
+  if (std::ranges::any_of(blocks_of, [](const auto& task) { return task.second > 1; })) {
+    fmt::print(
+        "  note: blocks come in the file's order for every participant: what distinguishes two of "
+        "one task is confounded with practice and fatigue\n");
+  }
+}
+
 void print_blocks(const protocols::Protocol& protocol, int participants) {
   fmt::print("{}\n\n", protocol.title);
   double total_s = 0.0;
@@ -210,6 +223,7 @@ void print_design(const protocols::Protocol& protocol, int participants) {
     return;
   }
   print_blocks(protocol, participants);
+  warn_of_block_order(protocol);
   if (protocol.masking) {
     fmt::print("\nmasking\n  {}\n", described(*protocol.masking));
   }

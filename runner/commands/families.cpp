@@ -16,6 +16,10 @@ double megabytes(const core::BodyModes& body) {
   return bytes(body.shape) + bytes(body.touch_nodes_m) + bytes(body.touch_surface);
 }
 
+std::string modes_counted(Eigen::Index count) {
+  return fmt::format("{} mode{}", count, count == 1 ? "" : "s");
+}
+
 void print_crossings(const protocols::Protocol& protocol, const protocols::Stimulus& stimulus,
                      const core::BodyModes& body) {
   for (const protocols::AxisRange& range : stimulus.vary) {
@@ -47,8 +51,10 @@ void print_cost(const protocols::Protocol& protocol, const protocols::Stimulus& 
   const auto fewest = models.plate_of(protocol, stimulus_with(protocol, stimulus, ends.fewest));
   fmt::print("    {} model{}, solved in {:.3f} s, {:.1f} MB; a member takes {:.1f} ms more\n",
              bodies.size(), bodies.size() == 1 ? "" : "s", solved_s, held_mb, 1e3 * member_s);
-  fmt::print("    {} to {} modes below {} Hz at its own values of table axes\n",
-             fewest->model.frequency_hz.size(), most->model.frequency_hz.size(),
+  const Eigen::Index least = fewest->model.frequency_hz.size();
+  const Eigen::Index greatest = most->model.frequency_hz.size();
+  fmt::print("    {}{} below {} Hz at its own values of table axes\n",
+             least == greatest ? "" : fmt::format("{} to ", least), modes_counted(greatest),
              protocol.band_limit_hz);
   print_crossings(protocol, stimulus, *models.body_of(protocol, stimulus_with(protocol, stimulus)));
 }

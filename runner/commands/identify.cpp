@@ -119,6 +119,8 @@ void add_identify(CommandParser& line) {
                  "LOW:HIGH in Hz; default: 10 to the protocol's band limit, or 1000");
   command.number_within("--skip", question.finding.skip_s, 0.0, 1.0,
                         "Seconds after a tap's peak before it rings freely");
+  command.number_within("--longest", question.finding.max_s, 0.05, 60.0,
+                        "Seconds of free decay of a tap at most");
   command.option("--speeds", question.speeds,
                  "CSV with a column speed_m_s: the speed of each impact, in order");
   command.option(

@@ -10,6 +10,7 @@
 #include "analysis/figures/face_views.hpp"
 #include "analysis/figures/figure.hpp"
 #include "core/error.hpp"
+#include "core/output_directory.hpp"
 #include "core/output_file.hpp"
 #include "core/placement.hpp"
 #include "core/print.hpp"
@@ -139,11 +140,7 @@ analysis::Panel panel_of(const std::string& title, const std::vector<TraceSample
 void draw_panels(const TapOptions& options, const protocols::Protocol& protocol) {
   ModelLibrary models;
   const protocols::Rig rig = simulated_rig();
-  std::error_code error;
-  std::filesystem::create_directories(options.panels, error);
-  if (!std::filesystem::is_directory(options.panels, error)) {
-    throw core::InvalidInput{options.panels + ": cannot be made a directory"};
-  }
+  core::make_directories(options.panels);
   for (const auto& [name, plate] : protocol.plates) {
     analysis::Figure figure{"Feedback force, plate " + name,
                             "time after impact [s]",

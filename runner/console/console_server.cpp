@@ -144,7 +144,7 @@ mg_context* listening_at(const ServerAddress& address, Door door, void* user) {
                                    "num_threads",
                                    threads,
                                    "request_timeout_ms",
-                                   "2000",
+                                   "500",  // so long an idle connection keeps others waiting
                                    "max_request_size",
                                    "16384",
                                    "enable_directory_listing",

@@ -75,10 +75,9 @@ Json shape_of(const core::Solid& solid) {
   return {{"kind", "surface"}, {"points_m", points}, {"triangles", triangles}};
 }
 
-Json points_of(const protocols::Protocol& protocol, const protocols::Plate& plate) {
+Json points_of(const protocols::Plate& plate) {
   Json points = Json::array();
-  const auto& own = plate.tapping_points_m;
-  for (const auto& [name, point] : own.empty() ? protocol.tapping_points_m : own) {
+  for (const auto& [name, point] : plate.tapping_points_m) {
     points.push_back({point.x(), point.y(), 0.0});
   }
   return points;
@@ -90,7 +89,7 @@ Scenes::Scenes(const protocols::Protocol& protocol, const core::Placement& place
   for (const auto& [name, plate] : protocol.plates) {
     Json json = std::visit([](const auto& shape) { return shape_of(shape); }, plate->shape);
     json["tapping_points_m"] =
-        protocol.display.shows_tapping_points ? points_of(protocol, *plate) : Json::array();
+        protocol.display.shows_tapping_points ? points_of(*plate) : Json::array();
     const std::string shape = json.dump();
     json["fixations"] = Json::array();
     for (const core::Fixation& fixation : plate->fixations) {
@@ -103,14 +102,26 @@ Scenes::Scenes(const protocols::Protocol& protocol, const core::Placement& place
   }
 }
 
-// The same for all trials of a block: where catch trials have another shape, none is shown.
+// The same for all trials of a block: where catch trials have another shape, none is shown; nor
+// where the shape itself varies.
 std::optional<int> Scenes::number_of(const std::string& stimulus,
                                      const protocols::Block& block) const {
   const int number = place_of(stimulus);
   const bool tells_apart = std::ranges::any_of(all_presented(block), [&](const std::string& other) {
-    return at(place_of(other)).shape != at(number).shape;
+    return varies_in_shape(other) || at(place_of(other)).shape != at(number).shape;
   });
   return tells_apart ? std::nullopt : std::optional{number};
+}
+
+bool Scenes::varies_in_shape(const std::string& stimulus) const {
+  const protocols::Stimulus& own = protocol_.stimulus(stimulus);
+  const auto size_m = [&](const protocols::AxisValues& values) {
+    return core::bounds(stimulus_with(protocol_, own, values).plate->shape).size_m();
+  };
+  return std::ranges::any_of(own.vary, [&](const protocols::AxisRange& range) {
+    return size_m({{std::string{range.axis->name}, range.from}}) !=
+           size_m({{std::string{range.axis->name}, range.to}});
+  });
 }
 
 // Of plates that look the same the first, so that the number says no more than the picture.

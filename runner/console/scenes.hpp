@@ -13,7 +13,8 @@ class Scenes {
  public:
   // placement: of the protocol, or of the rig where that has its own.
   Scenes(const protocols::Protocol& protocol, const core::Placement& placement);
-  // nullopt where the block's plates look different: the picture would tell which one it is.
+  // nullopt where the block's plates look different, or vary in size: the picture would tell which
+  // one it is, or be wrong.
   std::optional<int> number_of(const std::string& stimulus, const protocols::Block& block) const;
   int count() const { return static_cast<int>(all_.size()); }
   const std::string& json(int number) const { return at(number).json; }
@@ -28,6 +29,7 @@ class Scenes {
     std::string shape;  // the same without fixations, which are drawn only where the study says so
   };
   int place_of(const std::string& stimulus) const;
+  bool varies_in_shape(const std::string& stimulus) const;
   const Scene& at(int number) const { return all_.at(static_cast<std::size_t>(number)); }
   const protocols::Protocol& protocol_;
   core::Placement placement_;

@@ -42,7 +42,7 @@ class RemoteKind final : public DeviceKind {
     auto section = std::make_shared<RemoteSection>();
     top.map("remote", protocols::MapReader::Presence::required, [&](protocols::MapReader& reader) {
       section->port = static_cast<std::uint16_t>(reader.integer("port", 1024, 65535));
-      section->max_reply_s = reader.number("max_reply_s", {0.001, 0.1}, section->max_reply_s);
+      section->max_reply_s = reader.number("max_reply_s", {0.001, 0.05}, section->max_reply_s);
       section->delay_ticks = reader.integer("delay_ticks", 0, 10, section->delay_ticks);
     });
     return section;

@@ -214,7 +214,7 @@ class SpidarKind final : public DeviceKind {
     }
     section.max_turn_rad =
         reader.number("max_turn_rad", Range::positive(0.5), section.max_turn_rad);
-    section.max_reply_s = reader.number("max_reply_s", {0.001, 0.1}, section.max_reply_s);
+    section.max_reply_s = reader.number("max_reply_s", {0.001, 0.05}, section.max_reply_s);
     if (reader.has("relay")) {
       section.relay = reader.text("relay");
     }

@@ -79,8 +79,8 @@ std::vector<analysis::GivenAnswer> given_answers(const std::vector<StudyStore>& 
         [&](results::Statement& row) {
           const auto participant = participants.find(row.integer(0));
           if (participant != participants.end()) {
-            answers.push_back({participant->second, row.text(1), row.text(2), row.text(3),
-                               row.is_null(4) ? std::nullopt : std::optional{row.text(4)}});
+            answers.push_back(
+                {participant->second, row.text(1), row.text(2), row.text(3), row.optional_text(4)});
           }
         });
   }

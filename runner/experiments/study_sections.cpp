@@ -22,8 +22,7 @@ analysis::Proportion right_in(const protocols::Block& block, const Answers& answ
   for (const results::JournalledAnswer& answer : answers) {
     const auto& is_correct = answer.response.is_correct;
     if (answer.trial.is_practice && answer.trial.block == block.name && is_correct) {
-      ++right.trials;
-      right.successes += *is_correct ? 1 : 0;
+      right.add(*is_correct);
     }
   }
   return right;

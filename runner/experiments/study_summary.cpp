@@ -134,7 +134,7 @@ std::vector<analysis::VisitOrder> visit_orders(results::Store& store) {
         if (orders.empty() || orders.back().trial_id != row.integer(0)) {
           orders.push_back({row.integer(0), {}});
         }
-        orders.back().positions.push_back(static_cast<int>(row.integer(1)));
+        orders.back().positions.push_back(row.small(1));
       });
   return orders;
 }

@@ -2,7 +2,6 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <termios.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -14,21 +13,10 @@
 #include "core/number_in.hpp"
 #include "core/plain_text.hpp"
 #include "device/device.hpp"
+#include "device/relay/serial_port.hpp"
 namespace tapstudy::runner {
 namespace {
 constexpr std::size_t max_detail_bytes = 1024;  // a line is then written to a pipe whole or not
-
-void set_up_if_serial(int descriptor) {
-  termios modes{};
-  if (tcgetattr(descriptor, &modes) != 0) {
-    return;
-  }
-  cfmakeraw(&modes);
-  modes.c_cflag |= static_cast<tcflag_t>(CLOCAL);
-  modes.c_cflag &= ~static_cast<tcflag_t>(CRTSCTS | CSTOPB | HUPCL);
-  cfsetspeed(&modes, B115200);
-  tcsetattr(descriptor, TCSANOW, &modes);
-}
 
 // A file that holds anything else would be spoiled by what is appended to it.
 void check_holds_markers(const std::string& path) {
@@ -54,7 +42,7 @@ int opened(const std::string& path) {
   if (descriptor < 0) {
     return -errno;
   }
-  set_up_if_serial(descriptor);
+  static_cast<void>(device::set_up_serial_port(descriptor));  // or it is a file or a pipe
   return descriptor;
 }
 

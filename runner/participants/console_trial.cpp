@@ -19,6 +19,18 @@ std::optional<std::size_t> index_of(const std::string& label,
   return found == labels.end() ? std::nullopt
                                : std::optional{static_cast<std::size_t>(found - labels.begin())};
 }
+
+// "1 for A, 2 for B".
+std::string expected_correction(const protocols::Answers& answers) {
+  if (answers.kind != protocols::AnswerKind::option) {
+    return expected_answer(answers);
+  }
+  std::vector<std::string> numbers;
+  for (const protocols::Option& option : answers.options) {
+    numbers.push_back(fmt::format("{} for {}", numbers.size() + 1, option.label));
+  }
+  return fmt::format("{}", fmt::join(numbers, ", "));
+}
 }  // namespace
 
 void ConsoleParticipant::get_ready(const TrialPrompt& prompt) {
@@ -29,8 +41,8 @@ void ConsoleParticipant::get_ready(const TrialPrompt& prompt) {
   say("\nTrial {} of {}{}. {}\n", prompt.number, prompt.total,
       prompt.block->is_practice ? " (practice)" : "", prompt.block->question);
   if (prompt.previous) {
-    say("  (correct and {}: what your last answer should have been)\n",
-        expected_answer(prompt.previous->answers));
+    say("  (to change your last answer, type correct and {})\n",
+        expected_correction(prompt.previous->answers));
   }
   const bool are_named = prompt.answers_name_alternatives();
   const std::vector<protocols::Option>& options = prompt.answers.options;
@@ -83,7 +95,7 @@ bool ConsoleParticipant::corrects(const std::string& line, const TrialPrompt& pr
   const std::string text = line.substr(std::min(line.size(), line.find_first_of("tT") + 1));
   const auto answer = answer_in(text, prompt.previous->answers);
   if (!answer) {
-    say("  please type correct and {}\n", expected_answer(prompt.previous->answers));
+    say("  please type correct and {}\n", expected_correction(prompt.previous->answers));
     return true;
   }
   const std::shared_future<void> stored = prompt.previous->correct(text);

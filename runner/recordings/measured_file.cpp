@@ -39,6 +39,8 @@ MeasuredFile read_measured_file(const std::string& file, const TapQuestion& ques
   }
   if (!question.force_column.empty()) {
     measured.force = read_column(file, question, question.force_column);
+    measured.force_rails = analysis::rail_samples(measured.force->samples,
+                                                  analysis::resting(*measured.force).noise_rms);
   }
   return measured;
 }
@@ -112,7 +114,8 @@ Pulse pulse_in(const analysis::Recording& force, std::size_t begin, std::size_t 
 }
 }  // namespace
 
-ImpactForce impact_force(const analysis::Recording& force, const analysis::Tap& tap) {
+ImpactForce impact_force(const MeasuredFile& measured, const analysis::Tap& tap) {
+  const analysis::Recording& force = *measured.force;
   constexpr double near_s = 0.01;
   const auto reach = static_cast<std::size_t>(near_s * force.rate_hz);
   const Pulse pulse = pulse_in(force, tap.onset - std::min(tap.onset, reach),
@@ -129,10 +132,8 @@ ImpactForce impact_force(const analysis::Recording& force, const analysis::Tap& 
                                          force.file, force.channel,
                                          static_cast<double>(tap.onset) / force.rate_hz)};
   }
-  const std::vector<std::size_t> rails =
-      analysis::rail_samples(force.samples, analysis::noise_rms(force));
   return {std::abs(sum_n) / force.rate_hz, moment / sum_n / force.rate_hz,
-          std::ranges::any_of(rails,
+          std::ranges::any_of(measured.force_rails,
                               [&](std::size_t i) { return pulse.first <= i && i < pulse.last; })};
 }
 }  // namespace tapstudy::runner

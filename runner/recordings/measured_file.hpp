@@ -9,6 +9,7 @@ namespace tapstudy::runner {
 struct MeasuredFile {
   std::vector<analysis::Recording> channels;
   std::optional<analysis::Recording> force;  // [N]
+  std::vector<std::size_t> force_rails;      // where it was at its sensor's limit
 };
 // Throws InvalidInput as read_recording does, and for a column that is asked for twice.
 MeasuredFile read_measured_file(const std::string& file, const TapQuestion& question);
@@ -19,6 +20,6 @@ MeasuredFile read_measured_file(const std::string& file, const TapQuestion& ques
 analysis::FoundTaps find_taps(const MeasuredFile& measured, const analysis::TapFinding& finding);
 
 // The force of an impact, above what it was before, for as long as it acts near the tap's onset.
-// Throws InvalidInput with file and time if there is none.
-ImpactForce impact_force(const analysis::Recording& force, const analysis::Tap& tap);
+// Throws InvalidInput with file and time if there is none. The file has a force.
+ImpactForce impact_force(const MeasuredFile& measured, const analysis::Tap& tap);
 }  // namespace tapstudy::runner

@@ -13,37 +13,18 @@
 #include "runner/recordings/impact_table.hpp"
 #include "runner/recordings/measured_file.hpp"
 #include "runner/recordings/sinusoid_law.hpp"
+#include "runner/recordings/sought_band.hpp"
 namespace tapstudy::runner {
 namespace {
-using analysis::Band;
 using analysis::Estimate;
 
-constexpr double default_low_hz = 10.0;
-constexpr double default_high_hz = 1000.0;
-constexpr double usable_rate_share = 0.4;  // of the rate; sensors' own filters begin above
-constexpr double max_rate_share = 0.47;
-
-Band band_for(const TapQuestion& question, double rate_hz, std::optional<double> band_limit_hz) {
-  if (!question.band) {
-    return {default_low_hz,
-            std::min(usable_rate_share * rate_hz, band_limit_hz.value_or(default_high_hz))};
-  }
-  if (question.band->high_hz > max_rate_share * rate_hz) {
-    throw core::InvalidInput{fmt::format("--band: ends at {:g} Hz, above {} of the rate of {:g} Hz",
-                                         question.band->high_hz, max_rate_share, rate_hz)};
-  }
-  return *question.band;
-}
-
-analysis::FreeDecay decay_between(const analysis::Recording& recording, std::size_t begin,
-                                  std::size_t end) {
+analysis::FreeDecay between(const analysis::Recording& recording, std::size_t begin,
+                            std::size_t end) {
   const auto first = static_cast<Eigen::Index>(begin);
   const auto count = static_cast<Eigen::Index>(end - begin);
   const Eigen::Map<const Eigen::VectorXd> all{recording.samples.data(),
                                               static_cast<Eigen::Index>(recording.samples.size())};
-  analysis::FreeDecay decay{recording.rate_hz, all.segment(first, count)};
-  decay.samples.array() -= decay.samples.mean();
-  return decay;
+  return {recording.rate_hz, all.segment(first, count)};
 }
 
 class Identifier {
@@ -64,8 +45,8 @@ class Identifier {
     }
     const double slowest_hz = rate_of(*std::ranges::min_element(files, {}, rate_of));
     check_playback_rate(files);
-    result_.band = band_for(result_.question, slowest_hz,
-                            protocol_ ? std::optional{protocol_->band_limit_hz} : std::nullopt);
+    result_.band = sought_band(result_.question, slowest_hz,
+                               protocol_ ? std::optional{protocol_->band_limit_hz} : std::nullopt);
     int impacts = 0;
     for (const MeasuredFile& file : files) {
       impacts += add(file, impacts);
@@ -98,18 +79,17 @@ class Identifier {
     for (const std::string& remark : found.remarks) {
       result_.remarks.push_back(file.channels.front().file + ": " + remark);
     }
-    std::vector<double> noise_rms;  // of each channel
-    std::ranges::transform(file.channels, std::back_inserter(noise_rms), analysis::noise_rms);
+    std::vector<analysis::Resting> resting;  // of each channel
+    std::ranges::transform(file.channels, std::back_inserter(resting), analysis::resting);
     for (const analysis::Tap& tap : found.taps) {
       hook_(fmt::format("tap {} of {}", tap.impact, file.channels.front().file));
-      const auto force = file.force ? std::optional{impact_force(*file.force, tap)} : std::nullopt;
+      const auto force = file.force ? std::optional{impact_force(file, tap)} : std::nullopt;
       if (force && force->is_clipped) {
         result_.remarks.push_back(fmt::format("{}: the force of the tap at {:.3f} s is clipped",
                                               file.force->file, force->centre_s));
       }
       for (std::size_t i = 0; i < file.channels.size(); ++i) {
-        if (add(file.channels[i], tap)) {
-          result_.taps.back().noise_rms = noise_rms[i];
+        if (add(file.channels[i], resting[i], tap)) {
           result_.taps.back().impact = before + tap.impact;
           result_.taps.back().force = force;
         }
@@ -119,13 +99,16 @@ class Identifier {
   }
 
   // A tap that is too short for the band is left out with a remark.
-  bool add(const analysis::Recording& recording, const analysis::Tap& tap) {
+  bool add(const analysis::Recording& recording, const analysis::Resting& resting,
+           const analysis::Tap& tap) {
     IdentifiedTap one;
     one.file = recording.file;
     one.channel = recording.channel;
     one.tap = tap;
     one.time_s = static_cast<double>(tap.onset) / recording.rate_hz;
-    one.decay = decay_between(recording, tap.begin, tap.end);
+    one.noise_rms = resting.noise_rms;
+    one.decay = between(recording, tap.begin, tap.end);
+    one.decay.samples.array() -= one.decay.samples.mean();
     try {
       one.modes = analysis::identify_modes(one.decay, {result_.band});
     } catch (const core::InvalidInput& error) {
@@ -133,11 +116,11 @@ class Identifier {
                                             recording.file, one.time_s, error.what()));
       return false;
     }
-    const Band wide{result_.band.low_hz,
-                    std::max(result_.band.high_hz,
-                             std::min(default_high_hz, usable_rate_share * recording.rate_hz))};
-    one.whole = decay_between(recording, tap.onset, tap.end);
-    one.sinusoid = analysis::fit_decaying_sinusoid(one.whole, wide);
+    // not by its mean: what stopped has been accelerated
+    one.whole = between(recording, tap.onset, tap.end);
+    one.whole.samples.array() -= resting.value;
+    one.sinusoid = analysis::fit_decaying_sinusoid(
+        one.whole, band_of_sinusoid(result_.band, recording.rate_hz));
     result_.taps.push_back(std::move(one));
     return true;
   }
@@ -219,6 +202,18 @@ class Identifier {
     return modes;
   }
 
+  // With steady tones that other taps show.
+  void identify_again(IdentifiedTap& tap, const analysis::ModeFinding& finding) {
+    try {
+      tap.modes = analysis::identify_modes(tap.decay, finding);
+    } catch (const core::InvalidInput& error) {
+      result_.remarks.push_back(
+          fmt::format("{}: the tap at {:.3f} s rings too short for the {} steady tones that other "
+                      "taps show: they may falsify its damping ({})",
+                      tap.file, tap.time_s, finding.lines_hz.size(), error.what()));
+    }
+  }
+
   void sum_up() {
     const std::vector<analysis::TapModes> of_taps = modes_of_taps();
     for (IdentifiedTap& tap : result_.taps) {
@@ -226,7 +221,7 @@ class Identifier {
       if (!lines_hz.empty()) {
         analysis::ModeFinding finding{result_.band};
         finding.lines_hz = lines_hz;
-        tap.modes = analysis::identify_modes(tap.decay, finding);
+        identify_again(tap, finding);
       }
     }
     add_remarks(remarks_on_residuals(result_.taps));

@@ -53,6 +53,7 @@ std::vector<double> ratios_of_model(const TapIdentification& found, const ModelC
     known.push_back({factor * model.frequencies_hz[one.model],
                      usable(found.modes[found.agreed[one.measured]].damping_ratio.value)});
   }
+  std::ranges::sort(known, {}, &RatioAt::frequency_hz);  // shapes may match modes crosswise
   std::vector<double> ratios;
   for (const double frequency_hz : model.frequencies_hz) {
     if (factor * frequency_hz <= model.band_limit_hz) {

@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <sstream>
@@ -7,6 +6,7 @@
 #include <vector>
 
 #include "core/error.hpp"
+#include "core/output_directory.hpp"
 #include "core/output_file.hpp"
 #include "runner/reproduction/claim_table.hpp"
 #include "runner/reproduction/writers.hpp"
@@ -28,12 +28,7 @@ std::string written(void (*write)(std::ostream&, const Reproduction&),
 }  // namespace
 
 void make_room_for_reproduction(const std::string& directory) {
-  std::error_code error;
-  std::filesystem::create_directories(directory, error);
-  if (!std::filesystem::is_directory(directory, error) ||
-      access(directory.c_str(), W_OK | X_OK) != 0) {
-    throw core::InvalidInput{"--out: " + directory + " cannot be created as a directory"};
-  }
+  core::make_directories(directory);
   core::check_is_new(in(directory, page_file));
   core::check_is_new(in(directory, json_file));
   core::check_is_new(in(directory, strike_animation_file));

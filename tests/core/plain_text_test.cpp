@@ -39,3 +39,16 @@ TEST_CASE("text is what Python decodes as UTF-8 and has no control characters", 
   CHECK(ours == testing::python_numbers(script));
   CHECK(core::is_plain_text("two\nlines\tand ünicode \xf0\x9f\x8d\x8e"));
 }
+
+TEST_CASE("text is cut between characters, never in one", "[core]") {
+  const std::string apple = "\xf0\x9f\x8d\x8e";
+  const std::string text = "ü" + apple + "b";
+  CHECK(core::character_count(text) == 3);
+  const std::vector<std::string> by_bytes{"", "", "ü", "ü", "ü", "ü", "ü" + apple, text, text};
+  for (std::size_t bytes = 0; bytes < by_bytes.size(); ++bytes) {
+    CHECK(core::cut_to(text, bytes) == by_bytes[bytes]);
+    CHECK(core::is_plain_text(core::cut_to(text, bytes)));
+  }
+  CHECK(core::shortened(text, 3) == "ü…");
+  CHECK(core::shortened(text, 7) == text);
+}

@@ -258,6 +258,9 @@ TEST_CASE("bad input is one clear error and its own exit code", "[end_to_end]") 
   refused({"simulate", paper(name), "--out", directory / "a_file"}, 5, "a_file");
   refused({"simulate", paper(name), "--out", "/proc/study"}, 5, "/proc/study");
   refused({"run", paper(name), "--participant", "../P1", "--out", out}, 2, "--participant");
+  refused({"run", paper(name), "--participant", "NA", "--out", out}, 2, "NA");
+  refused({"run", paper(name), "--participant", "P1", "--out", out, "--console", "80"}, 2,
+          "--console");
   refused({"doctor", "--seconds", "nan"}, 2, "nan is not allowed (from 0.1 to 600)");
   refused({"calibrate", "--type", "X3R", "--out", directory / "none/c.yaml"}, 2,
           "there is no directory");
@@ -429,7 +432,7 @@ TEST_CASE("a calibration that no eight motors of one kind can have is refused", 
   CHECK_THAT(said_of("dac_counts_per_volt: 415", "dac_counts_per_volt: 1300"),
              Contains("string 1"));
   CHECK_THAT(said_of("dac_counts_per_volt: 415", "dac_counts_per_volt: 1200"),
-             Contains("max_tension_n, 10 N, would take 4384 DAC counts (the board has 4095"));
+             Contains("max_tension_n, 10 N, is above 9.342 N, which take all 4095 DAC counts"));
 }
 
 namespace {

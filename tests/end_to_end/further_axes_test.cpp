@@ -1,4 +1,5 @@
 // A procedure that varies stimuli along two axes.
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -137,9 +138,16 @@ TEST_CASE("what a report says that a procedure estimated is Bayes' rule of the s
   CHECK(reported_mean(study, "threshold") == Approx(means.threshold).epsilon(1e-9));
   CHECK(reported_mean(study, "effect_2") == Approx(means.effect).epsilon(1e-9));
   CHECK(study.at("procedure_tracks").at(0).at("trials") == 8);
-  int parts = 0;
-  for (const nlohmann::json& block : report.at("blocks")) {
-    parts += block.at("block").get<std::string>().starts_with("comparison_at_") ? 1 : 0;
-  }
-  CHECK(parts > 1);
+  const auto parts_of = [](const nlohmann::json& blocks) {
+    return std::ranges::count_if(blocks, [](const nlohmann::json& block) {
+      return block.at("block").get<std::string>().starts_with("comparison_at_");
+    });
+  };
+  CHECK(parts_of(report.at("blocks")) > 1);
+  REQUIRE(testing::tapstudy(
+              {"report", directory / "study", "--only", "comparison", "--out", directory / "only"})
+              .exit_code == 0);
+  const auto only = nlohmann::json::parse(testing::contents((directory / "only") + "/report.json"));
+  CHECK(parts_of(only.at("blocks")) == parts_of(report.at("blocks")));
+  CHECK(std::ssize(only.at("blocks")) == parts_of(only.at("blocks")));
 }

@@ -7,6 +7,7 @@
 #include <complex>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "core/model/modes/damping.hpp"
 #include "core/model/plate_model.hpp"
@@ -241,6 +242,10 @@ PlacesOfShelf places_of(const std::string& protocol_file) {
   return places;
 }
 
+double ratio_of_rung(std::size_t mode) {
+  return mode == 1 ? 0.008 : 0.02;
+}
+
 // A tap at each place in turn, of another speed each; mode i rings at frequencies_hz[i] with the
 // shape of the model's mode shape_of[i]. Two sensors, of which the second stands where everything
 // is smaller and the other way round, and the force of what struck.
@@ -267,13 +272,29 @@ std::string roving_taps(const PlacesOfShelf& places, const std::vector<double>& 
       for (std::size_t mode = 0; since_s >= lasts_s && mode < frequencies_hz.size(); ++mode) {
         const double shape = places.shapes(static_cast<Eigen::Index>(place), shape_of[mode]);
         value += speed_m_s * shape *
-                 testing::ringing({{{frequencies_hz[mode], 0.02}, 1.0}}, since_s - 0.5 * lasts_s);
+                 testing::ringing({{{frequencies_hz[mode], ratio_of_rung(mode)}, 1.0}},
+                                  since_s - 0.5 * lasts_s);
       }
     }
     text += fmt::format("{:.6f},{:.7g},{:.7g},{:.7g}\n", t_s, value + 0.0005 * rng.normal(),
                         -0.4 * value + 0.0005 * rng.normal(), force_n);
   }
   return text;
+}
+}  // namespace
+
+namespace {
+std::vector<double> modal_ratios_in(const std::string& yaml) {
+  const std::string text = testing::contents(yaml);
+  const std::string key = "modal_ratios: [";
+  const auto begin = text.find(key) + key.size();
+  REQUIRE(begin != std::string::npos + key.size());
+  std::istringstream list{text.substr(begin, text.find(']', begin) - begin)};
+  std::vector<double> ratios;
+  for (std::string one; std::getline(list, one, ',');) {
+    ratios.push_back(std::stod(one));
+  }
+  return ratios;
 }
 }  // namespace
 
@@ -328,6 +349,11 @@ TEST_CASE("modes whose shapes are known by the places tapped are matched by them
     CHECK(one["model_mode"] == shape_of.at(one["agreed_mode"].get<std::size_t>()));
     CHECK(one["mac"].get<double>() > 0.98);
   }
+  const std::vector<double> ratios = modal_ratios_in(shelf_taps.out + "/identified.yaml");
+  REQUIRE(ratios.size() >= 3);
+  CHECK(ratios[0] == Approx(0.02).epsilon(0.05));
+  CHECK(ratios[1] == Approx(0.02).epsilon(0.05));   // which rang third
+  CHECK(ratios[2] == Approx(0.008).epsilon(0.05));  // second
 }
 
 TEST_CASE("Young's modulus, damping and modes of a shelf are found in recordings of its taps",

@@ -70,7 +70,7 @@ TEST_CASE("a reproduction replaces nothing, and says at once where it cannot be 
   for (const std::string& nowhere : {directory / "file", std::string{"/proc/nowhere"}}) {
     const auto run = reproduced(nowhere);
     CHECK(run.exit_code == 2);
-    CHECK_THAT(run.standard_error, Contains("cannot be created as a directory"));
+    CHECK_THAT(run.standard_error, Contains("cannot be made"));
     CHECK_THAT(run.standard_error, !Contains("1 of 1"));
   }
   const auto unknown = testing::tapstudy({"reproduce", "--only", "x", "--out", directory / "new"});

@@ -11,13 +11,15 @@ using Catch::Matchers::Contains;
 using testing::TempDirectory;
 
 namespace {
-// A shell script in which `tapstudy`, `$study` (a protocol) and `$out` have a meaning.
+// A shell script in which `tapstudy` (`$tapstudy` to be the process $!), `$study` (a protocol) and
+// `$out` have a meaning.
 testing::ProgramResult shell(const TempDirectory& directory, const std::string& script) {
   return testing::run_program(
       {"/bin/bash", "-c",
-       fmt::format("tapstudy() {{ {} \"$@\"; }}; study={}; out={}/the_study; cd {}\n{}",
-                   TAPSTUDY_PROGRAM, testing::shipped("paper/discrimination.yaml").string(),
-                   directory.path(), directory.path(), script)});
+       fmt::format(
+           "tapstudy={}; tapstudy() {{ $tapstudy \"$@\"; }}; study={}; out={}/the_study; cd {}\n{}",
+           TAPSTUDY_PROGRAM, testing::shipped("paper/discrimination.yaml").string(),
+           directory.path(), directory.path(), script)});
 }
 std::string sql(const TempDirectory& directory, const std::string& query) {
   return testing::run_program({"/usr/bin/sqlite3", directory / "the_study/study.db", query})
@@ -94,6 +96,54 @@ TEST_CASE("a file that may grow no further is one error, and loses no answer",
   CHECK(result.standard_output == "5\n");
   CHECK_THAT(result.standard_error, Contains("is the disk full?") && Contains("not stored yet"));
   CHECK(sql(directory, "PRAGMA integrity_check") == "ok\n");
+}
+
+TEST_CASE(
+    "what could not be stored is given up by nothing but quit, and stored once there is space",
+    "[end_to_end][store]") {
+  const TempDirectory directory;
+  const std::string begin =
+      "tapstudy simulate $study --participants 1 --seed 1 --out $out >/dev/null 2>&1\n"
+      "mkfifo keys; exec 3<>keys; $tapstudy run $study --participant P01 --out $out <keys 2>said "
+      "&\n"
+      "until grep -q 'Trial 1' said 2>/dev/null; do sleep 0.1; done\n"
+      "prlimit --pid $! --fsize=90000:unlimited\n"
+      "while ! grep -q 'not stored yet' said && kill -0 $! 2>/dev/null; do echo 1 >&3; sleep 0.3; "
+      "done\n"
+      "for key in q no 1; do sleep 0.3; echo $key >&3; done; sleep 0.5; kill -0 $! || exit 9\n";
+  SECTION("there is space again") {
+    const auto result = shell(directory, begin +
+                                             "prlimit --pid $! --fsize=unlimited:unlimited\n"
+                                             "echo >&3; sleep 1; echo quit >&3; wait $!\n");
+    INFO(result.standard_error);
+    CHECK(result.exit_code == 130);
+    const std::string stored = sql(directory, every_trial);
+    const std::string said = testing::contents(directory / "said");
+    CHECK_THAT(said.substr(said.find("not stored yet")), Contains("saved,"));
+    CHECK(sql(directory, "PRAGMA integrity_check") == "ok\n");
+    CHECK(shell(directory, "tapstudy verify $out").exit_code == 0);
+  }
+  SECTION("it is given up") {
+    const auto result = shell(directory, begin + "echo quit >&3; wait $!\n");
+    CHECK(result.exit_code == 5);
+  }
+}
+
+TEST_CASE("a presentation that was killed is recorded, and the next one is the second attempt",
+          "[end_to_end][store]") {
+  const TempDirectory directory;
+  const auto result = shell(
+      directory,
+      "mkfifo keys; exec 3<>keys; $tapstudy run $study --participant P01 --out $out <keys 2>said "
+      "&\n"
+      "until grep -q 'Trial 1' said 2>/dev/null; do sleep 0.1; done; sleep 1; kill -KILL $!; wait\n"
+      "(sleep 1; echo 1; sleep 1) | tapstudy run $study --participant P01 --out $out --resume");
+  INFO(result.standard_error);
+  CHECK(sql(directory,
+            "SELECT session_id, count(*) FROM session_event WHERE state = 'exploring' AND "
+            "number = 1 GROUP BY session_id") == "1|1\n2|1\n");
+  CHECK(sql(directory, "SELECT attempt FROM trial WHERE number = 1 AND status = 'answered'") ==
+        "2\n");
 }
 
 TEST_CASE("verify compares what is stored twice, and a report is made from either",

@@ -59,6 +59,11 @@ TEST_CASE("a stopped session keeps its answers and is resumed at the next trial"
   CHECK(sql(directory, "SELECT group_concat(number || status) FROM trial") ==
         "1answered,2answered,3answered,4interrupted\n");
   CHECK(session(directory, "discrimination.yaml", "1\n").exit_code == 2);  // not without --resume
+  const auto reseeded =
+      testing::tapstudy({"run", paper("discrimination.yaml"), "--participant", "P01", "--out",
+                         directory / "the_study", "--resume", "--seed", "123456"});
+  CHECK(reseeded.exit_code == 2);
+  CHECK_THAT(reseeded.standard_error, Contains("--seed"));
   const auto resumed = session(directory, "discrimination.yaml", "4\n4\n4\n4\n4\n", {"--resume"});
   INFO(resumed.standard_error);
   CHECK(resumed.exit_code == 0);

@@ -122,6 +122,6 @@ TEST_CASE(
                              "1", "--out", study})
               .exit_code == 0);
   REQUIRE(testing::tapstudy({"report", study}).exit_code == 0);
-  CHECK_THAT(testing::contents(study + "/rendered_stimuli.csv"), Contains("taps"));
+  CHECK_THAT(testing::contents(study + "/rendered_stimuli.csv"), Contains("fixation"));
   CHECK_THAT(testing::contents(study + "/block_rendered_stimuli.csv"), Contains("median"));
 }

@@ -149,6 +149,7 @@ class WholeSession(unittest.TestCase):
         browser.go_on_by_mouse(self.driver)
         browser.wait_for_screen(self.driver, "form")
         browser.fill_in_by_mouse(self.driver, "hand", "right")
+        browser.fill_in_by_mouse(self.driver, "age", "29,5")  # as where numbers have decimal commas
         self.check_screen("form")
         browser.send_form_by_mouse(self.driver)
         for index, is_right in ((0, True), (0, False)):
@@ -170,6 +171,14 @@ class WholeSession(unittest.TestCase):
         browser.wait_for_screen(self.driver, "form")
         browser.fill_in_by_mouse(self.driver, "real", 4)
         browser.fill_in_by_mouse(self.driver, "clear", 0.75)
+        self.driver.execute_script(
+            "document.querySelector('.item[data-name=remarks] textarea').value = 'ü'.repeat(5001)")
+        browser.send_form_by_mouse(self.driver)
+        error = browser.wait_until(self.driver, "what is wrong with the text", lambda: browser.find(
+            self.driver, '.item[data-name="remarks"] .error').text, 10)
+        self.assertIn("5000", error)
+        self.assertEqual(browser.current_screen(self.driver)["kind"], "form")
+        browser.fill_in_by_mouse(self.driver, "remarks", "ü")
         browser.send_form_by_mouse(self.driver)
         self.finish()
         self.assertEqual(self.session.responses(), ["bare", "bare", "bare", "ringing"])
@@ -177,7 +186,7 @@ class WholeSession(unittest.TestCase):
             "SELECT confidence FROM response WHERE confidence IS NOT NULL"), [(3,), (3,)])
         answers = dict(self.session.rows("SELECT item, answer FROM form_answer"))
         self.assertAlmostEqual(float(answers.pop("clear")), 0.75, delta=0.02)
-        self.assertEqual(answers, {"age": None, "hand": "right", "real": "4", "remarks": None})
+        self.assertEqual(answers, {"age": "29.5", "hand": "right", "real": "4", "remarks": "ü"})
 
     def check_screen(self, name):
         browser.check_no_sideways_scrolling(self.driver)

@@ -56,6 +56,17 @@ TEST_CASE("a break comes after trials or time, and may last so long as it must",
              Contains("breaks.max_seconds: is below min_seconds"));
 }
 
+TEST_CASE("no claim is tested of a block whose procedures estimate a threshold", "[protocols]") {
+  const std::string text = testing::contents(testing::source("tests/data/every_task.yaml"));
+  const auto with_claim_of = [&](const std::string& block) {
+    return refusal(text + "\nhypotheses: [{name: h, statement: It is felt., block: " + block +
+                   ", claim: accuracy_above_chance}]\n");
+  };
+  CHECK(with_claim_of("abx") == "accepted");
+  CHECK_THAT(with_claim_of("comparison"),
+             Contains("hypotheses[0].block: has procedures: its threshold is estimated"));
+}
+
 TEST_CASE("a sinusoid by place leads from one place to another, and does not alias at either",
           "[protocols]") {
   const auto with = [](const std::string& by_place) {

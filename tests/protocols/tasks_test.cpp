@@ -106,7 +106,7 @@ TEST_CASE(
       refusal("adjustment",
               "task: adjustment, question: \"Equal?\", stimuli: [one], settings: {from: 1.0e-310, "
               "to: 6, count: 3}, explore: {intervals: {seconds: 2}}"),
-      Contains("blocks[10]"));
+      Contains("must have `vary`"));
 }
 
 TEST_CASE("every stimulus is the sample equally often with its match at every place",

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
+#include <optional>
 #include <utility>
 
 #include "core/error.hpp"
@@ -38,25 +40,19 @@ class Elongations {
     return elongations;
   }
 
-  // Axes are parallel, so that one shift of a body must bring all of its contacts with another
-  // together: else the springs would hold free bodies against turning.
+  // Axes are parallel, so that shifts of the bodies must bring all contacts together at once: else
+  // the springs would hold free bodies against turning.
   void check_can_touch() const {
-    std::vector<Vec3> shifts_m;
+    const std::vector<Vec3> shifts_m = shifts_of_bodies();
     for (std::size_t i = 0; i < contacts_.springs.size(); ++i) {
-      shifts_m.push_back(shift_m(i));
-      for (std::size_t j = 0; j < i; ++j) {
-        const auto& one = contacts_.springs[i];
-        const auto& other = contacts_.springs[j];
-        if (one.from.body != other.from.body || one.to.body != other.to.body) {
-          continue;
-        }
-        const double apart_m = (shifts_m[i] - shifts_m[j]).norm();
-        if (apart_m > max_misplacement * larger_diagonal_m(one)) {
-          throw ModelError{fmt::format(
-              "contact springs {} and {} join the same two bodies at places that cannot lie on one "
-              "another at once: {:.3g} mm apart",
-              j + 1, i + 1, 1e3 * apart_m)};
-        }
+      const auto& joins = contacts_.springs[i];
+      const double apart_m =
+          (shifts_m[joins.to.body] - shifts_m[joins.from.body] + shift_m(i)).norm();
+      if (apart_m > max_misplacement * larger_diagonal_m(joins)) {
+        throw ModelError{fmt::format(
+            "contact spring {} joins places that cannot lie on one another while those of the "
+            "springs before it do: {:.3g} mm apart",
+            i + 1, 1e3 * apart_m)};
       }
     }
   }
@@ -81,6 +77,33 @@ class Elongations {
   double larger_diagonal_m(const ContactSpring& spring) const {
     return std::max(bounds(shape_of(spring.from.body)).size_m().norm(),
                     bounds(shape_of(spring.to.body)).size_m().norm());
+  }
+  // By which each body comes to lie where the first springs that reach it join it.
+  std::vector<Vec3> shifts_of_bodies() const {
+    std::vector<std::optional<Vec3>> shifts_m(system_.bodies.size());
+    for (std::optional<Vec3>& first : shifts_m) {
+      if (first) {
+        continue;
+      }
+      first = Vec3::Zero();
+      while (reach_another(shifts_m)) {
+      }
+    }
+    std::vector<Vec3> all_m;
+    std::ranges::transform(shifts_m, std::back_inserter(all_m),
+                           [](const std::optional<Vec3>& shift) { return *shift; });
+    return all_m;
+  }
+  bool reach_another(std::vector<std::optional<Vec3>>& shifts_m) const {
+    for (std::size_t i = 0; i < contacts_.springs.size(); ++i) {
+      std::optional<Vec3>& of_from = shifts_m[contacts_.springs[i].from.body];
+      std::optional<Vec3>& of_to = shifts_m[contacts_.springs[i].to.body];
+      if (of_from.has_value() != of_to.has_value()) {
+        (of_from ? of_to : of_from) = of_from ? Vec3{*of_from - shift_m(i)} : *of_to + shift_m(i);
+        return true;
+      }
+    }
+    return false;
   }
   // From one end of a spring to the other.
   Vec3 shift_m(std::size_t spring) const {

@@ -37,12 +37,13 @@ function rangeProblem(item, value) {
 }
 
 const isDecimal = (text) => /^[+-]?(\d+\.?\d*|\.\d+)$/.test(text);
+const mayBeThousands = (text) => /^[+-]?[1-9]\d{0,2},\d{3}$/.test(text);
 
 // A field of type number drops a decimal comma where the browser speaks a language with points: 2,5
-// would be 25.
+// would be 25. What is 1,000 in one language and 1.000 in another is not taken for either.
 function number(item, id) {
   const input = el("input", { type: "text", id, className: "number", inputMode: "decimal", autocomplete: "off" });
-  const typed = () => input.value.trim().replace(",", ".");
+  const typed = () => (mayBeThousands(input.value.trim()) ? input.value.trim() : input.value.trim().replace(",", "."));
   return {
     body: input,
     value: () => (isDecimal(typed()) ? Number(typed()) : null),

@@ -5,7 +5,7 @@ import { byId, el, onThemeChange, setText, showIfChanged } from "./dom.js";
 import { Actions } from "./operator_actions.js";
 import { showLastAnswer, showLog, showMachine, showTrial } from "./operator_parts.js";
 import { LivePlots } from "./operator_plots.js";
-import { loadWords, setLanguage, word, wordOr } from "./words.js";
+import { loadWords, word, wordOr } from "./words.js";
 
 let state = null;
 let actions = null;
@@ -50,7 +50,6 @@ function showTitles() {
 
 function showState(next) {
   state = next;
-  setLanguage(next.language);
   document.body.dataset.state = next.state;
   showTitles();
   showSession(next);

@@ -34,11 +34,13 @@ function noticeText(why) {
 let view = null;
 const outbox = new Outbox(setBusy, say);
 
+let saying = null;
 function say(text) {
   const status = byId("status");
+  clearTimeout(saying);
   // The same words again are announced again only if they went away in between.
   status.textContent = "";
-  if (text) setTimeout(() => setText(status, text), 50);
+  if (text) saying = setTimeout(() => setText(status, text), 50);
 }
 
 function setBusy(isBusy) {
@@ -88,13 +90,15 @@ function showProgress(progress) {
   setText(byId("progress-text"), word(progress.is_practice ? "progress_practice" : "progress", progress));
 }
 
+let settling = null;
 function settle() {
   delete document.body.dataset.settled;
-  setTimeout(() => { document.body.dataset.settled = "true"; }, settleMs);
+  clearTimeout(settling);
+  settling = setTimeout(() => { document.body.dataset.settled = "true"; }, settleMs);
 }
 
 function mount(key) {
-  shown?.leave?.();
+  shown?.leave?.(screen.kind);
   enteredAnswer?.leave();
   enteredAnswer = new EnteredAnswer(() => screen.number);
   const entered = (answer) => enteredAnswer.tell(answer);
@@ -141,7 +145,8 @@ function pressed(event) {
   const { target, key } = event;
   if (event.repeat || event.isComposing || event.ctrlKey || event.altKey || event.metaKey) return;
   if (!document.body.dataset.settled || !shown) return;
-  if (target.closest("textarea, input[type=text], input[type=number]")) return;
+  // Keys in a field are its own, and those in a correction do not answer this trial.
+  if (target.closest("textarea, input[type=text], input[type=number], .previous")) return;
   const isHandled = key === "Enter" ? !target.closest("button") && shown.submit?.() : shown.press?.(key);
   if (isHandled) event.preventDefault();
 }

@@ -31,6 +31,7 @@ export function formScreen(screen, { send, say }) {
   const key = JSON.stringify([screen.form, screen.language]);
   if (!drafts.has(key)) drafts.set(key, build(screen));
   const { element, items } = drafts.get(key);
+  let isSent = false;
 
   element.onsubmit = async (event) => {
     event.preventDefault();
@@ -38,9 +39,11 @@ export function formScreen(screen, { send, say }) {
     if (wrong.length > 0) {
       say(word("form_incomplete", { count: wrong.length }));
       wrong[0].focus();
-    } else if (await send("form", valuesOf(items))) {
-      drafts.delete(key);
+    } else {
+      isSent = true;
+      isSent = await send("form", valuesOf(items));
     }
   };
-  return { element };
+  // The reply may be lost, but the screen after the form tells that it has arrived.
+  return { element, leave: (next) => { if (isSent && next !== "paused") drafts.delete(key); } };
 }

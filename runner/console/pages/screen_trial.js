@@ -63,10 +63,15 @@ function toHoldStill({ is_tapped_by_script: isScripted }) {
 
 // The last answer, as long as it may be corrected.
 function lastAnswer(answers, say, correct) {
-  return el("details", { className: "previous" },
+  const element = el("details", { className: "previous" },
     el("summary", {}, word("correct_last")),
     el("p", { className: "hint" }, word("correct_last_hint")),
     ...otherAnswer(answers, say, correct));
+  // Enter in a field would send the form around it: the answer of this trial.
+  element.addEventListener("keydown", (event) => {
+    if (event.key === "Enter" && event.target.matches("input")) event.preventDefault();
+  });
+  return element;
 }
 
 export function trialScreen({ trial }, { send, entered, feel, adjust, replay, correct, say }) {

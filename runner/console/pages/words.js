@@ -1,4 +1,5 @@
-// The page's own words in the session's language. Texts of the study come ready-made.
+// The page's own words: in the browser's language, and for participants in the session's. Texts of
+// the study come ready-made.
 
 let all = { en: {} };
 let words = {};

@@ -6,6 +6,7 @@
 #include "analysis/resampling/random_table.hpp"
 #include "analysis/resampling/replicates.hpp"
 #include "analysis/statistics/distributions.hpp"
+#include "analysis/statistics/log_factorial.hpp"
 #include "core/error.hpp"
 #include "support/confusion_tables.hpp"
 #include "support/r_program.hpp"

@@ -305,6 +305,7 @@ TEST_CASE("models differ by every property of a contact, and of what is touched"
 TEST_CASE("contacts that no shift of a body brings together are refused", "[core][model]") {
   core::PlateSpec spec = stiff_block(60.0);
   core::BodyInContact other{block({0.1, 0.1, 0.05}, 2e-5), material_of(1e13, 2000.0, 0.01)};
+  const bool is_other_way_round = GENERATE(false, true);
   const auto joined_at = [&](double further_m) {
     core::Contacts contacts{{other}, {}};
     for (const double x : {-0.03, 0.03}) {
@@ -313,10 +314,34 @@ TEST_CASE("contacts that no shift of a body brings together are refused", "[core
                                   {1, disc(to_x, 0.0, core::Face::top)},
                                   {1e5, 1e5, 1e5}});
     }
+    if (is_other_way_round) {
+      std::swap(contacts.springs.back().from, contacts.springs.back().to);
+    }
     spec.contacts = std::make_shared<const core::Contacts>(contacts);
     return core::solve_body(core::body_of(spec)).modes.report.rigid_body_modes;
   };
   CHECK(joined_at(0.0) == 7);  // as one body, and a turn about the line of contacts
-  CHECK_THROWS_WITH(joined_at(0.01), Catch::Contains("contact springs 1 and 2") &&
+  CHECK_THROWS_WITH(joined_at(0.01), Catch::Contains("contact spring 2 joins places") &&
                                          Catch::Contains("cannot lie on one another"));
+}
+
+TEST_CASE("three bodies in a ring are refused unless all of their contacts meet at once",
+          "[core][model]") {
+  core::PlateSpec spec = stiff_block(60.0);
+  const core::BodyInContact other{block({0.1, 0.1, 0.05}, 2e-5), material_of(1e13, 2000.0, 0.01)};
+  const auto ring_with = [&](double further_m) {
+    core::Contacts contacts{{other, other}, {}};
+    const auto join = [&](std::size_t from, std::size_t to, double to_x) {
+      contacts.springs.push_back({{from, disc(0.0, 0.0, core::Face::bottom)},
+                                  {to, disc(to_x, 0.0, core::Face::bottom)},
+                                  {1e5, 1e5, 1e5}});
+    };
+    join(0, 1, 0.0);
+    join(0, 2, 0.0);
+    join(1, 2, further_m);
+    spec.contacts = std::make_shared<const core::Contacts>(contacts);
+    core::solve_body(core::body_of(spec));
+  };
+  CHECK_NOTHROW(ring_with(0.0));
+  CHECK_THROWS_WITH(ring_with(0.02), Catch::Contains("contact spring 3 joins places"));
 }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <variant>
+
+#include "protocols/axes/presented_stimulus.hpp"
 namespace tapstudy::runner {
 namespace {
 using Json = nlohmann::ordered_json;

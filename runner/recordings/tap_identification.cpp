@@ -16,7 +16,6 @@
 #include "runner/recordings/sought_band.hpp"
 namespace tapstudy::runner {
 namespace {
-using analysis::Estimate;
 
 analysis::FreeDecay between(const analysis::Recording& recording, std::size_t begin,
                             std::size_t end) {

@@ -7,8 +7,9 @@ namespace tapstudy::analysis {
 // the first row holds; with semicolons and tabs a decimal comma is understood), perhaps with
 // comments (#) and a header. A column is the time if its header says so (t, time, and a unit s, ms
 // or us in brackets or after an underscore) or, with no header and no rate given, if it is the
-// first of several and ascends. The rate follows from the first and the last time. A rate given as
-// well must be the same within 1 %. Throws InvalidInput as read_recording says.
+// first of several and ascends. The rate is that of the even times nearest to these (least
+// squares). A rate given as well must be the same within 1 %. Throws InvalidInput as read_recording
+// says.
 Recording read_csv_recording(std::istream& text, const std::string& file,
                              const ReadingOptions& options);
 }  // namespace tapstudy::analysis

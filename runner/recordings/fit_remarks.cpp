@@ -14,6 +14,10 @@ std::vector<std::string> remarks_on_residuals(const std::vector<IdentifiedTap>& 
   std::vector<std::string> remarks;
   for (const IdentifiedTap& tap : taps) {
     const analysis::DecayFit& fit = tap.modes.fit;
+    if (!fit.has_converged) {
+      remarks.push_back(
+          fmt::format("{}: the fit of the tap at {:.3f} s did not converge", tap.file, tap.time_s));
+    }
     const double over_noise = fit.noise / std::max(tap.noise_rms, 1e-300);
     if (fit.explained < min_explained && over_noise > max_over_noise) {
       remarks.push_back(fmt::format(

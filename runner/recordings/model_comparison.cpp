@@ -91,6 +91,7 @@ ModelComparison compare_with_model(const protocols::Protocol& protocol, const st
   spec.band_limit_hz = further_band * std::max(spec.band_limit_hz, high_hz);
   spec.material.damping = core::ConstantDamping{};  // only frequencies are compared
   model.is_on_springs = core::is_on_springs(spec.fixations);
+  model.is_held_rigidly = !model.is_on_springs && !spec.fixations.empty();
   at_its_line(presented, [&] {
     const core::ModalModel modal = modes_of(spec, progress);
     model.frequencies_hz = frequencies_hz(modal);

@@ -25,6 +25,7 @@ struct ModelComparison {
   double band_limit_hz{};
   std::optional<analysis::ModelUpdate> update;  // unset: no mode has a partner
   bool is_on_springs{false};
+  bool is_held_rigidly{false};               // at some fixation, and on no springs
   std::optional<IdentifiedSprings> springs;  // unset: rigid, or the modes do not tell
 };
 

@@ -96,6 +96,9 @@ void print_model(const TapIdentification& found, const ModelComparison& model) {
   const analysis::ModelUpdate& update = *model.update;
   fmt::print("  Young's modulus {:.4g} Pa ({}); before {:.4g} Pa\n", update.youngs_modulus_pa.value,
              interval(update.youngs_modulus_pa), model.material->youngs_modulus_pa);
+  if (update.matched.size() == 1) {
+    fmt::print("  by one mode: the interval holds its noise, not the model's misfit\n");
+  }
   if (model.springs) {
     fmt::print("  springs {:.4g} ({}) times as stiff as the protocol's\n",
                model.springs->factor.value, interval(model.springs->factor));
@@ -132,7 +135,7 @@ void print(const TapIdentification& found) {
   if (found.model) {
     print_model(found, *found.model);
   }
-  if (found.model && !found.model->is_on_springs) {
+  if (found.model && found.model->is_held_rigidly) {
     fmt::print(
         "\nThe model holds its fixations rigidly; their stiffness is identified where they are on "
         "springs_n_per_m.\n");

@@ -24,6 +24,7 @@ async function makePainter(frame, isPlanWanted, whenLost) {
 export class View {
   #frame;
   #isPlanWanted;
+  #making = null;
   #painter = null;
   #number = null;
   #scene = null;
@@ -74,10 +75,13 @@ export class View {
     if (!this.#scene) return;
     const whenLost = () => {
       this.#isPlanWanted = true;
+      this.#making = null;
       this.#painter = null;
       this.#rebuild();
     };
-    this.#painter ??= await makePainter(this.#frame, this.#isPlanWanted, whenLost);
+    this.#making ??= makePainter(this.#frame, this.#isPlanWanted, whenLost);
+    this.#painter = await this.#making;
+    if (!this.#painter || !this.#scene) return;
     this.#painter.setScene(this.#scene, word("view_height"));
     this.#resize();
   }

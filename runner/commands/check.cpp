@@ -14,6 +14,7 @@
 #include "runner/commands/seed.hpp"
 #include "runner/devices/device_kind.hpp"
 #include "runner/devices/rigs.hpp"
+#include "runner/experiments/counted.hpp"
 #include "runner/experiments/design_simulation.hpp"
 #include "runner/session/session_row.hpp"
 #include "runner/stimuli/model_library.hpp"
@@ -62,13 +63,13 @@ void print_models(const protocols::Protocol& protocol, ModelLibrary& models) {
         : models.bodies_used() > used_before
             ? fmt::format("from the cache, where it took {:.3f} s", report.cost.total_s())
             : "scaled from the same body";
-    const Eigen::Index modes = plate->model.frequency_hz.size();
-    fmt::print("  {}: {}, {} mode{} below {} Hz, {}\n", stimulus.name,
+    const auto modes = static_cast<std::size_t>(plate->model.frequency_hz.size());
+    fmt::print("  {}: {}, {} below {} Hz, {}\n", stimulus.name,
                stimulus.technique->needs_beam()
                    ? std::string{"a beam, in closed form"}
                    : fmt::format("{} {} tetrahedra, {} dof", report.tets,
                                  report.order == 2 ? "quadratic" : "linear", report.dofs),
-               modes, modes == 1 ? "" : "s", protocol.band_limit_hz, cost);
+               counted(modes, "mode"), protocol.band_limit_hz, cost);
   }
   warn_of_overdamped_modes(protocol, models);
   if (models.bodies_used() == 0) {

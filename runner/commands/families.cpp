@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "core/model/stopwatch.hpp"
+#include "runner/experiments/counted.hpp"
 #include "runner/stimuli/family.hpp"
 namespace tapstudy::runner {
 namespace {
@@ -14,10 +15,6 @@ double megabytes(const core::BodyModes& body) {
     return 1e-6 * static_cast<double>(sizeof(*matrix.data())) * static_cast<double>(matrix.size());
   };
   return bytes(body.shape) + bytes(body.touch_nodes_m) + bytes(body.touch_surface);
-}
-
-std::string modes_counted(Eigen::Index count) {
-  return fmt::format("{} mode{}", count, count == 1 ? "" : "s");
 }
 
 void print_crossings(const protocols::Protocol& protocol, const protocols::Stimulus& stimulus,
@@ -49,12 +46,12 @@ void print_cost(const protocols::Protocol& protocol, const protocols::Stimulus& 
   const auto most = models.plate_of(protocol, stimulus_with(protocol, stimulus, ends.most));
   const double member_s = watch.elapsed_s();
   const auto fewest = models.plate_of(protocol, stimulus_with(protocol, stimulus, ends.fewest));
-  fmt::print("    {} model{}, solved in {:.3f} s, {:.1f} MB; a member takes {:.1f} ms more\n",
-             bodies.size(), bodies.size() == 1 ? "" : "s", solved_s, held_mb, 1e3 * member_s);
-  const Eigen::Index least = fewest->model.frequency_hz.size();
-  const Eigen::Index greatest = most->model.frequency_hz.size();
+  fmt::print("    {}, solved in {:.3f} s, {:.1f} MB; a member takes {:.1f} ms more\n",
+             counted(bodies.size(), "model"), solved_s, held_mb, 1e3 * member_s);
+  const auto least = static_cast<std::size_t>(fewest->model.frequency_hz.size());
+  const auto greatest = static_cast<std::size_t>(most->model.frequency_hz.size());
   fmt::print("    {}{} below {} Hz at its own values of table axes\n",
-             least == greatest ? "" : fmt::format("{} to ", least), modes_counted(greatest),
+             least == greatest ? "" : fmt::format("{} to ", least), counted(greatest, "mode"),
              protocol.band_limit_hz);
   print_crossings(protocol, stimulus, *models.body_of(protocol, stimulus_with(protocol, stimulus)));
 }

@@ -132,7 +132,7 @@ const char* reason(int signal) {
     case SIGKILL:
       return "it took too long, or too much memory";
     default:
-      return "the program that does it crashed on this input";
+      return "the helper process crashed on this input";
   }
 }
 
@@ -141,7 +141,7 @@ std::string output_of(const ChildJob& job, const std::string& input, const std::
                       const ChildLimits& limits) {
   std::array<int, 2> ends{};
   if (pipe2(ends.data(), O_CLOEXEC) != 0) {
-    throw ModelError{what + ": no pipe"};
+    throw ModelError{what + ": cannot create a pipe"};
   }
   const int given = file_holding(input);
   pid_t child = 0;
@@ -153,7 +153,7 @@ std::string output_of(const ChildJob& job, const std::string& input, const std::
   std::string output = is_started ? all_from(ends[0]) : std::string{};
   close(ends[0]);
   if (!is_started) {
-    throw ModelError{what + ": no new process"};
+    throw ModelError{what + ": cannot start a process"};
   }
   int status = 0;
   while (waitpid(child, &status, 0) < 0 && errno == EINTR) {

@@ -64,7 +64,7 @@ void make_directories(const std::string& directory) {
     throw InvalidInput{fmt::format("{}: cannot be made: {}", directory, error.message())};
   }
   if (!fs::is_directory(directory, error) || access(directory.c_str(), W_OK | X_OK) != 0) {
-    throw InvalidInput{directory + ": is no directory that can be written to"};
+    throw InvalidInput{directory + ": is not a writable directory"};
   }
 }
 

@@ -64,7 +64,7 @@ void check_is_replaceable(const std::string& file) {
   std::error_code error;
   const fs::file_type type = fs::status(file, error).type();
   if (type != fs::file_type::not_found && type != fs::file_type::regular) {
-    throw InvalidInput{file + ": is no regular file and is not replaced"};
+    throw InvalidInput{file + ": is not a regular file and is not replaced"};
   }
 }
 

@@ -21,6 +21,7 @@ struct NewFile {
 enum class Existing { kept, replaced };
 // Writes files that belong together: all are on the disk before any appears under its name. Makes
 // the folders that they need. Throws InvalidInput, and leaves what was there and no more, if one
-// exists and is to be kept, is no regular file, or cannot be written.
+// exists and is to be kept, is not a regular file, or cannot be written. Only where whole files
+// cannot be renamed, those renamed before stay. Two of one name are a defect: std::logic_error.
 void write_all_or_none(const std::vector<NewFile>& files, Existing existing);
 }  // namespace tapstudy::core

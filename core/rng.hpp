@@ -66,7 +66,8 @@ enum class Purpose : std::uint64_t {
   procedure,
   interleaving,
   study,
-  resampling
+  resampling,
+  block_order
 };
 
 // The seed of one stream of a study. Mixes by the finaliser of SplitMix64 (Steele et al. 2014).

@@ -11,7 +11,7 @@ const char* to_text(TickFault fault) noexcept {
     case TickFault::bad_reply:
       return "the device's reply was broken";
     case TickFault::wrong_echo:
-      return "the device got what was never sent";
+      return "the device echoed a command that was not sent";
     case TickFault::counter_jumped:
       return "an encoder jumped";
     case TickFault::strings_disagree:
@@ -36,16 +36,18 @@ const char* to_text(TickFault fault) noexcept {
       return "the device reports a force far from the one it was sent";
     case TickFault::force_released:
       return "the device released the force because no requests arrived";
+    case TickFault::velocity_wrong:
+      return "the device reports a velocity that is not the change of its position (in m/s?)";
     case TickFault::tensions_unsolved:
       return "no string tensions were found for the force";
     case TickFault::too_late:
       return "the loop was late too many times in a row";
-    case TickFault::stood_still:
+    case TickFault::watchdog_expired:
       return "the program stalled; the watchdog removed the force";
     case TickFault::guardian_lost:
       return "the watchdog process has ended";
     case TickFault::heartbeat_lost:
-      return "the program around the loop stood still";
+      return "the session's supervising thread stalled";
   }
   return "";
 }

@@ -16,7 +16,7 @@ enum class TickFault : std::uint8_t {
   non_finite_force,    // or position
   too_late,            // too many late ticks in a row
   heartbeat_lost,      // the supervising thread has stalled
-  stood_still,         // the whole program stalled; the guardian zeroed the force
+  watchdog_expired,    // the whole program stalled; the guardian zeroed the force
   guardian_lost,       // the guardian process has ended, or is silent
   loop_stalled,        // a single tick came far too late
   suspended,           // the machine slept
@@ -24,7 +24,8 @@ enum class TickFault : std::uint8_t {
   stop_unconfirmed,    // the device did not acknowledge zero force at the end of the trial
   amplifier_off,       // the motors get no voltage although tension is commanded
   force_not_followed,  // the device reports a force far from the one commanded
-  force_released       // the device released the force in the middle of a trial
+  force_released,      // the device released the force in the middle of a trial
+  velocity_wrong       // the device reports a velocity that is not the change of its position
 };
 // Message for the operator and the record; empty for none.
 const char* to_text(TickFault fault) noexcept;

@@ -18,7 +18,7 @@ std::optional<CatchTrials> read_catch_trials(MapReader& reader, const Protocol& 
         [&](const std::string& stimulus, const std::string& answer) {
           const auto names = stimulus_names(protocol);
           if (std::ranges::find(names, stimulus) == names.end()) {
-            inner.reject("expected", fmt::format("'{}' is no stimulus", stimulus));
+            inner.reject("expected", fmt::format("'{}' is not a stimulus", stimulus));
           }
           if (std::ranges::find(block.responses, answer) == block.responses.end()) {
             inner.reject("expected", fmt::format("'{}' cannot be answered (one of: {})", answer,
@@ -40,23 +40,28 @@ std::optional<CatchTrials> read_catch_trials(MapReader& reader, const Protocol& 
   return found;
 }
 
-std::vector<PlannedTrial> with_catch_trials(std::vector<PlannedTrial> trials, const Block& block,
-                                            const Draw& draw) {
-  if (!block.catch_trials || block.catch_trials->expected.empty() || trials.empty()) {
-    return trials;
+std::vector<std::size_t> catch_places(const Block& block, const Draw& draw, std::size_t others) {
+  std::vector<std::size_t> places;
+  if (!block.catch_trials || block.catch_trials->expected.empty() || others == 0) {
+    return places;
   }
   core::Rng rng{core::derived_seed(draw.catch_seed, core::Purpose::catch_trials, draw.block_index)};
-  std::vector<std::string> stimuli;
-  for (const auto& [stimulus, answer] : block.catch_trials->expected) {
-    stimuli.push_back(stimulus);
-  }
   for (int i = 0; i < block.catch_trials->count; ++i) {
+    places.push_back(1 + rng.below(static_cast<std::uint32_t>(others + places.size())));
+  }
+  return places;
+}
+
+std::vector<PlannedTrial> with_catch_trials(std::vector<PlannedTrial> trials, const Block& block,
+                                            const Draw& draw) {
+  int count = 0;
+  for (const std::size_t place : catch_places(block, draw, trials.size())) {
     PlannedTrial trial = trials.front();
-    trial.repetition = i + 1;
-    trial.alternatives = {{stimuli[static_cast<std::size_t>(i) % stimuli.size()]}};
+    const auto& expected = block.catch_trials->expected;
+    trial.alternatives = {{std::next(expected.begin(), count % std::ssize(expected))->first}};
+    trial.repetition = ++count;
     trial.is_catch = true;
-    const auto place = 1 + rng.below(static_cast<std::uint32_t>(trials.size()));
-    trials.insert(trials.begin() + place, trial);
+    trials.insert(trials.begin() + static_cast<std::ptrdiff_t>(place), trial);
   }
   return trials;
 }

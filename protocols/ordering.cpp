@@ -12,61 +12,45 @@
 #include "protocols/constrained_order.hpp"
 namespace tapstudy::protocols {
 namespace {
-OrderedStimulus condition(const Block& block, std::size_t index, int repetition) {
-  if (!block.on_axis) {
-    return {block.stimuli.at(index), repetition};
-  }
-  const std::size_t count = block.on_axis->values.size();
-  return {block.stimuli.at(index / count),
-          repetition,
-          {{block.on_axis->axis, block.on_axis->values[index % count]}}};
-}
-
-std::vector<OrderedStimulus> listed(const Block& block) {
-  std::vector<OrderedStimulus> all;
+std::vector<OrderedCondition> listed(const Block& block) {
+  std::vector<OrderedCondition> all;
+  all.reserve(static_cast<std::size_t>(block.repetitions) * conditions(block));
   for (int repetition = 1; repetition <= block.repetitions; ++repetition) {
     for (std::size_t i = 0; i < conditions(block); ++i) {
-      all.push_back(condition(block, i, repetition));
+      all.push_back({i, repetition});
     }
   }
   return all;
 }
 
-// Each run of as many participants as there are sequences takes every sequence once, in an order
-// that the seed decides.
-int sequence_of(int sequences, const Counterbalancing& counterbalancing) {
-  std::vector<int> order(static_cast<std::size_t>(sequences));
-  std::iota(order.begin(), order.end(), 0);
-  const auto run = static_cast<std::uint64_t>(counterbalancing.order_index / sequences);
-  core::Rng rng{core::derived_seed(counterbalancing.seed, core::Purpose::counterbalancing, run)};
-  rng.shuffle(order);
-  return order.at(static_cast<std::size_t>(counterbalancing.order_index % sequences));
-}
-
-std::vector<OrderedStimulus> williams(const Block& block,
-                                      const Counterbalancing& counterbalancing) {
+std::vector<OrderedCondition> williams(const Block& block,
+                                       const Counterbalancing& counterbalancing) {
   const int n = static_cast<int>(conditions(block));
-  const int sequence = sequence_of(williams_sequences(n, block.repetitions), counterbalancing);
-  std::vector<OrderedStimulus> all;
+  const int sequence =
+      balanced_sequence(williams_sequences(n, block.repetitions), counterbalancing);
+  std::vector<OrderedCondition> all;
   for (const int i : williams_sequence(n, block.repetitions, sequence)) {
-    all.push_back(
-        condition(block, static_cast<std::size_t>(i), 1 + static_cast<int>(all.size()) / n));
+    all.push_back({static_cast<std::size_t>(i), 1 + static_cast<int>(all.size()) / n});
   }
   return all;
 }
 
-std::vector<OrderedStimulus> shuffled(const Block& block, core::Rng& rng) {
-  std::vector<OrderedStimulus> all = listed(block);
+// By how often each has been presented, whatever its place in a list was.
+void count_repetitions(std::vector<OrderedCondition>& all, std::size_t conditions) {
+  std::vector<int> seen(conditions, 0);
+  for (OrderedCondition& next : all) {
+    next.repetition = ++seen[next.condition];
+  }
+}
+
+std::vector<OrderedCondition> shuffled(const Block& block, core::Rng& rng) {
+  std::vector<OrderedCondition> all = listed(block);
+  const std::size_t size = conditions(block);
   if (block.order == Order::shuffle) {
     rng.shuffle(all);
-    // by how often the stimulus has been presented, whatever its place in the list was
-    std::map<std::pair<std::string, AxisValues>, int> seen;
-    for (OrderedStimulus& next : all) {
-      next.repetition = ++seen[{next.stimulus, next.values}];
-    }
+    count_repetitions(all, size);
     return all;
   }
-  const std::size_t size = conditions(block);
   for (std::size_t first = 0; first < all.size(); first += size) {
     rng.shuffle(std::span{all}.subspan(first, size));
   }
@@ -84,7 +68,7 @@ ConstrainedOrders& orders_of(const Block& block) {
   return known.try_emplace(key, block).first->second;
 }
 
-std::vector<OrderedStimulus> constrained(const Block& block, core::Rng& rng) {
+std::vector<OrderedCondition> constrained(const Block& block, core::Rng& rng) {
   ConstrainedOrders& orders = orders_of(block);
   const auto count = orders.count();
   if (!count || *count == 0.0) {
@@ -93,21 +77,48 @@ std::vector<OrderedStimulus> constrained(const Block& block, core::Rng& rng) {
         count ? "no order satisfies its constraints"
               : "there are too many presentations to draw a constrained order (split the block)")};
   }
-  std::vector<OrderedStimulus> all;
-  std::map<std::size_t, int> seen;
+  std::vector<OrderedCondition> all;
   for (const std::size_t i : orders.draw(rng)) {
-    all.push_back(condition(block, i, ++seen[i]));
+    all.push_back({i});
   }
+  count_repetitions(all, conditions(block));
   return all;
 }
 }  // namespace
+
+int balanced_sequence(int sequences, const Counterbalancing& counterbalancing) {
+  std::vector<int> order(static_cast<std::size_t>(sequences));
+  std::iota(order.begin(), order.end(), 0);
+  const auto run = static_cast<std::uint64_t>(counterbalancing.order_index / sequences);
+  core::Rng rng{core::derived_seed(counterbalancing.seed, core::Purpose::counterbalancing, run)};
+  rng.shuffle(order);
+  return order.at(static_cast<std::size_t>(counterbalancing.order_index % sequences));
+}
 
 std::size_t conditions(const Block& block) {
   return block.stimuli.size() * (block.on_axis ? block.on_axis->values.size() : 1);
 }
 
-std::vector<OrderedStimulus> ordered_stimuli(const Block& block, core::Rng& rng,
-                                             const Counterbalancing& counterbalancing) {
+std::size_t stimulus_of(const Block& block, std::size_t condition) {
+  return block.on_axis ? condition / block.on_axis->values.size() : condition;
+}
+
+AxisValues values_of(const Block& block, std::size_t condition) {
+  if (!block.on_axis) {
+    return {};
+  }
+  const std::vector<double>& values = block.on_axis->values;
+  return {{block.on_axis->axis, values[condition % values.size()]}};
+}
+
+std::vector<OrderedCondition> ordered_conditions(const Block& block, const Draw& draw) {
+  core::Rng rng{
+      core::derived_seed(draw.participant_seed, core::Purpose::schedule, draw.block_index)};
+  return ordered_conditions(block, rng, {draw.order_index, draw.counterbalancing_seed});
+}
+
+std::vector<OrderedCondition> ordered_conditions(const Block& block, core::Rng& rng,
+                                                 const Counterbalancing& counterbalancing) {
   if (block.order == Order::williams) {
     return williams(block, counterbalancing);
   }

@@ -5,23 +5,29 @@
 #include "core/rng.hpp"
 #include "protocols/protocol.hpp"
 namespace tapstudy::protocols {
-struct OrderedStimulus {
-  std::string stimulus;
-  int repetition{};     // counts the presentations of this stimulus at these values, from 1
-  AxisValues values{};  // where the block names values of an axis
-};
-// How many a block orders: its stimuli, or those at each of its values.
+// How many conditions a block orders: its stimuli, or those at each of its values.
 std::size_t conditions(const Block& block);
+struct OrderedCondition {
+  std::size_t condition{};  // from 0
+  int repetition{};         // counts the presentations of this condition, from 1
+};
+// Of a condition; its values where the block names values of an axis.
+std::size_t stimulus_of(const Block& block, std::size_t condition);
+AxisValues values_of(const Block& block, std::size_t condition);
 // Which participants get which of the balanced sequences.
 struct Counterbalancing {
   int order_index{};     // from 0
   std::uint64_t seed{};  // of the study
 };
-// A block's stimuli in the specified order, each presented `repetitions` times. Where constraints
-// are set, all random orders that satisfy them are equally likely. Throws InvalidInput if there are
-// none, or more than can be counted.
-std::vector<OrderedStimulus> ordered_stimuli(const Block& block, core::Rng& rng,
-                                             const Counterbalancing& counterbalancing);
+// The sequence, from 0, that this participant gets: each run of as many participants as there are
+// sequences takes every sequence once, in an order that the seed decides.
+int balanced_sequence(int sequences, const Counterbalancing& counterbalancing);
+// A block's conditions in the specified order, each presented `repetitions` times. Where
+// constraints are set, all random orders that satisfy them are equally likely. Throws InvalidInput
+// if there are none, or more than can be counted.
+std::vector<OrderedCondition> ordered_conditions(const Block& block, core::Rng& rng,
+                                                 const Counterbalancing& counterbalancing);
+std::vector<OrderedCondition> ordered_conditions(const Block& block, const Draw& draw);
 
 // Row `row` of a balanced Latin square of n conditions (Williams 1949, by the construction of
 // Bradley 1958): every condition follows every other equally often. n rows if n is even, otherwise

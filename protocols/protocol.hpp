@@ -186,6 +186,13 @@ struct Block {
 // Its stimuli, those of its catch trials, and what is presented beside them.
 std::vector<std::string> all_presented(const Block& block);
 
+// How the blocks of a session follow one another: listed, shuffle or williams. Those named exchange
+// their places, each with the practice blocks directly before it; the others stay.
+struct BlockOrder {
+  Order order{Order::listed};
+  std::vector<std::string> blocks;  // none of practice; empty: all
+};
+
 // A pre-registered hypothesis; reports treat only these as planned tests.
 struct Hypothesis {
   std::string name;
@@ -224,7 +231,8 @@ struct Protocol {
   std::vector<std::string> forms_before;  // the first trial of a session
   std::vector<std::string> forms_after;   // the last
   Display display;
-  std::vector<Block> blocks;
+  std::vector<Block> blocks;  // in the file's order
+  BlockOrder block_order;
   std::uint64_t counterbalancing_seed{1};  // which participant gets which balanced order
   std::vector<Hypothesis> hypotheses;
   std::optional<core::MaskingNoise> masking;  // in every trial

@@ -78,7 +78,7 @@ void check_constraints(MapReader& reader, const Block& block) {
   }
   try {
     core::Rng rng{1};
-    ordered_stimuli(block, rng, {});
+    ordered_conditions(block, rng, {});
   } catch (const core::InvalidInput& error) {
     reader.reject("constraints", error.what());
   }
@@ -222,5 +222,23 @@ void read_blocks(MapReader& top, Protocol& protocol) {
   if (!protocol.blocks.empty()) {
     check_places(top, protocol);
   }
+}
+
+void read_block_order(MapReader& top, Protocol& protocol) {
+  std::vector<std::string> movable;
+  for (const Block& block : protocol.blocks) {
+    if (!block.is_practice) {
+      movable.push_back(block.name);
+    }
+  }
+  top.map("block_order", Presence::optional, [&](MapReader& reader) {
+    BlockOrder& chosen = protocol.block_order;
+    chosen.order =
+        reader.one_of<Order>("order", {{"shuffle", Order::shuffle}, {"williams", Order::williams}});
+    chosen.blocks = reader.words("blocks", "block without practice", movable, movable);
+    if (chosen.blocks.size() < 2) {
+      reader.reject("takes two blocks or more, without counting practice");
+    }
+  });
 }
 }  // namespace tapstudy::protocols

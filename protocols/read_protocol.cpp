@@ -40,6 +40,7 @@ Protocol parse(const StudyText& study, const ReadFile& read_file, Problems& prob
   read_forms(top, protocol);
   read_display(top, protocol);
   read_blocks(top, protocol);
+  read_block_order(top, protocol);
   read_hypotheses(top, protocol);
   read_masking(top, protocol);
   read_simulation(top, protocol);

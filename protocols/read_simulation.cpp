@@ -1,4 +1,6 @@
 // Simulated participants.
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "protocols/read_sections.hpp"
@@ -22,7 +24,7 @@ void read_taps(MapReader& reader, const Protocol& protocol, SimulatedTapSettings
   taps.scatter_m = reader.number("scatter_m", {0.0, 1.0}, taps.scatter_m);
   taps.speed_m_s = reader.number("speed_m_s", {1e-3, 10.0}, taps.speed_m_s);
   taps.speed_spread = reader.number("speed_spread", {0.0, 2.0}, taps.speed_spread);
-  taps.dwell_s = reader.number("dwell_s", {0.0, 10.0}, taps.dwell_s);
+  taps.dwell_s = reader.number("dwell_s", {0.15, 10.0}, taps.dwell_s);
   taps.pause_s = reader.number("pause_s", {0.01, 10.0}, taps.pause_s);
   taps.hover_m = reader.number("hover_m", {1e-3, 0.1}, taps.hover_m);
   taps.press_m = reader.number("press_m", {0.0, 0.1}, taps.press_m);
@@ -65,9 +67,11 @@ void read_simulation(MapReader& top, Protocol& protocol) {
   });
   const auto check_is_there = [&](MapReader& reader, const char* key) {
     if (needs_reference && !reader.has(key)) {
-      reader.reject(key,
-                    "is missing (its observer.reference: the stimulus that simulated participants "
-                    "take for reality, where no answer is right)");
+      reader.reject(
+          key, fmt::format("is missing (where no answer is right, simulated participants "
+                           "need to know the real one: simulation: {{observer: "
+                           "{{reference: {}}}}})",
+                           protocol.stimuli.empty() ? "STIMULUS" : protocol.stimuli.front().name));
     }
   };
   check_is_there(top, "simulation");

@@ -14,59 +14,32 @@ namespace {
 using Presence = MapReader::Presence;
 constexpr int max_count = 1000;
 
-void check_listed(MapReader& reader, const std::vector<double>& ascending) {
-  if (const auto twice = std::ranges::adjacent_find(ascending); twice != ascending.end()) {
+std::optional<SpacedValues> read_listed(MapReader& reader, const Range& allowed) {
+  const std::size_t earlier_problems = reader.problems_in_file();
+  SpacedValues listed{reader.number_list("values", allowed), read_spacing(reader)};
+  std::ranges::sort(listed.values);
+  if (const auto twice = std::ranges::adjacent_find(listed.values); twice != listed.values.end()) {
     reader.reject("values", fmt::format("{} is listed twice", *twice));
   }
-}
-
-bool read_listed(MapReader& reader, const Range& allowed, AxisRange& range) {
-  const std::size_t earlier_problems = reader.problems_in_file();
-  range.table = reader.number_list("values", allowed);
-  range.spacing = reader.one_of<Spacing>(
-      "spacing", {{"linear", Spacing::linear}, {"log", Spacing::log}}, "linear");
-  std::ranges::sort(range.table);
-  check_listed(reader, range.table);
-  if (reader.problems_in_file() > earlier_problems) {
-    return false;
-  }
-  range.from = range.table.front();
-  range.to = range.table.back();
-  if (range.spacing == Spacing::log && range.from <= 0.0) {
-    reader.reject("spacing", fmt::format("log needs values above 0, not {}", range.from));
-  }
-  return reader.problems_in_file() == earlier_problems;
-}
-
-bool read_table(MapReader& reader, const Range& allowed, AxisRange& range) {
-  const auto spaced = read_spaced(reader, {"from", "to"}, allowed, max_count);
-  if (spaced) {
-    range.table = spaced->values;
-    range.spacing = spaced->spacing;
-    range.from = range.table.front();
-    range.to = range.table.back();
-  }
-  return spaced.has_value();
-}
-
-bool read_interval(MapReader& reader, const Range& allowed, AxisRange& range) {
-  const auto ends = read_ends(reader, {"from", "to"}, allowed);
-  if (ends) {
-    range.from = ends->low;
-    range.to = ends->high;
-    range.spacing = ends->spacing;
-  }
-  return ends.has_value();
+  const bool is_read = reader.problems_in_file() == earlier_problems;
+  return is_read && check_spacing(reader, listed.spacing, listed.values.front())
+             ? std::optional{listed}
+             : std::nullopt;
 }
 
 // nullopt: a problem was noted.
 std::optional<AxisRange> read_range(MapReader& reader, const Axis& axis, const Range& allowed) {
-  AxisRange range;
-  range.axis = &axis;
-  const bool is_whole = axis.kind != AxisKind::tabled ? read_interval(reader, allowed, range)
-                        : reader.has("values")        ? read_listed(reader, allowed, range)
-                                                      : read_table(reader, allowed, range);
-  return is_whole ? std::optional{range} : std::nullopt;
+  constexpr EndKeys keys{"from", "to"};
+  if (axis.kind == AxisKind::scaled) {
+    const auto ends = read_ends(reader, keys, allowed);
+    return ends ? std::optional{AxisRange{&axis, ends->low, ends->high, ends->spacing}}
+                : std::nullopt;
+  }
+  const auto table = reader.has("values") ? read_listed(reader, allowed)
+                                          : read_spaced(reader, keys, allowed, max_count);
+  return table ? std::optional{AxisRange{&axis, table->values.front(), table->values.back(),
+                                         table->spacing, table->values}}
+               : std::nullopt;
 }
 
 // Where a name was rejected, something in its place, so that reading can continue.

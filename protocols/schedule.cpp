@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+
+#include "protocols/block_order.hpp"
 namespace tapstudy::protocols {
 int planned_trials(const Block& block) {
   return block.repetitions * static_cast<int>(block.task->trials_per_repetition(block)) +
@@ -17,7 +19,7 @@ Draw draw_of(std::uint64_t counterbalancing_seed, std::size_t block_index,
 
 Schedule make_schedule(const Protocol& protocol, std::uint64_t participant_seed, int order_index) {
   Schedule schedule;
-  for (std::size_t i = 0; i < protocol.blocks.size(); ++i) {
+  for (const std::size_t i : block_sequence(protocol, participant_seed, order_index)) {
     const Block& block = protocol.blocks[i];
     const Draw draw = draw_of(protocol.counterbalancing_seed, i, participant_seed, order_index);
     for (PlannedTrial& trial : block.task->trials(block, draw)) {

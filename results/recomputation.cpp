@@ -14,6 +14,7 @@ struct StoredTrial {
   std::int64_t ticks{};
   std::int64_t saturated{};
   std::int64_t dropped{};
+  bool has_statistics{};
 };
 struct StoredAnswer {
   std::int64_t id{};
@@ -27,17 +28,18 @@ std::vector<StoredTrial> stored_trials(Store& store) {
   store.each_row(
       "SELECT trial_id, participant_id, session_id, number, attempt, block, task, is_practice, "
       "repetition, status, duration_s, is_catch, presented = 'real', ticks, saturated, "
-      "dropped_samples FROM trial_context "
+      "dropped_samples, ticks IS NOT NULL FROM trial_context "
       "LEFT JOIN tick_statistics USING (trial_id) ORDER BY trial_id",
       [&](Statement& row) {
-        trials.push_back(
-            {row.integer(0),
-             row.text(1),
-             {row.integer(2), row.small(3), row.small(4), row.text(5), row.text(6), row.flag(7),
-              row.small(8), row.text(9), row.real(10), row.flag(11), row.flag(12)},
-             row.integer(13),
-             row.integer(14),
-             row.integer(15)});
+        trials.push_back({row.integer(0),
+                          row.text(1),
+                          {row.integer(2), row.small_integer(3), row.small_integer(4), row.text(5),
+                           row.text(6), row.flag(7), row.small_integer(8), row.text(9),
+                           row.real(10), row.flag(11), row.flag(12)},
+                          row.integer(13),
+                          row.integer(14),
+                          row.integer(15),
+                          row.flag(16)});
       });
   return trials;
 }
@@ -91,6 +93,9 @@ class Comparison {
   void compare(const StoredTrial& trial, const std::vector<AlternativeRow>& alternatives) {
     trial_ = &trial;
     const std::vector<EventRow> events = stored_events(*store_, trial.id);
+    note("tick_statistics", trial.has_statistics ? "there" : "missing", "there");
+    compare_positions(alternatives);
+    compare_chunks();
     compare_trace(events);
     for (const StoredAnswer& answer : stored_answers(*store_, trial.id)) {
       compare_times(answer, events);
@@ -112,6 +117,26 @@ class Comparison {
     }
   }
 
+  void compare_positions(const std::vector<AlternativeRow>& alternatives) {
+    for (std::size_t i = 0; i < alternatives.size(); ++i) {
+      note("alternative.position", fmt::format("{}", alternatives[i].position),
+           fmt::format("{}", i));
+    }
+  }
+
+  // One after the other, from the first tick.
+  void compare_chunks() {
+    std::int64_t next_tick = 0;
+    store_->each_row(fmt::format("SELECT first_tick, ticks FROM trace_chunk WHERE trial_id = {} "
+                                 "ORDER BY first_tick",
+                                 trial_->id),
+                     [&](Statement& row) {
+                       note("trace_chunk.first_tick", fmt::format("{}", row.integer(0)),
+                            fmt::format("{}", next_tick));
+                       next_tick += row.integer(1);
+                     });
+  }
+
   void compare_trace(const std::vector<EventRow>& stored) {
     const std::vector<core::TraceSample> trace = store_->trace(trial_->id);
     if (trace.empty()) {
@@ -119,6 +144,9 @@ class Comparison {
           trial_->row.is_of_real_plate || trial_->ticks == 0 ||
           std::ranges::find(stored, untraced_event, &EventRow::kind) != stored.end();
       note("its trace", is_left_out ? "left out" : "missing", "left out");
+      if (trial_->ticks == 0) {
+        note("tick_statistics.saturated", fmt::format("{}", trial_->saturated), "0");
+      }
       return;
     }
     std::vector<EventRow> events;

@@ -21,7 +21,9 @@ struct TaskRule {
 //   event            contacts, impacts (with their speeds), releases, switches, from the trace, bit
 //                    for bit: visits, dwell times and the fastest impact follow from them
 //   trial            duration_s, from the trace's last tick
-//   tick_statistics  ticks, saturated, from the trace
+//   tick_statistics  ticks, saturated, from the trace; no saturated ones without ticks
+//   trace_chunk      first_tick, from the chunks before it
+//   alternative      position, from 0 without a gap
 //   response         time_from_first_contact_s, from response_time_s and the first contact;
 //                    is_correct, by the rule
 // Trials without a trace (real plates, simulations without traces) have nothing of the first four

@@ -247,6 +247,7 @@ struct AnswerRow {
   std::optional<double> first_setting{};              // where an adjustment started
   std::optional<int> confidence{};                    // from 1; unset if not asked or not given
   std::optional<int> track{};  // of its block's procedures, from 1; follows from all answers
+  int place_in_block{};        // as planned, from 0; follows from the order of the session's blocks
 };
 
 // How long and how often each alternative was felt, where there were several.

@@ -77,11 +77,13 @@ class Statement {
   std::int64_t integer(int column);
   double real(int column);
   std::vector<std::byte> bytes(int column);
-  int small(int column) { return static_cast<int>(integer(column)); }
+  int small_integer(int column) { return static_cast<int>(integer(column)); }
   bool flag(int column) { return integer(column) != 0; }
   // Unset where the column is NULL.
   std::optional<double> optional_real(int column) { return unless_null(column, &Statement::real); }
-  std::optional<int> optional_int(int column) { return unless_null(column, &Statement::small); }
+  std::optional<int> optional_int(int column) {
+    return unless_null(column, &Statement::small_integer);
+  }
   std::optional<bool> optional_flag(int column) { return unless_null(column, &Statement::flag); }
   std::optional<std::string> optional_text(int column) {
     return unless_null(column, &Statement::text);

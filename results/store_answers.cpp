@@ -30,13 +30,14 @@ std::vector<AnswerRow> Store::answers() {
                 "WHERE status = 'answered' ORDER BY mode, participant_index, number"};
   std::vector<AnswerRow> answers;
   while (row.step()) {
-    answers.push_back({row.text(0),     row.small(1),    row.small(2),    mode_from(row.text(3)),
-                       row.text(4),     row.text(5),     row.flag(6),     row.flag(7),
-                       row.small(8),    row.text(9),     row.text(10),    row.optional_flag(11),
-                       row.real(12),    row.integer(13), row.integer(14), row.integer(15),
-                       row.integer(16), row.integer(17), row.integer(18), row.integer(19)});
+    answers.push_back(
+        {row.text(0),          row.small_integer(1), row.small_integer(2), mode_from(row.text(3)),
+         row.text(4),          row.text(5),          row.flag(6),          row.flag(7),
+         row.small_integer(8), row.text(9),          row.text(10),         row.optional_flag(11),
+         row.real(12),         row.integer(13),      row.integer(14),      row.integer(15),
+         row.integer(16),      row.integer(17),      row.integer(18),      row.integer(19)});
     AnswerRow& answer = answers.back();
-    answer.repetition = row.small(20);
+    answer.repetition = row.small_integer(20);
     answer.time_from_first_contact_s = row.optional_real(21);
     answer.mean_impact_speed_m_s = row.optional_real(22);
     answer.contact_s = row.real(23);
@@ -57,7 +58,7 @@ std::vector<VisitRow> Store::visits() {
                 "ORDER BY v_visits.mode, participant_index, block, stimulus"};
   std::vector<VisitRow> visits;
   while (row.step()) {
-    visits.push_back({row.text(0), row.text(1), row.text(2), row.small(3), row.real(4)});
+    visits.push_back({row.text(0), row.text(1), row.text(2), row.small_integer(3), row.real(4)});
   }
   return visits;
 }

@@ -14,7 +14,7 @@ std::vector<ParticipantCourseRow> Store::participant_courses() {
     course.participant_id = row.text(0);
     course.mode = mode_from(row.text(1));
     course.exclusion_reason = row.optional_text(2);
-    course.sessions = row.small(3);
+    course.sessions = row.small_integer(3);
     courses.push_back(course);
   }
   for (ParticipantCourseRow& course : courses) {
@@ -37,20 +37,24 @@ void Store::add_presentations(ParticipantCourseRow& course) {
                 "  count(*) FILTER (WHERE status = 'timed_out'), "
                 "  count(DISTINCT number) FILTER (WHERE status IN ('skipped', 'timed_out') "
                 "    AND number NOT IN (SELECT number FROM own WHERE status = 'answered')), "
-                "  count(*) FILTER (WHERE status = 'answered' AND supersedes IS NOT NULL), "
+                "  count(*) FILTER (WHERE status = 'answered' AND current_response.response IS NOT "
+                "    first.response), "
                 "  count(*) FILTER (WHERE status = 'answered' AND is_catch), "
-                "  count(*) FILTER (WHERE status = 'answered' AND is_catch AND is_correct) "
-                "FROM own LEFT JOIN current_response USING (trial_id)"};
+                "  count(*) FILTER (WHERE status = 'answered' AND is_catch "
+                "    AND current_response.is_correct) "
+                "FROM own LEFT JOIN current_response USING (trial_id) "
+                "LEFT JOIN response AS first ON first.trial_id = own.trial_id "
+                "  AND first.supersedes IS NULL"};
   row.bind(course.participant_id).step();
-  course.answered = row.small(0);
-  course.interrupted = row.small(1);
-  course.repeated = row.small(2);
-  course.skipped = row.small(3);
-  course.timed_out = row.small(4);
-  course.given_up = row.small(5);
-  course.corrected = row.small(6);
-  course.catch_trials = row.small(7);
-  course.catch_right = row.small(8);
+  course.answered = row.small_integer(0);
+  course.interrupted = row.small_integer(1);
+  course.repeated = row.small_integer(2);
+  course.skipped = row.small_integer(3);
+  course.timed_out = row.small_integer(4);
+  course.given_up = row.small_integer(5);
+  course.corrected = row.small_integer(6);
+  course.catch_trials = row.small_integer(7);
+  course.catch_right = row.small_integer(8);
 }
 
 void Store::add_loop(ParticipantCourseRow& course) {
@@ -88,12 +92,12 @@ void Store::add_masking(ParticipantCourseRow& course) {
                 "FROM event JOIN trial USING (trial_id) JOIN session USING (session_id) "
                 "WHERE participant_id = ?"};
   row.bind(course.participant_id).step();
-  course.masked_trials = row.small(0);
+  course.masked_trials = row.small_integer(0);
   course.masking_low_db = row.optional_real(1);
   course.masking_high_db = row.optional_real(2);
   course.masking_gaps = row.integer(3);
   course.masking_cut_samples = row.integer(4);
-  course.masking_lost = row.small(5);
+  course.masking_lost = row.small_integer(5);
 }
 
 void Store::add_form_items(ParticipantCourseRow& course) {
@@ -101,7 +105,7 @@ void Store::add_form_items(ParticipantCourseRow& course) {
                 "SELECT count(*), count(*) - count(answer) FROM form_answer "
                 "JOIN session USING (session_id) WHERE participant_id = ?"};
   row.bind(course.participant_id).step();
-  course.form_items = row.small(0);
-  course.form_items_left_out = row.small(1);
+  course.form_items = row.small_integer(0);
+  course.form_items_left_out = row.small_integer(1);
 }
 }  // namespace tapstudy::results

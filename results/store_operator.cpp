@@ -99,7 +99,7 @@ std::vector<DeviationRow> Store::deviations() {
                 "  sum(is_catch AND is_correct IS NOT NULL), "
                 "  coalesce(sum(is_catch AND NOT is_correct), 0) FROM ("
                 "  SELECT session_id, status, is_practice, is_catch, "
-                "    nullif(current_response.supersedes IS NOT NULL, 0) AS corrected, "
+                "    nullif(current_response.response IS NOT first.response, 0) AS corrected, "
                 "    current_response.is_correct AS is_correct, first.is_correct AS was_correct "
                 "  FROM trial LEFT JOIN current_response USING (trial_id) "
                 "  LEFT JOIN response AS first ON first.trial_id = trial.trial_id "
@@ -111,8 +111,9 @@ std::vector<DeviationRow> Store::deviations() {
                 "ORDER BY mode, participant_index"};
   std::vector<DeviationRow> deviations;
   while (row.step()) {
-    deviations.push_back({row.text(0), mode_from(row.text(1)), row.small(2), row.small(3),
-                          row.small(4), row.small(5), row.small(6), row.small(7)});
+    deviations.push_back({row.text(0), mode_from(row.text(1)), row.small_integer(2),
+                          row.small_integer(3), row.small_integer(4), row.small_integer(5),
+                          row.small_integer(6), row.small_integer(7)});
   }
   return deviations;
 }
@@ -138,8 +139,8 @@ std::vector<CorrectionRow> Store::corrections_for_journal() {
                 "JOIN trial USING (trial_id) WHERE supersedes IS NOT NULL ORDER BY response_id"};
   std::vector<CorrectionRow> corrections;
   while (row.step()) {
-    corrections.push_back({row.integer(0), row.small(1), row.text(2), row.optional_flag(3),
-                           given_by_from(row.text(4)), row.small(5)});
+    corrections.push_back({row.integer(0), row.small_integer(1), row.text(2), row.optional_flag(3),
+                           given_by_from(row.text(4)), row.small_integer(5)});
   }
   return corrections;
 }

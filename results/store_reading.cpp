@@ -8,7 +8,7 @@
 #include "results/compression.hpp"
 #include "results/store.hpp"
 #include "results/store_error.hpp"
-#include "results/trace_codec.hpp"
+#include "results/trace_stream.hpp"
 namespace tapstudy::results {
 namespace {
 // Throws StoreError with where it stands.
@@ -17,7 +17,7 @@ std::uint64_t seed_from(const std::string& text, const std::string& where) {
   const char* const end = text.data() + text.size();
   const auto [stopped, error] = std::from_chars(text.data(), end, seed);
   if (error != std::errc{} || stopped != end) {
-    throw StoreError{fmt::format("{}: the seed '{}' is no whole number below 2^64", where,
+    throw StoreError{fmt::format("{}: the seed '{}' is not a whole number below 2^64", where,
                                  core::cut_to(text, 80))};
   }
   return seed;
@@ -32,8 +32,8 @@ SessionRow session_from(Statement& row, const std::string& file) {
   SessionRow session;
   session.id = row.integer(0);
   session.participant_id = row.text(1);
-  session.participant_index = row.small(2);
-  session.order_index = row.small(3);
+  session.participant_index = row.small_integer(2);
+  session.order_index = row.small_integer(3);
   session.mode = mode_from(row.text(4));
   session.seed = seed_from(row.text(5), fmt::format("{}: session {}", file, session.id));
   session.planned_order = row.text(6);
@@ -101,9 +101,9 @@ std::vector<JournalledAnswer> Store::journalled_answers(Statement& row) {
   std::vector<JournalledAnswer> answers;
   while (row.step()) {
     JournalledAnswer answer;
-    answer.trial = {row.integer(1), row.small(2), row.small(3), row.text(4),
-                    row.text(5),    row.flag(6),  row.small(7), row.text(8),
-                    row.real(9),    row.flag(15), row.flag(16)};
+    answer.trial = {row.integer(1), row.small_integer(2), row.small_integer(3), row.text(4),
+                    row.text(5),    row.flag(6),          row.small_integer(7), row.text(8),
+                    row.real(9),    row.flag(15),         row.flag(16)};
     answer.response = {row.text(10), row.optional_flag(11), row.real(12), row.optional_real(13),
                        row.optional_int(14)};
     answer.alternatives = alternatives_of(row.integer(0));
@@ -135,7 +135,7 @@ AlternativesOfTrials Store::alternatives_where(const char* condition,
   AlternativesOfTrials alternatives;
   while (row.step()) {
     alternatives[row.integer(0)].push_back(
-        {row.small(1), row.text(2), row.text(3), {}, row.flag(4)});
+        {row.small_integer(1), row.text(2), row.text(3), {}, row.flag(4)});
   }
   while (value.step()) {
     std::vector<AlternativeRow>& of_trial = alternatives[value.integer(0)];
@@ -181,7 +181,7 @@ std::vector<int> Store::answered_trials(const std::string& participant_id) {
   row.bind(participant_id);
   std::vector<int> numbers;
   while (row.step()) {
-    numbers.push_back(row.small(0));
+    numbers.push_back(row.small_integer(0));
   }
   return numbers;
 }
@@ -198,7 +198,7 @@ std::map<int, int> Store::presentations(const std::string& participant_id) {
   row.bind(participant_id);
   std::map<int, int> attempts;
   while (row.step()) {
-    attempts.emplace(row.small(0), row.small(1));
+    attempts.emplace(row.small_integer(0), row.small_integer(1));
   }
   return attempts;
 }
@@ -213,7 +213,7 @@ std::vector<UnansweredTrial> Store::unanswered_trials(const std::string& partici
   row.bind(participant_id);
   std::vector<UnansweredTrial> trials;
   while (row.step()) {
-    const int number = row.small(0);
+    const int number = row.small_integer(0);
     if (!std::ranges::binary_search(answered, number)) {
       trials.push_back({number, row.text(1), row.flag(2)});
     }
@@ -246,13 +246,13 @@ std::vector<std::int64_t> Store::trials() {
 
 std::vector<core::TraceSample> Store::trace(std::int64_t trial_id) {
   Statement row{database_,
-                "SELECT ticks, bytes FROM trace_chunk WHERE trial_id = ? ORDER BY first_tick"};
+                "SELECT codec, ticks, bytes FROM trace_chunk WHERE trial_id = ? "
+                "ORDER BY first_tick"};
   row.bind(trial_id);
   std::vector<core::TraceSample> samples;
   while (row.step()) {
     const auto chunk =
-        decode_trace(row.bytes(1), static_cast<std::size_t>(row.integer(0)),
-                     fmt::format("{}: trace of trial {}", database_.file(), trial_id));
+        decoded_chunk(row, 0, fmt::format("{}: trace of trial {}", database_.file(), trial_id));
     samples.insert(samples.end(), chunk.begin(), chunk.end());
   }
   return samples;

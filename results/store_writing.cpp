@@ -33,7 +33,7 @@ Store::Place Store::place_of(const std::string& participant_id, Mode mode, const
         fmt::format("participant '{}' is in this study already, in {} sessions (choose another id)",
                     participant_id, row.text(2))};
   }
-  return {row.small(0), row.small(1)};
+  return {row.small_integer(0), row.small_integer(1)};
 }
 
 int Store::next_participant_index(Mode mode) {
@@ -62,7 +62,7 @@ int Store::free_order_index(Mode mode, const Others& others) {
         (has_answered && !(was_ended && others.has_trials_left(participant_id))) ||
         others.is_in_session(participant_id);
     if (keeps_order && !excluded.contains(participant_id)) {
-      used.insert(row.small(1));
+      used.insert(row.small_integer(1));
     }
   }
   int free = 0;

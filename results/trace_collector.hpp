@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/haptic_state.hpp"
-#include "core/tick/trace_ring.hpp"
+#include "core/tick/spsc_ring.hpp"
 #include "results/rows.hpp"
 #include "results/trace_events.hpp"
 namespace tapstudy::results {

@@ -28,7 +28,7 @@ double value_of(const BlockDesign& design, const AnswerRow& answer) {
   const auto value = core::number_in<double>(answer.response);
   const bool is_number = value && std::isfinite(*value);
   if (!is_number || (design.adjusted->is_logarithmic && *value <= 0.0)) {
-    throw core::InvalidInput{fmt::format("block '{}', {} in trial {}: '{}' is no value of {}",
+    throw core::InvalidInput{fmt::format("block '{}', {} in trial {}: '{}' is not a value of {}",
                                          design.name, answer.participant_id, answer.number,
                                          answer.response, design.adjusted->name)};
   }

@@ -135,6 +135,14 @@ std::optional<Chart> chart_of(const AdjustedAxis& axis, const AdjustmentResults&
   chart.levels = {results.equality->mean};
   return chart;
 }
+
+PersonalValues means_of(const AdjustedAxis& axis, const AdjustmentResults& results) {
+  PersonalValues means{"setting of " + axis.name, axis.is_logarithmic, {}};
+  for (const ParticipantSettings& person : results.participants) {
+    means.by_participant[person.participant_id] = person.mean;
+  }
+  return means;
+}
 }  // namespace
 
 std::shared_ptr<BlockSummary> summarise_adjustments(const BlockDesign& design,
@@ -145,12 +153,19 @@ std::shared_ptr<BlockSummary> summarise_adjustments(const BlockDesign& design,
   summary->parts = {estimates_table(axis, results), participants_table(axis, results),
                     settings_table(results)};
   summary->remarks = remarks_on(design, results);
+  if (design.premise.empty()) {
+    summary->personal = means_of(axis, results);
+  }
   if (const auto chart = chart_of(axis, results)) {
     summary->charts.push_back(*chart);
   }
   if (results.equality && results.equality->interval) {
     summary->main.push_back({fmt::format("point of subjective equality, {}", axis.name),
-                             results.equality->mean, *results.equality->interval});
+                             results.equality->mean,
+                             *results.equality->interval,
+                             {},
+                             {},
+                             axis.is_logarithmic});
   }
   return summary;
 }

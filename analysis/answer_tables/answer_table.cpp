@@ -1,9 +1,11 @@
 #include "analysis/answer_tables/answer_table.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <limits>
@@ -17,7 +19,7 @@
 namespace tapstudy::analysis {
 namespace {
 constexpr std::size_t max_classes = 200;
-constexpr std::array missing_values{"", "NA", "None", "null"};
+constexpr std::array missing_values{"", "NA", "None", "null", "NaN", "nan"};
 
 bool is_missing(const std::string& cell) {
   return std::ranges::find(missing_values, cell) != missing_values.end();
@@ -156,6 +158,7 @@ void count_on(std::vector<results::AnswerRow>& answers) {
     const auto index = static_cast<int>(people.size());
     Counts& person = people.try_emplace(answer.participant_id, Counts{index, 0, {}}).first->second;
     answer.trial_id = ++id;
+    answer.place_in_block = person.trials;
     answer.number = ++person.trials;
     answer.repetition = ++person.presented[answer.stimulus];
     answer.participant_index = person.index;
@@ -167,16 +170,44 @@ void check_responses(const std::vector<results::AnswerRow>& answers,
   for (std::size_t i = 0; i < answers.size(); ++i) {
     const std::string& response = answers[i].response;
     if (!responses.contains(response)) {
-      throw core::InvalidInput{fmt::format(
-          "{}: response '{}' is no stimulus (if it can be answered, name it with --responses; if "
-          "it stands for a stimulus, say --responses '{}=STIMULUS')",
-          to_text(origins[i]), response, response)};
+      throw core::InvalidInput{
+          fmt::format("{}: response '{}' is not a stimulus (if it can be answered, name it with "
+                      "--responses; if "
+                      "it stands for a stimulus, say --responses '{}=STIMULUS')",
+                      to_text(origins[i]), response, response)};
     }
   }
   if (responses.size() > max_classes) {
     throw core::InvalidInput{
         fmt::format("{}: names {} different stimuli and responses (at most {})",
                     to_text(origins.front()), responses.size(), max_classes)};
+  }
+}
+
+bool differ_only_in_case(const std::string& a, const std::string& b) {
+  return std::ranges::equal(a, b, [](unsigned char one, unsigned char other) {
+    return std::tolower(one) == std::tolower(other);
+  });
+}
+
+void check_names(const std::vector<results::AnswerRow>& answers, const std::string& file,
+                 const std::set<std::string>& stimuli, const std::set<std::string>& responses) {
+  for (const std::string& name : responses) {
+    const auto other = std::ranges::find_if(responses, [&](const std::string& each) {
+      return each < name && differ_only_in_case(each, name);
+    });
+    if (other != responses.end()) {
+      throw core::InvalidInput{
+          fmt::format("{}: '{}' and '{}' differ only in case", file, *other, name)};
+    }
+  }
+  if (std::ranges::none_of(answers, [&](const results::AnswerRow& answer) {
+        return stimuli.contains(answer.response);
+      })) {
+    throw core::InvalidInput{
+        fmt::format("{}: no answer names a stimulus (answers: '{}' and others; stimuli: {}): say "
+                    "what answers stand for by --responses GIVEN=STIMULUS",
+                    file, answers.front().response, fmt::join(stimuli, ", "))};
   }
 }
 
@@ -225,6 +256,7 @@ AnswerTable read_answers(const std::vector<NamedCsv>& files, const AnswerReading
     responses.insert(meaning);
   }
   check_responses(table.answers, origins, responses);
+  check_names(table.answers, files.front().file, stimuli, responses);
   table.stimuli = items_of(stimuli);
   table.responses = items_of(responses);
   for (Item& response : table.responses) {

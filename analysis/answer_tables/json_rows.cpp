@@ -16,11 +16,11 @@ Json list_in(std::istream& text, const std::string& file) {
   try {
     list = Json::parse(table_text(text, file));
   } catch (const Json::parse_error& error) {
-    throw core::InvalidInput{fmt::format("{}: is no JSON: at byte {}", file, error.byte)};
+    throw core::InvalidInput{fmt::format("{}: not valid JSON: at byte {}", file, error.byte)};
   }
   if (!list.is_array() || list.empty() ||
       !std::ranges::all_of(list, [](const Json& one) { return one.is_object(); })) {
-    throw core::InvalidInput{file + ": is no list of objects in JSON, one for each trial"};
+    throw core::InvalidInput{file + ": not a JSON list of objects, one for each trial"};
   }
   return list;
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "analysis/blocks/design.hpp"
+#include "analysis/blocks/personal_values.hpp"
 #include "analysis/statistics/proportion.hpp"
 #include "analysis/tables/cells.hpp"
 #include "analysis/tables/chart.hpp"
@@ -29,6 +30,7 @@ struct MainResult {
   Interval range;                  // 95 %, over participants
   std::optional<double> p{};       // of the planned test, where there is one
   std::optional<double> chance{};  // what guessing gives, of a share of right answers
+  bool is_ratio{};                 // above 0, a geometric mean: studies are compared by the ratio
 };
 
 // The alternatives of a trial as they were visited one after the other, by position from 0.
@@ -85,5 +87,6 @@ class BlockSummary {
   std::string task;
   std::string question;
   std::vector<HypothesisResult> hypotheses;
+  std::optional<PersonalValues> personal{};  // unset: none, or they are not to be compared
 };
 }  // namespace tapstudy::analysis

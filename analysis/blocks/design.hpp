@@ -55,7 +55,6 @@ struct BlockDesign {
   // in another draw of its order; empty where the order is not random.
   using Redraw = std::function<std::vector<int>(const Place& place, std::uint64_t draw)>;
   Redraw redraw;
-  int first_trial{1};  // the number of its first trial
   // Where the participants' answers follow from an assumption of the simulation: which. Nothing is
   // tested then.
   std::string premise;

@@ -94,7 +94,7 @@ ReportTable loop_table(const Courses& participants) {
        column("lost samples", "dropped_samples"), column("99.9 %, ms", "lateness_p999_s"),
        column("worst, ms", "worst_lateness_s"), part_column("late impacts", "late_impacts")}};
   for (const ParticipantCourseRow& row : participants) {
-    if (row.ticks > 0) {
+    if (row.ticks > 0 && row.mode != results::Mode::simulated) {  // in virtual time none is late
       table.rows.push_back(
           {word(row.participant_id), count(row.ticks), count(row.late), count(row.skipped_ticks),
            count(row.saturated), count(row.dropped_samples), milliseconds(row.lateness_p999_s),
@@ -134,6 +134,7 @@ ReportSection course_section(const Courses& participants,
                              const std::vector<PracticeResult>& practice) {
   ReportSection section{"How the sessions went"};
   section.name = "sessions";
+  section.is_detail = true;
   section.tables = {course_table(participants),    exclusions_table(participants),
                     attention_table(participants), practice_table(practice),
                     loop_table(participants),      masking_table(participants)};

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -81,12 +82,49 @@ RatesSensitivity same_different_differencing(double hit_rate, double false_alarm
   return {root(excess, 0.0, max_d_prime), false};
 }
 
+namespace {
+double independent_d_prime(double z_difference) {
+  return d_prime_of({DecisionModel::same_different_independent_observation, 2},
+                    normal_cdf(0.5 * z_difference));
+}
+}  // namespace
+
 RatesSensitivity same_different_independent(double hit_rate, double false_alarm_rate) {
   check_rate(hit_rate);
   check_rate(false_alarm_rate);
-  const double unbiased =
-      normal_cdf(0.5 * (normal_quantile(hit_rate) - normal_quantile(false_alarm_rate)));
-  return {d_prime_of({DecisionModel::same_different_independent_observation, 2}, unbiased),
+  return {independent_d_prime(normal_quantile(hit_rate) - normal_quantile(false_alarm_rate)),
           hit_rate <= false_alarm_rate};
+}
+
+std::optional<Interval> same_different_independent_interval(const Proportion& hits,
+                                                            const Proportion& false_alarms) {
+  const YesNoSensitivity of = yes_no_sensitivity(hits, false_alarms);
+  if (of.d_prime <= 0.0) {
+    return std::nullopt;
+  }
+  return Interval{independent_d_prime(of.d_prime_interval.low),
+                  independent_d_prime(of.d_prime_interval.high)};
+}
+
+std::optional<Interval> same_different_differencing_interval(const Proportion& hits,
+                                                             const Proportion& false_alarms) {
+  constexpr double step = 1e-3;  // of z
+  const double hit_z = normal_quantile(log_linear_rate(hits));
+  const double false_alarm_z = normal_quantile(log_linear_rate(false_alarms));
+  const auto d_prime = [](double of_hits, double of_false_alarms) {
+    return same_different_differencing(normal_cdf(of_hits), normal_cdf(of_false_alarms)).d_prime;
+  };
+  const double centre = d_prime(hit_z, false_alarm_z);
+  const double slope_hits =
+      (d_prime(hit_z + step, false_alarm_z) - d_prime(hit_z - step, false_alarm_z)) / (2.0 * step);
+  const double slope_false_alarms =
+      (d_prime(hit_z, false_alarm_z + step) - d_prime(hit_z, false_alarm_z - step)) / (2.0 * step);
+  const Interval range =
+      around(centre, std::sqrt(slope_hits * slope_hits * z_variance(hits) +
+                               slope_false_alarms * slope_false_alarms * z_variance(false_alarms)));
+  if (!(centre > 0.0) || !std::isfinite(range.high)) {
+    return std::nullopt;
+  }
+  return Interval{std::max(range.low, 0.0), range.high};
 }
 }  // namespace tapstudy::analysis

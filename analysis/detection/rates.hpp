@@ -1,4 +1,6 @@
 #pragma once
+#include <optional>
+
 #include "analysis/statistics/proportion.hpp"
 namespace tapstudy::analysis {
 // Sensitivity and criterion from two rates: "yes" to signals (hits) and to noise (false alarms), or
@@ -33,4 +35,12 @@ RatesSensitivity same_different_differencing(double hit_rate, double false_alarm
 // Same/different by independent observations: the unbiased proportion Phi((z(H) - z(F)) / 2)
 // through the decision model of that name.
 RatesSensitivity same_different_independent(double hit_rate, double false_alarm_rate);
+
+// 95 % intervals of the two, of rates corrected as above. By independent observations d' follows
+// from z(H) - z(F) alone, so that yes_no_sensitivity's interval is mapped; of differencing by the
+// same variances and the slopes of d' along z(H) and z(F). From 0; unset where d' is 0 or infinite.
+std::optional<Interval> same_different_independent_interval(const Proportion& hits,
+                                                            const Proportion& false_alarms);
+std::optional<Interval> same_different_differencing_interval(const Proportion& hits,
+                                                             const Proportion& false_alarms);
 }  // namespace tapstudy::analysis

@@ -11,8 +11,6 @@
 
 #include "analysis/discrimination/decision_task.hpp"
 #include "analysis/participants/mean_proportion.hpp"
-#include "analysis/statistics/distributions.hpp"
-#include "analysis/statistics/quantiles.hpp"
 #include "core/error.hpp"
 namespace tapstudy::analysis {
 namespace {
@@ -67,6 +65,9 @@ std::optional<DifferentRates> rates_of(const Counts& counts) {
   const double false_alarm_rate = log_linear_rate(rates.false_alarms);
   rates.differencing = same_different_differencing(hit_rate, false_alarm_rate);
   rates.independent = same_different_independent(hit_rate, false_alarm_rate);
+  rates.differencing_interval =
+      same_different_differencing_interval(rates.hits, rates.false_alarms);
+  rates.independent_interval = same_different_independent_interval(rates.hits, rates.false_alarms);
   rates.criterion = yes_no_sensitivity(rates.hits, rates.false_alarms);
   return rates;
 }
@@ -80,24 +81,6 @@ std::optional<DPrimeOfMean> d_prime_of_mean(const std::vector<Proportion>& corre
   return DPrimeOfMean{
       d_prime_of(task, over->mean),
       {d_prime_of(task, over->interval.low), d_prime_of(task, over->interval.high)}};
-}
-
-std::optional<AccuracyTest> accuracy_test(const std::vector<ParticipantDiscrimination>& people,
-                                          double by_chance) {
-  if (people.size() < 2) {
-    return std::nullopt;
-  }
-  std::vector<double> values;
-  std::ranges::transform(people, std::back_inserter(values),
-                         [](const auto& person) { return person.correct.value(); });
-  const MeanAndSpread spread = mean_and_spread(values);
-  constexpr double least_spread = 1e-12;  // equal proportions differ in their last digits
-  if (!(spread.standard_deviation > least_spread)) {
-    return std::nullopt;
-  }
-  const auto n = static_cast<double>(values.size());
-  const double t = (spread.mean - by_chance) / (spread.standard_deviation / std::sqrt(n));
-  return AccuracyTest{t, n - 1.0, t_p_at_least(t, n - 1.0)};
 }
 
 ParticipantDiscrimination participant_of(const BlockDesign& design, const std::string& name,
@@ -158,8 +141,8 @@ DiscriminationResults discrimination_results(const BlockDesign& design,
   if (task) {
     results.d_prime_of_mean = d_prime_of_mean(correct_of(results.participants), *task);
   }
-  if (design.premise.empty()) {
-    results.test = accuracy_test(results.participants, design.guess_rate);
+  if (design.premise.empty() && results.correct.trials > 0) {
+    results.p = binomial_p_at_least(results.correct, design.guess_rate);
   }
   return results;
 }

@@ -16,6 +16,8 @@ struct DifferentRates {
   Proportion false_alarms;
   RatesSensitivity differencing;  // both of rates with the log-linear correction
   RatesSensitivity independent;
+  std::optional<Interval> differencing_interval;  // of the d' above; unset where it is 0
+  std::optional<Interval> independent_interval;
   YesNoSensitivity criterion;  // its c: above 0, "same" is preferred
 };
 
@@ -30,13 +32,6 @@ struct ParticipantDiscrimination {
 struct DPrimeOfMean {
   double d_prime{};   // 0 where the proportion is at chance or below
   Interval interval;  // 95 %; high may be infinity
-};
-
-// One-sided t test of the participants' proportions correct against chance.
-struct AccuracyTest {
-  double t{};
-  double degrees_of_freedom{};
-  double p{};
 };
 
 // In the same order.
@@ -57,8 +52,11 @@ struct DiscriminationResults {
   // d'. Not the mean of the participants' d': each is 0 or above, so that guessing gave more than
   // 0. Of two participants with answers or more.
   std::optional<DPrimeOfMean> d_prime_of_mean;
-  std::optional<AccuracyTest> test;  // unset for fewer than two, or without spread
-  const DecisionModelRow* model{};   // nullptr: none
+  // Exact binomial, one-sided, of all answers: places are drawn, so that of participants who feel
+  // no difference every answer is right with the same chance, whatever they prefer. Unset where
+  // nothing is tested or answered.
+  std::optional<double> p;
+  const DecisionModelRow* model{};  // nullptr: none
 };
 
 // Throws InvalidInput for answers that are neither right nor wrong, a guess rate that is not in (0,

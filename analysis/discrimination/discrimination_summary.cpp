@@ -17,11 +17,16 @@ const Column& d_prime_column() {
   return of_d_prime;
 }
 
+// Where its interval is cut off at 0, none is given: it would look like certainty.
+Cell d_prime_cell(double d_prime, const Interval& range) {
+  return interval(d_prime, range.high > 0.0 ? std::optional{range} : std::nullopt);
+}
+
 std::string remark_on(const Sensitivity& sensitivity) {
   if (sensitivity.is_perfect) {
     return "all correct: d' computed with half an error";
   }
-  return sensitivity.is_below_chance ? "below chance: d' is 0" : "";
+  return sensitivity.is_below_chance ? "below chance: d' is 0 (were answers swapped?)" : "";
 }
 
 ReportTable participants_table(const DiscriminationResults& results) {
@@ -34,7 +39,7 @@ ReportTable participants_table(const DiscriminationResults& results) {
     const auto& of = person.sensitivity;
     table.rows.push_back({word(person.participant_id), proportion(person.correct),
                           probability(person.p),
-                          of ? interval(of->d_prime, of->interval) : nothing(d_prime_column()),
+                          of ? d_prime_cell(of->d_prime, of->interval) : nothing(d_prime_column()),
                           word(of ? remark_on(*of) : "")});
   }
   return table;
@@ -44,14 +49,14 @@ ReportTable all_table(const BlockDesign& design, const DiscriminationResults& re
   ReportTable table{"all",
                     "All participants",
                     {proportion_column("correct", "correct"), column("chance", "chance"),
-                     column("participants", "participants"),
+                     column("above chance", "p"), column("participants", "participants"),
                      interval_column("d' of the mean (95 % CI)", "d_prime_of_mean")}};
   if (!results.participants.empty()) {
     const auto& mean = results.d_prime_of_mean;
     table.rows.push_back(
         {pooled_proportion(correct_of(results.participants)), share(design.guess_rate),
-         count(static_cast<std::int64_t>(results.participants.size())),
-         mean ? interval(mean->d_prime, mean->interval) : nothing(table.columns.back())});
+         probability(results.p), count(static_cast<std::int64_t>(results.participants.size())),
+         mean ? d_prime_cell(mean->d_prime, mean->interval) : nothing(table.columns.back())});
   }
   return table;
 }
@@ -63,7 +68,7 @@ ReportTable pairs_table(const DiscriminationResults& results) {
                      interval_column("d' of the mean (95 % CI)", "d_prime")}};
   for (const DiscriminationResults::Pair& pair : results.pairs) {
     table.rows.push_back({word(pair.stimuli), pooled_proportion(pair.correct),
-                          pair.d_prime ? interval(pair.d_prime->d_prime, pair.d_prime->interval)
+                          pair.d_prime ? d_prime_cell(pair.d_prime->d_prime, pair.d_prime->interval)
                                        : nothing(table.columns.back())});
   }
   return table;
@@ -88,14 +93,16 @@ ReportTable models_table(const DiscriminationResults& results) {
   ReportTable table{
       "sensitivity_by_rates",
       "d' and bias by hits and false alarms",
-      {column("participant", "participant_id"), column("d' differencing", "d_prime_differencing"),
-       column("d' independent observations", "d_prime_independent"),
+      {column("participant", "participant_id"),
+       interval_column("d' differencing (95 % CI)", "d_prime_differencing"),
+       interval_column("d' independent observations (95 % CI)", "d_prime_independent"),
        interval_column("bias c (95 % CI)", "criterion"), column("", "is_below_chance")}};
   for (const ParticipantDiscrimination& person : results.participants) {
     if (const auto& rates = person.rates) {
       table.rows.push_back(
-          {word(person.participant_id), number(rates->differencing.d_prime),
-           number(rates->independent.d_prime),
+          {word(person.participant_id),
+           interval(rates->differencing.d_prime, rates->differencing_interval),
+           interval(rates->independent.d_prime, rates->independent_interval),
            interval(rates->criterion.criterion, rates->criterion.criterion_interval),
            flag(rates->differencing.is_below_chance)});
     }
@@ -109,8 +116,9 @@ std::vector<std::string> remarks_on(const BlockDesign& design,
     return {"There are no answers."};
   }
   std::vector<std::string> remarks{
-      fmt::format("Chance is {:.3g}. Each participant: exact binomial test, one-sided; Wilson "
-                  "interval.",
+      fmt::format("Chance is {:.3g}. Exact binomial tests, one-sided: places are drawn, so that of "
+                  "those who feel no difference every answer is right with that chance, whatever "
+                  "they prefer. Each participant: Wilson interval.",
                   design.guess_rate),
       results.participants.size() > 1 ? "The interval of all answers is over participants, of a "
                                         "beta-binomial likelihood; those "
@@ -124,6 +132,11 @@ std::vector<std::string> remarks_on(const BlockDesign& design,
         "d' by the decision model '{}' ({}), interval by that of the proportion; over participants "
         "that of their mean proportion and of its interval.",
         results.model->name, results.model->summary));
+  } else if (std::ranges::any_of(results.participants,
+                                 [](const auto& person) { return person.rates.has_value(); })) {
+    remarks.emplace_back(
+        "Stimuli change from trial to trial, so that participants compare the two: take d' of a "
+        "differencing observer, by hits and false alarms.");
   } else {
     remarks.push_back(
         fmt::format("There is no d': no decision model is known for {} with a chance of {:.3g}.",
@@ -143,11 +156,13 @@ std::vector<std::string> remarks_on(const BlockDesign& design,
   if (std::ranges::any_of(results.participants,
                           [](const auto& person) { return person.rates.has_value(); })) {
     remarks.emplace_back(
-        "The d' of proportions correct assumes unbiased participants, and is too small where "
-        "they "
-        "are not: that by rates is not.");
+        "A d' of proportions correct assumes unbiased participants, and is too small where they "
+        "are "
+        "not: that by rates is not.");
     remarks.emplace_back(
-        "By rates: k + 1/2 in n + 1 (Hautus 1995); d' is 0 where there are no more hits than false "
+        "By rates: k + 1/2 in n + 1 (Hautus 1995), intervals by the variance of their z "
+        "(Gourevitch "
+        "& Galanter 1967); d' is 0 where there are no more hits than false "
         "alarms. Bias c above 0: \"same\" is preferred.");
   }
   return remarks;
@@ -156,21 +171,29 @@ std::vector<std::string> remarks_on(const BlockDesign& design,
 HypothesisResult tested(const BlockDesign& design, const DiscriminationResults& results,
                         const PlannedHypothesis& planned) {
   HypothesisResult result{planned, "", results.correct, design.guess_rate, {}, 0.0};
-  if (!design.premise.empty()) {
-    result.test = design.premise;
-  } else if (results.correct.trials == 0) {
-    result.test = "there are no answers";
-  } else if (results.participants.size() < 2) {
-    result.test = "a test over participants takes two or more";
-  } else if (!results.test) {
-    result.test = "all participants have the same proportion correct: no spread to test against";
-  } else {
-    result.p = results.test->p;
-    result.test =
-        fmt::format("one-sided t test of {} participants' proportions correct, t({:.0f}) = {:.2f}",
-                    results.participants.size(), results.test->degrees_of_freedom, results.test->t);
-  }
+  result.p = results.p;
+  result.test = !design.premise.empty()       ? design.premise
+                : results.correct.trials == 0 ? "there are no answers"
+                                              : "one-sided exact binomial test of all answers";
   return result;
+}
+
+// Where participants set their own rate of guesses, a share of right answers depends on it.
+std::optional<PersonalValues> shares_right(const BlockDesign& design,
+                                           const DiscriminationResults& results) {
+  if (design.has_own_guess_rate) {
+    return std::nullopt;
+  }
+  PersonalValues shares{
+      fmt::format("share of right answers, {}, chance {:.3g}", design.task, design.guess_rate),
+      false,
+      {}};
+  for (const ParticipantDiscrimination& person : results.participants) {
+    if (person.correct.trials > 0) {
+      shares.by_participant[person.participant_id] = person.correct.value();
+    }
+  }
+  return shares;
 }
 }  // namespace
 
@@ -182,10 +205,10 @@ std::shared_ptr<BlockSummary> summarise_discrimination(const BlockDesign& design
                     pairs_table(results),       rates_table(results),
                     models_table(results),      answer_counts_table(rows.answers)};
   summary->remarks = remarks_on(design, results);
+  summary->personal = shares_right(design, results);
   if (const auto over = mean_proportion(correct_of(results.participants))) {
-    summary->main = {{"share of right answers", over->mean, over->interval,
-                      results.test ? std::optional{results.test->p} : std::nullopt,
-                      design.guess_rate}};
+    summary->main = {
+        {"share of right answers", over->mean, over->interval, results.p, design.guess_rate}};
   }
   for (const PlannedHypothesis& planned : design.hypotheses) {
     summary->hypotheses.push_back(tested(design, results, planned));

@@ -181,6 +181,17 @@ std::vector<Chart> charts_of(const EqualityResults& results, core::PsychometricS
   }
   return charts;
 }
+
+PersonalValues points_of_equality(const VariedAxis& axis, const EqualityResults& results) {
+  PersonalValues points{"point of subjective equality, " + axis.name, false, {}};
+  for (const ParticipantEquality& person : results.participants) {
+    if (person.estimate) {
+      points.by_participant[person.participant_id] =
+          value_at(axis, person.estimate->curve.threshold);
+    }
+  }
+  return points;
+}
 }  // namespace
 
 std::shared_ptr<BlockSummary> summarise_equality(const BlockDesign& design, const BlockRows& rows) {
@@ -191,19 +202,14 @@ std::shared_ptr<BlockSummary> summarise_equality(const BlockDesign& design, cons
                     levels_table(axis, results), tracks_of(results)};
   summary->charts = charts_of(results, design.shape);
   summary->remarks = remarks_on(design, results);
+  if (design.premise.empty()) {
+    summary->personal = points_of_equality(axis, results);
+  }
   if (results.equality && results.equality->interval) {
     summary->main = {{"point of subjective equality, " + axis.name,
                       value_at(axis, results.equality->mean),
                       values_at(axis, *results.equality->interval),
                       design.premise.empty() ? std::optional{results.equality->p} : std::nullopt}};
-  }
-  for (const PlannedHypothesis& planned : design.hypotheses) {
-    summary->hypotheses.push_back({planned,
-                                   "points of equality are estimated; no test counts right answers",
-                                   {},
-                                   design.guess_rate,
-                                   {},
-                                   0.0});
   }
   return summary;
 }

@@ -40,7 +40,7 @@ struct Image {
 
 Image image_in(std::string_view png) {
   if (!png.starts_with(signature)) {
-    throw core::InvalidInput{"a frame of an animation is no PNG"};
+    throw core::InvalidInput{"a frame of an animation is not a PNG"};
   }
   Image image;
   constexpr std::size_t around = 12;  // length, kind, checksum
@@ -56,7 +56,7 @@ Image image_in(std::string_view png) {
     at += around + length;
   }
   if (image.header.empty() || image.data.empty()) {
-    throw core::InvalidInput{"a frame of an animation is no whole PNG"};
+    throw core::InvalidInput{"a frame of an animation is not a complete PNG"};
   }
   return image;
 }

@@ -56,7 +56,7 @@ std::string axes(const Figure& figure) {
   if (figure.scale == Scale::logarithmic) {
     return fmt::format(
         "set xlabel {}\nset ylabel {}\nset logscale xy\nset format xy '%g'\nset key outside bottom "
-        "center maxrows 2\n",
+        "center horizontal width 2\n",
         quoted(figure.x_label), quoted(figure.y_label));
   }
   const Span left = span_of(figure, Axis::left);

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "analysis/blocks/wording.hpp"
+#include "analysis/identification/chance_tests.hpp"
 #include "analysis/identification/identification_words.hpp"
 #include "analysis/identification/participant_sections.hpp"
 namespace tapstudy::analysis {
@@ -58,13 +59,20 @@ bool has_other_answers(const IdentificationSummary& summary) {
 void add_remark_on_chance(const IdentificationSummary& summary, ReportSection& section) {
   if (has_other_answers(summary)) {
     section.remarks.emplace_back(
-        "Some answers name no stimulus, and count as wrong. Chance is that of somebody who gives "
-        "such answers as often and else guesses; the exact binomial test of each participant, "
-        "which supposes that every answer is a guess among the stimuli, is left out.");
-  } else {
-    section.remarks.emplace_back(
-        "A participant's exact binomial probability supposes that without any feeling each answer "
-        "is right by the chance given, one-sided, not adjusted for the number of participants.");
+        "Some answers name no stimulus, and count as wrong. Chance is that of an observer who "
+        "gives such answers as often and otherwise guesses; the exact binomial test of each "
+        "participant, which assumes that every answer is a guess among the stimuli, is left out.");
+    return;
+  }
+  section.remarks.emplace_back(
+      "A participant's probability (one-sided, not adjusted for the number of participants) is "
+      "exact binomial where each answer was right as often as the others, else by shuffling the "
+      "answers over the trials.");
+  if (const auto constant = share_of_constant_answer(summary.matrix)) {
+    section.remarks.push_back(
+        fmt::format("Answers were not right equally often: always giving the one that was right "
+                    "most often is right in {}, not in {}.",
+                    percent(*constant), percent(summary.matrix.chance())));
   }
 }
 
@@ -72,11 +80,10 @@ ReportTable participants_table(const IdentificationSummary& summary) {
   ReportTable table{"participants_against_chance",
                     "Each participant against chance",
                     {column("participant", "participant_id"), proportion_column("right", "right"),
-                     column("exact binomial", "p")}};
+                     column("above chance", "p")}};
   for (const ParticipantAccuracy& person : summary.participants) {
     table.rows.push_back(
-        {word(person.participant_id), proportion(person.accuracy),
-         probability(binomial_p_at_least(person.accuracy, summary.matrix.chance()))});
+        {word(person.participant_id), proportion(person.accuracy), probability(person.p)});
   }
   return table;
 }

@@ -2,23 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "analysis/resampling/replicates.hpp"
 namespace tapstudy::analysis {
 namespace {
 constexpr int max_draws = 9999;
 constexpr int min_draws = 999;  // p can then fall to .001
 constexpr std::size_t most_redrawn = 20'000;
-
-RightAnswers right_answers(const ConfusionMatrix& matrix) {
-  RightAnswers right;
-  for (const Item& stimulus : matrix.stimuli) {
-    right.emplace_back();
-    for (const Item& response : matrix.responses) {
-      right.back().push_back(stimulus.is_answered_by(response.name));
-    }
-  }
-  return right;
-}
 
 RightAnswers same_level(const ConfusionMatrix& matrix, const std::string& factor) {
   RightAnswers right;
@@ -96,6 +87,40 @@ Randomisation randomisation_of(const CountTable& counts) {
 
 int Draws::of(const NullTables& tables) const {
   return draws > 0 ? draws : affordable_replicates(tables.work, min_draws, max_draws);
+}
+
+RightAnswers right_answers(const ConfusionMatrix& matrix) {
+  RightAnswers right;
+  for (const Item& stimulus : matrix.stimuli) {
+    right.emplace_back();
+    for (const Item& response : matrix.responses) {
+      right.back().push_back(stimulus.is_answered_by(response.name));
+    }
+  }
+  return right;
+}
+
+std::optional<double> share_of_constant_answer(const ConfusionMatrix& matrix) {
+  const auto right = by_right_response(matrix.stimuli, matrix.responses, matrix.counts);
+  if (!right) {
+    return std::nullopt;
+  }
+  const TableTotals totals = totals_of(*right);
+  std::vector<std::int64_t> presented = totals.rows;
+  std::erase(presented, 0);
+  const auto [least, most] = std::ranges::minmax(presented);
+  return least == most ? std::nullopt
+                       : std::optional{static_cast<double>(most) / static_cast<double>(totals.all)};
+}
+
+double chance_p_of(const ConfusionMatrix& of_participant) {
+  if (!share_of_constant_answer(of_participant)) {
+    return binomial_p_at_least(overall_accuracy(of_participant), of_participant.chance());
+  }
+  return permutation_tests(shuffled_tables({of_participant.counts}),
+                           {right_answers(of_participant)}, max_draws, Draws{}.seed)
+      .front()
+      .p;
 }
 
 ChanceTests chance_tests(const Randomisation& randomisation, const ConfusionMatrix& matrix,

@@ -24,6 +24,18 @@ struct Draws {
   int of(const NullTables& tables) const;
 };
 
+// Which responses are right for each stimulus.
+RightAnswers right_answers(const ConfusionMatrix& matrix);
+
+// The share of right answers of somebody who always gives the one that is right most often; unset
+// where that is no more than each other one, or a stimulus has no right answer.
+std::optional<double> share_of_constant_answer(const ConfusionMatrix& matrix);
+
+// One participant's right answers against chance, one-sided: exactly binomial where each answer is
+// right as often, else by shuffling the answers over the trials, since preferring what is right
+// most often is no sign of feeling anything.
+double chance_p_of(const ConfusionMatrix& of_participant);
+
 // Accuracy, and agreement in each factor, against chance by randomisation within participants.
 struct ChanceTests {
   std::string test;  // how, or why not

@@ -4,7 +4,7 @@
 
 #include "analysis/identification/participant_sections.hpp"
 #include "analysis/participants/paired_contrast.hpp"
-#include "analysis/ratings/signed_rank.hpp"
+#include "analysis/rank_tests/signed_rank.hpp"
 namespace tapstudy::analysis {
 namespace {
 constexpr std::uint64_t contrasts_seed = 5;

@@ -7,7 +7,7 @@
 #include "analysis/agreement/symmetry.hpp"
 #include "analysis/identification/matrix_sections.hpp"
 #include "analysis/participants/paired_contrast.hpp"
-#include "analysis/ratings/signed_rank.hpp"
+#include "analysis/rank_tests/signed_rank.hpp"
 namespace tapstudy::analysis {
 namespace {
 constexpr std::uint64_t dependence_seed = 4;

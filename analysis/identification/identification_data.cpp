@@ -84,7 +84,7 @@ IdentificationData identification_data(const BlockDesign& design,
     check_correctness(design, data.stimuli[stimulus], answer);
     data.participants[place_of_person.at(answer.participant_id)].trials.push_back(
         {stimulus, responses.of(answer.response), *answer.is_correct,
-         static_cast<std::size_t>(answer.number - design.first_trial), answer.repetition,
+         static_cast<std::size_t>(answer.place_in_block), answer.repetition,
          known(answer.response_time_s), answer.time_from_first_contact_s, answer.impacts,
          answer.mean_impact_speed_m_s, answer.contact_s});
   }

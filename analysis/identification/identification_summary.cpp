@@ -115,6 +115,19 @@ void add_tests(const BlockDesign& design, const Randomisation& randomisation,
 }
 }  // namespace
 
+namespace {
+PersonalValues shares_right(const IdentificationSummary& summary) {
+  PersonalValues shares{
+      fmt::format("share of right answers, chance {:.3g}", summary.matrix.chance()), false, {}};
+  for (const ParticipantAccuracy& person : summary.participants) {
+    if (person.accuracy.trials > 0) {
+      shares.by_participant[person.participant_id] = person.accuracy.value();
+    }
+  }
+  return shares;
+}
+}  // namespace
+
 IdentificationSummary::IdentificationSummary(const BlockDesign& design, ConfusionMatrix counted)
     : BlockSummary{design},
       matrix{std::move(counted)},
@@ -133,9 +146,13 @@ IdentificationSummary::IdentificationSummary(const BlockDesign& design,
   for (const ParticipantCounts& person : counted.participants) {
     ConfusionMatrix own = matrix;
     own.counts = person.counts;
-    participants.push_back({person.id, overall_accuracy(own)});
+    const Proportion right = overall_accuracy(own);
+    const bool is_tested = right.trials > 0 && matrix.share_of_alternatives() == 1.0;
+    participants.push_back(
+        {person.id, right, is_tested ? std::optional{chance_p_of(own)} : std::nullopt});
   }
   add_over_participants(counted, *this);
+  personal = shares_right(*this);
   add_tests(design, counted.randomisation, *this);
   if (accuracy.trials == 0) {
     return;

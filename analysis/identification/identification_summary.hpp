@@ -22,6 +22,7 @@ struct FactorResult {
 struct ParticipantAccuracy {
   std::string participant_id;
   Proportion accuracy;
+  std::optional<double> p;  // against chance, one-sided; unset where it is not tested
 };
 
 // One stimulus per trial, answers correct or not: the confusion matrix with its accuracies, and in

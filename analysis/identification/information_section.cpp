@@ -9,15 +9,29 @@ namespace tapstudy::analysis {
 namespace {
 constexpr std::uint64_t information_seed = 3;
 
-// The entropy of what was presented, or the logarithm of the number of answers if there are fewer.
-double most_bits(const ConfusionMatrix& matrix) {
+double entropy_bits(const CountTable& counts) {
+  const TableTotals totals = totals_of(counts);
   double bits = 0.0;
-  for (std::size_t i = 0; i < matrix.stimuli.size(); ++i) {
-    const double share =
-        static_cast<double>(matrix.row_total(i)) / static_cast<double>(matrix.total());
+  for (const std::int64_t row : totals.rows) {
+    const double share = static_cast<double>(row) / static_cast<double>(totals.all);
     bits -= share > 0.0 ? share * std::log2(share) : 0.0;
   }
-  return std::min(bits, std::log2(static_cast<double>(matrix.responses.size())));
+  return bits;
+}
+
+// What right answers would transfer: the entropy of what is right; where that is not known, of what
+// was presented, or the logarithm of the number of answers if there are fewer.
+double most_bits(const ConfusionMatrix& matrix) {
+  if (const auto right = by_right_response(matrix.stimuli, matrix.responses, matrix.counts)) {
+    return entropy_bits(*right);
+  }
+  return std::min(entropy_bits(matrix.counts),
+                  std::log2(static_cast<double>(matrix.responses.size())));
+}
+
+// The correction for bias may lead above the most that is possible.
+double corrected_bits(const ConfusionMatrix& matrix) {
+  return std::min(information_transfer(matrix.counts).miller_madow_bits, most_bits(matrix));
 }
 
 // Empty: enough.
@@ -27,6 +41,12 @@ std::string too_few_for_information(const CountTable& counts) {
   return answers < fewest
              ? fmt::format("n/a: {} answer{} < {}", answers, answers == 1 ? "" : "s", fewest)
              : "";
+}
+
+std::optional<Interval> interval_up_to(double most, const MatrixOfParticipants& counted) {
+  const auto over = information_interval(tables_of(counted.participants));
+  return over ? std::optional{Interval{std::min(over->low, most), std::min(over->high, most)}}
+              : std::nullopt;
 }
 
 ReportTable participants_table(const MatrixOfParticipants& counted) {
@@ -53,33 +73,34 @@ ReportTable pooled_table(const MatrixOfParticipants& counted, const std::string&
                          const std::optional<GuessedInformation>& guessed) {
   const ConfusionMatrix& matrix = counted.matrix;
   const InformationTransfer transfer = information_transfer(matrix.counts);
-  const auto over = refusal.empty() ? information_interval(tables_of(counted.participants))
-                                    : std::optional<Interval>{};
+  const double most = most_bits(matrix);
+  const double bits = corrected_bits(matrix);
+  const auto over = refusal.empty() ? interval_up_to(most, counted) : std::optional<Interval>{};
   ReportTable table{
       "information",
       "Information transfer of all answers, in bits",
       {column("plug-in", "bits"), column("Miller-Madow", "miller_madow_bits"),
-       interval_column("95 % CI over participants", "jackknife"), column("at most", "most_bits"),
-       column("guessing: mean", "guessed_mean"), column("95th percentile", "guessed_95"),
-       column("above guessing", "p"), column("identifiable classes", "classes"),
-       column("", "occupied_cells"), column("", "draws")}};
+       interval_column("95 % CI over participants", "jackknife"),
+       column("all answers right", "most_bits"), column("guessing: mean", "guessed_mean"),
+       column("95th percentile", "guessed_95"), column("above guessing", "p"),
+       column("identifiable classes", "classes"), column("", "occupied_cells"),
+       column("", "draws")}};
   std::vector<Column>& columns = table.columns;
   columns[2].keys = {"interval_low", "interval_high"};
-  table.rows.push_back(
-      {number(transfer.bits), corrected(columns[1], transfer.miller_madow_bits, refusal),
-       over ? Cell{fmt::format("{} to {}", rounded(over->low), rounded(over->high)),
-                   {over->low, over->high}}
-            : nothing(columns[2]),
-       number(most_bits(matrix)), guessed ? number(guessed->mean) : nothing(columns[4]),
-       guessed ? number(guessed->quantile_95) : nothing(columns[5]),
-       guessed ? probability(guessed->p) : nothing(columns[6]),
-       corrected(columns[7], std::exp2(std::max(0.0, transfer.miller_madow_bits)), refusal),
-       count(transfer.occupied_cells), count(guessed ? guessed->draws : 0)});
+  table.rows.push_back({number(transfer.bits), corrected(columns[1], bits, refusal),
+                        over
+                            ? Cell{fmt::format("{} to {}", rounded(over->low), rounded(over->high)),
+                                   {over->low, over->high}}
+                            : nothing(columns[2]),
+                        number(most), guessed ? number(guessed->mean) : nothing(columns[4]),
+                        guessed ? number(guessed->quantile_95) : nothing(columns[5]),
+                        guessed ? probability(guessed->p) : nothing(columns[6]),
+                        corrected(columns[7], std::exp2(std::max(0.0, bits)), refusal),
+                        count(transfer.occupied_cells), count(guessed ? guessed->draws : 0)});
   return table;
 }
 
 std::vector<std::string> remarks_on(const MatrixOfParticipants& counted, const std::string& refusal,
-                                    double corrected_bits,
                                     const std::optional<GuessedInformation>& guessed) {
   std::vector<std::string> remarks{
       guessed ? fmt::format(
@@ -99,10 +120,11 @@ std::vector<std::string> remarks_on(const MatrixOfParticipants& counted, const s
         "transfers less than "
         "each of them does.");
   }
-  if (refusal.empty() && corrected_bits > most_bits(counted.matrix)) {
+  if (refusal.empty() &&
+      information_transfer(counted.matrix.counts).miller_madow_bits > most_bits(counted.matrix)) {
     remarks.emplace_back(
-        "The correction takes the value above the most that is possible: answers were nearly "
-        "without error.");
+        "The correction for bias leads above what right answers transfer, which is given instead: "
+        "answers were nearly without error.");
   }
   if (counted.are_known() || !refusal.empty()) {
     remarks.emplace_back(
@@ -111,12 +133,12 @@ std::vector<std::string> remarks_on(const MatrixOfParticipants& counted, const s
   return remarks;
 }
 
-std::string sentence_of(const InformationTransfer& transfer, double most,
-                        const std::string& refusal,
+std::string sentence_of(const ConfusionMatrix& matrix, const std::string& refusal,
                         const std::optional<GuessedInformation>& guessed) {
-  std::string sentence = fmt::format(
-      "information transfer {:.2f} bit of {:.2f} (Miller-Madow {})", transfer.bits, most,
-      refusal.empty() ? fmt::format("{:.2f}", transfer.miller_madow_bits) : refusal);
+  std::string sentence =
+      fmt::format("information transfer {:.2f} bit of {:.2f} (Miller-Madow {})",
+                  information_transfer(matrix.counts).bits, most_bits(matrix),
+                  refusal.empty() ? fmt::format("{:.2f}", corrected_bits(matrix)) : refusal);
   if (guessed) {
     sentence +=
         fmt::format("; guessing gives {:.2f}, up to {:.2f}", guessed->mean, guessed->quantile_95);
@@ -127,7 +149,6 @@ std::string sentence_of(const InformationTransfer& transfer, double most,
 
 InformationSection information_section(const MatrixOfParticipants& counted) {
   const CountTable& counts = counted.matrix.counts;
-  const InformationTransfer transfer = information_transfer(counts);
   const std::string refusal = too_few_for_information(counts);
   std::optional<GuessedInformation> guessed;
   if (const auto& tables = counted.randomisation.tables) {
@@ -139,8 +160,8 @@ InformationSection information_section(const MatrixOfParticipants& counted) {
   if (counted.are_known()) {
     result.section.tables.push_back(participants_table(counted));
   }
-  result.section.remarks = remarks_on(counted, refusal, transfer.miller_madow_bits, guessed);
-  result.sentence = sentence_of(transfer, most_bits(counted.matrix), refusal, guessed);
+  result.section.remarks = remarks_on(counted, refusal, guessed);
+  result.sentence = sentence_of(counted.matrix, refusal, guessed);
   return result;
 }
 }  // namespace tapstudy::analysis

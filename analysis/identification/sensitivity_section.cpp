@@ -26,6 +26,53 @@ ReportTable against_rest(const std::string& name, const std::string& title,
   return table;
 }
 
+constexpr std::int64_t fewest_trials = 5;  // of a class, and of the others
+
+// Of each participant with trials enough, a class told from all others. Pooled d' is smaller than
+// these where participants' criteria differ.
+struct SensitivityOfPeople {
+  ReportTable each;
+  ReportTable mean;
+};
+SensitivityOfPeople of_participants(const MatrixOfParticipants& counted,
+                                    const std::vector<std::string>& names) {
+  SensitivityOfPeople tables{{"d_prime_participants",
+                              "Each participant's d'",
+                              {column("participant", "participant_id"), column("class", "class"),
+                               d_prime_column(), interval_column("criterion c", "criterion")}},
+                             {"d_prime_means",
+                              "Means of the participants' d' and criterion",
+                              {column("class", "class"), column("participants", "participants"),
+                               interval_column("d' (95 % CI, t)", "d_prime"),
+                               interval_column("criterion c (95 % CI, t)", "criterion")}}};
+  // of two classes the second one's d' is that of the first, its c the negative
+  const std::size_t classes = names.size() == 2 ? 1 : names.size();
+  for (std::size_t i = 0; i < classes; ++i) {
+    std::vector<double> d_primes;
+    std::vector<double> criteria;
+    for (const ParticipantCounts& person : counted.participants) {
+      const auto square =
+          by_right_response(counted.matrix.stimuli, counted.matrix.responses, person.counts);
+      const TableTotals totals = totals_of(*square);
+      const auto of = one_against_rest(*square).at(i);
+      if (of && totals.rows[i] >= fewest_trials && totals.all - totals.rows[i] >= fewest_trials) {
+        d_primes.push_back(of->d_prime);
+        criteria.push_back(of->criterion);
+        tables.each.rows.push_back({word(person.id), word(names[i]),
+                                    interval(of->d_prime, of->d_prime_interval),
+                                    interval(of->criterion, of->criterion_interval)});
+      }
+    }
+    if (d_primes.size() > 1) {
+      tables.mean.rows.push_back({word(names[i]), count(std::ssize(d_primes)),
+                                  mean_with_interval(d_primes), mean_with_interval(criteria)});
+    }
+  }
+  constexpr std::size_t most_rows_to_read = 60;
+  tables.each.is_for_programs = tables.each.rows.size() > most_rows_to_read;
+  return tables;
+}
+
 ReportTable equivalent_table(const ConfusionMatrix& matrix) {
   const auto alternatives = static_cast<int>(matrix.alternatives());
   const DecisionModelRow& model = *find_decision_model("forced_choice");
@@ -36,7 +83,9 @@ ReportTable equivalent_table(const ConfusionMatrix& matrix) {
   if (correct.trials > 0 && matrix.share_of_alternatives() == 1.0 &&
       alternatives >= model.fewest_alternatives && alternatives <= model.most_alternatives) {
     const Sensitivity of = sensitivity({model.model, alternatives}, correct);
-    table.rows.push_back({count(alternatives), interval(of.d_prime, of.interval)});
+    table.rows.push_back(
+        {count(alternatives),
+         interval(of.d_prime, of.interval.high > 0.0 ? std::optional{of.interval} : std::nullopt)});
   }
   return table;
 }
@@ -53,6 +102,17 @@ ReportSection sensitivity_section(const MatrixOfParticipants& counted) {
     }
     section.tables.push_back(
         against_rest("d_prime", "Each class told from all others", names, *square));
+    if (counted.are_known()) {
+      SensitivityOfPeople people = of_participants(counted, names);
+      if (!people.each.rows.empty()) {
+        section.remarks.push_back(fmt::format(
+            "Means are of participants with at least {} trials of a class and as many others. "
+            "Pooled d' is smaller where participants' criteria differ.",
+            fewest_trials));
+      }
+      section.tables.push_back(std::move(people.mean));
+      section.tables.push_back(std::move(people.each));
+    }
   } else {
     section.remarks.emplace_back("A stimulus has no right answer, so that classes have no d'.");
   }

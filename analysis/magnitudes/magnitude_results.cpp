@@ -84,6 +84,10 @@ void add_power_law(StimulusMagnitudes& of, const Logarithms& logarithms) {
     of.participants.push_back(name);
     all.push_back(estimates);
   }
+  if (all.size() == 1 && people.size() > 1) {
+    of.no_power_law = "only one participant judged all values";
+    return;
+  }
   try {
     of.power_law = power_law(all);
   } catch (const core::InvalidInput& error) {  // too few, or participants with other values
@@ -105,10 +109,15 @@ std::vector<StimulusMagnitudes> magnitude_results(const BlockDesign& design,
   for (const auto& [stimulus, logarithms] : stimuli) {
     StimulusMagnitudes of;
     of.stimulus = stimulus;
-    for (const auto& [value, people] : logarithms) {
+    add_power_law(of, logarithms);
+    for (auto [value, people] : logarithms) {
+      if (of.power_law) {  // each has a unit of his own: means are of the same people
+        std::erase_if(people, [&](const auto& person) {
+          return std::ranges::find(of.incomplete, person.first) != of.incomplete.end();
+        });
+      }
       of.values.push_back(mean_at(value, people));
     }
-    add_power_law(of, logarithms);
     results.push_back(of);
   }
   return results;

@@ -4,13 +4,13 @@
 #include <vector>
 
 #include "analysis/blocks/block_summary.hpp"
-#include "analysis/ratings/magnitude.hpp"
+#include "analysis/magnitudes/power_law.hpp"
 namespace tapstudy::analysis {
 // Numbers that participants gave for the magnitude of one presented stimulus a trial, the last of
 // its alternatives: one before it is the modulus, whose number they were told.
 struct MagnitudeOfValue {
   std::optional<double> value;  // on the block's axis; unset where the stimulus has none
-  double geometric_mean{};      // over participants, of their geometric means
+  double geometric_mean{};  // of participants' geometric means, who judged all values if any did
   int participants{};
   int estimates{};
 };

@@ -84,9 +84,9 @@ std::vector<std::string> remarks_on(const BlockDesign& design, const Magnitudes&
       "by least squares of logarithms; the interval is by t over the participants' exponents."};
   for (const StimulusMagnitudes& of : results) {
     if (!of.incomplete.empty()) {
-      remarks.push_back(
-          fmt::format("The exponent of {} leaves out who did not judge all values: {}.",
-                      of.stimulus, fmt::join(of.incomplete, ", ")));
+      remarks.push_back(fmt::format(
+          "The exponent and the means of {} leave out who did not judge all values: {}.",
+          of.stimulus, fmt::join(of.incomplete, ", ")));
     }
     if (!of.power_law) {
       remarks.push_back(fmt::format("{} has no exponent: {}.", of.stimulus, of.no_power_law));
@@ -109,7 +109,7 @@ Chart chart_of(const BlockDesign& design, const StimulusMagnitudes& of) {
   chart.caption = of.stimulus + ": geometric means and power law, both axes logarithmic";
   chart.alternative =
       fmt::format("Magnitude of {} against {}: exponent {}", of.stimulus, design.axis->name,
-                  with_interval(law.exponent, law.exponent_interval));
+                  interval(law.exponent, law.exponent_interval).text);
   chart.x_label = design.axis->name;
   chart.y_label = "magnitude";
   chart.is_x_logarithmic = true;
@@ -133,17 +133,10 @@ std::shared_ptr<BlockSummary> summarise_magnitudes(const BlockDesign& design,
   for (const StimulusMagnitudes& of : results) {
     if (of.power_law) {
       summary->charts.push_back(chart_of(design, of));
-      summary->main.push_back(
-          {"exponent of " + of.stimulus, of.power_law->exponent, of.power_law->exponent_interval});
+      if (const auto& range = of.power_law->exponent_interval) {
+        summary->main.push_back({"exponent of " + of.stimulus, of.power_law->exponent, *range});
+      }
     }
-  }
-  for (const PlannedHypothesis& planned : design.hypotheses) {
-    summary->hypotheses.push_back({planned,
-                                   "exponents are estimated, with intervals; no test compares them",
-                                   {},
-                                   0.0,
-                                   {},
-                                   0.0});
   }
   return summary;
 }

@@ -12,8 +12,11 @@ constexpr double skip_cost = max_match_difference * max_match_difference;
 constexpr double most_of_shape =
     0.5;  // of skip_cost: frequencies that agree are never parted by it
 constexpr int max_rounds = 50;
-constexpr double factor_between_starts = 1.02;
-constexpr int starts_each_way = 15;  // frequencies 0.74 to 1.35 times the model's
+const double farthest_log = std::log(2.0);  // of frequencies from the model's: E from 1/4 to 4
+constexpr std::size_t fewest_to_leave = 3;  // modes: of one or two any factor fits some pair
+constexpr double clearly_better = 0.25;     // share of the cost
+constexpr double nearly_as_good = 2.0;
+constexpr double same_log = 0.01;
 
 struct Pair {
   std::size_t measured{};
@@ -47,6 +50,33 @@ class Matcher {
       }
     }
     return now;
+  }
+
+  // Settled from the factor of each pair of modes, which is near to that of every assignment.
+  std::vector<Assignment> all_settled() const {
+    std::vector<Assignment> all;
+    for (const double measured : measured_) {
+      for (const double model : model_) {
+        if (std::abs(measured - model) <= farthest_log) {
+          all.push_back(settled_from(measured - model));
+        }
+      }
+    }
+    return all;
+  }
+
+  // That of the stated modulus, unless another with as many modes is clearly better.
+  Assignment best_of(const std::vector<Assignment>& all) const {
+    Assignment best = settled_from(0.0);
+    double least = clearly_better * best.cost;
+    for (const Assignment& other : all) {
+      if (other.pairs.size() >= std::max(best.pairs.size(), fewest_to_leave) &&
+          other.cost < least) {
+        best = other;
+        least = other.cost;
+      }
+    }
+    return best;
   }
 
  private:
@@ -99,12 +129,12 @@ class Matcher {
   const Eigen::MatrixXd& assurance_;
 };
 
-std::optional<double> rival_factor(const Matcher& matcher, const Assignment& chosen) {
+std::optional<double> rival_factor(const std::vector<Assignment>& all, const Assignment& chosen) {
   std::optional<double> rival;
-  double least = 0.5 * chosen.cost;
-  for (int i = -starts_each_way; i <= starts_each_way; ++i) {
-    const Assignment other = matcher.settled_from(i * std::log(factor_between_starts));
-    if (other.pairs.size() >= chosen.pairs.size() && other.cost < least) {
+  double least = nearly_as_good * chosen.cost;
+  for (const Assignment& other : all) {
+    if (other.pairs.size() >= chosen.pairs.size() && other.cost < least &&
+        std::abs(other.log_factor - chosen.log_factor) > same_log) {
       least = other.cost;
       rival = other.log_factor;
     }
@@ -147,7 +177,8 @@ std::optional<ModelUpdate> update_youngs_modulus(const std::vector<Estimate>& me
   const std::vector<double> measured = logarithms_of(measured_hz);
   const std::vector<double> model = logarithms(model_hz);
   const Matcher matcher{measured, model, assurance};
-  const Assignment found = matcher.settled_from(0.0);
+  const std::vector<Assignment> all = matcher.all_settled();
+  const Assignment found = matcher.best_of(all);
   if (found.pairs.empty()) {
     return std::nullopt;
   }
@@ -176,7 +207,7 @@ std::optional<ModelUpdate> update_youngs_modulus(const std::vector<Estimate>& me
                               2.0 * value * error.value,
                               {modulus(found.log_factor - half), modulus(found.log_factor + half)},
                               std::nullopt};
-  if (const auto rival = rival_factor(matcher, found)) {
+  if (const auto rival = rival_factor(all, found)) {
     update.rival_pa = modulus(*rival);
   }
   return update;
@@ -185,6 +216,8 @@ std::optional<ModelUpdate> update_youngs_modulus(const std::vector<Estimate>& me
 double match_cost(const std::vector<Estimate>& measured_hz, const std::vector<double>& model_hz) {
   const std::vector<double> measured = logarithms_of(measured_hz);
   const std::vector<double> model = logarithms(model_hz);
-  return Matcher{measured, model, {}}.settled_from(0.0).cost;
+  const Eigen::MatrixXd unknown;
+  const Matcher matcher{measured, model, unknown};
+  return matcher.best_of(matcher.all_settled()).cost;
 }
 }  // namespace tapstudy::analysis

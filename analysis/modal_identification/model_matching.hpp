@@ -17,8 +17,8 @@ struct ModelUpdate {
   std::vector<std::size_t> unmatched;  // measured modes without one
   Estimate youngs_modulus_pa;
   double rms_misfit{};  // of the logarithms of frequencies
-  // Another Young's modulus from which the assignment fits as many modes with less than half of the
-  // misfit, or more modes: a reason to look twice.
+  // Another Young's modulus, of an assignment that fits as many modes nearly as well: a reason to
+  // look twice.
   std::optional<double> rival_pa;
 };
 
@@ -31,7 +31,9 @@ inline constexpr double max_match_difference = 0.15;
 // differences of the logarithms is least, each at most once; a mode without a partner costs
 // max_match_difference squared, a pair whose shapes are known (assurance: measured by model modes,
 // modal_assurance; empty: not known) half as much times 1 less their assurance. Assignment and
-// factor are repeated until they settle, from the modulus given. The interval is Student's t of the
+// factor are repeated until they settle, from the modulus given; another assignment, of a modulus from
+// a quarter to four times, is taken if it has as many modes, three or more, at less than a quarter of
+// the cost. The interval is Student's t of the
 // scatter between modes, or of one mode its own. Both ascending, not empty, above 0 [Hz]. Unset if
 // no mode finds a partner.
 std::optional<ModelUpdate> update_youngs_modulus(const std::vector<Estimate>& measured_hz,

@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "analysis/blocks/block_summary.hpp"
+#include "analysis/rank_tests/friedman.hpp"
+#include "analysis/rank_tests/signed_rank.hpp"
 #include "analysis/rankings/plackett_luce.hpp"
-#include "analysis/ratings/friedman.hpp"
-#include "analysis/ratings/signed_rank.hpp"
 namespace tapstudy::analysis {
 // Orders of all stimuli of a block, the best first.
 struct RankingResults {

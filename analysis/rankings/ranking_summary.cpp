@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "analysis/rankings/ranking_results.hpp"
-#include "analysis/rated/friedman_table.hpp"
+#include "analysis/ratings/friedman_table.hpp"
 #include "analysis/tables/tabular_summary.hpp"
 namespace tapstudy::analysis {
 namespace {

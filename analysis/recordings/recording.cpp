@@ -34,7 +34,7 @@ Quantity quantity_from(const std::string& word) {
     }
   }
   throw core::InvalidInput{
-      fmt::format("'{}' is no quantity (acceleration, velocity or displacement)", word)};
+      fmt::format("'{}' is not a quantity (acceleration, velocity or displacement)", word)};
 }
 
 const char* name(Quantity quantity) {

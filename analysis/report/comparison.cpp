@@ -34,14 +34,15 @@ IntervalEstimate estimate_of(const MainResult& result) {
 
 void add_rows(const MainResult& first, const MainResult& second, const NamedSummary& a,
               const NamedSummary& b, ReportTable& table) {
-  const IntervalEstimate difference =
-      independent_difference(estimate_of(first), estimate_of(second));
+  const IntervalEstimate compared =
+      first.is_ratio ? independent_ratio(estimate_of(first), estimate_of(second))
+                     : independent_difference(estimate_of(first), estimate_of(second));
   table.rows.push_back(
       {word(first.name), word(participants_of(a)), interval(first.estimate, first.range)});
   table.rows.push_back(
       {word(first.name), word(participants_of(b)), interval(second.estimate, second.range)});
-  table.rows.push_back(
-      {word(first.name), word("difference"), interval(difference.value, difference.interval)});
+  table.rows.push_back({word(first.name), word(first.is_ratio ? "ratio" : "difference"),
+                        interval(compared.value, compared.interval)});
 }
 
 void compare_chances(const MainResult& first, const MainResult& second, const NamedSummary& a,
@@ -78,7 +79,7 @@ std::shared_ptr<TabularSummary> compare_blocks(const BlockSummary& first,
   design.question = first.question;
   auto compared = std::make_shared<TabularSummary>(design);
   ReportTable table{"side_by_side",
-                    "Second less first",
+                    "Second less first, or second / first",
                     {column("result", "result"), column("study", "study"),
                      interval_column("estimate (95 % CI)", "estimate")}};
   const std::vector<MainResult> others = second.main_results();
@@ -111,6 +112,11 @@ void add_block(const BlockSummary& block, const NamedSummary& first, const Named
   if (other->task != block.task) {
     return leave_out(fmt::format("its task is {} in {}, {} in {}", block.task, first.name,
                                  other->task, second.name));
+  }
+  const auto& own = block.personal;
+  if (own && own->is_ratio && other->personal && own->measure != other->personal->measure) {
+    return leave_out(fmt::format("its result is '{}' in {}, '{}' in {}", own->measure, first.name,
+                                 other->personal->measure, second.name));
   }
   const auto compared = compare_blocks(block, *other, first, second);
   if (compared->parts.front().rows.empty()) {
@@ -154,9 +160,9 @@ Summary compare(const NamedSummary& first, const NamedSummary& second) {
     }
   }
   comparison.stated_methods =
-      "Estimates and 95 % intervals are those of the studies' own reports. Differences take the "
-      "two studies' participants for different people, with intervals recovered from the "
-      "estimates' own (Zou & Donner 2008).";
+      "Estimates and 95 % intervals are those of the studies' own reports. Differences, and ratios "
+      "of geometric means, take the two studies' participants for different people, with intervals "
+      "recovered from the estimates' own (Zou & Donner 2008), of ratios from their logarithms.";
   return comparison;
 }
 }  // namespace tapstudy::analysis

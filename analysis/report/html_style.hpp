@@ -13,9 +13,10 @@ table{border-collapse:collapse}caption{text-align:left;color:#567;font-size:.85r
 .accuracy th{font-weight:500;text-align:left;padding:.2rem 1rem .2rem 0}.accuracy td{padding:.2rem 1rem .2rem 0}
 .accuracy td{white-space:nowrap}.dot{width:200px;height:16px;overflow:visible}.dot .axis{stroke:#cdd6df}.dot .chance{stroke:#b0413e;stroke-dasharray:3 2}
 .dot .interval{stroke:#08519c;stroke-width:2}.dot circle{fill:#08519c}
-.scroll{overflow-x:auto}.scroll table{display:table}
+.scroll{overflow-x:auto;position:relative;left:50%;transform:translateX(-50%);width:fit-content;min-width:100%;max-width:min(96vw,90rem)}
 .data th,.data td{padding:.2rem 1rem .2rem 0;text-align:right;white-space:nowrap;font-weight:400}
-.data thead th{font-weight:500;vertical-align:bottom;white-space:normal;min-width:4rem}.data tr>:first-child{text-align:left}
+.data thead th{font-weight:500;vertical-align:bottom;white-space:normal;min-width:4rem}
+.data tr>:first-child,.data tr>.text{text-align:left}.data td.text{white-space:normal;max-width:22rem}
 .charts{display:grid;grid-template-columns:repeat(auto-fill,minmax(min(100%,18rem),1fr));gap:1rem;margin-top:1rem}
 figure{margin:0}figcaption{font-size:.85rem;color:#567}.chart{width:100%;height:auto}.chart text{font-size:11px;fill:currentColor}
 .chart path{fill:none}.chart .frame{stroke:#8796a5}.chart .line{stroke:#567;stroke-width:1.5}.chart .chance{stroke:#b0413e;stroke-dasharray:3 2}
@@ -33,9 +34,9 @@ section>h3{font-size:1.1rem;border-top:1px solid #cdd6df;padding-top:.6rem}secti
   .matrix td{border-color:#14191f}.matrix td.correct{outline-color:#dde5ec}.contents a{color:#8ab8e6}section>h3{border-color:#3a4754}
   .dot .axis{stroke:#3a4754}.dot .chance,.chart .chance,.chart .mark{stroke:#ef8a80}.dot .interval,.chart .interval{stroke:#6baed6}.dot circle{fill:#6baed6}
   .chart .line{stroke:#b9c9d6}.chart .band{fill:#274a68}.chart circle{fill:#6baed6;stroke:#6baed6}.chart circle.open{fill:#14191f}}
-@media print{body{margin:0;max-width:none;font-size:11pt}.scroll{overflow:visible}
-  .data{font-size:7.5pt}.data th,.data td,.accuracy td{white-space:normal;overflow-wrap:break-word;padding-right:.4rem}
-  .data thead th{min-width:0}.charts{grid-template-columns:repeat(2,1fr)}figure,tr{break-inside:avoid}h2,h3{break-after:avoid}
+@media print{body{margin:0;max-width:none;font-size:11pt}.scroll{overflow:visible;left:0;transform:none;width:auto;max-width:none}
+  .data{font-size:9.5pt}.data.wide{font-size:7.5pt}.data th,.data td,.accuracy td{padding-right:.4rem}.data.wide td{white-space:normal}
+  .data thead th{min-width:0;overflow-wrap:break-word}.charts{grid-template-columns:repeat(2,1fr)}figure,tr{break-inside:avoid}h2,h3{break-after:avoid}
   .matrix td{width:auto}.matrix td,.simulated{print-color-adjust:exact;-webkit-print-color-adjust:exact}}
 )css";
 }  // namespace tapstudy::analysis

@@ -28,7 +28,7 @@ void keep_only(Summary& summary, const std::vector<std::string>& names) {
   const std::vector<std::string> known = names_in(summary);
   for (const std::string& name : names) {
     if (std::ranges::find(known, name) == known.end()) {
-      throw core::InvalidInput{fmt::format("--only {}: is no part of this report (one of: {})",
+      throw core::InvalidInput{fmt::format("--only {}: is not part of this report (one of: {})",
                                            name, fmt::join(known, ", "))};
     }
   }

@@ -10,7 +10,7 @@
 #include "analysis/magnitudes/magnitude_summary.hpp"
 #include "analysis/preferences/preference_summary.hpp"
 #include "analysis/rankings/ranking_summary.hpp"
-#include "analysis/rated/rating_summary.hpp"
+#include "analysis/ratings/rating_summary.hpp"
 #include "analysis/thresholds/threshold_summary.hpp"
 #include "core/error.hpp"
 namespace tapstudy::analysis {

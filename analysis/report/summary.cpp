@@ -8,7 +8,7 @@
 #include <set>
 
 #include "analysis/identification/identification_summary.hpp"
-#include "analysis/ratings/signed_rank.hpp"
+#include "analysis/rank_tests/signed_rank.hpp"
 #include "analysis/report/block_parts.hpp"
 #include "analysis/report/statistic.hpp"
 namespace tapstudy::analysis {
@@ -166,7 +166,7 @@ std::string methods(const Summary& summary) {
     text += sentence + " ";
   }
   text += "Other statistics state their methods with their results. ";
-  if (summary.loop) {
+  if (summary.loop && summary.modes != results::to_text(results::Mode::simulated)) {
     text += fmt::format(
         "The haptic loop made {} ticks; {} were late, {} were skipped, and {} force samples were "
         "lost. {} of {} impacts came up to 5 ms after a late tick.",

@@ -24,6 +24,10 @@ void write_text(std::ostream& out, const Summary& summary) {
     }
     block->write_text(out);
   }
-  write_sections_text(out, summary.sections);
+  std::vector<ReportSection> shown = summary.sections;
+  if (!summary.blocks.empty()) {
+    std::erase_if(shown, [](const ReportSection& section) { return section.is_detail; });
+  }
+  write_sections_text(out, shown);
 }
 }  // namespace tapstudy::analysis

@@ -33,8 +33,11 @@ const std::vector<CsvRow>& checked_rows(const std::vector<CsvRow>& rows, const s
   }
   if (rows.size() < 2 || rows.front().cells.front() != "stimulus") {
     refuse(file, rows.empty() ? 1 : rows.front().line,
-           "is neither a matrix (its header starts with 'stimulus', and there is a row for each) "
-           "nor a table of answers (a row each, with columns for stimulus and response)");
+           fmt::format(
+               "is neither a matrix (its header starts with 'stimulus', and there is a row "
+               "for each) nor a table of answers (a row each; --stimulus-column and "
+               "--response-column name the columns, here: {})",
+               fmt::join(rows.empty() ? std::vector<std::string>{} : rows.front().cells, ", ")));
   }
   return rows;
 }

@@ -14,6 +14,7 @@ struct ReportSection {
   std::vector<Chart> charts{};
   std::vector<std::string> remarks{};  // how it was computed, and what could not be
   std::vector<Chart> folded_charts{};  // shown on demand
+  bool is_detail{};                    // for the page and files; not printed beside results
   std::string name{};                  // by which it is asked for, where it is of a whole study
 };
 

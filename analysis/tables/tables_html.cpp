@@ -6,35 +6,56 @@
 #include "core/print.hpp"
 namespace tapstudy::analysis {
 namespace {
-void write_row(std::ostream& out, const ReportTable& table, const std::vector<Cell>& row) {
-  out << "<tr>";
-  bool is_first = true;
-  for (std::size_t i = 0; i < row.size(); ++i) {
-    if (table.columns[i].heading.empty()) {
-      continue;
+constexpr std::size_t wide = 8;  // columns
+
+bool is_digit(char c) {
+  return c >= '0' && c <= '9';
+}
+
+// A number is not parted from its sign or unit: minus signs, and spaces that do not break.
+std::string cell_html(const std::string& text) {
+  const std::string safe = escaped(text);
+  std::string html;
+  for (std::size_t i = 0; i < safe.size(); ++i) {
+    const char before = i == 0 ? ' ' : safe[i - 1];
+    const char after = i + 1 < safe.size() ? safe[i + 1] : ' ';
+    if (safe[i] == '-' && is_digit(after) && (before == ' ' || before == '(')) {
+      html += "−";
+    } else if (safe[i] == ' ' && after == '%') {
+      html += "&nbsp;";
+    } else {
+      html += safe[i];
     }
-    core::print(out, "{}{}{}", is_first ? "<th scope=row>" : "<td>", escaped(row[i].text),
-                is_first ? "</th>" : "</td>");
-    is_first = false;
+  }
+  return html;
+}
+
+void write_cells(std::ostream& out, const ReportTable& table, const std::vector<std::size_t>& shown,
+                 const std::vector<Cell>& row) {
+  out << "<tr>";
+  for (const std::size_t i : shown) {
+    const bool is_first = i == shown.front();
+    core::print(out, "<{}{}>{}</{}>", is_first ? "th scope=row" : "td",
+                is_text_column(table, i) ? " class=text" : "", cell_html(row[i].text),
+                is_first ? "th" : "td");
   }
   out << "</tr>\n";
 }
-
 }  // namespace
 
 void write_table_html(std::ostream& out, const ReportTable& table) {
+  const std::vector<std::size_t> shown = shown_columns(table);
   core::print(out,
               "<h3>{0}</h3><div class=scroll tabindex=0 role=group aria-label=\"{0}\">"
-              "<table class=data><thead><tr>",
-              escaped(table.title));
-  for (const Column& column : table.columns) {
-    if (!column.heading.empty()) {
-      core::print(out, "<th scope=col>{}</th>", escaped(column.heading));
-    }
+              "<table class=\"data{1}\"><thead><tr>",
+              escaped(table.title), shown.size() >= wide ? " wide" : "");
+  for (const std::size_t i : shown) {
+    core::print(out, "<th scope=col{}>{}</th>", is_text_column(table, i) ? " class=text" : "",
+                cell_html(table.columns[i].heading));
   }
   out << "</tr></thead><tbody>\n";
   for (const auto& row : table.rows) {
-    write_row(out, table, row);
+    write_cells(out, table, shown, row);
   }
   out << "</tbody></table></div>\n";
 }

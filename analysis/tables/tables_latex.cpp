@@ -10,7 +10,7 @@
 namespace tapstudy::analysis {
 namespace {
 // What LaTeX reads as commands, and what its text fonts lack.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 19> replacements{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 22> replacements{
     {{"\\", "\\textbackslash{}"},
      {"^", "\\textasciicircum{}"},
      {"~", "\\textasciitilde{}"},
@@ -29,22 +29,25 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 19> replacem
      {"η", "$\\eta$"},
      {"χ", "$\\chi$"},
      {"κ", "$\\kappa$"},
+     {"<", "$<$"},
+     {">", "$>$"},
+     {"≤", "$\\leq$"},
      {"\n", " "}}};
 
-std::vector<std::size_t> shown_columns(const ReportTable& table) {
-  std::vector<std::size_t> shown;
-  for (std::size_t i = 0; i < table.columns.size(); ++i) {
-    if (!table.columns[i].heading.empty()) {
-      shown.push_back(i);
-    }
-  }
-  return shown;
+// A minus sign, not a hyphen.
+bool is_minus(std::string_view before, std::string_view text) {
+  return text.size() > 1 && text[0] == '-' && text[1] >= '0' && text[1] <= '9' &&
+         (before.empty() || before.back() == ' ' || before.back() == '(');
 }
 }  // namespace
 
 std::string latex_text(std::string_view text) {
   std::string safe;
   while (!text.empty()) {
+    if (is_minus(safe, text)) {
+      safe += "$-$";
+      text.remove_prefix(1);
+    }
     const auto found = std::ranges::find_if(
         replacements, [&](const auto& each) { return text.starts_with(each.first); });
     const bool is_known = found != replacements.end();
@@ -56,10 +59,14 @@ std::string latex_text(std::string_view text) {
 
 void write_table_latex(std::ostream& out, const ReportTable& table, const std::string& label) {
   const std::vector<std::size_t> shown = shown_columns(table);
+  std::string alignment;
+  for (const std::size_t column : shown) {
+    alignment += column == shown.front() || is_text_column(table, column) ? 'l' : 'r';
+  }
   core::print(out,
               "\\begin{{table}}[htbp]\n\\centering\n\\caption{{{}}}\n\\label{{tab:{}}}\n"
-              "\\begin{{tabular}}{{l{}}}\n\\toprule\n",
-              latex_text(table.title), label, std::string(shown.size() - 1, 'r'));
+              "\\begin{{tabular}}{{{}}}\n\\toprule\n",
+              latex_text(table.title), label, alignment);
   const auto write_row = [&](const auto& text_of) {
     for (const std::size_t column : shown) {
       core::print(out, "{}{}", column == shown.front() ? "" : " & ", latex_text(text_of(column)));

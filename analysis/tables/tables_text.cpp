@@ -17,10 +17,7 @@ struct Grid {
 Grid grid_of(const ReportTable& table) {
   Grid grid;
   grid.rows.resize(table.rows.size());
-  for (std::size_t i = 0; i < table.columns.size(); ++i) {
-    if (table.columns[i].heading.empty()) {
-      continue;
-    }
+  for (const std::size_t i : shown_columns(table)) {
     grid.headings.push_back(table.columns[i].heading);
     for (std::size_t row = 0; row < table.rows.size(); ++row) {
       grid.rows[row].push_back(table.rows[row][i].text);

@@ -87,9 +87,11 @@ void estimate(ParticipantThreshold& person, const PsychometricModel& model,
 void add_posterior(ParticipantThreshold& person, const PsychometricModel& model,
                    const std::vector<Level>& levels) {
   try {
-    person.posterior = psychometric_posterior(model, levels).estimates;
-  } catch (const core::InvalidInput&) {  // the fit says why
-    person.posterior.reset();
+    const PsychometricPosterior posterior = psychometric_posterior(model, levels);
+    person.posterior = posterior.estimates;
+    person.no_posterior = posterior.estimates ? "" : explanation(posterior.outcome);
+  } catch (const core::InvalidInput& error) {
+    person.no_posterior = error.what();
   }
 }
 

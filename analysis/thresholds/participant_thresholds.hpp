@@ -27,6 +27,7 @@ struct ParticipantThreshold {
   std::optional<ThresholdEstimate> estimate;
   std::string no_threshold;                     // why there is none; empty: there is
   std::optional<PosteriorEstimates> posterior;  // unset also where it would take too long
+  std::string no_posterior;                     // why there is none; empty: there is, or not sought
 };
 
 // Over participants: each one's threshold counts the same. Standard errors of fits to adaptive

@@ -1,5 +1,7 @@
 #include "analysis/thresholds/threshold_summary.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "analysis/discrimination/answer_counts.hpp"
@@ -12,7 +14,27 @@ MainResult mean_threshold(const VariedAxis& axis, const MeanLogThreshold& log_me
   return {axis.is_fraction ? "Weber fraction of " + axis.name
                            : "just noticeable difference of " + axis.name,
           from_log(log_mean.mean),
-          {from_log(log_mean.interval.low), from_log(log_mean.interval.high)}};
+          {from_log(log_mean.interval.low), from_log(log_mean.interval.high)},
+          {},
+          {},
+          true};
+}
+
+// A threshold is where the function without guesses has a value that depends on its shape.
+PersonalValues thresholds_of(const BlockDesign& design, const ThresholdResults& results) {
+  const VariedAxis& axis = *design.axis;
+  PersonalValues thresholds{fmt::format("threshold of {}{}{}, {}, {} function", axis.name,
+                                        axis.is_below ? " below the standard" : "",
+                                        axis.is_fraction ? " (Weber fraction)" : "", design.task,
+                                        core::row_of(design.shape).name),
+                            true,
+                            {}};
+  for (const ParticipantThreshold& person : results.participants) {
+    if (person.estimate) {
+      thresholds.by_participant[person.participant_id] = person.estimate->curve.threshold;
+    }
+  }
+  return thresholds;
 }
 }  // namespace
 
@@ -26,17 +48,9 @@ std::shared_ptr<BlockSummary> summarise_thresholds(const BlockDesign& design,
   }
   summary->charts = threshold_charts(design, results);
   summary->remarks = threshold_remarks(design, results);
+  summary->personal = thresholds_of(design, results);
   if (results.mean_log) {
     summary->main = {mean_threshold(*design.axis, *results.mean_log)};
-  }
-  for (const PlannedHypothesis& planned : design.hypotheses) {
-    summary->hypotheses.push_back(
-        {planned,
-         "thresholds are estimated, with intervals; no test compares them",
-         {},
-         design.guess_rate,
-         {},
-         0.0});
   }
   return summary;
 }

@@ -40,11 +40,17 @@ void add_threshold(std::vector<Cell>& row, const VariedAxis& axis, double thresh
   }
 }
 
-ReportTable participants_table(const VariedAxis& axis, const ThresholdResults& results) {
-  ReportTable table{
-      "participants",
-      "Thresholds of the participants",
-      {column("participant", "participant_id"), proportion_column("correct", "correct")}};
+// Where participants may say that nothing differs, answers to trials in which something does.
+Column answers_column(const BlockDesign& design) {
+  return proportion_column(design.has_own_guess_rate ? "differences noticed (hits)" : "correct",
+                           "correct");
+}
+
+ReportTable participants_table(const BlockDesign& design, const ThresholdResults& results) {
+  const VariedAxis& axis = *design.axis;
+  ReportTable table{"participants",
+                    "Thresholds of the participants",
+                    {column("participant", "participant_id"), answers_column(design)}};
   const std::vector<Column> thresholds = threshold_columns(axis);
   table.columns.insert(table.columns.end(), thresholds.begin(), thresholds.end());
   const Column at = column("correct at threshold", "proportion_at_threshold");
@@ -154,16 +160,15 @@ Cell d_prime_at(const Level& level, const ParticipantThreshold& person,
              : interval(same_different_independent(log_linear_rate(level.answers),
                                                    log_linear_rate(person.false_alarms))
                             .d_prime,
-                        std::optional<Interval>{});
+                        same_different_independent_interval(level.answers, person.false_alarms));
 }
 
 // Of procedures that jump from level to level programs see it only.
 ReportTable levels_table(const BlockDesign& design, const ThresholdResults& results) {
-  ReportTable table{
-      "levels",
-      "Levels of each participant",
-      {column("participant", "participant_id"), column("level", "level"),
-       proportion_column("correct", "correct"), interval_column("d' (95 % CI)", "d_prime")}};
+  ReportTable table{"levels",
+                    "Levels of each participant",
+                    {column("participant", "participant_id"), column("level", "level"),
+                     answers_column(design), interval_column("d' (95 % CI)", "d_prime")}};
   const auto task = design.has_own_guess_rate ? std::nullopt : decision_task(design);
   for (const ParticipantThreshold& person : results.participants) {
     for (const Level& level : person.levels) {
@@ -177,11 +182,11 @@ ReportTable levels_table(const BlockDesign& design, const ThresholdResults& resu
   return table;
 }
 
-ReportTable levels_over_participants(const ThresholdResults& results) {
-  ReportTable table{"levels_over_participants",
-                    "Levels, answers of all participants together (not a fit)",
-                    {column("level", "level"), column("participants", "participants"),
-                     proportion_column("correct", "correct")}};
+ReportTable levels_over_participants(const BlockDesign& design, const ThresholdResults& results) {
+  ReportTable table{
+      "levels_over_participants",
+      "Levels, answers of all participants together (not a fit)",
+      {column("level", "level"), column("participants", "participants"), answers_column(design)}};
   std::map<double, std::vector<Proportion>> answers;
   for (const ParticipantThreshold& person : results.participants) {
     for (const Level& level : person.levels) {
@@ -219,11 +224,11 @@ ReportTable false_alarm_table(const ThresholdResults& results) {
 
 std::vector<ReportTable> threshold_tables(const BlockDesign& design,
                                           const ThresholdResults& results) {
-  return {participants_table(*design.axis, results),
+  return {participants_table(design, results),
           pooled_table(*design.axis, results),
           fits_table(design, results),
           posteriors_table(results),
-          levels_over_participants(results),
+          levels_over_participants(design, results),
           false_alarm_table(results),
           levels_table(design, results),
           tracks_of(results)};

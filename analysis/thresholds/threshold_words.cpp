@@ -34,6 +34,12 @@ std::vector<std::string> remarks_on_people(const ThresholdResults& results) {
           fmt::format("{} has no threshold: {}.", person.participant_id, person.no_threshold));
     }
   }
+  for (const ParticipantThreshold& person : results.participants) {
+    if (person.estimate && !person.no_posterior.empty()) {
+      remarks.push_back(fmt::format("{} has a threshold but no posterior: {}.",
+                                    person.participant_id, person.no_posterior));
+    }
+  }
   if (std::ranges::any_of(results.participants, [](const ParticipantThreshold& person) {
         return person.estimate && person.estimate->is_step;
       })) {

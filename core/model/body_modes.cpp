@@ -43,6 +43,22 @@ SolvedBody solve_once(const BodySpec& body, const MeshSize& size, const Progress
   return solved;
 }
 
+// What is followed as the mesh is refined: the frequencies in the band or, where there are none,
+// the first above it, which a finer mesh may bring down into the band. Empty where it is far above.
+Eigen::ArrayXd followed(const BodySpec& body, const MeshSize& size, const SolvedBody& solved) {
+  constexpr int max_doublings = 8;
+  if (solved.modes.kappa_rad_per_m.size() > 0) {
+    return solved.modes.kappa_rad_per_m;
+  }
+  BodySpec wider = body;
+  Eigen::ArrayXd above;
+  for (int i = 0; above.size() == 0 && i < max_doublings; ++i) {
+    wider.band_limit_rad_per_m *= 2.0;
+    above = solve_once(wider, size, {}).modes.kappa_rad_per_m;
+  }
+  return above.head(std::min<Eigen::Index>(above.size(), 1));
+}
+
 double largest_move(const Eigen::ArrayXd& before, const Eigen::ArrayXd& after) {
   const Eigen::Index both = std::min(before.size(), after.size());
   return both == 0 ? 0.0 : (before.head(both) / after.head(both) - 1.0).abs().maxCoeff();
@@ -121,15 +137,16 @@ SolvedBody refine(const BodySpec& body, const ProgressHook& progress) {
   while (rounds.size() < max_rounds && (rounds.empty() || rounds.back().tets <= finer * max_tets)) {
     size.max_tet_volume_m3 = volume_m3;
     SolvedBody solved = solve_once(body, size, progress);
-    const Eigen::ArrayXd& after = solved.modes.kappa_rad_per_m;
+    const Eigen::ArrayXd after = followed(body, size, solved);
     add(solved.modes.report.cost, cost);
     const double moved = rounds.empty() ? HUGE_VAL : largest_move(before, after);
-    rounds.push_back({solved.modes.report.tets, static_cast<int>(after.size()), moved});
+    rounds.push_back(
+        {solved.modes.report.tets, static_cast<int>(solved.modes.kappa_rad_per_m.size()), moved});
     const auto held_m2 = held_areas_m2(solved.mesh, body.shape, body.fixations);
     unsettled = unsettled_region(held_before_m2, held_m2);
     held_before_m2 = held_m2;
-    const bool has_no_modes = rounds.size() > 1 && before.size() == 0 && after.size() == 0;
-    if (has_no_modes ||
+    const bool is_far_above = rounds.size() > 1 && before.size() == 0 && after.size() == 0;
+    if (is_far_above ||
         (before.size() == after.size() && has_settled(rounds, accuracy) && unsettled.empty())) {
       solved.modes.report.refinement = rounds;
       solved.modes.report.cost = cost;

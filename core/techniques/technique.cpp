@@ -4,27 +4,14 @@
 namespace tapstudy::core {
 const std::vector<Technique>& techniques() {
   static const std::vector<Technique> table{
-      {"none", "the contact spring alone", {}},
-      {"sinusoid",
-       "a decaying sinusoid at each impact, independent of position",
-       {&decaying_sinusoid}},
-      {"fem", "the plate's own vibration at the contact point", {&plate_vibration}},
-      {"fem+sinusoid",
-       "the plate's vibration and the decaying sinusoid",
-       {&plate_vibration, &decaying_sinusoid}},
-      {"fem-coupled",
-       "a finger that stays on the vibrating plate, each acting on the other",
-       {&coupled_vibration}},
-      {"fem-coupled+sinusoid",
-       "a finger that stays on the vibrating plate, and the decaying sinusoid",
-       {&coupled_vibration, &decaying_sinusoid}},
-      {"beam",
-       "the vibration of a plate held by its end, by the theory of beams",
-       {&plate_vibration},
-       Theory::beam},
-      {"recorded",
-       "a measured transient at each impact, by its place and speed",
-       {&recorded_transient}},
+      {"none", {}},
+      {"sinusoid", {&decaying_sinusoid}},
+      {"fem", {&plate_vibration}},
+      {"fem+sinusoid", {&plate_vibration, &decaying_sinusoid}},
+      {"fem-coupled", {&coupled_vibration}},
+      {"fem-coupled+sinusoid", {&coupled_vibration, &decaying_sinusoid}},
+      {"beam", {&plate_vibration}, Theory::beam},
+      {"recorded", {&recorded_transient}},
   };
   return table;
 }

@@ -10,7 +10,6 @@ namespace tapstudy::core {
 // components of a technique are distinct, and are added in order.
 struct Technique {
   std::string_view name;  // in protocols, stores and reports
-  std::string_view summary;
   std::vector<const ForcePart*> parts;
   Theory theory{Theory::solid};  // of the model
 

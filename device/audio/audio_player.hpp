@@ -28,7 +28,7 @@ struct Played {
 };
 
 // Plays a source through a sink on a thread of its own, faded in and out. Neither call waits for
-// the card. After an under-run it plays on; a card that has gone, or takes nothing for a second, is
+// the card. After an underrun it plays on; a card that has gone, or takes nothing for a second, is
 // lost for good.
 class AudioPlayer {
  public:

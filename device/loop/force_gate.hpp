@@ -29,7 +29,7 @@ class ForceGate {
   // Starts the ramp down to zero force.
   void stop() noexcept;
   State state() const noexcept { return state_; }
-  // Less than the wanted force passes, as a result of either.
+  // Less than the wanted force passes, since rise_again or a max_share below 1.
   bool is_rising_again() const noexcept { return is_rising_again_; }
 
  private:

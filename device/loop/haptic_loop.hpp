@@ -5,8 +5,8 @@
 #include <stop_token>
 
 #include "core/placement.hpp"
+#include "core/tick/spsc_ring.hpp"
 #include "core/tick/tap_renderer.hpp"
-#include "core/tick/trace_ring.hpp"
 #include "device/device.hpp"
 #include "device/hand/scripted_hand.hpp"
 #include "device/loop/force_gate.hpp"

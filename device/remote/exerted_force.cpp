@@ -9,6 +9,7 @@ constexpr double peak_kept_a_tick = 0.9;  // a tenth is left after 22 ticks
 constexpr double max_ratio = 2.0;
 constexpr double margin_n = 1.0;
 constexpr int max_ticks_above = 2;
+constexpr int max_ticks_against = 5;
 constexpr double min_ratio = 0.05;
 constexpr int max_ticks_without = 30;
 }  // namespace
@@ -22,10 +23,15 @@ TickFault ExertedForce::judge(const core::Vec3& commanded_n,
     return TickFault::none;
   }
   const bool is_above = reported > max_ratio * recent_peak_n_ + margin_n;
-  const bool is_without = commanded >= noticeable_n && reported < min_ratio * commanded;
+  const bool is_force = commanded >= noticeable_n;
+  const double along = is_force ? reported_n.dot(commanded_n) / commanded : 0.0;
+  const bool is_against = along <= -noticeable_n;
+  const bool is_without = is_force && along < min_ratio * commanded;
   ticks_above_ = is_above ? ticks_above_ + 1 : 0;
+  ticks_against_ = is_against ? ticks_against_ + 1 : 0;
   ticks_without_ = is_without ? ticks_without_ + 1 : 0;
-  return ticks_above_ > max_ticks_above || ticks_without_ > max_ticks_without
+  return ticks_above_ > max_ticks_above || ticks_against_ > max_ticks_against ||
+                 ticks_without_ > max_ticks_without
              ? TickFault::force_not_followed
              : TickFault::none;
 }

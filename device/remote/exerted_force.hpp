@@ -5,9 +5,10 @@ namespace tapstudy::device {
 // Of a measured force: less may be an offset, noise, or lost in friction.
 inline constexpr double noticeable_n = 0.5;
 
-// Compares the force that a device reports with the force that it was sent: a report far above, in
-// three ticks running, or of almost nothing for 30 ticks of force, is a fault. Both margins are
-// wide, since devices measure late and coarsely. One that reports nothing (NaN) is not judged.
+// Compares the force that a device reports with the force that it was sent. Faults are a report far
+// above, in three ticks running; one against the commanded force, in six; and one of almost nothing
+// along it for 30 ticks of force. Margins are wide, since devices measure late and coarsely. One
+// that reports nothing (NaN) is not judged.
 class ExertedForce {
  public:
   void forget() noexcept { *this = {}; }
@@ -18,6 +19,7 @@ class ExertedForce {
  private:
   double recent_peak_n_{0.0};  // of the commands, decaying
   int ticks_above_{0};
+  int ticks_against_{0};
   int ticks_without_{0};
 };
 }  // namespace tapstudy::device

@@ -53,6 +53,8 @@ std::optional<RemoteReply> decoded_reply(std::span<const std::uint8_t> bytes) no
   }
   reply.status = taken<std::uint32_t>(bytes, 60);
   reply.exerted_n = taken_vector(bytes, 64);
-  return reply;
+  const bool is_known = reply.exerted_n->array().isFinite().all();
+  const bool is_unknown = reply.exerted_n->array().isNaN().all();
+  return is_known || is_unknown ? std::optional{reply} : std::nullopt;
 }
 }  // namespace tapstudy::device

@@ -18,7 +18,7 @@ namespace tapstudy::device {
 //    8  u32  number of the request, rising     12  3 × f64  position [m]
 //   12  3 × f64  force to exert from now [N]   36  3 × f64  velocity [m/s]
 //                                              60  u32  status, below
-//                                              64  3 × f64  force exerted now [N]; NaN: unknown
+//                                              64  3 × f64  force exerted now [N]; all NaN: unknown
 //
 // The other program holds the last force, and must release it after 20 ms without a request. From
 // its first request on it should listen to that sender only, until it has been silent for a second,

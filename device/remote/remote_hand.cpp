@@ -11,6 +11,7 @@
 #include <cerrno>
 #include <limits>
 #include <thread>
+#include <utility>
 
 #include "device/remote/packets.hpp"
 namespace tapstudy::device {
@@ -111,6 +112,10 @@ TickFault RemoteHand::receive(core::HandState& hand) noexcept {
       return TickFault::bad_reply;
     }
     if (reply->number == number_) {
+      if (tells_status_ && !reply->status) {
+        return TickFault::bad_reply;
+      }
+      tells_status_ = reply->status.has_value();
       hand = reply->hand;
       status_ = reply->status;
       detail_.achieved_n = reply->exerted_n.value_or(core::Vec3::Constant(untold));
@@ -128,6 +133,8 @@ TickFault RemoteHand::ask(core::HandState& hand) noexcept {
 TickFault RemoteHand::begin() noexcept {
   held_.forget();
   exerted_.forget();
+  velocity_.forget();
+  since_reply_s_ = 0.0;
   is_holding_ = false;
   released_replies_ = 0;
   detail_.missed_replies = 0;
@@ -149,7 +156,8 @@ TickFault RemoteHand::fault_of_report() noexcept {
   return exerted_.judge(force_n_, detail_.achieved_n);
 }
 
-TickFault RemoteHand::read(core::HandState& hand, double /*elapsed_s*/) noexcept {
+TickFault RemoteHand::read(core::HandState& hand, double elapsed_s) noexcept {
+  since_reply_s_ += elapsed_s;
   const TickFault fault = ask(hand);
   if (fault == TickFault::no_reply && held_.use_last_reading(hand)) {
     detail_.missed_replies = held_.missed_replies();
@@ -161,7 +169,9 @@ TickFault RemoteHand::read(core::HandState& hand, double /*elapsed_s*/) noexcept
   }
   detail_.missed_replies = 0;
   held_.keep(hand);
-  return fault_of_report();
+  const TickFault of_report = fault_of_report();
+  return of_report != TickFault::none ? of_report
+                                      : velocity_.judge(hand, std::exchange(since_reply_s_, 0.0));
 }
 
 TickFault RemoteHand::write(const core::Vec3& force_n) noexcept {

@@ -5,6 +5,7 @@
 
 #include "device/device.hpp"
 #include "device/remote/exerted_force.hpp"
+#include "device/remote/velocity_check.hpp"
 namespace tapstudy::device {
 // A device driven by another program on this machine, over UDP on the loopback (packets.hpp): each
 // tick requests the position and waits for it, then sends the force, which is applied immediately.
@@ -49,8 +50,11 @@ class RemoteHand final : public Device {
   core::Vec3 force_n_{core::Vec3::Zero()};
   HeldHand held_;
   ExertedForce exerted_;
-  bool is_holding_{false};   // a reply of this trial reported so
-  int released_replies_{0};  // of this trial, in a row
+  VelocityCheck velocity_;
+  double since_reply_s_{0.0};
+  bool tells_status_{false};  // a reply was of version 2: none may be of version 1 then
+  bool is_holding_{false};    // a reply of this trial reported so
+  int released_replies_{0};   // of this trial, in a row
   std::optional<std::uint32_t> status_;
   DeviceDetail detail_;
 };

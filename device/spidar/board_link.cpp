@@ -71,7 +71,7 @@ TickFault BoardLink::fault_of_watchdog(double elapsed_s) noexcept {
   guardian_rounds_ = watchdog_->rounds();
   guardian_silent_s_ = is_silent ? guardian_silent_s_ + std::min(elapsed_s, dt_s_) : 0.0;
   if (watchdog_->has_acted()) {
-    return TickFault::stood_still;
+    return TickFault::watchdog_expired;
   }
   return guardian_silent_s_ > max_guardian_silence_s ? TickFault::guardian_lost : TickFault::none;
 }
@@ -99,11 +99,11 @@ TickFault BoardLink::exchange(const DacCounts& outputs, double elapsed_s) noexce
   }
   const bool is_claimed = is_watched();
   if (is_claimed && !watchdog_->claim_output()) {
-    return TickFault::stood_still;
+    return TickFault::watchdog_expired;
   }
   const UsbOutcome outcome = exchange_as_owner(outputs);
   if (is_claimed && !watchdog_->release_output()) {
-    return TickFault::stood_still;  // in the middle of the exchange
+    return TickFault::watchdog_expired;  // in the middle of the exchange
   }
   const bool is_stale = outcome == UsbOutcome::ok && missed_replies_ > 0 && !is_echo_right();
   if (outcome == UsbOutcome::timed_out || is_stale) {

@@ -39,7 +39,7 @@ class BoxQpSolver {
       held_[i] = x[i] <= problem.low[i] ? -1 : x[i] >= problem.high[i] ? 1 : 0;
     }
     for (int round = 1; round <= max_rounds; ++round) {
-      if (!go_to_minimum_of_free(problem, x) && !let_go(problem, x)) {
+      if (!go_to_minimum_of_free(problem, x) && !release_constraint(problem, x)) {
         return {x, round, true};
       }
     }
@@ -84,7 +84,7 @@ class BoxQpSolver {
   }
 
   // Releases the active bound with the most negative multiplier; false if there is none.
-  bool let_go(const BoxQp<N>& problem, const Vector& x) noexcept {
+  bool release_constraint(const BoxQp<N>& problem, const Vector& x) noexcept {
     const Vector downhill = problem.c - problem.Q * x;
     double most = 1e-12 * (problem.c.cwiseAbs().maxCoeff() + (problem.Q * x).cwiseAbs().maxCoeff());
     Eigen::Index best = -1;

@@ -163,7 +163,7 @@ std::unique_ptr<WatchdogChannel, Guardian::Unmap> Guardian::shared_channel() {
   void* const memory = mmap(nullptr, sizeof(WatchdogChannel), PROT_READ | PROT_WRITE,
                             MAP_SHARED | MAP_ANONYMOUS, -1, 0);
   if (memory == MAP_FAILED) {  // NOLINT(cppcoreguidelines-pro-type-cstyle-cast): the C library's
-    throw DeviceError{"no shared memory for the device's guardian"};
+    throw DeviceError{"cannot share memory with the device's watchdog process"};
   }
   return std::unique_ptr<WatchdogChannel, Unmap>{
       std::construct_at(static_cast<WatchdogChannel*>(memory))};
@@ -172,7 +172,7 @@ std::unique_ptr<WatchdogChannel, Guardian::Unmap> Guardian::shared_channel() {
 Guardian::Guardian(const UsbNode& node, GuardianSettings settings) : channel_{shared_channel()} {
   std::array<int, 2> ends{};
   if (pipe2(ends.data(), O_CLOEXEC) != 0) {
-    throw DeviceError{"no pipe for the device's guardian"};
+    throw DeviceError{"cannot create a pipe to the device's watchdog process"};
   }
   child_ = fork();
   if (child_ == 0) {
@@ -185,7 +185,7 @@ Guardian::Guardian(const UsbNode& node, GuardianSettings settings) : channel_{sh
   life_ = ends[1];
   if (child_ < 0) {
     close(life_);
-    throw DeviceError{"the device's guardian cannot be started"};
+    throw DeviceError{"the device's watchdog process cannot be started"};
   }
   set_oom_score("500");  // the program shall be killed before its guardian
 }

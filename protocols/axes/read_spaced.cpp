@@ -5,13 +5,25 @@
 #include <algorithm>
 #include <functional>
 namespace tapstudy::protocols {
+Spacing read_spacing(MapReader& reader) {
+  return reader.one_of<Spacing>("spacing", {{"linear", Spacing::linear}, {"log", Spacing::log}},
+                                "linear");
+}
+
+bool check_spacing(MapReader& reader, Spacing spacing, double lowest) {
+  const bool is_possible = spacing == Spacing::linear || lowest > 0.0;
+  if (!is_possible) {
+    reader.reject("spacing", fmt::format("log needs values above 0, not {}", lowest));
+  }
+  return is_possible;
+}
+
 std::optional<SpacedEnds> read_ends(MapReader& reader, const EndKeys& keys, const Range& allowed) {
   const std::size_t earlier_problems = reader.problems_in_file();
   SpacedEnds ends;
   ends.low = reader.number(keys.low, allowed);
   ends.high = reader.number(keys.high, allowed);
-  ends.spacing = reader.one_of<Spacing>(
-      "spacing", {{"linear", Spacing::linear}, {"log", Spacing::log}}, "linear");
+  ends.spacing = read_spacing(reader);
   if (reader.problems_in_file() > earlier_problems) {
     return std::nullopt;
   }
@@ -19,11 +31,7 @@ std::optional<SpacedEnds> read_ends(MapReader& reader, const EndKeys& keys, cons
     reader.reject(keys.low, fmt::format("{} is not below {}, {}", ends.low, keys.high, ends.high));
     return std::nullopt;
   }
-  if (ends.spacing == Spacing::log && ends.low <= 0.0) {
-    reader.reject("spacing", fmt::format("log needs values above 0, not {}", ends.low));
-    return std::nullopt;
-  }
-  return ends;
+  return check_spacing(reader, ends.spacing, ends.low) ? std::optional{ends} : std::nullopt;
 }
 
 std::optional<SpacedValues> read_spaced(MapReader& reader, const EndKeys& keys,

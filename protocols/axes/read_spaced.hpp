@@ -11,6 +11,11 @@ struct SpacedEnds {
   double high{};  // > low; for log spacing both > 0
   Spacing spacing{};
 };
+// The key `spacing`, linear or log; linear if it is not given.
+Spacing read_spacing(MapReader& reader);
+// Whether values from the lowest on can be spaced so; notes the problem.
+bool check_spacing(MapReader& reader, Spacing spacing, double lowest);
+
 struct EndKeys {
   const char* low;
   const char* high;

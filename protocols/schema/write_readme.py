@@ -36,6 +36,7 @@ EXAMPLES = {
         "stimuli": [PAPER, EVERY_KEY],
         "forms": [EVERY_KEY],
         "display": [EVERY_KEY],
+        "block_order": [EVERY_KEY],
         "masking": [EVERY_KEY],
         "simulation": ["protocols/paper/reality_finger.yaml", EVERY_KEY],
     },
@@ -113,7 +114,7 @@ def list_range(schema):
     low, high = schema.get("minItems", 0), schema.get("maxItems")
     kind = "mappings" if "properties" in items else "names"
     words = []
-    if "object" in items.get("type", []):
+    if isinstance(items.get("type"), list) and "object" in items["type"]:
         kind = "texts, each one or one for each language"
     if items.get("type") == "number":
         kind = "numbers"

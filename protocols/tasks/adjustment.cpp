@@ -131,7 +131,6 @@ class AdjustmentTask final : public PreferenceTask {
   bool needs_reference() const override { return false; }
   bool uses_order() const override { return false; }
   bool can_present_real_plates() const override { return false; }
-  bool is_random(const Block& /*block*/) const override { return true; }
   std::string_view success() const override { return {}; }
 
   void read(MapReader& reader, const Protocol& protocol, Block& block) const override {

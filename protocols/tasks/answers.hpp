@@ -13,8 +13,8 @@ namespace tapstudy::protocols {
 //   line    a mark on a line, from 0 to 1
 enum class AnswerKind { option, number, setting, order, line };
 
-// What the ends of a line mean.
-struct LineEnds {
+// What the ends of a scale mean.
+struct ScaleEnds {
   std::string low;
   std::string high;
 };
@@ -27,7 +27,7 @@ struct Answers {
   std::optional<std::size_t> judged{};  // the alternative that all answers are about
   std::size_t settings{};               // how many there are
   std::optional<double> modulus{};      // the number of the first alternative, as people are told
-  LineEnds ends{};                      // of a line
+  ScaleEnds ends{};                     // of a line, or where the options are steps of a scale
 };
 
 // The answer that a text gives: an option's name where the text is its place, from 1; a number

@@ -3,6 +3,9 @@
 #include "protocols/read_sections.hpp"
 namespace tapstudy::protocols {
 namespace {
+// Of each way to present a trial, in a run of trials that is shuffled as a whole.
+constexpr std::size_t times_in_run = 4;
+
 std::size_t observations(const Comparison& comparison) {
   std::size_t count = 0;
   for (const auto& track : comparison.tracks) {
@@ -27,8 +30,14 @@ void DiscriminationTask::read(MapReader& reader, const Protocol& protocol, Block
 
 std::size_t DiscriminationTask::trials_per_repetition(const Block& block) const {
   if (block.comparison) {
-    return observations(*block.comparison) *
-           static_cast<std::size_t>(1 + empty_trials_per_observation());
+    const auto trials = observations(*block.comparison) *
+                        static_cast<std::size_t>(1 + empty_trials_per_observation());
+    if (empty_trials_per_observation() == 0) {
+      return trials;
+    }
+    // only whole runs hold as many observations as they should
+    const std::size_t run = times_in_run * layouts(block).size();
+    return (trials + run - 1) / run * run;
   }
   return pairs_of(block.stimuli.size()).size() * layouts(block).size();
 }
@@ -40,7 +49,6 @@ int DiscriminationTask::visits(const Block& block, const SimulatedTapSettings& t
 // The comparison's value is chosen when its trial comes. Shuffled within runs, because procedures
 // may end at any trial; runs are long enough that nobody foresees how one ends.
 std::vector<PlannedTrial> DiscriminationTask::of_family(const Block& block, core::Rng& rng) const {
-  constexpr std::size_t times_in_run = 4;
   const Comparison& comparison = *block.comparison;
   const Alternative standard{block.stimuli.front(), {{comparison.axis, comparison.standard}}};
   const Alternative varied{block.stimuli.front(), {}, true};
@@ -64,8 +72,7 @@ std::vector<PlannedTrial> DiscriminationTask::of_family(const Block& block, core
 
 // Every pair in every way once in each repetition, in random order.
 std::vector<PlannedTrial> DiscriminationTask::of_pairs(const Block& block, core::Rng& rng) const {
-  std::vector<PlannedTrial> all;
-  for (int repetition = 1; repetition <= block.repetitions; ++repetition) {
+  return shuffled_repetitions(block, rng, [&](int repetition) {
     std::vector<PlannedTrial> part;
     for (const auto& [standard, comparison] : pairs_of(block.stimuli.size())) {
       for (const Layout& way : layouts(block)) {
@@ -77,10 +84,8 @@ std::vector<PlannedTrial> DiscriminationTask::of_pairs(const Block& block, core:
         part.push_back(std::move(trial));
       }
     }
-    rng.shuffle(part);
-    all.insert(all.end(), part.begin(), part.end());
-  }
-  return all;
+    return part;
+  });
 }
 
 std::vector<PlannedTrial> DiscriminationTask::trials(const Block& block, const Draw& draw) const {

@@ -14,7 +14,6 @@ class DiscriminationTask : public Task {
   bool has_correct_answer() const override { return true; }
   bool uses_order() const override { return false; }
   bool can_present_real_plates() const override { return false; }
-  bool is_random(const Block& /*block*/) const override { return true; }
   int counted_answers(const Block& block) const override {
     return block.repetitions * static_cast<int>(trials_per_repetition(block));
   }

@@ -110,7 +110,6 @@ class Identification final : public Task {
   bool has_correct_answer() const override { return true; }
   bool uses_order() const override { return true; }
   bool can_present_real_plates() const override { return true; }
-  bool is_random(const Block& block) const override { return block.order != Order::listed; }
   int counted_answers(const Block& block) const override {
     return block.repetitions * static_cast<int>(block.stimuli.size());
   }
@@ -132,14 +131,7 @@ class Identification final : public Task {
   }
 
   std::vector<PlannedTrial> trials(const Block& block, const Draw& draw) const override {
-    core::Rng rng{
-        core::derived_seed(draw.participant_seed, core::Purpose::schedule, draw.block_index)};
-    std::vector<PlannedTrial> all;
-    for (const OrderedStimulus& next :
-         ordered_stimuli(block, rng, {draw.order_index, draw.counterbalancing_seed})) {
-      all.push_back({0, block.name, this, block.is_practice, next.repetition, {{next.stimulus}}});
-    }
-    return with_catch_trials(std::move(all), block, draw);
+    return with_catch_trials(ordered_trials(*this, block, draw), block, draw);
   }
   std::size_t trials_per_repetition(const Block& block) const override {
     return block.stimuli.size();

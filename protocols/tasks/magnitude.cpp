@@ -46,7 +46,6 @@ class Magnitude final : public PreferenceTask {
   bool needs_reference() const override { return false; }
   bool uses_order() const override { return true; }
   bool can_present_real_plates() const override { return false; }
-  bool is_random(const Block& block) const override { return block.order != Order::listed; }
   std::string_view success() const override { return {}; }
 
   void read(MapReader& reader, const Protocol& protocol, Block& block) const override {
@@ -57,17 +56,12 @@ class Magnitude final : public PreferenceTask {
     });
   }
   std::vector<PlannedTrial> trials(const Block& block, const Draw& draw) const override {
-    core::Rng rng{
-        core::derived_seed(draw.participant_seed, core::Purpose::schedule, draw.block_index)};
-    std::vector<PlannedTrial> all;
-    for (const OrderedStimulus& next :
-         ordered_stimuli(block, rng, {draw.order_index, draw.counterbalancing_seed})) {
-      PlannedTrial trial{0, block.name, this, block.is_practice, next.repetition, {}};
+    std::vector<PlannedTrial> all = ordered_trials(*this, block, draw);
+    for (PlannedTrial& trial : all) {
       if (block.modulus) {
-        trial.alternatives.push_back({block.modulus->stimulus});
+        trial.alternatives.front().is_comparison = true;
+        trial.alternatives.insert(trial.alternatives.begin(), {block.modulus->stimulus});
       }
-      trial.alternatives.push_back({next.stimulus, next.values, block.modulus.has_value()});
-      all.push_back(std::move(trial));
     }
     return all;
   }

@@ -60,8 +60,7 @@ class MatchToSample final : public SampleTask {
   std::vector<PlannedTrial> trials(const Block& block, const Draw& draw) const override {
     core::Rng rng{
         core::derived_seed(draw.participant_seed, core::Purpose::labels, draw.block_index)};
-    std::vector<PlannedTrial> all;
-    for (int repetition = 1; repetition <= block.repetitions; ++repetition) {
+    return shuffled_repetitions(block, rng, [&](int repetition) {
       std::vector<PlannedTrial> part;
       for (const std::vector<std::size_t>& subset :
            subsets(block.stimuli.size(), alternatives(block))) {
@@ -72,10 +71,8 @@ class MatchToSample final : public SampleTask {
           }
         }
       }
-      rng.shuffle(part);
-      all.insert(all.end(), part.begin(), part.end());
-    }
-    return all;
+      return part;
+    });
   }
   int visits(const Block& block, const SimulatedTapSettings& taps) const override {
     return taps.visits * (block.alternatives + 1);

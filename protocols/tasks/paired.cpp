@@ -15,7 +15,6 @@ class Paired final : public PreferenceTask {
   std::optional<Claim> claim() const override { return Claim::chosen_above_chance; }
   bool uses_order() const override { return false; }
   bool can_present_real_plates() const override { return false; }
-  bool is_random(const Block& /*block*/) const override { return true; }
   std::string_view success() const override { return "prefer the expected one"; }
   // Ties are left out of tests.
   double chance_level(const Block& /*block*/, const Protocol& /*protocol*/) const override {
@@ -35,8 +34,7 @@ class Paired final : public PreferenceTask {
   std::vector<PlannedTrial> trials(const Block& block, const Draw& draw) const override {
     core::Rng rng{
         core::derived_seed(draw.participant_seed, core::Purpose::labels, draw.block_index)};
-    std::vector<PlannedTrial> all;
-    for (int repetition = 1; repetition <= block.repetitions; ++repetition) {
+    return shuffled_repetitions(block, rng, [&](int repetition) {
       std::vector<PlannedTrial> part;
       for (const auto& [first, second] : pairs_of(block.stimuli.size())) {
         const Alternative one{block.stimuli[first]};
@@ -44,10 +42,8 @@ class Paired final : public PreferenceTask {
         part.push_back({0, block.name, this, block.is_practice, repetition, {one, other}});
         part.push_back({0, block.name, this, block.is_practice, repetition, {other, one}});
       }
-      rng.shuffle(part);
-      all.insert(all.end(), part.begin(), part.end());
-    }
-    return all;
+      return part;
+    });
   }
   std::size_t trials_per_repetition(const Block& block) const override {
     return 2 * pairs_of(block.stimuli.size()).size();

@@ -18,7 +18,6 @@ class Rating final : public PreferenceTask {
   bool has_chance_level() const override { return false; }
   bool uses_order() const override { return true; }
   bool can_present_real_plates() const override { return true; }
-  bool is_random(const Block& block) const override { return block.order != Order::listed; }
   std::string_view success() const override { return "be the highest"; }
 
   void read(MapReader& reader, const Protocol& /*protocol*/, Block& block) const override {
@@ -34,14 +33,7 @@ class Rating final : public PreferenceTask {
     block.rating = scale;
   }
   std::vector<PlannedTrial> trials(const Block& block, const Draw& draw) const override {
-    core::Rng rng{
-        core::derived_seed(draw.participant_seed, core::Purpose::schedule, draw.block_index)};
-    std::vector<PlannedTrial> all;
-    for (const OrderedStimulus& next :
-         ordered_stimuli(block, rng, {draw.order_index, draw.counterbalancing_seed})) {
-      all.push_back({0, block.name, this, block.is_practice, next.repetition, {{next.stimulus}}});
-    }
-    return all;
+    return ordered_trials(*this, block, draw);
   }
   std::size_t trials_per_repetition(const Block& block) const override {
     return block.stimuli.size();
@@ -59,7 +51,9 @@ class Rating final : public PreferenceTask {
     }
     all.front().label += " " + block.rating->low;
     all.back().label += " " + block.rating->high;
-    return one_of(std::move(all));
+    Answers steps = one_of(std::move(all));
+    steps.ends = {block.rating->low, block.rating->high};
+    return steps;
   }
   std::vector<std::string> alternative_labels(const PlannedTrial& /*trial*/) const override {
     return {};

@@ -15,8 +15,10 @@ bool are_different(const PlannedTrial& trial) {
 class SameDifferent final : public DiscriminationTask {
  public:
   std::string_view name() const override { return "same_different"; }
-  std::string_view decision_model(const Block& /*block*/) const override {
-    return "same_different_independent_observation";
+  // Where stimuli change from trial to trial, participants can only compare the two (Macmillan &
+  // Creelman 2005, ch. 9): d' of such a differencing observer takes rates.
+  std::string_view decision_model(const Block& block) const override {
+    return block.stimuli.size() > 2 ? "" : "same_different_independent_observation";
   }
   bool has_own_guess_rate() const override { return true; }
   Answers answers(const Block& block, const Protocol& /*protocol*/) const override {

@@ -9,7 +9,7 @@ const Task& choice();
 // Which of several is the comparison? m-alternative forced choice along an axis.
 const Task& comparison();
 const Task& same_different();
-// Which of three or four differs? Triangle and tetrad tests.
+// Which of three or four differs? Triangle test, and oddity of four.
 const Task& odd_one_out();
 const Task& abx();
 // Which of two to four is the sample?

@@ -112,8 +112,6 @@ class Task {
   virtual bool uses_order() const = 0;
   // Whether a trial can be of real plates, which are mounted one at a time.
   virtual bool can_present_real_plates() const = 0;
-  // Whether what is presented when depends on the seeds.
-  virtual bool is_random(const Block& block) const = 0;
   // Whether answers are counted against a chance level; ratings are not.
   virtual bool has_chance_level() const { return true; }
   // Of what success() says, where there is one: one option of those that can be answered.

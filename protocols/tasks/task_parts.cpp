@@ -1,8 +1,11 @@
 #include "protocols/tasks/task_parts.hpp"
 
+#include <algorithm>
+#include <iterator>
 #include <numeric>
 
 #include "core/error.hpp"
+#include "protocols/ordering.hpp"
 namespace tapstudy::protocols {
 std::optional<std::size_t> Task::outcome(const PlannedTrial& trial, const Block& block,
                                          const std::string& response) const {
@@ -69,6 +72,32 @@ const Alternative& labelled(const PlannedTrial& trial, const std::string& label)
   }
   throw core::InvalidInput{"trial " + std::to_string(trial.number) + ": the answer '" + label +
                            "' names no alternative"};
+}
+
+std::vector<PlannedTrial> ordered_trials(const Task& task, const Block& block, const Draw& draw) {
+  std::vector<PlannedTrial> all;
+  for (const OrderedCondition& next : ordered_conditions(block, draw)) {
+    const std::string& stimulus = block.stimuli.at(stimulus_of(block, next.condition));
+    all.push_back({0,
+                   block.name,
+                   &task,
+                   block.is_practice,
+                   next.repetition,
+                   {{stimulus, values_of(block, next.condition)}}});
+  }
+  return all;
+}
+
+std::vector<PlannedTrial> shuffled_repetitions(
+    const Block& block, core::Rng& rng,
+    const std::function<std::vector<PlannedTrial>(int repetition)>& trials_of) {
+  std::vector<PlannedTrial> all;
+  for (int repetition = 1; repetition <= block.repetitions; ++repetition) {
+    std::vector<PlannedTrial> part = trials_of(repetition);
+    rng.shuffle(part);
+    std::ranges::move(part, std::back_inserter(all));
+  }
+  return all;
 }
 
 std::vector<std::pair<std::size_t, std::size_t>> pairs_of(std::size_t count) {

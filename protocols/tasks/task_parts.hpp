@@ -1,4 +1,7 @@
 #pragma once
+#include <functional>
+
+#include "core/rng.hpp"
 #include "protocols/protocol.hpp"
 // What several tasks share.
 namespace tapstudy::protocols {
@@ -13,6 +16,13 @@ Answers one_of(std::vector<Option> options);
 
 // The alternative that a blind label names. Throws InvalidInput if none has it.
 const Alternative& labelled(const PlannedTrial& trial, const std::string& label);
+
+// A trial of each of the block's conditions in their order, with this one alternative.
+std::vector<PlannedTrial> ordered_trials(const Task& task, const Block& block, const Draw& draw);
+// What `trials_of` makes of each repetition, shuffled within it.
+std::vector<PlannedTrial> shuffled_repetitions(
+    const Block& block, core::Rng& rng,
+    const std::function<std::vector<PlannedTrial>(int repetition)>& trials_of);
 
 // Of `count` things taken two at a time, each with a smaller and a greater place.
 std::vector<std::pair<std::size_t, std::size_t>> pairs_of(std::size_t count);

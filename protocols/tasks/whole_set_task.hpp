@@ -7,7 +7,6 @@ class WholeSetTask : public PreferenceTask {
  public:
   bool uses_order() const override { return false; }
   bool can_present_real_plates() const override { return false; }
-  bool is_random(const Block& /*block*/) const override { return true; }
   std::vector<PlannedTrial> trials(const Block& block, const Draw& draw) const override;
   std::size_t trials_per_repetition(const Block& /*block*/) const override { return 1; }
   std::vector<std::string> alternative_labels(const PlannedTrial& trial) const override {

@@ -11,6 +11,7 @@
 
 #include "core/error.hpp"
 #include "protocols/yaml/documents.hpp"
+#include "protocols/yaml/likely_cause.hpp"
 #include "protocols/yaml/yaml_words.hpp"
 namespace tapstudy::protocols {
 bool is_name(const std::string& text) {
@@ -56,9 +57,9 @@ YAML::Node loaded(const std::string& text, const std::string& file,
     }
     return document;
   } catch (const YAML::Exception& error) {
-    throw core::InvalidInput{
-        fmt::format("{}:{}:{}: not YAML: {} (a text with any of ? : , # [ {{ goes in quotes)", file,
-                    error.mark.line + 1, error.mark.column + 1, error.msg)};
+    throw core::InvalidInput{fmt::format("{}:{}:{}: not YAML: {} ({})", file, error.mark.line + 1,
+                                         error.mark.column + 1, error.msg,
+                                         likely_cause(text, error.mark.line))};
   }
 }
 }  // namespace
@@ -220,7 +221,12 @@ Eigen::VectorXd MapReader::numbers(const std::string& key, Eigen::Index size, co
     return values;
   }
   if (!node->IsSequence() || node->size() != static_cast<std::size_t>(size)) {
-    reject_at(*node, path_of(key), fmt::format("is not a list of {} numbers", size));
+    const bool is_longer = node->IsSequence() && node->size() > static_cast<std::size_t>(size);
+    reject_at(
+        *node, path_of(key),
+        fmt::format(
+            "is not a list of {} numbers{}", size,
+            is_longer ? fmt::format(": it has {} (decimals take a point)", node->size()) : ""));
     return values;
   }
   for (Eigen::Index i = 0; i < size; ++i) {

@@ -31,10 +31,22 @@ constexpr std::array renamed{Renamed{"trial", "number"}, Renamed{"trial_type", "
                              Renamed{"response", "response"},
                              Renamed{"response_time", "response_time_s"}};
 constexpr const char* further_columns =
-    "is_correct is_corrected first_response given_by confidence time_from_first_contact_s trial_id "
+    "alternatives is_correct is_corrected first_response given_by confidence "
+    "time_from_first_contact_s trial_id "
     "attempt repetition is_practice is_catch presented status duration_s first_contact_s contacts "
     "impacts late_impacts max_impact_speed_m_s ticks late_ticks skipped_ticks saturated_ticks "
     "dropped_samples";
+
+// v_trials with a column `alternatives`.
+constexpr const char* trials_with_alternatives = R"sql((
+SELECT v_trials.*, (
+  SELECT group_concat(stimulus || iif(is_comparison, '*', '') || coalesce((
+      SELECT ' (' || group_concat(axis || '=' || printf('%.9g', value), ', ') || ')'
+      FROM axis_value WHERE axis_value.trial_id = one.trial_id
+        AND axis_value.position = one.position), ''), '; ')
+  FROM (SELECT * FROM alternative WHERE alternative.trial_id = v_trials.trial_id
+        ORDER BY position) AS one) AS alternatives
+FROM v_trials))sql";
 
 struct Labels {
   BidsLabels participants;
@@ -170,7 +182,8 @@ class Dataset {
     std::ranges::copy(known_columns("participant_id session_id block trial_id number attempt"),
                       std::back_inserter(columns));
     std::map<fs::path, std::string> files;
-    each_row(*store_, columns, "v_trials ORDER BY trial_id", [&](Statement& statement, Row row) {
+    const std::string source = fmt::format("{} ORDER BY trial_id", trials_with_alternatives);
+    each_row(*store_, columns, source, [&](Statement& statement, Row row) {
       const auto at = static_cast<int>(shown);
       const Place where =
           place(statement.text(at), statement.integer(at + 1), statement.text(at + 2));

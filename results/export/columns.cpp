@@ -31,6 +31,9 @@ std::vector<Column> columns_of_context() {
        "answered; interrupted by a fault or a stop; repeated (its answer does not count); "
        "timed_out; skipped by the operator"},
       {"stimulus", text, "", "Name of the stimulus; in a trial missing if there were several"},
+      {"alternatives", text, "",
+       "All that was presented, in the order of their labels: NAME (AXIS=VALUE, …), separated by "
+       "semicolons; * marks a comparison, what stands beside it is the standard"},
   };
 }
 

@@ -33,7 +33,7 @@ core::HandState touching(const Strike& strike) {
 }  // namespace
 
 const core::Technique& plate_alone() {
-  static const core::Technique technique{"plate alone", "", {&core::plate_vibration}};
+  static const core::Technique technique{"plate alone", {&core::plate_vibration}};
   return technique;
 }
 

@@ -55,7 +55,7 @@ Outcome outcome_of(const LoopBehaviour& seen) {
 std::string described(const LoopBehaviour& seen) {
   const std::string left = seen.residual_oscillation < 1e-6
                                ? "nothing"
-                               : fmt::format("{:.2g} %", 100.0 * seen.residual_oscillation);
+                               : fmt::format("{:.3g} %", 100.0 * seen.residual_oscillation);
   return fmt::format("{} impact{}, plate {:.2g} J and force {:.3g} N at most, {} of the swing left",
                      seen.impacts, seen.impacts == 1 ? "" : "s", seen.max_energy_j,
                      seen.max_force_n, left);
@@ -63,7 +63,8 @@ std::string described(const LoopBehaviour& seen) {
 
 std::string described(const core::PlateModel& plate) {
   const int rigid = plate.body.modes.report.rigid_body_modes;
-  return fmt::format("{} modes{}, ", plate.modal.frequency_hz.size(),
+  return fmt::format("{} mode{}{}, ", plate.modal.frequency_hz.size(),
+                     plate.modal.frequency_hz.size() == 1 ? "" : "s",
                      rigid > 0 ? fmt::format(" and {} of the rigid body", rigid) : "");
 }
 
@@ -80,7 +81,7 @@ StabilityCase play(const std::string& property, double value, const Stage& stage
       played.words = described(built);
       plate.emplace(vibrating_plate(stage.plate.shape, std::move(built.modal)));
     }
-    const core::Technique penalty_alone{"penalty alone", "", {}};
+    const core::Technique penalty_alone{"penalty alone", {}};
     core::TapRenderer renderer =
         core::make_renderer(plate ? plate_alone() : penalty_alone, stage.rendering,
                             touched_shape(stage.plate.shape), plate ? &*plate : nullptr);

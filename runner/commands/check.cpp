@@ -1,5 +1,7 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <memory>
 
 #include "core/error.hpp"
@@ -46,7 +48,20 @@ void warn_of_overdamped_modes(const protocols::Protocol& protocol, ModelLibrary&
   }
 }
 
+// "2 modes below 300 Hz: 57.6, 248 Hz"
+std::string words_of(const Eigen::ArrayXd& frequencies_hz, double band_limit_hz) {
+  constexpr Eigen::Index most = 6;
+  std::vector<std::string> first;
+  for (const double frequency_hz : frequencies_hz.head(std::min(most, frequencies_hz.size()))) {
+    first.push_back(fmt::format("{:.3g}", frequency_hz));
+  }
+  return fmt::format(
+      "{} below {} Hz: {}{} Hz", counted(static_cast<std::size_t>(frequencies_hz.size()), "mode"),
+      band_limit_hz, fmt::join(first, ", "), frequencies_hz.size() > most ? " …" : "");
+}
+
 void print_models(const protocols::Protocol& protocol, ModelLibrary& models) {
+  bool are_linear = false;
   fmt::print("\nmodels\n");
   for (const protocols::Stimulus& stimulus : protocol.stimuli) {
     if (!stimulus.technique->needs_model()) {
@@ -63,17 +78,23 @@ void print_models(const protocols::Protocol& protocol, ModelLibrary& models) {
         : models.bodies_used() > used_before
             ? fmt::format("from the cache, where it took {:.3f} s", report.cost.total_s())
             : "scaled from the same body";
-    const auto modes = static_cast<std::size_t>(plate->model.frequency_hz.size());
-    fmt::print("  {}: {}, {} below {} Hz, {}\n", stimulus.name,
-               stimulus.technique->needs_beam()
-                   ? std::string{"a beam, in closed form"}
-                   : fmt::format("{} {} tetrahedra, {} dof", report.tets,
-                                 report.order == 2 ? "quadratic" : "linear", report.dofs),
-               counted(modes, "mode"), protocol.band_limit_hz, cost);
+    const bool is_beam = stimulus.technique->needs_beam();
+    are_linear = are_linear || (!is_beam && report.order == 1);
+    fmt::print("  {}: {}, {}, {}\n", stimulus.name,
+               is_beam ? std::string{"a beam, in closed form"}
+                       : fmt::format("{} {} tetrahedra, {} dof", report.tets,
+                                     report.order == 2 ? "quadratic" : "linear", report.dofs),
+               words_of(plate->model.frequency_hz, protocol.band_limit_hz), cost);
+  }
+  if (are_linear) {
+    fmt::print(
+        "  warning: linear tetrahedra are too stiff in bending, the more the thinner the plate and "
+        "the coarser the mesh: frequencies may be several times too high (mesh: {{order: 2}}; "
+        "{{accuracy: 0.02}} refines until they hold still)\n");
   }
   warn_of_overdamped_modes(protocol, models);
   if (models.bodies_used() == 0) {
-    fmt::print("  none: no technique here vibrates\n");
+    fmt::print("  none: no technique here needs a model\n");
   }
 }
 

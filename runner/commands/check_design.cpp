@@ -9,9 +9,11 @@
 #include <set>
 
 #include "analysis/statistics/proportion.hpp"
+#include "protocols/block_order.hpp"
 #include "protocols/ordering.hpp"
 #include "protocols/schedule.hpp"
 #include "results/trace_codec.hpp"
+#include "runner/console/scenes.hpp"
 #include "runner/devices/masking_noise.hpp"
 #include "runner/experiments/screens.hpp"
 #include "runner/session/session_row.hpp"
@@ -39,6 +41,22 @@ void warn_of_balance(const protocols::Block& block, int participants) {
   } else if (participants % rows != 0) {
     fmt::print("    warning: {} participants do not balance the {} orders (use a multiple of {})\n",
                participants, rows, rows);
+  }
+}
+
+// Where one answer is right more often than others, accuracy alone says little.
+void warn_of_unequal_answers(const protocols::Block& block) {
+  std::map<std::string, int> right;
+  for (const std::string& stimulus : block.stimuli) {
+    const auto found = block.right_response.find(stimulus);
+    right[found == block.right_response.end() ? stimulus : found->second] += 1;
+  }
+  const auto most = std::ranges::max_element(right, {}, [](const auto& of) { return of.second; });
+  const auto stimuli = static_cast<double>(block.stimuli.size());
+  if (!block.right_response.empty() &&
+      most->second * std::ssize(right) > std::ssize(block.stimuli)) {
+    fmt::print("    warning: always answering '{}' is right in {:.0f} %\n", most->first,
+               100.0 * most->second / stimuli);
   }
 }
 
@@ -141,7 +159,17 @@ std::string heading(const protocols::Block& block, int trials) {
                      block.comparison ? "at most " : "", trials);
 }
 
-void warn_of_block_order(const protocols::Protocol& protocol) {
+void warn_of_block_order(const protocols::Protocol& protocol, int participants) {
+  const int orders = protocols::balanced_block_orders(protocol);
+  if (participants % orders != 0) {
+    fmt::print(
+        "  warning: {} participants do not balance the {} orders of the blocks (use a multiple of "
+        "{})\n",
+        participants, orders, orders);
+  }
+  if (protocol.block_order.order != protocols::Order::listed) {
+    return;
+  }
   std::map<const protocols::Task*, int> blocks_of;
   for (const protocols::Block& block : protocol.blocks) {
     blocks_of[block.task] += block.is_practice ? 0 : 1;
@@ -149,7 +177,9 @@ void warn_of_block_order(const protocols::Protocol& protocol) {
   if (std::ranges::any_of(blocks_of, [](const auto& task) { return task.second > 1; })) {
     fmt::print(
         "  note: blocks come in the file's order for every participant: what distinguishes two of "
-        "one task is confounded with practice and fatigue\n");
+        "one task is confounded with practice and fatigue (block_order: {{order: williams}} "
+        "balances "
+        "it)\n");
   }
 }
 
@@ -174,6 +204,7 @@ void print_blocks(const protocols::Protocol& protocol, int participants) {
                            : std::optional{block.task->guess_rate(block, protocol)});
     } else if (block.task->has_chance_level()) {
       print_power(protocol, block, participants);
+      warn_of_unequal_answers(block);
     }
   }
   double screens_s = 0.0;
@@ -188,6 +219,31 @@ void print_blocks(const protocols::Protocol& protocol, int participants) {
              1e-6 * results::usual_bytes_per_tick * recorded_s * protocol.rate_hz * participants);
 }
 
+void warn_of_unasked_forms(const protocols::Protocol& protocol) {
+  std::set<std::string> asked{protocol.forms_before.begin(), protocol.forms_before.end()};
+  asked.insert(protocol.forms_after.begin(), protocol.forms_after.end());
+  for (const protocols::Block& block : protocol.blocks) {
+    asked.insert(block.forms_after.begin(), block.forms_after.end());
+  }
+  for (const auto& [name, form] : protocol.forms) {
+    if (!asked.contains(name)) {
+      fmt::print("  warning: forms.{} is never asked (forms_before, forms_after)\n", name);
+    }
+  }
+}
+
+// The picture would tell which plate it is.
+void note_hidden_plates(const protocols::Protocol& protocol) {
+  const Scenes scenes{protocol, protocol.placement};
+  for (const protocols::Block& block : protocol.blocks) {
+    if (protocol.display.shows_plate && block.presented == protocols::Presented::virtual_plates &&
+        !scenes.number_of(block.stimuli.front(), block)) {
+      fmt::print("  note: the page shows no plate in block {}: its plates look different\n",
+                 block.name);
+    }
+  }
+}
+
 void print_screens(const protocols::Protocol& protocol) {
   fmt::print("\nscreens of a participant\n");
   int total = 0;
@@ -196,6 +252,8 @@ void print_screens(const protocols::Protocol& protocol) {
     total += screen.count;
   }
   fmt::print("  {:>4}  in all, if no trial is repeated\n", total);
+  warn_of_unasked_forms(protocol);
+  note_hidden_plates(protocol);
 }
 
 void print_languages(const protocols::Protocol& protocol) {
@@ -223,7 +281,7 @@ void print_design(const protocols::Protocol& protocol, int participants) {
     return;
   }
   print_blocks(protocol, participants);
-  warn_of_block_order(protocol);
+  warn_of_block_order(protocol, participants);
   if (protocol.masking) {
     fmt::print("\nmasking\n  {}\n", described(*protocol.masking));
   }

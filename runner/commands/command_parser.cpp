@@ -1,12 +1,16 @@
 #include "runner/commands/command_parser.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "core/error.hpp"
+#include "protocols/yaml/problems.hpp"
 namespace tapstudy::runner {
 namespace {
 // Rejects empty values, e.g. from an unset variable in a script.
@@ -131,14 +135,37 @@ Command CommandParser::add(const std::string& name, const std::string& help) {
   return Command{*app_->add_subcommand(name, help)};
 }
 
+namespace {
+// CLI11 only says that a command is missing.
+void check_command(const CLI::App& app, int argc, const char* const* argv) {
+  if (argc < 2 || std::string_view{argv[1]}.starts_with('-')) {
+    return;
+  }
+  std::vector<std::string> commands;
+  for (const CLI::App* const command : app.get_subcommands([](const CLI::App*) { return true; })) {
+    commands.push_back(command->get_name());
+  }
+  const std::string given = argv[1];
+  if (std::ranges::find(commands, given) == commands.end()) {
+    throw core::InvalidInput{fmt::format("'{}' is not a command (one of: {}{})", given,
+                                         fmt::join(commands, ", "),
+                                         protocols::did_you_mean(given, commands))};
+  }
+}
+}  // namespace
+
 ExitCode CommandParser::parse(int argc, const char* const* argv) {
   refuse_empty_values(*app_);
+  check_command(*app_, argc, argv);
   try {
     app_->parse(argc, argv);
   } catch (const CLI::Success& asked_for_help) {
     return static_cast<ExitCode>(app_->exit(asked_for_help));
   } catch (const CLI::ParseError& error) {
-    throw core::InvalidInput{fmt::format("{} (see tapstudy --help)", error.what())};
+    const auto chosen = app_->get_subcommands();
+    throw core::InvalidInput{
+        fmt::format("{} (see tapstudy {}--help)", error.what(),
+                    chosen.empty() ? std::string{} : chosen.front()->get_name() + " ")};
   }
   return ExitCode::done;
 }

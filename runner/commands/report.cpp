@@ -110,19 +110,25 @@ void write_files(const ReportOptions& options, const Summary& summary) {
     add("figures/" + figure.name + ".svg", figure.svg);
     add("figures/" + figure.name + ".pdf", analysis::pdf_of_svg(figure.svg));
   }
-  std::error_code error;
-  if (!options.replace && fs::exists(files.front().name, error)) {
-    throw core::InvalidInput{files.front().name +
-                             ": exists already (--replace replaces it, --out takes another place)"};
-  }
   core::write_all_or_none(files, options.replace ? core::Existing::replaced : core::Existing::kept);
-  const std::size_t figures = figure_files.size();
-  for (std::size_t i = 0; i + 2 * figures < files.size(); ++i) {
+  constexpr std::size_t whole = 3;  // files that hold all of it
+  for (std::size_t i = 0; i < whole; ++i) {
     fmt::print("{}\n", files[i].name);
   }
-  if (figures > 0) {
-    fmt::print("{} ({} figures, each as SVG and as PDF)\n",
-               (fs::path{options.out} / "figures").string(), figures);
+  const std::size_t figures = figure_files.size();
+  fmt::print("{} tables as CSV{}\n", files.size() - whole - 2 * figures,
+             figures > 0 ? fmt::format(", {} figures as SVG and PDF in {}", figures,
+                                       (fs::path{options.out} / "figures").string())
+                         : "");
+}
+
+// Before what takes long.
+void check_is_free(const ReportOptions& options) {
+  const std::string page = (fs::path{options.out} / "report.html").string();
+  std::error_code error;
+  if (!options.out.empty() && !options.replace && fs::exists(page, error)) {
+    throw core::InvalidInput{page +
+                             ": exists already (--replace replaces it, --out takes another place)"};
   }
 }
 
@@ -184,15 +190,16 @@ void check_options(const ReportOptions& options) {
 
 void run_report(ReportOptions options) {
   check_options(options);
+  if (options.out.empty() && !options.directories.empty()) {
+    options.out = options.directories.front();
+  }
+  check_is_free(options);
   Summary summary = summary_of(options);
   if (!options.only.empty()) {
     analysis::keep_only(summary, listed(options.only, "--only"));
   }
   analysis::write_text(std::cout, summary);
   std::cout << std::endl;
-  if (options.out.empty() && !options.directories.empty()) {
-    options.out = options.directories.front();
-  }
   if (!options.out.empty()) {
     write_files(options, summary);
   }

@@ -11,7 +11,7 @@ Console::Console(const ConsoleRequest& request, const Session& session)
       scenes_{session.protocol, session.placement},
       screens_{request.language, session.protocol.title},
       participant_{screens_, context(session)},
-      api_{in_view(request, session), screens_, session.desk, live_, scenes_},
+      api_{in_view(session), screens_, session.desk, live_, scenes_},
       server_{request.address, api_} {}
 
 Console::~Console() {
@@ -46,7 +46,7 @@ BrowserParticipant::Context Console::context(const Session& session) {
           }};
 }
 
-ConsoleApi::Session Console::in_view(const ConsoleRequest& request, const Session& session) {
+ConsoleApi::Session Console::in_view(const Session& session) {
   const auto guarded = [this](const std::string& text) {
     return [this, &text] {
       const std::lock_guard lock{mutex_};
@@ -57,7 +57,6 @@ ConsoleApi::Session Console::in_view(const ConsoleRequest& request, const Sessio
           session.row.participant_id,
           results::to_text(session.row.mode),
           session.row.device,
-          request.language,
           session.protocol.display.is_operator_blind,
           guarded(state_),
           guarded(last_fault_),

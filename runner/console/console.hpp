@@ -40,7 +40,7 @@ class Console {
   std::string url(Role role) const { return server_.url(role); }
 
  private:
-  ConsoleApi::Session in_view(const ConsoleRequest& request, const Session& session);
+  ConsoleApi::Session in_view(const Session& session);
   BrowserParticipant::Context context(const Session& session);
 
   std::mutex mutex_;

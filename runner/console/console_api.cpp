@@ -114,10 +114,9 @@ std::string ConsoleApi::operator_events(SentToPage& sent) const {
 }
 
 SessionInView ConsoleApi::session_in_view() const {
-  return {session_.title,    session_.participant_id, session_.mode,
-          session_.device,   session_.language,       session_.is_blind,
-          session_.state(),  session_.last_fault(),   screens_.open_pages() > 0,
-          session_.masking()};
+  return {session_.title,        session_.participant_id,   session_.mode,
+          session_.device,       session_.is_blind,         session_.state(),
+          session_.last_fault(), screens_.open_pages() > 0, session_.masking()};
 }
 
 std::string ConsoleApi::status() const {

@@ -41,7 +41,6 @@ class ConsoleApi {
     std::string participant_id;
     std::string mode;
     std::string device;
-    std::string language;
     bool is_blind{};                          // for the operator, too
     std::function<std::string()> state;       // of the session, now
     std::function<std::string()> last_fault;  // empty: none

@@ -30,6 +30,7 @@ Json json_of(const TrialInView& view, std::size_t current, bool is_blind) {
     alternatives.push_back(alternative);
   }
   return {{"number", view.trial.number},
+          {"total", view.prompt.total},
           {"attempt", view.attempt},
           {"block", view.trial.block},
           {"is_practice", view.trial.is_practice},
@@ -83,7 +84,6 @@ Json log_of(const DeskView& desk, bool is_blind) {
 std::string state_json(const SessionInView& session, const DeskView& desk,
                        const LiveView::Totals& totals) {
   Json json{
-      {"language", session.language},
       {"study", session.title},
       {"participant", session.participant_id},
       {"mode", session.mode},

@@ -17,7 +17,6 @@ struct SessionInView {
   std::string participant_id;
   std::string mode;
   std::string device;
-  std::string language;
   bool is_blind{};
   std::string state;
   std::string last_fault;

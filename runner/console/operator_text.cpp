@@ -67,7 +67,7 @@ std::string force_text(ForceState force) {
 }
 
 std::string masking_text(const MaskingInView& masking) {
-  return fmt::format("  masking noise: {}, {:.1f} dB FS, {} under-runs\n",
+  return fmt::format("  masking noise: {}, {:.1f} dB FS, {} underruns\n",
                      masking.is_playing ? "playing" : "silent", masking.level_db_fs,
                      masking.underruns);
 }

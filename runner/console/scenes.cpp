@@ -84,6 +84,16 @@ Json points_of(const protocols::Plate& plate) {
   }
   return points;
 }
+
+bool varies_in_size(const protocols::Protocol& protocol, const protocols::Stimulus& stimulus) {
+  const auto size_m = [&](const protocols::AxisRange& range, double value) {
+    const auto member = stimulus_with(protocol, stimulus, {{std::string{range.axis->name}, value}});
+    return core::bounds(member.plate->shape).size_m();
+  };
+  return std::ranges::any_of(stimulus.vary, [&](const protocols::AxisRange& range) {
+    return size_m(range, range.from) != size_m(range, range.to);
+  });
+}
 }  // namespace
 
 Scenes::Scenes(const protocols::Protocol& protocol, const core::Placement& placement)
@@ -102,28 +112,22 @@ Scenes::Scenes(const protocols::Protocol& protocol, const core::Placement& place
     }
     all_.push_back({plate.get(), placement.scaled(plate->lateral_ratio), json.dump(), shape});
   }
+  for (const protocols::Stimulus& stimulus : protocol.stimuli) {
+    if (varies_in_size(protocol, stimulus)) {
+      varying_.insert(stimulus.name);
+    }
+  }
 }
 
 // The same for all trials of a block: where catch trials have another shape, none is shown; nor
-// where the shape itself varies.
+// where its size varies.
 std::optional<int> Scenes::number_of(const std::string& stimulus,
                                      const protocols::Block& block) const {
   const int number = place_of(stimulus);
   const bool tells_apart = std::ranges::any_of(all_presented(block), [&](const std::string& other) {
-    return varies_in_shape(other) || at(place_of(other)).shape != at(number).shape;
+    return varying_.contains(other) || at(place_of(other)).shape != at(number).shape;
   });
   return tells_apart ? std::nullopt : std::optional{number};
-}
-
-bool Scenes::varies_in_shape(const std::string& stimulus) const {
-  const protocols::Stimulus& own = protocol_.stimulus(stimulus);
-  const auto size_m = [&](const protocols::AxisValues& values) {
-    return core::bounds(stimulus_with(protocol_, own, values).plate->shape).size_m();
-  };
-  return std::ranges::any_of(own.vary, [&](const protocols::AxisRange& range) {
-    return size_m({{std::string{range.axis->name}, range.from}}) !=
-           size_m({{std::string{range.axis->name}, range.to}});
-  });
 }
 
 // Of plates that look the same the first, so that the number says no more than the picture.

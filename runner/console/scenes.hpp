@@ -1,5 +1,6 @@
 #pragma once
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -29,10 +30,10 @@ class Scenes {
     std::string shape;  // the same without fixations, which are drawn only where the study says so
   };
   int place_of(const std::string& stimulus) const;
-  bool varies_in_shape(const std::string& stimulus) const;
   const Scene& at(int number) const { return all_.at(static_cast<std::size_t>(number)); }
   const protocols::Protocol& protocol_;
   core::Placement placement_;
   std::vector<Scene> all_;
+  std::set<std::string> varying_;  // stimuli whose size varies
 };
 }  // namespace tapstudy::runner

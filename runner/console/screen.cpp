@@ -185,7 +185,7 @@ ScreenInput parse_input(const std::string& text, std::int64_t& screen) {
     const std::string action = json.at("action");
     const auto found = std::ranges::find(actions, action, &decltype(actions)::value_type::first);
     if (found == actions.end()) {
-      throw core::InvalidInput{"'" + action + "' is no action"};
+      throw core::InvalidInput{"'" + action + "' is not an action"};
     }
     screen = json.at("screen").get<std::int64_t>();
     if (found->second == ScreenAction::form) {
@@ -199,11 +199,11 @@ ScreenInput parse_input(const std::string& text, std::int64_t& screen) {
         found->second != ScreenAction::go_on && found->second != ScreenAction::replay;
     const Json value = has_value ? json.at("value") : Json(0U);
     if (!value.is_number_unsigned()) {
-      throw core::InvalidInput{"value is no number"};
+      throw core::InvalidInput{"value is not a number"};
     }
     return {found->second, value.get<std::size_t>(), {}};
   } catch (const Json::exception&) {
-    throw core::InvalidInput{"is no input of a screen"};
+    throw core::InvalidInput{"not an input of a screen"};
   }
 }
 

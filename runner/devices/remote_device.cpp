@@ -14,8 +14,8 @@ constexpr std::chrono::milliseconds tried_silence{150};
 struct RemoteSection final : protocols::DeviceSection {
   std::uint16_t port{};
   double max_reply_s{0.003};  // of the other program to a tick's question
+  int delay_ticks{1};         // of its force
   double max_reply_time_s() const override { return max_reply_s; }
-  int delay_ticks{1};  // of its force
 };
 
 class RemoteDevice final : public SessionDevice {

@@ -29,10 +29,10 @@ struct SpidarSection final : protocols::DeviceSection {
   std::optional<int> rotary_switch;  // selects the board if there are several
   double max_turn_rad{0.3};          // of the grip, from how it was homed
   double max_reply_s{0.003};         // reply timeout of the board
-  double max_reply_time_s() const override { return max_reply_s; }
-  std::string relay;               // serial port of a dead-man relay; empty: there is none
-  bool is_amplifier_sensed{true};  // by the voltages that the board measures
+  std::string relay;                 // serial port of a dead-man relay; empty: there is none
+  bool is_amplifier_sensed{true};    // by the voltages that the board measures
   core::SpidarCalibration calibration;
+  double max_reply_time_s() const override { return max_reply_s; }
 };
 
 const SpidarSection& section_of(const protocols::Rig& rig) {

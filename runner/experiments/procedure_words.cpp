@@ -9,6 +9,7 @@
 #include <set>
 #include <utility>
 
+#include "protocols/block_order.hpp"
 #include "protocols/ordering.hpp"
 #include "protocols/schedule.hpp"
 #include "runner/devices/masking_noise.hpp"
@@ -41,9 +42,8 @@ std::string rendering(const Protocol& protocol) {
 }
 
 // Balance holds for whole sets of orders.
-std::string williams_words(const Block& block, std::size_t participants) {
-  const auto orders = static_cast<std::size_t>(protocols::williams_sequences(
-      static_cast<int>(protocols::conditions(block)), block.repetitions));
+std::string williams_words(int of_orders, std::size_t participants) {
+  const auto orders = static_cast<std::size_t>(of_orders);
   return participants % orders == 0
              ? ", in orders balanced for immediate sequence over participants (Williams 1949)"
              : fmt::format(
@@ -64,9 +64,26 @@ std::string order_words(const Block& block, std::size_t participants) {
     case protocols::Order::shuffle_within_repetition:
       return ", in an order that was random within each repetition";
     case protocols::Order::williams:
-      return williams_words(block, participants);
+      return williams_words(protocols::williams_sequences(
+                                static_cast<int>(protocols::conditions(block)), block.repetitions),
+                            participants);
   }
   return "";
+}
+
+// "Each participant did 'a' (…), then 'b' (…). ", or how the blocks followed one another.
+std::string sequence_words(const Protocol& protocol, const std::vector<std::string>& blocks,
+                           std::size_t participants) {
+  const protocols::BlockOrder& order = protocol.block_order;
+  if (order.order == protocols::Order::listed) {
+    return fmt::format("Each participant did {}. ", fmt::join(blocks, ", then "));
+  }
+  return fmt::format(
+      "Each participant did {}, where '{}' exchanged their places among participants{}. ",
+      fmt::join(blocks, ", then "), fmt::join(order.blocks, "', '"),
+      order.order == protocols::Order::shuffle
+          ? ", in random order"
+          : williams_words(protocols::balanced_block_orders(protocol), participants));
 }
 
 std::string practice_words(const Block& block) {
@@ -113,11 +130,15 @@ std::string block_words(const Block& block, std::size_t participants) {
   const bool may_end_early = block.criterion || block.comparison;
   const auto trials = static_cast<std::size_t>(protocols::planned_trials(block));
   return fmt::format(
-      "'{}' ({} of {}{}, {}{}{}{}{}{})", block.name, block.task->name(),
+      "'{}' ({} of {}{}, {}{}{}{}{}{}{}{})", block.name, block.task->name(),
       block.stimuli.size() == 1 ? "one stimulus" : fmt::format("{} stimuli", block.stimuli.size()),
       block.presented == protocols::Presented::real_plates ? ", the real plates themselves" : "",
-      may_end_early ? "at most " : "", counted(trials, "trial"), order_words(block, participants),
-      level_words(block), tap_words(block), practice_words(block));
+      may_end_early ? "at most " : "", counted(trials, "trial"),
+      block.catch_trials ? fmt::format(", {} of them catch trials", block.catch_trials->count) : "",
+      block.confidence ? fmt::format(", each with confidence in {} steps", block.confidence->steps)
+                       : "",
+      order_words(block, participants), level_words(block), tap_words(block),
+      practice_words(block));
 }
 
 // Letters that stand for something else in each trial, and are what is answered.
@@ -127,10 +148,12 @@ bool has_blind_labels(const Block& block, const Protocol& protocol) {
 }
 
 // What an answer to the block took.
-std::string exploration(const Block& block, const Protocol& protocol) {
+std::string exploration(const Block& block) {
   std::vector<std::string> limits;
   if (block.presented == protocols::Presented::virtual_plates && block.explore.min_contacts > 0) {
-    const bool is_each = has_blind_labels(block, protocol) && block.explore.must_visit_all;
+    const auto trials = block.task->trials(block, {});
+    const bool has_several = !block.task->alternative_labels(trials.front()).empty();
+    const bool is_each = has_several && block.explore.must_visit_all;
     limits.push_back(fmt::format(
         "at least {}{}", counted(static_cast<std::size_t>(block.explore.min_contacts), "contact"),
         is_each ? " with each alternative" : ""));
@@ -147,7 +170,7 @@ std::string exploration(const Block& block, const Protocol& protocol) {
 std::string explorations(const Protocol& protocol) {
   std::vector<std::pair<std::string, std::vector<std::string>>> blocks_of;  // by what it took
   for (const Block& block : protocol.blocks) {
-    const std::string took = exploration(block, protocol);
+    const std::string took = exploration(block);
     auto of = std::ranges::find(blocks_of, took, &decltype(blocks_of)::value_type::first);
     if (of == blocks_of.end()) {
       blocks_of.emplace_back(took, std::vector<std::string>{});
@@ -159,7 +182,7 @@ std::string explorations(const Protocol& protocol) {
   for (const auto& [took, blocks] : blocks_of) {
     const std::string where =
         blocks_of.size() == 1 ? "" : fmt::format(" in {}", fmt::join(blocks, ", "));
-    text += took.empty() ? "" : fmt::format("An answer{} took {}. ", where, took);
+    text += took.empty() ? "" : fmt::format("An answer{} required {}. ", where, took);
   }
   return text;
 }
@@ -189,7 +212,7 @@ std::string procedure_words(const Protocol& protocol,
     blocks.push_back(block_words(block, participants.size()));
   }
   std::string text = apparatus(sessions) + rendering(protocol);
-  text += fmt::format("Each participant did {}. ", fmt::join(blocks, ", then "));
+  text += sequence_words(protocol, blocks, participants.size());
   text += explorations(protocol);
   text += sessions.front().mode == results::Mode::simulated ? "" : blinding(protocol);
   text += protocol.masking ? fmt::format("Masking: {}. ", described(*protocol.masking)) : "";

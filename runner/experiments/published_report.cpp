@@ -94,7 +94,7 @@ ordered_json read_published(const fs::path& file) {
   ordered_json published = ordered_json::parse(contents(file), nullptr, false);
   if (!published.is_object() || !published.contains("blocks") ||
       !published.at("blocks").is_array() || !published.value("modes", ordered_json{}).is_string()) {
-    throw results::StoreError{file.string() + ": is no report of tapstudy"};
+    throw results::StoreError{file.string() + ": is not a report of tapstudy"};
   }
   return published;
 }

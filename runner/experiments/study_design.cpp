@@ -6,6 +6,8 @@
 #include <map>
 
 #include "core/rng.hpp"
+#include "protocols/catch_trials.hpp"
+#include "protocols/ordering.hpp"
 #include "protocols/schedule.hpp"
 namespace tapstudy::runner {
 namespace {
@@ -66,17 +68,18 @@ analysis::BlockDesign::Redraw redraw_of(const protocols::Protocol& protocol,
     protocols::Draw redrawn = protocols::draw_of(study_seed, block_index, seed, place.order_index);
     redrawn.counterbalancing_seed = draw;
     std::vector<int> stimuli;
-    for (const protocols::PlannedTrial& trial : block.task->trials(block, redrawn)) {
-      const auto found = std::ranges::find(block.stimuli, trial.alternatives.front().stimulus);
-      stimuli.push_back(trial.is_catch ? not_counted
-                                       : static_cast<int>(found - block.stimuli.begin()));
+    for (const auto& next : protocols::ordered_conditions(block, redrawn)) {
+      stimuli.push_back(static_cast<int>(protocols::stimulus_of(block, next.condition)));
+    }
+    for (const std::size_t at : protocols::catch_places(block, redrawn, stimuli.size())) {
+      stimuli.insert(stimuli.begin() + static_cast<std::ptrdiff_t>(at), not_counted);
     }
     return stimuli;
   };
 }
 
-void add_discrimination(const protocols::Block& block, const protocols::Protocol& protocol,
-                        analysis::BlockDesign& part) {
+void add_task_settings(const protocols::Block& block, const protocols::Protocol& protocol,
+                       analysis::BlockDesign& part) {
   part.decision_model = block.task->decision_model(block);
   part.guess_rate = block.task->guess_rate(block, protocol);
   part.has_own_guess_rate = block.task->has_own_guess_rate();
@@ -122,11 +125,8 @@ std::string premise_of(const protocols::Protocol& protocol) {
 
 analysis::StudyDesign design_of(const protocols::Protocol& protocol, results::Mode mode) {
   analysis::StudyDesign design{protocol.title, protocol.notes, {}};
-  int first_trial = 1;
   for (std::size_t i = 0; i < protocol.blocks.size(); ++i) {
     const protocols::Block& block = protocol.blocks[i];
-    const int begins_at = first_trial;
-    first_trial += planned_trials(block);
     if (block.is_practice) {
       continue;
     }
@@ -138,11 +138,10 @@ analysis::StudyDesign design_of(const protocols::Protocol& protocol, results::Mo
                                answered_items(protocol, block),
                                {},
                                {},
-                               begins_at,
                                {},
                                vote_of(block)};
-    add_discrimination(block, protocol, part);
-    if (block.task->is_random(block) && block.task->has_chance_level()) {
+    add_task_settings(block, protocol, part);
+    if (block.task->uses_order() && block.order != protocols::Order::listed) {
       part.redraw = redraw_of(protocol, i);
     }
     if (mode == results::Mode::simulated && block.task->needs_reference()) {

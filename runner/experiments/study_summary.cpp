@@ -10,8 +10,10 @@
 #include <utility>
 #include <vector>
 
+#include "analysis/report/block_contrasts.hpp"
 #include "core/error.hpp"
 #include "runner/experiments/counted_answers.hpp"
+#include "runner/experiments/places_in_blocks.hpp"
 #include "runner/experiments/procedure_words.hpp"
 #include "runner/experiments/stored_protocol.hpp"
 #include "runner/experiments/study_design.hpp"
@@ -134,7 +136,7 @@ std::vector<analysis::VisitOrder> visit_orders(results::Store& store) {
         if (orders.empty() || orders.back().trial_id != row.integer(0)) {
           orders.push_back({row.integer(0), {}});
         }
-        orders.back().positions.push_back(row.small(1));
+        orders.back().positions.push_back(row.small_integer(1));
       });
   return orders;
 }
@@ -163,6 +165,7 @@ StoredResults stored_results(results::Store& store, const protocols::Protocol& p
   StoredResults found;
   found.sessions = store.sessions();
   found.answers = counted_answers(store, mode);
+  set_places(protocol, found.sessions, found.answers);
   if (detail == Detail::all) {  // which replays the procedures
     set_tracks(protocol, store, found.answers);
   }
@@ -283,6 +286,10 @@ Summary summary_of_study(const std::vector<StudyStore>& stores, Mode mode, Detai
   }
   Summary summary = analysis::summarise(design, all.answers, all.visits, all.presentations);
   summary.sections = study_sections(protocol, stores, mode);
+  const bool is_order_fixed = protocol.block_order.order == protocols::Order::listed;
+  if (auto contrasts = analysis::block_contrasts(summary.blocks, is_order_fixed)) {
+    summary.sections.insert(summary.sections.begin(), std::move(*contrasts));
+  }
   summary.provenance = provenance(study, all.sessions, mode);
   summary.procedure = procedure_words(protocol, sessions_of(all.sessions, mode));
   summary.unfinished = std::move(all.unfinished);

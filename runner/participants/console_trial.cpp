@@ -46,8 +46,13 @@ void ConsoleParticipant::get_ready(const TrialPrompt& prompt) {
   }
   const bool are_named = prompt.answers_name_alternatives();
   const std::vector<protocols::Option>& options = prompt.answers.options;
+  const bool are_steps = !prompt.answers.ends.low.empty();
   for (std::size_t i = 0; !are_named && i < options.size(); ++i) {
-    say("  {}  {}\n", i + 1, options[i].label);
+    if (are_steps) {  // which begin with their numbers
+      say("  {}\n", options[i].label);
+    } else {
+      say("  {}  {}\n", i + 1, options[i].label);
+    }
   }
   if (prompt.answers.kind == protocols::AnswerKind::line) {
     say("  {}\n", expected_answer(prompt.answers));

@@ -10,7 +10,6 @@
 #include "protocols/protocol.hpp"
 #include "runner/trial_loop/exploration.hpp"
 namespace tapstudy::runner {
-// A trial as presented to the participant. Does not disclose the rendered stimulus.
 // How far a participant is: of the practice while it lasts, then of the trials that count.
 struct TrialProgress {
   int done{};  // and need not come again
@@ -18,6 +17,7 @@ struct TrialProgress {
   bool is_practice{};
 };
 
+// A trial as presented to the participant. Does not disclose the rendered stimulus.
 struct TrialPrompt {
   int number{};
   int total{};  // of the session

@@ -170,6 +170,12 @@ double SimulatedObserver::same_distance(const std::string& stimulus, std::size_t
   constexpr int pairs = 300;
   const Memory& memory = memories_.at(stimulus);
   std::vector<FeltTap> taps = memory.taps;
+  if (taps.size() < 2) {
+    throw core::InvalidInput{
+        fmt::format("simulation: one tap only on '{}' stays in contact for the 0.16 s that feeling "
+                    "it takes, and two are compared (raise simulation.taps.dwell_s or press_m)",
+                    stimulus)};
+  }
   const std::size_t each = std::clamp<std::size_t>(taps_each, 1, taps.size() / 2);
   std::vector<double> distances;
   for (int pair = 0; pair < pairs; ++pair) {

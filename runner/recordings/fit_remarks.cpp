@@ -3,11 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 namespace tapstudy::runner {
 namespace {
 constexpr double min_explained = 0.998;
 constexpr double max_over_noise = 4.0;
 constexpr double min_assurance = 0.5;
+constexpr Eigen::Index few_values = 500;
+constexpr Eigen::Index few_share = 4;  // samples to a value
 }  // namespace
 
 std::vector<std::string> remarks_on_residuals(const std::vector<IdentifiedTap>& taps) {
@@ -25,6 +28,24 @@ std::vector<std::string> remarks_on_residuals(const std::vector<IdentifiedTap>& 
           "left is {:.0f} times the recording's noise (struck twice, limited by the amplifier, or "
           "not linear?): do not rely on its modes",
           tap.file, tap.time_s, 100.0 * fit.explained, over_noise));
+    }
+  }
+  return remarks;
+}
+
+std::vector<std::string> remarks_on_resolution(const std::vector<IdentifiedTap>& taps) {
+  std::vector<std::string> remarks;
+  std::set<std::string> told;
+  for (const IdentifiedTap& tap : taps) {
+    const Eigen::VectorXd& samples = tap.decay.samples;
+    const std::set<double> values{samples.begin(), samples.end()};
+    const auto different = static_cast<Eigen::Index>(values.size());
+    if (different < few_values && few_share * different < samples.size() &&
+        told.insert(tap.file + tap.channel).second) {
+      remarks.push_back(fmt::format(
+          "{}: samples have only some {} different values: the intervals of damping ratios may be "
+          "too narrow, above all of modes that ring for long (use more of the converter's range)",
+          tap.file, different));
     }
   }
   return remarks;

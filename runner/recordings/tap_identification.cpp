@@ -16,7 +16,6 @@
 #include "runner/recordings/sought_band.hpp"
 namespace tapstudy::runner {
 namespace {
-
 analysis::FreeDecay between(const analysis::Recording& recording, std::size_t begin,
                             std::size_t end) {
   const auto first = static_cast<Eigen::Index>(begin);
@@ -224,6 +223,7 @@ class Identifier {
       }
     }
     add_remarks(remarks_on_residuals(result_.taps));
+    add_remarks(remarks_on_resolution(result_.taps));
     std::vector<int> impacts;
     std::ranges::transform(result_.taps, std::back_inserter(impacts), &IdentifiedTap::impact);
     result_.modes = analysis::modes_over_taps(modes_of_taps(), impacts);

@@ -117,7 +117,7 @@ void print_model(const TapIdentification& found, const ModelComparison& model) {
                100.0 * analysis::max_match_difference);
   }
   if (update.rival_pa) {
-    fmt::print("  another assignment fits better, with {:.4g} Pa: start from there, and compare\n",
+    fmt::print("  another assignment fits nearly as well, with {:.4g} Pa: which is right?\n",
                *update.rival_pa);
   }
 }

@@ -9,7 +9,7 @@ namespace {
 using analysis::Estimate;
 
 std::string comment(const Estimate& estimate) {
-  return fmt::format("# 95 %: {:.4g} to {:.4g}", estimate.interval.low, estimate.interval.high);
+  return fmt::format("# 95 %: {:.5g} to {:.5g}", estimate.interval.low, estimate.interval.high);
 }
 
 struct RatioAt {
@@ -137,6 +137,18 @@ std::string yaml_of(const TapIdentification& found) {
   }
   const core::Material& material = *found.model->material;
   const auto& update = found.model->update;
+  const std::size_t matched = update ? update->matched.size() : 0;
+  if (matched < found.agreed.size()) {
+    text += fmt::format(
+        "# CAUTION: only {} of the {} modes found match the model; Young's modulus rests on these, "
+        "and\n# modal_ratios of other modes are those of their neighbours. Is the plate as the "
+        "protocol says?\n",
+        matched, found.agreed.size());
+  }
+  if (update && update->rival_pa) {
+    text += fmt::format("# CAUTION: {:.4g} Pa fits nearly as well, with other modes matched\n",
+                        *update->rival_pa);
+  }
   return text +
          fmt::format(
              "materials:\n  {}:\n    youngs_modulus_pa: {:.5g}  {}\n    density_kg_per_m3: {:.9g}\n"

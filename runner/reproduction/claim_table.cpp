@@ -35,8 +35,8 @@ std::vector<ClaimGroup> claim_groups_named(const std::vector<std::string>& names
   for (const std::string& name : names) {
     const auto found = std::ranges::find(claim_groups(), name, &ClaimGroup::name);
     if (found == claim_groups().end()) {
-      throw core::InvalidInput{fmt::format("--only: '{}' is no group of claims (one of: {})", name,
-                                           fmt::join(claim_group_names(), ", "))};
+      throw core::InvalidInput{fmt::format("--only: '{}' is not a group of claims (one of: {})",
+                                           name, fmt::join(claim_group_names(), ", "))};
     }
     groups.push_back(*found);
   }
@@ -58,7 +58,7 @@ const std::vector<NotReproducible>& not_reproducible() {
       {"section 5", "With 58 g the feeling is similar to that of real plates.",
        "It is what users said. What can be computed is how far levels lie apart, above."},
       {"section 5.2.1", "Which plate people take a virtual one for.",
-       "A simulated observer with one free parameter is no person. `run` does the study with "
+       "A simulated observer with one free parameter is not a person. `run` does the study with "
        "people."},
       {"section 5.2.3", "The acceleration of a finger while it taps, Figure 7.",
        "It is a measurement of one finger, shown as a drawing without its data."},

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <sstream>
 
-#include "analysis/ratings/signed_rank.hpp"
+#include "analysis/rank_tests/signed_rank.hpp"
 #include "analysis/statistics/counts_csv.hpp"
 #include "results/store.hpp"
 #include "runner/experiments/scratch_directory.hpp"

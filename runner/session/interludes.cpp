@@ -9,20 +9,21 @@ void Interludes::begin() {
 }
 
 // Also those of a block that an earlier session finished, but for its questionnaires.
-void Interludes::ask_after_blocks(const std::optional<std::string>& up_to) {
-  for (const protocols::Block& block : parts_.protocol.blocks) {
-    if (block.name == up_to) {
+void Interludes::ask_after_blocks(const protocols::Schedule& schedule,
+                                  const std::optional<std::string>& up_to) {
+  for (const protocols::PlannedTrial& trial : schedule) {
+    if (trial.block == up_to) {
       return;
     }
-    ask(block.forms_after, block.name);
+    ask(parts_.protocol.block(trial.block).forms_after, trial.block);
   }
 }
 
-void Interludes::before(const protocols::PlannedTrial& trial) {
+void Interludes::before(const protocols::PlannedTrial& trial, const protocols::Schedule& schedule) {
   begin();
   const protocols::Block& block = parts_.protocol.block(trial.block);
   if (block_ != trial.block) {
-    ask_after_blocks(trial.block);
+    ask_after_blocks(schedule, trial.block);
     block_ = trial.block;
     read(block.instructions, block.name);
     trials_since_rest_ = 0;
@@ -44,9 +45,9 @@ void Interludes::rest_if_due(const protocols::Block& block) {
 }
 
 // A session that was interrupted just before its last questionnaires has no trial left.
-void Interludes::after_last_trial() {
+void Interludes::after_last_trial(const protocols::Schedule& schedule) {
   begin();
-  ask_after_blocks(std::nullopt);
+  ask_after_blocks(schedule, std::nullopt);
   ask(parts_.protocol.forms_after, asked_at_end);
 }
 

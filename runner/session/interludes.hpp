@@ -30,13 +30,14 @@ class Interludes {
   Interludes(Parts parts, FilledForms filled)
       : parts_{std::move(parts)}, filled_{std::move(filled)} {}
   // Both throw Stopped if the participant stops.
-  void before(const protocols::PlannedTrial& trial);
-  void after_last_trial();
+  void before(const protocols::PlannedTrial& trial, const protocols::Schedule& schedule);
+  void after_last_trial(const protocols::Schedule& schedule);
 
  private:
   void begin();
   // nullopt: after all blocks.
-  void ask_after_blocks(const std::optional<std::string>& up_to);
+  void ask_after_blocks(const protocols::Schedule& schedule,
+                        const std::optional<std::string>& up_to);
   void read(const std::string& text, const std::string& whose);
   void rest_if_due(const protocols::Block& block);
   void ask(const std::vector<std::string>& forms, const std::string& asked);

@@ -77,7 +77,7 @@ SessionStates::SessionStates(std::int64_t session_id, Now now_s, Listener listen
 void SessionStates::note(std::optional<int> trial, std::string detail) {
   events_.push_back({session_id_, now_s_(), std::string{name(state_)}, trial, std::move(detail)});
   if (listener_) {
-    listener_(events_.back());
+    listener_(results::SessionEventRow{events_.back()});  // it may take all of them away
   }
 }
 

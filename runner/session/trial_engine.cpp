@@ -29,7 +29,7 @@ std::optional<Interruption> TrialEngine::run(const protocols::Schedule& schedule
   try {
     const auto interruption = run_all(schedule, done_trials);
     if (!interruption) {
-      interludes_.after_last_trial();
+      interludes_.after_last_trial(schedule);
       parts_.states.enter(SessionState::ended);
     }
     note_events();
@@ -50,7 +50,7 @@ void TrialEngine::note_events() {
   try {
     recorder_.note(parts_.states.take_events()).get();
   } catch (const results::StoreError& error) {
-    warn(fmt::format("the session's latest changes of state are not stored yet: {}", error.what()));
+    warn(fmt::format("the session's latest changes of state are not stored: {}", error.what()));
   }
 }
 
@@ -68,7 +68,7 @@ std::optional<Interruption> TrialEngine::run_all(const protocols::Schedule& sche
       done_trials.insert(trial.number);
       continue;
     }
-    interludes_.before(trial);
+    interludes_.before(trial, schedule);
     const Outcome outcome = run_until_it_counts(trial, {schedule, done_trials});
     if (outcome.is_requeued) {
       std::erase(requeued_, trial.number);

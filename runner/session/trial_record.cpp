@@ -50,7 +50,7 @@ results::TrialRecord trial_record(std::int64_t session_id, const protocols::Plan
   record.statistics = {result.trace.ticks,
                        result.loop.late,
                        result.loop.skipped,
-                       result.loop.saturated,
+                       result.trace.ticks > 0 ? result.loop.saturated : 0,
                        result.dropped_samples,
                        1e-9 * static_cast<double>(result.loop.lateness.quantile(0.999)),
                        1e-9 * static_cast<double>(result.loop.lateness.worst()),

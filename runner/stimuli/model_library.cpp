@@ -40,12 +40,15 @@ std::string first_frequency(core::PlateSpec spec) {
   }
   return fmt::format("more than {:.4g} Hz (is youngs_modulus_pa right?)", spec.band_limit_hz);
 }
-// Of all bodies that are damped.
-std::string materials_key(const protocols::PresentedStimulus& stimulus) {
+// Of all that damps: the bodies' materials, and the contacts between them.
+std::string damping_key(const protocols::PresentedStimulus& stimulus) {
   std::string key = core::content_key(*stimulus.material);
   if (stimulus.contacts) {
     for (const core::BodyInContact& body : stimulus.contacts->bodies) {
       key += " " + core::content_key(body.material);
+    }
+    for (const core::ContactSpring& spring : stimulus.contacts->springs) {
+      key += fmt::format(" {:a}", spring.loss_factor);
     }
   }
   return key;
@@ -148,7 +151,7 @@ ModelLibrary::Plate ModelLibrary::plate_of(const protocols::Protocol& protocol,
     return make_plate(protocol, stimulus);
   }
   Plate& plate = plates_[fmt::format("{} {} {:a}", core::content_key(body_spec(protocol, stimulus)),
-                                     materials_key(stimulus), protocol.band_limit_hz)];
+                                     damping_key(stimulus), protocol.band_limit_hz)];
   if (!plate) {
     plate = make_plate(protocol, stimulus);
   }

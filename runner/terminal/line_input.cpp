@@ -104,13 +104,23 @@ bool LineInput::receive(int time_out_ms) {
   return !has_ended_;
 }
 
+// Of a script, whose last line need not end. What a person had begun to type when the terminal
+// vanished is no answer.
+std::optional<std::string> LineInput::rest() {
+  if (received_.empty() || is_terminal()) {
+    return std::nullopt;
+  }
+  received_ += '\n';
+  return take_line();
+}
+
 std::optional<std::string> LineInput::next(const std::function<bool()>& keep_waiting) {
   while (keep_waiting()) {
     if (auto line = take_line()) {
       return line;
     }
     if (!receive(poll_ms) && has_ended_) {
-      return std::nullopt;
+      return rest();
     }
   }
   return std::nullopt;

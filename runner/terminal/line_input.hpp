@@ -29,6 +29,7 @@ class LineInput {
 
  private:
   std::optional<std::string> take_line();
+  std::optional<std::string> rest();
   bool receive(int time_out_ms);
   void receive_unfinished_line();
   int descriptor_;

@@ -11,13 +11,6 @@ using namespace tapstudy;
 using Catch::Matchers::Contains;
 namespace fs = std::filesystem;
 
-namespace {
-std::size_t entries(const std::string& directory) {
-  return static_cast<std::size_t>(
-      std::distance(fs::directory_iterator{directory}, fs::directory_iterator{}));
-}
-}  // namespace
-
 TEST_CASE("where one of several files cannot be written, the others stay as they were",
           "[core][output]") {
   const testing::TempDirectory directory;
@@ -25,11 +18,11 @@ TEST_CASE("where one of several files cannot be written, the others stay as they
   fs::create_directory(directory / "b");
   const std::vector<core::NewFile> files{{directory / "a", "new"}, {directory / "b", "new"}};
   CHECK_THROWS_WITH(core::write_all_or_none(files, core::Existing::replaced),
-                    Contains("b: is no regular file and is not replaced"));
+                    Contains("b: is not a regular file and is not replaced"));
   CHECK(testing::contents(directory / "a") == "old");
-  CHECK(entries(directory.path()) == 2);
+  CHECK(testing::entries(directory.path()) == 2);
   CHECK_THROWS_AS(core::write_all_or_none(files, core::Existing::kept), core::InvalidInput);
-  CHECK(entries(directory.path()) == 2);
+  CHECK(testing::entries(directory.path()) == 2);
 }
 
 TEST_CASE("files replace what was there, also what a killed program left", "[core][output]") {
@@ -54,5 +47,5 @@ TEST_CASE("a file whose writer fails is not left half written", "[core][output]"
     throw std::runtime_error{"no more"};
   };
   CHECK_THROWS_AS(core::write_new_file(directory / "a", fails), std::runtime_error);
-  CHECK(entries(directory.path()) == 0);
+  CHECK(testing::entries(directory.path()) == 0);
 }

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 
+#include "support/built_paths.hpp"
 #include "support/processes.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;
@@ -104,7 +105,8 @@ TEST_CASE("a study is one however its directory is written, from before it is th
        "for i in $(seq 400); do grep -q 'Trial 1' log && break; sleep 0.05; done\n"
        "\"$0\" amend \"$1/study\" 'note now' --participant P01; echo $?\n"
        "exec 3>&-; wait",
-       TAPSTUDY_PROGRAM, directory.path(), testing::shipped("paper/discrimination.yaml").string()});
+       testing::tapstudy_program(), directory.path(),
+       testing::shipped("paper/discrimination.yaml").string()});
   CHECK_THAT(run.standard_error, Contains("is in a session of this study right now"));
   CHECK_THAT(run.standard_output, Contains("2"));
 }

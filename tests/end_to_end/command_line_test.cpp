@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "support/built_paths.hpp"
 #include "support/processes.hpp"
 #include "support/sanitized.hpp"
 #include "support/texts.hpp"
@@ -219,7 +220,7 @@ TEST_CASE("techniques without vibration build no model", "[end_to_end]") {
   }
   testing::write(directory / "none.yaml", text);
   CHECK_THAT(testing::tapstudy({"check", directory / "none.yaml"}).standard_output,
-             Contains("none: no technique here vibrates"));
+             Contains("none: no technique here needs a model"));
 }
 
 TEST_CASE("bad input is one clear error and its own exit code", "[end_to_end]") {
@@ -276,9 +277,9 @@ sqlite3 "$1/study/study.db" 'PRAGMA integrity_check; SELECT count(*) > 0 FROM tr
 exit $code)sh";
   const TempDirectory directory;
   const TempDirectory small;
-  const auto result =
-      testing::run_program({"/usr/bin/unshare", "-rm", "/bin/sh", "-c", script, "sh", small.path(),
-                            TAPSTUDY_PROGRAM, paper("discrimination.yaml"), directory / "said"});
+  const auto result = testing::run_program({"/usr/bin/unshare", "-rm", "/bin/sh", "-c", script,
+                                            "sh", small.path(), testing::tapstudy_program(),
+                                            paper("discrimination.yaml"), directory / "said"});
   if (result.exit_code == 77 || result.exit_code == 1) {
     WARN("no private mounts here: the full disk was not tried: " << result.standard_error);
     return;
@@ -299,9 +300,9 @@ mount -o remount,ro "$1" || exit 77
 "$2" report "$1/study" --out "$4.report" >/dev/null 2>>"$4"; echo $? >>"$4")sh";
   const TempDirectory directory;
   const TempDirectory disk;
-  const auto result =
-      testing::run_program({"/usr/bin/unshare", "-rm", "/bin/sh", "-c", script, "sh", disk.path(),
-                            TAPSTUDY_PROGRAM, paper("reality_vibration.yaml"), directory / "said"});
+  const auto result = testing::run_program({"/usr/bin/unshare", "-rm", "/bin/sh", "-c", script,
+                                            "sh", disk.path(), testing::tapstudy_program(),
+                                            paper("reality_vibration.yaml"), directory / "said"});
   if (result.exit_code == 77 || result.exit_code == 1) {
     WARN("no private mounts here: the read-only disk was not tried: " << result.standard_error);
     return;
@@ -333,8 +334,8 @@ TEST_CASE("a figure that does not fit on the disk is an error and leaves nothing
   const std::string figure = directory / "modes.svg";
   const std::string command =
       "trap '' XFSZ; ulimit -f 8; exec \"$0\" modes \"$1\" --stimulus mdf_two --figure \"$2\"";
-  const auto run = testing::run_program(
-      {"/bin/sh", "-c", command, TAPSTUDY_PROGRAM, paper("discrimination.yaml"), figure});
+  const auto run = testing::run_program({"/bin/sh", "-c", command, testing::tapstudy_program(),
+                                         paper("discrimination.yaml"), figure});
   CHECK(run.exit_code == 2);
   CHECK_THAT(run.standard_error, Contains("disk full"));
   CHECK_FALSE(std::filesystem::exists(figure));
@@ -403,9 +404,9 @@ TEST_CASE("too little memory for a fine mesh is one sentence", "[end_to_end]") {
   const std::string study =
       changed(directory, "forces.yaml", "  four_fixations:\n",
               "  four_fixations:\n    mesh: {order: 2, max_tet_volume_m3: 2.0e-6}\n");
-  const auto run = testing::run_program(
-      {"/bin/sh", "-c",
-       "ulimit -v 700000; exec " TAPSTUDY_PROGRAM " modes " + study + " --stimulus mdf_four"});
+  const auto run = testing::run_program({"/bin/sh", "-c",
+                                         "ulimit -v 700000; exec " + testing::tapstudy_program() +
+                                             " modes " + study + " --stimulus mdf_four"});
   CAPTURE(run.standard_error);
   CHECK(run.exit_code == 4);
   CHECK_THAT(run.standard_error, Contains("memory"));

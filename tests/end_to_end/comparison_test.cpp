@@ -68,3 +68,37 @@ TEST_CASE("studies with nothing in common are refused with the reasons", "[end_t
                                          Contains("no result with an interval over participants"));
   CHECK(testing::tapstudy({"report", "--compare", directory / "counts.csv"}).exit_code == 2);
 }
+
+TEST_CASE("thresholds are compared by their ratio, and not where they are of other proportions",
+          "[end_to_end]") {
+  const testing::TempDirectory directory;
+  const std::string example = testing::contents(testing::shipped("examples/damping_jnd.yaml"));
+  const auto block = example.find("    procedures:");
+  REQUIRE(block != std::string::npos);
+  testing::write(directory / "logistic.yaml",
+                 example.substr(0, block) + "    function: log_logistic\n" + example.substr(block));
+  testing::write(directory / "weibull.yaml",
+                 example.substr(0, block) + "    function: weibull\n" + example.substr(block));
+  int seed = 0;
+  for (const std::string name : {"logistic", "weibull"}) {
+    for (const std::string time : {"1", "2"}) {
+      REQUIRE(testing::tapstudy({"simulate", directory / (name + ".yaml"), "--participants", "6",
+                                 "--seed", std::to_string(++seed), "--no-traces", "--out",
+                                 directory / (name + time)})
+                  .exit_code == 0);
+    }
+  }
+  REQUIRE(testing::tapstudy({"report", "--compare", directory / "weibull1", directory / "weibull2",
+                             "--out", directory / "both"})
+              .exit_code == 0);
+  const auto rows = block_in(directory / "both")["side_by_side"];
+  REQUIRE(rows.size() == 3);
+  CHECK(rows[2]["study"] == "ratio");
+  CHECK(rows[2]["estimate"].get<double>() ==
+        Approx(rows[1]["estimate"].get<double>() / rows[0]["estimate"].get<double>()));
+  const auto refused =
+      testing::tapstudy({"report", "--compare", directory / "logistic1", directory / "weibull1"});
+  CHECK(refused.exit_code == 2);
+  CHECK_THAT(refused.standard_error,
+             Contains("log_logistic function") && Contains("weibull function"));
+}

@@ -8,6 +8,7 @@
 #include <iomanip>
 #include <sstream>
 
+#include "support/built_paths.hpp"
 #include "support/processes.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;
@@ -162,7 +163,7 @@ TEST_CASE("liblo's own oscdump reads the changes of state that are stored",
       "kill $reader",
       port,
       directory / "dump",
-      TAPSTUDY_PROGRAM};
+      testing::tapstudy_program()};
   std::ranges::copy(session_line(directory, "{osc: {port: " + port + "}}"),
                     std::back_inserter(line));
   const auto run = testing::run_program(line, answers);

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "support/alsa_file.hpp"
+#include "support/built_paths.hpp"
 #include "support/processes.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;
@@ -51,7 +52,7 @@ std::string markers_of_masking(const TempDirectory& directory) {
   return kinds;
 }
 void hear_with(const std::string& script) {
-  setenv("TAPSTUDY_PROGRAM", TAPSTUDY_PROGRAM, 1);
+  setenv("TAPSTUDY_PROGRAM", testing::tapstudy_program().c_str(), 1);
   const auto heard =
       testing::run_program({"/usr/bin/python3", "-B", testing::source("tests/audio/" + script)});
   INFO(heard.standard_output << heard.standard_error);
@@ -94,10 +95,10 @@ TEST_CASE("every trial of a session has its noise, and says so", "[end_to_end][a
 }
 
 TEST_CASE(
-    "a client of JACK hears the noise at its level, spectrum and ramps, and every under-run; "
+    "a client of JACK hears the noise at its level, spectrum and ramps, and every underrun; "
     "where JACK is killed no answer is lost",
     "[end_to_end][audio]") {
-  setenv("TAPSTUDY_STALLING_PLAYER", TAPSTUDY_STALLING_PLAYER, 1);
+  setenv("TAPSTUDY_STALLING_PLAYER", testing::stalling_player_program().c_str(), 1);
   hear_with("jack_test.py");
 }
 

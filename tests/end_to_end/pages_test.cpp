@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 #include <cstdlib>
 
+#include "support/built_paths.hpp"
 #include "support/patient_spidar_study.hpp"
 #include "support/processes.hpp"
 #include "support/sanitized.hpp"
@@ -10,7 +11,7 @@ using namespace tapstudy;
 
 namespace {
 void pass(const std::string& script) {
-  setenv("TAPSTUDY_PROGRAM", TAPSTUDY_PROGRAM, 1);
+  setenv("TAPSTUDY_PROGRAM", testing::tapstudy_program().c_str(), 1);
   const auto result =
       testing::run_program({"/usr/bin/python3", "-B", testing::source("tests/pages/" + script)});
   INFO(result.standard_output << result.standard_error);
@@ -52,7 +53,7 @@ TEST_CASE("a SPIDAR is homed by the operator's command while the participant is 
   const testing::TempDirectory directory;
   testing::write_patient_spidar_study(directory);
   setenv("TAPSTUDY_SPIDAR_STUDY", directory.path().c_str(), 1);
-  setenv("TAPSTUDY_LAB", TAPSTUDY_LAB, 1);
+  setenv("TAPSTUDY_LAB", testing::lab_program().c_str(), 1);
   pass("spidar_page_test.py");
 }
 #endif

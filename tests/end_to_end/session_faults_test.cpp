@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 #include <filesystem>
 
+#include "support/built_paths.hpp"
 #include "support/processes.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;
@@ -18,7 +19,7 @@ testing::ProgramResult shell(const TempDirectory& directory, const std::string& 
       {"/bin/bash", "-c",
        fmt::format(
            "tapstudy={}; tapstudy() {{ $tapstudy \"$@\"; }}; study={}; out={}/the_study; cd {}\n{}",
-           TAPSTUDY_PROGRAM, testing::shipped("paper/discrimination.yaml").string(),
+           testing::tapstudy_program(), testing::shipped("paper/discrimination.yaml").string(),
            directory.path(), directory.path(), script)});
 }
 std::string sql(const TempDirectory& directory, const std::string& query) {

@@ -3,6 +3,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "support/built_paths.hpp"
 #include "support/example_bridge.hpp"
 #include "support/processes.hpp"
 #include "support/texts.hpp"
@@ -163,9 +164,9 @@ TEST_CASE("Ctrl-C in a session keeps what was answered and says how to go on",
       "(echo 1; sleep 7) | /usr/bin/timeout --foreground --preserve-status -s INT 5 \"$0\" run "
       "\"$1\" --participant P01 --seed 5 --out \"$2\" 2>\"$3\"; echo $?; kill $(jobs -p) "
       "2>/dev/null";
-  const auto result = testing::run_program({"/bin/bash", "-c", "set -o pipefail; " + script,
-                                            TAPSTUDY_PROGRAM, paper("discrimination.yaml"),
-                                            directory / "the_study", directory / "said"});
+  const auto result = testing::run_program(
+      {"/bin/bash", "-c", "set -o pipefail; " + script, testing::tapstudy_program(),
+       paper("discrimination.yaml"), directory / "the_study", directory / "said"});
   CHECK(result.standard_output == "130\n");
   CHECK_THAT(testing::contents(directory / "said"), Contains("--resume"));
   CHECK(sql(directory, "SELECT group_concat(number || status) FROM trial") ==
@@ -187,7 +188,7 @@ TEST_CASE("a session runs on a device that another program drives, and can be re
       {"/usr/bin/python3", testing::source("tests/support/with_logind.py"), "/bin/bash", "-c",
        "for i in 1 2 3 4 1 2 3 4; do sleep 0.9; echo $i; done | \"$0\" run \"$1\" --rig \"$2\" "
        "--participant P01 --seed 5 --out \"$3\"",
-       TAPSTUDY_PROGRAM, paper("discrimination.yaml"), directory / "rig.yaml",
+       testing::tapstudy_program(), paper("discrimination.yaml"), directory / "rig.yaml",
        directory / "the_study"});
   INFO(live.standard_error);
   REQUIRE(live.exit_code == 0);

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "support/built_paths.hpp"
 #include "support/patient_spidar_study.hpp"
 #include "support/processes.hpp"
 #include "support/sanitized.hpp"
@@ -23,9 +24,9 @@ class Laboratory {
   testing::ProgramResult operator()(const std::vector<std::string>& options,
                                     const std::vector<std::string>& arguments) {
     std::vector<std::string> line{"/usr/bin/env", "LD_PRELOAD=libumockdev-preload.so.0",
-                                  TAPSTUDY_LAB, directory_ / "report.json"};
+                                  testing::lab_program(), directory_ / "report.json"};
     line.insert(line.end(), options.begin(), options.end());
-    line.insert(line.end(), {"--", TAPSTUDY_PROGRAM});
+    line.insert(line.end(), {"--", testing::tapstudy_program()});
     line.insert(line.end(), arguments.begin(), arguments.end());
     auto result = testing::run_program(line);
     std::ifstream written{directory_ / "report.json"};  // none if the mocked kernel gave up
@@ -98,7 +99,7 @@ TEST_CASE("a device that cannot be used is one clear error, and no force is ever
       {{"--boards", "2"}, "2 SPIDAR-G6 are plugged in: say in the rig which"},
       {{"--forbidden"}, "no permission (copy device/udev/70-tapstudy.rules"},
       {{"--silent"}, "does not answer: no reply in time"},
-      {{"--nonsense"}, "sent an invalid reply: the device got what was never sent"},
+      {{"--nonsense"}, "sent an invalid reply: the device echoed a command that was not sent"},
   }));
   Laboratory laboratory;
   const auto result = laboratory.session(options);

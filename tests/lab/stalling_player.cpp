@@ -1,5 +1,5 @@
 // stalling_player CARD: plays a steady level whose source stalls three times for longer than the
-// card's buffer lasts, and prints how many under-runs were counted.
+// card's buffer lasts, and prints how many underruns were counted.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -140,17 +140,17 @@ TEST_CASE(
   for (int i = 0; i < n; ++i) {
     block.stimuli.push_back(std::string(1, static_cast<char>('a' + i)));
   }
-  std::map<std::string, int> successions;
-  std::map<std::string, int> places;
+  std::map<std::pair<std::size_t, std::size_t>, int> successions;
+  std::map<std::pair<std::size_t, std::size_t>, int> places;
   const int participants = protocols::williams_sequences(n, repetitions);
   for (int participant = 0; participant < participants; ++participant) {
     core::Rng rng{1};
-    const auto order = protocols::ordered_stimuli(block, rng, {participant, seed});
+    const auto order = protocols::ordered_conditions(block, rng, {participant, seed});
     REQUIRE(order.size() == static_cast<std::size_t>(n * repetitions));
     for (std::size_t place = 0; place < order.size(); ++place) {
-      ++places[order[place].stimulus + std::to_string(place)];
+      ++places[{order[place].condition, place}];
       if (place > 0) {
-        ++successions[order[place - 1].stimulus + order[place].stimulus];
+        ++successions[{order[place - 1].condition, order[place].condition}];
       }
     }
   }
@@ -163,7 +163,8 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("the seed of the study deals the balanced orders out", "[protocols][schedule]") {
+TEST_CASE("the seed of the study assigns the balanced orders to participants",
+          "[protocols][schedule]") {
   protocols::Protocol protocol = paper("discrimination.yaml");
   protocol.blocks[0].order = protocols::Order::williams;
   const auto order = [&](std::uint64_t seed, int index) {
@@ -216,8 +217,8 @@ TEST_CASE("a constrained order is any of those that satisfy it, equally often",
   constexpr int draws = 9000;
   for (int i = 0; i < draws; ++i) {
     std::string order;
-    for (const auto& next : protocols::ordered_stimuli(block, rng, {})) {
-      order += next.stimulus;
+    for (const auto& next : protocols::ordered_conditions(block, rng, {})) {
+      order += block.stimuli[next.condition];
     }
     ++counts[order];
   }
@@ -245,8 +246,8 @@ TEST_CASE("within repetitions too a constrained order is any that satisfies it, 
   constexpr int draws = 7200;
   for (int i = 0; i < draws; ++i) {
     std::string order;
-    for (const auto& next : protocols::ordered_stimuli(block, rng, {})) {
-      order += next.stimulus;
+    for (const auto& next : protocols::ordered_conditions(block, rng, {})) {
+      order += block.stimuli[next.condition];
     }
     ++counts[order];
   }
@@ -269,17 +270,18 @@ TEST_CASE("two presentations of a stimulus are as far apart as is asked, and no 
   core::Rng rng{3};
   block.constraints = {0, 3};
   for (int i = 0; i < 50; ++i) {
-    const auto order = protocols::ordered_stimuli(block, rng, {});
+    const auto order = protocols::ordered_conditions(block, rng, {});
     for (std::size_t k = 0; k + 2 < order.size(); ++k) {
-      CHECK(order[k].stimulus != order[k + 1].stimulus);
-      CHECK(order[k].stimulus != order[k + 2].stimulus);
+      CHECK(order[k].condition != order[k + 1].condition);
+      CHECK(order[k].condition != order[k + 2].condition);
     }
   }
   block.constraints = {0, 5};  // four stimuli cannot
-  CHECK_THROWS_AS(protocols::ordered_stimuli(block, rng, {}), core::InvalidInput);
+  CHECK_THROWS_AS(protocols::ordered_conditions(block, rng, {}), core::InvalidInput);
   block.repetitions = 10;
   block.constraints = {1, 1};  // met by one random order in fourteen thousand
-  const auto rare = protocols::ordered_stimuli(block, rng, {});
+  const auto rare = protocols::ordered_conditions(block, rng, {});
   CHECK(rare.size() == 40);
-  CHECK(std::ranges::adjacent_find(rare, {}, &protocols::OrderedStimulus::stimulus) == rare.end());
+  CHECK(std::ranges::adjacent_find(rare, {}, &protocols::OrderedCondition::condition) ==
+        rare.end());
 }

@@ -190,3 +190,26 @@ TEST_CASE("comparisons on either side are of two alternatives, and of the task c
   CHECK_THAT(said("task: comparison", "task: abx"), Contains("one side of the standard"));
   CHECK_THAT(said("[-0.5,", "[-0.9, -0.5,"), Contains("may ask for the level -0.9"));
 }
+
+TEST_CASE(
+    "a procedure gets as many trials of different alternatives as it asks for, whatever the "
+    "order",
+    "[protocols][tasks]") {
+  const std::string example = testing::contents(testing::shipped("examples/stiffness_jnd.yaml"));
+  const protocols::Protocol protocol = protocols::parse_protocol(
+      testing::replaced(testing::replaced(example, "task: comparison", "task: same_different"),
+                        "trials: 40", "trials: 42"),
+      "study.yaml");
+  const protocols::Block* const block = &protocol.blocks.back();
+  std::size_t wanted = 0;
+  for (const auto& track : block->comparison->tracks) {
+    wanted += track->max_trials();
+  }
+  REQUIRE(wanted % 8 != 0);  // no whole number of runs
+  for (std::uint64_t seed = 0; seed < 50; ++seed) {
+    const auto trials = block->task->trials(*block, protocols::Draw{seed});
+    CHECK(std::ranges::count_if(trials, [](const protocols::PlannedTrial& trial) {
+            return layout_of(trial) == "SC" || layout_of(trial) == "CS";
+          }) >= static_cast<std::ptrdiff_t>(wanted));
+  }
+}

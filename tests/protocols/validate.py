@@ -7,7 +7,7 @@ import jsonschema
 import yaml
 
 
-class Loader(yaml.SafeLoader):
+class Loader(yaml.CSafeLoader):
     """YAML as yaml-cpp reads it: 1e-4 is a number (YAML 1.2), not text (YAML 1.1)."""
 
 
@@ -23,7 +23,11 @@ validator.check_schema(validator.schema)
 all_fit = True
 for name in sys.argv[2:]:
     with open(name) as yaml_file:
-        errors = [error.message for error in validator.iter_errors(yaml.load(yaml_file, Loader))]
+        try:
+            content = yaml.load(yaml_file, Loader)
+            errors = [error.message for error in validator.iter_errors(content)]
+        except yaml.YAMLError as error:
+            errors = [str(error)]
     print("fits" if not errors else "differs")
     print(*errors, sep="\n", file=sys.stderr)
     all_fit = all_fit and not errors

@@ -52,7 +52,19 @@ TEST_CASE("verify names the one value that was changed", "[results][verify]") {
   CHECK_THAT(said_of(study, "trial.duration_s", "duration_s + 1", "duration_s - 1",
                      "trial_id = (SELECT max(trial_id) FROM trial)"),
              Contains("trial.duration_s is 3, recomputed 2"));
+  const std::string later = " WHERE trial_id = (SELECT max(trial_id) FROM trial) AND position > 0";
+  change(study, "UPDATE alternative SET position = position + 1" + later);
+  CHECK_THAT(testing::tapstudy({"verify", study}).standard_output,
+             Contains("alternative.position is 2, recomputed 1"));
+  change(study, "UPDATE alternative SET position = position - 1" + later);
+  CHECK_THAT(said_of(study, "trace_chunk.first_tick", "first_tick + 1", "first_tick - 1",
+                     "trial_id = (SELECT min(trial_id) FROM trace_chunk)"),
+             Contains("trace_chunk.first_tick is 1, recomputed 0"));
   CHECK(testing::tapstudy({"verify", study}).exit_code == 0);
+  change(study, "DELETE FROM tick_statistics WHERE trial_id = (SELECT max(trial_id) FROM trial)");
+  const auto lacking = testing::tapstudy({"verify", study});
+  CHECK(lacking.exit_code == 5);
+  CHECK_THAT(lacking.standard_output, Contains("tick_statistics is missing"));
 }
 
 TEST_CASE("a protocol that cannot be read leaves the traces to be verified", "[results][verify]") {

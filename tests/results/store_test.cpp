@@ -9,7 +9,7 @@
 #include "core/sha256.hpp"
 #include "results/recorder.hpp"
 #include "results/store_error.hpp"
-#include "results/trace_codec.hpp"
+#include "results/trace_stream.hpp"
 #include "support/processes.hpp"
 #include "support/small_study.hpp"
 #include "support/texts.hpp"
@@ -39,6 +39,20 @@ TEST_CASE("what is stored comes back", "[results][store]") {
   CHECK(answers[1].response_time_s == 1.5);
   CHECK(store.trace(1).size() == 3);
   CHECK(store.answered_trials("P01") == std::vector<int>{1, 2});
+}
+
+TEST_CASE("a trace of another codec is refused, not misread", "[results][store]") {
+  const testing::TempDirectory directory;
+  {
+    auto [store, row] = begun_study(directory.path());
+    store.add_trial(trial(row.id, 1, "a"));
+  }
+  testing::run_program({"/usr/bin/sqlite3", directory / "study.db",
+                        "UPDATE trace_chunk SET codec = 'tapstudy-trace/2'"});
+  Store store = Store::open_existing(directory.path());
+  const auto refused = Contains("is encoded as 'tapstudy-trace/2'");
+  CHECK_THROWS_WITH(store.trace(1), refused);
+  CHECK_THROWS_WITH(each_trace_chunk(store, [](auto, auto) {}), refused);
 }
 
 TEST_CASE("a trial is there whole or not at all", "[results][store]") {

@@ -9,13 +9,15 @@
 #include <cstdint>
 #include <string>
 
+#include "support/built_paths.hpp"
+
 extern char** environ;
 namespace tapstudy::testing {
 // The example that ships, as a program of its own.
 class ExampleBridge {
  public:
   explicit ExampleBridge(std::uint16_t port) {
-    std::string program{TAPSTUDY_BRIDGE};
+    std::string program{bridge_program()};
     std::string number = std::to_string(port);
     const std::array<char*, 3> words{program.data(), number.data(), nullptr};
     REQUIRE(posix_spawn(&child_, program.c_str(), nullptr, nullptr, words.data(), environ) == 0);

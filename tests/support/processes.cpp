@@ -6,6 +6,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "support/built_paths.hpp"
 #include "support/texts.hpp"
 
 extern char** environ;
@@ -37,7 +38,7 @@ ProgramResult run_program(const std::vector<std::string>& arguments, const std::
 }
 
 ProgramResult tapstudy(std::vector<std::string> arguments, const std::string& input) {
-  arguments.insert(arguments.begin(), TAPSTUDY_PROGRAM);
+  arguments.insert(arguments.begin(), tapstudy_program());
   return run_program(arguments, input);
 }
 }  // namespace tapstudy::testing

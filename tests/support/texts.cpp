@@ -6,6 +6,8 @@
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
+
+#include "support/built_paths.hpp"
 namespace tapstudy::testing {
 namespace fs = std::filesystem;
 
@@ -23,11 +25,11 @@ void write(const fs::path& file, const std::string& text) {
 }
 
 std::string source(const std::string& name) {
-  return (fs::path{TAPSTUDY_SOURCE_DIR} / name).string();
+  return (fs::path{source_directory()} / name).string();
 }
 
 fs::path shipped(const std::string& name) {
-  return fs::path{TAPSTUDY_SOURCE_DIR} / "protocols" / name;
+  return fs::path{source_directory()} / "protocols" / name;
 }
 
 std::string replaced(std::string text, const std::string& from, const std::string& to) {
@@ -45,5 +47,10 @@ TempDirectory::TempDirectory() {
 TempDirectory::~TempDirectory() {
   std::error_code ignored;
   fs::remove_all(path_, ignored);
+}
+
+std::size_t entries(const std::string& directory) {
+  return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator{directory},
+                                                std::filesystem::directory_iterator{}));
 }
 }  // namespace tapstudy::testing

@@ -23,4 +23,6 @@ class TempDirectory {
  private:
   std::filesystem::path path_;
 };
+
+std::size_t entries(const std::string& directory);  // in it, how many
 }  // namespace tapstudy::testing

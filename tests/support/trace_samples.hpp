@@ -2,7 +2,7 @@
 #include <vector>
 
 #include "core/haptic_state.hpp"
-#include "core/tick/trace_ring.hpp"
+#include "core/tick/spsc_ring.hpp"
 namespace tapstudy::testing {
 // What a loop has traced since the last call.
 inline std::vector<core::TraceSample> samples_of(core::SpscRing<core::TraceSample>& trace) {

@@ -9,11 +9,13 @@ const middle = 0.5;
 // {body, input, value() (0 to 1, null: no mark), clear()}
 export function analogueScale({ low, high, label }) {
   const input = el("input", { type: "range", min: 0, max: 1, step: 0.01, value: middle, "aria-label": label });
-  const body = el("div", { className: "scale" }, input, anchors(low, high));
+  const hint = el("p", { className: "hint", "aria-hidden": "true" }, word("scale_hint"));
+  const body = el("div", { className: "scale" }, input, anchors(low, high), hint);
   let isTouched = false;
   function setTouched(is) {
     isTouched = is;
     input.classList.toggle("is-touched", is);
+    hint.style.visibility = is ? "hidden" : "visible";
     const percent = Math.round(100 * input.value);
     input.setAttribute("aria-valuetext", is ? word("scale_value", { percent, low, high }) : word("scale_untouched"));
   }

@@ -6,7 +6,7 @@
 import { analogueScale } from "./analogue_scale.js";
 import { el } from "./dom.js";
 import { orderOf } from "./order_field.js";
-import { newGroupName, pickedValue, pickNumber, radioCard } from "./radio_cards.js";
+import { newGroupName, pickedValue, pickNumber, radioCard, steps } from "./radio_cards.js";
 import { word } from "./words.js";
 
 const placeOf = (index) => String(index + 1);
@@ -26,9 +26,11 @@ export const cardOf = ({ group, option, label }) => radioCard({
 });
 
 // The first so many options stand beside their alternatives already, in the same group.
-function optionField({ options }, { besideAlternatives, group }) {
+function optionField({ options, low, high }, { besideAlternatives, group }) {
+  const isScale = Boolean(low || high);
+  const cards = () => (isScale ? steps({ count: options.length, low, high }) : optionCards(options, { group, from: besideAlternatives }));
   return {
-    body: besideAlternatives < options.length ? [optionCards(options, { group, from: besideAlternatives })] : [],
+    body: besideAlternatives < options.length ? [cards()] : [],
     answerIn: pickedValue,
     missing: word("pick_first"),
     press: (element, key) => pickNumber(element, key),

@@ -21,13 +21,12 @@ export class Actions {
     return !this.#isSending && this.#possible.get(name) === true;
   }
 
-  show({ actions, language, trial }) {
+  show({ actions, trial }) {
     this.#trial = trial?.number;
     this.#possible = new Map((actions ?? []).map(({ name, is_possible: is }) => [name, is]));
     const listed = (actions ?? []).filter(({ name }) => !elsewhere.has(name));
-    const content = [language, listed];
-    showIfChanged(byId("actions").querySelector("div"), content, () => listed.map((action) => this.#button(action)));
-    showIfChanged(byId("note"), [language, this.#possible.has("note")], ([, has]) => (has ? this.#noteFields() : []));
+    showIfChanged(byId("actions").querySelector("div"), listed, () => listed.map((action) => this.#button(action)));
+    showIfChanged(byId("note"), this.#possible.has("note"), (has) => (has ? this.#noteFields() : []));
     this.#enable();
   }
 

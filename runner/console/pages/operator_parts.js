@@ -5,10 +5,10 @@ import { word, wordOr } from "./words.js";
 
 const row = (title, ...content) => [el("dt", {}, title), el("dd", {}, ...content)];
 
-function trialLine({ trial, progress }) {
-  const { number, attempt, is_practice: isPractice } = trial;
-  const total = progress?.total;
-  const parts = [isPractice || !total ? word("trial_number_only", { number }) : word("trial_number", { number, total })];
+// Numbers are those of the store, practice included.
+function trialLine({ trial }) {
+  const { number, total, attempt, is_practice: isPractice } = trial;
+  const parts = [word("trial_number", { number, total })];
   if (isPractice) parts.push(word("practice"));
   if (attempt > 1) parts.push(word("attempt", { attempt }));
   return parts.join(" · ");
@@ -28,7 +28,7 @@ function alternativeRow({ label, stimulus }, index, { current, number }, actions
 
 export function showTrial(state, actions) {
   const hasSwitch = (state.actions ?? []).some(({ name }) => name === "switch");
-  const content = [state.language, state.trial, state.progress?.total, hasSwitch];
+  const content = [state.trial, hasSwitch];
   showIfChanged(byId("trial").querySelector("div"), content, () => {
     const { trial } = state;
     if (!trial) return [el("p", { className: "muted" }, word("trial_none"))];
@@ -49,8 +49,12 @@ export function showTrial(state, actions) {
 
 function correctionField({ kind, options }) {
   if (kind !== "option") return el("input", { type: "text", id: "correct-to", autocomplete: "off" });
-  return el("select", { id: "correct-to" },
-    ...options.map((label, index) => el("option", { value: String(index + 1) }, `${index + 1} ${label}`)));
+  const isNumbered = (label, place) => label === place || label.startsWith(`${place} `);
+  return el("select", { id: "correct-to" }, el("option", { value: "" }, "–"),
+    ...options.map((label, index) => {
+      const place = String(index + 1);
+      return el("option", { value: place }, isNumbered(label, place) ? label : `${place} ${label}`);
+    }));
 }
 
 function correction({ number, answers }, actions) {
@@ -58,12 +62,16 @@ function correction({ number, answers }, actions) {
   const button = el("button", { type: "button", onclick: () => actions.send(`correct @${number} ${field.value.trim()}`, word("action_correct")) },
     word("correct_do"));
   button.dataset.action = "correct";
+  // Nothing is corrected by a press that was meant for something else.
+  const setPossible = () => { button.disabled = field.value.trim() === ""; };
+  field.addEventListener("input", setPossible);
+  setPossible();
   return [el("label", { htmlFor: "correct-to" }, word("correct_to")), el("div", { className: "row" }, field, button)];
 }
 
 export function showLastAnswer(state, actions) {
   const hasCorrection = (state.actions ?? []).some(({ name }) => name === "correct");
-  const content = [state.language, state.last_answer, hasCorrection];
+  const content = [state.last_answer, hasCorrection];
   showIfChanged(byId("last").querySelector("div"), content, () => {
     const answer = state.last_answer;
     if (!answer) return [el("p", { className: "muted" }, word("last_none"))];
@@ -77,7 +85,7 @@ export function showLastAnswer(state, actions) {
 
 export function showMachine(state) {
   const { ticks, masking } = state;
-  const content = [state.language, state.device, state.participant_page, ticks, masking];
+  const content = [state.device, state.participant_page, ticks, masking];
   showIfChanged(byId("machine").querySelector("dl"), content, () => [
     ...row(word("device"), state.device ?? "–"),
     ...row(word("participant_page"), state.participant_page

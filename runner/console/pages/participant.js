@@ -98,7 +98,7 @@ function settle() {
 }
 
 function mount(key) {
-  shown?.leave?.(screen.kind);
+  shown?.leave?.();
   enteredAnswer?.leave();
   enteredAnswer = new EnteredAnswer(() => screen.number);
   const entered = (answer) => enteredAnswer.tell(answer);

@@ -1,11 +1,12 @@
-// A questionnaire. What was typed stays until the form is accepted, whatever comes in between.
+// A questionnaire. What was typed stays while the form is on the screen, also when the language
+// changes and changes back; a form that is asked again is empty.
 
 import { el } from "./dom.js";
 import { formItem } from "./form_items.js";
 import { markedText } from "./marked_text.js";
 import { word } from "./words.js";
 
-const drafts = new Map();
+let drafts = { number: null, byLanguage: new Map() };
 
 function valuesOf(items) {
   const answered = items.filter((item) => item.value() !== null);
@@ -28,10 +29,10 @@ function build({ form }) {
 }
 
 export function formScreen(screen, { send, say }) {
-  const key = JSON.stringify([screen.form, screen.language]);
-  if (!drafts.has(key)) drafts.set(key, build(screen));
-  const { element, items } = drafts.get(key);
-  let isSent = false;
+  if (drafts.number !== screen.number) drafts = { number: screen.number, byLanguage: new Map() };
+  const { language } = screen;
+  if (!drafts.byLanguage.has(language)) drafts.byLanguage.set(language, build(screen));
+  const { element, items } = drafts.byLanguage.get(language);
 
   element.onsubmit = async (event) => {
     event.preventDefault();
@@ -40,10 +41,8 @@ export function formScreen(screen, { send, say }) {
       say(word("form_incomplete", { count: wrong.length }));
       wrong[0].focus();
     } else {
-      isSent = true;
-      isSent = await send("form", valuesOf(items));
+      await send("form", valuesOf(items));
     }
   };
-  // The reply may be lost, but the screen after the form tells that it has arrived.
-  return { element, leave: (next) => { if (isSent && next !== "paused") drafts.delete(key); } };
+  return { element };
 }

@@ -15,7 +15,8 @@ function feedbackTitle({ is_correct: isCorrect }) {
 }
 
 function contentOf(screen) {
-  const { title, body } = markedText(screen.message ? word(`message_${screen.message}`) : screen.text);
+  if (screen.message) return { title: word(`message_${screen.message}`), body: [] };
+  const { title, body } = markedText(screen.text);
   if (screen.kind === "feedback" && screen.feedback) {
     const right = el("p", { className: "right" }, word("feedback_right", { right: screen.feedback.right }));
     return { title: feedbackTitle(screen.feedback), body: [right, ...body] };

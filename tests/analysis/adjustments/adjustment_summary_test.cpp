@@ -131,7 +131,7 @@ TEST_CASE("what is no setting is refused", "[analysis][adjustments]") {
     results::AnswerRow answer = answer_of("p", 1.0, 4.0);
     answer.response = text;
     CHECK_THROWS_WITH(reported(statistic, design_of(true), {answer}),
-                      Contains("is no value of sinusoid_amplitude_n_s_per_m"));
+                      Contains("is not a value of sinusoid_amplitude_n_s_per_m"));
   }
   BlockDesign nothing = design_of(true);
   nothing.adjusted.reset();

@@ -72,7 +72,7 @@ TEST_CASE("PsychoPy's, jsPsych's and a plain table of the same answers read the 
 TEST_CASE("JSON that is no list of trials is refused", "[analysis][answer_tables]") {
   for (const char* const text : {"[", "[]", "[1, 2]", "[{\"a\": 1}, 2]", "[{\"a\": 1}] x"}) {
     std::istringstream json{text};
-    CHECK_THROWS_WITH(read_json_rows(json, "trials.json"), Contains("trials.json: is no "));
+    CHECK_THROWS_WITH(read_json_rows(json, "trials.json"), Contains("trials.json: not "));
   }
 }
 
@@ -139,7 +139,7 @@ TEST_CASE("answers of known participants are summarised over participants",
 TEST_CASE("a table of answers that cannot be read is refused at its line",
           "[analysis][answer_tables]") {
   CHECK_THAT(refusal("stimulus,response\na,a\nb,bb\n"),
-             Contains("answers.csv:3: response 'bb' is no stimulus"));
+             Contains("answers.csv:3: response 'bb' is not a stimulus"));
   CHECK(refusal("stimulus,response\na,a\nb,bb\n", {{}, {}, {{"bb", "bb"}}}) == "accepted");
   CHECK_THAT(refusal("stimulus,response\na,\n"), Contains("holds no answers"));
   CHECK_THAT(refusal("stimulus,response\na,a,a\n"), Contains("answers.csv:2: has 3 cells"));
@@ -149,7 +149,7 @@ TEST_CASE("a table of answers that cannot be read is refused at its line",
   CHECK_THAT(refusal("stimulus,response\na,a\n", {{"shown"}}), Contains("has no column 'shown'"));
   CHECK_THAT(refusal("stimulus,response,response_time_s\na,a,-1\n"),
              Contains("answers.csv:2: '-1'"));
-  CHECK_THAT(refusal("stimulus,response,response_time_s\na,a,nan\n"), Contains("'nan'"));
+  CHECK_THAT(refusal("stimulus,response,response_time_s\na,a,inf\n"), Contains("'inf'"));
   CHECK_THAT(refusal("stimulus,response\n,a\n"), Contains("no stimulus"));
   CHECK_THAT(refusal("stimulus,response\na,a\n", {{}, {{"task", "x"}}}), Contains("--where"));
   CHECK_THAT(refusal(data("psychopy.csv"), {{"plate"}}), Contains("could be meant"));

@@ -7,6 +7,7 @@
 
 #include "analysis/detection/decision_model.hpp"
 #include "core/error.hpp"
+#include "core/rng.hpp"
 #include "support/r_program.hpp"
 using namespace tapstudy;
 
@@ -79,4 +80,40 @@ TEST_CASE("rates and counts that are not possible are refused", "[analysis][dete
   CHECK_THROWS_AS(analysis::same_different_differencing(1.0, 0.2), core::InvalidInput);
   CHECK_THROWS_AS(analysis::same_different_independent(0.5, 0.0), core::InvalidInput);
   CHECK_THROWS_AS(analysis::same_different_hit_rate(-1.0, 0.2), core::InvalidInput);
+}
+
+TEST_CASE("intervals of same-different d' hold it in about 95 of 100 samples",
+          "[analysis][detection]") {
+  constexpr int samples = 2000;
+  constexpr int trials = 60;
+  constexpr double d_prime = 2.0;
+  constexpr double differencing_false_alarms = 0.3;
+  constexpr double hits = 0.76;
+  constexpr double false_alarms = 0.24;
+  const double independent_d_prime =
+      analysis::same_different_independent(hits, false_alarms).d_prime;
+  core::Rng rng{5};
+  const auto drawn = [&](double rate) {
+    analysis::Proportion of{0, trials};
+    for (int i = 0; i < trials; ++i) {
+      of.successes += rng.uniform() < rate ? 1 : 0;
+    }
+    return of;
+  };
+  int differencing = 0;
+  int independent = 0;
+  for (int i = 0; i < samples; ++i) {
+    const auto range = analysis::same_different_differencing_interval(
+        drawn(analysis::same_different_hit_rate(d_prime, differencing_false_alarms)),
+        drawn(differencing_false_alarms));
+    differencing += range && range->low <= d_prime && d_prime <= range->high ? 1 : 0;
+    const auto other =
+        analysis::same_different_independent_interval(drawn(hits), drawn(false_alarms));
+    independent +=
+        other && other->low <= independent_d_prime && independent_d_prime <= other->high ? 1 : 0;
+  }
+  CHECK(differencing == Approx(0.95 * samples).margin(0.025 * samples));
+  CHECK(independent == Approx(0.95 * samples).margin(0.025 * samples));
+  CHECK_FALSE(analysis::same_different_differencing_interval({3, 10}, {5, 10}));
+  CHECK_FALSE(analysis::same_different_independent_interval({3, 10}, {5, 10}));
 }

@@ -57,6 +57,7 @@ std::vector<results::AnswerRow> answers_of(const BlockDesign& design, int partic
       answer.participant_index = person;
       answer.block = design.name;
       answer.number = static_cast<int>(place) + 1;
+      answer.place_in_block = answer.number - 1;
       answer.trial_id = ++trial_id;
       answer.stimulus = design.stimuli[order[place]].name;
       answer.response = design.responses[rng.uniform() < felt ? order[place] : guess].name;

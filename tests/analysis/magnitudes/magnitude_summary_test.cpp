@@ -120,7 +120,7 @@ TEST_CASE("who did not judge all values is left out of the exponent, by name",
   });
   REQUIRE(answers.size() == lacks - 2);
   const auto formats = reported(statistic, design_of(), answers);
-  CHECK_THAT(formats.text, Contains("leaves out who did not judge all values: p7"));
+  CHECK_THAT(formats.text, Contains("leave out who did not judge all values: p7"));
   std::erase_if(answers, [](const auto& answer) { return answer.participant_id == "p7"; });
   CHECK(formats.json["power_law"] == reported(statistic, design_of(), answers).json["power_law"]);
 }

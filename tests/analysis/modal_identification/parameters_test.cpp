@@ -229,6 +229,27 @@ TEST_CASE("modes are assigned as SciPy's assignment does", "[analysis][modal_ide
   }
 }
 
+TEST_CASE("Young's modulus is found from a stated one that is far off",
+          "[analysis][modal_identification]") {
+  const double stated_over_true = GENERATE(0.3, 0.5, 0.75, 1.0, 1.6, 3.3);
+  CAPTURE(stated_over_true);
+  core::Rng rng{8};
+  std::vector<double> model;
+  std::vector<double> measured;
+  for (int k = 0; k < 8; ++k) {
+    model.push_back(60.0 * std::pow(1.25, k) * std::exp(0.1 * rng.normal()));
+  }
+  std::ranges::sort(model);
+  for (const double hz : model) {
+    measured.push_back(hz / std::sqrt(stated_over_true) * std::exp(1e-4 * rng.normal()));
+  }
+  const auto update = update_youngs_modulus(estimates(measured), model, stated_over_true * 3.2e9);
+  REQUIRE(update);
+  CHECK(update->matched.size() == 8);
+  CHECK(update->youngs_modulus_pa.value == Approx(3.2e9).epsilon(1e-3));
+  CHECK_FALSE(update->rival_pa);
+}
+
 TEST_CASE("a mode that the model does not have stays without a partner",
           "[analysis][modal_identification]") {
   const auto update =

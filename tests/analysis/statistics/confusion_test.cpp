@@ -161,7 +161,6 @@ TEST_CASE(
                           matrix.responses,
                           {{"h", "better than chance", ""}},
                           {},
-                          1,
                           ""};
   const Summary summary = summarise({"study", "", {block}}, {}, {});
   std::ostringstream text;
@@ -226,18 +225,8 @@ TEST_CASE("a summary counts by participant, block and task", "[analysis][summary
         [](const analysis::Place& /*place*/, std::uint64_t draw) {
           return draw % 2 == 0 ? std::vector<int>{0, 1} : std::vector<int>{1, 0};
         },
-        1,
         ""},
-       {"pick",
-        "pick_one",
-        "Best?",
-        "choices",
-        {a, b},
-        {},
-        {{"h2", "a is best", "a"}},
-        {},
-        3,
-        ""}}};
+       {"pick", "pick_one", "Best?", "choices", {a, b}, {}, {{"h2", "a is best", "a"}}, {}, ""}}};
   std::vector<results::AnswerRow> answers;
   const auto add = [&](const char* who, const char* block, const char* stimulus,
                        const char* response) {
@@ -248,6 +237,7 @@ TEST_CASE("a summary counts by participant, block and task", "[analysis][summary
     row.stimulus = stimulus;
     row.response = response;
     row.number = row.stimulus == "b" ? 2 : 1;
+    row.place_in_block = row.number - 1;
     if (!row.stimulus.empty()) {
       row.is_correct = row.stimulus == row.response;
     }

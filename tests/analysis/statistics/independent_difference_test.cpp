@@ -36,3 +36,15 @@ TEST_CASE("a difference the other way round is its negative", "[analysis][propor
   CHECK(forth.interval.low == Approx(-back.interval.high).epsilon(1e-9));
   CHECK(forth.interval.high == Approx(-back.interval.low).epsilon(1e-9));
 }
+
+TEST_CASE("a ratio and its interval are the other way round the reciprocals",
+          "[analysis][statistics]") {
+  const IntervalEstimate a{0.2, {0.1, 0.5}};
+  const IntervalEstimate b{0.6, {0.5, 0.9}};
+  const IntervalEstimate forth = independent_ratio(a, b);
+  const IntervalEstimate back = independent_ratio(b, a);
+  CHECK(forth.value == Approx(3.0));
+  CHECK(back.value == Approx(1.0 / 3.0));
+  CHECK(back.interval.low == Approx(1.0 / forth.interval.high));
+  CHECK(back.interval.high == Approx(1.0 / forth.interval.low));
+}

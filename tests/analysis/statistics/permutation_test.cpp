@@ -41,6 +41,7 @@ std::vector<results::AnswerRow> guesses(const protocols::Protocol& protocol, std
       answer.order_index = participant;
       answer.block = trial.block;
       answer.number = trial.number;
+      answer.place_in_block = answer.number - 1;
       answer.stimulus = trial.alternatives.front().stimulus;
       answer.response = left.back();
       answer.is_correct = answer.response == answer.stimulus;

@@ -53,7 +53,7 @@ TEST_CASE("a table for LaTeX shows every character as itself", "[analysis][table
   write_table_latex(out, table, "t");
   CHECK(out.str() ==
         "\\begin{table}[htbp]\n\\centering\n\\caption{50 \\% of A\\_1}\n\\label{tab:t}\n"
-        "\\begin{tabular}{lr}\n\\toprule\nwho & n \\& m \\\\\n\\midrule\n"
+        "\\begin{tabular}{ll}\n\\toprule\nwho & n \\& m \\\\\n\\midrule\n"
         "\\textbackslash{}input\\{x\\} \\#1 \\textasciitilde{} a\\textasciicircum{}b \\$5 & "
         "$\\chi$\\textsuperscript{2} 1--2 \\\\\n\\bottomrule\n\\end{tabular}\n\\end{table}\n");
 }

@@ -187,6 +187,23 @@ TEST_CASE("an accuracy is reached by refining, and out of reach is refused",
   CHECK_THROWS_WITH(core::build_plate_model(bar), Contains("have not settled"));
 }
 
+TEST_CASE("a mode that only finer meshes bring below the band limit is found",
+          "[core][model][slow]") {
+  core::PlateSpec bar = body({0.3, 0.1, 0.1}, 0.3, 1e-6, 5000.0);
+  bar.mesh.order = 1;  // too stiff, the more the coarser
+  bar.mesh.size.max_tet_volume_m3.reset();
+  bar.fixations = {held_side(core::Side::left)};
+  bar.mesh.accuracy = 0.03;
+  const auto wide = core::build_plate_model(bar);
+  bar.band_limit_hz = 1.02 * wide.modal.frequency_hz[0];
+  bar.mesh.accuracy.reset();
+  bar.mesh.size.max_tet_volume_m3 = 0.003 / 800.0;  // as in the second round
+  CHECK(core::build_plate_model(bar).modal.frequency_hz.size() == 0);
+  bar.mesh.accuracy = 0.03;
+  bar.mesh.size.max_tet_volume_m3.reset();
+  CHECK(core::build_plate_model(bar).modal.frequency_hz.size() > 0);
+}
+
 TEST_CASE("a body held by points or a line has no frequencies to refine towards", "[core][model]") {
   core::PlateSpec bar = body({0.3, 0.03, 0.01}, 0.3, 1e-6, 500.0);
   bar.mesh.accuracy = 0.01;

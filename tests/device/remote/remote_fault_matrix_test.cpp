@@ -11,6 +11,7 @@
 #include <catch2/catch.hpp>
 #include <cstring>
 #include <limits>
+#include <numbers>
 #include <thread>
 #include <vector>
 
@@ -34,6 +35,10 @@ enum class Trouble {
   no_power,
   overload,     // exerts far more than it was sent
   limp,         // exerts nothing
+  reversed,     // exerts the force the other way round
+  sideways,     // exerts it along another axis
+  half_known,   // tells of one axis of the force only
+  falls_back,   // to version 1
   coarse,       // its gauge is noisy
   late,         // its gauge is 10 replies late
   releases,     // as after a silence
@@ -59,6 +64,7 @@ class MockProgram {
   std::atomic<Trouble> trouble{Trouble::none};
   std::atomic<bool> is_version_2{false};
   std::atomic<double> height_m{0.01};
+  std::atomic<double> velocity_m_s{0.0};
   std::atomic<double> exerted_n{0.0};
   std::atomic<int> forces_since_trouble{0};
 
@@ -94,7 +100,8 @@ class MockProgram {
     }
   }
   bool tells_of_force() const {
-    return is_version_2 || trouble == Trouble::no_power || trouble == Trouble::overload;
+    return (is_version_2 && trouble != Trouble::falls_back) || trouble == Trouble::no_power ||
+           trouble == Trouble::overload;
   }
   std::array<std::uint8_t, 88> reply_to(const std::array<std::uint8_t, 64>& request) {
     std::array<std::uint8_t, 88> reply{'T', 'A', 'P', 'R', 1};
@@ -104,7 +111,15 @@ class MockProgram {
         on | (trouble == Trouble::releases ? device::force_was_released : 0);
     std::memcpy(reply.data() + 60, &status, sizeof status);
     const double told_n = measured_n();
-    std::memcpy(reply.data() + 72, &told_n, sizeof told_n);
+    const bool is_sideways = trouble == Trouble::sideways;
+    const std::array<double, 2> told_xy_n{is_sideways ? told_n
+                                          : trouble == Trouble::half_known
+                                              ? std::numeric_limits<double>::quiet_NaN()
+                                              : 0.0,
+                                          is_sideways ? 0.0 : told_n};
+    std::memcpy(reply.data() + 64, told_xy_n.data(), sizeof told_xy_n);
+    const double velocity = velocity_m_s;
+    std::memcpy(reply.data() + 44, &velocity, sizeof velocity);
     std::copy_n(request.begin() + 8, 4, reply.begin() + 8);
     reply[8] = static_cast<std::uint8_t>(reply[8] - (trouble == Trouble::old_number ? 1 : 0));
     const double y_m = trouble == Trouble::not_a_number ? std::numeric_limits<double>::quiet_NaN()
@@ -121,6 +136,8 @@ class MockProgram {
         return 80.0;
       case Trouble::limp:
         return 0.0;
+      case Trouble::reversed:
+        return -exerted_n;
       case Trouble::coarse:
         return exerted_n + 0.1 * rng_.normal();
       case Trouble::late:
@@ -222,6 +239,10 @@ TEST_CASE(
     "[device][safety][remote]") {
   const std::vector<std::pair<Trouble, TickFault>> troubles{
       {Trouble::limp, TickFault::force_not_followed},
+      {Trouble::reversed, TickFault::force_not_followed},
+      {Trouble::sideways, TickFault::force_not_followed},
+      {Trouble::half_known, TickFault::bad_reply},
+      {Trouble::falls_back, TickFault::bad_reply},
       {Trouble::releases, TickFault::force_released},
       {Trouble::every_other, TickFault::no_reply}};
   for (const auto& [trouble, fault] : troubles) {
@@ -235,6 +256,29 @@ TEST_CASE(
     CHECK(stage.loop.loop->report().stopped_by == fault);
     CHECK(stage.loop.loop->report().ticks - before < 60);
   }
+}
+
+TEST_CASE("a velocity that is not the change of position ends the trial; one that lags does not",
+          "[device][safety][remote]") {
+  const auto [scale, lag_ticks, fault] =
+      GENERATE(table<double, int, TickFault>({{1.0, 0, TickFault::none},
+                                              {1.0, 25, TickFault::none},
+                                              {0.0, 0, TickFault::velocity_wrong},
+                                              {-1.0, 0, TickFault::velocity_wrong},
+                                              {3.0, 0, TickFault::velocity_wrong}}));
+  CAPTURE(scale, lag_ticks);
+  Stage stage;
+  const auto moves = [&](int tick) {  // to and fro in 0.4 s, 0.06 m/s at most
+    const double phase = 2.0 * std::numbers::pi * tick / 400.0;
+    return std::pair{0.01 + 0.004 * (1.0 - std::cos(phase)),
+                     0.004 * std::sin(phase) * 2.0 * std::numbers::pi / 0.4};
+  };
+  for (int tick = 0; tick < 4000; ++tick) {
+    stage.height_m = moves(tick).first;
+    stage.velocity_m_s = scale * moves(tick - lag_ticks).second;
+    stage.loop.tick(1);
+  }
+  CHECK(stage.loop.loop->report().stopped_by == fault);
 }
 
 TEST_CASE("a program that reports a released force in every reply is not believed",

@@ -351,7 +351,7 @@ TEST_CASE("with force on, a SPIDAR is watched and its guardian with it",
   SECTION("a guardian that acted ends it") {
     REQUIRE(tick() == TickFault::none);
     watch.take_output_over();
-    CHECK(tick() == TickFault::stood_still);
+    CHECK(tick() == TickFault::watchdog_expired);
   }
   SECTION("a guardian that is silent for a tenth of a second ends it") {
     int ticks = 0;
@@ -383,7 +383,7 @@ TEST_CASE("with force on, a SPIDAR is watched and its guardian with it",
   SECTION("an output that the guardian takes in the middle of an exchange is the guardian's") {
     REQUIRE(tick() == TickFault::none);
     watched.pipe.in_the_middle_of_an_exchange([&] { watch.take_output_over(); });
-    CHECK(tick() == TickFault::stood_still);
+    CHECK(tick() == TickFault::watchdog_expired);
   }
 }
 

@@ -136,6 +136,7 @@ TEST_CASE("values between min and max are equally far apart, or by equal factors
     CHECK(*values.rbegin() == 7.0);  // 0.3 (7 / 0.3) is not 7
     for (auto next = std::next(values.begin()); next != values.end(); ++next) {
       const double before = *std::prev(next);
+      // values have 12 digits
       CHECK((is_log ? *next / before : *next - before) ==
             Approx(is_log ? std::pow(7.0 / 0.3, 0.25) : 6.7 / 4.0).epsilon(1e-11));
     }

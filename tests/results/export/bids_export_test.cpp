@@ -73,3 +73,16 @@ TEST_CASE("labels are letters and digits, and never the same twice", "[results][
   REQUIRE(labels.notes.size() == 2);
   CHECK(bids_labels({"a", "b"}, "x").notes.empty());
 }
+
+TEST_CASE("a BIDS dataset says all that a trial presented, with what varied", "[results][export]") {
+  const TempDirectory directory;
+  REQUIRE(testing::tapstudy({"simulate", testing::shipped("examples/stiffness_jnd.yaml").string(),
+                             "--participants", "1", "--no-traces", "--out", directory / "study"})
+              .exit_code == 0);
+  const std::string dataset = dataset_of(directory, directory / "study");
+  const std::string trials =
+      testing::contents(dataset + "/sub-sim01/beh/sub-sim01_task-stiffness_beh.tsv");
+  CHECK_THAT(trials, Contains("plate (youngs_modulus_pa=3.2e+09); plate* (youngs_modulus_pa=") &&
+                         Contains("plate* (youngs_modulus_pa=") &&
+                         Contains("; plate (youngs_modulus_pa=3.2e+09)"));
+}

@@ -35,6 +35,13 @@ def main(study, dataset):
             for column, read in row.items():
                 if column == "recording":
                     continue
+                if column == "alternatives":
+                    presented = database.execute(
+                        "SELECT stimulus FROM alternative WHERE trial_id = ? ORDER BY position",
+                        (row["trial_id"],)).fetchall()
+                    names = [one.split(" (")[0].rstrip("*") for one in read.split("; ")]
+                    assert names == [name for name, in presented], read
+                    continue
                 stored, = database.execute(
                     f"SELECT {STORED.get(column, column)} FROM v_trials WHERE trial_id = ?",
                     (row["trial_id"],)).fetchone()

@@ -28,10 +28,6 @@ std::string csv_of(const std::vector<Row>& rows) {
 std::string sql(const std::string& study, const std::string& query) {
   return testing::run_program({"/usr/bin/sqlite3", study + "/study.db", query}).standard_output;
 }
-std::size_t entries(const std::string& directory) {
-  return static_cast<std::size_t>(
-      std::distance(fs::directory_iterator{directory}, fs::directory_iterator{}));
-}
 }  // namespace
 
 TEST_CASE("pandas and R read of an export what sqlite3 reads of the study",
@@ -50,7 +46,7 @@ TEST_CASE("pandas and R read of an export what sqlite3 reads of the study",
   CHECK_THAT(read.standard_output, Contains("questionnaires 4"));
   CHECK(testing::contents(directory / "out/protocol.yaml") ==
         testing::contents(testing::source("tests/data/every_screen.yaml")));
-  CHECK(entries(directory / "out/traces") ==
+  CHECK(testing::entries(directory / "out/traces") ==
         std::stoul(sql(study, "SELECT count(DISTINCT trial_id) FROM trace_chunk")));
 }
 
@@ -117,13 +113,13 @@ TEST_CASE("an export that cannot be made says why and leaves nothing", "[results
   const std::string study = messy::make(directory);
   const auto refused = [&](const std::string& from, const std::string& out,
                            const std::string& message) {
-    const auto before = entries(directory.path());
+    const auto before = testing::entries(directory.path());
     const auto run = testing::tapstudy({"export", from, "--out", out, "--traces"});
     CHECK(run.exit_code != 0);
     CHECK_THAT(run.standard_error, Contains(message));
     CHECK(std::ranges::count(run.standard_error, '\n') <= 1);
     CHECK(run.standard_output.empty());
-    CHECK(entries(directory.path()) == before);
+    CHECK(testing::entries(directory.path()) == before);
   };
   fs::create_directory(directory / "there");
   refused(directory / "nowhere", directory / "out", "there is no study here");
@@ -139,7 +135,7 @@ TEST_CASE("an export that cannot be made says why and leaves nothing", "[results
 TEST_CASE("on a full disk an export leaves nothing behind", "[results][export]") {
   const TempDirectory directory;
   const std::string study = messy::make(directory);
-  const auto before = entries(directory.path());
+  const auto before = testing::entries(directory.path());
   rlimit usual{};
   REQUIRE(getrlimit(RLIMIT_FSIZE, &usual) == 0);
   const rlimit lowered{100'000, usual.rlim_max};
@@ -148,5 +144,5 @@ TEST_CASE("on a full disk an export leaves nothing behind", "[results][export]")
   setrlimit(RLIMIT_FSIZE, &usual);
   CHECK(run.exit_code != 0);
   CHECK_THAT(run.standard_error, Contains("is the disk full?"));
-  CHECK(entries(directory.path()) == before);
+  CHECK(testing::entries(directory.path()) == before);
 }

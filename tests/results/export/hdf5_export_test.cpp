@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 #include <filesystem>
 
+#include "support/built_paths.hpp"
 #include "support/messy_study.hpp"
 using namespace tapstudy;
 using Catch::Matchers::Contains;
@@ -46,10 +47,10 @@ TEST_CASE("an HDF5 file is there whole or not at all", "[results][export]") {
     const auto run = testing::run_program(
         {"/bin/sh", "-c",
          "{ (ulimit -f " + std::to_string(blocks) + "; exec \"$@\" 2>&1); echo code $?; } | cat",
-         "sh", TAPSTUDY_PROGRAM, "export", study, "--format", "hdf5", "--out",
+         "sh", testing::tapstudy_program(), "export", study, "--format", "hdf5", "--out",
          directory / "out.h5"});
     CHECK_THAT(run.standard_output, Contains("out.h5") && EndsWith("code 2\n"));
     CHECK_THAT(run.standard_output, Contains("cannot be written") || Contains("disk full"));
-    CHECK(std::distance(fs::directory_iterator{directory.path()}, fs::directory_iterator{}) == 3);
+    CHECK(testing::entries(directory.path()) == 3);
   }
 }

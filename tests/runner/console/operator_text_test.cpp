@@ -45,7 +45,7 @@ TEST_CASE("the operator's terminal says what the operator's page shows", "[runne
   for (const char* part : {"P01 (pilot), exploring", "trial 3 of 8, 'control', attempt 2",
                            "A mdf_two; B acrylic_two (felt)", "last answer: trial 2, mdf_two",
                            "contacts: 4", "late ticks: 2 of 12345", "simulated hand: force on",
-                           "masking noise: playing, -20.0 dB FS, 3 under-runs"}) {
+                           "masking noise: playing, -20.0 dB FS, 3 underruns"}) {
     CHECK_THAT(text, Contains(part));
   }
 }

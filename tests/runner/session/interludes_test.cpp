@@ -36,7 +36,7 @@ std::vector<double> rests(const protocols::Breaks& breaks) {
   protocols::PlannedTrial trial;
   trial.block = "only";
   for (trial.number = 1; trial.number <= 10; ++trial.number) {
-    interludes.before(trial);
+    interludes.before(trial, {trial});
     states.enter(runner::SessionState::ready, trial.number);
     states.enter(runner::SessionState::exploring, trial.number);
     states.enter(runner::SessionState::confirmed, trial.number);
@@ -91,9 +91,10 @@ TEST_CASE("a block's questionnaire that an interruption left open is asked befor
   Person person{done};
   runner::SessionStates states{1, [] { return 0.0; }};
   runner::Interludes interludes{{protocol, person, states, [](auto) {}, [] {}}, {}};
-  protocols::PlannedTrial trial;
-  trial.block = "second";
-  interludes.before(trial);
-  interludes.before(trial);
+  protocols::Schedule schedule(2);
+  schedule[0].block = "first";
+  schedule[1].block = "second";
+  interludes.before(schedule[1], schedule);
+  interludes.before(schedule[1], schedule);
   CHECK(done == std::vector<std::string>{"form", "read second"});
 }

@@ -71,6 +71,24 @@ TEST_CASE("on springs each Young's modulus has a solution of its own, and each d
   }
 }
 
+TEST_CASE("what damps is of a stimulus's own: materials and contacts", "[runner][stimuli]") {
+  const protocols::Protocol protocol =
+      protocols::read_protocol(testing::shipped("examples/plate_on_feet.yaml").string());
+  protocols::Stimulus stiff = protocol.stimulus("table");
+  protocols::Contacts contacts = *stiff.contacts;
+  for (core::ContactSpring& spring : contacts.springs) {
+    spring.loss_factor = 0.0;
+  }
+  stiff.contacts = std::make_shared<const protocols::Contacts>(contacts);
+  runner::ModelLibrary models{core::ModelCache{"", ""}};
+  const auto ratios = [&](const protocols::Stimulus& stimulus) {
+    return models.plate_of(protocol, protocols::stimulus_with(protocol, stimulus))
+        ->model.damping_ratio;
+  };
+  CHECK((ratios(stiff) < ratios(protocol.stimulus("table"))).any());
+  CHECK(models.bodies_solved() == 1);
+}
+
 TEST_CASE("a second library finds on disk what the first has solved", "[runner][stimuli]") {
   const testing::TempDirectory directory;
   const protocols::Protocol protocol = paper("discrimination.yaml");

@@ -49,6 +49,29 @@ TEST_CASE("what was typed at a terminal before the question does not answer it",
   CHECK(line_of(input) == "4");
 }
 
+TEST_CASE(
+    "the last line of a script need not end; what a person had only begun to type is no answer",
+    "[runner][terminal]") {
+  std::array<int, 2> pipe_ends{};
+  REQUIRE(pipe(pipe_ends.data()) == 0);
+  runner::LineInput script{pipe_ends[0]};
+  type(pipe_ends[1], "1\n2");
+  close(pipe_ends[1]);
+  CHECK(line_of(script) == "1");
+  CHECK(line_of(script) == "2");
+  CHECK(line_of(script) == "nothing");
+  close(pipe_ends[0]);
+
+  int keyboard{};
+  int program{};
+  REQUIRE(openpty(&keyboard, &program, nullptr, nullptr, nullptr) == 0);
+  runner::LineInput person{program};
+  type(keyboard, "1");
+  close(keyboard);
+  CHECK(line_of(person) == "nothing");
+  close(program);
+}
+
 TEST_CASE("quit typed ahead is heeded, whatever else was", "[runner][terminal]") {
   const Terminal terminal;
   runner::LineInput input{terminal.program};

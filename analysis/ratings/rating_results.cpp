@@ -1,4 +1,4 @@
-#include "analysis/rated/rating_results.hpp"
+#include "analysis/ratings/rating_results.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "analysis/rated/friedman_table.hpp"
+#include "analysis/ratings/friedman_table.hpp"
 namespace tapstudy::analysis {
 ReportTable friedman_table(const std::optional<FriedmanTest>& test, std::size_t participants) {
   ReportTable table{"friedman",

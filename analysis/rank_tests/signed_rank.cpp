@@ -1,4 +1,4 @@
-#include "analysis/ratings/signed_rank.hpp"
+#include "analysis/rank_tests/signed_rank.hpp"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "analysis/ratings/ranks.hpp"
+#include "analysis/rank_tests/ranks.hpp"
 #include "analysis/statistics/distributions.hpp"
 #include "core/error.hpp"
 namespace tapstudy::analysis {

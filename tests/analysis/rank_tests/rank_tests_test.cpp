@@ -3,9 +3,9 @@
 #include <cmath>
 #include <limits>
 
-#include "analysis/ratings/friedman.hpp"
-#include "analysis/ratings/ranks.hpp"
-#include "analysis/ratings/signed_rank.hpp"
+#include "analysis/rank_tests/friedman.hpp"
+#include "analysis/rank_tests/ranks.hpp"
+#include "analysis/rank_tests/signed_rank.hpp"
 #include "analysis/statistics/quantiles.hpp"
 #include "core/error.hpp"
 #include "core/rng.hpp"
@@ -31,7 +31,7 @@ std::string r_table(const RatingTable& ratings) {
 }
 }  // namespace
 
-TEST_CASE("Friedman's test and mean ranks are R's", "[analysis][ratings]") {
+TEST_CASE("Friedman's test and mean ranks are R's", "[analysis][rank_tests]") {
   for (const RatingTable& ratings : {tied, untied}) {
     const std::vector<double> expected = testing::r_numbers(r_table(ratings) + R"(
 f <- friedman.test(m); out(f$statistic, f$parameter, f$p.value)
@@ -49,7 +49,7 @@ out(colMeans(t(apply(m, 1, rank))))
 }
 
 TEST_CASE("Kendall's W is 1 of judges who agree and the squared deviations of rank sums else",
-          "[analysis][ratings]") {
+          "[analysis][rank_tests]") {
   CHECK(analysis::friedman_test({{1, 2, 3}, {4, 6, 9}, {1, 5, 8}}).kendalls_w ==
         Approx(1.0).epsilon(1e-12));
   CHECK(analysis::friedman_test({{1, 2, 3}, {3, 2, 1}}).kendalls_w == Approx(0.0).margin(1e-12));
@@ -58,16 +58,12 @@ TEST_CASE("Kendall's W is 1 of judges who agree and the squared deviations of ra
         Approx(12.0 * 8.0 / (9.0 * 24.0)).epsilon(1e-12));
 }
 
-TEST_CASE("first places count the lowest value, shared ones for each", "[analysis][ratings]") {
-  const auto summary = analysis::ranking_summary({{1, 2, 3}, {2, 1, 3}, {1, 1, 2}});
-  CHECK(summary.first_places == std::vector<int>{2, 2, 0});
-  CHECK(summary.mean_ranks[0] == Approx(4.5 / 3.0).epsilon(1e-9));
-  CHECK(summary.mean_ranks[2] == Approx(3.0).epsilon(1e-9));
+TEST_CASE("equal values share the mean of their ranks", "[analysis][rank_tests]") {
   CHECK(analysis::mid_ranks({5, 1, 5, 9}) == std::vector<double>{2.5, 1.0, 2.5, 4.0});
 }
 
 TEST_CASE("signed rank tests of pairs and Holm's adjustment are coin's and R's",
-          "[analysis][ratings]") {
+          "[analysis][rank_tests]") {
   for (const RatingTable& ratings : {tied, untied}) {
     const std::vector<double> expected =
         testing::r_numbers(testing::exact_signed_rank_p + r_table(ratings) + R"(
@@ -96,7 +92,7 @@ out(p, p.adjust(p, 'holm'))
 TEST_CASE(
     "from fifty differences on the signed rank test is R's normal one, below it R's exact one, and "
     "with ties and zeros coin's",
-    "[analysis][ratings]") {
+    "[analysis][rank_tests]") {
   core::Rng rng{4};
   std::vector<double> many(60);
   for (double& one : many) {
@@ -124,7 +120,7 @@ TEST_CASE(
 }
 
 TEST_CASE("marks a hundredth apart are tied as their hundredths are, though not in binary",
-          "[analysis][ratings]") {
+          "[analysis][rank_tests]") {
   const std::vector<std::pair<int, int>> hundredths{{40, 15}, {45, 35}, {60, 70}, {30, 30},
                                                     {55, 60}, {55, 65}, {60, 70}, {55, 50},
                                                     {40, 40}, {45, 35}};
@@ -141,7 +137,7 @@ TEST_CASE("marks a hundredth apart are tied as their hundredths are, though not 
   CHECK(marks.p == whole.p);
 }
 
-TEST_CASE("ratings that cannot be compared are refused", "[analysis][ratings]") {
+TEST_CASE("ratings that cannot be compared are refused", "[analysis][rank_tests]") {
   CHECK_THROWS_AS(analysis::friedman_test({}), core::InvalidInput);
   CHECK_THROWS_AS(analysis::friedman_test({{1, 2}}), core::InvalidInput);
   CHECK_THROWS_AS(analysis::friedman_test({{1}, {2}}), core::InvalidInput);

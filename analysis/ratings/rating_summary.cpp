@@ -1,12 +1,12 @@
-#include "analysis/rated/rating_summary.hpp"
+#include "analysis/ratings/rating_summary.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
 
-#include "analysis/rated/friedman_table.hpp"
-#include "analysis/rated/rating_results.hpp"
+#include "analysis/ratings/friedman_table.hpp"
+#include "analysis/ratings/rating_results.hpp"
 #include "analysis/statistics/sign_test.hpp"
 #include "analysis/tables/tabular_summary.hpp"
 #include "core/error.hpp"

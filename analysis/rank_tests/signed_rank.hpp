@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "analysis/ratings/friedman.hpp"
+#include "analysis/rank_tests/friedman.hpp"
 namespace tapstudy::analysis {
 struct SignedRankTest {
   double positive_ranks{};  // V: the sum of the ranks of differences above 0

@@ -1,7 +1,7 @@
 #pragma once
 #include <optional>
 
-#include "analysis/ratings/friedman.hpp"
+#include "analysis/rank_tests/friedman.hpp"
 #include "analysis/tables/cells.hpp"
 namespace tapstudy::analysis {
 // "friedman": one row, none without a test.

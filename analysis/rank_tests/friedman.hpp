@@ -19,13 +19,5 @@ struct FriedmanTest {
 // 1)). Throws InvalidInput also if every participant rates all conditions the same.
 FriedmanTest friedman_test(const RatingTable& ratings);
 
-// How participants rank conditions: of each condition the mean rank, and how often it was first
-// (rank 1, by the lowest value) alone or shared.
-struct RankingSummary {
-  std::vector<double> mean_ranks;
-  std::vector<int> first_places;
-};
-RankingSummary ranking_summary(const RatingTable& ratings);
-
 void check_ratings(const RatingTable& ratings);
 }  // namespace tapstudy::analysis

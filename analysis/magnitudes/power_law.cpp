@@ -1,4 +1,4 @@
-#include "analysis/ratings/magnitude.hpp"
+#include "analysis/magnitudes/power_law.hpp"
 
 #include <fmt/format.h>
 
@@ -16,7 +16,7 @@ using Means = std::map<double, double>;  // log10 value -> mean log10 estimate
 struct Line {
   double slope{};
   double intercept{};
-  double r_squared{};
+  std::optional<double> r_squared;
 };
 
 void check(const MagnitudeEstimate& one) {
@@ -75,7 +75,7 @@ Line regression(const Means& means) {
     yy += (y - mean_y) * (y - mean_y);
   }
   const double slope = xy / xx;
-  return {slope, mean_y - slope * mean_x, yy > 0.0 ? xy * slope / yy : 1.0};
+  return {slope, mean_y - slope * mean_x, yy > 0.0 ? std::optional{xy * slope / yy} : std::nullopt};
 }
 
 // Each value's log10 estimates by all participants, shifted to the participants' common mean.
@@ -96,9 +96,8 @@ std::map<double, std::vector<double>> equalised(const std::vector<Means>& partic
 }  // namespace
 
 PowerLaw power_law(const std::vector<Estimates>& participants) {
-  if (participants.size() < 2) {
-    throw core::InvalidInput{fmt::format(
-        "an interval of the exponent takes two participants or more, not {}", participants.size())};
+  if (participants.empty()) {
+    throw core::InvalidInput{"nobody judged all values"};
   }
   PowerLaw law;
   std::vector<Means> means;
@@ -118,7 +117,9 @@ PowerLaw power_law(const std::vector<Estimates>& participants) {
   law.exponent = line.slope;
   law.log_constant = line.intercept;
   law.r_squared = line.r_squared;
-  law.exponent_interval = t_interval(law.participant_exponents);
+  if (participants.size() > 1) {
+    law.exponent_interval = t_interval(law.participant_exponents);
+  }
   return law;
 }
 }  // namespace tapstudy::analysis

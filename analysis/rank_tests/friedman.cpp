@@ -1,11 +1,11 @@
-#include "analysis/ratings/friedman.hpp"
+#include "analysis/rank_tests/friedman.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "analysis/ratings/ranks.hpp"
+#include "analysis/rank_tests/ranks.hpp"
 #include "analysis/statistics/distributions.hpp"
 #include "core/error.hpp"
 namespace tapstudy::analysis {
@@ -23,24 +23,23 @@ void check_ratings(const RatingTable& ratings) {
   }
 }
 
-RankingSummary ranking_summary(const RatingTable& ratings) {
-  check_ratings(ratings);
-  const std::size_t conditions = ratings.front().size();
-  RankingSummary summary{std::vector<double>(conditions, 0.0), std::vector<int>(conditions, 0)};
+namespace {
+std::vector<double> mean_ranks_of(const RatingTable& ratings) {
+  std::vector<double> means(ratings.front().size(), 0.0);
   for (const std::vector<double>& row : ratings) {
     const std::vector<double> ranks = mid_ranks(row);
-    const double lowest = *std::ranges::min_element(row);
-    for (std::size_t j = 0; j < conditions; ++j) {
-      summary.mean_ranks[j] += ranks[j] / static_cast<double>(ratings.size());
-      summary.first_places[j] += row[j] == lowest ? 1 : 0;
+    for (std::size_t j = 0; j < means.size(); ++j) {
+      means[j] += ranks[j] / static_cast<double>(ratings.size());
     }
   }
-  return summary;
+  return means;
 }
+}  // namespace
 
 FriedmanTest friedman_test(const RatingTable& ratings) {
+  check_ratings(ratings);
   FriedmanTest test;
-  test.mean_ranks = ranking_summary(ratings).mean_ranks;
+  test.mean_ranks = mean_ranks_of(ratings);
   const auto n = static_cast<double>(ratings.size());
   const auto k = static_cast<double>(test.mean_ranks.size());
   double squares = 0.0;

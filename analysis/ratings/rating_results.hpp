@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "analysis/blocks/block_summary.hpp"
-#include "analysis/ratings/friedman.hpp"
-#include "analysis/ratings/signed_rank.hpp"
+#include "analysis/rank_tests/friedman.hpp"
+#include "analysis/rank_tests/signed_rank.hpp"
 #include "analysis/statistics/quantiles.hpp"
 namespace tapstudy::analysis {
 // Ratings from 1 to design.steps, or on a line from 0 to 1, of one presented stimulus a trial.

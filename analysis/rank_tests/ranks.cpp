@@ -1,4 +1,4 @@
-#include "analysis/ratings/ranks.hpp"
+#include "analysis/rank_tests/ranks.hpp"
 
 #include <algorithm>
 namespace tapstudy::analysis {

@@ -1,0 +1,18 @@
+#include "support/built_paths.hpp"
+namespace tapstudy::testing {
+std::string source_directory() {
+  return TAPSTUDY_SOURCE_DIR;
+}
+std::string tapstudy_program() {
+  return TAPSTUDY_PROGRAM;
+}
+std::string bridge_program() {
+  return TAPSTUDY_BRIDGE;
+}
+std::string lab_program() {
+  return TAPSTUDY_LAB;
+}
+std::string stalling_player_program() {
+  return TAPSTUDY_STALLING_PLAYER;
+}
+}  // namespace tapstudy::testing

@@ -28,6 +28,29 @@ std::string escaped(const std::string& text) {
   return safe;
 }
 
+namespace {
+bool is_digit(char c) {
+  return c >= '0' && c <= '9';
+}
+}  // namespace
+
+std::string escaped_numbers(const std::string& text) {
+  const std::string safe = escaped(text);
+  std::string html;
+  for (std::size_t i = 0; i < safe.size(); ++i) {
+    const char before = i == 0 ? ' ' : safe[i - 1];
+    const char after = i + 1 < safe.size() ? safe[i + 1] : ' ';
+    if (safe[i] == '-' && is_digit(after) && (before == ' ' || before == '(')) {
+      html += "−";
+    } else if (safe[i] == ' ' && after == '%') {
+      html += "&nbsp;";
+    } else {
+      html += safe[i];
+    }
+  }
+  return html;
+}
+
 std::string dot_plot(double share, const Interval& interval, double chance,
                      const std::string& alternative) {
   return fmt::format(
@@ -47,7 +70,7 @@ std::string dot_plot(const Proportion& proportion, double chance) {
 void write_dot_row(std::ostream& out, const std::string& title, const std::string& words,
                    const std::string& dots) {
   core::print(out, "<tr><th scope=row>{}</th><td>{}</td><td>{}</td></tr>\n", escaped(title),
-              escaped(words), dots);
+              escaped_numbers(words), dots);
 }
 
 void write_accuracy_row(std::ostream& out, const std::string& title, const Proportion& proportion,

@@ -7,6 +7,9 @@
 namespace tapstudy::analysis {
 // HTML elements shared by the block summaries.
 std::string escaped(const std::string& text);
+// The same, where a number is not parted from its sign or its unit: with minus signs, and spaces
+// that do not break.
+std::string escaped_numbers(const std::string& text);
 // A dot with its interval on a scale from 0 to 100 %, chance as a line; `alternative` says the
 // same.
 std::string dot_plot(double share, const Interval& interval, double chance,

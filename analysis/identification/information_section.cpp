@@ -128,7 +128,8 @@ std::vector<std::string> remarks_on(const MatrixOfParticipants& counted, const s
   }
   if (counted.are_known() || !refusal.empty()) {
     remarks.emplace_back(
-        "Fewer than 5 k² answers for k classes are too few for an estimate of information.");
+        "Fewer than 5 k² answers for k classes are too few for an estimate of information, of all "
+        "or of one participant.");
   }
   return remarks;
 }
@@ -157,8 +158,12 @@ InformationSection information_section(const MatrixOfParticipants& counted) {
   InformationSection result;
   result.section.title = "Information transfer";
   result.section.tables.push_back(pooled_table(counted, refusal, guessed));
+  const bool has_enough = std::ranges::any_of(counted.participants, [](const auto& person) {
+    return too_few_for_information(person.counts).empty();
+  });
   if (counted.are_known()) {
     result.section.tables.push_back(participants_table(counted));
+    result.section.tables.back().is_for_programs = !has_enough;
   }
   result.section.remarks = remarks_on(counted, refusal, guessed);
   result.sentence = sentence_of(counted.matrix, refusal, guessed);

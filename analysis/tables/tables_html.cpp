@@ -6,29 +6,7 @@
 #include "core/print.hpp"
 namespace tapstudy::analysis {
 namespace {
-constexpr std::size_t wide = 8;  // columns
-
-bool is_digit(char c) {
-  return c >= '0' && c <= '9';
-}
-
-// A number is not parted from its sign or unit: minus signs, and spaces that do not break.
-std::string cell_html(const std::string& text) {
-  const std::string safe = escaped(text);
-  std::string html;
-  for (std::size_t i = 0; i < safe.size(); ++i) {
-    const char before = i == 0 ? ' ' : safe[i - 1];
-    const char after = i + 1 < safe.size() ? safe[i + 1] : ' ';
-    if (safe[i] == '-' && is_digit(after) && (before == ' ' || before == '(')) {
-      html += "−";
-    } else if (safe[i] == ' ' && after == '%') {
-      html += "&nbsp;";
-    } else {
-      html += safe[i];
-    }
-  }
-  return html;
-}
+constexpr std::size_t wide = 9;  // columns
 
 void write_cells(std::ostream& out, const ReportTable& table, const std::vector<std::size_t>& shown,
                  const std::vector<Cell>& row) {
@@ -36,7 +14,7 @@ void write_cells(std::ostream& out, const ReportTable& table, const std::vector<
   for (const std::size_t i : shown) {
     const bool is_first = i == shown.front();
     core::print(out, "<{}{}>{}</{}>", is_first ? "th scope=row" : "td",
-                is_text_column(table, i) ? " class=text" : "", cell_html(row[i].text),
+                is_text_column(table, i) ? " class=text" : "", escaped_numbers(row[i].text),
                 is_first ? "th" : "td");
   }
   out << "</tr>\n";
@@ -51,7 +29,7 @@ void write_table_html(std::ostream& out, const ReportTable& table) {
               escaped(table.title), shown.size() >= wide ? " wide" : "");
   for (const std::size_t i : shown) {
     core::print(out, "<th scope=col{}>{}</th>", is_text_column(table, i) ? " class=text" : "",
-                cell_html(table.columns[i].heading));
+                escaped_numbers(table.columns[i].heading));
   }
   out << "</tr></thead><tbody>\n";
   for (const auto& row : table.rows) {

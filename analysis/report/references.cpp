@@ -43,6 +43,9 @@ constexpr std::array references{
     Reference{"Goodman 1965",
               "Goodman, L. A. (1965). On simultaneous confidence intervals for multinomial "
               "proportions. Technometrics 7, 247–254."},
+    Reference{"Gourevitch & Galanter 1967",
+              "Gourevitch, V. & Galanter, E. (1967). A significance test for one parameter "
+              "isosensitivity functions. Psychometrika 32, 25–33."},
     Reference{"Hart 2006",
               "Hart, S. G. (2006). NASA-Task Load Index (NASA-TLX); 20 years later. Proceedings of "
               "the Human Factors and Ergonomics Society 50, 904–908."},

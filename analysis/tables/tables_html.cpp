@@ -6,7 +6,7 @@
 #include "core/print.hpp"
 namespace tapstudy::analysis {
 namespace {
-constexpr std::size_t wide = 9;  // columns
+constexpr std::size_t wide = 8;  // columns
 
 void write_cells(std::ostream& out, const ReportTable& table, const std::vector<std::size_t>& shown,
                  const std::vector<Cell>& row) {

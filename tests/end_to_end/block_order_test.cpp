@@ -40,7 +40,7 @@ TEST_CASE("blocks in balanced orders are simulated, verified and reported as the
   REQUIRE(testing::tapstudy({"report", out}).exit_code == 0);
   const auto report = nlohmann::json::parse(testing::contents(out + "/report.json"));
   for (const auto& block : report["blocks"]) {
-    const double p = block["accuracy"]["permutation_p"];
+    const double p = block["accuracy_estimates"][0]["p"];
     CHECK(p > 0.0);
     CHECK(p <= 1.0);
   }

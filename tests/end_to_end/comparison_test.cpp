@@ -82,7 +82,7 @@ TEST_CASE("thresholds are compared by their ratio, and not where they are of oth
   int seed = 0;
   for (const std::string name : {"logistic", "weibull"}) {
     for (const std::string time : {"1", "2"}) {
-      REQUIRE(testing::tapstudy({"simulate", directory / (name + ".yaml"), "--participants", "6",
+      REQUIRE(testing::tapstudy({"simulate", directory / (name + ".yaml"), "--participants", "3",
                                  "--seed", std::to_string(++seed), "--no-traces", "--out",
                                  directory / (name + time)})
                   .exit_code == 0);

@@ -384,7 +384,7 @@ def switch_to(driver, index):
 
 def correct_to(driver, index):
     """Corrects the last answer to an option (from 0)."""
-    Select(find(driver, "#correct-to")).select_by_index(index)
+    Select(find(driver, "#correct-to")).select_by_index(1 + index)  # the first one is none
     command(driver, "correct")
 
 

@@ -63,7 +63,11 @@ function correction({ number, answers }, actions) {
     word("correct_do"));
   button.dataset.action = "correct";
   // Nothing is corrected by a press that was meant for something else.
-  const setPossible = () => { button.disabled = field.value.trim() === ""; };
+  const setPossible = () => {
+    const isEmpty = field.value.trim() === "";
+    button.dataset.isDone = String(isEmpty);
+    button.disabled = isEmpty || !actions.isPossible("correct");
+  };
   field.addEventListener("input", setPossible);
   setPossible();
   return [el("label", { htmlFor: "correct-to" }, word("correct_to")), el("div", { className: "row" }, field, button)];

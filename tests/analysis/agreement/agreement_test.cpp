@@ -64,7 +64,8 @@ TEST_CASE("symmetry and homogeneity of totals are tested as by statsmodels",
 }
 
 TEST_CASE("homogeneity of totals is coin's too", "[analysis][agreement]") {
-  for (const CountTable& table : {paper_table(), large_random_table()}) {
+  const CountTable moderate{{31, 4, 7}, {12, 25, 9}, {3, 8, 40}};  // coin lists every answer
+  for (const CountTable& table : {paper_table(), moderate}) {
     const auto coin =
         r_numbers("suppressPackageStartupMessages(library(coin)); t <- mh_test(as.table(" +
                   r_matrix(table) + ")); out(statistic(t), pvalue(t))");

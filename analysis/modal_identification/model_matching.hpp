@@ -31,11 +31,10 @@ inline constexpr double max_match_difference = 0.15;
 // differences of the logarithms is least, each at most once; a mode without a partner costs
 // max_match_difference squared, a pair whose shapes are known (assurance: measured by model modes,
 // modal_assurance; empty: not known) half as much times 1 less their assurance. Assignment and
-// factor are repeated until they settle, from the modulus given; another assignment, of a modulus from
-// a quarter to four times, is taken if it has as many modes, three or more, at less than a quarter of
-// the cost. The interval is Student's t of the
-// scatter between modes, or of one mode its own. Both ascending, not empty, above 0 [Hz]. Unset if
-// no mode finds a partner.
+// factor are repeated until they settle, from the modulus given; another assignment, of a modulus
+// from a quarter to four times, is taken if it has as many modes, three or more, at less than a
+// quarter of the cost. The interval is Student's t of the scatter between modes, or of one mode its
+// own. Both ascending, not empty, above 0 [Hz]. Unset if no mode finds a partner.
 std::optional<ModelUpdate> update_youngs_modulus(const std::vector<Estimate>& measured_hz,
                                                  const std::vector<double>& model_hz,
                                                  double youngs_modulus_pa,

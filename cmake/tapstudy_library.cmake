@@ -3,6 +3,8 @@
 add_library(tapstudy_flags INTERFACE)
 target_compile_options(tapstudy_flags INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion
   -Wnon-virtual-dtor -Wold-style-cast -Woverloaded-virtual -Wdouble-promotion)
+# Names of files as they are in the project: the same build wherever the checkout is.
+target_compile_options(tapstudy_flags INTERFACE -fmacro-prefix-map=${PROJECT_SOURCE_DIR}/=)
 option(TAPSTUDY_WERROR "Treat warnings as errors" OFF)
 if(TAPSTUDY_WERROR)
   target_compile_options(tapstudy_flags INTERFACE -Werror)

@@ -72,7 +72,7 @@ void read_device(MapReader& top, const std::string& file, RigDevices devices, Ri
 constexpr double max_time_to_full_force_s = 0.1;
 
 void read_limits(MapReader& top, core::ForceLimits& limits) {
-  limits.max_force_n = top.number("max_force_n", Range::positive(100.0));
+  limits.max_force_n = top.number("max_force_n", {0.01, 100.0});
   limits.max_force_rate_n_per_s = top.number("max_force_rate_n_per_s", Range::positive(1e6));
   const double least_n_per_s = limits.max_force_n / max_time_to_full_force_s;
   if (top.has("max_force_rate_n_per_s") && limits.max_force_rate_n_per_s < least_n_per_s) {

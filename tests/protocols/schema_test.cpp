@@ -325,6 +325,7 @@ TEST_CASE("schema and reader accept the same rigs", "[protocols][rig][schema]") 
       {"spidar_g6", "max_hand_speed_m_s: 1.5\n", ""},
       {"simulated_hand", "max_force_n: 10\n", "max_force_n: 10\nmax_hand_speed_m_s: 1\n"},
       {"simulated_hand", "max_force_n: 10\n", "max_force_n: 0\n"},
+      {"simulated_hand", "max_force_n: 10\n", "max_force_n: 1e-300\n"},
       {"simulated_hand", "max_force_n: 10\n", "max_force_n: 10\nloop: {cpu: 1}\n"},
       {"simulated_hand", "max_force_n: 10\n", "max_force_n: 10\nvibration_band_hz: 300\n"},
       {"simulated_hand", "max_force_n: 10\n", "max_force_n: 10\nvibration_band_hz: 0\n"},

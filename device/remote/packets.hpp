@@ -20,6 +20,9 @@ namespace tapstudy::device {
 //                                              60  u32  status, below
 //                                              64  3 × f64  force exerted now [N]; all NaN: unknown
 //
+// The velocity must be the change of the position (velocity_check.hpp): the strength of an impact
+// rests on it.
+//
 // The other program holds the last force, and must release it after 20 ms without a request. From
 // its first request on it should listen to that sender only, until it has been silent for a second,
 // and only to numbers that rise.

@@ -68,7 +68,7 @@ function correction({ number, answers }, actions) {
     button.dataset.isDone = String(isEmpty);
     button.disabled = isEmpty || !actions.isPossible("correct");
   };
-  field.addEventListener("input", setPossible);
+  for (const type of ["input", "change"]) field.addEventListener(type, setPossible);
   setPossible();
   return [el("label", { htmlFor: "correct-to" }, word("correct_to")), el("div", { className: "row" }, field, button)];
 }

@@ -13,7 +13,7 @@
 #include "core/number_in.hpp"
 namespace tapstudy::analysis {
 namespace {
-constexpr double most = 1e100;  // squares and their sums are finite
+constexpr double largest_value = 1e100;  // squares and their sums are finite
 constexpr double max_rate_difference = 0.01;
 
 [[noreturn]] void refuse(const std::string& file, int line, const std::string& what) {
@@ -96,9 +96,9 @@ class Table {
                fmt::format("has {} cells, the first row {}", row.cells.size(), columns_));
       }
       const std::optional<double> value = text_.number(row.cells[column]);
-      if (!value || !(std::abs(*value) <= most)) {
+      if (!value || !(std::abs(*value) <= largest_value)) {
         refuse(file_, row.line,
-               fmt::format("'{}' is not a number up to {:g}", row.cells[column], most));
+               fmt::format("'{}' is not a number up to {:g}", row.cells[column], largest_value));
       }
       all.push_back(*value);
     }

@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
+#include <ranges>
 #include <set>
 #include <utility>
 
@@ -95,6 +97,23 @@ ParticipantDiscrimination participant_of(const BlockDesign& design, const std::s
   }
   return person;
 }
+
+// By their stimuli, then by participant.
+using CountsOfPairs = std::map<std::string, std::map<std::string, Proportion>>;
+
+std::vector<DiscriminationResults::Pair> pairs_of(const CountsOfPairs& counts,
+                                                  const std::optional<DecisionTask>& task) {
+  std::vector<DiscriminationResults::Pair> pairs;
+  for (const auto& [stimuli, of_participants] : counts) {
+    DiscriminationResults::Pair& pair =
+        pairs.emplace_back(DiscriminationResults::Pair{stimuli, {}});
+    std::ranges::copy(std::views::values(of_participants), std::back_inserter(pair.correct));
+    if (task) {
+      pair.d_prime = d_prime_of_mean(pair.correct, *task);
+    }
+  }
+  return pairs;
+}
 }  // namespace
 
 std::vector<Proportion> correct_of(const std::vector<ParticipantDiscrimination>& people) {
@@ -108,7 +127,7 @@ DiscriminationResults discrimination_results(const BlockDesign& design,
   check(design);
   const std::optional<DecisionTask> task = decision_task(design);
   std::map<std::string, Counts> people;
-  std::map<std::string, std::map<std::string, Proportion>> pairs;  // by stimuli, then participant
+  CountsOfPairs pairs;
   DiscriminationResults results;
   results.model = find_decision_model(design.decision_model);
   for (const AnswerRow& answer : answers) {
@@ -128,16 +147,7 @@ DiscriminationResults discrimination_results(const BlockDesign& design,
   }
   const bool are_same_presented = std::ranges::any_of(
       results.participants, [](const auto& person) { return person.rates.has_value(); });
-  for (const auto& [stimuli, correct] : pairs) {
-    DiscriminationResults::Pair pair{stimuli, {}};
-    for (const auto& [name, of_participant] : correct) {
-      pair.correct.push_back(of_participant);
-    }
-    if (task && !are_same_presented) {
-      pair.d_prime = d_prime_of_mean(pair.correct, *task);
-    }
-    results.pairs.push_back(std::move(pair));
-  }
+  results.pairs = pairs_of(pairs, are_same_presented ? std::nullopt : task);
   if (task) {
     results.d_prime_of_mean = d_prime_of_mean(correct_of(results.participants), *task);
   }

@@ -89,6 +89,22 @@ ReportTable equivalent_table(const ConfusionMatrix& matrix) {
   }
   return table;
 }
+
+ReportTable levels_table(const ConfusionMatrix& matrix) {
+  ReportTable levels{"d_prime_levels",
+                     "Each level of a factor told from its others",
+                     {column("factor", "factor"), column("class", "class"), d_prime_column(),
+                      interval_column("criterion c", "criterion")}};
+  for (const std::string& factor : factors_of(matrix)) {
+    if (const auto by = by_level(matrix, factor)) {
+      for (auto row : against_rest("", "", by->levels, by->counts).rows) {
+        row.insert(row.begin(), word(factor));
+        levels.rows.push_back(std::move(row));
+      }
+    }
+  }
+  return levels;
+}
 }  // namespace
 
 ReportSection sensitivity_section(const MatrixOfParticipants& counted) {
@@ -116,19 +132,7 @@ ReportSection sensitivity_section(const MatrixOfParticipants& counted) {
   } else {
     section.remarks.emplace_back("A stimulus has no right answer, so that classes have no d'.");
   }
-  ReportTable levels{"d_prime_levels",
-                     "Each level of a factor told from its others",
-                     {column("factor", "factor"), column("class", "class"), d_prime_column(),
-                      interval_column("criterion c", "criterion")}};
-  for (const std::string& factor : factors_of(matrix)) {
-    if (const auto by = by_level(matrix, factor)) {
-      for (auto row : against_rest("", "", by->levels, by->counts).rows) {
-        row.insert(row.begin(), word(factor));
-        levels.rows.push_back(std::move(row));
-      }
-    }
-  }
-  section.tables.push_back(levels);
+  section.tables.push_back(levels_table(matrix));
   for (const std::string& factor : factors_of_one_level(matrix)) {
     section.remarks.push_back(
         fmt::format("Factor {} is left out: all stimuli have the same level of it.", factor));

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 
 #include "analysis/detection/decision_model.hpp"
 #include "analysis/thresholds/threshold_tables.hpp"
@@ -26,41 +27,44 @@ std::string d_prime_words(const BlockDesign& design) {
                            find_decision_model(design.decision_model)->summary);
 }
 
-std::vector<std::string> remarks_on_people(const ThresholdResults& results) {
+std::vector<std::string> remarks_on_people(const std::vector<ParticipantThreshold>& people) {
   std::vector<std::string> remarks;
-  for (const ParticipantThreshold& person : results.participants) {
+  for (const ParticipantThreshold& person : people) {
     if (!person.estimate) {
       remarks.push_back(
           fmt::format("{} has no threshold: {}.", person.participant_id, person.no_threshold));
     }
   }
-  for (const ParticipantThreshold& person : results.participants) {
+  for (const ParticipantThreshold& person : people) {
     if (person.estimate && !person.no_posterior.empty()) {
       remarks.push_back(fmt::format("{} has a threshold but no posterior: {}.",
                                     person.participant_id, person.no_posterior));
     }
   }
-  if (std::ranges::any_of(results.participants, [](const ParticipantThreshold& person) {
+  if (std::ranges::any_of(people, [](const ParticipantThreshold& person) {
         return person.estimate && person.estimate->is_step;
       })) {
     remarks.emplace_back(
         "A slope that is only known to be above a limit: the answers change within one step "
         "between levels. The threshold is then the middle of those that are equally likely.");
   }
-  if (results.mean_log) {
-    remarks.emplace_back(
-        "Mean over participants: of the logarithms of their thresholds, each counting the same, "
-        "interval by t. The standard deviation is that between participants and of their "
-        "estimates' errors together. Answers of participants are not put together as if of one.");
-    const int without =
-        static_cast<int>(results.participants.size()) - results.mean_log->participants;
-    if (without > 0) {
-      remarks.push_back(fmt::format(
-          "It leaves out {} without a threshold, which biases it.",
-          without == 1 ? "the participant" : fmt::format("the {} participants", without)));
-    }
-  } else {
-    remarks.emplace_back("No mean over participants: it takes two with a threshold.");
+  return remarks;
+}
+
+std::vector<std::string> remarks_on_mean(const ThresholdResults& results) {
+  if (!results.mean_log) {
+    return {"No mean over participants: it takes two with a threshold."};
+  }
+  std::vector<std::string> remarks{
+      "Mean over participants: of the logarithms of their thresholds, each counting the same, "
+      "interval by t. The standard deviation is that between participants and of their "
+      "estimates' errors together. Answers of participants are not put together as if of one."};
+  const int without =
+      static_cast<int>(results.participants.size()) - results.mean_log->participants;
+  if (without > 0) {
+    remarks.push_back(fmt::format(
+        "It leaves out {} without a threshold, which biases it.",
+        without == 1 ? "the participant" : fmt::format("the {} participants", without)));
   }
   return remarks;
 }
@@ -81,8 +85,8 @@ std::vector<std::string> threshold_remarks(const BlockDesign& design,
                       ? "guess rate free, with the false alarms as answers at the level 0"
                       : fmt::format("guess rate {:.3g} fixed", design.guess_rate),
                   100.0 * core::shape_value(design.shape, 1.0, 1.0, 1.0))};
-  const std::vector<std::string> of_people = remarks_on_people(results);
-  remarks.insert(remarks.end(), of_people.begin(), of_people.end());
+  std::ranges::copy(remarks_on_people(results.participants), std::back_inserter(remarks));
+  std::ranges::copy(remarks_on_mean(results), std::back_inserter(remarks));
   remarks.push_back(
       results.draws > 0
           ? fmt::format("Deviance test: {} parametric bootstrap draws; a small p says that the "

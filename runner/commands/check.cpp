@@ -60,6 +60,20 @@ std::string words_of(const Eigen::ArrayXd& frequencies_hz, double band_limit_hz)
       band_limit_hz, fmt::join(first, ", "), frequencies_hz.size() > most ? " …" : "");
 }
 
+std::string cost_of(const core::ModelReport& report, bool is_solved_now, bool is_first_use) {
+  if (is_solved_now) {
+    return fmt::format("{:.3f} s", report.cost.total_s());
+  }
+  return is_first_use ? fmt::format("from the cache, where it took {:.3f} s", report.cost.total_s())
+                      : "scaled from the same body";
+}
+
+std::string kind_of_model(const core::ModelReport& report, bool is_beam) {
+  return is_beam ? "a beam, in closed form"
+                 : fmt::format("{} {} tetrahedra, {} dof", report.tets,
+                               report.order == 2 ? "quadratic" : "linear", report.dofs);
+}
+
 void print_models(const protocols::Protocol& protocol, ModelLibrary& models) {
   bool are_linear = false;
   fmt::print("\nmodels\n");
@@ -74,16 +88,10 @@ void print_models(const protocols::Protocol& protocol, ModelLibrary& models) {
     const auto plate = models.plate_of(protocol, own);
     const core::ModelReport& report = body->report;
     const std::string cost =
-        models.bodies_solved() > solved_before ? fmt::format("{:.3f} s", report.cost.total_s())
-        : models.bodies_used() > used_before
-            ? fmt::format("from the cache, where it took {:.3f} s", report.cost.total_s())
-            : "scaled from the same body";
+        cost_of(report, models.bodies_solved() > solved_before, models.bodies_used() > used_before);
     const bool is_beam = stimulus.technique->needs_beam();
     are_linear = are_linear || (!is_beam && report.order == 1);
-    fmt::print("  {}: {}, {}, {}\n", stimulus.name,
-               is_beam ? std::string{"a beam, in closed form"}
-                       : fmt::format("{} {} tetrahedra, {} dof", report.tets,
-                                     report.order == 2 ? "quadratic" : "linear", report.dofs),
+    fmt::print("  {}: {}, {}, {}\n", stimulus.name, kind_of_model(report, is_beam),
                words_of(plate->model.frequency_hz, protocol.band_limit_hz), cost);
   }
   if (are_linear) {

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <iterator>
 #include <map>
-#include <ranges>
 #include <set>
 #include <utility>
 
@@ -107,7 +106,9 @@ std::vector<DiscriminationResults::Pair> pairs_of(const CountsOfPairs& counts,
   for (const auto& [stimuli, of_participants] : counts) {
     DiscriminationResults::Pair& pair =
         pairs.emplace_back(DiscriminationResults::Pair{stimuli, {}});
-    std::ranges::copy(std::views::values(of_participants), std::back_inserter(pair.correct));
+    for (const auto& [name, correct] : of_participants) {
+      pair.correct.push_back(correct);
+    }
     if (task) {
       pair.d_prime = d_prime_of_mean(pair.correct, *task);
     }

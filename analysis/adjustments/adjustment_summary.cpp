@@ -137,11 +137,9 @@ std::optional<Chart> chart_of(const AdjustedAxis& axis, const AdjustmentResults&
 }
 
 PersonalValues means_of(const AdjustedAxis& axis, const AdjustmentResults& results) {
-  PersonalValues means{"setting of " + axis.name, axis.is_logarithmic, {}};
-  for (const ParticipantSettings& person : results.participants) {
-    means.by_participant[person.participant_id] = person.mean;
-  }
-  return means;
+  return personal_values(
+      "setting of " + axis.name, axis.is_logarithmic, results.participants,
+      [](const ParticipantSettings& person) { return std::optional{person.mean}; });
 }
 }  // namespace
 

@@ -10,6 +10,12 @@
 
 #include "core/error.hpp"
 namespace tapstudy::analysis {
+bool is_same_word(std::string_view one, std::string_view other) {
+  return std::ranges::equal(one, other, [](unsigned char a, unsigned char b) {
+    return std::tolower(a) == std::tolower(b);
+  });
+}
+
 namespace {
 using Header = std::vector<std::string>;
 using Names = std::vector<std::string_view>;
@@ -56,13 +62,6 @@ const std::vector<AnswerFormat>& formats() {
        {"response_time_s"},
        1.0}};
   return table;
-}
-
-// Whatever the case of its letters.
-bool is_same_word(std::string_view one, std::string_view other) {
-  return std::ranges::equal(one, other, [](unsigned char a, unsigned char b) {
-    return std::tolower(a) == std::tolower(b);
-  });
 }
 
 bool has(const Header& header, std::string_view name) {

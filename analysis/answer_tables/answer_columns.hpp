@@ -1,6 +1,7 @@
 #pragma once
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 namespace tapstudy::analysis {
@@ -43,6 +44,8 @@ struct AnswerPlaces {
 // is named is missing or there twice, or if several could hold the answers.
 AnswerPlaces find_columns(const std::vector<std::string>& header, const AnswerColumns& chosen,
                           const std::string& where);
+// Whatever the case of their letters.
+bool is_same_word(std::string_view one, std::string_view other);
 // Whether the header is that of a table of answers, as far as its names say.
 bool has_answers(const std::vector<std::string>& header);
 }  // namespace tapstudy::analysis

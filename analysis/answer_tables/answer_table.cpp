@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <limits>
@@ -172,8 +171,7 @@ void check_responses(const std::vector<results::AnswerRow>& answers,
     if (!responses.contains(response)) {
       throw core::InvalidInput{
           fmt::format("{}: response '{}' is not a stimulus (if it can be answered, name it with "
-                      "--responses; if "
-                      "it stands for a stimulus, say --responses '{}=STIMULUS')",
+                      "--responses; if it stands for a stimulus, say --responses '{}=STIMULUS')",
                       to_text(origins[i]), response, response)};
     }
   }
@@ -184,17 +182,11 @@ void check_responses(const std::vector<results::AnswerRow>& answers,
   }
 }
 
-bool differ_only_in_case(const std::string& a, const std::string& b) {
-  return std::ranges::equal(a, b, [](unsigned char one, unsigned char other) {
-    return std::tolower(one) == std::tolower(other);
-  });
-}
-
 void check_names(const std::vector<results::AnswerRow>& answers, const std::string& file,
                  const std::set<std::string>& stimuli, const std::set<std::string>& responses) {
   for (const std::string& name : responses) {
     const auto other = std::ranges::find_if(responses, [&](const std::string& each) {
-      return each < name && differ_only_in_case(each, name);
+      return each < name && is_same_word(each, name);
     });
     if (other != responses.end()) {
       throw core::InvalidInput{

@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <string_view>
+
 #include "analysis/blocks/wording.hpp"
+#include "analysis/tables/minus_sign.hpp"
 #include "core/print.hpp"
 namespace tapstudy::analysis {
 std::string escaped(const std::string& text) {
@@ -28,21 +31,15 @@ std::string escaped(const std::string& text) {
   return safe;
 }
 
-namespace {
-bool is_digit(char c) {
-  return c >= '0' && c <= '9';
-}
-}  // namespace
-
 std::string escaped_numbers(const std::string& text) {
   const std::string safe = escaped(text);
   std::string html;
   for (std::size_t i = 0; i < safe.size(); ++i) {
     const char before = i == 0 ? ' ' : safe[i - 1];
-    const char after = i + 1 < safe.size() ? safe[i + 1] : ' ';
-    if (safe[i] == '-' && is_digit(after) && (before == ' ' || before == '(')) {
+    const std::string_view rest = std::string_view{safe}.substr(i);
+    if (is_minus(before, rest)) {
       html += "−";
-    } else if (safe[i] == ' ' && after == '%') {
+    } else if (rest.starts_with(" %")) {
       html += "&nbsp;";
     } else {
       html += safe[i];

@@ -117,6 +117,10 @@ std::vector<DiscriminationResults::Pair> pairs_of(const CountsOfPairs& counts,
 }
 }  // namespace
 
+bool are_same_presented(const std::vector<ParticipantDiscrimination>& people) {
+  return std::ranges::any_of(people, [](const auto& person) { return person.rates.has_value(); });
+}
+
 std::vector<Proportion> correct_of(const std::vector<ParticipantDiscrimination>& people) {
   std::vector<Proportion> correct;
   std::ranges::transform(people, std::back_inserter(correct), &ParticipantDiscrimination::correct);
@@ -146,9 +150,7 @@ DiscriminationResults discrimination_results(const BlockDesign& design,
   for (const auto& [name, counts] : people) {
     results.participants.push_back(participant_of(design, name, counts, task));
   }
-  const bool are_same_presented = std::ranges::any_of(
-      results.participants, [](const auto& person) { return person.rates.has_value(); });
-  results.pairs = pairs_of(pairs, are_same_presented ? std::nullopt : task);
+  results.pairs = pairs_of(pairs, are_same_presented(results.participants) ? std::nullopt : task);
   if (task) {
     results.d_prime_of_mean = d_prime_of_mean(correct_of(results.participants), *task);
   }

@@ -34,6 +34,8 @@ struct DPrimeOfMean {
   Interval interval;  // 95 %; high may be infinity
 };
 
+// Whether pairs of the same are presented as well, so that there are false alarms.
+bool are_same_presented(const std::vector<ParticipantDiscrimination>& people);
 // In the same order.
 std::vector<Proportion> correct_of(const std::vector<ParticipantDiscrimination>& people);
 

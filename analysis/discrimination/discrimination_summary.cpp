@@ -17,11 +17,6 @@ const Column& d_prime_column() {
   return of_d_prime;
 }
 
-// Where its interval is cut off at 0, none is given: it would look like certainty.
-Cell d_prime_cell(double d_prime, const Interval& range) {
-  return interval(d_prime, range.high > 0.0 ? std::optional{range} : std::nullopt);
-}
-
 std::string remark_on(const Sensitivity& sensitivity) {
   if (sensitivity.is_perfect) {
     return "all correct: d' computed with half an error";
@@ -37,10 +32,10 @@ ReportTable participants_table(const DiscriminationResults& results) {
        column("above chance", "p"), d_prime_column(), column("", "d_prime_remark")}};
   for (const ParticipantDiscrimination& person : results.participants) {
     const auto& of = person.sensitivity;
-    table.rows.push_back({word(person.participant_id), proportion(person.correct),
-                          probability(person.p),
-                          of ? d_prime_cell(of->d_prime, of->interval) : nothing(d_prime_column()),
-                          word(of ? remark_on(*of) : "")});
+    table.rows.push_back(
+        {word(person.participant_id), proportion(person.correct), probability(person.p),
+         of ? interval_above_zero(of->d_prime, of->interval) : nothing(d_prime_column()),
+         word(of ? remark_on(*of) : "")});
   }
   return table;
 }
@@ -53,10 +48,11 @@ ReportTable all_table(const BlockDesign& design, const DiscriminationResults& re
                      interval_column("d' of the mean (95 % CI)", "d_prime_of_mean")}};
   if (!results.participants.empty()) {
     const auto& mean = results.d_prime_of_mean;
-    table.rows.push_back(
-        {pooled_proportion(correct_of(results.participants)), share(design.guess_rate),
-         probability(results.p), count(static_cast<std::int64_t>(results.participants.size())),
-         mean ? d_prime_cell(mean->d_prime, mean->interval) : nothing(table.columns.back())});
+    table.rows.push_back({pooled_proportion(correct_of(results.participants)),
+                          share(design.guess_rate), probability(results.p),
+                          count(static_cast<std::int64_t>(results.participants.size())),
+                          mean ? interval_above_zero(mean->d_prime, mean->interval)
+                               : nothing(table.columns.back())});
   }
   return table;
 }
@@ -68,8 +64,9 @@ ReportTable pairs_table(const DiscriminationResults& results) {
                      interval_column("d' of the mean (95 % CI)", "d_prime")}};
   for (const DiscriminationResults::Pair& pair : results.pairs) {
     table.rows.push_back({word(pair.stimuli), pooled_proportion(pair.correct),
-                          pair.d_prime ? d_prime_cell(pair.d_prime->d_prime, pair.d_prime->interval)
-                                       : nothing(table.columns.back())});
+                          pair.d_prime
+                              ? interval_above_zero(pair.d_prime->d_prime, pair.d_prime->interval)
+                              : nothing(table.columns.back())});
   }
   return table;
 }
@@ -132,8 +129,7 @@ std::vector<std::string> remarks_on(const BlockDesign& design,
         "d' by the decision model '{}' ({}), interval by that of the proportion; over participants "
         "that of their mean proportion and of its interval.",
         results.model->name, results.model->summary));
-  } else if (std::ranges::any_of(results.participants,
-                                 [](const auto& person) { return person.rates.has_value(); })) {
+  } else if (are_same_presented(results.participants)) {
     remarks.emplace_back(
         "Stimuli change from trial to trial, so that participants compare the two: take d' of a "
         "differencing observer, by hits and false alarms.");
@@ -153,16 +149,13 @@ std::vector<std::string> remarks_on(const BlockDesign& design,
       remarks.push_back(person.participant_id + ": " + remark + ".");
     }
   }
-  if (std::ranges::any_of(results.participants,
-                          [](const auto& person) { return person.rates.has_value(); })) {
+  if (are_same_presented(results.participants)) {
     remarks.emplace_back(
         "A d' of proportions correct assumes unbiased participants, and is too small where they "
-        "are "
-        "not: that by rates is not.");
+        "are not: that by rates is not.");
     remarks.emplace_back(
         "By rates: k + 1/2 in n + 1 (Hautus 1995), intervals by the variance of their z "
-        "(Gourevitch "
-        "& Galanter 1967); d' is 0 where there are no more hits than false "
+        "(Gourevitch & Galanter 1967); d' is 0 where there are no more hits than false "
         "alarms. Bias c above 0: \"same\" is preferred.");
   }
   return remarks;
@@ -184,16 +177,10 @@ std::optional<PersonalValues> shares_right(const BlockDesign& design,
   if (design.has_own_guess_rate) {
     return std::nullopt;
   }
-  PersonalValues shares{
+  return personal_values(
       fmt::format("share of right answers, {}, chance {:.3g}", design.task, design.guess_rate),
-      false,
-      {}};
-  for (const ParticipantDiscrimination& person : results.participants) {
-    if (person.correct.trials > 0) {
-      shares.by_participant[person.participant_id] = person.correct.value();
-    }
-  }
-  return shares;
+      false, results.participants,
+      [](const ParticipantDiscrimination& person) { return share_of(person.correct); });
 }
 }  // namespace
 

@@ -183,14 +183,12 @@ std::vector<Chart> charts_of(const EqualityResults& results, core::PsychometricS
 }
 
 PersonalValues points_of_equality(const VariedAxis& axis, const EqualityResults& results) {
-  PersonalValues points{"point of subjective equality, " + axis.name, false, {}};
-  for (const ParticipantEquality& person : results.participants) {
-    if (person.estimate) {
-      points.by_participant[person.participant_id] =
-          value_at(axis, person.estimate->curve.threshold);
-    }
-  }
-  return points;
+  return personal_values(
+      "point of subjective equality, " + axis.name, false, results.participants,
+      [&](const ParticipantEquality& person) {
+        return person.estimate ? std::optional{value_at(axis, person.estimate->curve.threshold)}
+                               : std::nullopt;
+      });
 }
 }  // namespace
 

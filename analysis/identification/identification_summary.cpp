@@ -113,18 +113,12 @@ void add_tests(const BlockDesign& design, const Randomisation& randomisation,
     summary.hypotheses.push_back(result);
   }
 }
-}  // namespace
 
-namespace {
 PersonalValues shares_right(const IdentificationSummary& summary) {
-  PersonalValues shares{
-      fmt::format("share of right answers, chance {:.3g}", summary.matrix.chance()), false, {}};
-  for (const ParticipantAccuracy& person : summary.participants) {
-    if (person.accuracy.trials > 0) {
-      shares.by_participant[person.participant_id] = person.accuracy.value();
-    }
-  }
-  return shares;
+  return personal_values(
+      fmt::format("share of right answers, chance {:.3g}", summary.matrix.chance()), false,
+      summary.participants,
+      [](const ParticipantAccuracy& person) { return share_of(person.accuracy); });
 }
 }  // namespace
 

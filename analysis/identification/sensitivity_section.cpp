@@ -28,6 +28,23 @@ ReportTable against_rest(const std::string& name, const std::string& title,
 
 constexpr std::int64_t fewest_trials = 5;  // of a class, and of the others
 
+struct PersonsSensitivity {
+  std::string participant_id;
+  std::vector<std::optional<YesNoSensitivity>> classes;  // unset where trials are too few
+};
+
+PersonsSensitivity sensitivity_of(const ParticipantCounts& person, const ConfusionMatrix& matrix) {
+  const auto square = by_right_response(matrix.stimuli, matrix.responses, person.counts);
+  const TableTotals totals = totals_of(*square);
+  PersonsSensitivity of{person.id, one_against_rest(*square)};
+  for (std::size_t i = 0; i < of.classes.size(); ++i) {
+    if (totals.rows[i] < fewest_trials || totals.all - totals.rows[i] < fewest_trials) {
+      of.classes[i].reset();
+    }
+  }
+  return of;
+}
+
 // Of each participant with trials enough, a class told from all others. Pooled d' is smaller than
 // these where participants' criteria differ.
 struct SensitivityOfPeople {
@@ -45,20 +62,20 @@ SensitivityOfPeople of_participants(const MatrixOfParticipants& counted,
                               {column("class", "class"), column("participants", "participants"),
                                interval_column("d' (95 % CI, t)", "d_prime"),
                                interval_column("criterion c (95 % CI, t)", "criterion")}}};
+  std::vector<PersonsSensitivity> people;
+  for (const ParticipantCounts& person : counted.participants) {
+    people.push_back(sensitivity_of(person, counted.matrix));
+  }
   // of two classes the second one's d' is that of the first, its c the negative
   const std::size_t classes = names.size() == 2 ? 1 : names.size();
   for (std::size_t i = 0; i < classes; ++i) {
     std::vector<double> d_primes;
     std::vector<double> criteria;
-    for (const ParticipantCounts& person : counted.participants) {
-      const auto square =
-          by_right_response(counted.matrix.stimuli, counted.matrix.responses, person.counts);
-      const TableTotals totals = totals_of(*square);
-      const auto of = one_against_rest(*square).at(i);
-      if (of && totals.rows[i] >= fewest_trials && totals.all - totals.rows[i] >= fewest_trials) {
+    for (const PersonsSensitivity& person : people) {
+      if (const auto& of = person.classes.at(i)) {
         d_primes.push_back(of->d_prime);
         criteria.push_back(of->criterion);
-        tables.each.rows.push_back({word(person.id), word(names[i]),
+        tables.each.rows.push_back({word(person.participant_id), word(names[i]),
                                     interval(of->d_prime, of->d_prime_interval),
                                     interval(of->criterion, of->criterion_interval)});
       }
@@ -83,9 +100,7 @@ ReportTable equivalent_table(const ConfusionMatrix& matrix) {
   if (correct.trials > 0 && matrix.share_of_alternatives() == 1.0 &&
       alternatives >= model.fewest_alternatives && alternatives <= model.most_alternatives) {
     const Sensitivity of = sensitivity({model.model, alternatives}, correct);
-    table.rows.push_back(
-        {count(alternatives),
-         interval(of.d_prime, of.interval.high > 0.0 ? std::optional{of.interval} : std::nullopt)});
+    table.rows.push_back({count(alternatives), interval_above_zero(of.d_prime, of.interval)});
   }
   return table;
 }

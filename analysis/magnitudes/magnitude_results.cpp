@@ -111,7 +111,7 @@ std::vector<StimulusMagnitudes> magnitude_results(const BlockDesign& design,
     of.stimulus = stimulus;
     add_power_law(of, logarithms);
     for (auto [value, people] : logarithms) {
-      if (of.power_law) {  // each has a unit of his own: means are of the same people
+      if (of.power_law) {  // each has their own unit: means are of the same people
         std::erase_if(people, [&](const auto& person) {
           return std::ranges::find(of.incomplete, person.first) != of.incomplete.end();
         });

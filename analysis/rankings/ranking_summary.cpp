@@ -6,6 +6,7 @@
 
 #include "analysis/rankings/ranking_results.hpp"
 #include "analysis/ratings/friedman_table.hpp"
+#include "analysis/ratings/participant_values_table.hpp"
 #include "analysis/tables/tabular_summary.hpp"
 namespace tapstudy::analysis {
 namespace {
@@ -62,21 +63,6 @@ ReportTable pairs_table(const RankingResults& results) {
   return table;
 }
 
-ReportTable participants_table(const RankingResults& results) {
-  ReportTable table{"participants",
-                    "Mean places of each participant",
-                    {column("participant", "participant_id"), column("stimulus", "stimulus"),
-                     column("mean place", "mean_place")}};
-  table.is_for_programs = true;
-  for (std::size_t person = 0; person < results.participants.size(); ++person) {
-    for (std::size_t i = 0; i < results.stimuli.size(); ++i) {
-      table.rows.push_back({word(results.participants[person]), word(results.stimuli[i]),
-                            number(results.mean_places[person][i])});
-    }
-  }
-  return table;
-}
-
 std::vector<std::string> remarks_on(const RankingResults& results) {
   if (results.rankings == 0) {
     return {"There are no answers."};
@@ -98,9 +84,12 @@ std::vector<std::string> remarks_on(const RankingResults& results) {
 std::shared_ptr<BlockSummary> summarise_rankings(const BlockDesign& design, const BlockRows& rows) {
   const RankingResults results = ranking_results(design, rows.answers);
   auto summary = std::make_shared<TabularSummary>(design);
-  summary->parts = {stimuli_table(results),
-                    friedman_table(results.friedman, results.participants.size()),
-                    pairs_table(results), participants_table(results)};
+  summary->parts = {
+      stimuli_table(results), friedman_table(results.friedman, results.participants.size()),
+      pairs_table(results),
+      participant_values_table("Mean places of each participant",
+                               column("mean place", "mean_place"), results.participants,
+                               results.stimuli, results.mean_places)};
   summary->remarks = remarks_on(results);
   return summary;
 }

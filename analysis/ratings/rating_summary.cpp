@@ -4,8 +4,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <iterator>
 
 #include "analysis/ratings/friedman_table.hpp"
+#include "analysis/ratings/participant_values_table.hpp"
 #include "analysis/ratings/rating_results.hpp"
 #include "analysis/statistics/sign_test.hpp"
 #include "analysis/tables/tabular_summary.hpp"
@@ -50,18 +52,10 @@ ReportTable pairs_table(const RatingResults& results) {
 }
 
 ReportTable participants_table(const RatingResults& results) {
-  ReportTable table{"participants",
-                    "Median ratings of each participant",
-                    {column("participant", "participant_id"), column("stimulus", "stimulus"),
-                     column("median", "median")}};
-  table.is_for_programs = true;
-  for (std::size_t person = 0; person < results.participants.size(); ++person) {
-    for (std::size_t i = 0; i < results.stimuli.size(); ++i) {
-      table.rows.push_back({word(results.participants[person]), word(results.stimuli[i].stimulus),
-                            number(results.medians[person][i])});
-    }
-  }
-  return table;
+  std::vector<std::string> stimuli;
+  std::ranges::transform(results.stimuli, std::back_inserter(stimuli), &StimulusRatings::stimulus);
+  return participant_values_table("Median ratings of each participant", column("median", "median"),
+                                  results.participants, stimuli, results.medians);
 }
 
 std::vector<std::string> remarks_on(const RatingResults& results) {

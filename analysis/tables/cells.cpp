@@ -66,6 +66,10 @@ Cell interval(double value, const std::optional<Interval>& range) {
   return range ? interval(value, *range) : Cell{rounded(value), {value, Value{}, Value{}}};
 }
 
+Cell interval_above_zero(double value, const Interval& range) {
+  return interval(value, range.high > 0.0 ? std::optional{range} : std::nullopt);
+}
+
 Cell mean_with_interval(const std::vector<double>& values) {
   return interval(mean_and_spread(values).mean,
                   values.size() > 1 ? std::optional{t_interval(values)} : std::nullopt);

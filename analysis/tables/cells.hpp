@@ -46,6 +46,9 @@ Cell probability(const std::optional<double>& p);
 Cell interval(double value, const Interval& interval);
 // Of one that may have no interval.
 Cell interval(double value, const std::optional<Interval>& interval);
+// Of one that is cut off at 0: without its interval where nothing is left of it, which would look
+// like certainty.
+Cell interval_above_zero(double value, const Interval& interval);
 // Of the mean of one value or more; by t of two or more.
 Cell mean_with_interval(const std::vector<double>& values);
 // Values: successes, trials, their ratio and its 95 % score interval.

@@ -8,32 +8,47 @@ namespace tapstudy::analysis {
 namespace {
 constexpr std::size_t wide = 8;  // columns
 
-void write_cells(std::ostream& out, const ReportTable& table, const std::vector<std::size_t>& shown,
+struct ShownColumn {
+  std::size_t index{};
+  const char* style{};  // an attribute
+};
+
+std::vector<ShownColumn> styled_columns(const ReportTable& table) {
+  std::vector<ShownColumn> styled;
+  for (const std::size_t i : shown_columns(table)) {
+    styled.push_back({i, is_text_column(table, i) ? " class=text" : ""});
+  }
+  return styled;
+}
+
+void write_cells(std::ostream& out, const std::vector<ShownColumn>& shown,
                  const std::vector<Cell>& row) {
   out << "<tr>";
-  for (const std::size_t i : shown) {
-    const bool is_first = i == shown.front();
-    core::print(out, "<{}{}>{}</{}>", is_first ? "th scope=row" : "td",
-                is_text_column(table, i) ? " class=text" : "", escaped_numbers(row[i].text),
-                is_first ? "th" : "td");
+  const char* tag = "th";
+  const char* scope = " scope=row";
+  for (const ShownColumn& column : shown) {
+    core::print(out, "<{0}{1}{2}>{3}</{0}>", tag, scope, column.style,
+                escaped_numbers(row[column.index].text));
+    tag = "td";
+    scope = "";
   }
   out << "</tr>\n";
 }
 }  // namespace
 
 void write_table_html(std::ostream& out, const ReportTable& table) {
-  const std::vector<std::size_t> shown = shown_columns(table);
+  const std::vector<ShownColumn> shown = styled_columns(table);
   core::print(out,
               "<h3>{0}</h3><div class=scroll tabindex=0 role=group aria-label=\"{0}\">"
               "<table class=\"data{1}\"><thead><tr>",
               escaped(table.title), shown.size() >= wide ? " wide" : "");
-  for (const std::size_t i : shown) {
-    core::print(out, "<th scope=col{}>{}</th>", is_text_column(table, i) ? " class=text" : "",
-                escaped_numbers(table.columns[i].heading));
+  for (const ShownColumn& column : shown) {
+    core::print(out, "<th scope=col{}>{}</th>", column.style,
+                escaped_numbers(table.columns[column.index].heading));
   }
   out << "</tr></thead><tbody>\n";
   for (const auto& row : table.rows) {
-    write_cells(out, table, shown, row);
+    write_cells(out, shown, row);
   }
   out << "</tbody></table></div>\n";
 }

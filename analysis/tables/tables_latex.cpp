@@ -5,6 +5,7 @@
 #include <string_view>
 #include <utility>
 
+#include "analysis/tables/minus_sign.hpp"
 #include "analysis/tables/table_writers.hpp"
 #include "core/print.hpp"
 namespace tapstudy::analysis {
@@ -34,17 +35,12 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 22> replacem
      {"≤", "$\\leq$"},
      {"\n", " "}}};
 
-// A minus sign, not a hyphen.
-bool is_minus(std::string_view before, std::string_view text) {
-  return text.size() > 1 && text[0] == '-' && text[1] >= '0' && text[1] <= '9' &&
-         (before.empty() || before.back() == ' ' || before.back() == '(');
-}
 }  // namespace
 
 std::string latex_text(std::string_view text) {
   std::string safe;
   while (!text.empty()) {
-    if (is_minus(safe, text)) {
+    if (is_minus(safe.empty() ? ' ' : safe.back(), text)) {
       safe += "$-$";
       text.remove_prefix(1);
     }

@@ -23,18 +23,14 @@ MainResult mean_threshold(const VariedAxis& axis, const MeanLogThreshold& log_me
 // A threshold is where the function without guesses has a value that depends on its shape.
 PersonalValues thresholds_of(const BlockDesign& design, const ThresholdResults& results) {
   const VariedAxis& axis = *design.axis;
-  PersonalValues thresholds{fmt::format("threshold of {}{}{}, {}, {} function", axis.name,
-                                        axis.is_below ? " below the standard" : "",
-                                        axis.is_fraction ? " (Weber fraction)" : "", design.task,
-                                        core::row_of(design.shape).name),
-                            true,
-                            {}};
-  for (const ParticipantThreshold& person : results.participants) {
-    if (person.estimate) {
-      thresholds.by_participant[person.participant_id] = person.estimate->curve.threshold;
-    }
-  }
-  return thresholds;
+  return personal_values(fmt::format("threshold of {}{}{}, {}, {} function", axis.name,
+                                     axis.is_below ? " below the standard" : "",
+                                     axis.is_fraction ? " (Weber fraction)" : "", design.task,
+                                     core::row_of(design.shape).name),
+                         true, results.participants, [](const ParticipantThreshold& person) {
+                           return person.estimate ? std::optional{person.estimate->curve.threshold}
+                                                  : std::nullopt;
+                         });
 }
 }  // namespace
 

@@ -178,8 +178,7 @@ void warn_of_block_order(const protocols::Protocol& protocol, int participants) 
     fmt::print(
         "  note: blocks come in the file's order for every participant: what distinguishes two of "
         "one task is confounded with practice and fatigue (block_order: {{order: williams}} "
-        "balances "
-        "it)\n");
+        "balances it)\n");
   }
 }
 

@@ -56,8 +56,12 @@ export class Actions {
   // A button with data-action can be pressed where that action is possible.
   #enable() {
     for (const button of document.querySelectorAll("button[data-action]")) {
-      button.disabled = !this.isPossible(button.dataset.action) || button.dataset.isDone === "true";
+      this.enable(button);
     }
+  }
+
+  enable(button) {
+    button.disabled = !this.isPossible(button.dataset.action) || button.dataset.isDone === "true";
   }
 
   #button({ name, takes_text: takesText, needs_text: needsText }) {

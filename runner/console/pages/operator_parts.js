@@ -64,9 +64,8 @@ function correction({ number, answers }, actions) {
   button.dataset.action = "correct";
   // Nothing is corrected by a press that was meant for something else.
   const setPossible = () => {
-    const isEmpty = field.value.trim() === "";
-    button.dataset.isDone = String(isEmpty);
-    button.disabled = isEmpty || !actions.isPossible("correct");
+    button.dataset.isDone = String(field.value.trim() === "");
+    actions.enable(button);
   };
   for (const type of ["input", "change"]) field.addEventListener(type, setPossible);
   setPossible();

@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -11,6 +12,12 @@ inline constexpr std::size_t max_form_text = 5000;  // characters
 //   single_choice  one of the options
 //   text    anything
 enum class ItemKind { likert, scale, number, single_choice, text };
+inline constexpr std::array<std::string_view, 5> item_kind_names{"likert", "scale", "number",
+                                                                 "single_choice", "text"};
+static_assert(item_kind_names.size() == static_cast<std::size_t>(ItemKind::text) + 1);
+constexpr std::string_view name(ItemKind kind) {
+  return item_kind_names.at(static_cast<std::size_t>(kind));
+}
 
 // An allowed answer: its name in the data and the label shown to participants.
 struct Option {

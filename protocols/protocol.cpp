@@ -28,6 +28,20 @@ const Block& Protocol::block(const std::string& name) const {
   return named(blocks, name, "block");
 }
 
+bool may_procedures_end_early(const Block& block) {
+  return block.comparison && std::ranges::any_of(block.comparison->tracks, [](const auto& track) {
+           return track->may_end_early();
+         });
+}
+
+bool may_end_early(const Block& block) {
+  return block.criterion || may_procedures_end_early(block);
+}
+
+bool do_skipped_trials_come_again(const Block& block) {
+  return block.comparison.has_value();
+}
+
 std::vector<std::string> all_presented(const Block& block) {
   std::vector<std::string> names = block.stimuli;
   const auto add = [&](const std::string& name) {

@@ -183,6 +183,12 @@ struct Block {
   int max_late_impact_repeats{0};  // of a trial with an impact just after a late tick
 };
 
+// Whether its procedures may know enough before their last trial.
+bool may_procedures_end_early(const Block& block);
+// Likewise, or its criterion may be met.
+bool may_end_early(const Block& block);
+// A procedure asked for that answer: of constant stimuli a level would lack one.
+bool do_skipped_trials_come_again(const Block& block);
 // Its stimuli, those of its catch trials, and what is presented beside them.
 std::vector<std::string> all_presented(const Block& block);
 

@@ -168,7 +168,7 @@ Block read_block(MapReader& reader, const Protocol& protocol) {
       "presented", {{"virtual", Presented::virtual_plates}, {"real", Presented::real_plates}},
       "virtual");
   block.explore = read_explore(reader, protocol, block.presented);
-  read_asides(reader, block);
+  read_between_trials(reader, block);
   block.allows_correction = reader.yes_or_no("correction", false);
   block.forms_after = read_form_names(reader, "forms_after", protocol);
   block.max_late_impact_repeats = reader.integer("max_late_impact_repeats", 0, 10, 0);

@@ -13,11 +13,7 @@ FormItem read_item(MapReader& reader) {
   constexpr double any = 1e12;
   FormItem item;
   item.name = reader.name("name");
-  item.kind = reader.one_of<ItemKind>("kind", {{"likert", ItemKind::likert},
-                                               {"scale", ItemKind::scale},
-                                               {"number", ItemKind::number},
-                                               {"single_choice", ItemKind::single_choice},
-                                               {"text", ItemKind::text}});
+  item.kind = reader.one_of<ItemKind>("kind", item_kind_names);
   item.question = reader.translated("question");
   item.is_required = reader.yes_or_no("required", true);
   if (item.kind == ItemKind::likert) {

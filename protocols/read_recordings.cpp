@@ -5,7 +5,7 @@
 namespace tapstudy::protocols {
 namespace {
 constexpr Range recorded_place_m{-10.0, 10.0};
-constexpr Range force_n{-100.0, 100.0};
+constexpr Range force_n{-1e4, 1e4};  // devices limit what they push
 constexpr std::size_t max_samples = 100'000;
 
 core::RecordedTap read_tap(MapReader& reader) {

@@ -34,7 +34,7 @@ void read_display(MapReader& top, Protocol& protocol);
 void read_blocks(MapReader& top, Protocol& protocol);
 void read_block_order(MapReader& top, Protocol& protocol);
 // Of a block: what a participant reads and is asked besides the trials' question.
-void read_asides(MapReader& block_reader, Block& block);
+void read_between_trials(MapReader& block_reader, Block& block);
 ExploreLimits read_explore(MapReader& block_reader, const Protocol& protocol, Presented presented);
 // Of a block that is otherwise without problems.
 void check_intervals(MapReader& block_reader, const Block& block);

@@ -25,9 +25,9 @@ std::string differing_keys(const std::string& one, const std::string& other) {
 
 }  // namespace
 
-std::vector<std::string> differing_heads(const StudyRow& study,
-                                         const std::vector<SessionRow>& sessions,
-                                         const JournalContent& journal) {
+std::vector<std::string> differing_study_and_sessions(const StudyRow& study,
+                                                      const std::vector<SessionRow>& sessions,
+                                                      const JournalContent& journal) {
   std::vector<std::string> differences;
   if (core::sha256(study.protocol_text) != study.protocol_sha256) {
     differences.emplace_back("study: protocol_sha256 is not that of protocol_text");

@@ -18,7 +18,7 @@ struct StoredTrial {
 };
 struct StoredAnswer {
   std::int64_t id{};
-  bool is_correction{};
+  std::optional<std::int64_t> supersedes;  // unset: the first
   std::string given_by;
   ResponseRow row;
 };
@@ -56,19 +56,19 @@ std::vector<EventRow> stored_events(Store& store, std::int64_t trial_id) {
   return events;
 }
 
-std::vector<StoredAnswer> stored_answers(Store& store, std::int64_t trial_id) {
+std::vector<StoredAnswer> responses_to(Store& store, std::int64_t trial_id) {
   std::vector<StoredAnswer> answers;
   store.each_row(
       fmt::format("SELECT response_id, response, is_correct, response_time_s, "
-                  "time_from_first_contact_s, supersedes IS NOT NULL, given_by FROM response "
-                  "WHERE trial_id = {}",
+                  "time_from_first_contact_s, confidence, supersedes, given_by FROM response "
+                  "WHERE trial_id = {} ORDER BY response_id",
                   trial_id),
       [&](Statement& row) {
-        answers.push_back(
-            {row.integer(0),
-             row.flag(5),
-             row.text(6),
-             {row.text(1), row.optional_flag(2), row.real(3), row.optional_real(4), {}}});
+        answers.push_back({row.integer(0),
+                           row.is_null(6) ? std::nullopt : std::optional{row.integer(6)},
+                           row.text(7),
+                           {row.text(1), row.optional_flag(2), row.real(3), row.optional_real(4),
+                            row.optional_int(5)}});
       });
   return answers;
 }
@@ -76,7 +76,8 @@ std::vector<StoredAnswer> stored_answers(Store& store, std::int64_t trial_id) {
 std::string to_text(const std::optional<bool>& is_correct) {
   return is_correct ? (*is_correct ? "1" : "0") : "NULL";
 }
-std::string to_text(const std::optional<double>& number) {
+template <class Number>
+std::string to_text(const std::optional<Number>& number) {
   return number ? fmt::format("{}", *number) : "NULL";
 }
 std::string to_text(const EventRow& event) {
@@ -97,14 +98,24 @@ class Comparison {
     compare_positions(alternatives);
     compare_chunks();
     compare_trace(events);
-    for (const StoredAnswer& answer : stored_answers(*store_, trial.id)) {
+    const StoredAnswer* before = nullptr;
+    const std::vector<StoredAnswer> answers = responses_to(*store_, trial.id);
+    for (const StoredAnswer& answer : answers) {
       compare_times(answer, events);
       compare_rule(answer, alternatives);
-      if (!answer.is_correction) {
-        note(fmt::format("response {}: given_by", answer.id), answer.given_by,
-             results::to_text(GivenBy::participant));
-      }
+      compare_with(before, answer);
+      before = &answer;
     }
+  }
+
+  // A row of a table that refers to one that is not there.
+  void note_lost_references() {
+    store_->each_row("SELECT \"table\", coalesce(rowid, 0), parent FROM pragma_foreign_key_check",
+                     [&](Statement& row) {
+                       result_.differences.push_back(
+                           fmt::format("{}: row {} refers to a row of {} that is missing",
+                                       row.text(0), row.integer(1), row.text(2)));
+                     });
   }
   Recomputation result() { return std::move(result_); }
 
@@ -180,6 +191,22 @@ class Comparison {
          to_text(answer.row.time_from_first_contact_s), to_text(expected));
   }
 
+  // A correction supersedes the answer before it and takes over what the participant did.
+  void compare_with(const StoredAnswer* before, const StoredAnswer& answer) {
+    const auto of = [&](const char* column) {
+      return fmt::format("response {}: {}", answer.id, column);
+    };
+    note(of("supersedes"), to_text(answer.supersedes),
+         before == nullptr ? "NULL" : fmt::format("{}", before->id));
+    if (before == nullptr) {
+      note(of("given_by"), answer.given_by, results::to_text(GivenBy::participant));
+      return;
+    }
+    note(of("response_time_s"), fmt::format("{}", answer.row.response_time_s),
+         fmt::format("{}", before->row.response_time_s));
+    note(of("confidence"), to_text(answer.row.confidence), to_text(before->row.confidence));
+  }
+
   void compare_rule(const StoredAnswer& answer, const std::vector<AlternativeRow>& alternatives) {
     if (!rule_->knows(trial_->row)) {
       ++result_.unknown_blocks;
@@ -200,6 +227,7 @@ class Comparison {
 Recomputation recompute(Store& store, const TaskRule& rule) {
   Comparison comparison{store, rule};
   AlternativesOfTrials alternatives = store.alternatives();
+  comparison.note_lost_references();
   for (const StoredTrial& trial : stored_trials(store)) {
     comparison.compare(trial, alternatives[trial.id]);
   }

@@ -25,7 +25,9 @@ struct TaskRule {
 //   trace_chunk      first_tick, from the chunks before it
 //   alternative      position, from 0 without a gap
 //   response         time_from_first_contact_s, from response_time_s and the first contact;
-//                    is_correct, by the rule
+//                    is_correct, by the rule; of a correction supersedes, response_time_s and
+//                    confidence, from the answer before it
+//   all              that every row which another refers to is there
 // Trials without a trace (real plates, simulations without traces) have nothing of the first four
 // to compare; a trace that ought to be there and is not is a difference. Throws StoreError where a
 // trace is damaged.

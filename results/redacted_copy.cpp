@@ -10,24 +10,35 @@ namespace tapstudy::results {
 namespace {
 namespace fs = std::filesystem;
 
-// Of the tables of schema.hpp, those that refer to others last. Temporary tables stay in memory.
+// Of the tables of schema.hpp, those that refer to others last. Columns are named, so that a new
+// one is an error until somebody has decided about it; so are the states whose details the program
+// writes. Temporary tables stay in memory.
 constexpr const char* copy_sql = R"sql(
 INSERT INTO study SELECT id, title, (SELECT file FROM temp.protocol_file), protocol_text,
   protocol_sha256, created_utc FROM original.study;
-INSERT INTO surface SELECT * FROM original.surface;
+INSERT INTO surface SELECT file, sha256, size, zstd
+  FROM original.surface;
 INSERT INTO participant SELECT pseudonym, mode, participant_index, order_index
   FROM original.participant JOIN temp.pseudonym USING (participant_id)
   ORDER BY participant.rowid;
 INSERT INTO session SELECT session_id, pseudonym, seed, planned_order, language, resumes, rate_hz,
   rig_text, device, scheduler, doctor, program_version, git_hash, compiler, started_utc
   FROM original.session JOIN temp.pseudonym USING (participant_id) ORDER BY session_id;
-INSERT INTO trial SELECT * FROM original.trial ORDER BY trial_id;
-INSERT INTO alternative SELECT * FROM original.alternative ORDER BY trial_id, position;
-INSERT INTO axis_value SELECT * FROM original.axis_value ORDER BY rowid;
-INSERT INTO response SELECT * FROM original.response ORDER BY response_id;
-INSERT INTO event SELECT * FROM original.event ORDER BY rowid;
+INSERT INTO trial SELECT trial_id, session_id, number, attempt, block, task, is_practice, is_catch,
+  presented, repetition, status, duration_s
+  FROM original.trial ORDER BY trial_id;
+INSERT INTO alternative SELECT trial_id, position, label, stimulus, is_comparison
+  FROM original.alternative ORDER BY trial_id, position;
+INSERT INTO axis_value SELECT trial_id, position, axis, value
+  FROM original.axis_value ORDER BY rowid;
+INSERT INTO response SELECT response_id, trial_id, response, is_correct, response_time_s,
+  time_from_first_contact_s, confidence, supersedes, given_by
+  FROM original.response ORDER BY response_id;
+INSERT INTO event SELECT trial_id, t_s, kind, value
+  FROM original.event ORDER BY rowid;
 INSERT INTO session_event SELECT session_id, t_s, state, number,
-  CASE WHEN state = 'stopped' AND detail <> '' THEN '(removed)' ELSE detail END
+  CASE WHEN detail = '' OR state IN ('instructions', 'form', 'answering', 'practised', 'faulted',
+    'repeated', 'skipped', 'timed_out', 'paused') THEN detail ELSE '(removed)' END
   FROM original.session_event ORDER BY rowid;
 INSERT INTO form_answer SELECT session_id, t_s, form, asked, item,
   CASE WHEN answer IS NULL OR (form, item) IN (SELECT form, item FROM temp.kept) THEN answer
@@ -36,8 +47,11 @@ INSERT INTO form_answer SELECT session_id, t_s, form, asked, item,
 INSERT INTO operator_action SELECT action_id, session_id, t_s, action, number,
   CASE WHEN detail = '' THEN '' ELSE '(removed)' END
   FROM original.operator_action ORDER BY action_id;
-INSERT INTO trace_chunk SELECT * FROM original.trace_chunk ORDER BY trial_id, first_tick;
-INSERT INTO tick_statistics SELECT * FROM original.tick_statistics ORDER BY trial_id;
+INSERT INTO trace_chunk SELECT trial_id, first_tick, ticks, codec, bytes
+  FROM original.trace_chunk ORDER BY trial_id, first_tick;
+INSERT INTO tick_statistics SELECT trial_id, ticks, late, skipped, saturated, dropped_samples,
+  lateness_p999_s, worst_lateness_s, fault
+  FROM original.tick_statistics ORDER BY trial_id;
 )sql";
 
 void fill_database(Database& database, const std::string& original, const StudyRow& study,

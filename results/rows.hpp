@@ -153,18 +153,6 @@ struct TrialRow {
   bool is_of_real_plate{};  // not rendered: a plate that was mounted
 };
 
-// What was not as planned in a participant's trials, practice aside.
-struct DeviationRow {
-  std::string participant_id;
-  Mode mode{};
-  int corrected{};           // answers, by the operator or the participant
-  int corrected_to_right{};  // of these, that were wrong
-  int skipped{};
-  int timed_out{};
-  int catch_trials{};  // answered
-  int missed_catch_trials{};
-};
-
 // How the sessions of one participant went. Trials are presentations, practice aside; the loop's
 // are of every stored trial.
 struct ParticipantCourseRow {
@@ -177,8 +165,9 @@ struct ParticipantCourseRow {
   int repeated{};  // their answers do not count
   int skipped{};
   int timed_out{};
-  int given_up{};   // skipped or timed out, and not answered later
-  int corrected{};  // answers
+  int given_up{};            // skipped or timed out, and not answered later
+  int corrected{};           // answers, by the operator or the participant
+  int corrected_to_right{};  // of these, that were wrong
   int catch_trials{};
   int catch_right{};
   int form_items{};           // of questionnaires that were shown

@@ -96,23 +96,16 @@ class Store {
   std::vector<UnansweredTrial> unanswered_trials(const std::string& participant_id);
   // Form and where it was asked, of all that the participant has answered.
   std::set<std::pair<std::string, std::string>> filled_forms(const std::string& participant_id);
-  // Of participants of whom there is something to say.
-  std::vector<DeviationRow> deviations();
-  // Of all participants, sorted by mode and index.
-  std::vector<ParticipantCourseRow> participant_courses();
   // By id: why.
   std::map<std::string, std::string> excluded_participants();
-  // Of all participants and modes, including practice: the caller filters. Sorted by mode,
-  // participant index and trial number. Who a participant is, the id says; an index is unique only
-  // within a mode.
-  std::vector<AnswerRow> answers();
   // The participant's, without corrections, in the order given.
   std::vector<JournalledAnswer> answers_as_given(const std::string& participant_id);
-  std::vector<VisitRow> visits();
   AlternativesOfTrials alternatives();
   std::vector<SessionRow> sessions();
   JournalEntries entries_for_journal();
-  // Rows of a SELECT, each shown as it comes.
+  // A SELECT; what reports need is in stored_answers.hpp and participant_courses.hpp.
+  Statement query(const std::string& select) { return Statement{database_, select}; }
+  // Its rows, each shown as it comes.
   void each_row(const std::string& select, const std::function<void(Statement&)>& show);
   // All that `read` reads is of one moment, whatever a session adds meanwhile.
   void at_one_moment(const std::function<void()>& read);
@@ -123,10 +116,6 @@ class Store {
  private:
   Store(Database database, std::optional<Journal> journal)
       : database_{std::move(database)}, journal_{std::move(journal)} {}
-  void add_presentations(ParticipantCourseRow& course);
-  void add_loop(ParticipantCourseRow& course);
-  void add_masking(ParticipantCourseRow& course);
-  void add_form_items(ParticipantCourseRow& course);
   void check_is_sound();
   void check_version();
   void check_schema();

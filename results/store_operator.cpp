@@ -91,33 +91,6 @@ void Store::add_correction(const CorrectionRow& correction, const OperatorAction
                   });
 }
 
-std::vector<DeviationRow> Store::deviations() {
-  Statement row{database_,
-                "SELECT participant_id, mode, count(corrected), "
-                "  coalesce(sum(corrected AND is_correct AND NOT was_correct), 0), "
-                "  sum(status = 'skipped'), sum(status = 'timed_out'), "
-                "  sum(is_catch AND is_correct IS NOT NULL), "
-                "  coalesce(sum(is_catch AND NOT is_correct), 0) FROM ("
-                "  SELECT session_id, status, is_practice, is_catch, "
-                "    nullif(current_response.response IS NOT first.response, 0) AS corrected, "
-                "    current_response.is_correct AS is_correct, first.is_correct AS was_correct "
-                "  FROM trial LEFT JOIN current_response USING (trial_id) "
-                "  LEFT JOIN response AS first ON first.trial_id = trial.trial_id "
-                "    AND first.supersedes IS NULL) "
-                "JOIN session USING (session_id) JOIN participant USING (participant_id) "
-                "WHERE NOT is_practice GROUP BY participant_id "
-                "HAVING count(corrected) > 0 OR sum(status IN ('skipped', 'timed_out')) > 0 "
-                "  OR sum(is_catch AND NOT is_correct) > 0 "
-                "ORDER BY mode, participant_index"};
-  std::vector<DeviationRow> deviations;
-  while (row.step()) {
-    deviations.push_back({row.text(0), mode_from(row.text(1)), row.small_integer(2),
-                          row.small_integer(3), row.small_integer(4), row.small_integer(5),
-                          row.small_integer(6), row.small_integer(7)});
-  }
-  return deviations;
-}
-
 std::map<std::string, std::string> Store::excluded_participants() {
   Statement row{database_, "SELECT participant_id, exclusion_reason FROM excluded_participant"};
   std::map<std::string, std::string> excluded;

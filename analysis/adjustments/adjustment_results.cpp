@@ -30,7 +30,7 @@ double value_of(const BlockDesign& design, const AnswerRow& answer) {
   if (!is_number || (design.adjusted->is_logarithmic && *value <= 0.0)) {
     throw core::InvalidInput{fmt::format("block '{}', {} in trial {}: '{}' is not a value of {}",
                                          design.name, answer.participant_id, answer.number,
-                                         answer.response, design.adjusted->name)};
+                                         answer.response, design.adjusted->name.key)};
   }
   return *value;
 }

@@ -19,13 +19,14 @@ struct Estimate {
 std::vector<Estimate> estimates_of(const AdjustedAxis& axis, const AdjustmentResults& results) {
   static const std::optional<SignFlipTest> none;
   const bool is_log = axis.is_logarithmic;
-  return {{"point of subjective equality", axis.name, results.equality, none},
+  const std::string& unit = axis.name.unit.empty() ? axis.name.quantity : axis.name.unit;
+  return {{"point of subjective equality", unit, results.equality, none},
           {is_log ? "constant error (over the standard)" : "constant error",
-           is_log ? "ratio" : axis.name, results.error, results.error_test},
+           is_log ? "ratio" : unit, results.error, results.error_test},
           {is_log ? "standard deviation of logarithms" : "standard deviation",
-           is_log ? "natural logarithm" : axis.name, results.deviation, none},
+           is_log ? "natural logarithm" : unit, results.deviation, none},
           {is_log ? "ascending over descending runs" : "ascending less descending runs",
-           is_log ? "ratio" : axis.name, results.hysteresis, results.hysteresis_test}};
+           is_log ? "ratio" : unit, results.hysteresis, results.hysteresis_test}};
 }
 
 ReportTable estimates_table(const AdjustedAxis& axis, const AdjustmentResults& results) {
@@ -51,7 +52,7 @@ ReportTable estimates_table(const AdjustedAxis& axis, const AdjustmentResults& r
 ReportTable participants_table(const AdjustedAxis& axis, const AdjustmentResults& results) {
   ReportTable table{
       "participants",
-      fmt::format("Participants: {} that feels equal", axis.name),
+      fmt::format("Participants: {} that feels equal", axis.name.with_unit()),
       {column("participant", "participant_id"), column("settings", "settings"),
        column(axis.is_logarithmic ? "geometric mean" : "mean", "mean"),
        column(axis.is_logarithmic ? "over the standard" : "constant error", "constant_error"),
@@ -124,9 +125,10 @@ std::optional<Chart> chart_of(const AdjustedAxis& axis, const AdjustmentResults&
     return std::nullopt;
   }
   chart.caption = "Each setting against where it started; dashed: their mean over participants";
-  chart.alternative = fmt::format("{} settings of {}; point of subjective equality {}",
-                                  chart.points.size(), axis.name, rounded(results.equality->mean));
-  chart.x_label = "start, " + axis.name;
+  chart.alternative =
+      fmt::format("{} settings of {}; point of subjective equality {}", chart.points.size(),
+                  axis.name.with_unit(), rounded(results.equality->mean));
+  chart.x_label = "start, " + axis.name.with_unit();
   chart.y_label = "setting";
   chart.is_x_logarithmic = axis.is_logarithmic;
   chart.is_y_logarithmic = axis.is_logarithmic;
@@ -138,7 +140,7 @@ std::optional<Chart> chart_of(const AdjustedAxis& axis, const AdjustmentResults&
 
 PersonalValues means_of(const AdjustedAxis& axis, const AdjustmentResults& results) {
   return personal_values(
-      "setting of " + axis.name, axis.is_logarithmic, results.participants,
+      "setting of " + axis.name.with_unit(), axis.is_logarithmic, results.participants,
       [](const ParticipantSettings& person) { return std::optional{person.mean}; });
 }
 }  // namespace
@@ -158,7 +160,7 @@ std::shared_ptr<BlockSummary> summarise_adjustments(const BlockDesign& design,
     summary->charts.push_back(*chart);
   }
   if (results.equality && results.equality->interval) {
-    summary->main.push_back({fmt::format("point of subjective equality, {}", axis.name),
+    summary->main.push_back({fmt::format("point of subjective equality, {}", axis.name.with_unit()),
                              results.equality->mean,
                              *results.equality->interval,
                              {},

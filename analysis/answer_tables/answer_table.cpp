@@ -13,6 +13,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "analysis/answer_tables/answer_names.hpp"
 #include "core/error.hpp"
 #include "core/number_in.hpp"
 namespace tapstudy::analysis {
@@ -64,6 +65,7 @@ class AnswerReader {
       }
     }
     table.possible_time = places_.possible_time;
+    table.has_times |= places_.time.has_value();
   }
 
  private:
@@ -182,25 +184,26 @@ void check_responses(const std::vector<results::AnswerRow>& answers,
   }
 }
 
-void check_names(const std::vector<results::AnswerRow>& answers, const std::string& file,
-                 const std::set<std::string>& stimuli, const std::set<std::string>& responses) {
-  for (const std::string& name : responses) {
-    const auto other = std::ranges::find_if(responses, [&](const std::string& each) {
-      return each < name && is_same_word(each, name);
-    });
-    if (other != responses.end()) {
-      throw core::InvalidInput{
-          fmt::format("{}: '{}' and '{}' differ only in case", file, *other, name)};
+// As a study's own report: real participants, or else pilots, or else simulated ones.
+void keep_one_mode(AnswerTable& table, std::vector<Origin>& origins) {
+  const auto first = std::ranges::min_element(table.answers, {}, &results::AnswerRow::mode);
+  if (first == table.answers.end()) {
+    return;
+  }
+  const results::Mode mode = first->mode;
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < table.answers.size(); ++i) {
+    if (table.answers[i].mode == mode) {
+      if (kept != i) {
+        table.answers[kept] = std::move(table.answers[i]);
+        origins[kept] = origins[i];
+      }
+      ++kept;
     }
   }
-  if (std::ranges::none_of(answers, [&](const results::AnswerRow& answer) {
-        return stimuli.contains(answer.response);
-      })) {
-    throw core::InvalidInput{
-        fmt::format("{}: no answer names a stimulus (answers: '{}' and others; stimuli: {}): say "
-                    "what answers stand for by --responses GIVEN=STIMULUS",
-                    file, answers.front().response, fmt::join(stimuli, ", "))};
-  }
+  table.of_other_modes = table.answers.size() - kept;
+  table.answers.resize(kept);
+  origins.resize(kept);
 }
 
 void check_is_one_block(const std::vector<results::AnswerRow>& answers,
@@ -238,6 +241,7 @@ AnswerTable read_answers(const std::vector<NamedCsv>& files, const AnswerReading
   if (table.answers.empty()) {
     throw core::InvalidInput{fmt::format("{}: holds no answers", files.front().file)};
   }
+  keep_one_mode(table, origins);
   check_is_one_block(table.answers, origins);
   std::set<std::string> stimuli;
   for (const results::AnswerRow& answer : table.answers) {

@@ -21,11 +21,15 @@ struct AnswerTable {
   std::vector<results::AnswerRow> answers;  // response_time_s is NaN where it is not known
   std::vector<Item> stimuli;                // by name
   std::vector<Item> responses;              // by name
-  std::set<std::string> modes;              // of them, but for real
+  std::set<std::string> modes;              // of them, but for real; at most one
   bool are_participants_known{};
   std::size_t rows{};         // that meet the conditions
   std::size_t unanswered{};   // of these: left out, for the answer is empty, NA, None or null
   std::size_t not_counted{};  // likewise: tapstudy's own practice, catch trials, excluded people …
+  // Likewise: where some are of real sessions, those of others; else, if some are pilots,
+  // simulated.
+  std::size_t of_other_modes{};
+  bool has_times{};
   std::string possible_time{};  // a column that was not read, but may hold times; empty: none
 };
 

@@ -23,10 +23,19 @@ struct Place {
   int participant_index{};
   int order_index{};
 };
+// A property of stimuli: "youngs_modulus_pa" in data, for readers "Young's modulus" in "Pa".
+struct AxisName {
+  std::string key;
+  std::string quantity;
+  std::string unit;                // empty for a ratio
+  std::string with_unit() const {  // "Young's modulus (Pa)"
+    return unit.empty() ? quantity : quantity + " (" + unit + ")";
+  }
+};
 // The axis along which a comparison differs from its standard. Levels, which psychometric functions
 // are of, are how far it does: a difference in the axis's unit, or a fraction of the standard.
 struct VariedAxis {
-  std::string name;   // ends in its unit
+  AxisName name;
   double standard{};  // not 0 where levels are fractions
   bool is_fraction{true};
   bool is_below{};          // comparisons lie below the standard; their levels are positive too
@@ -38,7 +47,7 @@ struct VariedAxis {
 };
 // The axis along which participants adjust a stimulus.
 struct AdjustedAxis {
-  std::string name;  // ends in its unit
+  AxisName name;
   bool is_logarithmic{};
   double middle{};                 // runs start below or above it
   std::optional<double> standard;  // unset: what it is adjusted to has no value on the axis
@@ -73,7 +82,7 @@ struct BlockDesign {
   // False: answers without a protocol, which nobody says the order of.
   bool is_order_known{true};
   // On which all alternatives of a trial have the same values; the block is summarised at each.
-  std::vector<std::string> further_axes{};
+  std::vector<AxisName> further_axes{};
   // Of psychometric functions.
   core::PsychometricShape shape{core::PsychometricShape::weibull};
   // Answers are "there is a difference": how often by a guess is the participant's own affair, and

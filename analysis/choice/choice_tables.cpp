@@ -4,7 +4,7 @@ namespace tapstudy::analysis {
 std::vector<ReportTable> ChoiceSummary::report_tables() const {
   ReportTable table{"votes",
                     "Choices",
-                    {column("stimulus", "stimulus"), proportion_column("chosen", "chosen"),
+                    {column("stimulus", "stimulus"), counted_column("chosen", "chosen"),
                      interval_column("simultaneous 95 % CI (Goodman 1965)", "goodman"),
                      interval_column("(Sison & Glaz 1995)", "sison_glaz"),
                      column("visits", "visits"), column("time there, s", "dwell_s")}};
@@ -13,7 +13,7 @@ std::vector<ReportTable> ChoiceSummary::report_tables() const {
                                               : nothing(table.columns[2]);
     const Cell other = result.sison_glaz ? interval(result.chosen.value(), *result.sison_glaz)
                                          : nothing(table.columns[3]);
-    table.rows.push_back({word(result.item.label), proportion(result.chosen), simultaneous, other,
+    table.rows.push_back({word(result.item.label), counted(result.chosen), simultaneous, other,
                           count(result.visits), number(result.dwell_s)});
   }
   std::vector<ReportTable> tables{table};

@@ -138,12 +138,14 @@ ReportSection course_section(const Courses& participants,
   section.tables = {course_table(participants),    exclusions_table(participants),
                     attention_table(participants), practice_table(practice),
                     loop_table(participants),      masking_table(participants)};
+  section.remarks.emplace_back(
+      "Given up: trials that were skipped or timed out and not answered later.");
   if (section.tables[4].rows.empty()) {
-    section.remarks.emplace_back("No ticks are stored of these trials.");
+    section.remarks.emplace_back("In virtual time no tick is late.");
   } else {
     section.remarks.emplace_back(
-        "Given up: trials that were skipped or timed out and not answered later. Lateness of a "
-        "tick: 99.9 % of the ticks of a participant's worst trial were no later (to 19 %), and the "
+        "Lateness of a tick: 99.9 % of the ticks of a participant's worst trial were no later (to "
+        "19 %), and the "
         "latest of all. Late impacts: those up to 5 ms after a late tick.");
   }
   return section;

@@ -84,7 +84,7 @@ void add_means(EqualityResults& results) {
 }  // namespace
 
 PsychometricModel equality_model(const BlockDesign& design) {
-  return {design.shape, {0.0, max_rate}, {0.0, max_rate}};
+  return {design.shape, {0.0, max_rate}, {0.0, max_rate}, Rates::equal};
 }
 
 EqualityResults equality_results(const BlockDesign& design, const std::vector<AnswerRow>& answers) {

@@ -11,9 +11,10 @@ namespace tapstudy::analysis {
 // Comparisons on either side of a standard: how often they are judged greater, from never to
 // always. Levels are VariedAxis::level_of, below the standard negative.
 
-// psi is the block's function, on a linear axis, with guess and lapse rates up to 0.1 (Wichmann &
-// Hill 2001a), its value at F = 0.5 the point of subjective equality (PSE), half of the distance
-// from F = 0.25 to F = 0.75 the just noticeable difference (JND).
+// psi is the block's function, on a linear axis, with one rate of up to 0.1 (Wichmann & Hill
+// 2001a) at which answers are wrong whatever the level, its value at F = 0.5 the point of
+// subjective equality (PSE), half of the distance from F = 0.25 to F = 0.75 the just noticeable
+// difference (JND).
 struct EqualityEstimate {
   PsychometricCurve curve;
   Interval equality;          // 95 %, by profile likelihood; of levels

@@ -26,11 +26,12 @@ std::vector<Column> estimate_columns() {
 }
 
 ReportTable participants_table(const VariedAxis& axis, const EqualityResults& results) {
-  ReportTable table{"participants",
-                    fmt::format("Points of subjective equality (PSE, {}), constant errors and just "
-                                "noticeable differences (JND){}",
-                                axis.name, axis.is_fraction ? " as fractions of the standard" : ""),
-                    {column("participant", "participant_id")}};
+  ReportTable table{
+      "participants",
+      fmt::format("Points of subjective equality (PSE, {}), constant errors and just "
+                  "noticeable differences (JND){}",
+                  axis.name.with_unit(), axis.is_fraction ? " as fractions of the standard" : ""),
+      {column("participant", "participant_id")}};
   std::ranges::copy(estimate_columns(), std::back_inserter(table.columns));
   table.columns.push_back(column("deviance test", "deviance_p"));
   for (const ParticipantEquality& person : results.participants) {
@@ -78,11 +79,11 @@ ReportTable over_participants_table(const BlockDesign& design, const EqualityRes
 }
 
 ReportTable levels_table(const VariedAxis& axis, const EqualityResults& results) {
-  ReportTable table{
-      "levels",
-      "Comparisons that were judged greater",
-      {column("participant", "participant_id"), column("level", "level"),
-       column(axis.name, "value"), proportion_column("judged greater", "judged_greater")}};
+  ReportTable table{"levels",
+                    "Comparisons that were judged greater",
+                    {column("participant", "participant_id"), column("level", "level"),
+                     column(axis.name.with_unit(), "value"),
+                     proportion_column("judged greater", "judged_greater")}};
   table.is_for_programs = true;
   for (const ParticipantEquality& person : results.participants) {
     for (const Level& level : person.levels) {
@@ -107,9 +108,11 @@ std::vector<std::string> remarks_on(const BlockDesign& design, const EqualityRes
   }
   std::vector<std::string> remarks{
       fmt::format("The standard is {:.6g}. A {} function of how often the comparison is judged "
-                  "greater, by maximum likelihood, guess and lapse rate from 0 to 0.1; intervals "
-                  "by profile likelihood. At equality it is at 50 %; the just noticeable "
-                  "difference is half of the distance from 25 to 75 %, without guesses and lapses. "
+                  "greater, by maximum likelihood, with one rate of lapses from 0 to 0.1 at "
+                  "both ends; intervals by profile likelihood. At equality it is at 50 %; the just "
+                  "noticeable difference is half of the distance from 25 to 75 %, without lapses "
+                  "(of participants who never lapse it comes out about a tenth too small: chance "
+                  "errors far from the standard count as lapses). "
                   "Deviance test by parametric bootstrap: a small p says that it does not fit.",
                   design.axis->standard, core::row_of(design.shape).name)};
   for (const ParticipantEquality& person : results.participants) {
@@ -184,7 +187,7 @@ std::vector<Chart> charts_of(const EqualityResults& results, core::PsychometricS
 
 PersonalValues points_of_equality(const VariedAxis& axis, const EqualityResults& results) {
   return personal_values(
-      "point of subjective equality, " + axis.name, false, results.participants,
+      "point of subjective equality, " + axis.name.with_unit(), false, results.participants,
       [&](const ParticipantEquality& person) {
         return person.estimate ? std::optional{value_at(axis, person.estimate->curve.threshold)}
                                : std::nullopt;
@@ -204,7 +207,7 @@ std::shared_ptr<BlockSummary> summarise_equality(const BlockDesign& design, cons
     summary->personal = points_of_equality(axis, results);
   }
   if (results.equality && results.equality->interval) {
-    summary->main = {{"point of subjective equality, " + axis.name,
+    summary->main = {{"point of subjective equality, " + axis.name.with_unit(),
                       value_at(axis, results.equality->mean),
                       values_at(axis, *results.equality->interval),
                       design.premise.empty() ? std::optional{results.equality->p} : std::nullopt}};

@@ -103,22 +103,21 @@ ReportTable pooled_table(const MatrixOfParticipants& counted, const std::string&
 std::vector<std::string> remarks_on(const MatrixOfParticipants& counted, const std::string& refusal,
                                     const std::optional<GuessedInformation>& guessed) {
   std::vector<std::string> remarks{
-      guessed ? fmt::format(
-                    "Information transfer (Miller & Nicely 1955) is biased upward; the "
-                    "Miller-Madow value is corrected for that, what is left of it guessing shows: "
-                    "{} {}.",
-                    guessed->draws, counted.randomisation.words)
-              : fmt::format(
-                    "Information transfer (Miller & Nicely 1955) is biased upward; the "
-                    "Miller-Madow value is corrected for that. What guessing gives is not known: "
-                    "{}.",
-                    counted.randomisation.words)};
+      guessed
+          ? fmt::format("Information transfer (Miller & Nicely 1955) is biased upward; the "
+                        "Miller-Madow value is corrected for that; what guessing would give shows "
+                        "what is left of the bias: {} {}.",
+                        guessed->draws, counted.randomisation.words)
+          : fmt::format(
+                "Information transfer (Miller & Nicely 1955) is biased upward; the "
+                "Miller-Madow value is corrected for that. What guessing gives is not known: "
+                "{}.",
+                counted.randomisation.words)};
   if (refusal.empty() && counted.participants.size() > 1) {
     remarks.emplace_back(
         "The interval is a jackknife (Tukey 1958) over five participants or more of the corrected "
-        "value and of the logit of its share. Pooling participants who confuse differently "
-        "transfers less than "
-        "each of them does.");
+        "value and of the logit of its share. The answers of participants who confuse differently "
+        "transfer less together than they do on average.");
   }
   if (refusal.empty() &&
       information_transfer(counted.matrix.counts).miller_madow_bits > most_bits(counted.matrix)) {

@@ -69,16 +69,20 @@ void add_map(const std::vector<Item>& classes, const SimilarityChoice& model,
         "scaling (Torgerson 1952), {:.0f} % in two dimensions.",
         100.0 * map.explained);
     chart.alternative = "Map of the classes";
-    std::vector<double> all;
+    std::vector<double> all_x;
+    std::vector<double> all_y;
     for (std::size_t i = 0; i < classes.size(); ++i) {
       const double x = map.points[i][0];
       const double y = map.points[i][1];
       table.rows.push_back({word(classes[i].name), number(x), number(y)});
       chart.points.push_back({x, y, 0.4, false, fmt::format("{}", i + 1)});
       chart.caption += fmt::format("{} {} {}", i == 0 ? "" : ",", i + 1, classes[i].label);
-      all.insert(all.end(), {x, y});
+      all_x.push_back(x);
+      all_y.push_back(y);
     }
-    chart.x_range = chart.y_range = range_of(all, false);
+    chart.x_range = range_of(all_x, false);
+    chart.y_range = range_of(all_y, false);
+    make_axes_equal(chart);
     section.charts.push_back(chart);
   }
   section.tables.push_back(table);

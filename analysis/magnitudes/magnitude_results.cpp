@@ -36,7 +36,7 @@ OnAxis value_of(const BlockDesign& design, const AnswerRow& answer) {
     return std::nullopt;
   }
   const results::AxisValues& values = judged(answer).axis_values;
-  const auto found = values.find(design.axis->name);
+  const auto found = values.find(design.axis->name.key);
   return found == values.end() ? OnAxis{} : OnAxis{found->second};
 }
 

@@ -41,12 +41,12 @@ ReportTable exponents_table(const BlockDesign& design, const Magnitudes& results
 }
 
 ReportTable means_table(const BlockDesign& design, const Magnitudes& results) {
-  ReportTable table{
-      "means",
-      "Geometric means over participants",
-      {column("stimulus", "stimulus"), column(design.axis ? design.axis->name : "value", "value"),
-       column("geometric mean", "geometric_mean"), column("participants", "participants"),
-       column("estimates", "estimates")}};
+  ReportTable table{"means",
+                    "Geometric means over participants",
+                    {column("stimulus", "stimulus"),
+                     column(design.axis ? design.axis->name.with_unit() : "value", "value"),
+                     column("geometric mean", "geometric_mean"),
+                     column("participants", "participants"), column("estimates", "estimates")}};
   for (const StimulusMagnitudes& of : results) {
     for (const MagnitudeOfValue& mean : of.values) {
       table.rows.push_back({word(of.stimulus), number(mean.value), number(mean.geometric_mean),
@@ -108,9 +108,9 @@ Chart chart_of(const BlockDesign& design, const StimulusMagnitudes& of) {
   }
   chart.caption = of.stimulus + ": geometric means and power law, both axes logarithmic";
   chart.alternative =
-      fmt::format("Magnitude of {} against {}: exponent {}", of.stimulus, design.axis->name,
-                  interval(law.exponent, law.exponent_interval).text);
-  chart.x_label = design.axis->name;
+      fmt::format("Magnitude of {} against {}: exponent {}", of.stimulus,
+                  design.axis->name.quantity, interval(law.exponent, law.exponent_interval).text);
+  chart.x_label = design.axis->name.with_unit();
   chart.y_label = "magnitude";
   chart.is_x_logarithmic = true;
   chart.is_y_logarithmic = true;

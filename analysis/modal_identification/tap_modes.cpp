@@ -191,8 +191,15 @@ TapMode judged(const FittedMode& fitted, const Candidate& candidate, double dura
 }  // namespace
 
 const char* name(Standing standing) {
-  constexpr std::array names{"agreed", "doubtful", "line"};
-  return names.at(static_cast<std::size_t>(standing));
+  switch (standing) {
+    case Standing::agreed:
+      return "agreed";
+    case Standing::doubtful:
+      return "doubtful";
+    case Standing::line:
+      return "line";
+  }
+  return "";
 }
 
 namespace {

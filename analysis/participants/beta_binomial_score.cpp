@@ -28,8 +28,8 @@ Slopes slopes_at(const std::vector<Proportion>& people, double a, double b) {
 }
 }  // namespace
 
-BetaBinomialParameters polished(const std::vector<Proportion>& people,
-                                const BetaBinomialParameters& near) {
+BetaBinomialParameters refined(const std::vector<Proportion>& people,
+                               const BetaBinomialParameters& near) {
   constexpr int steps = 6;
   constexpr double farthest = 1e-2;  // of either, in proportion
   const Eigen::Array2d start{near.nu * near.mean, near.nu * (1.0 - near.mean)};

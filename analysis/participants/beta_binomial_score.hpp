@@ -10,6 +10,6 @@ struct BetaBinomialParameters {
 };
 // The maximum of the likelihood near a place where values can tell no better: Newton's method on
 // the score. The place itself if that leads away.
-BetaBinomialParameters polished(const std::vector<Proportion>& people,
-                                const BetaBinomialParameters& near);
+BetaBinomialParameters refined(const std::vector<Proportion>& people,
+                               const BetaBinomialParameters& near);
 }  // namespace tapstudy::analysis

@@ -169,7 +169,7 @@ std::optional<BetaBinomialMean> beta_binomial_mean(const std::vector<Proportion>
   BetaBinomialMean result{static_cast<int>(people.size()), best.at, eta * eta,
                           profile_interval(people, best.at, -best.value)};
   if (eta > 0.0 && eta < largest_eta && best.at > 0.0 && best.at < 1.0) {
-    const auto [mean, nu] = polished(people, {best.at, 1.0 / (eta * eta) - 1.0});
+    const auto [mean, nu] = refined(people, {best.at, 1.0 / (eta * eta) - 1.0});
     result.mean = mean;
     result.intraclass_correlation = 1.0 / (1.0 + nu);
   }

@@ -54,16 +54,53 @@ std::vector<std::size_t> permuted(const AnswerSequence& sequence, const Trials& 
   return responses;
 }
 
-SerialEffect effect_of(const std::vector<std::vector<double>>& drawn, std::size_t which,
-                       double observed, int trials) {
-  double sum = observed;
-  for (const auto& counts : drawn) {
-    sum += counts[which];
+// How often each stimulus of one participant got each response.
+class SharesOfResponses {
+ public:
+  explicit SharesOfResponses(const AnswerSequence& sequence) {
+    for (std::size_t i = 0; i < sequence.stimuli.size(); ++i) {
+      counts_[sequence.stimuli[i]][sequence.responses[i]] += 1.0;
+      trials_[sequence.stimuli[i]] += 1.0;
+    }
   }
-  const double expected = sum / (static_cast<double>(drawn.size()) + 1.0);
+  double share(std::size_t stimulus, std::size_t response) const {
+    const auto& counts = counts_.at(stimulus);
+    const auto found = counts.find(response);
+    return found == counts.end() ? 0.0 : found->second / trials_.at(stimulus);
+  }
+  // The probability that two trials get the same response, of those of one stimulus without putting
+  // back.
+  double equal(std::size_t one, std::size_t other) const {
+    double sum = 0.0;
+    for (const auto& [response, count] : counts_.at(one)) {
+      const double n = trials_.at(one);
+      sum += one == other ? count * (count - 1.0) / (n * (n - 1.0))
+                          : count / n * share(other, response);
+    }
+    return sum;
+  }
+
+ private:
+  std::map<std::size_t, std::map<std::size_t, double>> counts_;
+  std::map<std::size_t, double> trials_;
+};
+
+// The means of add_counts over all permutations.
+void add_expected(const AnswerSequence& sequence, std::vector<double>& expected) {
+  const SharesOfResponses shares{sequence};
+  for (std::size_t i = 1; i < sequence.stimuli.size(); ++i) {
+    expected[0] += shares.equal(sequence.stimuli[i], sequence.stimuli[i - 1]);
+    expected[1] += shares.share(sequence.stimuli[i], sequence.right[i - 1]);
+  }
+}
+
+// Counts that are equally far from the mean are so to the last bit.
+SerialEffect effect_of(const std::vector<std::vector<double>>& drawn, std::size_t which,
+                       double observed, double expected, int trials) {
+  constexpr double rounding = 1e-9;
   std::vector<double> distances;
   for (const auto& counts : drawn) {
-    distances.push_back(std::abs(counts[which] - expected));
+    distances.push_back(std::abs(counts[which] - expected) + rounding);
   }
   const double n = std::max(1.0, static_cast<double>(trials));
   return {observed / n, expected / n, monte_carlo_p(distances, std::abs(observed - expected)),
@@ -78,11 +115,13 @@ SerialDependence serial_dependence(const std::vector<AnswerSequence>& participan
   }
   std::vector<Trials> trials;
   std::vector<double> observed(2, 0.0);
+  std::vector<double> expected(2, 0.0);
   int following = 0;
   for (const AnswerSequence& sequence : participants) {
     check(sequence);
     trials.push_back(trials_by_stimulus(sequence));
     add_counts(sequence, sequence.responses, observed);
+    add_expected(sequence, expected);
     following += std::max(0, static_cast<int>(sequence.responses.size()) - 1);
   }
   const auto drawn = replicated_vectors(
@@ -96,6 +135,7 @@ SerialDependence serial_dependence(const std::vector<AnswerSequence>& participan
         return counts;
       },
       seed, threads);
-  return {effect_of(drawn, 0, observed[0], following), effect_of(drawn, 1, observed[1], following)};
+  return {effect_of(drawn, 0, observed[0], expected[0], following),
+          effect_of(drawn, 1, observed[1], expected[1], following)};
 }
 }  // namespace tapstudy::analysis

@@ -12,7 +12,7 @@ struct AnswerSequence {
 
 struct SerialEffect {
   double observed{};  // share of the trials that follow another
-  double expected{};  // the mean of the permutations, the observed order among them
+  double expected{};  // the mean of all permutations, in closed form
   double p{};         // two-sided: shares at least as far from `expected`, of permutations + 1
   int trials{};       // that follow another
 };

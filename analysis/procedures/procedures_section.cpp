@@ -1,4 +1,11 @@
 #include "analysis/procedures/procedures_section.hpp"
+
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <utility>
+
+#include "analysis/participants/mean_proportion.hpp"
 namespace tapstudy::analysis {
 namespace {
 // Of staircases.
@@ -26,6 +33,59 @@ ReportTable tracks_table(const std::vector<TrackResult>& tracks) {
   return table;
 }
 
+// The estimates of a procedure in a block, logarithms where levels are above 0.
+struct Estimates {
+  bool is_signed{};
+  std::map<std::string, std::vector<double>> of_participants;
+};
+using EstimatesOfProcedures = std::map<std::pair<std::string, std::string>, Estimates>;
+
+// No logarithm of a level of 0, where a staircase may rest.
+EstimatesOfProcedures estimates_of(const std::vector<TrackResult>& tracks) {
+  EstimatesOfProcedures all;
+  for (const TrackResult& track : tracks) {
+    if (track.estimate && (track.is_signed || *track.estimate > 0.0)) {
+      Estimates& estimates = all[{track.block, track.procedure}];
+      estimates.is_signed = track.is_signed;
+      estimates.of_participants[track.participant_id].push_back(
+          track.is_signed ? *track.estimate : std::log10(*track.estimate));
+    }
+  }
+  return all;
+}
+
+double mean_of(const std::vector<double>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+Cell group_mean(const Estimates& estimates) {
+  std::vector<double> means;
+  for (const auto& [participant, values] : estimates.of_participants) {
+    means.push_back(mean_of(values));
+  }
+  const auto back = [&](double mean) { return estimates.is_signed ? mean : std::pow(10.0, mean); };
+  if (means.size() < 2) {
+    return interval(back(mean_of(means)), std::nullopt);
+  }
+  const Interval range = t_interval(means);
+  return interval(back(mean_of(means)), Interval{back(range.low), back(range.high)});
+}
+
+ReportTable means_table(const std::vector<TrackResult>& tracks) {
+  ReportTable table{
+      "procedure_means",
+      "Estimates of the procedures over participants",
+      {column("block", "block"), column("procedure", "procedure"),
+       column("participants", "participants"), interval_column("mean (95 % CI)", "estimate"),
+       column("mean is", "kind_of_mean")}};
+  for (const auto& [of, estimates] : estimates_of(tracks)) {
+    table.rows.push_back({word(of.first), word(of.second),
+                          count(std::ssize(estimates.of_participants)), group_mean(estimates),
+                          word(estimates.is_signed ? "arithmetic" : "geometric")});
+  }
+  return table;
+}
+
 ReportTable posteriors_table(const std::vector<TrackResult>& tracks) {
   ReportTable table{"procedure_posteriors",
                     "Posterior of each parameter of the procedures",
@@ -48,14 +108,16 @@ ReportTable posteriors_table(const std::vector<TrackResult>& tracks) {
 
 ReportSection procedures_section(const std::vector<TrackResult>& tracks) {
   ReportSection section{"What the procedures estimated",
-                        {tracks_table(tracks), posteriors_table(tracks)}};
+                        {means_table(tracks), tracks_table(tracks), posteriors_table(tracks)}};
   section.name = "procedures";
   if (!tracks.empty()) {
     section.remarks = {
         "As the procedures chose the levels, computed again from the answers as first given. A "
         "staircase's estimate is the mean of its last reversals, that of QUEST+ and the psi method "
         "the posterior mean of the threshold; with further axes the threshold is that at their "
-        "origin. The results above fit all answers of a participant anew."};
+        "origin. Means count each participant once, and their intervals are by t. The results "
+        "above "
+        "fit all answers of a participant anew."};
   }
   return section;
 }

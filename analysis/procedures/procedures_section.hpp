@@ -22,6 +22,7 @@ struct TrackResult {
   std::string procedure;  // with its source
   std::size_t trials{};
   bool is_finished{};
+  bool is_signed{};                             // its levels lie on both sides of the standard
   std::optional<double> estimate;               // of the level; unset: it makes none, or not yet
   std::optional<double> settles_at{};           // proportion; of a staircase
   std::size_t reversals{};                      // likewise
@@ -29,6 +30,8 @@ struct TrackResult {
   std::vector<ParameterEstimate> parameters{};  // that are estimated
 };
 
-// Tables procedure_tracks, a row a track, and procedure_posteriors, a row a parameter.
+// Tables procedure_tracks, a row a track; procedure_means, over participants, whose own tracks of
+// one procedure are averaged before (of levels that are not signed, geometric means); and
+// procedure_posteriors, a row a parameter.
 ReportSection procedures_section(const std::vector<TrackResult>& tracks);
 }  // namespace tapstudy::analysis

@@ -16,8 +16,9 @@ double binomial_log_likelihood(const Proportion& answers, double p) {
   return times_log(answers.successes, p) + times_log(answers.trials - answers.successes, 1.0 - p);
 }
 
-BinomialLikelihood::BinomialLikelihood(core::PsychometricShape shape, std::vector<Level> levels)
-    : shape_{shape}, levels_{std::move(levels)} {}
+BinomialLikelihood::BinomialLikelihood(core::PsychometricShape shape, std::vector<Level> levels,
+                                       Rates rates)
+    : shape_{shape}, levels_{std::move(levels)}, rates_{rates} {}
 
 double BinomialLikelihood::shape_value(double x, double threshold, double log_slope) const {
   return core::shape_value(shape_, x, from_axis(shape_, threshold), std::exp(log_slope));
@@ -34,7 +35,7 @@ std::vector<double> BinomialLikelihood::shape_values(const PsychometricVector& a
 std::vector<double> BinomialLikelihood::proportions(const PsychometricVector& at) const {
   std::vector<double> values = shape_values(at);
   for (double& value : values) {
-    value = at[guess_at] + (1.0 - at[guess_at] - at[lapse_at]) * value;
+    value = guess(at) + (1.0 - guess(at) - at[lapse_at]) * value;
   }
   return values;
 }
@@ -50,14 +51,16 @@ double BinomialLikelihood::value(const PsychometricVector& at) const {
 
 BinomialLikelihood::Slopes BinomialLikelihood::slopes(const PsychometricVector& at) const {
   Slopes result{PsychometricVector::Zero(), Eigen::Matrix4d::Zero()};
-  const double gain = 1.0 - at[guess_at] - at[lapse_at];
+  const double gain = 1.0 - guess(at) - at[lapse_at];
+  const double is_separate = rates_ == Rates::separate ? 1.0 : 0.0;
   const double threshold = from_axis(shape_, at[threshold_at]);
   const double slope = std::exp(at[log_slope_at]);
   for (const Level& level : levels_) {
     const core::ShapeGradient shape = core::shape_gradient(shape_, level.value, threshold, slope);
     const PsychometricVector gradient{gain * shape.by_threshold, gain * shape.by_log_slope,
-                                      1.0 - shape.value, -shape.value};
-    const double p = std::clamp(at[guess_at] + gain * shape.value, smallest_p, 1.0 - smallest_p);
+                                      is_separate * (1.0 - shape.value),
+                                      (1.0 - is_separate) * (1.0 - shape.value) - shape.value};
+    const double p = std::clamp(guess(at) + gain * shape.value, smallest_p, 1.0 - smallest_p);
     const auto n = static_cast<double>(level.answers.trials);
     const auto k = static_cast<double>(level.answers.successes);
     result.score += (k - n * p) / (p * (1.0 - p)) * gradient;

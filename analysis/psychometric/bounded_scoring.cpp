@@ -30,30 +30,10 @@ Eigen::Matrix4d without_held(const BinomialLikelihood::Slopes& slopes, const Psy
   }
   return information;
 }
-
-// A likelihood is flat at its maximum: values tell the place to seven digits, scores to ten.
-PsychometricVector polished(const BinomialLikelihood& likelihood, const PsychometricBox& box,
-                            PsychometricVector at) {
-  constexpr int most_steps = 30;
-  constexpr double shortest = 1e-12;
-  double last_length = 1e-3;
-  for (int i = 0; i < most_steps && last_length > shortest; ++i) {
-    PsychometricVector score;
-    Eigen::Matrix4d information = without_held(likelihood.slopes(at), box, at, score);
-    information.diagonal().array() += 1e-12;
-    const PsychometricVector step = information.ldlt().solve(score);
-    if (!(step.norm() < last_length)) {
-      break;
-    }
-    last_length = step.norm();
-    at = (at + step).cwiseMax(box.low).cwiseMin(box.high);
-  }
-  return at;
-}
 }  // namespace
 
-Maximum climb(const BinomialLikelihood& likelihood, const PsychometricBox& box,
-              const PsychometricVector& start) {
+Maximum local_maximum(const BinomialLikelihood& likelihood, const PsychometricBox& box,
+                      const PsychometricVector& start) {
   Maximum best{start.cwiseMax(box.low).cwiseMin(box.high), 0.0};
   best.log_likelihood = likelihood.value(best.at);
   double damping = 1e-3;
@@ -77,12 +57,26 @@ Maximum climb(const BinomialLikelihood& likelihood, const PsychometricBox& box,
       damping = 10.0 * damping;
     }
   }
-  best.at = polished(likelihood, box, best.at);
-  best.log_likelihood = likelihood.value(best.at);
   return best;
 }
 
-Eigen::Array4i inner_parameters(const PsychometricBox& box, const PsychometricVector& at) {
-  return (at.array() > box.low.array() && at.array() < box.high.array()).cast<int>();
+Maximum refined(const BinomialLikelihood& likelihood, const PsychometricBox& box,
+                const Maximum& rough) {
+  PsychometricVector at = rough.at;
+  constexpr int most_steps = 200;
+  constexpr double shortest = 1e-12;
+  double last_length = 1e-3;
+  for (int i = 0; i < most_steps && last_length > shortest; ++i) {
+    PsychometricVector score;
+    Eigen::Matrix4d information = without_held(likelihood.slopes(at), box, at, score);
+    information.diagonal().array() += 1e-12;
+    const PsychometricVector step = information.ldlt().solve(score);
+    if (!(step.norm() < last_length)) {
+      break;
+    }
+    last_length = step.norm();
+    at = (at + step).cwiseMax(box.low).cwiseMin(box.high);
+  }
+  return {at, likelihood.value(at)};
 }
 }  // namespace tapstudy::analysis

@@ -14,9 +14,9 @@ struct Maximum {
 
 // A local maximum of the likelihood within the box, from a start in it: Fisher scoring with
 // Levenberg's damping; parameters at a bound that the score points out of rest.
-Maximum climb(const BinomialLikelihood& likelihood, const PsychometricBox& box,
-              const PsychometricVector& start);
-
-// Which parameters are neither fixed nor at a bound.
-Eigen::Array4i inner_parameters(const PsychometricBox& box, const PsychometricVector& at);
+Maximum local_maximum(const BinomialLikelihood& likelihood, const PsychometricBox& box,
+                      const PsychometricVector& start);
+// The same to ten digits, by its score: a likelihood is so flat there that its values tell seven.
+Maximum refined(const BinomialLikelihood& likelihood, const PsychometricBox& box,
+                const Maximum& rough);
 }  // namespace tapstudy::analysis

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -67,98 +66,136 @@ FitOutcome outcome_of(const PsychometricModel& model, const BinomialLikelihood& 
   return is_step(likelihood, maximum.at) ? FitOutcome::step : FitOutcome::fitted;
 }
 
-PsychometricCurve curve_of(const BinomialLikelihood& likelihood, const PsychometricBox& box,
-                           const PsychometricVector& at) {
-  const Eigen::Array4i is_inner = inner_parameters(box, at);
-  Eigen::Matrix4d information = likelihood.slopes(at).information;
-  for (Eigen::Index i = 0; i < 4; ++i) {
-    if (is_inner[i] == 0) {
-      information.row(i).setZero();
-      information.col(i).setZero();
-      information(i, i) = 1.0;
-    }
-  }
-  const Eigen::FullPivLU<Eigen::Matrix4d> factors{information};
-  Eigen::Vector4d variances = Eigen::Vector4d::Constant(std::numeric_limits<double>::quiet_NaN());
-  if (factors.isInvertible()) {
-    variances = factors.inverse().diagonal();
-  }
-  PsychometricCurve curve;
-  curve.threshold = from_axis(likelihood.shape(), at[threshold_at]);
-  curve.slope = std::exp(at[log_slope_at]);
-  curve.guess = at[guess_at];
-  curve.lapse = at[lapse_at];
-  curve.threshold_standard_error = std::sqrt(variances[threshold_at]);
-  curve.slope_standard_error = curve.slope * std::sqrt(variances[log_slope_at]);
-  return curve;
+PsychometricCurve curve_of(const BinomialLikelihood& likelihood, const PsychometricVector& at) {
+  return {from_axis(likelihood.shape(), at[threshold_at]), std::exp(at[log_slope_at]),
+          likelihood.guess(at), at[lapse_at]};
 }
 }  // namespace
 
 std::string_view explanation(FitOutcome outcome) {
-  constexpr std::array<std::string_view, 7> words{
-      "a threshold was found",
-      "every answer is a success",
-      "no answer is a success",
-      "the answers do not increase with the value",
-      "the answers change within one step between levels, so the slope is not determined",
-      "the threshold is below the lowest level",
-      "the threshold is above the highest level"};
-  return words.at(static_cast<std::size_t>(outcome));
+  using enum FitOutcome;
+  switch (outcome) {
+    case fitted:
+      return "a threshold was found";
+    case all_successes:
+      return "every answer is a success";
+    case no_successes:
+      return "no answer is a success";
+    case no_increase:
+      return "the answers do not increase with the value";
+    case step:
+      return "the answers change within one step between levels, so the slope is not determined";
+    case threshold_below:
+      return "the threshold is below the lowest level";
+    case threshold_above:
+      return "the threshold is above the highest level";
+  }
+  return "";
 }
 
 PsychometricBox search_box(const PsychometricModel& model, const std::vector<Level>& levels) {
   const AxisRange range = axis_range(levels, model.shape);
-  return {{range.low - 3.0 * range.length(), std::log(0.05 / range.length()), model.guess.low,
+  const Interval guess = model.rates == Rates::equal ? Interval{0.0, 0.0} : model.guess;
+  return {{range.low - 3.0 * range.length(), std::log(0.05 / range.length()), guess.low,
            model.lapse.low},
-          {range.high + 3.0 * range.length(), std::log(50.0 / range.smallest_gap), model.guess.high,
+          {range.high + 3.0 * range.length(), std::log(50.0 / range.smallest_gap), guess.high,
            model.lapse.high}};
 }
 
-Maximum greatest(const BinomialLikelihood& likelihood, const PsychometricBox& box,
-                 const std::vector<PsychometricVector>& further_starts) {
-  const AxisRange range = axis_range(likelihood.levels(), likelihood.shape());
-  std::vector<Maximum> starts;
-  for (const double along : {0.0, 0.25, 0.5, 0.75, 1.0}) {
-    for (const double rise : {1.0, 4.0, 16.0}) {  // slope times range
+namespace {
+// Thinned out to so many, the ends among them.
+std::vector<double> thinned(const std::vector<double>& all, std::size_t most) {
+  if (all.size() <= most) {
+    return all;
+  }
+  std::vector<double> some;
+  for (std::size_t i = 0; i < most; ++i) {
+    some.push_back(all[i * (all.size() - 1) / (most - 1)]);
+  }
+  return some;
+}
+
+// At the levels and between them: a step there may be likelier than any gentle slope.
+std::vector<double> start_positions(const BinomialLikelihood& likelihood,
+                                    const PsychometricBox& box) {
+  constexpr std::size_t most = 21;
+  if (box.low[threshold_at] == box.high[threshold_at]) {
+    return {box.low[threshold_at]};
+  }
+  std::vector<double> positions;
+  for (const Level& level : likelihood.levels()) {
+    const double at = on_axis(likelihood.shape(), level.value);
+    if (!positions.empty()) {
+      positions.push_back(0.5 * (positions.back() + at));
+    }
+    positions.push_back(at);
+  }
+  return thinned(positions, most);
+}
+
+std::vector<double> start_slopes(const AxisRange& range, const PsychometricBox& box) {
+  if (box.low[log_slope_at] == box.high[log_slope_at]) {
+    return {box.low[log_slope_at]};
+  }
+  std::vector<double> slopes;
+  for (const double slope : {1.0 / range.length(), 4.0 / range.length(), 16.0 / range.length(),
+                             4.0 / range.smallest_gap, 50.0 / range.smallest_gap}) {
+    slopes.push_back(std::log(slope));
+  }
+  return slopes;
+}
+
+// The likeliest start of each slope.
+std::vector<PsychometricVector> starts_of(const BinomialLikelihood& likelihood,
+                                          const PsychometricBox& box) {
+  std::vector<PsychometricVector> starts;
+  for (const double slope :
+       start_slopes(axis_range(likelihood.levels(), likelihood.shape()), box)) {
+    Maximum best{{}, -std::numeric_limits<double>::infinity()};
+    for (const double position : start_positions(likelihood, box)) {
       for (const double rate : {0.1, 0.5}) {
         const PsychometricVector at =
-            PsychometricVector{range.low + along * range.length(), std::log(rise / range.length()),
+            PsychometricVector{position, slope,
                                box.low[guess_at] + rate * (box.high[guess_at] - box.low[guess_at]),
                                box.low[lapse_at] + rate * (box.high[lapse_at] - box.low[lapse_at])}
                 .cwiseMax(box.low)
                 .cwiseMin(box.high);
-        starts.push_back({at, likelihood.value(at)});
+        if (const double value = likelihood.value(at); !(value <= best.log_likelihood)) {
+          best = {at, value};
+        }
       }
     }
+    starts.push_back(best.at);
   }
-  std::ranges::partial_sort(starts, starts.begin() + 3, std::ranges::greater{},
-                            &Maximum::log_likelihood);
-  starts.resize(3);
-  for (const PsychometricVector& at : further_starts) {
-    starts.push_back({at, 0.0});
-  }
-  Maximum best{starts.front().at, -std::numeric_limits<double>::infinity()};
-  for (const Maximum& start : starts) {
-    const Maximum found = climb(likelihood, box, start.at);
+  return starts;
+}
+}  // namespace
+
+Maximum greatest(const BinomialLikelihood& likelihood, const PsychometricBox& box,
+                 const std::vector<PsychometricVector>& further_starts) {
+  std::vector<PsychometricVector> starts = starts_of(likelihood, box);
+  starts.insert(starts.end(), further_starts.begin(), further_starts.end());
+  Maximum best{starts.front(), -std::numeric_limits<double>::infinity()};
+  for (const PsychometricVector& start : starts) {
+    const Maximum found = local_maximum(likelihood, box, start);
     if (found.log_likelihood > best.log_likelihood) {
       best = found;
     }
   }
-  return best;
+  return refined(likelihood, box, best);
 }
 
 PsychometricFit fit_psychometric(const PsychometricModel& model, const std::vector<Level>& levels) {
   check_rates(model);
-  const BinomialLikelihood likelihood{model.shape, checked_levels(levels, model.shape)};
+  const BinomialLikelihood likelihood{model.shape, checked_levels(levels, model.shape),
+                                      model.rates};
   const PsychometricBox box = search_box(model, likelihood.levels());
   PsychometricFit fit;
   fit.maximum = greatest(likelihood, box);
   fit.outcome = outcome_of(model, likelihood, fit.maximum);
   fit.deviance = likelihood.deviance(fit.maximum.at);
-  fit.levels = static_cast<int>(likelihood.levels().size());
-  fit.free_parameters = static_cast<int>((box.low.array() < box.high.array()).count());
   if (fit.outcome == FitOutcome::fitted) {
-    fit.curve = curve_of(likelihood, box, fit.maximum.at);
+    fit.curve = curve_of(likelihood, fit.maximum.at);
   }
   return fit;
 }

@@ -8,8 +8,9 @@ namespace tapstudy::analysis {
 // What is fitted. A rate with low = high is fixed, others are free within [low, high].
 struct PsychometricModel {
   core::PsychometricShape shape{};
-  Interval guess{0.0, 0.0};  // 1/m for a choice among m
-  Interval lapse{0.0, 0.1};  // Wichmann & Hill 2001a bound it by 0.06
+  Interval guess{0.0, 0.0};      // 1/m for a choice among m
+  Interval lapse{0.0, 0.1};      // Wichmann & Hill 2001a bound it by 0.06
+  Rates rates{Rates::separate};  // equal: `guess` is not used
 };
 
 enum class FitOutcome {
@@ -31,10 +32,6 @@ struct PsychometricCurve {
   double slope{};
   double guess{};
   double lapse{};
-  // By the expected information; of the threshold's position on the shape's axis (log10 on a
-  // logarithmic one), and of the slope. Rates at a bound count as known. NaN if not determined.
-  double threshold_standard_error{};
-  double slope_standard_error{};
 };
 
 struct PsychometricFit {
@@ -42,8 +39,6 @@ struct PsychometricFit {
   std::optional<PsychometricCurve> curve;  // if fitted: none is made up for other outcomes
   Maximum maximum;                         // where the search ended, whatever the outcome
   double deviance{};
-  int levels{};
-  int free_parameters{};
 };
 
 // Maximum likelihood of binomial answers (Wichmann & Hill 2001a; threshold, slope and free rates).

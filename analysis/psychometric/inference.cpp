@@ -38,10 +38,15 @@ class Profile {
       : likelihood_{likelihood}, box_{box}, maximum_{maximum}, drop_{drop} {}
 
   double end(Eigen::Index place, double first_step, double no_end) const {
-    const auto excess = [&](double value) { return drop_at(place, value) - drop_; };
     const double limit = first_step > 0.0 ? box_.high[place] : box_.low[place];
     double inside = maximum_.at[place];
     double step = first_step;
+    PsychometricVector last = maximum_.at;  // from which the next one may be climbed
+    const auto excess = [&](double value) {
+      const Maximum found = held_at(place, value, last);
+      last = found.at;
+      return maximum_.log_likelihood - found.log_likelihood - drop_;
+    };
     while (inside != limit) {
       const double outside =
           first_step > 0.0 ? std::min(limit, inside + step) : std::max(limit, inside + step);
@@ -55,12 +60,12 @@ class Profile {
   }
 
  private:
-  double drop_at(Eigen::Index place, double value) const {
+  Maximum held_at(Eigen::Index place, double value, const PsychometricVector& last) const {
     PsychometricBox held = box_;
     held.low[place] = held.high[place] = value;
-    PsychometricVector start = maximum_.at;
-    start[place] = value;
-    return maximum_.log_likelihood - greatest(likelihood_, held, {start}).log_likelihood;
+    PsychometricVector of_maximum = maximum_.at;
+    of_maximum[place] = value;
+    return greatest(likelihood_, held, {of_maximum, last});
   }
 
   const BinomialLikelihood& likelihood_;
@@ -86,7 +91,8 @@ PsychometricIntervals profile_intervals(const PsychometricModel& model,
                                         const std::vector<Level>& levels, double confidence) {
   check_confidence(confidence);
   const PsychometricFit fit = fit_with_threshold(model, levels);
-  const BinomialLikelihood likelihood{model.shape, checked_levels(levels, model.shape)};
+  const BinomialLikelihood likelihood{model.shape, checked_levels(levels, model.shape),
+                                      model.rates};
   const PsychometricBox box = search_box(model, likelihood.levels());
   const Profile profile{likelihood, box, fit.maximum, 0.5 * chi_squared_quantile(confidence, 1.0)};
   const double step = 0.1 * axis_range(likelihood.levels(), model.shape).length();
@@ -103,19 +109,16 @@ std::optional<PsychometricCurve> curve_with_threshold(const PsychometricModel& m
   if (fit.outcome != FitOutcome::step) {
     return fit.curve;
   }
-  const BinomialLikelihood likelihood{model.shape, checked_levels(levels, model.shape)};
+  const BinomialLikelihood likelihood{model.shape, checked_levels(levels, model.shape),
+                                      model.rates};
   const PsychometricBox box = search_box(model, likelihood.levels());
   const Profile profile{likelihood, box, fit.maximum, as_likely};
   const double step = 0.1 * axis_range(likelihood.levels(), model.shape).length();
   const double low = profile.end(threshold_at, -step, box.low[threshold_at]);
   const double high = profile.end(threshold_at, step, box.high[threshold_at]);
-  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
   return PsychometricCurve{from_axis(model.shape, 0.5 * (low + high)),
-                           std::exp(box.high[log_slope_at]),
-                           fit.maximum.at[guess_at],
-                           fit.maximum.at[lapse_at],
-                           unknown,
-                           unknown};
+                           std::exp(box.high[log_slope_at]), likelihood.guess(fit.maximum.at),
+                           fit.maximum.at[lapse_at]};
 }
 
 GoodnessOfFit deviance_test(const PsychometricModel& model, const std::vector<Level>& levels,
@@ -125,7 +128,7 @@ GoodnessOfFit deviance_test(const PsychometricModel& model, const std::vector<Le
     throw core::InvalidInput{fmt::format("a bootstrap takes 1 draw or more, not {}", draws)};
   }
   const std::vector<Level> checked = checked_levels(levels, model.shape);
-  const BinomialLikelihood likelihood{model.shape, checked};
+  const BinomialLikelihood likelihood{model.shape, checked, model.rates};
   const std::vector<double> p = likelihood.proportions(fit.maximum.at);
   core::Rng rng{seed};
   int as_bad = 0;

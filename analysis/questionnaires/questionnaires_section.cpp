@@ -11,22 +11,22 @@ namespace {
 constexpr int draws = 9999;
 constexpr std::uint64_t seed = 1;
 
-const char* name_of(AnswerKind kind) {
+const char* name_of(QuestionnaireKind kind) {
   switch (kind) {
-    case AnswerKind::steps:
+    case QuestionnaireKind::steps:
       return "steps";
-    case AnswerKind::number:
+    case QuestionnaireKind::number:
       return "number";
-    case AnswerKind::choice:
+    case QuestionnaireKind::choice:
       return "single choice";
-    case AnswerKind::text:
+    case QuestionnaireKind::text:
       break;
   }
   return "text";
 }
 
-bool is_number(AnswerKind kind) {
-  return kind == AnswerKind::steps || kind == AnswerKind::number;
+bool is_number(QuestionnaireKind kind) {
+  return kind == QuestionnaireKind::steps || kind == QuestionnaireKind::number;
 }
 
 void add_items(const Questionnaire& form, const std::string& asked,

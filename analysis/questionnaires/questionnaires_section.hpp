@@ -10,10 +10,10 @@ namespace tapstudy::analysis {
 //   number  a number, or a mark on a line from 0 to 1: quartiles
 //   choice  one of the options: counted
 //   text    only how many there are
-enum class AnswerKind { steps, number, choice, text };
+enum class QuestionnaireKind { steps, number, choice, text };
 struct QuestionnaireItem {
   std::string name;
-  AnswerKind kind{AnswerKind::text};
+  QuestionnaireKind kind{QuestionnaireKind::text};
   std::string question;
   std::vector<std::string> options{};  // of a choice, as stored; of steps "1" to the last
 };

@@ -20,7 +20,7 @@ struct Ranges {
 };
 
 // So far as half of the taps last, and as a spread can be told.
-std::size_t drawn_ticks(const FeltTaps& taps) {
+std::size_t drawn_ticks(const TapStatistics& taps) {
   std::size_t k = 0;
   while (k < taps.ticks() && taps.taps_at(k) >= 2 && 2 * taps.taps_at(k) >= taps.taps()) {
     ++k;
@@ -28,16 +28,16 @@ std::size_t drawn_ticks(const FeltTaps& taps) {
   return k;
 }
 
-using AtTick = double (FeltTaps::*)(std::size_t) const;
+using AtTick = double (TapStatistics::*)(std::size_t) const;
 struct Course {
   AtTick mean;
   AtTick spread;
   double unit;
 };
-constexpr Course total{&FeltTaps::mean_total_n, &FeltTaps::spread_total_n, 1.0};
-constexpr Course added{&FeltTaps::mean_added_n, &FeltTaps::spread_added_n, milli};
+constexpr Course total{&TapStatistics::mean_total_n, &TapStatistics::spread_total_n, 1.0};
+constexpr Course added{&TapStatistics::mean_added_n, &TapStatistics::spread_added_n, milli};
 
-void widen(const FeltTaps& taps, const Course& course, std::vector<double>& values) {
+void widen(const TapStatistics& taps, const Course& course, std::vector<double>& values) {
   for (std::size_t k = 0; k < drawn_ticks(taps); ++k) {
     const double mean = course.unit * (taps.*course.mean)(k);
     const double spread = course.unit * (taps.*course.spread)(k);
@@ -46,7 +46,7 @@ void widen(const FeltTaps& taps, const Course& course, std::vector<double>& valu
 }
 
 // When the force that is added has fallen below a fiftieth of its largest value for good.
-double fading_ms(const FeltTaps& taps) {
+double fading_ms(const TapStatistics& taps) {
   constexpr double faded = 0.02;
   double largest = 0.0;
   for (std::size_t k = 0; k < drawn_ticks(taps); ++k) {
@@ -62,7 +62,7 @@ double fading_ms(const FeltTaps& taps) {
 Ranges ranges_of(const RenderedStudy& study, std::size_t point) {
   Ranges ranges;
   for (const StimulusTaps& stimulus : study.taps) {
-    const FeltTaps& taps = stimulus.points[point].taps;
+    const TapStatistics& taps = stimulus.points[point].taps;
     if (taps.taps() < least_drawn_taps) {
       continue;
     }
@@ -75,7 +75,7 @@ Ranges ranges_of(const RenderedStudy& study, std::size_t point) {
   return ranges;
 }
 
-Chart course_chart(const std::string& title, const std::string& what, const FeltTaps& taps,
+Chart course_chart(const std::string& title, const std::string& what, const TapStatistics& taps,
                    const Course& course, const std::vector<double>& values, double until_ms) {
   Chart chart;
   chart.caption =
@@ -110,7 +110,7 @@ Chart course_chart(const std::string& title, const std::string& what, const Felt
 }
 
 Chart spectrum_chart(const std::string& title, const RenderedStimulus& stimulus,
-                     const FeltTaps& taps, double highest) {
+                     const TapStatistics& taps, double highest) {
   Chart chart;
   chart.caption =
       fmt::format("{}: magnitude spectrum of the added force, RMS over {} taps{}", title,
@@ -171,13 +171,13 @@ void add_distributions(const RenderedStudy& study, std::vector<Chart>& charts) {
   std::vector<double> speeds_m_s;
   std::vector<double> peaks_n;
   for (const StimulusTaps& stimulus : study.taps) {
-    const FeltTaps& taps = stimulus.all;
+    const TapStatistics& taps = stimulus.all;
     speeds_m_s.insert(speeds_m_s.end(), taps.speeds_m_s().begin(), taps.speeds_m_s().end());
     peaks_n.insert(peaks_n.end(), taps.commanded().peaks_n.begin(), taps.commanded().peaks_n.end());
   }
   for (std::size_t i = 0; i < study.stimuli.size(); ++i) {
     const RenderedStimulus& stimulus = study.stimuli[i];
-    const FeltTaps& taps = study.taps[i].all;
+    const TapStatistics& taps = study.taps[i].all;
     if (taps.taps() < least_drawn_taps) {
       continue;
     }
@@ -213,7 +213,7 @@ void add_waveforms(const RenderedStimulus& stimulus, const PointTaps& at, const 
 std::pair<double, std::int64_t> rank_of(const RenderedStudy& study, std::size_t point) {
   std::pair<double, std::int64_t> rank;
   for (const StimulusTaps& stimulus : study.taps) {
-    const FeltTaps& taps = stimulus.points[point].taps;
+    const TapStatistics& taps = stimulus.points[point].taps;
     if (taps.taps() >= least_drawn_taps) {
       rank.first += std::ranges::max(taps.spectrum_n_per_hz());
       rank.second += taps.taps();

@@ -103,7 +103,7 @@ ReportTable taps_table(const RenderedStudy& study) {
                      interval_column("speed at impact, m/s", "speed_m_s"),
                      interval_column("peak of the commanded force, N", "peak_n")}};
   for (std::size_t i = 0; i < study.stimuli.size(); ++i) {
-    const FeltTaps& taps = study.taps[i].all;
+    const TapStatistics& taps = study.taps[i].all;
     if (taps.taps() > 0) {
       table.rows.push_back({named(study.stimuli[i]), count(taps.taps()),
                             quartiles_cell(quartiles(taps.speeds_m_s())),
@@ -156,7 +156,7 @@ ReportTable waveforms_table(const RenderedStudy& study) {
   table.is_for_programs = true;
   for (std::size_t i = 0; i < study.stimuli.size(); ++i) {
     for (const PointTaps& at : study.taps[i].points) {
-      const FeltTaps& taps = at.taps;
+      const TapStatistics& taps = at.taps;
       for (std::size_t k = 0; k < taps.ticks() && taps.taps_at(k) > 0; ++k) {
         table.rows.push_back({named(study.stimuli[i]), word(at.point),
                               number(static_cast<double>(k) / taps.window().rate_hz),

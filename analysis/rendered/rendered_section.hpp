@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "analysis/rendered/felt_taps.hpp"
 #include "analysis/rendered/participants_taps.hpp"
+#include "analysis/rendered/tap_statistics.hpp"
 #include "analysis/tables/sections.hpp"
 namespace tapstudy::analysis {
 // What is known of the finite element model that rendered a stimulus.
@@ -38,12 +38,12 @@ struct RenderedStimulus {
 // The taps nearest to one tapping point.
 struct PointTaps {
   std::string point;
-  FeltTaps taps;
+  TapStatistics taps;
   std::vector<double> distances_m;  // of each impact from the point, along the plate
 };
 
 struct StimulusTaps {
-  FeltTaps all;
+  TapStatistics all;
   std::vector<PointTaps> points;  // of the protocol, in its order
 };
 

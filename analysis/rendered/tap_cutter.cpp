@@ -10,7 +10,7 @@ double magnitude(const std::array<double, 3>& vector) {
   return std::hypot(vector[0], vector[1], vector[2]);
 }
 
-FeltTick felt(const core::TraceSample& sample) {
+TracedTick felt(const core::TraceSample& sample) {
   return {{sample.penalty_n, sample.vibration_n, sample.sinusoid_n},
           magnitude(sample.force_n),
           magnitude(sample.achieved_n),
@@ -55,7 +55,7 @@ void TapCutter::continue_with(const core::TraceSample& sample) {
   const double since_s = 1e-9 * static_cast<double>(sample.t_ns - impact_ns_);
   const auto place = static_cast<std::size_t>(std::lround(since_s * window_.rate_hz));
   while (tap_.ticks.size() < std::min(place, window_.ticks())) {
-    tap_.ticks.push_back(FeltTick{tap_.ticks.back()});
+    tap_.ticks.push_back(TracedTick{tap_.ticks.back()});
   }
   if (place >= window_.ticks()) {
     finish();

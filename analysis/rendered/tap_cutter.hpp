@@ -7,7 +7,7 @@
 #include "core/haptic_state.hpp"
 namespace tapstudy::analysis {
 // One tick of a tap: forces on the finger along the outward normal [N].
-struct FeltTick {
+struct TracedTick {
   core::ForceParts parts{};  // before the limiter
   double commanded_n{};      // magnitude of the commanded force, after the limiter
   double reported_n{};       // magnitude of the force that the device reports; NaN: it does not
@@ -16,11 +16,11 @@ struct FeltTick {
 
 // A tap as it was felt. ticks[k] is k periods of the loop after the impact: where ticks were
 // skipped the force of the tick before, which the device held. Out of contact forces are zero.
-struct FeltTap {
+struct TracedTap {
   std::array<double, 3> position_m{};  // of the hand at the impact, device frame
   double speed_m_s{};                  // along the normal, towards the plate
   std::uint8_t alternative{};          // that was rendered, from 0
-  std::vector<FeltTick> ticks;         // never empty
+  std::vector<TracedTick> ticks;       // never empty
 };
 
 // What a tap is.
@@ -35,7 +35,7 @@ struct TapWindow {
 // its window, at the next tap, at a switch to another alternative, at a fault and with its trial.
 class TapCutter {
  public:
-  using Take = std::function<void(const FeltTap&)>;
+  using Take = std::function<void(const TracedTap&)>;
   TapCutter(const TapWindow& window, Take take);
   // Samples of one trial, in order.
   void add(const core::TraceSample& sample);
@@ -49,7 +49,7 @@ class TapCutter {
 
   TapWindow window_;
   Take take_;
-  FeltTap tap_;                // without ticks: none is under way
+  TracedTap tap_;              // without ticks: none is under way
   std::int64_t impact_ns_{};   // of the tap
   std::int64_t release_ns_{};  // the first tick without contact since the last one in contact
   bool was_touching_{};

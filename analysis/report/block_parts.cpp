@@ -19,13 +19,13 @@ std::string digits(double value) {
 // All alternatives of a trial have the same ones.
 std::vector<double> further_values(const BlockDesign& design, const AnswerRow& answer) {
   std::vector<double> values;
-  for (const std::string& axis : design.further_axes) {
+  for (const AxisName& axis : design.further_axes) {
     const auto& presented = answer.alternatives.front().axis_values;
-    const auto value = presented.find(axis);
+    const auto value = presented.find(axis.key);
     if (value == presented.end()) {
       throw core::InvalidInput{fmt::format("block '{}': trial {} of {} has no value of '{}'",
                                            design.name, answer.number, answer.participant_id,
-                                           axis)};
+                                           axis.key)};
     }
     values.push_back(std::stod(digits(value->second)));
   }
@@ -37,8 +37,10 @@ BlockDesign at(const BlockDesign& whole, const std::vector<double>& values) {
   part.part_of = whole.name;
   std::vector<std::string> words;
   for (std::size_t i = 0; i < values.size(); ++i) {
-    part.name += fmt::format("_at_{}_{}", whole.further_axes[i], digits(values[i]));
-    words.push_back(fmt::format("{} = {}", whole.further_axes[i], digits(values[i])));
+    const AxisName& axis = whole.further_axes[i];
+    part.name += fmt::format("_at_{}_{}", axis.key, digits(values[i]));
+    words.push_back(fmt::format("{} {}{}{}", axis.quantity, digits(values[i]),
+                                axis.unit.empty() ? "" : " ", axis.unit));
   }
   part.question += fmt::format(" ({})", fmt::join(words, ", "));
   return part;

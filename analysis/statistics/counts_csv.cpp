@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <numeric>
 #include <span>
 
 #include "analysis/statistics/csv_rows.hpp"
@@ -111,6 +112,46 @@ void check_is_named(const std::vector<Item>& stimuli, const std::vector<Item>& r
   }
 }
 
+// Whether in each line what stands at `place` is the sum of all else. Not of two alone, which may
+// be equal.
+bool is_margin(const std::vector<std::vector<std::int64_t>>& lines, std::size_t place) {
+  std::int64_t whole = 0;
+  for (const auto& line : lines) {
+    const std::int64_t all = std::accumulate(line.begin(), line.end(), std::int64_t{0});
+    if (2 * line[place] != all) {
+      return false;
+    }
+    whole += all;
+  }
+  return whole > 0 && lines.front().size() > 2;
+}
+
+// They would count every answer twice.
+void check_has_no_margins(const ConfusionMatrix& matrix, const std::vector<CsvRow>& lines,
+                          const std::string& file) {
+  std::vector<std::vector<std::int64_t>> columns(matrix.responses.size(),
+                                                 std::vector<std::int64_t>(matrix.stimuli.size()));
+  for (std::size_t i = 0; i < matrix.stimuli.size(); ++i) {
+    for (std::size_t j = 0; j < matrix.responses.size(); ++j) {
+      columns[j][i] = matrix.counts[i][j];
+    }
+  }
+  for (std::size_t j = 0; j < columns.size(); ++j) {
+    if (is_margin(matrix.counts, j)) {
+      refuse(file, lines.front().line,
+             fmt::format("column '{}' is the sum of the others: leave it out",
+                         matrix.responses[j].name));
+    }
+  }
+  for (std::size_t i = 0; i < matrix.stimuli.size(); ++i) {
+    if (is_margin(columns, i)) {
+      refuse(
+          file, lines[i + 1].line,
+          fmt::format("row '{}' is the sum of the others: leave it out", matrix.stimuli[i].name));
+    }
+  }
+}
+
 ConfusionMatrix from_matrix(const std::vector<CsvRow>& lines, const std::string& file) {
   const std::vector<std::string>& header = lines.front().cells;
   if (std::max(lines.size(), header.size()) > max_classes) {
@@ -132,6 +173,7 @@ ConfusionMatrix from_matrix(const std::vector<CsvRow>& lines, const std::string&
       matrix.add(line.cells[0], header[column], count_in(line.cells[column], file, line.line));
     }
   }
+  check_has_no_margins(matrix, lines, file);
   return matrix;
 }
 }  // namespace

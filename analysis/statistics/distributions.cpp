@@ -76,11 +76,6 @@ double t_quantile(double probability, double degrees_of_freedom) {
   return boost::math::quantile(boost::math::students_t{degrees_of_freedom}, probability);
 }
 
-double t_p_at_least(double t, double degrees_of_freedom) {
-  check_degrees(degrees_of_freedom);
-  return boost::math::cdf(boost::math::complement(boost::math::students_t{degrees_of_freedom}, t));
-}
-
 double normal_two_sided_p(double z) {
   return std::erfc(std::abs(z) / std::numbers::sqrt2);
 }

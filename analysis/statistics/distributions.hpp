@@ -15,8 +15,6 @@ double f_p(double f, double numerator_freedom, double denominator_freedom);
 double gamma_quantile(double probability, double shape);
 // probability in (0, 1)
 double t_quantile(double probability, double degrees_of_freedom);
-// P(T >= t) of Student's t
-double t_p_at_least(double t, double degrees_of_freedom);
 // The two-sided probability of a statistic at least as far from 0.
 double normal_two_sided_p(double z);
 }  // namespace tapstudy::analysis

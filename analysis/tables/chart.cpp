@@ -133,6 +133,21 @@ std::vector<double> ticks(const Interval& range, bool is_logarithmic) {
   return fewer;
 }
 
+void make_axes_equal(Chart& chart) {
+  const auto widened = [](const Interval& range, double length) {
+    const double middle = 0.5 * (range.low + range.high);
+    return Interval{middle - 0.5 * length, middle + 0.5 * length};
+  };
+  const double x = chart.x_range.high - chart.x_range.low;
+  const double y = chart.y_range.high - chart.y_range.low;
+  const double aspect = (right - left) / (bottom - top);
+  if (x < aspect * y) {
+    chart.x_range = widened(chart.x_range, aspect * y);
+  } else {
+    chart.y_range = widened(chart.y_range, x / aspect);
+  }
+}
+
 Interval range_of(const std::vector<double>& values, bool is_logarithmic) {
   if (values.empty()) {
     return is_logarithmic ? Interval{1.0, 10.0} : Interval{0.0, 1.0};

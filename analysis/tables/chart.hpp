@@ -50,6 +50,9 @@ std::string standalone_svg(const Chart& chart, const std::string& mark);
 // Round numbers within the range (1, 2 or 5 times a power of ten), at most six.
 std::vector<double> ticks(const Interval& range, bool is_logarithmic);
 
+// Widens one of the ranges so that a step is as long on both axes, as a map needs.
+void make_axes_equal(Chart& chart);
+
 // The smallest range with a margin that holds all values; not a point.
 Interval range_of(const std::vector<double>& values, bool is_logarithmic);
 }  // namespace tapstudy::analysis

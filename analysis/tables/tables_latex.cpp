@@ -64,6 +64,8 @@ void write_table_latex(std::ostream& out, const ReportTable& table, const std::s
               "\\begin{{tabular}}{{{}}}\n\\toprule\n",
               latex_text(table.title), label, alignment);
   const auto write_row = [&](const auto& text_of) {
+    const std::string& first = text_of(shown.front());
+    out << (first.starts_with('[') || first.starts_with('*') ? "{}" : "");  // no option of the line
     for (const std::size_t column : shown) {
       core::print(out, "{}{}", column == shown.front() ? "" : " & ", latex_text(text_of(column)));
     }

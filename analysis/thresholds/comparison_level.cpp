@@ -25,11 +25,11 @@ std::optional<double> comparison_level(const BlockDesign& design,
       std::ranges::all_of(answer.alternatives, &results::AlternativeRow::is_comparison)) {
     return std::nullopt;
   }
-  const auto value = comparison->axis_values.find(design.axis->name);
+  const auto value = comparison->axis_values.find(design.axis->name.key);
   if (value == comparison->axis_values.end()) {
     throw core::InvalidInput{
         fmt::format("block '{}': the comparison of {} in trial {} has no value of '{}'",
-                    design.name, answer.participant_id, answer.number, design.axis->name)};
+                    design.name, answer.participant_id, answer.number, design.axis->name.key)};
   }
   return to_nine_digits(design.axis->level_of(value->second));
 }

@@ -11,8 +11,8 @@ namespace tapstudy::analysis {
 namespace {
 MainResult mean_threshold(const VariedAxis& axis, const MeanLogThreshold& log_mean) {
   const auto from_log = [](double log) { return std::pow(10.0, log); };
-  return {axis.is_fraction ? "Weber fraction of " + axis.name
-                           : "just noticeable difference of " + axis.name,
+  return {axis.is_fraction ? "Weber fraction of " + axis.name.quantity
+                           : "just noticeable difference of " + axis.name.with_unit(),
           from_log(log_mean.mean),
           {from_log(log_mean.interval.low), from_log(log_mean.interval.high)},
           {},
@@ -23,7 +23,7 @@ MainResult mean_threshold(const VariedAxis& axis, const MeanLogThreshold& log_me
 // A threshold is where the function without guesses has a value that depends on its shape.
 PersonalValues thresholds_of(const BlockDesign& design, const ThresholdResults& results) {
   const VariedAxis& axis = *design.axis;
-  return personal_values(fmt::format("threshold of {}{}{}, {}, {} function", axis.name,
+  return personal_values(fmt::format("threshold of {}{}{}, {}, {} function", axis.name.with_unit(),
                                      axis.is_below ? " below the standard" : "",
                                      axis.is_fraction ? " (Weber fraction)" : "", design.task,
                                      core::row_of(design.shape).name),

@@ -24,7 +24,7 @@ std::vector<Column> threshold_columns(const VariedAxis& axis) {
       interval_column(
           axis.is_fraction ? "threshold: Weber fraction (95 % CI)" : "threshold (95 % CI)",
           "threshold"),
-      interval_column("just noticeable difference of " + axis.name, "jnd")};
+      interval_column("just noticeable difference of " + axis.name.with_unit(), "jnd")};
   if (axis.is_fraction) {
     columns.push_back(interval_column("", "weber_fraction"));
   }
@@ -53,7 +53,9 @@ ReportTable participants_table(const BlockDesign& design, const ThresholdResults
                     {column("participant", "participant_id"), answers_column(design)}};
   const std::vector<Column> thresholds = threshold_columns(axis);
   table.columns.insert(table.columns.end(), thresholds.begin(), thresholds.end());
-  const Column at = column("correct at threshold", "proportion_at_threshold");
+  const Column at =
+      column(design.has_own_guess_rate ? "noticed at threshold" : "correct at threshold",
+             "proportion_at_threshold");
   table.columns.push_back(at);
   table.columns.push_back(column("", "no_threshold_because"));
   for (const ParticipantThreshold& person : results.participants) {
@@ -153,14 +155,16 @@ Cell d_prime_at(const Level& level, const ParticipantThreshold& person,
       return nothing(of_d_prime);
     }
     const Sensitivity sensitive = sensitivity(*task, level.answers);
-    return interval(sensitive.d_prime, sensitive.interval);
+    return interval_above_zero(sensitive.d_prime, sensitive.interval);
   }
-  return person.false_alarms.trials == 0
-             ? nothing(of_d_prime)
-             : interval(same_different_independent(log_linear_rate(level.answers),
-                                                   log_linear_rate(person.false_alarms))
-                            .d_prime,
-                        same_different_independent_interval(level.answers, person.false_alarms));
+  if (person.false_alarms.trials == 0) {
+    return nothing(of_d_prime);
+  }
+  const double d_prime = same_different_differencing(log_linear_rate(level.answers),
+                                                     log_linear_rate(person.false_alarms))
+                             .d_prime;
+  const auto range = same_different_differencing_interval(level.answers, person.false_alarms);
+  return range ? interval_above_zero(d_prime, *range) : interval(d_prime, range);
 }
 
 // Of procedures that jump from level to level programs see it only.

@@ -8,18 +8,19 @@
 namespace tapstudy::analysis {
 std::string level_words(const VariedAxis& axis) {
   const std::string side = axis.is_below ? "below" : "above";
-  return axis.is_fraction
-             ? fmt::format("{} {} the standard of {:.4g}, as a fraction of it", axis.name, side,
-                           axis.standard)
-             : fmt::format("{} {} the standard of {:.4g}", axis.name, side, axis.standard);
+  return axis.is_fraction ? fmt::format("{} {} the standard of {:.4g}, as a fraction of it",
+                                        axis.name.with_unit(), side, axis.standard)
+                          : fmt::format("{} {} the standard of {:.4g}", axis.name.with_unit(), side,
+                                        axis.standard);
 }
 
 namespace {
 // Empty: there is none.
 std::string d_prime_words(const BlockDesign& design) {
   if (design.has_own_guess_rate) {
-    return "d' at a level: same-different by independent observations, of hits there and all false "
-           "alarms, k + 1/2 in n + 1 (Hautus 1995).";
+    return "d' at a level: same-different of a differencing observer, because levels change from "
+           "trial to trial (Macmillan & Creelman 2005, ch. 9), by hits there and all false alarms, "
+           "k + 1/2 in n + 1 (Hautus 1995).";
   }
   return design.decision_model.empty()
              ? ""

@@ -146,6 +146,14 @@ std::vector<Eigen::Index> nodes_of(const Fixation& fixation, const TetMesh& mesh
   return nodes;
 }
 
+SurfaceRegion region_of(const Fixation& fixation, const TetMesh& mesh, const Shape& shape) {
+  const bool is_point = fixation.shape == RegionShape::vertex;
+  return {nodes_of(fixation, mesh, shape),
+          [fixation, is_point, body = bounds(shape)](const Vec3& at_m) {
+            return !is_point && selects_node(fixation, at_m, body);
+          }};
+}
+
 std::vector<bool> constrained_dofs(const TetMesh& mesh, const Shape& shape,
                                    const std::vector<Fixation>& fixations) {
   std::vector<bool> held(static_cast<std::size_t>(3 * mesh.nodes_m.rows()), false);
@@ -195,7 +203,7 @@ std::vector<SpringSupport> spring_supports(const TetMesh& mesh, const Shape& sha
   std::vector<SpringSupport> supports;
   for (const Fixation& fixation : fixations) {
     if (fixation.springs_n_per_m) {
-      supports.push_back({nodes_of(fixation, mesh, shape), *fixation.springs_n_per_m});
+      supports.push_back({region_of(fixation, mesh, shape), *fixation.springs_n_per_m});
     }
   }
   return supports;

@@ -21,6 +21,9 @@ inline constexpr std::array<std::string_view, 6> side_names{"left", "right",  "f
                                                             "back", "bottom", "top"};
 inline constexpr std::array<std::string_view, 5> region_names{"vertex", "disc", "ball", "box",
                                                               "side"};
+static_assert(face_names.size() == static_cast<std::size_t>(Face::through) + 1);
+static_assert(side_names.size() == static_cast<std::size_t>(Side::top) + 1);
+static_assert(region_names.size() == static_cast<std::size_t>(RegionShape::side) + 1);
 template <class Enumeration, std::size_t Size>
 constexpr std::string_view name_in(const std::array<std::string_view, Size>& names,
                                    Enumeration value) {
@@ -57,6 +60,9 @@ std::vector<Vec3> points_to_mesh(const std::vector<Fixation>& fixations, const S
 // Those that the fixation holds. Throws ModelError if there are none, with whose region it is.
 std::vector<Eigen::Index> nodes_of(const Fixation& fixation, const TetMesh& mesh,
                                    const Shape& shape, std::string_view whose = "fixation");
+
+// Likewise, with the part of the surface that it takes up.
+SurfaceRegion region_of(const Fixation& fixation, const TetMesh& mesh, const Shape& shape);
 
 // The constraints that the fixations put on a mesh. One flag a degree of freedom (x0 y0 z0 x1 …):
 // true where it is constrained.

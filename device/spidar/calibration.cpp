@@ -27,7 +27,7 @@ std::optional<std::string> unlikeness_in(const char* what, const std::vector<dou
 }
 }  // namespace
 
-std::optional<std::string> unlikeness(std::span<const core::StringCalibration> measured) {
+std::optional<std::string> differing_quantity(std::span<const core::StringCalibration> measured) {
   std::vector<double> metres_per_count;
   std::vector<double> counts_per_newton;
   for (const core::StringCalibration& string : measured) {
@@ -46,7 +46,7 @@ double highest_tension_n(const core::SpidarCalibration& calibration) {
 }
 
 void check_calibration(const core::SpidarCalibration& calibration) {
-  if (const auto in = unlikeness(calibration.strings)) {
+  if (const auto in = differing_quantity(calibration.strings)) {
     throw core::InvalidInput{"calibration: " + *in};
   }
   const double highest_n = highest_tension_n(calibration);

@@ -7,8 +7,9 @@
 #include "device/spidar/board.hpp"
 #include "device/spidar/geometry.hpp"
 namespace tapstudy::device {
-// In what strings of one frame differ by more than a factor of three, as motors of one kind do not.
-std::optional<std::string> unlikeness(std::span<const core::StringCalibration> measured);
+// Which quantity of the strings of one frame differs by more than a factor of three, as motors of
+// one kind do not.
+std::optional<std::string> differing_quantity(std::span<const core::StringCalibration> measured);
 // The highest tension that the board's range of DAC counts allows for every string.
 double highest_tension_n(const core::SpidarCalibration& calibration);
 // Throws InvalidInput if the strings are unlike, or if max_tension_n is above the highest.

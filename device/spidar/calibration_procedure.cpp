@@ -101,7 +101,7 @@ class Calibration {
       const std::optional<StringCalibration> measured = measured_once(up_to_next.size());
       if (measured) {
         next = *measured;
-        const auto in = unlikeness(up_to_next);
+        const auto in = differing_quantity(up_to_next);
         if (!in) {
           return;
         }

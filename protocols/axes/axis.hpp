@@ -17,8 +17,9 @@ enum class AxisKind { scaled, tabled };
 // A property along which a stimulus may vary: one row of axis_table.cpp. Nothing else knows an
 // axis by its name.
 struct Axis {
-  std::string_view name;  // in protocols, on the command line and in data; ends in its unit
-  std::string_view unit;  // SI; empty for a ratio
+  std::string_view name;      // in protocols, on the command line and in data; ends in its unit
+  std::string_view quantity;  // in reports
+  std::string_view unit;      // SI; empty for a ratio
   AxisKind kind{};
   bool (*is_used_by)(const core::Technique& technique){};  // null: by all
   bool is_of_boxes{};                                      // other shapes cannot vary so

@@ -147,55 +147,58 @@ bool has_sinusoid(const core::Technique& technique) {
 const std::vector<Axis>& axes() {
   using P = PresentedStimulus;
   static const std::vector<Axis> table{
-      {"youngs_modulus_pa", "Pa", AxisKind::scaled, vibrates, false, true,
+      {"youngs_modulus_pa", "Young's modulus", "Pa", AxisKind::scaled, vibrates, false, true,
        constant<allowed::youngs_modulus_pa>,
        [](const P& stimulus) { return stimulus.material->youngs_modulus_pa; },
        [](P& stimulus, double value) {
          change_material(stimulus, [&](Material& m) { m.youngs_modulus_pa = value; });
        },
        true},
-      {"density_kg_per_m3", "kg/m³", AxisKind::scaled, vibrates, false, false,
+      {"density_kg_per_m3", "density", "kg/m³", AxisKind::scaled, vibrates, false, false,
        constant<allowed::density_kg_per_m3>,
        [](const P& stimulus) { return stimulus.material->density_kg_per_m3; },
        [](P& stimulus, double value) {
          change_material(stimulus, [&](Material& m) { m.density_kg_per_m3 = value; });
        },
        true},
-      {"damping_scale", "", AxisKind::scaled, vibrates, false, false, damping_factors,
-       [](const P& /*stimulus*/) { return 1.0; },
+      {"damping_scale", "damping scale", "", AxisKind::scaled, vibrates, false, false,
+       damping_factors, [](const P& /*stimulus*/) { return 1.0; },
        [](P& stimulus, double value) {
          change_material(stimulus,
                          [&](Material& m) { m.damping = core::scaled(m.damping, value); });
        }},
-      {"vibration_gain", "", AxisKind::scaled, scales_vibration, false, false, gains,
-       of_rendering<&Rendering::vibration_gain>, set_rendering<&Rendering::vibration_gain>, false,
-       true},
-      {"sinusoid_amplitude_n_s_per_m", "N s/m", AxisKind::scaled, has_sinusoid, false, false,
-       constant<allowed::sinusoid_amplitude_n_s_per_m>, of_sinusoid<&Sinusoid::amplitude_n_s_per_m>,
-       set_sinusoid<&Sinusoid::amplitude_n_s_per_m>, false, true},
-      {"sinusoid_decay_per_s", "1/s", AxisKind::scaled, has_sinusoid, false, false,
-       constant<allowed::sinusoid_decay_per_s>, of_sinusoid<&Sinusoid::decay_per_s>,
+      {"vibration_gain", "vibration gain", "", AxisKind::scaled, scales_vibration, false, false,
+       gains, of_rendering<&Rendering::vibration_gain>, set_rendering<&Rendering::vibration_gain>,
+       false, true},
+      {"sinusoid_amplitude_n_s_per_m", "sinusoid amplitude", "N s/m", AxisKind::scaled,
+       has_sinusoid, false, false, constant<allowed::sinusoid_amplitude_n_s_per_m>,
+       of_sinusoid<&Sinusoid::amplitude_n_s_per_m>, set_sinusoid<&Sinusoid::amplitude_n_s_per_m>,
+       false, true},
+      {"sinusoid_decay_per_s", "sinusoid decay rate", "1/s", AxisKind::scaled, has_sinusoid, false,
+       false, constant<allowed::sinusoid_decay_per_s>, of_sinusoid<&Sinusoid::decay_per_s>,
        set_sinusoid<&Sinusoid::decay_per_s>, false, true},
-      {"sinusoid_frequency_hz", "Hz", AxisKind::scaled, has_sinusoid, false, false, frequencies_hz,
-       of_sinusoid<&Sinusoid::frequency_hz>, set_sinusoid<&Sinusoid::frequency_hz>, false, true},
-      {"penalty_stiffness_n_per_m", "N/m", AxisKind::scaled, nullptr, false, false,
-       constant<allowed::penalty_stiffness_n_per_m>,
+      {"sinusoid_frequency_hz", "sinusoid frequency", "Hz", AxisKind::scaled, has_sinusoid, false,
+       false, frequencies_hz, of_sinusoid<&Sinusoid::frequency_hz>,
+       set_sinusoid<&Sinusoid::frequency_hz>, false, true},
+      {"penalty_stiffness_n_per_m", "contact stiffness", "N/m", AxisKind::scaled, nullptr, false,
+       false, constant<allowed::penalty_stiffness_n_per_m>,
        of_rendering<&Rendering::penalty_stiffness_n_per_m>,
        set_rendering<&Rendering::penalty_stiffness_n_per_m>, false, true},
-      {"poissons_ratio", "", AxisKind::tabled, vibrates_as_a_solid, false, false,
+      {"poissons_ratio", "Poisson's ratio", "", AxisKind::tabled, vibrates_as_a_solid, false, false,
        constant<allowed::poissons_ratio>,
        [](const P& stimulus) { return stimulus.material->poissons_ratio; },
        [](P& stimulus, double value) {
          change_material(stimulus, [&](Material& m) { m.poissons_ratio = value; });
        }},
-      {"thickness_m", "m", AxisKind::tabled, vibrates, true, false, constant<allowed::edge_m>,
-       [](const P& stimulus) { return box_of(stimulus).size_m.z(); },
+      {"thickness_m", "thickness", "m", AxisKind::tabled, vibrates, true, false,
+       constant<allowed::edge_m>, [](const P& stimulus) { return box_of(stimulus).size_m.z(); },
        [](P& stimulus, double value) {
          change_plate(stimulus,
                       [&](Plate& plate) { std::get<core::Box>(plate.shape).size_m.z() = value; });
        }},
-      {"lateral_size_m", "m", AxisKind::tabled, vibrates, true, false, lateral_sizes_m,
-       [](const P& stimulus) { return box_of(stimulus).size_m.x(); }, set_lateral_size, true},
+      {"lateral_size_m", "lateral size", "m", AxisKind::tabled, vibrates, true, false,
+       lateral_sizes_m, [](const P& stimulus) { return box_of(stimulus).size_m.x(); },
+       set_lateral_size, true},
   };
   return table;
 }

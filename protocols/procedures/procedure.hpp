@@ -87,6 +87,8 @@ class TrackSettings {
   virtual std::size_t axes() const = 0;      // of a stimulus
   virtual std::size_t outcomes() const = 0;  // of a trial
   virtual std::size_t max_trials() const = 0;
+  // Whether it may stop before: what it takes then depends on the answers.
+  virtual bool may_end_early() const { return false; }
   // On each axis the least and the greatest value that may be requested.
   virtual std::vector<std::pair<double, double>> ranges() const = 0;
   // The guess rates that it holds possible; nullopt: it makes no assumption of any.
@@ -114,9 +116,8 @@ class Procedure {
   virtual std::shared_ptr<const TrackSettings> read(MapReader& reader) const = 0;
 };
 
-// All there are. nullptr if there is none of that name.
+// All there are.
 const std::vector<const Procedure*>& procedures();
-const Procedure* find_procedure(std::string_view name);
 
 // A mapping with one key, the procedure's name, to the procedure's own keys. nullptr as above.
 std::shared_ptr<const TrackSettings> read_procedure(MapReader& reader);

@@ -12,11 +12,6 @@ const std::vector<const Procedure*>& procedures() {
   return table;
 }
 
-const Procedure* find_procedure(std::string_view name) {
-  const auto found = std::ranges::find(procedures(), name, &Procedure::name);
-  return found == procedures().end() ? nullptr : *found;
-}
-
 std::shared_ptr<const TrackSettings> read_procedure(MapReader& reader) {
   std::shared_ptr<const TrackSettings> settings;
   std::vector<std::string_view> names;

@@ -41,6 +41,7 @@ class QuestPlusSettings final : public TrackSettings {
   std::size_t axes() const override { return table_->design().axes.size(); }
   std::size_t outcomes() const override { return table_->design().outcomes; }
   std::size_t max_trials() const override { return stop_.trials; }
+  bool may_end_early() const override { return stop_.standard_deviation.has_value(); }
   std::vector<std::pair<double, double>> ranges() const override;
   std::optional<std::pair<double, double>> guess_rates() const override;
   // A QuestPlusTrack. Nothing in it is random.

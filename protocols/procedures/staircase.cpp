@@ -21,6 +21,7 @@ class StaircaseStart final : public TrackSettings {
   std::size_t axes() const override { return 1; }
   std::size_t outcomes() const override { return 2; }
   std::size_t max_trials() const override { return settings_.max_trials; }
+  bool may_end_early() const override { return settings_.max_reversals.has_value(); }
   std::vector<std::pair<double, double>> ranges() const override {
     return {{settings_.min, settings_.max}};
   }
@@ -105,8 +106,10 @@ void read_stop(MapReader& top, StaircaseSettings& settings) {
   if (settings.estimate_reversals % 2 != 0) {
     top.reject("estimate_reversals", "is odd: as many peaks as valleys are averaged");
   }
-  const std::size_t attainable = settings.max_reversals.value_or(settings.max_trials);
-  if (settings.estimate_reversals > std::min(attainable, settings.max_trials)) {
+  // the first trial is no reversal
+  const std::size_t attainable = settings.max_trials - 1;
+  if (settings.estimate_reversals >
+      std::min(attainable, settings.max_reversals.value_or(attainable))) {
     top.reject("estimate_reversals", "is more than there are before the staircase stops");
   }
 }

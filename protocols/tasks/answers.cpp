@@ -17,8 +17,18 @@ std::string trimmed(const std::string& text) {
   return first == std::string::npos ? std::string{} : text.substr(first, last - first + 1);
 }
 
-// Digits with at most one point: no sign, no exponent, no "inf".
-std::optional<double> plain_number(const std::string& text) {
+// "1,000" may be a thousand.
+bool may_have_thousands(const std::string& text) {
+  const auto comma = text.find(',');
+  return comma != std::string::npos && comma <= 3 && text.size() == comma + 4 && text[0] != '0';
+}
+
+// Digits with at most one point or decimal comma: no sign, no exponent, no "inf".
+std::optional<double> plain_number(std::string text) {
+  if (may_have_thousands(text)) {
+    return std::nullopt;
+  }
+  std::ranges::replace(text, ',', '.');
   if (text.size() > max_characters || text.find_first_not_of("0123456789.") != std::string::npos) {
     return std::nullopt;
   }

@@ -132,8 +132,10 @@ void read_tracks(MapReader& reader, const Protocol& protocol, const Stimulus* us
 // Unset: what the procedures assume, where it fits the side.
 void read_function(MapReader& reader, Comparison& comparison) {
   const bool is_on_either_side = comparison.side == Side::either;
+  // A point of equality is where F is 0.5.
   const auto fits = [&](core::PsychometricShape shape) {
-    return !is_on_either_side || !core::row_of(shape).is_logarithmic;
+    return !is_on_either_side ||
+           (!core::row_of(shape).is_logarithmic && core::shape_value(shape, 0.0, 0.0, 1.0) == 0.5);
   };
   core::PsychometricShape assumed = is_on_either_side ? core::PsychometricShape::cumulative_gaussian
                                                       : core::PsychometricShape::weibull;
@@ -150,7 +152,10 @@ void read_function(MapReader& reader, Comparison& comparison) {
     return;  // noted
   }
   if (!fits(row->shape)) {
-    reader.reject("function", fmt::format("'{}' is of levels above 0 only", row->name));
+    reader.reject("function",
+                  fmt::format("'{}' has no point of equality: with levels on either side "
+                              "it is logistic or cumulative_gaussian",
+                              row->name));
   }
   comparison.shape = row->shape;
 }
@@ -178,9 +183,10 @@ std::optional<Comparison> read_comparison(MapReader& reader, const Protocol& pro
   if (comparison.side == Side::either && sides == Sides::one) {
     reader.reject("comparison", "lies on one side of the standard: above or below");
   }
-  const bool is_usable = is_known && check_standard(reader, protocol, *family, comparison);
+  bool is_usable = is_known && check_standard(reader, protocol, *family, comparison);
   if (is_usable && comparison.is_fraction && comparison.standard <= 0.0) {
     reader.reject("level", "fractions are of a standard above 0");
+    is_usable = false;
   }
   read_tracks(reader, protocol, is_usable ? family : nullptr, comparison);
   read_function(reader, comparison);

@@ -18,7 +18,8 @@ class SameDifferent final : public DiscriminationTask {
   // Where stimuli change from trial to trial, participants can only compare the two (Macmillan &
   // Creelman 2005, ch. 9): d' of such a differencing observer takes rates.
   std::string_view decision_model(const Block& block) const override {
-    return block.stimuli.size() > 2 ? "" : "same_different_independent_observation";
+    return block.stimuli.size() > 2 || block.comparison ? ""
+                                                        : "same_different_independent_observation";
   }
   bool has_own_guess_rate() const override { return true; }
   Answers answers(const Block& block, const Protocol& /*protocol*/) const override {

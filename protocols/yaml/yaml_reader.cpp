@@ -18,8 +18,9 @@ bool is_name(const std::string& text) {
   const auto is_inner = [](unsigned char c) {
     return c < 128 && (std::isalnum(c) != 0 || c == '_' || c == '-' || c == '+' || c == '.');
   };
-  return !text.empty() && text.size() <= 64 && std::ranges::all_of(text, is_inner) &&
-         text.find_first_of("-+.") != 0;
+  const bool means_missing = text == "NA";  // in tables
+  return !means_missing && !text.empty() && text.size() <= 64 &&
+         std::ranges::all_of(text, is_inner) && text.find_first_of("-+.") != 0;
 }
 
 bool Range::contains(double x) const {
@@ -187,7 +188,7 @@ bool MapReader::check_name(const YAML::Node& node, const std::string& path) {
   }
   reject_at(node, path,
             fmt::format("{} is not a name (1 to 64 letters, digits, '_', '-', '+' or '.', starting "
-                        "with a letter, a digit or '_')",
+                        "with a letter, a digit or '_'; not NA)",
                         kind_of(node)));
   return false;
 }

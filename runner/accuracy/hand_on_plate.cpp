@@ -14,9 +14,9 @@ constexpr double min_speed_m_s = 1e-6;
 constexpr double pressing_s = 0.5;
 constexpr double highest_m = 0.01;
 
-device::PlannedTap planned(const TestTap& tap) {
+device::PlannedTap planned(const TestTap& tap, const core::Placement& placement) {
   device::PlannedTap plan;
-  plan.point_m = {0.0, tap.z_m, 0.0};
+  plan.point_m = placement.point_to_device(tap.at_m);
   plan.speed_m_s = std::max(tap.speed_m_s, min_speed_m_s);
   plan.hover_m = std::min(highest_m, approach_s * plan.speed_m_s);
   plan.run_up_m = 0.0;
@@ -59,7 +59,7 @@ LoopBehaviour tap_and_stay(core::TapRenderer& renderer, const core::HandBody& bo
                            const TestTap& tap) {
   const core::Placement placement;
   device::SimulatedHand hand{body, dt_s, device::SimulatedHand::Memory::none};
-  hand.follow({planned(tap)});
+  hand.follow({planned(tap, placement)});
   LoopBehaviour behaviour;
   Parts penalty;
   Parts vibration;

@@ -3,9 +3,9 @@
 #include "device/hand/simulated_hand.hpp"
 namespace tapstudy::runner {
 struct TestTap {
-  double z_m{0.0};        // of the surface under the finger
-  double speed_m_s{0.3};  // 0: the finger is placed gently
-  double sliding_m{0.0};  // how far the aim moves along x while the finger stays
+  core::Vec3 at_m{core::Vec3::Zero()};  // of the surface under the finger, in the plate frame
+  double speed_m_s{0.3};                // 0: the finger is placed gently
+  double sliding_m{0.0};                // how far the aim moves along x while the finger stays
   double press_m{0.004};
 };
 

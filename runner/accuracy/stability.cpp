@@ -26,15 +26,33 @@ struct Stage {
   core::RenderSettings rendering;
   core::HandBody hand;
   TestTap tap;
+  Eigen::Vector2d point_m;              // where it is tapped
   std::optional<double> damping_ratio;  // of every mode, instead of the material's
   bool has_vibration{true};
 };
 
+double top_m(const core::Shape& shape, const Eigen::Vector2d& point_m) {
+  return core::TopHeight{shape}.at_m(point_m).value_or(0.0);
+}
+
+// Its first tapping point over the body.
+Eigen::Vector2d point_on(const protocols::Plate& plate) {
+  const core::TopHeight top{plate.shape};
+  for (const auto& [name, point_m] : plate.tapping_points_m) {
+    if (top.at_m(point_m)) {
+      return point_m;
+    }
+  }
+  return Eigen::Vector2d::Zero();
+}
+
 Stage stage_of(const protocols::Protocol& protocol, const protocols::Stimulus& stimulus) {
-  Stage stage{plate_spec(protocol, stimulus_with(protocol, stimulus)),
-              protocol.rendering,
+  const protocols::PresentedStimulus presented = stimulus_with(protocol, stimulus);
+  Stage stage{plate_spec(protocol, presented),
+              presented.rendering,
               protocol.simulation.hand,
               {},
+              point_on(*presented.plate),
               {},
               true};
   stage.plate.mesh.accuracy.reset();
@@ -86,10 +104,11 @@ StabilityCase play(const std::string& property, double value, const Stage& stage
         core::make_renderer(plate ? plate_alone() : penalty_alone, stage.rendering,
                             touched_shape(stage.plate.shape), plate ? &*plate : nullptr);
     TestTap tap = stage.tap;
-    tap.z_m = core::TopHeight{stage.plate.shape}.at_m({0.0, 0.0}).value_or(0.0);
+    tap.at_m << stage.point_m, top_m(stage.plate.shape, stage.point_m);
     const LoopBehaviour seen = tap_and_stay(renderer, stage.hand, stage.rendering.dt_s, tap);
-    played.outcome = outcome_of(seen);
-    played.words += described(seen);
+    const bool has_missed = seen.is_finite && seen.impacts == 0 && stage.tap.speed_m_s > 0.0;
+    played.outcome = has_missed ? Outcome::refused : outcome_of(seen);
+    played.words += has_missed ? "the hand did not touch the body" : described(seen);
   } catch (const core::ModelError& error) {
     played.words = error.what();
   } catch (const core::InvalidInput& error) {

@@ -40,6 +40,7 @@ Eigen::MatrixXd shape_at(const core::ModalModel& model, const core::SurfacePoint
 Workbench::Workbench(const protocols::Protocol& protocol, const protocols::Stimulus& stimulus,
                      core::ProgressHook progress)
     : protocol_{protocol},
+      rendering_{stimulus_with(protocol, stimulus).rendering},
       spec_{plate_spec(protocol, stimulus_with(protocol, stimulus))},
       progress_{std::move(progress)} {
   const core::TopHeight top{spec_.shape};
@@ -62,8 +63,14 @@ core::BodyModes Workbench::solve(const core::Meshing& mesh, double band_limit_hz
 }
 
 void Workbench::fix_damping(const core::BodyModes& body) {
-  if (!spec_.contacts && std::holds_alternative<core::TwoRatioDamping>(spec_.material.damping)) {
-    spec_.material.damping = model_of(body, spec_.band_limit_hz).damping.value();
+  const auto* ratios = std::get_if<core::TwoRatioDamping>(&spec_.material.damping);
+  if (spec_.contacts || ratios == nullptr) {
+    return;
+  }
+  if (const auto rayleigh = model_of(body, spec_.band_limit_hz).damping) {
+    spec_.material.damping = *rayleigh;
+  } else {  // of a single mode
+    spec_.material.damping = core::ConstantDamping{ratios->first_ratio};
   }
 }
 
@@ -77,7 +84,7 @@ core::VibratingPlate Workbench::plate_of(core::ModalModel model) const {
 
 Forces Workbench::forces_n(const core::VibratingPlate& plate, core::Integrator integrator,
                            double rate_hz) const {
-  core::RenderSettings settings = protocol_.rendering;
+  core::RenderSettings settings = rendering_;
   settings.integrator = integrator;
   settings.dt_s = 1.0 / rate_hz;
   const auto stride = static_cast<Eigen::Index>(std::lround(rate_hz / protocol_.rate_hz));
@@ -116,6 +123,6 @@ SampledModes Workbench::sampled(const core::VibratingPlate& plate) const {
 }
 
 double Workbench::tick_ns(const core::VibratingPlate& plate) const {
-  return runner::tick_ns(plate, spec_.shape, protocol_.rendering, strikes_.front());
+  return runner::tick_ns(plate, spec_.shape, rendering_, strikes_.front());
 }
 }  // namespace tapstudy::runner

@@ -31,6 +31,7 @@ class Workbench {
 
  private:
   const protocols::Protocol& protocol_;
+  core::RenderSettings rendering_;  // the stimulus's
   core::PlateSpec spec_;
   core::ProgressHook progress_;
   std::vector<Strike> strikes_;

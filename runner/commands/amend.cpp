@@ -111,7 +111,7 @@ void amend(const AmendOptions& options) {
   } else if (command.trial) {
     desk.trial_was(*command.trial);
   }
-  const OperatorDesk::Posted posted = desk.post(command);
+  const PostedCommand posted = desk.post(command);
   posted.stored.get();
   fmt::print("participant {}: {}\n", options.participant, posted.said);
 }

@@ -15,6 +15,7 @@
 #include "results/trace_codec.hpp"
 #include "runner/console/scenes.hpp"
 #include "runner/devices/masking_noise.hpp"
+#include "runner/experiments/counted.hpp"
 #include "runner/experiments/screens.hpp"
 #include "runner/session/session_row.hpp"
 namespace tapstudy::runner {
@@ -132,8 +133,9 @@ void print_procedures(const protocols::Stimulus& family, const protocols::Compar
                       std::optional<double> guess_rate) {
   for (const auto& track : comparison.tracks) {
     const auto [low, high] = track->ranges().front();
-    fmt::print("    at most {} trials of {}: {} against {:.6g}, from {:.6g} to {:.6g}\n",
-               track->max_trials(), comparison.axis, words(comparison.side), comparison.standard,
+    fmt::print("    {}{} of {}: {} against {:.6g}, from {:.6g} to {:.6g}\n",
+               track->may_end_early() ? "at most " : "", counted(track->max_trials(), "trial"),
+               comparison.axis, words(comparison.side), comparison.standard,
                comparison.value_at(low), comparison.value_at(high));
     for (std::size_t i = 0; i < comparison.further_axes.size(); ++i) {
       const auto [least, greatest] = track->ranges().at(i + 1);
@@ -150,13 +152,13 @@ void print_procedures(const protocols::Stimulus& family, const protocols::Compar
 
 // "material: identification, 4 stimuli, 8 trials a participant"
 std::string heading(const protocols::Block& block, int trials) {
-  return fmt::format("{}{}{}: {}, {}, {}{} trials a participant", block.name,
-                     block.is_practice ? " (practice)" : "",
-                     block.presented == protocols::Presented::real_plates ? " (real plates)" : "",
-                     block.task->name(),
-                     block.stimuli.size() == 1 ? block.stimuli.front()
-                                               : fmt::format("{} stimuli", block.stimuli.size()),
-                     block.comparison ? "at most " : "", trials);
+  return fmt::format(
+      "{}{}{}: {}, {}, {}{} a participant", block.name, block.is_practice ? " (practice)" : "",
+      block.presented == protocols::Presented::real_plates ? " (real plates)" : "",
+      block.task->name(),
+      block.stimuli.size() == 1 ? block.stimuli.front()
+                                : fmt::format("{} stimuli", block.stimuli.size()),
+      may_end_early(block) ? "at most " : "", counted(static_cast<std::size_t>(trials), "trial"));
 }
 
 void warn_of_block_order(const protocols::Protocol& protocol, int participants) {

@@ -11,6 +11,7 @@
 #include "protocols/axes/axis.hpp"
 #include "results/export/study_export.hpp"
 #include "results/export/study_tables.hpp"
+#include "results/stored_answers.hpp"
 #include "runner/build_info.hpp"
 #include "runner/commands/commands.hpp"
 #include "runner/experiments/response_meanings.hpp"
@@ -137,7 +138,7 @@ void run_export(const ExportOptions& options) {
   core::check_is_new(options.out);
   results::Store store = results::Store::open_existing(options.directory);
   store.at_one_moment([&] {
-    if (store.answers().empty()) {
+    if (results::stored_answers(store).empty()) {
       throw core::InvalidInput{options.directory + ": holds no answers yet to export"};
     }
     const Format& format = *std::ranges::find(formats, options.format, &Format::name);

@@ -74,22 +74,22 @@ std::string print_recomputed(const results::Recomputation& recomputed) {
              recomputed.unknown_blocks == 0 ? ""
                                             : fmt::format(" ({} of blocks that the protocol lacks)",
                                                           recomputed.unknown_blocks));
-  return differences.empty()
-             ? ""
-             : fmt::format("{} stored values differ from those recomputed", differences.size());
+  return differences.empty() ? ""
+                             : fmt::format("stored values that differ from those recomputed: {}",
+                                           differences.size());
 }
 
-// Likewise.
+// What is wrong, or empty.
 std::string print_heads(const std::vector<std::string>& differences) {
   for (const std::string& difference : differences) {
     fmt::print("differs: {}\n", difference);
   }
-  return differences.empty()
-             ? ""
-             : fmt::format("{} rows of the study and its sessions differ", differences.size());
+  return differences.empty() ? ""
+                             : fmt::format("rows of the study and its sessions that differ: {}",
+                                           differences.size());
 }
 
-// The journal against the database; likewise.
+// The journal against the database: what is wrong, or empty.
 std::string print_compared(const results::JournalEntries& in_store,
                            const results::JournalEntries& in_journal) {
   fmt::print("answers.journal  {} answers: hash chain intact\n", in_journal.answers.size());
@@ -98,13 +98,13 @@ std::string print_compared(const results::JournalEntries& in_store,
   const int missing = print_missing(stored, journalled, "answers.journal") +
                       print_missing(journalled, stored, "study.db");
   if (missing > 0) {
-    return fmt::format("{} answers or actions are not the same in both", missing);
+    return fmt::format("answers or actions that are not the same in both: {}", missing);
   }
   fmt::print("their answers and actions agree\n");
   return "";
 }
 
-// Likewise.
+// What is wrong, or empty.
 std::string print_published(const PublishedReport& report) {
   if (!report.is_there) {
     return "";
@@ -118,10 +118,10 @@ std::string print_published(const PublishedReport& report) {
     fmt::print("differs: {}\n", report.differences[i]);
   }
   if (report.differences.empty()) {
-    fmt::print("report.json      and its tables: identical to a regenerated report\n");
+    fmt::print("report.json      its tables and page: identical to a regenerated report\n");
     return "";
   }
-  return fmt::format("{} values of its report differ from a regenerated one (is it older?)",
+  return fmt::format("places where its report differs from a regenerated one (is it older?): {}",
                      report.differences.size());
 }
 
@@ -134,7 +134,7 @@ void verify(const VerifyOptions& options) {
   const results::JournalContent journal = results::read_journal(options.directory);
   std::vector<std::string> wrong{
       print_recomputed(recomputed),
-      print_heads(results::differing_heads(store.study(), store.sessions(), journal)),
+      print_heads(results::differing_study_and_sessions(store.study(), store.sessions(), journal)),
       print_compared(in_store, journal.entries)};
   std::erase(wrong, "");
   if (wrong.empty()) {  // else a report made anew would be wrong, too

@@ -1,16 +1,33 @@
 #include "runner/console/answers_json.hpp"
 
-#include <array>
 #include <nlohmann/json.hpp>
 namespace tapstudy::runner {
+namespace {
+const char* name(protocols::AnswerKind value) {
+  using enum protocols::AnswerKind;
+  switch (value) {
+    case option:
+      return "option";
+    case number:
+      return "number";
+    case setting:
+      return "setting";
+    case order:
+      return "order";
+    case line:
+      return "line";
+  }
+  return "";
+}
+}  // namespace
+
 nlohmann::ordered_json answers_json(const protocols::Answers& answers) {
   using Json = nlohmann::ordered_json;
-  constexpr std::array kinds{"option", "number", "setting", "order", "line"};
   Json labels = Json::array();
   for (const protocols::Option& option : answers.options) {
     labels.push_back(option.label);
   }
-  return {{"kind", kinds.at(static_cast<std::size_t>(answers.kind))},
+  return {{"kind", name(answers.kind)},
           {"options", labels},
           {"settings", answers.settings},
           {"low", answers.ends.low},

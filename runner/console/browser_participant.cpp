@@ -47,15 +47,24 @@ void BrowserParticipant::read(const std::string& instructions) {
   answer_to({.kind = ScreenKind::instructions, .text = instructions});
 }
 
+void BrowserParticipant::practice_is_over() {
+  progress_.reset();
+  tell(Message::practice_is_over);
+}
+
 // The page counts the time down, but does not decide.
 void BrowserParticipant::rest(const protocols::Breaks& breaks) {
   const RestTimes times = rest_times(breaks);
-  const auto left_s = [&] {
-    return std::chrono::duration<double>(times.earliest - std::chrono::steady_clock::now()).count();
+  const auto left_s = [](std::chrono::steady_clock::time_point until) {
+    return std::chrono::duration<double>(until - std::chrono::steady_clock::now()).count();
   };
   do {
-    answer_before(times.latest, {.kind = ScreenKind::rest, .min_seconds = std::max(0.0, left_s())});
-  } while (left_s() > 0.0);
+    answer_before(
+        times.latest,
+        {.kind = ScreenKind::rest,
+         .min_seconds = std::max(0.0, left_s(times.earliest)),
+         .max_seconds = breaks.max_seconds ? std::optional{left_s(times.latest)} : std::nullopt});
+  } while (left_s(times.earliest) > 0.0);
 }
 
 Participant::FormAnswers BrowserParticipant::fill_in(const protocols::Form& form) {

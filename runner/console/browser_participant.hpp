@@ -10,7 +10,7 @@ namespace tapstudy::runner {
 class BrowserParticipant final : public Participant {
  public:
   struct Context {
-    std::function<void()> move_hand;  // as a ConsoleParticipant's
+    std::function<void()> move_hand;  // as a TerminalParticipant's
     // What is drawn while an alternative of the trial that is shown can be felt.
     std::function<std::optional<int>(std::size_t alternative)> scene;
     // Tells the operator; whether to try again.
@@ -20,6 +20,7 @@ class BrowserParticipant final : public Participant {
   BrowserParticipant(ScreenExchange& screens, Context context)
       : screens_{screens}, context_{std::move(context)} {}
   void read(const std::string& instructions) override;
+  void practice_is_over() override;
   void rest(const protocols::Breaks& breaks) override;
   bool fills_in_forms() const override { return true; }
   FormAnswers fill_in(const protocols::Form& form) override;

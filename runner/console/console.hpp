@@ -21,7 +21,7 @@ class Console {
     const core::Placement& placement;  // of the loop
     const results::SessionRow& row;
     OperatorDesk& desk;
-    std::function<void()> move_hand;  // as a ConsoleParticipant's
+    std::function<void()> move_hand;  // as a TerminalParticipant's
     std::function<std::optional<MaskingInView>()> masking;
   };
   // Throws InvalidInput if the address cannot be listened to.

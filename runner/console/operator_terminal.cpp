@@ -7,11 +7,13 @@ namespace tapstudy::runner {
 OperatorTerminal::OperatorTerminal(LineInput& input, OperatorDesk& desk, const ConsoleApi& shown)
     : input_{input}, desk_{desk}, shown_{shown}, thread_{[this](const std::stop_token& stop) {
         run(stop);
+        outcomes_.finish();
       }} {}
 
 // At the end of input the session goes on: a page may have an operator, too.
 void OperatorTerminal::run(const std::stop_token& stop) {
   while (const auto line = input_.next([&] {
+    outcomes_.say_known();
     show_if_watched();
     return !stop.stop_requested() && !stop_was_asked();
   })) {
@@ -47,9 +49,8 @@ void OperatorTerminal::obey(const std::string& line) {
 
 void OperatorTerminal::order(const std::string& command) {
   try {
-    const OperatorDesk::Posted posted = desk_.post(parse_operator_command(command));
-    posted.stored.get();
-    say("stored: {}\n", posted.said);
+    outcomes_.add(desk_.post(parse_operator_command(command)));
+    outcomes_.say_known();
   } catch (const core::InvalidInput& error) {
     say("{}; status and watch show what the session does\n", error.what());
   } catch (const std::exception& error) {  // none may leave a thread

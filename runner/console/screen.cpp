@@ -8,51 +8,30 @@
 #include "core/error.hpp"
 #include "runner/console/answers_json.hpp"
 #include "runner/console/parse_json.hpp"
+#include "runner/console/screen_names.hpp"
 namespace tapstudy::runner {
 namespace {
 using Json = nlohmann::ordered_json;
 
-const char* name(ScreenKind kind) {
-  constexpr std::array names{"wait",     "instructions", "rest", "trial",  "confidence",
-                             "feedback", "message",      "form", "paused", "ended"};
-  return names.at(static_cast<std::size_t>(kind));
-}
-
-const char* name(Message message) {
-  constexpr std::array names{"",
-                             "presented_again",
-                             "skipped",
-                             "time_is_over",
-                             "comes_again",
-                             "operator_is_needed",
-                             "plate_is_mounted"};
-  return names.at(static_cast<std::size_t>(message));
-}
-
 Json json_of(const TooEarly& notice) {
-  constexpr std::array reasons{"intervals",    "plate_untouched",     "alternatives_untouched",
-                               "plate_unfelt", "alternatives_unfelt", "time"};
-  return {{"reason", reasons.at(static_cast<std::size_t>(notice.reason))},
+  return {{"reason", name(notice.reason)},
           {"contacts", notice.min_contacts},
           {"labels", notice.labels},
           {"seconds", notice.min_seconds}};
 }
 
 Json json_of(const IntervalState& intervals) {
-  constexpr std::array phases{"gap", "open", "over"};
-  return {{"phase", phases.at(static_cast<std::size_t>(intervals.phase))},
-          {"replays_left", intervals.replays_left}};
+  return {{"phase", name(intervals.phase)}, {"replays_left", intervals.replays_left}};
 }
 
 Json json_of(const TrialScreen& trial) {
-  constexpr std::array corrections{"", "stored", "failed"};
   return {
       {"number", trial.prompt.number},
       {"question", trial.prompt.block->question},
       {"asks_confidence", trial.prompt.block->confidence.has_value()},
       {"answers", answers_json(trial.prompt.answers)},
       {"previous", trial.prompt.previous ? answers_json(trial.prompt.previous->answers) : Json{}},
-      {"correction", corrections.at(static_cast<std::size_t>(trial.correction))},
+      {"correction", name(trial.correction)},
       {"alternatives", trial.prompt.alternative_labels},
       {"is_tapped_by_script", trial.prompt.block->explore.scripted_taps.has_value()},
       {"current", trial.current},
@@ -75,8 +54,7 @@ Json options_of(const std::vector<protocols::Option>& options) {
   return all;
 }
 Json json_of(const protocols::FormItem& item) {
-  constexpr std::array kinds{"likert", "scale", "number", "single_choice", "text"};
-  return {{"name", item.name},         {"kind", kinds.at(static_cast<std::size_t>(item.kind))},
+  return {{"name", item.name},         {"kind", name(item.kind)},
           {"question", item.question}, {"is_required", item.is_required},
           {"steps", item.steps},       {"low", item.low},
           {"high", item.high},         {"min", item.min},
@@ -90,8 +68,10 @@ Json json_of(const protocols::Form& form) {
   return {{"title", form.title}, {"text", form.text}, {"items", items}};
 }
 Json json_of(const TrialProgress& progress) {
-  return {
-      {"done", progress.done}, {"total", progress.total}, {"is_practice", progress.is_practice}};
+  return {{"done", progress.done},
+          {"total", progress.total},
+          {"is_practice", progress.is_practice},
+          {"is_open_ended", progress.is_open_ended}};
 }
 Json json_of(int scene) {
   return scene;
@@ -216,6 +196,7 @@ std::string to_json(const Screen& screen, const ScreenContext& context) {
                   {"text", screen.text},
                   {"message", name(screen.message)},
                   {"min_seconds", screen.min_seconds},
+                  {"max_seconds", screen.max_seconds ? Json(*screen.max_seconds) : Json{}},
                   {"can_go_on", accepts(screen, {ScreenAction::go_on, 0, {}})},
                   {"trial", or_null(screen.trial)},
                   {"confidence", or_null(screen.confidence)},

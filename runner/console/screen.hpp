@@ -21,6 +21,7 @@ enum class ScreenKind {
 // Sentences that are the program's own; pages say them in their language.
 enum class Message {
   none,
+  practice_is_over,
   presented_again,
   skipped,
   time_is_over,
@@ -48,7 +49,8 @@ struct Screen {
   ScreenKind kind{ScreenKind::wait};
   std::string text{};
   Message message{Message::none};
-  double min_seconds{};  // of a rest
+  double min_seconds{};                 // of a rest
+  std::optional<double> max_seconds{};  // likewise; unset: it does not end by itself
   std::optional<TrialProgress> progress{};
   std::optional<TrialScreen> trial{};
   std::optional<protocols::Confidence> confidence{};

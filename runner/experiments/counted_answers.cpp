@@ -4,10 +4,12 @@
 #include <map>
 #include <string>
 #include <utility>
+
+#include "results/stored_answers.hpp"
 namespace tapstudy::runner {
 std::vector<results::AnswerRow> counted_answers(results::Store& store, results::Mode mode) {
   const std::map<std::string, std::string> excluded = store.excluded_participants();
-  std::vector<results::AnswerRow> answers = store.answers();
+  std::vector<results::AnswerRow> answers = results::stored_answers(store);
   std::erase_if(answers, [&](const results::AnswerRow& answer) {
     return answer.mode != mode || answer.is_practice || answer.is_catch ||
            excluded.contains(answer.participant_id);

@@ -4,22 +4,23 @@
 #include <map>
 
 #include "protocols/nasa_tlx.hpp"
-#include "runner/session/interludes.hpp"
+#include "results/stored_answers.hpp"
+#include "runner/session/between_trials.hpp"
 namespace tapstudy::runner {
 namespace {
-analysis::AnswerKind kind_of(protocols::ItemKind kind) {
+analysis::QuestionnaireKind kind_of(protocols::ItemKind kind) {
   switch (kind) {
     case protocols::ItemKind::likert:
-      return analysis::AnswerKind::steps;
+      return analysis::QuestionnaireKind::steps;
     case protocols::ItemKind::scale:
     case protocols::ItemKind::number:
-      return analysis::AnswerKind::number;
+      return analysis::QuestionnaireKind::number;
     case protocols::ItemKind::single_choice:
-      return analysis::AnswerKind::choice;
+      return analysis::QuestionnaireKind::choice;
     case protocols::ItemKind::text:
       break;
   }
-  return analysis::AnswerKind::text;
+  return analysis::QuestionnaireKind::text;
 }
 
 analysis::QuestionnaireItem item_of(const protocols::FormItem& item) {
@@ -74,15 +75,13 @@ std::vector<analysis::GivenAnswer> given_answers(const std::vector<StudyStore>& 
         participants.emplace(session.id, session.participant_id);
       }
     }
-    each.store->each_row(
-        "SELECT session_id, form, asked, item, answer FROM form_answer ORDER BY rowid",
-        [&](results::Statement& row) {
-          const auto participant = participants.find(row.integer(0));
-          if (participant != participants.end()) {
-            answers.push_back(
-                {participant->second, row.text(1), row.text(2), row.text(3), row.optional_text(4)});
-          }
-        });
+    for (results::FormAnswerRow& row : results::stored_form_answers(*each.store)) {
+      const auto participant = participants.find(row.session_id);
+      if (participant != participants.end()) {
+        answers.push_back({participant->second, std::move(row.form), std::move(row.asked),
+                           std::move(row.item), std::move(row.answer)});
+      }
+    }
   }
   return answers;
 }

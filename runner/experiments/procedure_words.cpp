@@ -9,6 +9,7 @@
 #include <set>
 #include <utility>
 
+#include "protocols/axes/axis.hpp"
 #include "protocols/block_order.hpp"
 #include "protocols/ordering.hpp"
 #include "protocols/schedule.hpp"
@@ -110,9 +111,13 @@ std::string level_words(const Block& block) {
   for (const auto& [words, count] : tracks) {
     parts.push_back(count == 1 ? words : fmt::format("{} interleaved tracks of {}", count, words));
   }
-  const auto& further = block.comparison->further_axes;
+  const auto quantity = [](const std::string& axis) {
+    return protocols::find_axis(axis)->quantity;
+  };
+  std::vector<std::string_view> further;
+  std::ranges::transform(block.comparison->further_axes, std::back_inserter(further), quantity);
   return fmt::format(
-      ", levels of {}{} by {}", block.comparison->axis,
+      ", levels of {}{} by {}", quantity(block.comparison->axis),
       further.empty() ? "" : fmt::format(" and values of {}", fmt::join(further, ", ")),
       fmt::join(parts, " and "));
 }
@@ -127,13 +132,12 @@ std::string tap_words(const Block& block) {
 }
 
 std::string block_words(const Block& block, std::size_t participants) {
-  const bool may_end_early = block.criterion || block.comparison;
   const auto trials = static_cast<std::size_t>(protocols::planned_trials(block));
   return fmt::format(
       "'{}' ({} of {}{}, {}{}{}{}{}{}{}{})", block.name, block.task->name(),
       block.stimuli.size() == 1 ? "one stimulus" : fmt::format("{} stimuli", block.stimuli.size()),
       block.presented == protocols::Presented::real_plates ? ", the real plates themselves" : "",
-      may_end_early ? "at most " : "", counted(trials, "trial"),
+      may_end_early(block) ? "at most " : "", counted(trials, "trial"),
       block.catch_trials ? fmt::format(", {} of them catch trials", block.catch_trials->count) : "",
       block.confidence ? fmt::format(", each with confidence in {} steps", block.confidence->steps)
                        : "",

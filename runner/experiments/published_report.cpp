@@ -66,6 +66,21 @@ void compare_reports(const ordered_json& published, const ordered_json& anew,
   }
 }
 
+// Not one of parts of the study (--only).
+bool is_whole(const ordered_json& published, const ordered_json& anew) {
+  const auto names_of = [](const ordered_json& report) {
+    std::vector<std::string> names;
+    for (const auto& [key, value] : report.items()) {
+      names.push_back(key);
+    }
+    for (const ordered_json& block : report.at("blocks")) {
+      names.push_back(block.value("block", ordered_json{}).dump());
+    }
+    return names;
+  };
+  return names_of(published) == names_of(anew);
+}
+
 ordered_json json_of(const analysis::Summary& summary) {
   std::ostringstream text;
   analysis::write_json(text, summary);
@@ -79,15 +94,36 @@ std::string contents(const fs::path& file) {
   return text.str();
 }
 
+void compare_file(const std::string& directory, const std::string& name, const std::string& text,
+                  std::vector<std::string>& differences) {
+  std::error_code ignored;
+  const fs::path file = fs::path{directory} / name;
+  if (fs::exists(file, ignored) && contents(file) != text) {
+    differences.push_back(name + ": is not what a report made anew has");
+  }
+}
+
 void compare_tables(const std::string& directory, const analysis::Summary& summary,
                     std::vector<std::string>& differences) {
-  std::error_code ignored;
   for (const auto& [name, text] : analysis::table_files(summary)) {
-    const fs::path file = fs::path{directory} / name;
-    if (fs::exists(file, ignored) && contents(file) != text) {
-      differences.push_back(name + ": is not what a report made anew has");
-    }
+    compare_file(directory, name, text, differences);
   }
+}
+
+// What people read, and what in report.json is of the study as a whole.
+void compare_whole(const std::string& directory, const ordered_json& published,
+                   const ordered_json& anew, const analysis::Summary& summary,
+                   std::vector<std::string>& differences) {
+  for (const char* const key : {"deviations", "unfinished", "methods"}) {
+    compare(published.value(key, ordered_json{}), anew.value(key, ordered_json{}),
+            std::string{"/"} + key, differences);
+  }
+  std::ostringstream page;
+  analysis::write_html(page, summary);
+  compare_file(directory, "report.html", page.str(), differences);
+  std::ostringstream tables;
+  analysis::write_latex(tables, summary);
+  compare_file(directory, "tables.tex", tables.str(), differences);
 }
 
 ordered_json read_published(const fs::path& file) {
@@ -124,6 +160,9 @@ PublishedReport published_report(const std::string& directory, results::Store& s
   }
   compare_reports(published, anew, found.differences);
   compare_tables(directory, summary, found.differences);
+  if (is_whole(published, anew)) {
+    compare_whole(directory, published, anew, summary, found.differences);
+  }
   return found;
 }
 }  // namespace tapstudy::runner

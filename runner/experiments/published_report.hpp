@@ -10,7 +10,7 @@ struct PublishedReport {
   std::string not_compared{};              // why, in words; empty: it was
   std::vector<std::string> differences{};  // "report.json /blocks/0/…: 61, made anew 41", files
 };
-// Compares what report.json and the tables beside it hold; where it was made is left out, and what
-// it leaves out (--only) is not missed. Throws StoreError if report.json is none.
+// Compares what report.json, the tables beside it and the page hold; where it was made is left out,
+// and what it leaves out (--only) is not missed. Throws StoreError if report.json is none.
 PublishedReport published_report(const std::string& directory, results::Store& store);
 }  // namespace tapstudy::runner

@@ -7,6 +7,7 @@
 
 #include "protocols/read_rig.hpp"
 #include "results/sqlite.hpp"
+#include "results/stored_answers.hpp"
 #include "results/trace_stream.hpp"
 #include "runner/experiments/cached_model.hpp"
 #include "runner/experiments/counted_answers.hpp"
@@ -63,7 +64,7 @@ class TapSorter {
   TapSorter(const Protocol& protocol, RenderedStudy& study)
       : protocol_{protocol},
         study_{study},
-        cutter_{{protocol.rate_hz}, [this](const analysis::FeltTap& tap) { sort(tap); }} {
+        cutter_{{protocol.rate_hz}, [this](const analysis::TracedTap& tap) { sort(tap); }} {
     for (std::size_t i = 0; i < study.stimuli.size(); ++i) {
       places_[study.stimuli[i].name] = i;
     }
@@ -100,20 +101,17 @@ class TapSorter {
   std::map<std::int64_t, core::Placement> placements_of_trials(results::Store& store) const {
     std::map<std::int64_t, core::Placement> placements;
     std::map<std::string, core::Placement> known;  // by rig
-    store.each_row(
-        "SELECT trial_id, rig_text FROM trial JOIN session USING (session_id)",
-        [&](results::Statement& row) {
-          const auto [rig, is_new] = known.try_emplace(row.text(1));
-          if (is_new) {
-            rig->second =
-                protocols::placement_in_stored_rig(rig->first).value_or(protocol_.placement);
-          }
-          placements.emplace(row.integer(0), rig->second);
-        });
+    results::each_rig_of_trial(store, [&](std::int64_t trial_id, const std::string& text) {
+      const auto [rig, is_new] = known.try_emplace(text);
+      if (is_new) {
+        rig->second = protocols::placement_in_stored_rig(rig->first).value_or(protocol_.placement);
+      }
+      placements.emplace(trial_id, rig->second);
+    });
     return placements;
   }
 
-  void sort(const analysis::FeltTap& tap) {
+  void sort(const analysis::TracedTap& tap) {
     const auto& alternatives = trial_->alternatives;
     if (alternatives.empty()) {
       return;
@@ -131,7 +129,7 @@ class TapSorter {
     own.peaks_n.push_back(taps.all.commanded().peaks_n.back());
     own.contact_s +=
         static_cast<double>(std::ranges::count_if(
-            tap.ticks, [](const analysis::FeltTick& tick) { return tick.is_touching; })) /
+            tap.ticks, [](const analysis::TracedTick& tick) { return tick.is_touching; })) /
         protocol_.rate_hz;
     const core::HandState hand{{tap.position_m[0], tap.position_m[1], tap.position_m[2]}, {}};
     const Eigen::Vector2d at_m = placement_.to_plate(hand).position_m.head<2>();
@@ -161,9 +159,9 @@ analysis::RenderedStudy rendered_study(const Protocol& protocol,
   RenderedStudy study;
   for (const Stimulus& stimulus : protocol.stimuli) {
     study.stimuli.push_back(in_words(protocol, stimulus, cache));
-    analysis::StimulusTaps taps{analysis::FeltTaps{window}, {}};
+    analysis::StimulusTaps taps{analysis::TapStatistics{window}, {}};
     for (const auto& [point, at_m] : protocol.tapping_points_m) {
-      taps.points.push_back({point, analysis::FeltTaps{window}, {}});
+      taps.points.push_back({point, analysis::TapStatistics{window}, {}});
     }
     study.taps.push_back(std::move(taps));
   }

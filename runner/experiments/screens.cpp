@@ -7,6 +7,7 @@
 
 #include "protocols/schedule.hpp"
 #include "runner/experiments/counted.hpp"
+#include "runner/session/between_trials.hpp"
 #include "runner/session/session_row.hpp"
 namespace tapstudy::runner {
 namespace {
@@ -39,10 +40,9 @@ void add_forms(const protocols::Protocol& protocol, const std::vector<std::strin
 // Trials and what comes after each.
 std::vector<ScreenGroup> trial_screens(const protocols::Block& block) {
   const int trials = protocols::planned_trials(block);
-  const bool may_end_early = block.criterion || block.comparison;
   const bool is_mounted = block.presented == protocols::Presented::real_plates;
   std::vector<ScreenGroup> screens{
-      {fmt::format("{}: {}{}", block.name, may_end_early ? "at most " : "",
+      {fmt::format("{}: {}{}", block.name, may_end_early(block) ? "at most " : "",
                    counted(static_cast<std::size_t>(trials), "trial")),
        trials, trials * (decision_s + (is_mounted ? mounting_s : 0.0))}};
   if (block.confidence) {
@@ -109,8 +109,13 @@ std::vector<ScreenGroup> screens_of(const protocols::Protocol& protocol) {
   std::vector<ScreenGroup> screens;
   add_instructions(protocol.instructions, "the study", screens);
   add_forms(protocol, protocol.forms_before, screens);
+  const protocols::Block* before = nullptr;
   for (const protocols::Block& block : protocol.blocks) {
     add_instructions(block.instructions, block.name, screens);
+    if (before != nullptr && is_end_of_practice_said(*before, block)) {
+      screens.push_back({"the practice is over", 1, feedback_s});
+    }
+    before = &block;
     add_trials(protocol, block, screens);
     add_forms(protocol, block.forms_after, screens);
   }

@@ -87,22 +87,6 @@ void add_modes(const std::string& stimulus, const core::ModalModel& model, std::
   }
 }
 
-const char* kind_of(const protocols::FormItem& item) {
-  switch (item.kind) {
-    case protocols::ItemKind::likert:
-      return "likert";
-    case protocols::ItemKind::scale:
-      return "scale";
-    case protocols::ItemKind::number:
-      return "number";
-    case protocols::ItemKind::single_choice:
-      return "single_choice";
-    case protocols::ItemKind::text:
-      return "text";
-  }
-  return "";
-}
-
 std::string options_of(const protocols::FormItem& item) {
   std::vector<std::string> lines;
   for (const protocols::Option& option : item.options) {
@@ -116,7 +100,7 @@ results::Table items_table(const Protocol& protocol) {
   for (const auto& [name, form] : protocol.forms) {
     for (const protocols::FormItem& item : form.items) {
       const bool is_likert = item.kind == protocols::ItemKind::likert;
-      rows.push_back({name, item.name, std::string{kind_of(item)}, item.question,
+      rows.push_back({name, item.name, std::string{protocols::name(item.kind)}, item.question,
                       is_likert ? Cell{std::int64_t{item.steps}} : Cell{}, item.low, item.high,
                       options_of(item)});
     }

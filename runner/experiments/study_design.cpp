@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 
 #include "core/rng.hpp"
+#include "protocols/axes/axis.hpp"
 #include "protocols/catch_trials.hpp"
 #include "protocols/ordering.hpp"
 #include "protocols/schedule.hpp"
@@ -78,6 +80,12 @@ analysis::BlockDesign::Redraw redraw_of(const protocols::Protocol& protocol,
   };
 }
 
+// Of one that the protocol's reader has accepted.
+analysis::AxisName name_of(const std::string& axis) {
+  const protocols::Axis& row = *protocols::find_axis(axis);
+  return {axis, std::string{row.quantity}, std::string{row.unit}};
+}
+
 void add_task_settings(const protocols::Block& block, const protocols::Protocol& protocol,
                        analysis::BlockDesign& part) {
   part.decision_model = block.task->decision_model(block);
@@ -89,18 +97,18 @@ void add_task_settings(const protocols::Block& block, const protocols::Protocol&
   part.has_ties = !block.tie.empty();
   if (block.adjustment) {
     const protocols::Adjustment& of = *block.adjustment;
-    part.adjusted = analysis::AdjustedAxis{of.axis, of.spacing == protocols::Spacing::log,
+    part.adjusted = analysis::AdjustedAxis{name_of(of.axis), of.spacing == protocols::Spacing::log,
                                            of.middle(), of.standard};
   }
   if (block.on_axis) {
-    part.axis = analysis::VariedAxis{block.on_axis->axis, 0.0, false, false};
+    part.axis = analysis::VariedAxis{name_of(block.on_axis->axis), 0.0, false, false};
   }
   if (block.comparison) {
     const protocols::Comparison& comparison = *block.comparison;
-    part.axis = analysis::VariedAxis{comparison.axis, comparison.standard, comparison.is_fraction,
-                                     comparison.side == protocols::Side::below,
-                                     comparison.is_standard_right};
-    part.further_axes = comparison.further_axes;
+    part.axis = analysis::VariedAxis{
+        name_of(comparison.axis), comparison.standard, comparison.is_fraction,
+        comparison.side == protocols::Side::below, comparison.is_standard_right};
+    std::ranges::transform(comparison.further_axes, std::back_inserter(part.further_axes), name_of);
     part.shape = comparison.shape;
   }
 }

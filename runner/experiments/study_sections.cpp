@@ -5,6 +5,7 @@
 #include "analysis/confidence/confidence_section.hpp"
 #include "analysis/course/course_section.hpp"
 #include "analysis/rendered/rendered_section.hpp"
+#include "results/participant_courses.hpp"
 #include "runner/experiments/counted_answers.hpp"
 #include "runner/experiments/given_forms.hpp"
 #include "runner/experiments/rendered_study.hpp"
@@ -54,7 +55,7 @@ analysis::ReportSection course(const protocols::Protocol& protocol,
   std::vector<ParticipantCourseRow> participants;
   std::vector<analysis::PracticeResult> practice;
   for (const StudyStore& each : stores) {
-    for (const ParticipantCourseRow& row : each.store->participant_courses()) {
+    for (const ParticipantCourseRow& row : results::participant_courses(*each.store)) {
       if (row.mode == mode) {
         participants.push_back(row);
         add_practice(protocol, row.participant_id, *each.store, practice);

@@ -100,6 +100,16 @@ Summary summary_of_answers(const std::vector<NamedCsv>& tables, const TableOptio
                     "corrected, trials without an answer, or participants who are excluded",
                     table.not_counted, table.rows));
   }
+  if (table.of_other_modes > 0) {
+    summary.deviations.push_back(
+        fmt::format("{} of {} rows are left out: of pilot or simulated sessions, which are no part "
+                    "of the study",
+                    table.of_other_modes, table.rows));
+  }
+  if (table.has_times && !table.are_participants_known) {
+    summary.deviations.emplace_back(
+        "times are not summarised: participants are not known (--participant-column)");
+  }
   if (!table.possible_time.empty()) {
     summary.deviations.push_back(fmt::format(
         "column '{0}' is not read: if it holds response times, --time-column {0} and --time-unit "

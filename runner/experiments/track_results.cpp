@@ -8,6 +8,7 @@
 
 #include "protocols/schedule.hpp"
 #include "results/export/columns.hpp"
+#include "results/stored_answers.hpp"
 #include "runner/session/adaptive_blocks.hpp"
 namespace tapstudy::runner {
 namespace {
@@ -76,6 +77,7 @@ void add_tracks(const protocols::Protocol& protocol, const std::string& particip
           result_of(adaptive->tracks_of(block.name).track(i), *block.comparison->tracks[i]);
       result.participant_id = participant;
       result.block = block.name;
+      result.is_signed = block.comparison->side == protocols::Side::either;
       result.track = static_cast<int>(i) + 1;
       results.push_back(std::move(result));
     }
@@ -125,7 +127,7 @@ void set_tracks(const protocols::Protocol& protocol, results::Store& store,
 }
 
 results::Table tracks_table(const protocols::Protocol& protocol, results::Store& store) {
-  std::vector<results::AnswerRow> answers = store.answers();
+  std::vector<results::AnswerRow> answers = results::stored_answers(store);
   set_tracks(protocol, store, answers);
   std::vector<results::Row> rows;
   for (const results::AnswerRow& answer : answers) {

@@ -36,6 +36,8 @@ class Operator {
   // carried_out: the request that ended it, if one did.
   virtual void trial_is_over(std::optional<TrialRequest> /*carried_out*/) {}
   virtual void force_is(ForceState /*force*/) {}
+  // It is stored once its confidence is given, too.
+  virtual void answer_is_given(int /*trial*/) {}
   virtual void answer_is_stored(const AnswerInView& /*answer*/) {}
 
   // The participant corrects the last answer, by a text that is one. Ready once that is stored, or

@@ -28,18 +28,6 @@ std::string answer_of(const std::string& text, const protocols::Answers& answers
   return *answer;
 }
 
-bool is_over(const std::shared_future<void>& future) {
-  return future.wait_for(std::chrono::seconds{0}) == std::future_status::ready;
-}
-
-bool has_succeeded(const std::shared_future<void>& future) {
-  try {
-    future.get();
-    return true;
-  } catch (const std::exception&) {
-    return false;
-  }
-}
 }  // namespace
 
 bool OperatorDesk::is_possible(OperatorAction action) const {
@@ -71,6 +59,12 @@ void OperatorDesk::check_is_possible(const OperatorCommand& command) const {
     throw core::InvalidInput{fmt::format("{} is not possible now", name(command.action))};
   }
   const std::optional<int> trial = trial_of(command);
+  if (command.action == OperatorAction::correct && given_ &&
+      command.trial.value_or(*given_) == *given_) {
+    throw core::InvalidInput{fmt::format(
+        "the answer of trial {} is stored, and can be corrected, once its confidence is given{}",
+        *given_, trial ? fmt::format(" (the one before: correct @{} …)", *trial) : "")};
+  }
   if (command.trial && command.trial != trial) {
     throw core::InvalidInput{fmt::format("trial {} is over", *command.trial)};
   }
@@ -80,19 +74,6 @@ void OperatorDesk::check_is_possible(const OperatorCommand& command) const {
       throw core::InvalidInput{"the alternatives are presented in sequence automatically"};
     }
   }
-}
-
-// As far as it is stored.
-bool OperatorDesk::is_excluded() const {
-  bool is = session_.is_excluded;
-  for (const Logged& logged : log_) {
-    const bool is_about_it = logged.row.action == name(OperatorAction::exclude) ||
-                             logged.row.action == name(OperatorAction::include);
-    if (is_about_it && is_over(logged.stored) && has_succeeded(logged.stored)) {
-      is = logged.row.action == name(OperatorAction::exclude);
-    }
-  }
-  return is;
 }
 
 // A remark may be about the last trial, too.
@@ -158,7 +139,7 @@ std::string OperatorDesk::said_of(const OperatorCommand& command,
              : row.detail;
 }
 
-OperatorDesk::Posted OperatorDesk::post(const OperatorCommand& command) {
+PostedCommand OperatorDesk::post(const OperatorCommand& command) {
   const std::lock_guard lock{mutex_};
   check_is_possible(command);
   results::OperatorActionRow row{session_.id, session_.now_s(), std::string{name(command.action)},
@@ -204,25 +185,6 @@ bool OperatorDesk::waits_for_operator(const std::string& why, const std::functio
   return !stop_was_asked();
 }
 
-DeskView OperatorDesk::view() const {
-  const std::lock_guard lock{mutex_};
-  DeskView view{trial_, current_, last_answer_, {}, force_, is_paused_, held_by_, {}};
-  for (const Logged& logged : log_) {
-    const bool is_stored = is_over(logged.stored) && has_succeeded(logged.stored);
-    view.log.push_back({logged.row, is_stored});
-    if (is_stored && logged.row.action == name(OperatorAction::correct) && view.last_answer &&
-        logged.row.number == view.last_answer->trial.number) {
-      view.last_answer->response = logged.row.detail;
-    }
-  }
-  for (const ActionInfo& info : operator_actions()) {
-    if (is_possible(info.action)) {
-      view.possible.push_back(info.action);
-    }
-  }
-  return view;
-}
-
 void OperatorDesk::trial_was(int number) {
   const std::lock_guard lock{mutex_};
   last_trial_ = number;
@@ -230,6 +192,7 @@ void OperatorDesk::trial_was(int number) {
 
 void OperatorDesk::trial_begins(const TrialInView& trial) {
   const std::lock_guard lock{mutex_};
+  given_.reset();
   trial_ = trial;
   current_ = 0;
 }
@@ -259,8 +222,14 @@ void OperatorDesk::trial_is_over(std::optional<TrialRequest> carried_out) {
   switch_to_.reset();
 }
 
+void OperatorDesk::answer_is_given(int trial) {
+  const std::lock_guard lock{mutex_};
+  given_ = trial;
+}
+
 void OperatorDesk::answer_is_stored(const AnswerInView& answer) {
   const std::lock_guard lock{mutex_};
+  given_.reset();
   last_answer_ = answer;
 }
 

@@ -10,6 +10,7 @@
 #include "results/recorder.hpp"
 #include "runner/operators/operator.hpp"
 #include "runner/operators/operator_command.hpp"
+#include "runner/terminal/stored_outcomes.hpp"
 namespace tapstudy::runner {
 // What a page or a terminal shows of it.
 struct DeskView {
@@ -44,11 +45,7 @@ class OperatorDesk final : public Operator {
 
   // Any thread. Ready once the action is stored, or carries the StoreError. Throws InvalidInput if
   // it is impossible now: nothing is stored then.
-  struct Posted {
-    std::string said;  // what is done, with its trial
-    std::shared_future<void> stored;
-  };
-  Posted post(const OperatorCommand& command);
+  PostedCommand post(const OperatorCommand& command);
   // As the operator does, on the program's own account; nothing if paused already.
   void pause(const std::string& why);
   // Waits until the operator resumes; false if the session is to stop. `tell` is called once that
@@ -62,6 +59,7 @@ class OperatorDesk final : public Operator {
   void alternative_is_selected(std::size_t alternative) override;
   void trial_is_over(std::optional<TrialRequest> carried_out) override;
   void force_is(ForceState force) override;
+  void answer_is_given(int trial) override;
   void answer_is_stored(const AnswerInView& answer) override;
   std::shared_future<void> participant_corrects(const std::string& text) override;
   bool is_paused() const override;
@@ -91,6 +89,7 @@ class OperatorDesk final : public Operator {
   std::size_t current_{0};
   std::optional<AnswerInView> last_answer_;
   std::optional<int> last_trial_;
+  std::optional<int> given_;  // the trial whose answer waits for its confidence
   std::optional<TrialRequest> request_;
   std::optional<std::size_t> switch_to_;
   std::string end_reason_;

@@ -15,6 +15,11 @@ RestTimes rest_times(const protocols::Breaks& breaks) {
           breaks.max_seconds ? in(*breaks.max_seconds) : Clock::time_point::max()};
 }
 
+std::string place_in(const TrialProgress& progress) {
+  return progress.is_open_ended ? fmt::format("{}", progress.done + 1)
+                                : fmt::format("{} of {}", progress.done + 1, progress.total);
+}
+
 std::optional<std::size_t> TrialPrompt::alternative_of(const std::string& answer) const {
   const auto found = std::ranges::find(alternative_labels, answer);
   return found == alternative_labels.end()

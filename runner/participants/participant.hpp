@@ -15,7 +15,11 @@ struct TrialProgress {
   int done{};  // and need not come again
   int total{};
   bool is_practice{};
+  bool is_open_ended{};  // total is the most there can be: procedures may end before
 };
+
+// Of the trial that is presented: "3 of 8", or "3" where nobody knows of how many.
+std::string place_in(const TrialProgress& progress);
 
 // A trial as presented to the participant. Does not disclose the rendered stimulus.
 struct TrialPrompt {
@@ -69,6 +73,7 @@ class Participant {
   virtual ~Participant() = default;
   // Between trials; each returns once the participant goes on, and throws Stopped where none does.
   virtual void read(const std::string& /*instructions*/) {}
+  virtual void practice_is_over() {}
   virtual void rest(const protocols::Breaks& /*breaks*/) {}
   // By item, those left out being absent. A simulation has nothing to say about itself.
   using FormAnswers = std::map<std::string, std::string>;

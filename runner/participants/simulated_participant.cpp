@@ -168,15 +168,15 @@ SimulatedParticipant::SimulatedParticipant(const protocols::Protocol& protocol,
       settings_{settings},
       hand_{protocol.simulation.hand, protocol.rendering.dt_s, device::SimulatedHand::Memory::kept},
       hand_rng_{core::derived_seed(seed, Purpose::memory)},
-      acquaintances_{acquaintances(seed)} {
-  for (Acquaintance& by : acquaintances_) {
+      trained_observers_{trained_observers(seed)} {
+  for (TrainedObserver& by : trained_observers_) {
     remember(models, by);
   }
   hand_rng_ = core::Rng{core::derived_seed(seed, Purpose::hand)};
 }
 
 // One for each way of tapping in the protocol; the participant's own comes first.
-std::vector<SimulatedParticipant::Acquaintance> SimulatedParticipant::acquaintances(
+std::vector<SimulatedParticipant::TrainedObserver> SimulatedParticipant::trained_observers(
     std::uint64_t seed) const {
   std::vector<Scripted> ways{std::nullopt};
   for (const protocols::Block& block : protocol_.blocks) {
@@ -184,7 +184,7 @@ std::vector<SimulatedParticipant::Acquaintance> SimulatedParticipant::acquaintan
       ways.push_back(block.explore.scripted_taps);
     }
   }
-  std::vector<Acquaintance> all;
+  std::vector<TrainedObserver> all;
   for (const Scripted& taps : ways) {
     all.push_back({taps,
                    {aims_m(protocol_, settings_.placement),
@@ -195,12 +195,12 @@ std::vector<SimulatedParticipant::Acquaintance> SimulatedParticipant::acquaintan
 }
 
 SimulatedObserver& SimulatedParticipant::observer_of(const protocols::Block& block) {
-  return std::ranges::find(acquaintances_, block.explore.scripted_taps, &Acquaintance::taps)
+  return std::ranges::find(trained_observers_, block.explore.scripted_taps, &TrainedObserver::taps)
       ->observer;
 }
 
 // A body that several stimuli share is tapped once.
-void SimulatedParticipant::remember(ModelLibrary& models, Acquaintance& by) {
+void SimulatedParticipant::remember(ModelLibrary& models, TrainedObserver& by) {
   const protocols::Protocol reality = with_real_plates(protocol_);
   VirtualTrialLoop world{hand_, settings_, Keep::nothing};
   using Body = std::tuple<const core::Plate*, const core::Material*, const core::Contacts*>;

@@ -32,14 +32,14 @@ class SimulatedParticipant final : public Participant {
   class Touch;
   using Scripted = std::optional<protocols::ScriptedTaps>;
   // Scripted taps and a hand's own do not feel alike: what is known of plates is known by either.
-  struct Acquaintance {
+  struct TrainedObserver {
     Scripted taps;
     SimulatedObserver observer;
   };
   double begin_taps(const Scripted& scripted, int count);  // how long they take [s]
   std::vector<FeltTap> just_felt() const;
-  std::vector<Acquaintance> acquaintances(std::uint64_t seed) const;
-  void remember(ModelLibrary& models, Acquaintance& by);
+  std::vector<TrainedObserver> trained_observers(std::uint64_t seed) const;
+  void remember(ModelLibrary& models, TrainedObserver& by);
   SimulatedObserver& observer_of(const protocols::Block& block);
 
   const protocols::Protocol& protocol_;
@@ -47,7 +47,7 @@ class SimulatedParticipant final : public Participant {
   device::LoopSettings settings_;
   device::SimulatedHand hand_;
   core::Rng hand_rng_;
-  std::vector<Acquaintance> acquaintances_;
+  std::vector<TrainedObserver> trained_observers_;
   int refused_trial_{0};
   int refusals_{0};
 };

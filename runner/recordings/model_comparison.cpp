@@ -103,6 +103,9 @@ ModelComparison compare_with_model(const protocols::Protocol& protocol, const st
                                                    assurance_if_known(measured, modal, spec));
     if (model.is_on_springs) {
       update_on_springs(spec, measured, progress, model);
+      if (!model.springs) {  // f ~ sqrt(E) would take the springs to grow with E
+        model.update.reset();
+      }
     }
   });
   if (model.springs) {

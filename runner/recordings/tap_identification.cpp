@@ -31,6 +31,7 @@ class Identifier {
     result_.question = question;
     if (!question.protocol.empty()) {
       protocol_ = protocols::read_protocol(question.protocol);
+      result_.loop_rate_hz = protocol_->rate_hz;
       static_cast<void>(protocol_->stimulus(question.stimulus));  // must be there
       result_.finger_kg = protocol_->rendering.finger.mass_kg;
     }
@@ -267,7 +268,9 @@ class Identifier {
                                                result_.band.high_hz, hook_);
     if (model.is_on_springs && !model.springs) {
       result_.remarks.emplace_back(
-          "how stiff the springs are cannot be told from these modes: the protocol's were kept");
+          "Young's modulus and the stiffness of the springs cannot be told apart by these modes: "
+          "the "
+          "protocol's were kept (measure more modes, some of which bend the plate)");
     }
     if (model.update) {
       add_remarks(remarks_on_shapes(*model.update, result_));

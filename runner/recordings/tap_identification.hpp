@@ -71,7 +71,8 @@ struct TapIdentification {
   std::optional<ModelComparison> model;
   std::vector<Eigen::Vector2d> places_m;  // that were tapped; empty: not known
   std::vector<std::string> remarks;
-  double finger_kg{};  // of the protocol; 0 without one
+  double finger_kg{};                    // of the protocol; 0 without one
+  std::optional<double> loop_rate_hz{};  // likewise
 };
 
 // Reads, finds the taps, identifies modes, damping, sinusoid and Young's modulus. Throws

@@ -88,6 +88,10 @@ void print_sinusoid(const SinusoidLaw& law) {
 
 void print_model(const TapIdentification& found, const ModelComparison& model) {
   fmt::print("\nModel of '{}', material '{}':\n", found.question.stimulus, model.material_name);
+  if (!model.update && model.is_on_springs) {
+    fmt::print("  neither Young's modulus nor its springs can be told from these modes\n");
+    return;
+  }
   if (!model.update) {
     fmt::print("  none of its {} modes is within {:.0f} % of a measured one\n",
                model.frequencies_hz.size(), 100.0 * analysis::max_match_difference);

@@ -114,7 +114,12 @@ std::string yaml_of(const TapIdentification& found) {
       "# tapstudy identify: {} taps, {}, {:g} to {:g} Hz. To be pasted over the keys of the same "
       "name.\n",
       found.taps.size(), name(found.question.quantity), found.band.low_hz, found.band.high_hz);
-  if (found.sinusoid && found.sinusoid->amplitude_n_s_per_m) {
+  const bool is_too_fast = found.sinusoid && found.loop_rate_hz &&
+                           found.sinusoid->frequency_hz.value >= 0.5 * *found.loop_rate_hz;
+  if (is_too_fast) {
+    text += fmt::format("# the sinusoid of {:.5g} Hz is not below half of the protocol's rate_hz\n",
+                        found.sinusoid->frequency_hz.value);
+  } else if (found.sinusoid && found.sinusoid->amplitude_n_s_per_m) {
     const SinusoidLaw& law = *found.sinusoid;
     text += fmt::format(
         "rendering:\n  sinusoid:\n    amplitude_n_s_per_m: {:.5g}\n    decay_per_s: {:.5g}  {}\n"
@@ -138,7 +143,8 @@ std::string yaml_of(const TapIdentification& found) {
   const core::Material& material = *found.model->material;
   const auto& update = found.model->update;
   const std::size_t matched = update ? update->matched.size() : 0;
-  if (matched < found.agreed.size()) {
+  const bool are_springs_kept = found.model->is_on_springs && !found.model->springs;
+  if (matched > 0 && matched < found.agreed.size()) {
     text += fmt::format(
         "# CAUTION: only {} of the {} modes found match the model; Young's modulus rests on these, "
         "and\n# modal_ratios of other modes are those of their neighbours. Is the plate as the "
@@ -155,7 +161,9 @@ std::string yaml_of(const TapIdentification& found) {
              "    poissons_ratio: {:.9g}\n{}",
              found.model->material_name,
              update ? update->youngs_modulus_pa.value : material.youngs_modulus_pa,
-             update ? comment(update->youngs_modulus_pa) : "# the protocol's: no mode matched",
+             update             ? comment(update->youngs_modulus_pa)
+             : are_springs_kept ? "# the protocol's: not told apart from its springs"
+                                : "# the protocol's: no mode matched",
              material.density_kg_per_m3, material.poissons_ratio, damping_of(found, "    "));
 }
 }  // namespace tapstudy::runner

@@ -8,6 +8,7 @@
 #include "analysis/rank_tests/signed_rank.hpp"
 #include "analysis/statistics/counts_csv.hpp"
 #include "results/store.hpp"
+#include "results/stored_answers.hpp"
 #include "runner/experiments/scratch_directory.hpp"
 #include "runner/experiments/simulated_study.hpp"
 #include "runner/reproduction/claim_table.hpp"
@@ -50,8 +51,8 @@ Predicted predicted(const Bench& bench, const Simulated& study, double noise_db)
            protocol);
   const ConfusionMatrix printed = printed_table();
   Predicted result{noise_db, ConfusionMatrix{printed.stimuli, printed.responses}};
-  for (const results::AnswerRow& answer :
-       results::Store::open_existing(directory.path()).answers()) {
+  results::Store store = results::Store::open_existing(directory.path());
+  for (const results::AnswerRow& answer : results::stored_answers(store)) {
     const bool is_counted = !answer.is_practice && !answer.is_catch &&
                             answer.block == protocol.hypotheses.front().block;
     if (is_counted) {

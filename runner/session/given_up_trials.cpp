@@ -13,7 +13,7 @@ std::vector<int> given_up_trials(const protocols::Protocol& protocol,
   std::vector<int> given_up;
   for (const results::UnansweredTrial& trial : store.unanswered_trials(participant_id)) {
     const protocols::Block& block = protocol.block(trial.block);
-    if (trial.is_skipped ? !block.comparison
+    if (trial.is_skipped ? !do_skipped_trials_come_again(block)
                          : block.explore.at_limit == protocols::AtLimit::give_up) {
       given_up.push_back(trial.number);
     }
@@ -21,16 +21,10 @@ std::vector<int> given_up_trials(const protocols::Protocol& protocol,
   return given_up;
 }
 
-namespace {
-bool may_end_early(const protocols::Block& block) {
-  return block.criterion || block.comparison;
-}
-}  // namespace
-
 std::vector<int> unneeded_trials(const protocols::Protocol& protocol,
                                  const std::string& participant_id, results::Store& store) {
   const auto session = store.latest_session(participant_id);
-  if (!session || std::ranges::none_of(protocol.blocks, may_end_early)) {
+  if (!session || std::ranges::none_of(protocol.blocks, protocols::may_end_early)) {
     return {};
   }
   const protocols::Schedule schedule =

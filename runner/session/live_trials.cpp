@@ -25,10 +25,8 @@ void introduce(const Console& console) {
 }
 
 TypedCommands commands_to(OperatorDesk& desk) {
-  return TypedCommands{[&desk](const std::string& command) -> TypedCommands::Posted {
-    OperatorDesk::Posted posted = desk.post(parse_operator_command(command));
-    return {std::move(posted.said), std::move(posted.stored)};
-  }};
+  return TypedCommands{
+      [&desk](const std::string& command) { return desk.post(parse_operator_command(command)); }};
 }
 
 // The participant may still be at the screen, and must not read which plate comes; nor may the

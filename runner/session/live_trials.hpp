@@ -12,7 +12,7 @@
 #include "runner/markers/markers.hpp"
 #include "runner/markers/tap_markers.hpp"
 #include "runner/operators/operator_desk.hpp"
-#include "runner/participants/console_participant.hpp"
+#include "runner/participants/terminal_participant.hpp"
 #include "runner/session/live_session.hpp"
 #include "runner/session/session_states.hpp"
 #include "runner/session/trial_engine.hpp"
@@ -58,7 +58,7 @@ class LiveTrials {
   std::optional<MaskedTrialLoop> masked_loop_;
   OperatorDesk desk_;
   TapMarkers tap_markers_;
-  ConsoleParticipant at_terminal_;
+  TerminalParticipant at_terminal_;
   std::unique_ptr<Console> console_;  // null: at the terminal
   SessionStates states_;
   IdleTrialLoop idle_loop_;

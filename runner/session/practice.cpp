@@ -11,22 +11,23 @@ void Practice::add(const protocols::PlannedTrial& trial, const std::string& resp
   }
 }
 
-bool Practice::is_needed(const protocols::PlannedTrial& next) {
-  for (const protocols::Block& block : protocol_.blocks) {
-    const bool is_met = record_.is_met(block);
-    const bool is_own = block.name == next.block;
-    if (block.criterion && (is_met || !is_own)) {
-      note(block);
+bool Practice::is_needed(const protocols::PlannedTrial& next, const protocols::Schedule& schedule) {
+  for (const protocols::PlannedTrial& trial : schedule) {
+    if (trial.block == next.block) {
+      break;
     }
-    if (is_own) {
-      return !is_met;
-    }
+    note(protocol_.block(trial.block));
   }
-  return true;
+  const protocols::Block& own = protocol_.block(next.block);
+  const bool is_met = record_.is_met(own);
+  if (is_met) {
+    note(own);
+  }
+  return !is_met;
 }
 
 void Practice::note(const protocols::Block& block) {
-  if (!noted_.insert(block.name).second) {
+  if (!block.criterion || !noted_.insert(block.name).second) {
     return;
   }
   const bool is_met = record_.is_met(block);

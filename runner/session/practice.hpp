@@ -14,9 +14,9 @@ class Practice {
       : protocol_{protocol}, states_{states}, record_{std::move(earlier)} {}
   void add(const protocols::PlannedTrial& trial, const std::string& response);
   // Between trials. False: its block's criterion is met. What became of that criterion and of
-  // those of earlier blocks is noted, once. Throws PracticeMissed where an earlier one had to be
-  // met.
-  bool is_needed(const protocols::PlannedTrial& next);
+  // those of blocks that came before, in this schedule, is noted, once. Throws PracticeMissed where
+  // an earlier one had to be met.
+  bool is_needed(const protocols::PlannedTrial& next, const protocols::Schedule& schedule);
 
  private:
   void note(const protocols::Block& block);

@@ -29,11 +29,15 @@ std::optional<Interruption> TrialEngine::run(const protocols::Schedule& schedule
   try {
     const auto interruption = run_all(schedule, done_trials);
     if (!interruption) {
-      interludes_.after_last_trial(schedule);
+      between_trials_.after_last_trial(schedule);
       parts_.states.enter(SessionState::ended);
     }
     note_events();
     return interruption;
+  } catch (const PracticeMissed& missed) {
+    parts_.states.enter(SessionState::stopped, {}, missed.what());
+    note_events();
+    throw;
   } catch (const Stopped&) {
     parts_.states.enter(SessionState::stopped, {}, parts_.by.end_reason());
     note_events();
@@ -64,11 +68,11 @@ std::optional<Interruption> TrialEngine::run_all(const protocols::Schedule& sche
     stop_if_asked();
     const PlannedTrial trial = waiting.front();
     waiting.pop_front();
-    if (!practice_.is_needed(trial) || adaptive_->is_over(trial)) {
+    if (!practice_.is_needed(trial, schedule) || adaptive_->is_over(trial)) {
       done_trials.insert(trial.number);
       continue;
     }
-    interludes_.before(trial, schedule);
+    between_trials_.before(trial, schedule);
     const Outcome outcome = run_until_it_counts(trial, {schedule, done_trials});
     if (outcome.is_requeued) {
       std::erase(requeued_, trial.number);
@@ -170,6 +174,7 @@ void TrialEngine::save(std::vector<results::FormAnswerRow> answers) {
 void TrialEngine::ask_confidence(const protocols::Block& block, int trial, Answer& answer) {
   if (block.confidence) {
     parts_.states.enter(SessionState::confidence, trial);
+    parts_.by.answer_is_given(trial);
     answer.confidence = parts_.participant.confidence(*block.confidence);
   }
 }
@@ -271,8 +276,7 @@ TrialEngine::Outcome TrialEngine::run_trial(const PlannedTrial& planned, const C
       return {.is_repeated = true};
     case Ending::skipped:
       parts_.participant.skipped(prompt);
-      // a procedure asked for this answer: of constant stimuli a level would lack one
-      return {.is_requeued = block.comparison.has_value()};
+      return {.is_requeued = do_skipped_trials_come_again(block)};
     case Ending::interrupted:
       throw Stopped{fmt::format(
           "stopped in trial {} of {}; every answer given so far is kept (go on with --resume)",

@@ -11,7 +11,7 @@
 #include "results/recorder.hpp"
 #include "runner/participants/participant.hpp"
 #include "runner/session/adaptive_blocks.hpp"
-#include "runner/session/interludes.hpp"
+#include "runner/session/between_trials.hpp"
 #include "runner/session/interruption.hpp"
 #include "runner/session/practice.hpp"
 #include "runner/session/presentation.hpp"
@@ -28,10 +28,11 @@ class TrialEngine {
   TrialEngine(const SessionParts& parts, results::Recorder& recorder,
               const EarlierAnswers& earlier = {})
       : parts_{parts},
-        interludes_{{parts.protocol, parts.participant, parts.states,
-                     [this](std::vector<results::FormAnswerRow> rows) { save(std::move(rows)); },
-                     [this] { wait_while_paused(); }},
-                    earlier.filled_forms},
+        between_trials_{
+            {parts.protocol, parts.participant, parts.states,
+             [this](std::vector<results::FormAnswerRow> rows) { save(std::move(rows)); },
+             [this] { wait_while_paused(); }},
+            earlier.filled_forms},
         practice_{parts.protocol, parts.states, earlier.practice},
         as_given_{earlier.as_given},
         recorder_{recorder},
@@ -79,7 +80,7 @@ class TrialEngine {
   std::optional<TrialPrompt::Previous> correctable() const;
 
   SessionParts parts_;
-  Interludes interludes_;
+  BetweenTrials between_trials_;
   Practice practice_;
   std::vector<results::JournalledAnswer> as_given_;  // in earlier sessions
   std::optional<AdaptiveBlocks> adaptive_;

@@ -10,6 +10,7 @@ TrialProgress progress_at(const protocols::PlannedTrial& trial, const protocols:
     const bool is_of_it = is_practice(other) == progress.is_practice;
     progress.total += is_of_it ? 1 : 0;
     progress.done += is_of_it && done.contains(other.number) ? 1 : 0;
+    progress.is_open_ended |= is_of_it && may_procedures_end_early(protocol.block(other.block));
   }
   return progress;
 }

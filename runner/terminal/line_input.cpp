@@ -25,7 +25,9 @@ bool asks_to_quit(const std::string& line) {
 }
 
 bool is_of_operator(const std::string& line) {
-  return line.starts_with(':');
+  const auto first = line.find_first_not_of(" \t", 1);
+  return line.starts_with(':') && first != std::string::npos &&
+         std::isalpha(static_cast<unsigned char>(line[first])) != 0;
 }
 
 // The line that is too long is dropped whole: its tail would be taken for an answer.
@@ -85,7 +87,7 @@ TypedAhead LineInput::forget_typed_ahead() {
       typed.of_operator.push_back(std::move(*line));
     }
   }
-  if (!is_of_operator(received_)) {
+  if (!received_.starts_with(':')) {  // what else may become a command
     received_.clear();
   }
   return typed;

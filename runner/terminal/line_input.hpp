@@ -6,7 +6,8 @@
 namespace tapstudy::runner {
 // Whether a line is the word quit.
 bool asks_to_quit(const std::string& line);
-// Where a participant answers at the terminal, a line that begins with a colon is the operator's.
+// Where a participant answers at the terminal, a line of a colon and a word is the operator's;
+// ":-)" is the participant's.
 bool is_of_operator(const std::string& line);
 
 // What was typed before a question was asked.

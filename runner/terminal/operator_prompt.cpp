@@ -9,7 +9,7 @@ bool asked_and_done(LineInput& input, TypedCommands& commands, const std::string
                     const std::string& word) {
   const std::string how = word.empty() ? "press Enter" : fmt::format("type {}", word);
   say("{} {}. ", task, how);
-  if (commands.heed(input.forget_typed_ahead())) {
+  if (commands.obey_typed_ahead(input.forget_typed_ahead())) {
     return false;
   }
   while (const auto line = commands.next_of_participant(input, [] { return true; })) {

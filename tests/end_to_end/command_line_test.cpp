@@ -267,23 +267,30 @@ TEST_CASE("bad input is one clear error and its own exit code", "[end_to_end]") 
           "there is no directory");
 }
 
+namespace {
+// A namespace of our own, as the tests of file systems need.
+bool can_mount() {
+  return testing::run_program({"/usr/bin/unshare", "-rm", "/bin/true"}).exit_code == 0;
+}
+}  // namespace
+
 TEST_CASE("a full disk ends in one error and leaves whole trials", "[end_to_end]") {
   // a file system of our own, 2 MB large, where the kernel lets us have one
   const std::string script = R"sh(
-mount -t tmpfs -o size=2M tapstudy "$1" || exit 77
+mount -t tmpfs -o size=2M tapstudy "$1" || exit 70
 "$2" simulate "$3" --participants 10 --seed 1 --out "$1/study" 2>"$4"; code=$?
 sqlite3 "$1/study/study.db" 'PRAGMA integrity_check; SELECT count(*) > 0 FROM trial;
   SELECT count(*) FROM trial WHERE trial_id NOT IN (SELECT trial_id FROM tick_statistics)' >"$4.sql" 2>&1
 exit $code)sh";
+  if (!can_mount()) {
+    WARN("no private mounts here: the full disk was not tried");
+    return;
+  }
   const TempDirectory directory;
   const TempDirectory small;
   const auto result = testing::run_program({"/usr/bin/unshare", "-rm", "/bin/sh", "-c", script,
                                             "sh", small.path(), testing::tapstudy_program(),
                                             paper("discrimination.yaml"), directory / "said"});
-  if (result.exit_code == 77 || result.exit_code == 1) {
-    WARN("no private mounts here: the full disk was not tried: " << result.standard_error);
-    return;
-  }
   CHECK(result.exit_code == 5);
   CHECK_THAT(testing::contents(directory / "said"), Contains("is the disk full?"));
   CHECK(testing::contents(directory / "said.sql") == "ok\n1\n0\n");
@@ -292,21 +299,21 @@ exit $code)sh";
 TEST_CASE("a read-only disk is an error of the store, and the study on it can still be reported",
           "[end_to_end]") {
   const std::string script = R"sh(
-mount -t tmpfs tapstudy "$1" || exit 77
+mount -t tmpfs tapstudy "$1" || exit 70
 "$2" simulate "$3" --participants 1 --out "$1/study" >/dev/null || exit 78
-mount -o remount,ro "$1" || exit 77
+mount -o remount,ro "$1" || exit 70
 "$2" simulate "$3" --participants 1 --out "$1/new" 2>"$4"; echo $? >>"$4"
 "$2" simulate "$3" --participants 1 --out "$1/study" 2>>"$4"; echo $? >>"$4"
 "$2" report "$1/study" --out "$4.report" >/dev/null 2>>"$4"; echo $? >>"$4")sh";
+  if (!can_mount()) {
+    WARN("no private mounts here: the read-only disk was not tried");
+    return;
+  }
   const TempDirectory directory;
   const TempDirectory disk;
   const auto result = testing::run_program({"/usr/bin/unshare", "-rm", "/bin/sh", "-c", script,
                                             "sh", disk.path(), testing::tapstudy_program(),
                                             paper("reality_vibration.yaml"), directory / "said"});
-  if (result.exit_code == 77 || result.exit_code == 1) {
-    WARN("no private mounts here: the read-only disk was not tried: " << result.standard_error);
-    return;
-  }
   const auto lines = csv_rows(testing::contents(directory / "said"));
   REQUIRE(lines.size() == 5);
   CHECK_THAT(lines[0][0], Contains("Read-only file system"));

@@ -51,7 +51,7 @@ TEST_CASE("check says how the results of simulated studies scatter, and how wide
   REQUIRE(checked.exit_code == 0);
   CHECK_THAT(checked.standard_output,
              Contains("2 simulated studies of 6 participants") &&
-                 Contains(fmt::format("Weber fraction of youngs_modulus_pa {:.3g}, standard "
+                 Contains(fmt::format("Weber fraction of Young's modulus {:.3g}, standard "
                                       "deviation {:.2g} between studies; median width of the 95 % "
                                       "intervals {:.2g}",
                                       mean, spread, width)));

@@ -59,6 +59,55 @@ TEST_CASE(
   CHECK(sql(directory, "SELECT group_concat(language) FROM session") == "de,de\n");
 }
 
+TEST_CASE("practice is judged once it was presented, in whatever order the blocks come",
+          "[end_to_end]") {
+  const auto block = [](const std::string& name, const std::string& more) {
+    return "  - {name: " + name +
+           ", task: identification, question: Which?, stimuli: [bare, ringing], repetitions: 2" +
+           more + "}\n";
+  };
+  const std::string practice =
+      ", practice: true, criterion: {correct: 1, of_last: 4, otherwise: end}";
+  const std::string text = R"(format: tapstudy/1
+title: Two blocks, each with its practice
+finger: {mass_kg: 0.058, stiffness_n_per_m: 300, damping_n_s_per_m: 3}
+rendering: {rate_hz: 1000, band_limit_hz: 300, penalty_stiffness_n_per_m: 3000, sinusoid: {amplitude_n_s_per_m: 3, decay_per_s: 600, frequency_hz: 250}}
+placement: {origin_m: [0, 0, 0], lateral_scale: 0.1}
+materials:
+  mdf: {youngs_modulus_pa: 2.5e9, density_kg_per_m3: 610, poissons_ratio: 0.25, damping: {ratio: 0.02}}
+plates:
+  held: {size_m: [0.6, 0.6, 0.05], fixations: [{region: disc, at_m: [0.25, 0.25], radius_m: 0.02}]}
+tapping_points_m: {middle: [0, 0]}
+stimuli:
+  bare: {label: bare, plate: held, material: mdf, technique: none}
+  ringing: {label: ringing, plate: held, material: mdf, technique: sinusoid}
+block_order: {order: shuffle}
+blocks:
+)" + block("practice_a", practice) +
+                           block("a", "") + block("practice_b", practice) + block("b", "");
+  const TempDirectory directory;
+  testing::write(directory / "study.yaml", text);
+  std::string everything;  // "1" is right half of the time
+  for (int i = 0; i < 40; ++i) {
+    everything += "1\n";
+  }
+  for (const char* const seed : {"1", "2", "3", "4"}) {  // some begin with b
+    const auto run =
+        testing::tapstudy({"run", directory / "study.yaml", "--participant",
+                           std::string{"P"} + seed, "--seed", seed, "--out", directory / "study"},
+                          everything);
+    INFO(run.standard_error);
+    CHECK(run.exit_code == 0);
+  }
+  CHECK(sql(directory,
+            "SELECT count(DISTINCT block) FROM session_event AS event JOIN trial "
+            "ON trial.session_id = event.session_id AND trial.number = 1 "
+            "WHERE event.state = 'ended'") == "2\n");
+  CHECK(sql(directory,
+            "SELECT count(*) FROM session_event WHERE state = 'practised' "
+            "AND detail LIKE '%: met, 2 of the last 4 right'") == "8\n");
+}
+
 TEST_CASE("catch trials, labels and corrections that contradict are refused at their line",
           "[end_to_end]") {
   const auto [from, to, said] = GENERATE(table<std::string, std::string, std::string>({

@@ -74,8 +74,8 @@ TEST_CASE("the methods of a report name the procedures that chose the levels",
     return testing::contents(study + "_report/report.html");
   };
   CHECK_THAT(methods_of("stiffness_jnd"),
-             Contains("levels of youngs_modulus_pa by") && Contains("QUEST+ (Watson 2017)"));
-  CHECK_THAT(methods_of("damping_jnd"), Contains("levels of damping_scale by") &&
+             Contains("levels of Young's modulus by") && Contains("QUEST+ (Watson 2017)"));
+  CHECK_THAT(methods_of("damping_jnd"), Contains("levels of damping scale by") &&
                                             Contains("staircase") && Contains("settles at"));
 }
 

@@ -3,12 +3,14 @@
 
 #include "fuzz/input.hpp"
 #include "results/store.hpp"
+#include "results/stored_answers.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   return tapstudy::fuzz::try_reading(data, size, [](const std::string& text) {
     const std::string directory = std::filesystem::temp_directory_path() / "tapstudy_fuzz_journal";
     std::filesystem::create_directories(directory);
     std::ofstream{tapstudy::results::journal_file(directory), std::ios::binary} << text;
-    tapstudy::results::Store::from_journal(directory).answers();
+    auto store = tapstudy::results::Store::from_journal(directory);
+    tapstudy::results::stored_answers(store);
   });
 }

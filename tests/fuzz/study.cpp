@@ -3,6 +3,7 @@
 
 #include "fuzz/input.hpp"
 #include "results/store.hpp"
+#include "results/stored_answers.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   return tapstudy::fuzz::try_reading(data, size, [](const std::string& text) {
@@ -13,8 +14,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     auto store = tapstudy::results::Store::open_existing(directory.string());
     store.study();
     store.sessions();
-    store.answers();
-    store.visits();
+    tapstudy::results::stored_answers(store);
+    tapstudy::results::stored_visits(store);
     for (const std::int64_t trial : store.trials()) {
       store.trace(trial);
     }

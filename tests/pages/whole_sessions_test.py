@@ -228,6 +228,22 @@ class WholeSession(unittest.TestCase):
         self.assertEqual(self.session.rows("SELECT detail FROM session_event WHERE state = 'stopped'"),
                          [("feels sick",)])
 
+    def test_numbers_are_taken_as_people_write_them_but_no_thousand_as_a_fraction(self):
+        typed = ["2,5", "2.5", "１２", "0,125", "1.000", "1,000", "1e3", ""]
+        taken = {"en": ["2.5", "2.5", "12", "0.125", "1.000", None, None, None],
+                 "de": ["2.5", "2.5", "12", "0.125", None, "1.000", None, None]}
+        for language, expected in taken.items():
+            with self.subTest(language):
+                self.start("discrimination.yaml", "--language", language)
+                browser.wait_for_screen(self.driver, "trial")
+                found = self.driver.execute_async_script("""
+                    const [typed, done] = arguments;
+                    import(new URL("typed_number.js", document.baseURI))
+                      .then(({ typedNumber }) => done(typed.map((text) => typedNumber(text))));""", typed)
+                self.assertEqual([number["text"] for number in found], expected)
+                refused = found[expected.index(None)]["problem"]
+                self.assertIn("1000", refused)
+
     def test_an_answer_is_changed_until_it_is_confirmed(self):
         self.start("protocols/paper/discrimination.yaml")
         self.watch()

@@ -33,7 +33,7 @@ TEST_CASE("a magnitude is a number above 0 in decimal notation, and nothing else
                                  "1e3",
                                  "0x10",
                                  "twelve",
-                                 "1,5",
+                                 "1,500",
                                  "1 2",
                                  "1/2",
                                  "1.2.3",

@@ -25,7 +25,7 @@ std::string said_of(const std::string& study, const std::string& column, const s
   const auto run = testing::tapstudy({"verify", study});
   set(back);
   CHECK(run.exit_code == 5);
-  CHECK_THAT(run.standard_error, Contains("1 stored values"));
+  CHECK_THAT(run.standard_error, Contains("those recomputed: 1\n") || Contains("recomputed: 1;"));
   return run.standard_output;
 }
 }  // namespace
@@ -60,6 +60,12 @@ TEST_CASE("verify names the one value that was changed", "[results][verify]") {
   CHECK_THAT(said_of(study, "trace_chunk.first_tick", "first_tick + 1", "first_tick - 1",
                      "trial_id = (SELECT min(trial_id) FROM trace_chunk) AND first_tick < 2"),
              Contains("trace_chunk.first_tick is 1, recomputed 0"));
+  const std::string corrected =
+      "response_id = (SELECT max(response_id) FROM response WHERE supersedes IS NOT NULL)";
+  CHECK_THAT(said_of(study, "response.supersedes", "supersedes + 1", "supersedes - 1", corrected),
+             Contains(": supersedes is "));
+  CHECK_THAT(said_of(study, "response.confidence", "3", "NULL", corrected),
+             Contains(": confidence is 3, recomputed NULL"));
   CHECK(testing::tapstudy({"verify", study}).exit_code == 0);
   change(study, "DELETE FROM tick_statistics WHERE trial_id = (SELECT max(trial_id) FROM trial)");
   const auto lacking = testing::tapstudy({"verify", study});

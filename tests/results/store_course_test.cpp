@@ -2,6 +2,7 @@
 #include <string>
 #include <vector>
 
+#include "results/participant_courses.hpp"
 #include "results/store.hpp"
 #include "support/python_program.hpp"
 #include "support/small_study.hpp"
@@ -84,7 +85,7 @@ for person in sorted({s["participant_id"] for s in sessions}):
 std::vector<double> counted_by_store(Store& store) {
   std::vector<double> all;
   const auto add = [&](auto... values) { (all.push_back(static_cast<double>(values)), ...); };
-  for (const ParticipantCourseRow& row : store.participant_courses()) {
+  for (const ParticipantCourseRow& row : participant_courses(store)) {
     add(row.sessions, row.answered, row.interrupted, row.repeated, row.skipped, row.timed_out,
         row.given_up, row.corrected, row.catch_trials, row.catch_right, row.form_items,
         row.form_items_left_out, row.ticks, row.late, row.skipped_ticks, row.saturated,
@@ -117,7 +118,7 @@ TEST_CASE("a participant without a trial is named with nothing done, and why who
   const testing::TempDirectory directory;
   auto [store, session] = testing::small_study::begun_study(directory.path());
   store.add_operator_action({session.id, 1.0, "exclude", {}, "fell asleep"});
-  const auto courses = store.participant_courses();
+  const auto courses = participant_courses(store);
   REQUIRE(courses.size() == 1);
   CHECK(courses[0].sessions == 1);
   CHECK(courses[0].answered == 0);

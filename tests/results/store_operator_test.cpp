@@ -2,8 +2,10 @@
 #include <catch2/catch.hpp>
 #include <filesystem>
 
+#include "results/participant_courses.hpp"
 #include "results/store.hpp"
 #include "results/store_error.hpp"
+#include "results/stored_answers.hpp"
 #include "support/small_study.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;
@@ -45,9 +47,9 @@ TEST_CASE("a correction supersedes an answer, which stays in the store", "[resul
   }
   Store store = is_from_journal ? Store::from_journal(directory.path())
                                 : Store::open_existing(directory.path());
-  REQUIRE(store.answers().size() == 1);
-  CHECK(store.answers().front().response == "c");
-  CHECK(store.answers().front().is_correct == true);
+  REQUIRE(results::stored_answers(store).size() == 1);
+  CHECK(results::stored_answers(store).front().response == "c");
+  CHECK(results::stored_answers(store).front().is_correct == true);
   const JournalEntries entries = store.entries_for_journal();
   CHECK(entries.answers.front().response.response == "a");
   CHECK(entries.corrections.size() == 2);
@@ -67,11 +69,12 @@ TEST_CASE("what was not as planned is counted for each participant", "[results][
     store.add_correction({row.id, 1, response, response == std::string{"a"}},
                          action(row.id, "correct", response));
   }
-  REQUIRE(store.deviations().size() == 1);
-  CHECK(store.deviations().front().corrected == 1);  // one answer, twice
-  CHECK(store.deviations().front().corrected_to_right == 1);
-  CHECK(store.deviations().front().skipped == 1);
-  CHECK(store.deviations().front().timed_out == 0);
+  const auto courses = results::participant_courses(store);
+  REQUIRE(courses.size() == 1);
+  CHECK(courses.front().corrected == 1);  // one answer, twice
+  CHECK(courses.front().corrected_to_right == 1);
+  CHECK(courses.front().skipped == 1);
+  CHECK(courses.front().timed_out == 0);
 }
 
 TEST_CASE("the last word on a participant's exclusion holds", "[results][store]") {

@@ -9,6 +9,7 @@
 #include "core/sha256.hpp"
 #include "results/recorder.hpp"
 #include "results/store_error.hpp"
+#include "results/stored_answers.hpp"
 #include "results/trace_stream.hpp"
 #include "support/processes.hpp"
 #include "support/small_study.hpp"
@@ -32,7 +33,7 @@ TEST_CASE("what is stored comes back", "[results][store]") {
   const auto sessions = store.sessions();
   REQUIRE(sessions.size() == 1);
   CHECK(sessions[0].seed == 0xfedcba9876543210ULL);
-  const auto answers = store.answers();
+  const auto answers = stored_answers(store);
   REQUIRE(answers.size() == 2);
   CHECK(answers[1].stimulus == "a");
   CHECK(answers[1].response == "b");
@@ -61,10 +62,10 @@ TEST_CASE("a trial is there whole or not at all", "[results][store]") {
   TrialRecord broken = trial(row.id, 1, "a");
   broken.trace.push_back(broken.trace.front());  // the same ticks twice: refused after other rows
   CHECK_THROWS_AS(store.add_trial(broken), StoreError);
-  CHECK(store.answers().empty());
+  CHECK(stored_answers(store).empty());
   CHECK(store.answered_trials("P01").empty());
   store.add_trial(trial(row.id, 1, "a"));
-  CHECK(store.answers().size() == 1);
+  CHECK(stored_answers(store).size() == 1);
 }
 
 TEST_CASE("a trial cannot be stored over another", "[results][store]") {
@@ -72,7 +73,7 @@ TEST_CASE("a trial cannot be stored over another", "[results][store]") {
   auto [store, row] = begun_study(directory.path());
   store.add_trial(trial(row.id, 1, "a"));
   CHECK_THROWS_AS(store.add_trial(trial(row.id, 1, "b")), StoreError);
-  CHECK(store.answers().front().response == "a");
+  CHECK(stored_answers(store).front().response == "a");
 }
 
 TEST_CASE("the study of another protocol is left alone", "[results][store]") {
@@ -142,7 +143,8 @@ TEST_CASE("a copy of study.db made after any trial is whole", "[results][store]"
     const std::string copy = directory / ("copy_" + std::to_string(number));
     fs::create_directory(copy);
     fs::copy_file(directory / "study.db", copy + "/study.db");
-    CHECK(Store::open_existing(copy).answers().size() == static_cast<std::size_t>(number));
+    Store copied = Store::open_existing(copy);
+    CHECK(stored_answers(copied).size() == static_cast<std::size_t>(number));
   }
   Database reader{directory / "study.db", Database::Access::read};
   reader.run("BEGIN; SELECT count(*) FROM trial");
@@ -230,7 +232,7 @@ TEST_CASE("a study whose database is lost is read from its journal", "[results][
   CHECK_THROWS_AS(Store::open_or_create(directory.path(), study), StoreError);  // not begun anew
   Store store = Store::from_journal(directory.path());
   CHECK(store.study().protocol_text == study.protocol_text);
-  const auto answers = store.answers();
+  const auto answers = stored_answers(store);
   REQUIRE(answers.size() == 4);
   CHECK(answers[3].participant_id == "P02");
   CHECK(answers[3].response == "b");

@@ -16,14 +16,6 @@
 namespace tapstudy::testing {
 constexpr const char* calculix = "/usr/bin/ccx";
 
-inline bool is_calculix_installed() {
-  if (std::filesystem::exists(calculix)) {
-    return true;
-  }
-  WARN("CalculiX (package calculix-ccx) is not installed");
-  return false;
-}
-
 class CalculixInput {
  public:
   CalculixInput() { text_.precision(12); }  // CalculiX reads twenty characters a number
@@ -83,10 +75,10 @@ class CalculixInput {
   }
   // One for each node and axis: of supports that hold no whole triangle.
   void add_grounded(const core::SpringSupport& support, Eigen::Index first) {
-    for (const Eigen::Index node : support.nodes) {
+    for (const Eigen::Index node : support.region.nodes) {
       for (Eigen::Index axis = 0; axis < 3; ++axis) {
         const double share =
-            support.stiffness_n_per_m[axis] / static_cast<double>(support.nodes.size());
+            support.stiffness_n_per_m[axis] / static_cast<double>(support.region.nodes.size());
         text_ << fmt::format(
             "*ELEMENT, TYPE=SPRING1, ELSET=S{0}\n{0},{1}\n*SPRING, ELSET=S{0}\n{2}\n{3:.9e}\n",
             ++elements_, first + node, axis + 1, share);

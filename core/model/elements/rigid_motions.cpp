@@ -18,7 +18,7 @@ std::vector<bool> resisted_dofs(const FreeDofs& dofs, const std::vector<SpringSu
     resisted[i] = dofs.position[i] < 0;
   }
   for (const SpringSupport& support : springs) {
-    for (const Eigen::Index node : support.nodes) {
+    for (const Eigen::Index node : support.region.nodes) {
       for (Eigen::Index axis = 0; axis < 3; ++axis) {
         if (support.stiffness_n_per_m[axis] > 0.0) {
           resisted[static_cast<std::size_t>(3 * node + axis)] = true;

@@ -15,7 +15,7 @@
 #include "core/model/stopwatch.hpp"
 namespace tapstudy::core {
 namespace {
-// Aimed at, and accepted where many modes crowd below the shift so that polishing gains little.
+// Aimed at, and accepted where many modes crowd below the shift so that refinement gains little.
 constexpr double residual_limit = 1e-8;
 constexpr double accepted_residual = 1e-6;
 // However stiff the stiffest element is: above this, a mode is rejected. Rounding in the stiffest
@@ -27,7 +27,7 @@ constexpr double rounding_steps = 8.0;
 // Up to this size a dense solve is cheap, and the problem is too small for Lanczos.
 constexpr Eigen::Index dense_size = 96;
 constexpr int max_modes = 1000;
-constexpr int max_polishing_rounds = 4;
+constexpr int max_refinements = 4;
 
 struct Pairs {
   Eigen::VectorXd values;
@@ -36,7 +36,8 @@ struct Pairs {
   Eigen::MatrixXd inertial;  // M times the vectors
 };
 
-// LAPACK's error grows with the stiffest and lightest element, so these vectors need polishing too.
+// LAPACK's error grows with the stiffest and lightest element, so these vectors need refinement
+// too.
 RitzVectors lowest_dense(const StiffnessAndMass& matrices, int count) {
   const EigenPairs all =
       symmetric_eigenpairs(Eigen::MatrixXd{matrices.K}, Eigen::MatrixXd{matrices.M});
@@ -109,8 +110,8 @@ Pairs lowest(const Pairs& pairs, Eigen::Index count) {
 
 // The modes below the shift. If components of much higher modes remain in the lowest, subspace
 // iteration removes them; the guard vectors suppress modes above the shift, which it would amplify.
-Pairs polished(const StiffnessAndMass& matrices, const ShiftedFactor& factor,
-               const RitzVectors& ritz, double rounding_n_per_m, const ProgressHook& progress) {
+Pairs refined(const StiffnessAndMass& matrices, const ShiftedFactor& factor,
+              const RitzVectors& ritz, double rounding_n_per_m, const ProgressHook& progress) {
   Pairs pairs = modes_in_span(matrices, ritz.wanted);
   const auto is_good = [&] {
     return std::ranges::all_of(residuals(pairs, matrices.rigid_body_modes, rounding_n_per_m),
@@ -125,13 +126,13 @@ Pairs polished(const StiffnessAndMass& matrices, const ShiftedFactor& factor,
   int rounds = 0;
   const Eigen::Index count = ritz.wanted.cols();
   do {
-    tell(progress, "polishing");
+    tell(progress, "refining");
     vectors = matrices.mass() * vectors;
     factor.solve_in_place(vectors);
     const Pairs all = modes_in_span(matrices, vectors);
     vectors = all.vectors;
     pairs = lowest(all, count);
-  } while (++rounds < max_polishing_rounds && !is_good());
+  } while (++rounds < max_refinements && !is_good());
   return pairs;
 }
 
@@ -176,7 +177,7 @@ Modes solve_modes(const StiffnessAndMass& matrices, double band_limit_hz,
     const bool is_small = size <= dense_size || Eigen::Index{4} * count > size;
     const RitzVectors ritz = is_small ? lowest_dense(matrices, count)
                                       : eigenvectors_below_shift(matrices, factor, count, progress);
-    pairs = polished(matrices, factor, ritz, rounding_n_per_m, progress);
+    pairs = refined(matrices, factor, ritz, rounding_n_per_m, progress);
   }
   modes.rigid_body_modes = std::min(matrices.rigid_body_modes, count);
   modes.worst_residual = checked_worst(residuals(pairs, modes.rigid_body_modes, rounding_n_per_m));

@@ -7,6 +7,7 @@ import { analogueScale } from "./analogue_scale.js";
 import { el } from "./dom.js";
 import { orderOf } from "./order_field.js";
 import { newGroupName, pickedValue, pickNumber, radioCard, steps } from "./radio_cards.js";
+import { typedNumber } from "./typed_number.js";
 import { word } from "./words.js";
 
 const placeOf = (index) => String(index + 1);
@@ -37,13 +38,21 @@ function optionField({ options, low, high }, { besideAlternatives, group }) {
   };
 }
 
-const isNumberAbove0 = (text) =>
-  text.length <= 20 && /^(\d+\.?\d*|\.\d+)$/.test(text) && Number(text) > 0 && Number.isFinite(Number(text));
-
 const numberInput = (id) =>
   el("input", { type: "text", id, className: "number-answer", inputMode: "decimal", autocomplete: "off", maxLength: 40 });
 
-const numberIn = (input) => (isNumberAbove0(input.value.trim()) ? input.value.trim() : null);
+const maxCharacters = 20;  // as protocols/tasks/answers.cpp takes it
+const isAbove0 = (text) => text.length <= maxCharacters && Number(text) > 0 && Number.isFinite(Number(text));
+
+// Above 0, without a sign.
+function numberIn(input) {
+  const { text } = typedNumber(input.value);
+  return text !== null && /^[\d.]+$/.test(text) && isAbove0(text) ? text : null;
+}
+const numberProblem = (input) => {
+  const { text, problem } = typedNumber(input.value);
+  return text === null && problem !== null ? problem : word("number_needed");
+};
 
 // Digits go to the field from anywhere; letters in it are no part of a number and feel an alternative.
 function numberField() {
@@ -51,9 +60,9 @@ function numberField() {
   return {
     body: [el("label", { htmlFor: input.id, className: "number-label" }, word("number_label")), input],
     answerIn: () => numberIn(input),
-    missing: word("number_needed"),
+    missing: () => numberProblem(input),
     press: (element, key) => {
-      if (!/^[0-9.]$/.test(key)) return false;
+      if (!/^[0-9.,]$/.test(key)) return false;
       input.focus();
       input.value += key;
       input.dispatchEvent(new Event("input", { bubbles: true }));
@@ -162,7 +171,7 @@ function lineField({ low, high }, { title }) {
 
 const makers = { option: optionField, number: numberField, setting: settingField, order: orderField, line: lineField };
 
-// {body, answerIn(element), missing, press(element, key)}, of a setting also update(setting).
+// {body, answerIn(element), missing (words, or what gives them), press(element, key)}, of a setting also update(setting).
 // trial: {title, besideAlternatives, group, label, setting, adjust, say}
 export const answerField = (answers, trial) => makers[answers.kind](answers, trial);
 
@@ -189,7 +198,7 @@ export function otherAnswer(answers, say, send) {
   const input = numberInput("number-correction");
   const give = () => {
     const value = numberIn(input);
-    if (value === null) say(word("number_needed"));
+    if (value === null) say(numberProblem(input));
     else send(value);
   };
   input.addEventListener("keydown", (event) => {

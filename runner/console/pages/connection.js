@@ -4,7 +4,8 @@ import { byId, setText } from "./dom.js";
 import { word } from "./words.js";
 
 const patienceMs = 2000;
-const requestTimeoutMs = 5000;
+// Above what the program waits for its database (results/sqlite.cpp).
+const requestTimeoutMs = 8000;
 
 // Calls handlers[event](data) for each event. A lost connection is shown after a while, and whenLost
 // is called; isOver says whether the program is expected to be gone.

@@ -4,6 +4,7 @@
 import { analogueScale } from "./analogue_scale.js";
 import { el } from "./dom.js";
 import { newGroupName, pickedValue, radioCard, steps } from "./radio_cards.js";
+import { typedNumber } from "./typed_number.js";
 import { word } from "./words.js";
 
 function radios(body, valueOf) {
@@ -36,20 +37,17 @@ function rangeProblem(item, value) {
   return word("between", { min, max });
 }
 
-const isDecimal = (text) => /^[+-]?(\d+\.?\d*|\.\d+)$/.test(text);
-const mayBeThousands = (text) => /^[+-]?[1-9]\d{0,2},\d{3}$/.test(text);
-
 // A field of type number drops a decimal comma where the browser speaks a language with points: 2,5
-// would be 25. What is 1,000 in one language and 1.000 in another is not taken for either.
+// would be 25.
 function number(item, id) {
   const input = el("input", { type: "text", id, className: "number", inputMode: "decimal", autocomplete: "off" });
-  const typed = () => (mayBeThousands(input.value.trim()) ? input.value.trim() : input.value.trim().replace(",", "."));
+  const valueOf = ({ text }) => (text === null ? null : Number(text));
   return {
     body: input,
-    value: () => (isDecimal(typed()) ? Number(typed()) : null),
+    value: () => valueOf(typedNumber(input.value)),
     problem: () => {
-      if (typed() === "") return null;
-      return isDecimal(typed()) ? rangeProblem(item, Number(typed())) : word("not_a_number");
+      const typed = typedNumber(input.value);
+      return typed.text === null ? typed.problem : rangeProblem(item, valueOf(typed));
     },
   };
 }
@@ -105,6 +103,7 @@ export function formItem(item, id) {
     show(problem);
     return problem === null;
   }
-  element.addEventListener("change", () => { if (error.textContent) check(); });
+  // At once: on leaving a field the page would move under the press that follows.
+  element.addEventListener("input", () => { if (error.textContent) check(); });
   return { name: item.name, element, value: field.value, check, focus: () => inputs[0].focus() };
 }

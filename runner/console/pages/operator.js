@@ -30,8 +30,12 @@ function showForce(force) {
   byId("force").dataset.force = force;
 }
 
+const isOver = ({ state: name }) => ["ended", "stopped"].includes(name);
+
 function showBadges(next) {
-  setText(byId("state"), wordOr(`state_${next.state}`, next.state));
+  const isPauseDue = next.is_paused && next.state !== "paused" && !isOver(next);
+  const state = wordOr(`state_${next.state}`, next.state);
+  setText(byId("state"), isPauseDue ? `${state} · ${word("pause_due")}` : state);
   byId("state").dataset.state = next.state;
   showForce(forceOf(next));
   setText(byId("fault"), next.state === "faulted" ? word("fault_text") : "");
@@ -59,7 +63,7 @@ function showState(next) {
   showLastAnswer(next, actions);
   showMachine(next);
   showLog(next.log ?? []);
-  actions.show(next);
+  actions.show(isOver(next) ? { ...next, actions: [] } : next);
   plots.showWords();
 }
 
@@ -69,7 +73,7 @@ async function start() {
   plots = new LivePlots(byId("plots"));
   onThemeChange(() => plots.draw());
   const handlers = { state: showState, live: (samples) => plots.add(samples) };
-  listen(handlers, () => ["ended", "stopped"].includes(state?.state), () => showForce("unknown"));
+  listen(handlers, () => state !== null && isOver(state), () => showForce("unknown"));
 }
 
 start();

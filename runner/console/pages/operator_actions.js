@@ -18,7 +18,7 @@ export class Actions {
   #trial;
 
   isPossible(name) {
-    return !this.#isSending && this.#possible.get(name) === true;
+    return (!this.#isSending || immediate.has(name)) && this.#possible.get(name) === true;
   }
 
   show({ actions, trial }) {
@@ -32,12 +32,17 @@ export class Actions {
 
   // Whether the command was taken.
   async send(command, what) {
+    if (immediate.has(command)) return this.#tell(await this.#replyTo(command, what));
     if (this.#isSending) return false;
     this.#isSending = true;
     this.#enable();
     const reply = await this.#replyTo(command, what);
     this.#isSending = false;
     this.#enable();
+    return this.#tell(reply);
+  }
+
+  #tell(reply) {
     setText(byId("reply"), reply.text);
     byId("reply").classList.toggle("error", !reply.isAccepted);
     return reply.isAccepted;

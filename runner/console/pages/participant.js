@@ -85,9 +85,11 @@ function showProgress(progress) {
   byId("progress").hidden = !progress;
   if (!progress) return;
   const bar = byId("progress").querySelector("progress");
+  bar.hidden = progress.is_open_ended;
   bar.max = Math.max(progress.total, 1);
   bar.value = progress.done;
-  setText(byId("progress-text"), word(progress.is_practice ? "progress_practice" : "progress", progress));
+  const words = progress.is_practice ? "progress_practice" : "progress";
+  setText(byId("progress-text"), word(progress.is_open_ended ? `${words}_open` : words, progress));
 }
 
 let settling = null;

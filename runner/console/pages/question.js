@@ -4,7 +4,8 @@ import { el } from "./dom.js";
 import { pickedValue } from "./radio_cards.js";
 import { word } from "./words.js";
 
-// answerIn(element): the answer as text, null as long as there is none: `missing` is said then.
+// answerIn(element): the answer as text, null as long as there is none: `missing` (words, or a function
+// that gives them) is said then.
 // label: of the button; an answer that is stored only with what is asked next is not confirmed yet.
 // entered(answer) is called as it changes; send(value as text) once there is one and it is confirmed.
 export function question({ title, className, body, say, send, answerIn = pickedValue, missing = word("pick_first"), entered = () => {}, label = word("confirm") }) {
@@ -23,7 +24,7 @@ export function question({ title, className, body, say, send, answerIn = pickedV
   element.addEventListener("input", follow);
   function submit() {
     const value = answerIn(element);
-    if (value === null) say(missing);
+    if (value === null) say(typeof missing === "function" ? missing() : missing);
     else send(value);
     return true;
   }

@@ -55,21 +55,27 @@ export function textScreen(screen, { send }) {
 export function restScreen(screen, actions) {
   const rest = textScreen(screen, actions);
   if (!rest.goOn) return rest;
-  const endMs = performance.now() + 1000 * (screen.min_seconds ?? 0);
+  const shownMs = performance.now();
+  const secondsLeft = (seconds) => Math.ceil(seconds - (performance.now() - shownMs) / 1000);
+  const isEndless = screen.max_seconds === null || screen.max_seconds === undefined;
   const countdown = el("p", { className: "countdown", id: "countdown" });
   rest.goOn.before(countdown);
   let timer = null;
 
   function tick() {
-    const left = Math.ceil((endMs - performance.now()) / 1000);
+    const left = secondsLeft(screen.min_seconds ?? 0);
+    const isOver = rest.goOn.disabled && left <= 0;
     rest.goOn.disabled = left > 0;
-    countdown.textContent = left > 0 ? word("rest_countdown", { seconds: left }) : "";
-    if (left > 0) return;
-    clearInterval(timer);
-    if (timer) actions.say(word("rest_over"));
+    if (left > 0) {
+      countdown.textContent = word("rest_countdown", { seconds: left });
+      return;
+    }
+    countdown.textContent = isEndless ? "" : word("rest_ends", { seconds: Math.max(secondsLeft(screen.max_seconds), 0) });
+    if (isOver && timer) actions.say(word("rest_over"));
+    if (isEndless) clearInterval(timer);
   }
   rest.leave = () => clearInterval(timer);
   tick();
-  if (rest.goOn.disabled) timer = setInterval(tick, 200);
+  if (rest.goOn.disabled || !isEndless) timer = setInterval(tick, 200);
   return rest;
 }

@@ -61,6 +61,8 @@ function marks(shape) {
   return group;
 }
 
+// All of it is transparent to three.js, which draws what is transparent last, whatever its order:
+// the shadow would cover the ball.
 class Pointer {
   constructor(extent) {
     const radius = 0.018 * extent;
@@ -69,8 +71,8 @@ class Pointer {
     this.shadow = onSurface(new THREE.CircleBufferGeometry(radius, 32), flat("--shadow", { transparent: true }), [0, 0, 0], 3);
     const rod = new THREE.CylinderBufferGeometry(0.003 * extent, 0.003 * extent, 1, 12);
     rod.rotateX(Math.PI / 2);
-    this.guide = onSurface(rod, flat("--pointer"), [0, 0, 0], 4);
-    this.ball = new THREE.Mesh(new THREE.SphereBufferGeometry(radius, 32, 24), shaded("--pointer", { depthTest: false }));
+    this.guide = onSurface(rod, flat("--pointer", { transparent: true }), [0, 0, 0], 4);
+    this.ball = new THREE.Mesh(new THREE.SphereBufferGeometry(radius, 32, 24), shaded("--pointer", { depthTest: false, transparent: true }));
     this.ball.renderOrder = 5;
     this.group.add(this.shadow, this.guide, this.ball);
   }

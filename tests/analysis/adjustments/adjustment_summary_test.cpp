@@ -22,8 +22,10 @@ constexpr int runs = 6;
 BlockDesign design_of(bool is_logarithmic, std::optional<double> standard = 3.0) {
   BlockDesign design;
   design.name = "strength";
-  design.adjusted = AdjustedAxis{"sinusoid_amplitude_n_s_per_m", is_logarithmic,
-                                 standard.value_or(3.0), standard};
+  design.adjusted = AdjustedAxis{{"sinusoid_amplitude_n_s_per_m", "sinusoid amplitude", "N s/m"},
+                                 is_logarithmic,
+                                 standard.value_or(3.0),
+                                 standard};
   return design;
 }
 

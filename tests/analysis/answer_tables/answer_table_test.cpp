@@ -185,3 +185,26 @@ TEST_CASE("a missing stimulus is no class, and a column that may hold times is n
   CHECK(answers_in("stimulus,response,rt\na,a,500\nb,b,700\n").possible_time == "rt");
   CHECK(answers_in(plain).possible_time.empty());
 }
+
+TEST_CASE(
+    "of real, pilot and simulated answers those of one kind are read, as a study's report does",
+    "[analysis][answer_tables]") {
+  const std::string header = "participant,mode,stimulus,response\n";
+  const std::string simulated = "P03,simulated,a,b\n";
+  const std::string pilots = "P02,pilot,b,b\n";
+  const AnswerTable all = answers_in(header + pilots + "P01,real,a,a\n" + simulated);
+  REQUIRE(all.answers.size() == 1);
+  CHECK(all.answers.front().participant_id == "P01");
+  CHECK(all.of_other_modes == 2);
+  CHECK(all.modes.empty());
+  CHECK(answers_in(header + simulated + pilots).modes == std::set<std::string>{"pilot"});
+  CHECK(answers_in(header + simulated + "P04,simulated,b,b\n").modes ==
+        std::set<std::string>{"simulated"});
+}
+
+TEST_CASE("participants whose names differ only in case or spaces are not two",
+          "[analysis][answer_tables]") {
+  const std::string header = "participant,stimulus,response\nP01,a,a\n";
+  CHECK_THAT(refusal(header + "p01,b,b\n"), Contains("'P01' and 'p01' differ only in case"));
+  CHECK_THAT(refusal(header + "\"P01 \",b,b\n"), Contains("differ only in case or spaces"));
+}

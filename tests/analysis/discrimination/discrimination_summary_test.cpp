@@ -118,13 +118,6 @@ TEST_CASE("where no decision model is known there is no d', and the report says 
   CHECK_THAT(report.text, Catch::Matchers::Contains("There is no d'"));
 }
 
-TEST_CASE("the upper tail of Student's t is R's", "[analysis][discrimination]") {
-  for (const double t : {-2.5, 0.0, 1.3, 6.0}) {
-    const auto r = r_numbers(fmt::format("out(pt({}, 7, lower.tail = FALSE))", t));
-    CHECK(t_p_at_least(t, 7.0) == Approx(r[0]).epsilon(1e-10));
-  }
-}
-
 TEST_CASE(
     "same-different: hits are right answers to different pairs, false alarms wrong ones to "
     "same pairs",

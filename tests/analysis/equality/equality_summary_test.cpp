@@ -18,7 +18,8 @@ const std::vector<double> fractions{-0.4, -0.2, -0.1, 0.0, 0.1, 0.2, 0.4};
 BlockDesign design_of(bool is_smaller_asked = false) {
   BlockDesign design;
   design.name = "stiffness";
-  design.axis = VariedAxis{"youngs_modulus_pa", standard, true, false, is_smaller_asked};
+  design.axis = VariedAxis{
+      {"youngs_modulus_pa", "Young's modulus", "Pa"}, standard, true, false, is_smaller_asked};
   design.guess_rate = 0.5;
   design.shape = core::PsychometricShape::cumulative_gaussian;
   return design;

@@ -20,7 +20,7 @@ const std::vector<double> moduli{1e9, 3e9, 9e9, 27e9};
 BlockDesign design_of() {
   BlockDesign design;
   design.name = "stiffness";
-  design.axis = VariedAxis{"youngs_modulus_pa", 1e9, true, false};
+  design.axis = VariedAxis{{"youngs_modulus_pa", "Young's modulus", "Pa"}, 1e9, true, false};
   return design;
 }
 

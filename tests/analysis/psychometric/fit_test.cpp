@@ -6,6 +6,7 @@
 
 #include "analysis/psychometric/example_levels.hpp"
 #include "core/error.hpp"
+#include "core/rng.hpp"
 using namespace tapstudy;
 using analysis::FitOutcome;
 using analysis::Level;
@@ -29,8 +30,8 @@ control <- glm.control(epsilon = 1e-14, maxit = 100)
 tell <- function(u, link, to_slope, to_value) {
   g <- glm(cbind(k, n - k) ~ u, family = binomial(link), control = control)
   for (more in 1:30) g <- glm(cbind(k, n - k) ~ u, family = binomial(link), control = control, start = coef(g))
-  a <- coef(g)[[1]]; b <- coef(g)[[2]]; V <- vcov(g); d <- c(-1 / b, a / b^2)
-  out(to_value(-a / b), b * to_slope, sqrt(d %*% V %*% d), sqrt(V[2, 2]) * to_slope, deviance(g))
+  a <- coef(g)[[1]]; b <- coef(g)[[2]]
+  out(to_value(-a / b), b * to_slope, deviance(g))
 }
 tell(x, 'logit', 1, identity)
 tell(x, 'probit', 1, identity)
@@ -39,7 +40,7 @@ tell(log10(x), 'probit', 1, function(t) 10^t)
 tell(log10(x), 'cloglog', 1 / log(10), function(t) 10^t)
 tell(x, 'cloglog', 1 / log(10), identity)
 )");
-  REQUIRE(expected.size() == 30);
+  REQUIRE(expected.size() == 18);
   std::size_t next = 0;
   using enum PsychometricShape;
   for (const auto shape :
@@ -49,10 +50,7 @@ tell(x, 'cloglog', 1 / log(10), identity)
     REQUIRE(fit.curve);
     CHECK(fit.curve->threshold == Approx(expected[next++]).epsilon(1e-9));
     CHECK(fit.curve->slope == Approx(expected[next++]).epsilon(1e-9));
-    CHECK(fit.curve->threshold_standard_error == Approx(expected[next++]).epsilon(1e-9));
-    CHECK(fit.curve->slope_standard_error == Approx(expected[next++]).epsilon(1e-9));
     CHECK(fit.deviance == Approx(expected[next++]).epsilon(1e-9));
-    CHECK(fit.free_parameters == 2);
   }
 }
 
@@ -133,7 +131,6 @@ best(FALSE); best(TRUE)
     CHECK(fit.curve->slope == Approx(expected[next++]).epsilon(1e-9));
     CHECK(fit.curve->lapse == Approx(expected[next++]).margin(1e-9));
     CHECK(fit.curve->guess == Approx(expected[next++]).margin(1e-9));
-    CHECK(fit.free_parameters == (max_guess > 0.0 ? 4 : 3));
   }
 }
 
@@ -183,7 +180,6 @@ TEST_CASE("levels of one value count together, and none without trials",
     split.insert(split.begin(), {level.value, {level.answers.successes - first, 20}});
   }
   const auto fit = analysis::fit_psychometric(model, split);
-  CHECK(fit.levels == 6);
   CHECK(fit.deviance ==
         Approx(analysis::fit_psychometric(model, yes_no_levels).deviance).epsilon(1e-12));
 }
@@ -204,4 +200,35 @@ TEST_CASE("a fit refuses counts and values that are not possible", "[analysis][p
   refuses(model, {{std::nan(""), {3, 5}}, {2.0, {4, 5}}});
   refuses({PsychometricShape::weibull, {0.5, 0.4}, {0.0, 0.1}}, choice_levels);
   refuses({PsychometricShape::weibull, {0.0, 0.95}, {0.0, 0.1}}, choice_levels);
+}
+
+// Lapses make likelihoods with several maxima: a gentle function, and steps between levels.
+TEST_CASE("no point of a grid over the box is likelier than the fit", "[analysis][psychometric]") {
+  core::Rng rng{7};
+  for (int observer = 0; observer < 60; ++observer) {
+    std::vector<Level> levels;
+    for (const double value : {0.05, 0.1, 0.2, 0.4, 0.8, 1.6}) {
+      Level level{value, {0, 12}};
+      for (int trial = 0; trial < 12; ++trial) {
+        level.answers.successes += rng.uniform() < 0.5 + 0.45 * (1.0 - std::exp(-3.0 * value));
+      }
+      levels.push_back(level);
+    }
+    const PsychometricModel model{PsychometricShape::cumulative_gaussian, {0.5, 0.5}, {0.0, 0.1}};
+    const auto fit = analysis::fit_psychometric(model, levels);
+    const analysis::BinomialLikelihood likelihood{model.shape, levels};
+    const analysis::PsychometricBox box = analysis::search_box(model, levels);
+    double best = -1e300;
+    for (int i = 0; i <= 400; ++i) {
+      for (int j = 0; j <= 40; ++j) {
+        for (const double lapse : {0.0, 0.03, 0.06, 0.1}) {
+          const double position = box.low[0] + i / 400.0 * (box.high[0] - box.low[0]);
+          const double log_slope = box.low[1] + j / 40.0 * (box.high[1] - box.low[1]);
+          best = std::max(best, likelihood.value({position, log_slope, 0.5, lapse}));
+        }
+      }
+    }
+    CAPTURE(observer);
+    CHECK(fit.maximum.log_likelihood >= best - 1e-6);
+  }
 }

@@ -20,16 +20,16 @@ const std::vector<std::string> scales{"mental_demand", "physical_demand", "tempo
 Questionnaire task_load() {
   Questionnaire form{"load", {}, {"first", "second"}, true};
   for (const std::string& scale : scales) {
-    form.items.push_back({scale, AnswerKind::number, "How much?"});
+    form.items.push_back({scale, QuestionnaireKind::number, "How much?"});
   }
   return form;
 }
 
 Questionnaire about() {
   return {"about",
-          {{"hand", AnswerKind::choice, "Which?", {"left", "right"}},
-           {"sure", AnswerKind::steps, "How sure?", {"1", "2", "3"}},
-           {"remarks", AnswerKind::text, "What else?"}},
+          {{"hand", QuestionnaireKind::choice, "Which?", {"left", "right"}},
+           {"sure", QuestionnaireKind::steps, "How sure?", {"1", "2", "3"}},
+           {"remarks", QuestionnaireKind::text, "What else?"}},
           {"session begin"}};
 }
 

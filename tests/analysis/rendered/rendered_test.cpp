@@ -43,9 +43,9 @@ std::vector<core::TraceSample> touched(const std::vector<std::int64_t>& impacts_
   return samples;
 }
 
-std::vector<analysis::FeltTap> taps_in(const std::vector<core::TraceSample>& samples) {
-  std::vector<analysis::FeltTap> taps;
-  analysis::TapCutter cutter{{}, [&](const analysis::FeltTap& tap) { taps.push_back(tap); }};
+std::vector<analysis::TracedTap> taps_in(const std::vector<core::TraceSample>& samples) {
+  std::vector<analysis::TracedTap> taps;
+  analysis::TapCutter cutter{{}, [&](const analysis::TracedTap& tap) { taps.push_back(tap); }};
   for (const core::TraceSample& each : samples) {
     cutter.add(each);
   }

@@ -11,7 +11,7 @@ BlockDesign design() {
   BlockDesign design;
   design.name = "stiffness";
   design.question = "Which is stiffer?";
-  design.further_axes = {"damping_scale"};
+  design.further_axes = {{"damping_scale", "damping scale", ""}};
   return design;
 }
 
@@ -34,7 +34,7 @@ TEST_CASE("every answer is in the one part that has its values on the further ax
   REQUIRE(parts.size() == 2);
   CHECK(parts[0].design.name == "stiffness_at_damping_scale_0.5");
   CHECK(parts[1].design.name == "stiffness_at_damping_scale_2");
-  CHECK(parts[1].design.question == "Which is stiffer? (damping_scale = 2)");
+  CHECK(parts[1].design.question == "Which is stiffer? (damping scale 2)");
   REQUIRE(parts[0].rows.answers.size() == 1);
   CHECK(parts[0].rows.answers[0].trial_id == 2);
   CHECK(parts[1].rows.answers.size() == 3);

@@ -1,5 +1,6 @@
 #include "analysis/response_times/response_times.hpp"
 
+#include <array>
 #include <catch2/catch.hpp>
 
 #include "analysis/participants/serial_dependence.hpp"
@@ -61,4 +62,24 @@ TEST_CASE("who repeats the last answer is found, and what is confused with what 
   CHECK(serial_dependence({}, 9, 1).repeated_answer.p == 1.0);
   CHECK_THROWS_AS(serial_dependence({{{1}, {1}, {}}}, 9, 1), core::InvalidInput);
   CHECK_THROWS_AS(serial_dependence({confusing}, 0, 1), core::InvalidInput);
+}
+
+TEST_CASE("what is expected of a trial after another is the mean over all permutations",
+          "[analysis][response_times]") {
+  // one stimulus answered 0 0 1, the other 1 2; permuted 3 x 2 ways
+  const AnswerSequence observed{{0, 1, 0, 0, 1}, {0, 1, 0, 0, 1}, {0, 1, 0, 1, 2}};
+  double repeated = 0.0;
+  double last_right = 0.0;
+  for (const auto& first : {std::array{0, 0, 1}, {0, 1, 0}, {1, 0, 0}}) {
+    for (const auto& second : {std::array{1, 2}, {2, 1}}) {
+      const std::array<int, 5> given{first[0], second[0], first[1], first[2], second[1]};
+      for (std::size_t i = 1; i < given.size(); ++i) {
+        repeated += given.at(i) == given.at(i - 1) ? 1.0 : 0.0;
+        last_right += given.at(i) == static_cast<int>(observed.right[i - 1]) ? 1.0 : 0.0;
+      }
+    }
+  }
+  const SerialDependence found = serial_dependence({observed}, 99, 1);
+  CHECK(found.repeated_answer.expected == Approx(repeated / 6.0 / 4.0));
+  CHECK(found.last_right.expected == Approx(last_right / 6.0 / 4.0));
 }

@@ -193,6 +193,16 @@ TEST_CASE("a table that is no confusion matrix is refused at its line", "[analys
   CHECK_THAT(refusal("stimulus,a,b\na,3,1\n"), Contains("counts.csv:2: is the only stimulus"));
 }
 
+TEST_CASE("sums beside or below a matrix are refused, for they would count every answer twice",
+          "[analysis][confusion]") {
+  CHECK_THAT(refusal("stimulus,a,b,total\na,3,1,4\nb,2,5,7\n"),
+             Contains("counts.csv:1: column 'total' is the sum of the others"));
+  CHECK_THAT(refusal("stimulus,a,b,Sum\na,3,1,0\nb,2,5,0\nSum,5,6,0\n"),
+             Contains("counts.csv:4: row 'Sum' is the sum of the others"));
+  CHECK(refusal("stimulus,a,b\na,3,3\nb,2,2\n") == "accepted");
+  CHECK(refusal("stimulus,a,b,none\na,0,0,0\nb,2,1,3\n") != "accepted");
+}
+
 TEST_CASE("reports of an empty row or an unanswered block say so", "[analysis][report]") {
   ConfusionMatrix matrix{{{"a", "A & <b>", {}}, {"b", "B", {}}}, {{"a", "A", {}}, {"b", "B", {}}}};
   matrix.add("a", "a");

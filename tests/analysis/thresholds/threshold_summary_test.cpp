@@ -25,7 +25,7 @@ const std::vector<double> fractions{0.02, 0.03, 0.045, 0.07, 0.1, 0.15, 0.22, 0.
 BlockDesign design_of(double guess_rate = 0.5) {
   BlockDesign design;
   design.name = "stiffness";
-  design.axis = VariedAxis{"youngs_modulus_pa", standard, true, false};
+  design.axis = VariedAxis{{"youngs_modulus_pa", "Young's modulus", "Pa"}, standard, true, false};
   design.guess_rate = guess_rate;
   return design;
 }

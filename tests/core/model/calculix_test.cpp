@@ -88,9 +88,6 @@ std::vector<core::PlateSpec> coarse_bodies() {
 }  // namespace
 
 TEST_CASE("CalculiX finds the same frequencies on the same mesh", "[core][model][calculix][slow]") {
-  if (!testing::is_calculix_installed()) {
-    return;
-  }
   std::vector<core::PlateSpec> bodies = coarse_bodies();
   bodies[1].mesh.size.max_tet_volume_m3 = 4e-6;
   bodies[2].mesh.size.max_tet_volume_m3 = 2e-6;
@@ -119,9 +116,6 @@ TEST_CASE("CalculiX finds the same frequencies on the same mesh", "[core][model]
 // integrate it exactly, and the frequencies part where elements are coarse for the mode.
 TEST_CASE("CalculiX forms the same stiffness, and its matrices give us its frequencies",
           "[core][model][calculix][slow]") {
-  if (!testing::is_calculix_installed()) {
-    return;
-  }
   for (const core::PlateSpec& spec : coarse_bodies()) {
     const core::SolvedBody body = core::solve_body(core::body_of(spec));
     const auto dofs =

@@ -62,6 +62,32 @@ TEST_CASE("a stiff block on a soft foundation bounces and rocks as a rigid body,
   }
 }
 
+// k / A per area under a disc: k r²/4 in rocking about any of its diameters.
+TEST_CASE("a block on a soft disc rocks as on the disc itself, on any mesh", "[core][model]") {
+  const double k = 2e5;
+  const double radius_m = 0.03;
+  const auto [order, volume_m3] =
+      GENERATE(table<int, double>({{1, 1e-4}, {1, 2e-6}, {2, 1e-4}, {2, 1e-5}}));
+  CAPTURE(order, volume_m3);
+  core::PlateSpec spec = block(order, volume_m3);
+  core::Fixation pad;
+  pad.shape = core::RegionShape::disc;
+  pad.face = core::Face::bottom;
+  pad.radius_m = radius_m;
+  pad.springs_n_per_m = core::Vec3{0.0, 0.0, k};
+  spec.fixations = {pad};
+  const core::PlateModel built = core::build_plate_model(spec);
+  const double mass_kg = 7800.0 * size_m.prod();
+  const auto rocking_hz = [&](double edge_m) {
+    return hz(k * radius_m * radius_m / 4.0,
+              mass_kg * (edge_m * edge_m + size_m.z() * size_m.z()) / 12.0);
+  };
+  REQUIRE(built.modal.frequency_hz.size() == 3);
+  CHECK(built.modal.frequency_hz[0] == Approx(rocking_hz(size_m.x())).epsilon(2e-3));
+  CHECK(built.modal.frequency_hz[1] == Approx(rocking_hz(size_m.y())).epsilon(2e-3));
+  CHECK(built.modal.frequency_hz[2] == Approx(hz(k, mass_kg)).epsilon(1e-3));
+}
+
 TEST_CASE("springs lower every frequency below that of the constraint that they become in the end",
           "[core][model]") {
   core::PlateSpec spec = block(2, 2e-5);

@@ -178,3 +178,16 @@ TEST_CASE("trade refuses what it cannot write or compare with before it measures
   }
   CHECK(testing::contents(directory / "trade.svg") == "kept");
 }
+
+TEST_CASE("two damping ratios of a body with one mode are traded as that one ratio",
+          "[runner][trade][slow]") {
+  const TempDirectory directory;
+  std::string text = testing::replaced(cantilever(), "band_limit_hz: 400", "band_limit_hz: 50");
+  text = testing::replaced(text, "{alpha_per_s: 20.0, beta_s: 1.0e-5}",
+                           "{first_ratio: 0.02, last_ratio: 0.02}");
+  testing::write(directory / "study.yaml", text);
+  const protocols::Protocol protocol = protocols::read_protocol(directory / "study.yaml");
+  const Trade trade =
+      runner::measure_trade(protocol, protocol.stimulus("block"), {}, runner::Effort::quick);
+  CHECK(trade.reference.modes > 0);
+}

@@ -1,10 +1,13 @@
 #include "runner/operators/operator_desk.hpp"
 
+#include <fmt/format.h>
+
 #include <catch2/catch.hpp>
 
 #include "core/error.hpp"
 #include "protocols/read_protocol.hpp"
 #include "results/recorder.hpp"
+#include "results/stored_answers.hpp"
 #include "runner/session/session_row.hpp"
 #include "runner/session/trial_engine.hpp"
 #include "support/no_real_plates.hpp"
@@ -142,7 +145,7 @@ TEST_CASE("a paused or repeated trial is stored and presented again, a skipped o
   Attended skipped{{"skip the string broke"}};
   CHECK(skipped.texts("SELECT status FROM trial WHERE number = 1") == Texts{"skipped"});
   CHECK(skipped.done.size() == skipped.schedule.size());
-  CHECK(skipped.store.answers().size() == skipped.schedule.size() - 1);
+  CHECK(results::stored_answers(skipped.store).size() == skipped.schedule.size() - 1);
 }
 
 TEST_CASE("the operator switches what is rendered; each action is a row with trial and time",
@@ -182,4 +185,25 @@ TEST_CASE("what cannot be done now is refused and not stored", "[runner][operato
     CHECK(desk.view().log.front().is_stored);
   }
   CHECK(store.entries_for_journal().actions.size() == 1);
+}
+
+TEST_CASE("an answer that waits for its confidence is not mistaken for the one before",
+          "[runner][operator]") {
+  std::string refused;
+  Attended study{{}};
+  study.after = nullptr;
+  results::Recorder recorder{study.store};
+  OperatorDesk desk{{study.protocol, study.session.id, false, [] { return 3.0; }}, recorder};
+  const protocols::PlannedTrial& trial = study.schedule.front();
+  desk.answer_is_stored({trial,
+                         trial.task->answers(study.protocol.block(trial.block), study.protocol),
+                         trial.alternatives.front().stimulus});
+  desk.answer_is_given(trial.number + 1);
+  try {
+    desk.post(parse_operator_command("correct 1"));
+  } catch (const core::InvalidInput& error) {
+    refused = error.what();
+  }
+  CHECK_THAT(refused, Catch::Matchers::Contains("once its confidence is given"));
+  CHECK_NOTHROW(desk.post(parse_operator_command(fmt::format("correct @{} 1", trial.number))));
 }

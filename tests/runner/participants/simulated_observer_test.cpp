@@ -8,6 +8,7 @@
 #include "analysis/report/summary.hpp"
 #include "protocols/read_protocol.hpp"
 #include "results/store.hpp"
+#include "results/stored_answers.hpp"
 #include "runner/experiments/simulated_study.hpp"
 #include "runner/experiments/study_design.hpp"
 #include "support/texts.hpp"
@@ -28,8 +29,8 @@ analysis::Summary simulated(const std::string& text, int participants, std::uint
   const protocols::Protocol protocol = protocols::parse_protocol(text, "study.yaml");
   runner::simulate({"study.yaml", directory / "study", participants, seed}, protocol);
   results::Store store = results::Store::open_existing(directory / "study");
-  return analysis::summarise(runner::design_of(protocol, results::Mode::simulated), store.answers(),
-                             store.visits());
+  return analysis::summarise(runner::design_of(protocol, results::Mode::simulated),
+                             results::stored_answers(store), results::stored_visits(store));
 }
 const analysis::IdentificationSummary& identification(const analysis::Summary& summary) {
   return dynamic_cast<const analysis::IdentificationSummary&>(*summary.blocks.at(0));
@@ -73,7 +74,7 @@ TEST_CASE("shuffled labels give chance", "[runner][observer][slow]") {
   const protocols::Protocol protocol = protocols::parse_protocol(with_noise("1"), "study.yaml");
   runner::simulate({"study.yaml", directory / "study", 40, 7}, protocol);
   results::Store store = results::Store::open_existing(directory / "study");
-  auto answers = store.answers();
+  auto answers = results::stored_answers(store);
   std::vector<std::string> names;
   for (const auto& answer : answers) {
     names.push_back(answer.stimulus);
@@ -178,7 +179,8 @@ TEST_CASE("what a simulated participant answers does not depend on what stimuli 
     const protocols::Protocol protocol = protocols::parse_protocol(text, "study.yaml");
     runner::simulate({"study.yaml", directory / "study", 4, 7}, protocol);
     std::vector<std::size_t> places;
-    for (const auto& answer : results::Store::open_existing(directory / "study").answers()) {
+    auto store = results::Store::open_existing(directory / "study");
+    for (const auto& answer : results::stored_answers(store)) {
       const auto& names = protocol.blocks.at(0).stimuli;
       places.push_back(
           static_cast<std::size_t>(std::ranges::find(names, answer.response) - names.begin()));

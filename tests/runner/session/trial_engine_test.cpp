@@ -7,6 +7,7 @@
 
 #include "protocols/read_protocol.hpp"
 #include "results/store.hpp"
+#include "results/stored_answers.hpp"
 #include "runner/session/session_row.hpp"
 #include "support/no_real_plates.hpp"
 #include "support/processes.hpp"
@@ -102,7 +103,7 @@ TEST_CASE(
   Study study{allowed};
   study.run({.late_trials = late_trials});
   CHECK(study.participant.repeats_told == std::min(allowed, late_trials));
-  const auto answers = study.store.answers();
+  const auto answers = results::stored_answers(study.store);
   REQUIRE(answers.size() == study.schedule.size());  // the repeated ones do not count
   CHECK(answers.front().impacts == 1);
   CHECK(answers.front().late_impacts == (late_trials > allowed ? 1 : 0));
@@ -179,7 +180,7 @@ struct HastySession {
                                  recorder};
       CHECK_FALSE(engine.run(protocols::make_schedule(protocol, 1, 0), done));
     }
-    answers = store.answers();
+    answers = results::stored_answers(store);
     for (const results::UnansweredTrial& trial : store.unanswered_trials("P01")) {
       timed_out.push_back(trial.number);
     }
@@ -224,5 +225,5 @@ TEST_CASE("an answer given while nothing is rendered is no answer: the trial is 
   Study study{0};
   study.run({.stalled_trials = 2});
   CHECK(study.participant.repeats_told == 2);
-  CHECK(study.store.answers().size() == study.schedule.size());
+  CHECK(results::stored_answers(study.store).size() == study.schedule.size());
 }

@@ -72,7 +72,7 @@ TEST_CASE("the operator's commands are obeyed at a prompt, and what could not be
     given.push_back(command);
     std::promise<void> stored;
     stored.set_value();
-    return runner::TypedCommands::Posted{command, stored.get_future().share()};
+    return runner::PostedCommand{command, stored.get_future().share()};
   }};
   CHECK(runner::asked_and_done(input, commands, "Mount it and", "mounted"));
   CHECK(given == std::vector<std::string>{"note a scratch", "note nonsense"});

@@ -1,7 +1,7 @@
 // Questionnaires at the terminal, an item at a time.
 #include <fmt/format.h>
 
-#include "runner/participants/console_participant.hpp"
+#include "runner/participants/terminal_participant.hpp"
 #include "runner/terminal/marked_text.hpp"
 #include "runner/terminal/say.hpp"
 #include "runner/terminal/stop_signal.hpp"
@@ -34,7 +34,7 @@ std::string as_stored(const protocols::FormItem& item, const std::string& typed)
 }
 }  // namespace
 
-std::string ConsoleParticipant::answer_to(const protocols::FormItem& item) {
+std::string TerminalParticipant::answer_to(const protocols::FormItem& item) {
   say("\n{}\n", item.question);
   for (std::size_t i = 0; i < item.options.size(); ++i) {
     say("  {}  {}\n", i + 1, item.options[i].label);
@@ -56,7 +56,7 @@ std::string ConsoleParticipant::answer_to(const protocols::FormItem& item) {
   }
 }
 
-Participant::FormAnswers ConsoleParticipant::fill_in(const protocols::Form& form) {
+Participant::FormAnswers TerminalParticipant::fill_in(const protocols::Form& form) {
   if (forget_typed_ahead()) {
     ask_to_stop();
     stop_if_asked();

@@ -1,4 +1,4 @@
-#include "runner/session/interludes.hpp"
+#include "runner/session/between_trials.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -32,11 +32,11 @@ std::vector<double> rests(const protocols::Breaks& breaks) {
   double now_s = 100.0;
   CountedRests participant{now_s};
   runner::SessionStates states{1, [&] { return now_s; }};
-  runner::Interludes interludes{{protocol, participant, states, [](auto) {}, [] {}}, {}};
+  runner::BetweenTrials between{{protocol, participant, states, [](auto) {}, [] {}}, {}};
   protocols::PlannedTrial trial;
   trial.block = "only";
   for (trial.number = 1; trial.number <= 10; ++trial.number) {
-    interludes.before(trial, {trial});
+    between.before(trial, {trial});
     states.enter(runner::SessionState::ready, trial.number);
     states.enter(runner::SessionState::exploring, trial.number);
     states.enter(runner::SessionState::confirmed, trial.number);
@@ -46,6 +46,45 @@ std::vector<double> rests(const protocols::Breaks& breaks) {
   return participant.rested_at_s;
 }
 }  // namespace
+
+TEST_CASE("the end of practice is said before trials that count, unless their instructions do",
+          "[runner][session]") {
+  struct Person final : runner::Participant {
+    std::optional<std::string> perform(const runner::TrialPrompt& /*prompt*/,
+                                       runner::Exploration& /*exploration*/) override {
+      return std::nullopt;
+    }
+    void practice_is_over() override { ++times_said; }
+    int times_said{0};
+  };
+  const auto times_said = [](std::vector<protocols::Block> blocks) {
+    protocols::Protocol protocol;
+    protocol.blocks = std::move(blocks);
+    Person person;
+    runner::SessionStates states{1, [] { return 0.0; }};
+    runner::BetweenTrials between{{protocol, person, states, [](auto) {}, [] {}}, {}};
+    protocols::Schedule schedule(protocol.blocks.size());
+    for (std::size_t trial = 0; trial < schedule.size(); ++trial) {
+      schedule[trial].block = protocol.blocks[trial].name;
+    }
+    for (const protocols::PlannedTrial& trial : schedule) {
+      between.before(trial, schedule);
+      between.before(trial, schedule);
+    }
+    return person.times_said;
+  };
+  const auto block = [](std::string name, bool is_practice, std::string instructions = "") {
+    protocols::Block made;
+    made.name = std::move(name);
+    made.is_practice = is_practice;
+    made.instructions = std::move(instructions);
+    return made;
+  };
+  CHECK(times_said({block("a", true), block("b", true), block("c", false), block("d", false)}) ==
+        1);
+  CHECK(times_said({block("a", true), block("b", false, "It counts.")}) == 0);
+  CHECK(times_said({block("a", false), block("b", true)}) == 0);
+}
 
 TEST_CASE("rests come after so many trials", "[runner][session]") {
   CHECK(rests({.every_trials = 4}) == std::vector{140.0, 240.0});
@@ -90,11 +129,11 @@ TEST_CASE("a block's questionnaire that an interruption left open is asked befor
   std::vector<std::string> done;
   Person person{done};
   runner::SessionStates states{1, [] { return 0.0; }};
-  runner::Interludes interludes{{protocol, person, states, [](auto) {}, [] {}}, {}};
+  runner::BetweenTrials between{{protocol, person, states, [](auto) {}, [] {}}, {}};
   protocols::Schedule schedule(2);
   schedule[0].block = "first";
   schedule[1].block = "second";
-  interludes.before(schedule[1], schedule);
-  interludes.before(schedule[1], schedule);
+  between.before(schedule[1], schedule);
+  between.before(schedule[1], schedule);
   CHECK(done == std::vector<std::string>{"form", "read second"});
 }

@@ -15,8 +15,11 @@ namespace tapstudy::runner {
 inline constexpr const char* asked_at_begin = "session begin";
 inline constexpr const char* asked_at_end = "session end";
 
+// Between these two blocks. A block's own instructions say by themselves what counts.
+bool is_end_of_practice_said(const protocols::Block& before, const protocols::Block& block);
+
 // What comes between the trials of a session: instructions, rests, and questionnaires.
-class Interludes {
+class BetweenTrials {
  public:
   struct Parts {
     const protocols::Protocol& protocol;
@@ -27,7 +30,7 @@ class Interludes {
     std::function<void()> wait_while_paused;
   };
   // filled: those answered in an earlier session.
-  Interludes(Parts parts, FilledForms filled)
+  BetweenTrials(Parts parts, FilledForms filled)
       : parts_{std::move(parts)}, filled_{std::move(filled)} {}
   // Both throw Stopped if the participant stops.
   void before(const protocols::PlannedTrial& trial, const protocols::Schedule& schedule);
@@ -39,6 +42,7 @@ class Interludes {
   void ask_after_blocks(const protocols::Schedule& schedule,
                         const std::optional<std::string>& up_to);
   void read(const std::string& text, const std::string& whose);
+  void introduce(const protocols::Block& block);
   void rest_if_due(const protocols::Block& block);
   void ask(const std::vector<std::string>& forms, const std::string& asked);
   Parts parts_;

@@ -1,4 +1,4 @@
-#include "runner/participants/console_participant.hpp"
+#include "runner/participants/terminal_participant.hpp"
 
 #include <fmt/format.h>
 
@@ -19,17 +19,32 @@ std::optional<std::size_t> number_in(const std::string& word, std::size_t most) 
 }
 }  // namespace
 
-std::optional<std::string> ConsoleParticipant::next_of_participant(
+std::optional<std::string> TerminalParticipant::next_of_participant(
     const std::function<bool()>& keep_waiting) {
   return commands_.next_of_participant(input_, keep_waiting);
 }
 
-bool ConsoleParticipant::forget_typed_ahead() {
-  return commands_.heed(input_.forget_typed_ahead());
+bool TerminalParticipant::forget_typed_ahead() {
+  return commands_.obey_typed_ahead(input_.forget_typed_ahead());
+}
+
+// The operator is heard meanwhile, and quit. A script is not read: its lines are answers.
+void TerminalParticipant::wait_until(std::chrono::steady_clock::time_point earliest) {
+  const auto is_early = [&] { return std::chrono::steady_clock::now() < earliest; };
+  while (is_early()) {
+    stop_if_asked();
+    const auto line =
+        input_.is_terminal() ? next_of_participant(is_early) : std::optional<std::string>{};
+    if (line && asks_to_quit(*line)) {
+      ask_to_stop();
+    } else if (!line) {
+      std::this_thread::sleep_for(std::chrono::milliseconds{20});
+    }
+  }
 }
 
 // A script is not asked: its lines are answers.
-void ConsoleParticipant::wait_for_enter(std::chrono::steady_clock::time_point latest) {
+void TerminalParticipant::wait_for_enter(std::chrono::steady_clock::time_point latest) {
   if (!input_.is_terminal()) {
     return;
   }
@@ -48,7 +63,7 @@ void ConsoleParticipant::wait_for_enter(std::chrono::steady_clock::time_point la
   stop_if_asked();
 }
 
-void ConsoleParticipant::wait_while(const std::function<bool()>& is_paused) {
+void TerminalParticipant::wait_while(const std::function<bool()>& is_paused) {
   say("\nPaused; force is off. To go on, type :resume\n> ");
   while (is_paused()) {
     const auto line = next_of_participant(is_paused);
@@ -62,27 +77,29 @@ void ConsoleParticipant::wait_while(const std::function<bool()>& is_paused) {
   }
 }
 
-void ConsoleParticipant::read(const std::string& instructions) {
+void TerminalParticipant::read(const std::string& instructions) {
   const std::string text = instructions.substr(0, instructions.find_last_not_of('\n') + 1);
   say("\n{}\n", marked_text(text, is_shown_by_terminal()));
   wait_for_enter();
 }
 
-void ConsoleParticipant::rest(const protocols::Breaks& breaks) {
+void TerminalParticipant::practice_is_over() {
+  say("\nThe practice is over. From now on your answers count.\n");
+  wait_for_enter();
+}
+
+void TerminalParticipant::rest(const protocols::Breaks& breaks) {
   say("\nTime for a break{}{}.\n",
       breaks.min_seconds > 0.0 ? fmt::format(", of {:.3g} s at least", breaks.min_seconds) : "",
       breaks.max_seconds ? fmt::format(", of {:.3g} s at most", *breaks.max_seconds) : "");
   const RestTimes times = rest_times(breaks);
-  while (std::chrono::steady_clock::now() < times.earliest) {
-    stop_if_asked();
-    std::this_thread::sleep_for(std::chrono::milliseconds{20});
-  }
+  wait_until(times.earliest);
   wait_for_enter(times.latest);
 }
 
 // Without one at the end of input, or when the session is to stop: the answer is stored all the
 // same.
-std::optional<int> ConsoleParticipant::confidence(const protocols::Confidence& scale) {
+std::optional<int> TerminalParticipant::confidence(const protocols::Confidence& scale) {
   if (forget_typed_ahead()) {
     ask_to_stop();
     return std::nullopt;
@@ -102,23 +119,23 @@ std::optional<int> ConsoleParticipant::confidence(const protocols::Confidence& s
   return std::nullopt;
 }
 
-void ConsoleParticipant::feedback(bool is_correct, const std::string& right_label) {
+void TerminalParticipant::feedback(bool is_correct, const std::string& right_label) {
   say("  {}: it was {}\n", is_correct ? "right" : "not right", right_label);
 }
 
-void ConsoleParticipant::repeats(const TrialPrompt& prompt) {
+void TerminalParticipant::repeats(const TrialPrompt& prompt) {
   say("  trial {} is presented again\n", prompt.number);
 }
 
-void ConsoleParticipant::skipped(const TrialPrompt& prompt) {
+void TerminalParticipant::skipped(const TrialPrompt& prompt) {
   say("  trial {} is skipped\n", prompt.number);
 }
 
-void ConsoleParticipant::refused(const TrialPrompt& /*prompt*/, const TooEarly& why) {
+void TerminalParticipant::refused(const TrialPrompt& /*prompt*/, const TooEarly& why) {
   say("  {}\n", to_text(why));
 }
 
-void ConsoleParticipant::timed_out(const TrialPrompt& prompt, bool is_presented_again) {
+void TerminalParticipant::timed_out(const TrialPrompt& prompt, bool is_presented_again) {
   say("\n  the time for trial {} is over{}\n", prompt.number,
       is_presented_again ? ": it comes again later" : "");
   wait_for_enter();  // or trials would run on without anybody
@@ -126,7 +143,7 @@ void ConsoleParticipant::timed_out(const TrialPrompt& prompt, bool is_presented_
 
 // Only an empty line is a yes: an answer that was typed ahead is not. Nothing but quit gives up
 // what was answered.
-bool ConsoleParticipant::saves_again(const std::string& cause) {
+bool TerminalParticipant::saves_again(const std::string& cause) {
   constexpr std::string_view how{"Press Enter to try again, or type quit: "};
   say("\n{}\n  What was entered is not stored yet, but kept. {}", cause, how);
   if (forget_typed_ahead()) {
@@ -141,8 +158,8 @@ bool ConsoleParticipant::saves_again(const std::string& cause) {
   return false;
 }
 
-void ConsoleParticipant::saved(const TrialPrompt& prompt) {
-  say("  saved, {} of {}{}\n", prompt.progress.done + 1, prompt.progress.total,
+void TerminalParticipant::saved(const TrialPrompt& prompt) {
+  say("  saved, {}{}\n", place_in(prompt.progress),
       prompt.progress.is_practice ? " for practice" : "");
 }
 }  // namespace tapstudy::runner

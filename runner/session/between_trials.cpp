@@ -1,6 +1,10 @@
-#include "runner/session/interludes.hpp"
+#include "runner/session/between_trials.hpp"
 namespace tapstudy::runner {
-void Interludes::begin() {
+bool is_end_of_practice_said(const protocols::Block& before, const protocols::Block& block) {
+  return before.is_practice && !block.is_practice && block.instructions.empty();
+}
+
+void BetweenTrials::begin() {
   if (!has_begun_) {
     has_begun_ = true;
     read(parts_.protocol.instructions, "study");
@@ -9,8 +13,8 @@ void Interludes::begin() {
 }
 
 // Also those of a block that an earlier session finished, but for its questionnaires.
-void Interludes::ask_after_blocks(const protocols::Schedule& schedule,
-                                  const std::optional<std::string>& up_to) {
+void BetweenTrials::ask_after_blocks(const protocols::Schedule& schedule,
+                                     const std::optional<std::string>& up_to) {
   for (const protocols::PlannedTrial& trial : schedule) {
     if (trial.block == up_to) {
       return;
@@ -19,13 +23,14 @@ void Interludes::ask_after_blocks(const protocols::Schedule& schedule,
   }
 }
 
-void Interludes::before(const protocols::PlannedTrial& trial, const protocols::Schedule& schedule) {
+void BetweenTrials::before(const protocols::PlannedTrial& trial,
+                           const protocols::Schedule& schedule) {
   begin();
   const protocols::Block& block = parts_.protocol.block(trial.block);
   if (block_ != trial.block) {
     ask_after_blocks(schedule, trial.block);
+    introduce(block);
     block_ = trial.block;
-    read(block.instructions, block.name);
     trials_since_rest_ = 0;
     rested_at_s_ = parts_.states.now_s();
   }
@@ -33,7 +38,16 @@ void Interludes::before(const protocols::PlannedTrial& trial, const protocols::S
   ++trials_since_rest_;
 }
 
-void Interludes::rest_if_due(const protocols::Block& block) {
+void BetweenTrials::introduce(const protocols::Block& block) {
+  read(block.instructions, block.name);
+  if (block_ && is_end_of_practice_said(parts_.protocol.block(*block_), block)) {
+    parts_.wait_while_paused();
+    parts_.states.enter(SessionState::instructions, {}, block.name);
+    parts_.participant.practice_is_over();
+  }
+}
+
+void BetweenTrials::rest_if_due(const protocols::Block& block) {
   if (block.breaks &&
       block.breaks->are_due(trials_since_rest_, parts_.states.now_s() - rested_at_s_)) {
     parts_.wait_while_paused();
@@ -45,13 +59,13 @@ void Interludes::rest_if_due(const protocols::Block& block) {
 }
 
 // A session that was interrupted just before its last questionnaires has no trial left.
-void Interludes::after_last_trial(const protocols::Schedule& schedule) {
+void BetweenTrials::after_last_trial(const protocols::Schedule& schedule) {
   begin();
   ask_after_blocks(schedule, std::nullopt);
   ask(parts_.protocol.forms_after, asked_at_end);
 }
 
-void Interludes::read(const std::string& text, const std::string& whose) {
+void BetweenTrials::read(const std::string& text, const std::string& whose) {
   if (!text.empty()) {
     parts_.wait_while_paused();
     parts_.states.enter(SessionState::instructions, {}, whose);
@@ -59,7 +73,7 @@ void Interludes::read(const std::string& text, const std::string& whose) {
   }
 }
 
-void Interludes::ask(const std::vector<std::string>& forms, const std::string& asked) {
+void BetweenTrials::ask(const std::vector<std::string>& forms, const std::string& asked) {
   for (const std::string& name : forms) {
     if (!parts_.participant.fills_in_forms() || filled_.contains({name, asked})) {
       continue;

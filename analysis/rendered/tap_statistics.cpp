@@ -1,4 +1,4 @@
-#include "analysis/rendered/felt_taps.hpp"
+#include "analysis/rendered/tap_statistics.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,11 +7,11 @@
 #include <unsupported/Eigen/FFT>
 namespace tapstudy::analysis {
 namespace {
-double added_n(const FeltTick& tick) {
+double added_n(const TracedTick& tick) {
   return tick.parts.vibration_n + tick.parts.sinusoid_n;
 }
 
-std::array<double, 6> forces_of(const FeltTick& tick) {
+std::array<double, 6> forces_of(const TracedTick& tick) {
   return {tick.parts.penalty_n, tick.parts.vibration_n, tick.parts.sinusoid_n,
           tick.parts.total_n(), tick.commanded_n,       tick.reported_n};
 }
@@ -36,7 +36,7 @@ double ForceExtent::peak_n() const {
   return peaks_n.empty() ? std::numeric_limits<double>::quiet_NaN() : std::ranges::max(peaks_n);
 }
 
-FeltTaps::FeltTaps(const TapWindow& window)
+TapStatistics::TapStatistics(const TapWindow& window)
     : window_{window},
       extents_{{{"contact spring"},
                 {"vibration"},
@@ -49,7 +49,7 @@ FeltTaps::FeltTaps(const TapWindow& window)
       added_{window.ticks()},
       power_{Eigen::ArrayXd::Zero(static_cast<Eigen::Index>(window.ticks() / 2 + 1))} {}
 
-void FeltTaps::add_extents(const FeltTick& tick, std::array<double, 6>& peaks_n) {
+void TapStatistics::add_extents(const TracedTick& tick, std::array<double, 6>& peaks_n) {
   const std::array<double, 6> forces = forces_of(tick);
   for (std::size_t part = 0; part < forces.size(); ++part) {
     if (!tick.is_touching || std::isnan(forces[part])) {
@@ -61,7 +61,7 @@ void FeltTaps::add_extents(const FeltTick& tick, std::array<double, 6>& peaks_n)
   }
 }
 
-void FeltTaps::add_spectrum(const FeltTap& tap) {
+void TapStatistics::add_spectrum(const TracedTap& tap) {
   std::vector<double> force(window_.ticks(), 0.0);
   std::ranges::transform(tap.ticks, force.begin(), added_n);
   std::vector<std::complex<double>> transformed;
@@ -72,11 +72,11 @@ void FeltTaps::add_spectrum(const FeltTap& tap) {
   }
 }
 
-void FeltTaps::add(const FeltTap& tap) {
+void TapStatistics::add(const TracedTap& tap) {
   std::array<double, 6> peaks_n{};
   speeds_m_s_.push_back(tap.speed_m_s);
   for (std::size_t k = 0; k < tap.ticks.size(); ++k) {
-    const FeltTick& tick = tap.ticks[k];
+    const TracedTick& tick = tap.ticks[k];
     ++taps_at_[k];
     total_.add(k, tick.parts.total_n(), taps_at_[k]);
     added_.add(k, added_n(tick), taps_at_[k]);
@@ -88,19 +88,19 @@ void FeltTaps::add(const FeltTap& tap) {
   add_spectrum(tap);
 }
 
-double FeltTaps::spread_total_n(std::size_t tick) const {
+double TapStatistics::spread_total_n(std::size_t tick) const {
   return total_.standard_deviation(tick, taps_at_[tick]);
 }
 
-double FeltTaps::spread_added_n(std::size_t tick) const {
+double TapStatistics::spread_added_n(std::size_t tick) const {
   return added_.standard_deviation(tick, taps_at_[tick]);
 }
 
-bool FeltTaps::has_added() const {
+bool TapStatistics::has_added() const {
   return extents_[1].squares_n2 + extents_[2].squares_n2 > 0.0;
 }
 
-std::vector<double> FeltTaps::spectrum_n_per_hz() const {
+std::vector<double> TapStatistics::spectrum_n_per_hz() const {
   std::vector<double> spectrum;
   for (const double power : power_) {
     spectrum.push_back(std::sqrt(power / static_cast<double>(taps())) / window_.rate_hz);
@@ -108,7 +108,7 @@ std::vector<double> FeltTaps::spectrum_n_per_hz() const {
   return spectrum;
 }
 
-double FeltTaps::frequency_hz(std::size_t m) const {
+double TapStatistics::frequency_hz(std::size_t m) const {
   return static_cast<double>(m) * window_.rate_hz / static_cast<double>(window_.ticks());
 }
 }  // namespace tapstudy::analysis

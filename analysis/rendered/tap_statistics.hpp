@@ -34,10 +34,10 @@ struct ForceExtent {
 
 // The taps of one stimulus, at one point or at all: what is kept does not grow with the length of
 // traces, but for one number of each part a tap.
-class FeltTaps {
+class TapStatistics {
  public:
-  explicit FeltTaps(const TapWindow& window);
-  void add(const FeltTap& tap);
+  explicit TapStatistics(const TapWindow& window);
+  void add(const TracedTap& tap);
 
   std::int64_t taps() const { return taps_at_.empty() ? 0 : taps_at_.front(); }
   const TapWindow& window() const { return window_; }
@@ -62,8 +62,8 @@ class FeltTaps {
   double frequency_hz(std::size_t m) const;
 
  private:
-  void add_extents(const FeltTick& tick, std::array<double, 6>& peaks_n);
-  void add_spectrum(const FeltTap& tap);
+  void add_extents(const TracedTick& tick, std::array<double, 6>& peaks_n);
+  void add_spectrum(const TracedTap& tap);
 
   TapWindow window_;
   std::vector<double> speeds_m_s_;

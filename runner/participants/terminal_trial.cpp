@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "results/store_error.hpp"
-#include "runner/participants/console_participant.hpp"
+#include "runner/participants/terminal_participant.hpp"
 #include "runner/participants/typed_answers.hpp"
 #include "runner/terminal/say.hpp"
 #include "runner/terminal/stop_signal.hpp"
@@ -33,12 +33,12 @@ std::string expected_correction(const protocols::Answers& answers) {
 }
 }  // namespace
 
-void ConsoleParticipant::get_ready(const TrialPrompt& prompt) {
+void TerminalParticipant::get_ready(const TrialPrompt& prompt) {
   move_hand_();
   if (forget_typed_ahead()) {
     ask_to_stop();
   }
-  say("\nTrial {} of {}{}. {}\n", prompt.number, prompt.total,
+  say("\nTrial {}{}. {}\n", place_in(prompt.progress),
       prompt.block->is_practice ? " (practice)" : "", prompt.block->question);
   if (prompt.previous) {
     say("  (to change your last answer, type correct and {})\n",
@@ -74,8 +74,8 @@ void ConsoleParticipant::get_ready(const TrialPrompt& prompt) {
   }
 }
 
-std::optional<std::string> ConsoleParticipant::next_line(const TrialPrompt& prompt,
-                                                         Exploration& exploration) {
+std::optional<std::string> TerminalParticipant::next_line(const TrialPrompt& prompt,
+                                                          Exploration& exploration) {
   while (true) {
     say("> ");
     const auto line = next_of_participant([&] {
@@ -91,8 +91,8 @@ std::optional<std::string> ConsoleParticipant::next_line(const TrialPrompt& prom
   }
 }
 
-bool ConsoleParticipant::corrects(const std::string& line, const TrialPrompt& prompt,
-                                  Exploration& exploration) const {
+bool TerminalParticipant::corrects(const std::string& line, const TrialPrompt& prompt,
+                                   Exploration& exploration) const {
   constexpr std::string_view command{"CORRECT"};
   if (!prompt.previous || !upper_case_without_spaces(line).starts_with(command)) {
     return false;
@@ -117,14 +117,14 @@ bool ConsoleParticipant::corrects(const std::string& line, const TrialPrompt& pr
   return true;
 }
 
-std::optional<std::string> ConsoleParticipant::perform(const TrialPrompt& prompt,
-                                                       Exploration& exploration) {
+std::optional<std::string> TerminalParticipant::perform(const TrialPrompt& prompt,
+                                                        Exploration& exploration) {
   return prompt.alternative_labels.empty() ? answer_by_itself(prompt, exploration)
                                            : answer_among_alternatives(prompt, exploration);
 }
 
-bool ConsoleParticipant::passes_time_until(const std::function<bool()>& is_done,
-                                           Exploration& exploration) const {
+bool TerminalParticipant::passes_time_until(const std::function<bool()>& is_done,
+                                            Exploration& exploration) const {
   constexpr double step_s = 0.005;
   if (input_.is_terminal() || !exploration.is_running() || stop_was_asked() || is_done()) {
     return false;
@@ -133,8 +133,8 @@ bool ConsoleParticipant::passes_time_until(const std::function<bool()>& is_done,
   return true;
 }
 
-void ConsoleParticipant::let_script_wait(const TrialPrompt& prompt, std::size_t alternative,
-                                         Exploration& exploration) const {
+void TerminalParticipant::let_script_wait(const TrialPrompt& prompt, std::size_t alternative,
+                                          Exploration& exploration) const {
   const protocols::ExploreLimits& limits = prompt.block->explore;
   const auto is_done = [&] {
     return exploration.contacts(alternative) >= limits.min_contacts &&
@@ -150,7 +150,7 @@ void ConsoleParticipant::let_script_wait(const TrialPrompt& prompt, std::size_t 
   }
 }
 
-void ConsoleParticipant::wait_for_intervals(const TrialPrompt& prompt, Exploration& exploration) {
+void TerminalParticipant::wait_for_intervals(const TrialPrompt& prompt, Exploration& exploration) {
   const IntervalState* const state = exploration.intervals();
   if (state == nullptr) {
     return;
@@ -170,8 +170,8 @@ void ConsoleParticipant::wait_for_intervals(const TrialPrompt& prompt, Explorati
   }
 }
 
-std::optional<std::string> ConsoleParticipant::answer_by_itself(const TrialPrompt& prompt,
-                                                                Exploration& exploration) {
+std::optional<std::string> TerminalParticipant::answer_by_itself(const TrialPrompt& prompt,
+                                                                 Exploration& exploration) {
   while (const auto line = next_line(prompt, exploration)) {
     if (auto answer = answer_typed(*line, prompt, exploration)) {
       let_script_wait(prompt, 0, exploration);
@@ -182,8 +182,8 @@ std::optional<std::string> ConsoleParticipant::answer_by_itself(const TrialPromp
   return std::nullopt;
 }
 
-std::optional<std::string> ConsoleParticipant::answer_among_alternatives(const TrialPrompt& prompt,
-                                                                         Exploration& exploration) {
+std::optional<std::string> TerminalParticipant::answer_among_alternatives(
+    const TrialPrompt& prompt, Exploration& exploration) {
   const std::vector<std::string>& labels = prompt.alternative_labels;
   while (const auto line = next_line(prompt, exploration)) {
     wait_for_intervals(prompt, exploration);
@@ -213,8 +213,8 @@ std::optional<std::string> ConsoleParticipant::answer_among_alternatives(const T
 }
 
 // As far as there are settings.
-bool ConsoleParticipant::adjusts(const std::string& line, const TrialPrompt& prompt,
-                                 Exploration& exploration) const {
+bool TerminalParticipant::adjusts(const std::string& line, const TrialPrompt& prompt,
+                                  Exploration& exploration) const {
   const auto moved = settings_moved(line);
   if (prompt.answers.settings == 0 || !moved) {
     return false;

@@ -12,13 +12,14 @@ namespace tapstudy::runner {
 // "= label" to choose it; where the last of them is set, "+" and "-" move it and "=" answers; where
 // they come one after the other, "again" replays them.
 // "quit" or end of input stops the session; a line that begins with a colon is the operator's.
-class ConsoleParticipant final : public Participant {
+class TerminalParticipant final : public Participant {
  public:
   // move_hand is called before each trial; it starts the taps of a simulated hand if there is no
   // device for the person to hold.
-  ConsoleParticipant(LineInput& input, TypedCommands& commands, std::function<void()> move_hand)
+  TerminalParticipant(LineInput& input, TypedCommands& commands, std::function<void()> move_hand)
       : input_{input}, commands_{commands}, move_hand_{std::move(move_hand)} {}
   void read(const std::string& instructions) override;
+  void practice_is_over() override;
   void rest(const protocols::Breaks& breaks) override;
   bool fills_in_forms() const override { return true; }
   FormAnswers fill_in(const protocols::Form& form) override;
@@ -35,6 +36,7 @@ class ConsoleParticipant final : public Participant {
   void timed_out(const TrialPrompt& prompt, bool is_presented_again) override;
 
  private:
+  void wait_until(std::chrono::steady_clock::time_point earliest);
   void wait_for_enter(
       std::chrono::steady_clock::time_point latest = std::chrono::steady_clock::time_point::max());
   std::string answer_to(const protocols::FormItem& item);

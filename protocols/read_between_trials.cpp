@@ -41,7 +41,7 @@ Breaks read_breaks(MapReader& reader) {
 }
 }  // namespace
 
-void read_asides(MapReader& reader, Block& block) {
+void read_between_trials(MapReader& reader, Block& block) {
   block.instructions = reader.translated_paragraphs("instructions", "");
   reader.map("confidence", Presence::optional, [&](MapReader& inner) {
     Confidence confidence;

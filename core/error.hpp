@@ -12,6 +12,12 @@ class InvalidInput : public Error {
  public:
   using Error::Error;
 };
+// Data of which a statistic cannot be estimated: too few, all alike, or not connected. A report
+// says so and goes on.
+class NotEstimable : public InvalidInput {
+ public:
+  using InvalidInput::InvalidInput;
+};
 // A body that cannot be meshed, constrained or solved.
 class ModelError : public Error {
  public:

@@ -58,7 +58,7 @@ void estimate(ParticipantEquality& person, const BlockDesign& design) {
     if (!design.is_for_main_results) {
       person.estimate->goodness = deviance_test(model, person.levels, draws_of_fit, test_seed);
     }
-  } catch (const core::InvalidInput& error) {  // too few levels
+  } catch (const core::NotEstimable& error) {  // too few levels
     person.no_estimate = error.what();
   }
 }

@@ -8,6 +8,18 @@
 #include "analysis/figures/gnuplot.hpp"
 namespace tapstudy::analysis {
 namespace {
+const char* style_of(Mark mark) {
+  switch (mark) {
+    case Mark::line:
+      return "lines lw 1.5";
+    case Mark::broad_line:
+      return "lines lw 5 lc rgb '#c3ccd6'";
+    case Mark::points:
+      break;
+  }
+  return "points pt 7 ps 0.5";
+}
+
 constexpr std::size_t panel_width = 400;
 constexpr std::size_t panel_height = 230;
 
@@ -45,8 +57,7 @@ void write_panel(std::ostream& script, const Panel& panel, std::size_t index) {
     const Series& series = panel.series[i];
     script << (i == 0 ? "" : ", ")
            << fmt::format("$data_{}_{} axes {} with {} title ", index, i,
-                          series.axis == Axis::left ? "x1y1" : "x1y2",
-                          series.mark == Mark::line ? "lines lw 1.5" : "points pt 7 ps 0.5")
+                          series.axis == Axis::left ? "x1y1" : "x1y2", style_of(series.mark))
            << quoted(series.label);
   }
   script << '\n';

@@ -3,7 +3,7 @@
 #include <vector>
 namespace tapstudy::analysis {
 enum class Axis { left, right };
-enum class Mark { line, points };
+enum class Mark { line, broad_line, points };  // broad: pale, so that a line over it is seen
 struct Series {
   std::string label;
   Axis axis{Axis::left};

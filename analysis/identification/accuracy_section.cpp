@@ -27,7 +27,7 @@ ReportTable estimates_table(const IdentificationSummary& summary) {
        range_column("95 % CI, beta-binomial", "beta_binomial"), range_column("95 % CI, t", "t"),
        range_column("95 % CI, bootstrap", "bootstrap"),
        column("intra-class correlation", "intraclass_correlation"),
-       range_column("were answers independent (Wilson)", "independent_wilson")}};
+       range_column("if answers were independent (Wilson)", "independent_wilson")}};
   std::vector<FactorResult> results{{"all answers", "", summary.accuracy, summary.matrix.chance(),
                                      summary.accuracy_over_participants}};
   results.front().p = summary.chance_p;

@@ -90,7 +90,7 @@ void add_power_law(StimulusMagnitudes& of, const Logarithms& logarithms) {
   }
   try {
     of.power_law = power_law(all);
-  } catch (const core::InvalidInput& error) {  // too few, or participants with other values
+  } catch (const core::NotEstimable& error) {  // too few, or participants with other values
     of.no_power_law = error.what();
   }
 }

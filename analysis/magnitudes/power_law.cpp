@@ -35,7 +35,7 @@ Means log_means(const Estimates& estimates) {
     by_value[std::log10(one.value)].push_back(std::log10(one.estimate));
   }
   if (by_value.size() < 2) {
-    throw core::InvalidInput{fmt::format(
+    throw core::NotEstimable{fmt::format(
         "an exponent takes estimates of two values or more from each participant, not {}",
         by_value.size())};
   }
@@ -48,7 +48,7 @@ Means log_means(const Estimates& estimates) {
 
 void check_same_values(const Means& first, const Means& other) {
   if (!std::ranges::equal(first, other, {}, &Means::value_type::first, &Means::value_type::first)) {
-    throw core::InvalidInput{"an exponent takes participants who all judged the same values"};
+    throw core::NotEstimable{"an exponent takes participants who all judged the same values"};
   }
 }
 
@@ -97,7 +97,7 @@ std::map<double, std::vector<double>> equalised(const std::vector<Means>& partic
 
 PowerLaw power_law(const std::vector<Estimates>& participants) {
   if (participants.empty()) {
-    throw core::InvalidInput{"nobody judged all values"};
+    throw core::NotEstimable{"nobody judged all values"};
   }
   PowerLaw law;
   std::vector<Means> means;

@@ -40,7 +40,7 @@ std::vector<std::size_t> places(const std::vector<bool>& is_member, bool wanted)
 void refuse_groups(const std::vector<std::size_t>& beating,
                    const std::vector<std::size_t>& beaten) {
   if (!beating.empty() && !beaten.empty()) {
-    throw core::InvalidInput{fmt::format(
+    throw core::NotEstimable{fmt::format(
         "comparisons do not connect the items: of items {}, none was ever preferred to any of "
         "items {}, so no scale holds both; leave a group out or collect more comparisons",
         fmt::join(beaten, ", "), fmt::join(beating, ", "))};

@@ -108,12 +108,12 @@ void add_scales(PreferenceResults& results) {
     BradleyTerry found = bradley_terry(results.counts);
     results.bradley_terry = std::move(found.scale);
     results.nu = found.nu;
-  } catch (const core::InvalidInput& error) {
+  } catch (const core::NotEstimable& error) {
     results.no_scale = error.what();
   }
   try {
     results.thurstone = thurstone_case_v(results.counts);
-  } catch (const core::InvalidInput& error) {
+  } catch (const core::NotEstimable& error) {
     results.no_scale = error.what();
   }
 }

@@ -24,7 +24,7 @@ PsychometricFit fit_with_threshold(const PsychometricModel& model,
                                    const std::vector<Level>& levels) {
   PsychometricFit fit = fit_psychometric(model, levels);
   if (!fit.curve && fit.outcome != FitOutcome::step) {
-    throw core::InvalidInput{
+    throw core::NotEstimable{
         fmt::format("there is no interval without a threshold: {}", explanation(fit.outcome))};
   }
   return fit;

@@ -16,7 +16,7 @@ void check(const Level& level, const core::PsychometricShapeRow& row) {
                                          level.answers.successes, level.answers.trials)};
   }
   if (!std::isfinite(level.value) || (row.is_logarithmic && level.value < 0.0)) {
-    throw core::InvalidInput{fmt::format("{}: a value is a finite number{}, not {}", row.name,
+    throw core::NotEstimable{fmt::format("{}: a value is a finite number{}, not {}", row.name,
                                          row.is_logarithmic ? " of at least 0" : "", level.value)};
   }
 }
@@ -42,7 +42,7 @@ std::vector<Level> checked_levels(const std::vector<Level>& levels, core::Psycho
   const auto usable = std::ranges::count_if(
       merged, [&](const Level& level) { return !row.is_logarithmic || level.value > 0.0; });
   if (usable < 2) {
-    throw core::InvalidInput{fmt::format(
+    throw core::NotEstimable{fmt::format(
         "{}: a psychometric function takes answers at two different values{} or more, not {}",
         row.name, row.is_logarithmic ? " above 0" : "", usable)};
   }

@@ -11,7 +11,7 @@
 namespace tapstudy::analysis {
 void check_ratings(const RatingTable& ratings) {
   if (ratings.size() < 2 || ratings.front().size() < 2) {
-    throw core::InvalidInput{"ratings are of two conditions or more by two participants or more"};
+    throw core::NotEstimable{"ratings are of two conditions or more by two participants or more"};
   }
   for (const std::vector<double>& row : ratings) {
     if (row.size() != ratings.front().size() ||
@@ -52,7 +52,7 @@ FriedmanTest friedman_test(const RatingTable& ratings) {
   }
   const double spread = n * k * (k + 1.0) - ties / (k - 1.0);
   if (!(spread > 1e-9)) {
-    throw core::InvalidInput{"every participant rates all conditions the same: nothing to test"};
+    throw core::NotEstimable{"every participant rates all conditions the same: nothing to test"};
   }
   test.chi_squared = 12.0 * squares / spread;
   test.degrees_of_freedom = k - 1.0;

@@ -70,7 +70,7 @@ std::vector<double> sizes_without_rounding(const std::vector<double>& difference
 
 SignedRankTest signed_rank_test(const std::vector<double>& differences) {
   if (differences.empty()) {
-    throw core::InvalidInput{"a signed rank test takes one difference or more"};
+    throw core::NotEstimable{"a signed rank test takes one difference or more"};
   }
   check_finite(differences);
   const std::vector<double> all_sizes = sizes_without_rounding(differences);

@@ -48,7 +48,7 @@ void add_tests(const BlockDesign& design, RankingResults& results) {
   try {
     results.friedman = friedman_test(results.mean_places);
     results.pairwise = pairwise_signed_rank(results.mean_places);
-  } catch (const core::InvalidInput& error) {  // too few participants
+  } catch (const core::NotEstimable& error) {  // too few participants
     results.no_tests = error.what();
   }
 }
@@ -56,7 +56,7 @@ void add_tests(const BlockDesign& design, RankingResults& results) {
 void add_worths(const std::vector<Ranking>& rankings, RankingResults& results) {
   try {
     results.worths = plackett_luce(rankings, results.stimuli.size());
-  } catch (const core::InvalidInput& error) {  // a stimulus that was never behind another
+  } catch (const core::NotEstimable& error) {  // a stimulus that was never behind another
     results.no_worths = error.what();
   }
 }

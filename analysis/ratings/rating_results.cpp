@@ -81,7 +81,7 @@ void add_tests(RatingResults& results) {
   try {
     results.friedman = friedman_test(results.medians);
     results.pairwise = pairwise_signed_rank(results.medians);
-  } catch (const core::InvalidInput& error) {  // too few participants or stimuli, or all alike
+  } catch (const core::NotEstimable& error) {  // too few participants or stimuli, or all alike
     results.no_tests = error.what();
   }
 }

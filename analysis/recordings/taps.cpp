@@ -140,7 +140,8 @@ class TapFinder {
     if (impacts == 0) {
       return fmt::format(
           "{}: holds no tap: nowhere does the energy exceed the noise floor tenfold (at most "
-          "{:.1f} times)",
+          "{:.1f} times; a plate that never falls silent between taps looks like that, too: leave "
+          "more time between them)",
           recording_.file, loudest / energies_.floor);
     }
     return fmt::format("{}: holds no tap that can be used: {}", recording_.file,

@@ -79,7 +79,7 @@ std::shared_ptr<TabularSummary> compare_blocks(const BlockSummary& first,
   design.question = first.question;
   auto compared = std::make_shared<TabularSummary>(design);
   ReportTable table{"side_by_side",
-                    "Second less first, or second / first",
+                    "The second study against the first: difference, or ratio",
                     {column("result", "result"), column("study", "study"),
                      interval_column("estimate (95 % CI)", "estimate")}};
   const std::vector<MainResult> others = second.main_results();

@@ -79,7 +79,7 @@ void estimate(ParticipantThreshold& person, const PsychometricModel& model,
     if (draws > 0) {
       person.estimate->goodness = deviance_test(model, levels, draws, draws_seed);
     }
-  } catch (const core::InvalidInput& error) {  // too few levels, or levels below 0
+  } catch (const core::NotEstimable& error) {  // too few levels, or levels below 0
     person.no_threshold = error.what();
   }
 }
@@ -90,7 +90,7 @@ void add_posterior(ParticipantThreshold& person, const PsychometricModel& model,
     const PsychometricPosterior posterior = psychometric_posterior(model, levels);
     person.posterior = posterior.estimates;
     person.no_posterior = posterior.estimates ? "" : explanation(posterior.outcome);
-  } catch (const core::InvalidInput& error) {
+  } catch (const core::NotEstimable& error) {
     person.no_posterior = error.what();
   }
 }

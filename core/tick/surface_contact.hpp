@@ -13,9 +13,12 @@ namespace tapstudy::core {
 // The force is shaded: its direction and depth, and the place that is felt, are those of the tip's
 // foot on the smooth surface that the triangles stand for (SmoothNormals). So they change
 // continuously from facet to facet, and only across edges sharper than
-// SmoothNormals::sharp_above_rad abruptly. The god-object itself stays on the facets. On flat
-// faces, in sharp concave edges, and deeper than the radius of curvature the force is that of the
-// god-object.
+// SmoothNormals::sharp_above_rad abruptly. The depth is that below the facets, whose slope turns at
+// an edge by the angle between them: sliding at v, the force steps there by stiffness × v dt × that
+// angle, whatever its magnitude (0.04 N, 0.4 % of 10 N and 4 % of 1 N, at 0.1 m/s, 1 kHz and 3000
+// N/m on a sphere of 1280 triangles; a finer mesh has smaller steps). The god-object itself stays
+// on the facets. On flat faces, in sharp concave edges, and deeper than the radius of curvature the
+// force is that of the god-object.
 //
 // A tip found inside without having entered (the first reading) is not in contact. Contact chatter
 // does not retrigger impacts: see PlateContact.

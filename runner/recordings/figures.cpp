@@ -31,7 +31,7 @@ double fitted_at(const IdentifiedTap& tap, double sample) {
 }
 
 Panel time_panel(const IdentifiedTap& tap, const std::string& title) {
-  Series measured{"measured", analysis::Axis::left, {}, {}};
+  Series measured{"measured", analysis::Axis::left, {}, {}, Mark::broad_line};
   Series fitted{"fitted modes", analysis::Axis::left, {}, {}};
   const Eigen::Index count = std::min(max_points, tap.decay.samples.size());
   for (Eigen::Index n = 0; n < count; ++n) {
@@ -41,7 +41,9 @@ Panel time_panel(const IdentifiedTap& tap, const std::string& title) {
     fitted.x.push_back(t_s);
     fitted.y.push_back(fitted_at(tap, static_cast<double>(n)));
   }
-  return {title, {measured, fitted}};
+  const bool is_cut = count < tap.decay.samples.size();
+  return {is_cut ? fmt::format("{}, its first {} samples", title, count) : title,
+          {measured, fitted}};
 }
 
 double decibels(double magnitude, double largest) {
@@ -52,7 +54,7 @@ double decibels(double magnitude, double largest) {
 Panel spectrum_panel(const IdentifiedTap& tap, const std::string& title) {
   const analysis::BandSpectrum& spectrum = tap.modes.spectrum;
   const double largest = std::max(spectrum.values.cwiseAbs().maxCoeff(), 1e-300);
-  Series measured{"measured", analysis::Axis::left, {}, {}};
+  Series measured{"measured", analysis::Axis::left, {}, {}, Mark::broad_line};
   Series fitted{"fitted", analysis::Axis::left, {}, {}};
   for (Eigen::Index k = 0; k < spectrum.values.size(); ++k) {
     const double frequency_hz =

@@ -4,10 +4,10 @@ bool is_end_of_practice_said(const protocols::Block& before, const protocols::Bl
   return before.is_practice && !block.is_practice && block.instructions.empty();
 }
 
-void BetweenTrials::begin() {
+void BetweenTrials::begin(bool has_trials) {
   if (!has_begun_) {
     has_begun_ = true;
-    read(parts_.protocol.instructions, "study");
+    read(has_trials ? parts_.protocol.instructions : "", "study");
     ask(parts_.protocol.forms_before, asked_at_begin);
   }
 }
@@ -25,7 +25,7 @@ void BetweenTrials::ask_after_blocks(const protocols::Schedule& schedule,
 
 void BetweenTrials::before(const protocols::PlannedTrial& trial,
                            const protocols::Schedule& schedule) {
-  begin();
+  begin(true);
   const protocols::Block& block = parts_.protocol.block(trial.block);
   if (block_ != trial.block) {
     ask_after_blocks(schedule, trial.block);
@@ -60,7 +60,7 @@ void BetweenTrials::rest_if_due(const protocols::Block& block) {
 
 // A session that was interrupted just before its last questionnaires has no trial left.
 void BetweenTrials::after_last_trial(const protocols::Schedule& schedule) {
-  begin();
+  begin(false);
   ask_after_blocks(schedule, std::nullopt);
   ask(parts_.protocol.forms_after, asked_at_end);
 }

@@ -37,7 +37,7 @@ class BetweenTrials {
   void after_last_trial(const protocols::Schedule& schedule);
 
  private:
-  void begin();
+  void begin(bool has_trials);
   // nullopt: after all blocks.
   void ask_after_blocks(const protocols::Schedule& schedule,
                         const std::optional<std::string>& up_to);

@@ -63,7 +63,7 @@ TEST_CASE("practice is judged once it was presented, in whatever order the block
           "[end_to_end]") {
   const auto block = [](const std::string& name, const std::string& more) {
     return "  - {name: " + name +
-           ", task: identification, question: Which?, stimuli: [bare, ringing], repetitions: 2" +
+           ", task: identification, question: Which, stimuli: [bare, ringing], repetitions: 2" +
            more + "}\n";
   };
   const std::string practice =

@@ -234,7 +234,7 @@ class WholeSession(unittest.TestCase):
                  "de": ["2.5", "2.5", "12", "0.125", None, "1.000", None, None]}
         for language, expected in taken.items():
             with self.subTest(language):
-                self.start("discrimination.yaml", "--language", language)
+                self.start("protocols/paper/discrimination.yaml", "--language", language)
                 browser.wait_for_screen(self.driver, "trial")
                 found = self.driver.execute_async_script("""
                     const [typed, done] = arguments;
@@ -291,6 +291,9 @@ class WholeSession(unittest.TestCase):
         for index in (0, 1):
             self.next_trial(index + 1)
             self.answer_until_accepted(browser.answer_by_mouse, index)
+        browser.wait_for_screen(self.driver, "message")
+        self.assertIn("Die Übung ist vorbei", browser.text_of_page(self.driver))
+        browser.go_on_by_mouse(self.driver)
         for index in (0, 1):
             browser.wait_for_screen(self.driver, "message")
             browser.wait_until(self.driver, "the plate is asked for",

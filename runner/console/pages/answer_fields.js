@@ -50,8 +50,8 @@ function numberIn(input) {
   return text !== null && /^[\d.]+$/.test(text) && isAbove0(text) ? text : null;
 }
 const numberProblem = (input) => {
-  const { text, problem } = typedNumber(input.value);
-  return text === null && problem !== null ? problem : word("number_needed");
+  const { problem, mayBeThousands } = typedNumber(input.value);
+  return mayBeThousands ? problem : word("number_needed");
 };
 
 // Digits go to the field from anywhere; letters in it are no part of a number and feel an alternative.

@@ -39,21 +39,21 @@ class Profile {
 
   double end(Eigen::Index place, double first_step, double no_end) const {
     const double limit = first_step > 0.0 ? box_.high[place] : box_.low[place];
-    double inside = maximum_.at[place];
+    Maximum inside = maximum_;
     double step = first_step;
-    PsychometricVector last = maximum_.at;  // from which the next one may be climbed
-    const auto excess = [&](double value) {
-      const Maximum found = held_at(place, value, last);
-      last = found.at;
-      return maximum_.log_likelihood - found.log_likelihood - drop_;
-    };
-    while (inside != limit) {
-      const double outside =
-          first_step > 0.0 ? std::min(limit, inside + step) : std::max(limit, inside + step);
-      if (excess(outside) > 0.0) {
-        return root(excess, inside, outside);
+    while (inside.at[place] != limit) {
+      const double outside = first_step > 0.0 ? std::min(limit, inside.at[place] + step)
+                                              : std::max(limit, inside.at[place] + step);
+      const Maximum found = held_at(place, outside, inside.at);
+      if (maximum_.log_likelihood - found.log_likelihood > drop_) {
+        // from the last point, too, and from it alone: one function of the value while it is
+        // searched
+        const auto excess = [&](double value) {
+          return maximum_.log_likelihood - held_at(place, value, inside.at).log_likelihood - drop_;
+        };
+        return root(excess, inside.at[place], outside);
       }
-      inside = outside;
+      inside = found;
       step *= 2.0;
     }
     return no_end;

@@ -4,6 +4,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <string_view>
+#include <unordered_set>
 #include <utility>
 
 #include "analysis/answer_tables/answer_columns.hpp"
@@ -32,14 +34,23 @@ void check_differ(const std::set<std::string>& names, const std::string& file) {
 }
 }  // namespace
 
+std::set<std::string> distinct(const std::vector<results::AnswerRow>& answers,
+                               std::string results::AnswerRow::*column) {
+  std::unordered_set<std::string_view> found;
+  std::string_view last;
+  for (const results::AnswerRow& answer : answers) {
+    if (found.empty() || answer.*column != last) {
+      last = answer.*column;
+      found.insert(last);
+    }
+  }
+  return {found.begin(), found.end()};
+}
+
 void check_names(const std::vector<results::AnswerRow>& answers, const std::string& file,
                  const std::set<std::string>& stimuli, const std::set<std::string>& responses) {
   check_differ(responses, file);
-  std::set<std::string> participants;
-  for (const results::AnswerRow& answer : answers) {
-    participants.insert(answer.participant_id);
-  }
-  check_differ(participants, file);
+  check_differ(distinct(answers, &results::AnswerRow::participant_id), file);
   if (std::ranges::none_of(answers, [&](const results::AnswerRow& answer) {
         return stimuli.contains(answer.response);
       })) {

@@ -10,7 +10,9 @@
 #include <limits>
 #include <set>
 #include <span>
+#include <string_view>
 #include <unordered_map>
+#include <unordered_set>
 #include <utility>
 
 #include "analysis/answer_tables/answer_names.hpp"
@@ -168,9 +170,10 @@ void count_on(std::vector<results::AnswerRow>& answers) {
 
 void check_responses(const std::vector<results::AnswerRow>& answers,
                      const std::vector<Origin>& origins, const std::set<std::string>& responses) {
+  const std::unordered_set<std::string_view> known{responses.begin(), responses.end()};
   for (std::size_t i = 0; i < answers.size(); ++i) {
     const std::string& response = answers[i].response;
-    if (!responses.contains(response)) {
+    if (!known.contains(response)) {
       throw core::InvalidInput{
           fmt::format("{}: response '{}' is not a stimulus (if it can be answered, name it with "
                       "--responses; if it stands for a stimulus, say --responses '{}=STIMULUS')",
@@ -243,10 +246,7 @@ AnswerTable read_answers(const std::vector<NamedCsv>& files, const AnswerReading
   }
   keep_one_mode(table, origins);
   check_is_one_block(table.answers, origins);
-  std::set<std::string> stimuli;
-  for (const results::AnswerRow& answer : table.answers) {
-    stimuli.insert(answer.stimulus);
-  }
+  const std::set<std::string> stimuli = distinct(table.answers, &results::AnswerRow::stimulus);
   std::set<std::string> responses = stimuli;
   for (const auto& [given, meaning] : reading.responses) {
     responses.insert(meaning);

@@ -1,5 +1,6 @@
 #include "analysis/participants/serial_dependence.hpp"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -57,32 +58,37 @@ std::vector<std::size_t> permuted(const AnswerSequence& sequence, const Trials& 
 // How often each stimulus of one participant got each response.
 class SharesOfResponses {
  public:
-  explicit SharesOfResponses(const AnswerSequence& sequence) {
+  explicit SharesOfResponses(const AnswerSequence& sequence)
+      : counts_{Eigen::MatrixXd::Zero(codes(sequence.stimuli),
+                                      std::max(codes(sequence.responses), codes(sequence.right)))} {
     for (std::size_t i = 0; i < sequence.stimuli.size(); ++i) {
-      counts_[sequence.stimuli[i]][sequence.responses[i]] += 1.0;
-      trials_[sequence.stimuli[i]] += 1.0;
+      counts_(index(sequence.stimuli[i]), index(sequence.responses[i])) += 1.0;
     }
+    trials_ = counts_.rowwise().sum();
+    shares_ = trials_.cwiseMax(1.0).cwiseInverse().asDiagonal() * counts_;
+    equal_ = shares_ * shares_.transpose();
+    // of two trials of one stimulus the second has one answer less to be drawn from
+    const Eigen::ArrayXd pairs = (trials_.array() * (trials_.array() - 1.0)).max(1.0);
+    equal_.diagonal() =
+        ((counts_.array() * (counts_.array() - 1.0)).rowwise().sum() / pairs).matrix();
   }
   double share(std::size_t stimulus, std::size_t response) const {
-    const auto& counts = counts_.at(stimulus);
-    const auto found = counts.find(response);
-    return found == counts.end() ? 0.0 : found->second / trials_.at(stimulus);
+    return shares_(index(stimulus), index(response));
   }
-  // The probability that two trials get the same response, of those of one stimulus without putting
-  // back.
+  // The probability that two trials get the same response.
   double equal(std::size_t one, std::size_t other) const {
-    double sum = 0.0;
-    for (const auto& [response, count] : counts_.at(one)) {
-      const double n = trials_.at(one);
-      sum += one == other ? count * (count - 1.0) / (n * (n - 1.0))
-                          : count / n * share(other, response);
-    }
-    return sum;
+    return equal_(index(one), index(other));
   }
 
  private:
-  std::map<std::size_t, std::map<std::size_t, double>> counts_;
-  std::map<std::size_t, double> trials_;
+  static Eigen::Index index(std::size_t code) { return static_cast<Eigen::Index>(code); }
+  static Eigen::Index codes(const std::vector<std::size_t>& all) {
+    return all.empty() ? 0 : index(*std::ranges::max_element(all)) + 1;
+  }
+  Eigen::MatrixXd counts_;
+  Eigen::VectorXd trials_;
+  Eigen::MatrixXd shares_;
+  Eigen::MatrixXd equal_;
 };
 
 // The means of add_counts over all permutations.

@@ -7,6 +7,7 @@
 #include <iterator>
 #include <set>
 
+#include "analysis/answer_tables/answer_names.hpp"
 #include "analysis/identification/identification_summary.hpp"
 #include "analysis/rank_tests/signed_rank.hpp"
 #include "analysis/report/block_parts.hpp"
@@ -109,9 +110,7 @@ Summary summarise(const AnswerTable& table, const std::string& title, std::strin
   Summary summary;
   summary.title = title;
   summary.modes = mode.empty() ? "answers" : "answers, " + mode;
-  for (const AnswerRow& answer : table.answers) {
-    summary.participant_ids.insert(answer.participant_id);
-  }
+  summary.participant_ids = distinct(table.answers, &AnswerRow::participant_id);
   summary.participants = static_cast<int>(summary.participant_ids.size());
   summary.blocks.push_back(std::make_shared<const IdentificationSummary>(
       design, identification_data(design, table.answers)));

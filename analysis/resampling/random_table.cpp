@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "analysis/statistics/log_factorial.hpp"
 namespace tapstudy::analysis {
@@ -16,18 +17,39 @@ double log_hypergeometric(std::int64_t k, std::int64_t marked, std::int64_t draw
 }
 }  // namespace
 
-std::int64_t random_hypergeometric(std::int64_t marked, std::int64_t drawn, std::int64_t population,
-                                   core::Rng& rng) {
-  const std::int64_t least = std::max<std::int64_t>(0, drawn - (population - marked));
-  const std::int64_t most = std::min(drawn, marked);
-  if (least == most) {
-    return least;
+namespace {
+// Of `drawn` out of `population` of which `marked` are.
+struct Hypergeometric {
+  std::int64_t marked{};
+  std::int64_t drawn{};
+  std::int64_t population{};
+
+  std::int64_t least() const { return std::max<std::int64_t>(0, drawn - (population - marked)); }
+  std::int64_t most() const { return std::min(drawn, marked); }
+  std::int64_t mode() const {
+    const double at = static_cast<double>(drawn + 1) * static_cast<double>(marked + 1) /
+                      static_cast<double>(population + 2);
+    return std::clamp(static_cast<std::int64_t>(at), least(), most());
   }
-  const double mode_at = static_cast<double>(drawn + 1) * static_cast<double>(marked + 1) /
-                         static_cast<double>(population + 2);
-  const std::int64_t mode = std::clamp(static_cast<std::int64_t>(mode_at), least, most);
+  double mean() const {
+    return static_cast<double>(drawn) * static_cast<double>(marked) /
+           static_cast<double>(population);
+  }
+  double variance() const {
+    const auto n = static_cast<double>(population);
+    return mean() * (1.0 - static_cast<double>(marked) / n) *
+           static_cast<double>(population - drawn) / (n - 1.0);
+  }
+};
+
+// Outward from the mode: as many steps as the standard deviation.
+std::int64_t by_inversion(const Hypergeometric& of, core::Rng& rng) {
+  const auto [marked, drawn, population] = of;
+  const std::int64_t least = of.least();
+  const std::int64_t most = of.most();
+  const std::int64_t mode = of.mode();
   // p(k + 1) / p(k)
-  const auto ratio = [&](std::int64_t k) {
+  const auto ratio = [marked = marked, drawn = drawn, population = population](std::int64_t k) {
     return static_cast<double>(marked - k) * static_cast<double>(drawn - k) /
            (static_cast<double>(k + 1) * static_cast<double>(population - marked - drawn + k + 1));
   };
@@ -55,6 +77,46 @@ std::int64_t random_hypergeometric(std::int64_t marked, std::int64_t drawn, std:
     }
   }
   return mode;
+}
+
+// ln p(k), but for a constant.
+double log_ways_of(const Hypergeometric& of, std::int64_t k) {
+  return -(log_factorial(k) + log_factorial(of.marked - k) + log_factorial(of.drawn - k) +
+           log_factorial(of.population - of.marked - of.drawn + k));
+}
+
+// Ratio of uniforms (Stadlober 1990, The ratio of uniforms approach for generating discrete random
+// variates): (u, v) uniform in the rectangle around the region v^2 <= p(x) / p(mode), widened for
+// the steps of a discrete distribution; x = mean + width (u - 1/2) / v.
+std::int64_t by_ratio_of_uniforms(const Hypergeometric& of, core::Rng& rng) {
+  const double width = 2.0 * std::sqrt(2.0 / std::numbers::e) * std::sqrt(of.variance() + 0.5) +
+                       (3.0 - 2.0 * std::sqrt(3.0 / std::numbers::e));
+  const double log_of_mode = log_ways_of(of, of.mode());
+  while (true) {
+    const double v = 1.0 - rng.uniform();  // above 0
+    const double x = std::floor(of.mean() + 0.5 + width * (rng.uniform() - 0.5) / v);
+    if (x < static_cast<double>(of.least()) || x > static_cast<double>(of.most())) {
+      continue;
+    }
+    const auto k = static_cast<std::int64_t>(x);
+    const double log_ratio = log_ways_of(of, k) - log_of_mode;
+    // the first holds for all v^2 <= exp(log_ratio) that it lets pass, and spares a logarithm
+    if (v * (4.0 - v) - 3.0 <= log_ratio || 2.0 * std::log(v) <= log_ratio) {
+      return k;
+    }
+  }
+}
+}  // namespace
+
+std::int64_t random_hypergeometric(std::int64_t marked, std::int64_t drawn, std::int64_t population,
+                                   core::Rng& rng) {
+  constexpr double most_steps = 20.0;  // beyond which inversion costs more
+  const Hypergeometric of{marked, drawn, population};
+  if (of.least() == of.most()) {
+    return of.least();
+  }
+  return of.variance() > most_steps * most_steps ? by_ratio_of_uniforms(of, rng)
+                                                 : by_inversion(of, rng);
 }
 
 CountTable random_table(const TableTotals& totals, core::Rng& rng) {

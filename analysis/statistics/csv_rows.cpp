@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <array>
-#include <sstream>
 #include <string_view>
 #include <utility>
 
@@ -17,7 +16,7 @@ namespace {
 constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
 
 // Outside of quotes: commas may be decimal ones beside the others.
-char separator_of(const std::string& header) {
+char separator_of(std::string_view header) {
   std::string outside;
   bool is_quoted = false;
   for (const char c : header) {
@@ -43,23 +42,24 @@ class CsvReader {
   CsvReader(CsvReader&&) = delete;
   CsvReader& operator=(CsvReader&&) = delete;
 
-  CsvText read(const std::string& text) {
-    std::istringstream lines{text};
-    for (std::string line; std::getline(lines, line);) {
+  CsvText read(std::string_view text) {
+    if (text.starts_with(byte_order_mark)) {
+      text.remove_prefix(byte_order_mark.size());
+    }
+    while (!text.empty()) {
+      const std::size_t end = text.find('\n');
+      const std::string_view line = text.substr(0, end);
+      text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
       ++line_;
-      if (line_ == 1 && line.starts_with(byte_order_mark)) {
-        line.erase(0, byte_order_mark.size());
-      }
       check_characters(line);
       const bool is_before_rows = !is_inside_row_ && text_.rows.empty();
       if (is_before_rows && line.starts_with('#')) {
-        text_.comments.push_back(line);
+        text_.comments.emplace_back(line);
       } else {
         if (is_before_rows) {
           text_.separator = separator_of(line);
           csv_set_delim(&parser_, static_cast<unsigned char>(text_.separator));
         }
-        line += '\n';
         take(line);
       }
     }
@@ -70,7 +70,7 @@ class CsvReader {
   }
 
  private:
-  void check_characters(const std::string& line) const {
+  void check_characters(std::string_view line) const {
     if (!utf8::is_valid(line.begin(), line.end())) {
       throw core::InvalidInput{fmt::format("{}:{}: is not UTF-8 text", file_, line_)};
     }
@@ -81,13 +81,15 @@ class CsvReader {
       throw core::InvalidInput{fmt::format("{}:{}: has a control character", file_, line_)};
     }
   }
-  void take(const std::string& line) {
+  void take(std::string_view line) {
     if (!is_inside_row_) {
       row_.line = line_;
     }
     is_inside_row_ = true;
-    if (csv_parse(&parser_, line.data(), line.size(), end_cell, end_row, this) != line.size()) {
-      refuse();
+    for (const std::string_view part : {line, std::string_view{"\n"}}) {
+      if (csv_parse(&parser_, part.data(), part.size(), end_cell, end_row, this) != part.size()) {
+        refuse();
+      }
     }
     // an empty line ends no row, for there is none
     is_inside_row_ = is_inside_row_ && !(row_.cells.empty() && parser_.quoted == 0);

@@ -45,8 +45,13 @@ TEST_CASE("a random table has the totals of its pattern", "[analysis][resampling
 TEST_CASE("cells of random tables are drawn as R's hypergeometric distribution says",
           "[analysis][resampling]") {
   constexpr int draws = 20'000;
-  for (const auto& [marked, drawn, population] :
-       {std::tuple{20, 20, 80}, {3, 4, 7}, {500, 300, 2400}, {9, 8, 10}}) {
+  for (const auto& [marked, drawn, population] : {std::tuple{20, 20, 80},
+                                                  {3, 4, 7},
+                                                  {500, 300, 2400},
+                                                  {9, 8, 10},
+                                                  {40'000, 20'000, 80'000},
+                                                  {1'500, 70'000, 80'000},
+                                                  {50'000, 3'000, 80'000}}) {
     core::Rng rng{5};
     std::map<std::int64_t, int> seen;
     for (int i = 0; i < draws; ++i) {
@@ -54,8 +59,9 @@ TEST_CASE("cells of random tables are drawn as R's hypergeometric distribution s
     }
     double chi_squared = 0.0;
     int cells = 0;
-    const auto r = r_numbers(
-        fmt::format("out(dhyper(0:{}, {}, {}, {}))", drawn, marked, population - marked, drawn));
+    const auto r =
+        r_numbers(fmt::format("p <- dhyper(0:{}, {}, {}, {}); out(ifelse(p < 1e-300, 0, p))", drawn,
+                              marked, population - marked, drawn));
     for (std::size_t k = 0; k < r.size(); ++k) {
       const double expected = r[k] * draws;
       const int observed = seen[static_cast<std::int64_t>(k)];

@@ -107,6 +107,49 @@ std::string springs_of(const IdentifiedSprings& springs, const core::Shape& shap
   }
   return text;
 }
+
+std::string sinusoid_of(const SinusoidLaw& law, std::optional<double> loop_rate_hz) {
+  if (loop_rate_hz && law.frequency_hz.value >= 0.5 * *loop_rate_hz) {
+    return fmt::format("# the sinusoid of {:.5g} Hz is not below half of the protocol's rate_hz\n",
+                       law.frequency_hz.value);
+  }
+  if (!law.amplitude_n_s_per_m) {
+    return fmt::format(
+        "# sinusoid: {{amplitude_n_s_per_m: unknown, decay_per_s: {:.5g}, frequency_hz: {:.5g}}}\n",
+        law.decay_per_s.value, law.frequency_hz.value);
+  }
+  return fmt::format(
+      "rendering:\n  sinusoid:\n    amplitude_n_s_per_m: {:.5g}\n    decay_per_s: {:.5g}  {}\n"
+      "    frequency_hz: {:.5g}  {}\n",
+      *law.amplitude_n_s_per_m, law.decay_per_s.value, comment(law.decay_per_s),
+      law.frequency_hz.value, comment(law.frequency_hz));
+}
+
+std::string cautions_of(const analysis::ModelUpdate& update, std::size_t found) {
+  std::string text;
+  if (update.matched.size() < found) {
+    text += fmt::format(
+        "# CAUTION: only {} of the {} modes found match the model; Young's modulus rests on these, "
+        "and\n# modal_ratios of other modes are those of their neighbours. Is the plate as the "
+        "protocol says?\n",
+        update.matched.size(), found);
+  }
+  if (update.rival_pa) {
+    text += fmt::format("# CAUTION: {:.4g} Pa fits nearly as well, with other modes matched\n",
+                        *update.rival_pa);
+  }
+  return text;
+}
+
+std::string modulus_of(const ModelComparison& model) {
+  if (model.update) {
+    return fmt::format("{:.5g}  {}", model.update->youngs_modulus_pa.value,
+                       comment(model.update->youngs_modulus_pa));
+  }
+  const bool are_springs_kept = model.is_on_springs && !model.springs;
+  return fmt::format("{:.5g}  # the protocol's: {}", model.material->youngs_modulus_pa,
+                     are_springs_kept ? "not told apart from its springs" : "no mode matched");
+}
 }  // namespace
 
 std::string yaml_of(const TapIdentification& found) {
@@ -114,22 +157,8 @@ std::string yaml_of(const TapIdentification& found) {
       "# tapstudy identify: {} taps, {}, {:g} to {:g} Hz. To be pasted over the keys of the same "
       "name.\n",
       found.taps.size(), name(found.question.quantity), found.band.low_hz, found.band.high_hz);
-  const bool is_too_fast = found.sinusoid && found.loop_rate_hz &&
-                           found.sinusoid->frequency_hz.value >= 0.5 * *found.loop_rate_hz;
-  if (is_too_fast) {
-    text += fmt::format("# the sinusoid of {:.5g} Hz is not below half of the protocol's rate_hz\n",
-                        found.sinusoid->frequency_hz.value);
-  } else if (found.sinusoid && found.sinusoid->amplitude_n_s_per_m) {
-    const SinusoidLaw& law = *found.sinusoid;
-    text += fmt::format(
-        "rendering:\n  sinusoid:\n    amplitude_n_s_per_m: {:.5g}\n    decay_per_s: {:.5g}  {}\n"
-        "    frequency_hz: {:.5g}  {}\n",
-        *law.amplitude_n_s_per_m, law.decay_per_s.value, comment(law.decay_per_s),
-        law.frequency_hz.value, comment(law.frequency_hz));
-  } else if (found.sinusoid) {
-    text += fmt::format(
-        "# sinusoid: {{amplitude_n_s_per_m: unknown, decay_per_s: {:.5g}, frequency_hz: {:.5g}}}\n",
-        found.sinusoid->decay_per_s.value, found.sinusoid->frequency_hz.value);
+  if (found.sinusoid) {
+    text += sinusoid_of(*found.sinusoid, found.loop_rate_hz);
   }
   if (found.agreed.empty()) {
     return text + "# no mode was found by both methods\n";
@@ -137,33 +166,17 @@ std::string yaml_of(const TapIdentification& found) {
   if (!found.model) {
     return text + damping_of(found, "");
   }
-  if (found.model->springs) {
-    text += springs_of(*found.model->springs, found.model->shape);
+  const ModelComparison& model = *found.model;
+  if (model.springs) {
+    text += springs_of(*model.springs, model.shape);
   }
-  const core::Material& material = *found.model->material;
-  const auto& update = found.model->update;
-  const std::size_t matched = update ? update->matched.size() : 0;
-  const bool are_springs_kept = found.model->is_on_springs && !found.model->springs;
-  if (matched > 0 && matched < found.agreed.size()) {
-    text += fmt::format(
-        "# CAUTION: only {} of the {} modes found match the model; Young's modulus rests on these, "
-        "and\n# modal_ratios of other modes are those of their neighbours. Is the plate as the "
-        "protocol says?\n",
-        matched, found.agreed.size());
+  if (model.update) {
+    text += cautions_of(*model.update, found.agreed.size());
   }
-  if (update && update->rival_pa) {
-    text += fmt::format("# CAUTION: {:.4g} Pa fits nearly as well, with other modes matched\n",
-                        *update->rival_pa);
-  }
-  return text +
-         fmt::format(
-             "materials:\n  {}:\n    youngs_modulus_pa: {:.5g}  {}\n    density_kg_per_m3: {:.9g}\n"
-             "    poissons_ratio: {:.9g}\n{}",
-             found.model->material_name,
-             update ? update->youngs_modulus_pa.value : material.youngs_modulus_pa,
-             update             ? comment(update->youngs_modulus_pa)
-             : are_springs_kept ? "# the protocol's: not told apart from its springs"
-                                : "# the protocol's: no mode matched",
-             material.density_kg_per_m3, material.poissons_ratio, damping_of(found, "    "));
+  return text + fmt::format(
+                    "materials:\n  {}:\n    youngs_modulus_pa: {}\n    density_kg_per_m3: {:.9g}\n"
+                    "    poissons_ratio: {:.9g}\n{}",
+                    model.material_name, modulus_of(model), model.material->density_kg_per_m3,
+                    model.material->poissons_ratio, damping_of(found, "    "));
 }
 }  // namespace tapstudy::runner

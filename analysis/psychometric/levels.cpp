@@ -73,6 +73,8 @@ AxisRange axis_range(const std::vector<Level>& levels, core::PsychometricShape s
     range.high = position;
     is_first = false;
   }
+  constexpr double rounding = 1e-6;  // levels nearer than this are no step apart
+  range.smallest_gap = std::max(range.smallest_gap, rounding * range.length());
   return range;
 }
 }  // namespace tapstudy::analysis

@@ -202,6 +202,17 @@ TEST_CASE("a fit refuses counts and values that are not possible", "[analysis][p
   refuses({PsychometricShape::weibull, {0.0, 0.95}, {0.0, 0.1}}, choice_levels);
 }
 
+TEST_CASE("levels that differ by rounding only are fitted as one", "[analysis][psychometric]") {
+  const double next = std::nextafter(1e5, 2e5);
+  const PsychometricModel model{PsychometricShape::weibull, {0.5, 0.5}, {0.0, 0.1}};
+  const auto apart = analysis::fit_psychometric(
+      model, {{5e4, {11, 20}}, {1e5, {8, 10}}, {next, {8, 10}}, {2e5, {19, 20}}});
+  const auto one =
+      analysis::fit_psychometric(model, {{5e4, {11, 20}}, {1e5, {16, 20}}, {2e5, {19, 20}}});
+  REQUIRE(apart.curve);
+  CHECK(apart.curve->threshold == Approx(one.curve->threshold).epsilon(1e-6));
+}
+
 // Lapses make likelihoods with several maxima: a gentle function, and steps between levels.
 TEST_CASE("no point of a grid over the box is likelier than the fit", "[analysis][psychometric]") {
   core::Rng rng{7};

@@ -65,7 +65,7 @@ void add_map(const std::vector<Item>& classes, const SimilarityChoice& model,
     const ScaledMap map = classical_scaling(distances_of(model.similarities), 2);
     Chart chart;
     chart.caption = fmt::format(
-        "Classes on a map, far apart where seldom confused: distances -ln η, classical "
+        "Classes on a map, far apart where seldom confused: distances −ln η, classical "
         "scaling (Torgerson 1952), {:.0f} % in two dimensions.",
         100.0 * map.explained);
     chart.alternative = "Map of the classes";

@@ -43,16 +43,22 @@ double place_y(const Chart& chart, double y) {
   return bottom - (bottom - top) * along(y, chart.y_range, chart.is_y_logarithmic);
 }
 
+// With a minus sign, not a hyphen.
+std::string tick_text(double value) {
+  const std::string text = rounded(value);
+  return text.starts_with('-') ? "−" + text.substr(1) : text;
+}
+
 std::string axes(const Chart& chart) {
   std::string svg =
       fmt::format("<path class=\"frame\" d=\"M{0} {1}V{2}H{3}\"/>", left, top, bottom, right);
   for (const double x : ticks(chart.x_range, chart.is_x_logarithmic)) {
     svg += fmt::format("<text x=\"{:.1f}\" y=\"{}\" text-anchor=\"middle\">{}</text>",
-                       place_x(chart, x), bottom + 14.0, rounded(x));
+                       place_x(chart, x), bottom + 14.0, tick_text(x));
   }
   for (const double y : ticks(chart.y_range, chart.is_y_logarithmic)) {
     svg += fmt::format("<text x=\"{}\" y=\"{:.1f}\" text-anchor=\"end\">{}</text>", left - 5.0,
-                       place_y(chart, y) + 4.0, rounded(y));
+                       place_y(chart, y) + 4.0, tick_text(y));
   }
   return svg +
          fmt::format("<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">{}</text>",

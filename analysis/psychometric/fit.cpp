@@ -93,6 +93,10 @@ std::string_view explanation(FitOutcome outcome) {
   return "";
 }
 
+BinomialLikelihood likelihood_of(const PsychometricModel& model, const std::vector<Level>& levels) {
+  return {model.shape, checked_levels(levels, model.shape), model.rates};
+}
+
 PsychometricBox search_box(const PsychometricModel& model, const std::vector<Level>& levels) {
   const AxisRange range = axis_range(levels, model.shape);
   const Interval guess = model.rates == Rates::equal ? Interval{0.0, 0.0} : model.guess;
@@ -187,8 +191,7 @@ Maximum greatest(const BinomialLikelihood& likelihood, const PsychometricBox& bo
 
 PsychometricFit fit_psychometric(const PsychometricModel& model, const std::vector<Level>& levels) {
   check_rates(model);
-  const BinomialLikelihood likelihood{model.shape, checked_levels(levels, model.shape),
-                                      model.rates};
+  const BinomialLikelihood likelihood = likelihood_of(model, levels);
   const PsychometricBox box = search_box(model, likelihood.levels());
   PsychometricFit fit;
   fit.maximum = greatest(likelihood, box);

@@ -47,6 +47,8 @@ struct PsychometricFit {
 // high with guess.high + lapse.high < 1.
 PsychometricFit fit_psychometric(const PsychometricModel& model, const std::vector<Level>& levels);
 
+// Of these levels. Throws InvalidInput as checked_levels does.
+BinomialLikelihood likelihood_of(const PsychometricModel& model, const std::vector<Level>& levels);
 // The box that fit_psychometric searches: thresholds up to three times the levels' range beyond
 // them, slopes from nearly constant to a step within the smallest gap.
 PsychometricBox search_box(const PsychometricModel& model, const std::vector<Level>& levels);

@@ -91,8 +91,7 @@ PsychometricIntervals profile_intervals(const PsychometricModel& model,
                                         const std::vector<Level>& levels, double confidence) {
   check_confidence(confidence);
   const PsychometricFit fit = fit_with_threshold(model, levels);
-  const BinomialLikelihood likelihood{model.shape, checked_levels(levels, model.shape),
-                                      model.rates};
+  const BinomialLikelihood likelihood = likelihood_of(model, levels);
   const PsychometricBox box = search_box(model, likelihood.levels());
   const Profile profile{likelihood, box, fit.maximum, 0.5 * chi_squared_quantile(confidence, 1.0)};
   const double step = 0.1 * axis_range(likelihood.levels(), model.shape).length();
@@ -109,8 +108,7 @@ std::optional<PsychometricCurve> curve_with_threshold(const PsychometricModel& m
   if (fit.outcome != FitOutcome::step) {
     return fit.curve;
   }
-  const BinomialLikelihood likelihood{model.shape, checked_levels(levels, model.shape),
-                                      model.rates};
+  const BinomialLikelihood likelihood = likelihood_of(model, levels);
   const PsychometricBox box = search_box(model, likelihood.levels());
   const Profile profile{likelihood, box, fit.maximum, as_likely};
   const double step = 0.1 * axis_range(likelihood.levels(), model.shape).length();

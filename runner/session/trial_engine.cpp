@@ -35,18 +35,20 @@ std::optional<Interruption> TrialEngine::run(const protocols::Schedule& schedule
     note_events();
     return interruption;
   } catch (const PracticeMissed& missed) {
-    parts_.states.enter(SessionState::stopped, {}, missed.what());
-    note_events();
+    note_stop(missed.what());
     throw;
   } catch (const Stopped&) {
-    parts_.states.enter(SessionState::stopped, {}, parts_.by.end_reason());
-    note_events();
+    note_stop(parts_.by.end_reason());
     throw;
   } catch (const core::Error& error) {
-    parts_.states.enter(SessionState::stopped, {}, error.what());
-    note_events();
+    note_stop(error.what());
     throw;
   }
+}
+
+void TrialEngine::note_stop(const std::string& why) {
+  parts_.states.enter(SessionState::stopped, {}, why);
+  note_events();
 }
 
 // The record of states is worth less than what comes next: going on after a fault, the end.

@@ -57,6 +57,7 @@ class TrialEngine {
   std::optional<Interruption> run_all(const protocols::Schedule& schedule,
                                       std::set<int>& done_trials);
   void note_events();
+  void note_stop(const std::string& why);
   void ask_confidence(const protocols::Block& block, int trial, Answer& answer);
   void give_feedback(const protocols::PlannedTrial& trial, const TrialPrompt& prompt,
                      const std::string& response);

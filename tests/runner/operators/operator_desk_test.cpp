@@ -191,7 +191,6 @@ TEST_CASE("an answer that waits for its confidence is not mistaken for the one b
           "[runner][operator]") {
   std::string refused;
   Attended study{{}};
-  study.after = nullptr;
   results::Recorder recorder{study.store};
   OperatorDesk desk{{study.protocol, study.session.id, false, [] { return 3.0; }}, recorder};
   const protocols::PlannedTrial& trial = study.schedule.front();

@@ -127,8 +127,13 @@ void read_vary(MapReader& stimulus_reader, const Protocol& protocol, Stimulus& s
   stimulus_reader.map("vary", Presence::optional, [&](MapReader& vary) {
     for (const Axis& axis : axes()) {
       named += vary.has(std::string{axis.name}) ? 1 : 0;
-      vary.map(std::string{axis.name}, Presence::optional,
-               [&](MapReader& reader) { read_axis(reader, axis, own, stimulus.vary); });
+      const auto read = [&](MapReader& reader) { read_axis(reader, axis, own, stimulus.vary); };
+      if (axis.kind == AxisKind::scaled) {
+        vary.map_or_list(std::string{axis.name}, Presence::optional, {"from", "to", "spacing"},
+                         read);
+      } else {
+        vary.map(std::string{axis.name}, Presence::optional, read);
+      }
     }
     if (named == 0) {
       vary.reject(fmt::format("names no axis (one of: {})", fmt::join(axis_names(), ", ")));

@@ -140,6 +140,8 @@ def range_of(schema):
         if "properties" in schema:
             return "mapping"
         return "mapping of names" + (", at least 1" if schema.get("minProperties") else "")
+    if "prefixItems" in schema:
+        return "mapping, or list of " + ", ".join(map(code, schema["properties"]))
     if isinstance(kind, list) and "object" in kind:
         return "text, or one for each language"
     if isinstance(kind, list):
@@ -192,7 +194,7 @@ def inner(path, schema):
     for name, value in values:
         if value.get("type") == "array":
             name, value = name + "[]", value["items"]
-        if value.get("type") == "object":
+        if value.get("type") == "object" or "properties" in value:
             yield name, value
 
 

@@ -25,6 +25,30 @@ void MapReader::map(const std::string& key, Presence presence, const ReadMap& re
   }
 }
 
+void MapReader::map_or_list(const std::string& key, Presence presence,
+                            const std::vector<std::string>& keys, const ReadMap& read) {
+  const auto node = find(key, presence != Presence::optional);
+  if (!node || !node->IsSequence()) {
+    if (node) {
+      read_inner(*node, path_of(key), pattern_of(key), read);
+    }
+    return;
+  }
+  if (node->size() > keys.size() || node->size() + 1 < keys.size()) {
+    reject_at(*node, path_of(key),
+              fmt::format("is not a list of {}: it has {} values (the last may be left out)",
+                          fmt::join(keys, ", "), node->size()));
+    return;
+  }
+  YAML::Node mapping{YAML::NodeType::Map};
+  for (std::size_t i = 0; i < node->size(); ++i) {
+    mapping[keys[i]] = (*node)[i];
+  }
+  MapReader inner{mapping, path_of(key), pattern_of(key), *problems_, translations_};
+  inner.list_ = std::make_unique<YAML::Node>(*node);
+  read(inner);
+}
+
 std::optional<YAML::Node> MapReader::find_map(const std::string& key, Presence presence) {
   auto node = find(key, presence != Presence::optional);
   if (node && (!node->IsMap() || node->size() == 0)) {

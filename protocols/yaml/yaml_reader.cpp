@@ -95,22 +95,22 @@ void MapReader::reject_at(const YAML::Node& node, const std::string& path,
   problems_->add(std::max(0, node.Mark().line), std::max(0, node.Mark().column), path, what);
 }
 void MapReader::reject(const std::string& what) {
-  reject_at(*node_, path_, what);
+  reject_at(written(), path_, what);
 }
 void MapReader::reject(const std::string& key, const std::string& what) {
   const YAML::Node& whole = *node_;
   const YAML::Node value = whole[key];
-  reject_at(value.IsDefined() ? value : whole, path_of(key), what);
+  reject_at(value.IsDefined() ? value : written(), path_of(key), what);
 }
 
 std::string MapReader::stated_at() const {
-  const YAML::Mark mark = node_->Mark();
+  const YAML::Mark mark = written().Mark();
   return problems_->place(std::max(0, mark.line), std::max(0, mark.column), path_);
 }
 std::string MapReader::stated_at(const std::string& key) const {
   const YAML::Node& whole = *node_;
   const YAML::Node value = whole[key];
-  const YAML::Mark mark = value.IsDefined() ? value.Mark() : whole.Mark();
+  const YAML::Mark mark = value.IsDefined() ? value.Mark() : written().Mark();
   return problems_->place(std::max(0, mark.line), std::max(0, mark.column), path_of(key));
 }
 

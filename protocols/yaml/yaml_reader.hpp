@@ -106,6 +106,10 @@ class MapReader {
   using ReadMap = std::function<void(MapReader&)>;
   using ReadNamed = std::function<void(const std::string& name, MapReader&)>;
   void map(const std::string& key, Presence presence, const ReadMap& read);
+  // The same, also written as a list: the values of these keys in their order, the last of which
+  // may be left out.
+  void map_or_list(const std::string& key, Presence presence, const std::vector<std::string>& keys,
+                   const ReadMap& read);
   // A mapping from free names to mappings / to two numbers / to text; a list of mappings.
   void each(const std::string& key, Presence presence, const ReadNamed& read);
   void each_point(const std::string& key, Presence presence,
@@ -138,6 +142,7 @@ class MapReader {
   std::string path_of(const std::string& key) const;
   std::string pattern_of(const std::string& key) const;
   void reject_at(const YAML::Node& node, const std::string& path, const std::string& what);
+  const YAML::Node& written() const { return list_ ? *list_ : *node_; }
   std::optional<double> as_number(const YAML::Node& node, const std::string& path,
                                   const Range& range);
   void read_inner(const YAML::Node& node, const std::string& path, const std::string& pattern,
@@ -151,6 +156,7 @@ class MapReader {
                   const std::vector<std::string>& allowed);
 
   std::unique_ptr<YAML::Node> node_;
+  std::unique_ptr<YAML::Node> list_;  // of which node_ was made; else nullptr
   std::string path_;
   std::string pattern_;
   bool has_free_names_{false};

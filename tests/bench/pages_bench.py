@@ -1,7 +1,9 @@
 #!/usr/bin/python3
-"""pages_bench.py TAPSTUDY: how late the loop of a session with pages wakes without any load and in a
-flood: 8 threads that ask as fast as they can, half of them for three.module.js, half for the page
-itself, and 40 streams of which 30 are never read. Sessions in pairs, in turns: medians over the trials, and of the ratios of the pairs."""
+"""pages_bench.py TAPSTUDY: how late the loop of a session with pages wakes while nothing is asked of
+them, in a flood, and while the same flood is of another session's pages, which costs the machine as
+much: 8 threads that ask as fast as they can, half of them for three.module.js, half for the page
+itself, and 40 streams of which 30 are never read. In turns: medians over the trials, and of the
+ratios of each turn."""
 import os
 import signal
 import statistics
@@ -15,7 +17,7 @@ from urllib.parse import urlparse
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "pages"))
 from page_client import NETWORK, ask, next_trial_screen, open_stream, post
 
-PAIRS = 5
+TURNS = 5
 SECONDS_PER_TRIAL = 2
 PATIENCE_S = 60
 FLOODS, STREAMS, UNREAD = 8, 40, 30
@@ -83,9 +85,9 @@ def take_part(session):
             time.sleep(0.02)
 
 
-def measure(session, is_flooded):
+def measure(session, flooded_page):
     """p99.9 of each trial in microseconds, and what was served to the load in MB."""
-    flood = [sys.executable, __file__, "--load", session.participant] if is_flooded else ["true"]
+    flood = [sys.executable, __file__, "--load", flooded_page] if flooded_page else ["true"]
     with subprocess.Popen(flood, stdout=subprocess.PIPE, text=True) as process:
         take_part(session)
         process.terminate()
@@ -96,19 +98,31 @@ def measure(session, is_flooded):
 
 
 def compare(start):
-    quiet, flooded, ratios = [], [], []
+    """The other session waits at its first screen all the time."""
+    other = start()
+    measured = {"quiet": [], "elsewhere": [], "flood": []}
+    to_quiet, to_elsewhere = [], []
     print("lateness p99.9 of a trial [us], median\n"
-          "             no load     flood     ratio   served [MB]")
-    for pair in range(1, PAIRS + 1):
-        one, _ = measure(start(), False)
-        other, served = measure(start(), True)
-        ratios.append(statistics.median(other) / statistics.median(one))
-        quiet += one
-        flooded += other
-        print(f"  pair {pair}{statistics.median(one):>13.0f}{statistics.median(other):>10.0f}"
-              f"{ratios[-1]:>10.2f}{served:>14.0f}", flush=True)
-    print(f"  all   {statistics.median(quiet):>13.0f}{statistics.median(flooded):>10.0f}"
-          f"{statistics.median(ratios):>10.2f}")
+          "           no load  flood elsewhere  flood  flood/no load  flood/elsewhere  served [MB]")
+    for turn in range(1, TURNS + 1):
+        medians, served = {}, 0
+        for load_of, times in measured.items():
+            session = start()
+            pages = {"quiet": None, "elsewhere": other.participant, "flood": session.participant}
+            trials, served = measure(session, pages[load_of])
+            medians[load_of] = statistics.median(trials)
+            times += trials
+        to_quiet.append(medians["flood"] / medians["quiet"])
+        to_elsewhere.append(medians["flood"] / medians["elsewhere"])
+        show(f"turn {turn}", medians, to_quiet[-1], to_elsewhere[-1], f"{served:>13.0f}")
+    other.close()
+    show("all", {load: statistics.median(times) for load, times in measured.items()},
+         statistics.median(to_quiet), statistics.median(to_elsewhere), "")
+
+
+def show(name, medians, to_quiet, to_elsewhere, served):
+    print(f"  {name:<6}{medians['quiet']:>10.0f}{medians['elsewhere']:>17.0f}{medians['flood']:>7.0f}"
+          f"{to_quiet:>15.2f}{to_elsewhere:>17.2f}{served}", flush=True)
 
 
 def main():

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <set>
+#include <tuple>
 
 #include "core/error.hpp"
 #include "support/varied_study.hpp"
@@ -69,6 +70,27 @@ TEST_CASE("a scaled axis presents what is asked, and cuts off rounding at its en
   CHECK(at(1.23456789e9) == 1.23456789e9);
   CHECK(at(std::nextafter(5e9, inf)) == 5e9);
   CHECK(at(std::nextafter(1e9, 0.0)) == 1e9);
+}
+
+TEST_CASE("a scaled axis may be written as a list of its ends and its spacing",
+          "[protocols][axes]") {
+  const auto ranges = [](const std::string& written) {
+    const auto protocol = testing::varied_study({"youngs_modulus_pa: " + written});
+    const protocols::AxisRange& range = protocol.stimuli.front().vary.front();
+    return std::tuple{range.from, range.to, range.spacing};
+  };
+  CHECK(ranges("[1e9, 5e9, log]") == ranges("{from: 1e9, to: 5e9, spacing: log}"));
+  CHECK(ranges("[1e9, 5e9]") == ranges("{from: 1e9, to: 5e9}"));
+  const std::string at{"study.yaml:29:26: stimuli.a.vary.youngs_modulus_pa"};
+  refused({"youngs_modulus_pa: [1e9]"}, at + ": is not a list of from, to, spacing: it has 1");
+  refused({"youngs_modulus_pa: [1e9, 2e9, log, 3]"}, at + ": is not a list of");
+  refused({"youngs_modulus_pa: []"}, at + ": is not a list of");
+  refused({"youngs_modulus_pa: [5e9, 1e9]"},
+          "study.yaml:29:27: stimuli.a.vary.youngs_modulus_pa.from");
+  refused({"youngs_modulus_pa: [1e9, 5e9, lgo]"},
+          "spacing: 'lgo' is not a known value (one of: linear, log)");
+  refused({"damping_scale: [0, 2, log]"}, "log needs values above 0");
+  refused({"thickness_m: [0.04, 0.06]"}, "a list is not a mapping");
 }
 
 TEST_CASE("values that cannot be presented are refused, with what is allowed",

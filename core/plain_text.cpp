@@ -28,6 +28,14 @@ bool is_plain_text(std::string_view text) {
   return true;
 }
 
+std::string trimmed(std::string_view text) {
+  constexpr std::string_view blanks{" \t\r\n"};
+  const auto first = text.find_first_not_of(blanks);
+  const auto last = text.find_last_not_of(blanks);
+  return first == std::string_view::npos ? std::string{}
+                                         : std::string{text.substr(first, last - first + 1)};
+}
+
 std::size_t character_count(std::string_view text) {
   return text.size() - static_cast<std::size_t>(std::ranges::count_if(text, continues_a_character));
 }

@@ -25,7 +25,7 @@ std::string participants_of(const NamedSummary& study) {
   const int number = study.summary->participants;
   return number == 0 ? study.name
                      : fmt::format("{} ({} participant{}, {})", study.name, number,
-                                   number == 1 ? "" : "s", study.summary->modes);
+                                   number == 1 ? "" : "s", words_of_modes(*study.summary));
 }
 
 IntervalEstimate estimate_of(const MainResult& result) {
@@ -124,16 +124,13 @@ void add_block(const BlockSummary& block, const NamedSummary& first, const Named
   }
   comparison.blocks.push_back(compared);
 }
-
-std::string modes_of(const Summary& first, const Summary& second) {
-  return first.modes == second.modes ? first.modes : first.modes + ", " + second.modes;
-}
 }  // namespace
 
 Summary compare(const NamedSummary& first, const NamedSummary& second) {
   Summary comparison;
   comparison.title = fmt::format("{} and {}", first.name, second.name);
-  comparison.modes = modes_of(*first.summary, *second.summary);
+  comparison.modes = first.summary->modes;
+  comparison.modes.insert(second.summary->modes.begin(), second.summary->modes.end());
   comparison.participants = first.summary->participants + second.summary->participants;
   for (const Block& block : first.summary->blocks) {
     add_block(*block, first, second, comparison);

@@ -30,7 +30,7 @@ class Namer {
 }  // namespace
 
 std::vector<FigureFile> figure_files(const Summary& summary) {
-  const std::string mark = banner(summary).empty() ? "" : summary.modes;
+  const std::string mark = banner(summary).empty() ? "" : words_of_modes(summary);
   std::vector<FigureFile> files;
   Namer named;
   const auto add = [&](const std::string& where, const std::vector<Chart>& charts) {

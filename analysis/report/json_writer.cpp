@@ -14,7 +14,7 @@ std::string text_of(const Json& json, int indent) {
 void write_json(std::ostream& out, const Summary& summary) {
   Json json{{"schema_version", 1},
             {"title", summary.title},
-            {"modes", summary.modes},
+            {"modes", words_of_modes(summary)},
             {"participants", summary.participants}};
   json["unfinished"] = summary.unfinished;
   json["excluded"] = summary.excluded;

@@ -15,6 +15,7 @@
 namespace tapstudy::analysis {
 namespace {
 using results::AnswerRow;
+using results::Mode;
 using results::VisitRow;
 
 // Adjusts the probabilities of all declared hypotheses for their number, if there are several.
@@ -55,12 +56,10 @@ Summary summarise(const StudyDesign& design, const std::vector<AnswerRow>& answe
   Summary summary;
   summary.title = design.title;
   summary.notes = design.notes;
-  std::set<std::string> modes;
   for (const AnswerRow& answer : answers) {
-    modes.insert(results::to_text(answer.mode));
+    summary.modes.insert(results::to_text(answer.mode));
     summary.participant_ids.insert(answer.participant_id);
   }
-  summary.modes = fmt::format("{}", fmt::join(modes, ", "));
   summary.participants = static_cast<int>(summary.participant_ids.size());
   summary.loop = loop_quality(answers);
   std::vector<std::shared_ptr<BlockSummary>> blocks;
@@ -83,10 +82,11 @@ Summary summarise(const StudyDesign& design, const std::vector<AnswerRow>& answe
 }
 
 Summary summarise(const ConfusionMatrix& matrix, const std::string& title, std::string_view task,
-                  const std::string& mode) {
+                  const std::set<std::string>& modes) {
   Summary summary;
   summary.title = title;
-  summary.modes = mode.empty() ? "counts" : "counts, " + mode;
+  summary.modes = modes;
+  summary.modes.insert("counts");
   BlockDesign nameless;
   nameless.task = task;
   summary.blocks.push_back(std::make_shared<const IdentificationSummary>(nameless, matrix));
@@ -94,13 +94,13 @@ Summary summarise(const ConfusionMatrix& matrix, const std::string& title, std::
 }
 
 Summary summarise(const AnswerTable& table, const std::string& title, std::string_view task,
-                  const std::string& mode) {
+                  const std::set<std::string>& modes) {
   if (!table.are_participants_known) {
     ConfusionMatrix matrix{table.stimuli, table.responses};
     for (const AnswerRow& answer : table.answers) {
       matrix.add(answer.stimulus, answer.response);
     }
-    return summarise(matrix, title, task, mode);
+    return summarise(matrix, title, task, modes);
   }
   BlockDesign design;
   design.task = task;
@@ -109,7 +109,8 @@ Summary summarise(const AnswerTable& table, const std::string& title, std::strin
   design.is_order_known = false;
   Summary summary;
   summary.title = title;
-  summary.modes = mode.empty() ? "answers" : "answers, " + mode;
+  summary.modes = modes;
+  summary.modes.insert("answers");
   summary.participant_ids = distinct(table.answers, &AnswerRow::participant_id);
   summary.participants = static_cast<int>(summary.participant_ids.size());
   summary.blocks.push_back(std::make_shared<const IdentificationSummary>(
@@ -131,17 +132,20 @@ std::vector<std::string> tests_of(const Summary& summary) {
 }
 }  // namespace
 
+std::string words_of_modes(const Summary& summary) {
+  return fmt::format("{}", fmt::join(summary.modes, ", "));
+}
+
 std::string banner(const Summary& summary) {
-  const bool has_simulated = summary.modes.find("simulated") != std::string::npos;
-  if (has_simulated && (summary.modes.find("real") != std::string::npos ||
-                        summary.modes.find("pilot") != std::string::npos)) {
+  const auto has = [&](Mode mode) { return summary.modes.contains(results::to_text(mode)); };
+  if (has(Mode::simulated) && (has(Mode::real) || has(Mode::pilot))) {
     return "Some participants are SIMULATED: in part of these data no person took part.";
   }
-  if (has_simulated) {
+  if (has(Mode::simulated)) {
     return "SIMULATED participants: no person took part. These data show what the physics and the "
            "assumed observer give.";
   }
-  if (summary.modes.find("pilot") != std::string::npos) {
+  if (has(Mode::pilot)) {
     return "PILOT sessions: rehearsals, not the study.";
   }
   return "";
@@ -156,7 +160,7 @@ std::string methods(const Summary& summary) {
            "probabilities treat all answers as independent.";
   }
   std::string text = fmt::format("{} participant{} ({}). ", summary.participants,
-                                 summary.participants == 1 ? "" : "s", summary.modes);
+                                 summary.participants == 1 ? "" : "s", words_of_modes(summary));
   text += summary.procedure;
   text +=
       "Intervals of proportions are 95 % score intervals (Wilson 1927) where nothing else is said; "
@@ -165,7 +169,7 @@ std::string methods(const Summary& summary) {
     text += sentence + " ";
   }
   text += "Other statistics state their methods with their results. ";
-  if (summary.loop && summary.modes != results::to_text(results::Mode::simulated)) {
+  if (summary.loop && summary.modes != std::set<std::string>{results::to_text(Mode::simulated)}) {
     text += fmt::format(
         "The haptic loop made {} ticks; {} were late, {} were skipped, and {} force samples were "
         "lost. {} of {} impacts came up to 5 ms after a late tick.",

@@ -24,7 +24,7 @@ struct LoopQuality {
 struct Summary {
   std::string title;
   std::string notes;
-  std::string modes;  // "simulated", "real", "pilot", or "counts" if only a table was given
+  std::set<std::string> modes;  // results::Mode; also "counts" or "answers" if it is of a table
   std::vector<std::string> unfinished;  // sessions, with what was answered of what was planned
   std::vector<std::string> excluded;    // participants, with the operator's reason
   std::vector<std::string> deviations;  // participants, with what was not as planned
@@ -50,11 +50,13 @@ Summary summarise(const StudyDesign& design, const std::vector<results::AnswerRo
                   const Presentations& presentations = {});
 // From a matrix alone, participants unknown; `task` is the one that such a matrix comes from.
 Summary summarise(const ConfusionMatrix& matrix, const std::string& title, std::string_view task,
-                  const std::string& mode);
+                  const std::set<std::string>& modes = {});
 // From somebody else's table; without participants it is summarised as its matrix.
 Summary summarise(const AnswerTable& table, const std::string& title, std::string_view task,
-                  const std::string& mode);
+                  const std::set<std::string>& modes = {});
 
+// Whose answers these are, in words: "pilot, real".
+std::string words_of_modes(const Summary& summary);
 // What must stand above everything else where the participants are not those of a study; or empty.
 std::string banner(const Summary& summary);
 // A paragraph on how the numbers were computed, for a methods section.

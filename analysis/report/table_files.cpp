@@ -9,7 +9,7 @@ namespace {
 std::string text_of(const Summary& summary, const CsvTable& table) {
   std::ostringstream text;
   if (!banner(summary).empty()) {
-    text << mode_mark << summary.modes << '\n';
+    text << mode_mark << words_of_modes(summary) << '\n';
   }
   table.write(text);
   return text.str();

@@ -2,9 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <future>
-#include <thread>
 
+#include "analysis/resampling/parallel.hpp"
 #include "core/error.hpp"
 #include "core/rng.hpp"
 namespace tapstudy::analysis {
@@ -18,22 +17,9 @@ std::vector<Result> all_replicates(int count,
   }
   const auto size = static_cast<std::size_t>(count);
   std::vector<Result> results(size);
-  const auto part = [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      results[i] = replicate(core::derived_seed(seed, core::Purpose::resampling, i));
-    }
-  };
-  const std::size_t wanted = threads > 0 ? threads : std::thread::hardware_concurrency();
-  const std::size_t parts = std::clamp<std::size_t>(wanted, 1, std::max<std::size_t>(size, 1));
-  std::vector<std::future<void>> others;
-  for (std::size_t k = 1; k < parts; ++k) {
-    others.push_back(
-        std::async(std::launch::async, part, k * size / parts, (k + 1) * size / parts));
-  }
-  part(0, size / parts);
-  for (std::future<void>& other : others) {
-    other.get();
-  }
+  parallel_for(size, threads, [&](std::size_t i) {
+    results[i] = replicate(core::derived_seed(seed, core::Purpose::resampling, i));
+  });
   return results;
 }
 }  // namespace

@@ -7,10 +7,12 @@
 #include <iterator>
 #include <numeric>
 #include <span>
+#include <sstream>
 
 #include "analysis/statistics/csv_rows.hpp"
 #include "core/error.hpp"
 #include "core/number_in.hpp"
+#include "core/plain_text.hpp"
 namespace tapstudy::analysis {
 namespace {
 constexpr std::size_t max_classes = 200;
@@ -187,12 +189,17 @@ ConfusionMatrix read_counts(const CsvText& csv, const std::string& file) {
   return matrix;
 }
 
-std::string mode_of(const CsvText& csv) {
+std::set<std::string> modes_in(const CsvText& csv) {
+  std::set<std::string> modes;
   for (const std::string& comment : csv.comments) {
-    if (comment.starts_with(mode_mark)) {
-      return comment.substr(std::string_view{mode_mark}.size());
+    if (!comment.starts_with(mode_mark)) {
+      continue;
+    }
+    std::istringstream words{comment.substr(std::string_view{mode_mark}.size())};
+    for (std::string word; std::getline(words, word, ',');) {
+      modes.insert(core::trimmed(word));
     }
   }
-  return {};
+  return modes;
 }
 }  // namespace tapstudy::analysis

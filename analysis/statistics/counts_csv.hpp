@@ -1,4 +1,5 @@
 #pragma once
+#include <set>
 #include <string>
 
 #include "analysis/statistics/confusion_matrix.hpp"
@@ -8,8 +9,8 @@ namespace tapstudy::analysis {
 //   stimulus[,factor:NAME…],RESPONSE,RESPONSE,…
 // Factors are marked, with their levels below. Throws InvalidInput with file:line.
 ConfusionMatrix read_counts(const CsvText& csv, const std::string& file);
-// Of the participants whose answers a table holds, where a comment says it: "# mode: simulated".
-std::string mode_of(const CsvText& csv);
+// Of the participants whose answers a table holds, where a comment says it: "# mode: pilot, real".
+std::set<std::string> modes_in(const CsvText& csv);
 inline constexpr const char* factor_mark = "factor:";
 inline constexpr const char* mode_mark = "# mode: ";
 }  // namespace tapstudy::analysis

@@ -3,13 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <future>
 #include <map>
-#include <thread>
 
 #include "analysis/participants/mean_proportion.hpp"
+#include "analysis/resampling/parallel.hpp"
 #include "analysis/statistics/quantiles.hpp"
 #include "analysis/thresholds/comparison_level.hpp"
 #include "core/error.hpp"
@@ -95,25 +93,6 @@ void add_posterior(ParticipantThreshold& person, const PsychometricModel& model,
   }
 }
 
-// Participants are independent of one another: as many at once as there are processors.
-template <typename Task>
-void each_at_once(std::vector<ParticipantThreshold>& people, Task task) {
-  std::atomic<std::size_t> next{0};
-  const auto work = [&] {
-    for (std::size_t i = next++; i < people.size(); i = next++) {
-      task(people[i]);
-    }
-  };
-  const std::size_t processors = std::max(1U, std::thread::hardware_concurrency());
-  std::vector<std::future<void>> workers;
-  for (std::size_t i = 0; i < std::min(processors, people.size()); ++i) {
-    workers.push_back(std::async(std::launch::async, work));
-  }
-  for (std::future<void>& worker : workers) {
-    worker.get();
-  }
-}
-
 std::optional<MeanLogThreshold> mean_of(const std::vector<ParticipantThreshold>& people) {
   std::vector<double> logarithms;
   for (const ParticipantThreshold& person : people) {
@@ -152,7 +131,8 @@ ThresholdResults participant_thresholds(const BlockDesign& design,
   results.draws = is_examined ? draws_of_fit : 0;
   results.has_posteriors = is_examined;
   const PsychometricModel model = model_of(design);
-  each_at_once(results.participants, [&](ParticipantThreshold& person) {
+  parallel_for(results.participants.size(), 0, [&](std::size_t i) {
+    ParticipantThreshold& person = results.participants[i];
     const std::vector<Level> fitted = fitted_levels(person, design);
     estimate(person, model, fitted, results.draws);
     if (results.has_posteriors) {

@@ -7,15 +7,10 @@
 #include <cmath>
 
 #include "core/number_in.hpp"
+#include "core/plain_text.hpp"
 namespace tapstudy::protocols {
 namespace {
 constexpr std::size_t max_characters = 20;  // of a number
-
-std::string trimmed(const std::string& text) {
-  const auto first = text.find_first_not_of(" \t\r\n");
-  const auto last = text.find_last_not_of(" \t\r\n");
-  return first == std::string::npos ? std::string{} : text.substr(first, last - first + 1);
-}
 
 // "1,000" may be a thousand.
 bool may_have_thousands(const std::string& text) {
@@ -88,7 +83,7 @@ std::optional<std::string> setting_at(const std::string& text, std::size_t setti
 }  // namespace
 
 std::optional<std::string> answer_in(const std::string& text, const Answers& answers) {
-  const std::string word = trimmed(text);
+  const std::string word = core::trimmed(text);
   switch (answers.kind) {
     case AnswerKind::option:
       return option_at(word, answers.options);

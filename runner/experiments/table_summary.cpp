@@ -56,13 +56,12 @@ analysis::AnswerReading reading_of(const TableOptions& options) {
 }
 
 // What their comments say besides.
-std::string modes_of(const std::vector<NamedCsv>& tables, std::set<std::string> modes = {}) {
+std::set<std::string> modes_of(const std::vector<NamedCsv>& tables,
+                               std::set<std::string> modes = {}) {
   for (const NamedCsv& table : tables) {
-    if (const std::string mode = analysis::mode_of(table.text); !mode.empty()) {
-      modes.insert(mode);
-    }
+    modes.merge(analysis::modes_in(table.text));
   }
-  return fmt::format("{}", fmt::join(modes, ", "));
+  return modes;
 }
 
 bool hold_answers(const std::vector<NamedCsv>& tables, const TableOptions& options) {

@@ -30,12 +30,6 @@ constexpr std::array<ActionInfo, 10> actions{
      {include, "include", ActionText::optional, "take back an exclusion"}}};
 constexpr std::size_t max_text = 2000;
 
-std::string trimmed(const std::string& text) {
-  const auto first = text.find_first_not_of(" \t\r\n");
-  const auto last = text.find_last_not_of(" \t\r\n");
-  return first == std::string::npos ? std::string{} : text.substr(first, last - first + 1);
-}
-
 // "@4" at the beginning, taken away.
 std::optional<int> taken_trial(std::string& text) {
   int number = 0;
@@ -48,7 +42,7 @@ std::optional<int> taken_trial(std::string& text) {
   if (error != std::errc{} || (stopped != end && *stopped != ' ')) {
     return std::nullopt;
   }
-  text = trimmed(std::string{stopped, end});
+  text = core::trimmed(std::string{stopped, end});
   return number;
 }
 }  // namespace
@@ -63,7 +57,7 @@ std::string_view name(OperatorAction action) {
 
 OperatorCommand parse_operator_command(const std::string& line,
                                        std::span<const OperatorAction> offered) {
-  const std::string command = trimmed(line);
+  const std::string command = core::trimmed(line);
   const std::string word = command.substr(0, command.find_first_of(" \t"));
   const auto found = std::ranges::find(actions, word, &ActionInfo::name);
   if (found == actions.end()) {
@@ -76,7 +70,7 @@ OperatorCommand parse_operator_command(const std::string& line,
     throw core::InvalidInput{
         fmt::format("'{}' is not a command (one of: {})", word, fmt::join(names, ", "))};
   }
-  std::string text = trimmed(command.substr(word.size()));
+  std::string text = core::trimmed(command.substr(word.size()));
   const std::optional<int> trial = taken_trial(text);
   if (text.empty() && found->text == ActionText::required) {
     throw core::InvalidInput{fmt::format("{} {}", found->name, found->help)};

@@ -40,6 +40,13 @@ TEST_CASE("text is what Python decodes as UTF-8 and has no control characters", 
   CHECK(core::is_plain_text("two\nlines\tand ünicode \xf0\x9f\x8d\x8e"));
 }
 
+TEST_CASE("blanks are trimmed at the ends, not within", "[core]") {
+  CHECK(core::trimmed(" \t a  b\r\n") == "a  b");
+  CHECK(core::trimmed("ü") == "ü");
+  CHECK(core::trimmed(" \n").empty());
+  CHECK(core::trimmed("").empty());
+}
+
 TEST_CASE("text is cut between characters, never in one", "[core]") {
   const std::string apple = "\xf0\x9f\x8d\x8e";
   const std::string text = "ü" + apple + "b";

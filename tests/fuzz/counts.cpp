@@ -15,9 +15,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const auto summary =
         are_answers
             ? tapstudy::analysis::summarise(
-                  tapstudy::analysis::read_answers({{"answers.csv", csv}}, {}), "answers", "", "")
+                  tapstudy::analysis::read_answers({{"answers.csv", csv}}, {}), "answers", "")
             : tapstudy::analysis::summarise(tapstudy::analysis::read_counts(csv, "counts.csv"),
-                                            "counts", "", tapstudy::analysis::mode_of(csv));
+                                            "counts", "", tapstudy::analysis::modes_in(csv));
     std::ostringstream out;
     tapstudy::analysis::write_text(out, summary);
     tapstudy::analysis::write_html(out, summary);

@@ -114,7 +114,7 @@ TEST_CASE("each of several files without a participant's column is one participa
 TEST_CASE("answers without participants make the matrix of their counts",
           "[analysis][answer_tables]") {
   const AnswerTable table = answers_in("stimulus,response\na,a\na,b\nb,b\nb,b\n");
-  const Summary summary = summarise(table, "answers", "tell_apart", "");
+  const Summary summary = summarise(table, "answers", "tell_apart");
   CHECK(summary.participants == 0);
   CHECK_THAT(methods(summary), Contains("participants are not known"));
 }
@@ -128,7 +128,7 @@ TEST_CASE("answers of known participants are summarised over participants",
       text += std::string{person} + ",b,b\n";
     }
   }
-  const Summary summary = summarise(answers_in(text), "answers", "tell_apart", "");
+  const Summary summary = summarise(answers_in(text), "answers", "tell_apart");
   CHECK(summary.participants == 3);
   const auto results = summary.blocks.front()->main_results();
   REQUIRE(results.size() == 1);

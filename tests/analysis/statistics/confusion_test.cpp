@@ -82,7 +82,7 @@ TEST_CASE("chance is what guessing gives to those who say as often that they do 
       matrix_from("stimulus,factor:material,a,b,unsure\na,wood,11,3,6\nb,metal,2,5,13\n");
   CHECK(matrix.chance() == Approx(21.0 / 40.0 / 2.0).epsilon(1e-9));
   CHECK(factor_chance(matrix, "material", "") == Approx(matrix.chance()).epsilon(1e-9));
-  const Summary summary = summarise(matrix, "a table", "tell_apart", "");
+  const Summary summary = summarise(matrix, "a table", "tell_apart");
   std::ostringstream html;
   write_html(html, summary);
   CHECK_THAT(html.str(), Contains("the choice was not forced"));
@@ -94,7 +94,7 @@ TEST_CASE("a factor of one level is left out with a word", "[analysis][confusion
   CHECK(factors_of(matrix) == std::vector<std::string>{"n"});
   CHECK(factors_of_one_level(matrix) == std::vector<std::string>{"m"});
   std::ostringstream html;
-  write_html(html, summarise(matrix, "a table", "tell_apart", ""));
+  write_html(html, summarise(matrix, "a table", "tell_apart"));
   CHECK_THAT(html.str(), Contains("Factor m is left out"));
 }
 
@@ -126,8 +126,10 @@ TEST_CASE("a table of simulated participants says so, and so does a report made 
   std::istringstream stream{"# mode: simulated\nstimulus,a,b\na,1,2\nb,1,2\n"};
   const CsvText table = read_csv(stream, "counts.csv");
   CHECK_THAT(
-      banner(summarise(read_counts(table, "counts.csv"), "a table", "tell_apart", mode_of(table))),
+      banner(summarise(read_counts(table, "counts.csv"), "a table", "tell_apart", modes_in(table))),
       Contains("SIMULATED"));
+  std::istringstream mixed{"# mode: pilot, real\nstimulus,a,b\na,1,2\nb,1,2\n"};
+  CHECK(modes_in(read_csv(mixed, "counts.csv")) == std::set<std::string>{"pilot", "real"});
 }
 
 TEST_CASE("the largest table is added up without overflow", "[analysis][confusion]") {
@@ -206,7 +208,7 @@ TEST_CASE("sums beside or below a matrix are refused, for they would count every
 TEST_CASE("reports of an empty row or an unanswered block say so", "[analysis][report]") {
   ConfusionMatrix matrix{{{"a", "A & <b>", {}}, {"b", "B", {}}}, {{"a", "A", {}}, {"b", "B", {}}}};
   matrix.add("a", "a");
-  const Summary summary = summarise(matrix, "one answer", "tell_apart", "");
+  const Summary summary = summarise(matrix, "one answer", "tell_apart");
   std::ostringstream html;
   write_html(html, summary);
   CHECK_THAT(html.str(), Contains("A &amp; &lt;b&gt;"));
@@ -261,7 +263,7 @@ TEST_CASE("a summary counts by participant, block and task", "[analysis][summary
   add("P2", "pick", "", "a");
   const Summary summary = summarise(design, answers, {{"P1", "pick", "a", 3, 4.5}});
   CHECK(summary.participants == 2);
-  CHECK(summary.modes == "simulated");
+  CHECK(summary.modes == std::set<std::string>{"simulated"});
   const auto& tell = dynamic_cast<const IdentificationSummary&>(*summary.blocks.at(0));
   CHECK(is(tell.accuracy, 2, 3));
   CHECK(is(tell.participants.at(0).accuracy, 1, 2));

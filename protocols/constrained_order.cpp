@@ -2,12 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 
 #include "protocols/ordering.hpp"
 namespace tapstudy::protocols {
 namespace {
-constexpr std::size_t max_states = 60'000;
+constexpr std::size_t max_states = 1'000'000;
 constexpr int max_presentations = 2'000;
 }  // namespace
 
@@ -48,13 +49,16 @@ std::string ConstrainedOrders::key_of(const State& state) {
     }
   }
   std::ranges::sort(others);
-  std::string key = std::to_string(state.run) + "|";
+  std::string key;
+  const auto add = [&](int number) {  // at most max_presentations: two bytes
+    key += static_cast<char>(number & 0xff);
+    key += static_cast<char>(number >> 8);
+  };
+  add(state.run);
   for (const std::size_t stimulus : state.recent) {
-    key += std::to_string(state.left[stimulus]) + ",";
+    add(state.left[stimulus]);
   }
-  for (const int left : others) {
-    key += ";" + std::to_string(left);
-  }
+  std::ranges::for_each(others, add);
   return key;
 }
 

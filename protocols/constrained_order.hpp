@@ -1,7 +1,7 @@
 #pragma once
-#include <map>
 #include <optional>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 #include "core/rng.hpp"
@@ -33,7 +33,7 @@ class ConstrainedOrders {
   State begin_;
   OrderConstraints constraints_;
   bool is_within_repetition_;
-  std::map<std::string, double> counted_;
+  std::unordered_map<std::string, double> counted_;
   bool is_too_large_{false};
 };
 }  // namespace tapstudy::protocols

@@ -216,12 +216,15 @@ struct Display {
   bool is_operator_blind{false};  // to what is presented and answered
 };
 
+inline constexpr int max_participants = 10'000;
+
 struct Protocol {
   std::string text;                     // the file, whole
   Translations translations;            // of what participants read
   std::vector<SurfaceSource> surfaces;  // the files that its plates name, whole
   std::string title;
   std::string notes;
+  std::optional<int> participants;  // that are planned
   std::string instructions;  // for participants, before the first trial; may be empty
   double band_limit_hz{};
   double rate_hz{};

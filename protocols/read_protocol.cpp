@@ -27,6 +27,10 @@ Protocol parse(const StudyText& study, const ReadFile& read_file, Problems& prob
   top.word("format", "format", {"tapstudy/1"});
   protocol.title = top.translated("title");
   protocol.notes = top.paragraphs("notes", "");
+  const int planned = top.integer("participants", 1, max_participants, 1);
+  if (top.has("participants")) {
+    protocol.participants = planned;
+  }
   protocol.instructions = top.translated_paragraphs("instructions", "");
   read_rendering(top, protocol);
   read_placement(top, MapReader::Presence::required,

@@ -21,7 +21,7 @@ struct SimulatedTapSettings {
 struct SimulatedObserverSettings {
   // Internal noise on each felt feature; the default reproduces the accuracies of the paper's
   // Table 2.
-  double noise_db{9.0};
+  double noise_db{14.0};
   double threshold_n{1e-4};      // force amplitudes well below are not felt
   int familiarisation_taps{24};  // on each real plate, before the study
   std::string reference;         // the stimulus taken as reality, where a task needs one

@@ -61,21 +61,23 @@ void add_loop(Store& store, ParticipantCourseRow& course) {
 
 void add_masking(Store& store, ParticipantCourseRow& course) {
   Statement row = store.query(
-      "SELECT count(DISTINCT trial_id) FILTER (WHERE kind = 'masking'), "
+      "SELECT count(DISTINCT trial_id), "
+      "  count(DISTINCT trial_id) FILTER (WHERE kind = 'masking'), "
       "  min(value) FILTER (WHERE kind = 'masking'), "
       "  max(value) FILTER (WHERE kind = 'masking'), "
       "  coalesce(sum(value) FILTER (WHERE kind = 'masking_underrun'), 0), "
       "  coalesce(sum(value) FILTER (WHERE kind = 'masking_cut'), 0), "
       "  count(DISTINCT trial_id) FILTER (WHERE kind = 'masking_lost') "
-      "FROM event JOIN trial USING (trial_id) JOIN session USING (session_id) "
+      "FROM trial JOIN session USING (session_id) LEFT JOIN event USING (trial_id) "
       "WHERE participant_id = ?");
   row.bind(course.participant_id).step();
-  course.masked_trials = row.small_integer(0);
-  course.masking_low_db = row.optional_real(1);
-  course.masking_high_db = row.optional_real(2);
-  course.masking_gaps = row.integer(3);
-  course.masking_cut_samples = row.integer(4);
-  course.masking_lost = row.small_integer(5);
+  course.stored_trials = row.small_integer(0);
+  course.masked_trials = row.small_integer(1);
+  course.masking_low_db = row.optional_real(2);
+  course.masking_high_db = row.optional_real(3);
+  course.masking_gaps = row.integer(4);
+  course.masking_cut_samples = row.integer(5);
+  course.masking_lost = row.small_integer(6);
 }
 
 void add_form_items(Store& store, ParticipantCourseRow& course) {
@@ -109,6 +111,27 @@ std::vector<ParticipantCourseRow> participant_courses(Store& store) {
     add_loop(store, course);
     add_masking(store, course);
     add_form_items(store, course);
+  }
+  return courses;
+}
+
+std::map<std::string, BlockCourseRow> block_courses(Store& store, Mode mode) {
+  Statement row = store.query(
+      "SELECT block, participant_id, count(*), count(*) FILTER (WHERE EXISTS (SELECT 1 FROM event "
+      "  WHERE event.trial_id = trial.trial_id AND kind = 'masking')) "
+      "FROM trial JOIN session USING (session_id) JOIN participant USING (participant_id) "
+      "WHERE status = 'answered' AND mode = ? "
+      "  AND participant_id NOT IN (SELECT participant_id FROM excluded_participant) "
+      "  AND participant_id IN (SELECT participant_id FROM trial JOIN session USING (session_id) "
+      "    WHERE status = 'answered' AND NOT is_practice AND NOT is_catch) "
+      "GROUP BY block, participant_id");
+  row.bind(to_text(mode));
+  std::map<std::string, BlockCourseRow> courses;
+  while (row.step()) {
+    BlockCourseRow& course = courses[row.text(0)];
+    course.participants.insert(row.text(1));
+    course.answered += row.small_integer(2);
+    course.masked += row.small_integer(3);
   }
   return courses;
 }

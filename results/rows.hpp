@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 namespace tapstudy::results {
@@ -182,6 +183,7 @@ struct ParticipantCourseRow {
   std::int64_t impacts{};
   std::int64_t late_impacts{};
   int masked_trials{};
+  int stored_trials{};                   // of any block, however they ended
   std::optional<double> masking_low_db;  // RMS in dB FS; unset without masking noise
   std::optional<double> masking_high_db;
   std::int64_t masking_gaps{};
@@ -237,6 +239,13 @@ struct AnswerRow {
   std::optional<int> confidence{};                    // from 1; unset if not asked or not given
   std::optional<int> track{};  // of its block's procedures, from 1; follows from all answers
   int place_in_block{};        // as planned, from 0; follows from the order of the session's blocks
+};
+
+// What was done of a block, by all participants of a mode whose answers are reported.
+struct BlockCourseRow {
+  std::set<std::string> participants{};  // who answered at least one of its trials
+  int answered{};
+  int masked{};  // of these; with masking noise
 };
 
 // How long and how often each alternative was felt, where there were several.

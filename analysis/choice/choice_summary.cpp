@@ -73,6 +73,17 @@ HypothesisResult tested(const ChoiceSummary& summary, const PlannedHypothesis& p
 }
 }  // namespace
 
+std::vector<MainResult> ChoiceSummary::main_results() const {
+  std::vector<MainResult> shares;
+  for (const AlternativeResult& alternative : alternatives) {
+    if (alternative.chosen.trials > 0) {
+      shares.push_back({"chosen: " + alternative.item.label, alternative.chosen.value(),
+                        wilson_interval(alternative.chosen)});
+    }
+  }
+  return shares;
+}
+
 std::shared_ptr<BlockSummary> summarise_choice(const BlockDesign& design, const BlockRows& rows) {
   const std::vector<results::AnswerRow>& answers = rows.answers;
   auto summary = std::make_shared<ChoiceSummary>(design);

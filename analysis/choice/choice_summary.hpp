@@ -28,6 +28,8 @@ class ChoiceSummary final : public BlockSummary {
   std::vector<CsvTable> tables() const override;
   std::vector<ReportTable> report_tables() const override;
   std::string methods() const override;
+  // Of each alternative alone: a participant has one vote.
+  std::vector<MainResult> main_results() const override;
 
   std::vector<AlternativeResult> alternatives;
   std::vector<std::pair<std::string, std::string>> choices;  // participant, stimulus

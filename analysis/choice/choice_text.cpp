@@ -6,8 +6,9 @@
 namespace tapstudy::analysis {
 void ChoiceSummary::write_text(std::ostream& out) const {
   for (const AlternativeResult& result : alternatives) {
-    core::print(out, "  {:<24} {:<40} {:>4} visits {:>8.1f} s\n", result.item.name,
-                chosen_words(result), result.visits, result.dwell_s);
+    core::print(out, "  {:<24} {:<40} {:>4} visit{} {:>8.1f} s\n", result.item.label,
+                chosen_words(result), result.visits, result.visits == 1 ? " " : "s",
+                result.dwell_s);
   }
   core::print(out, "  all equally likely: {}\n", multinomial_words(*this));
   if (has_repeated_choices) {

@@ -85,6 +85,10 @@ ReportTable practice_table(const std::vector<PracticeResult>& practice) {
   return table;
 }
 
+bool is_in_real_time(const ParticipantCourseRow& row) {
+  return row.mode != results::Mode::simulated;  // in virtual time no tick is late
+}
+
 ReportTable loop_table(const Courses& participants) {
   ReportTable table{
       "loop_quality",
@@ -94,7 +98,7 @@ ReportTable loop_table(const Courses& participants) {
        column("lost samples", "dropped_samples"), column("99.9 %, ms", "lateness_p999_s"),
        column("worst, ms", "worst_lateness_s"), part_column("late impacts", "late_impacts")}};
   for (const ParticipantCourseRow& row : participants) {
-    if (row.ticks > 0 && row.mode != results::Mode::simulated) {  // in virtual time none is late
+    if (row.ticks > 0 && is_in_real_time(row)) {
       table.rows.push_back(
           {word(row.participant_id), count(row.ticks), count(row.late), count(row.skipped_ticks),
            count(row.saturated), count(row.dropped_samples), milliseconds(row.lateness_p999_s),
@@ -104,26 +108,43 @@ ReportTable loop_table(const Courses& participants) {
   return table;
 }
 
+// Of ticks in virtual time; nothing if no force was cut off.
+ReportTable saturation_table(const Courses& participants) {
+  ReportTable table{"saturation",
+                    "Ticks whose force was cut off at the device's limit",
+                    {column("participant", "participant"), part_column("saturated", "saturated")}};
+  for (const ParticipantCourseRow& row : participants) {
+    if (row.saturated > 0 && !is_in_real_time(row)) {
+      table.rows.push_back({word(row.participant_id), part(row.saturated, row.ticks)});
+    }
+  }
+  return table;
+}
+
+Cell masking_level(const ParticipantCourseRow& row, const Column& column) {
+  if (!row.masking_low_db || !row.masking_high_db) {
+    return nothing(column);
+  }
+  const std::string low = rounded(*row.masking_low_db);
+  const std::string high = rounded(*row.masking_high_db);
+  return {low == high ? low : fmt::format("{} to {}", low, high),
+          {*row.masking_low_db, *row.masking_high_db}};
+}
+
 ReportTable masking_table(const Courses& participants) {
   ReportTable table{"masking",
                     "Masking noise",
                     {column("participant", "participant"),
-                     column("trials", "trials"),
+                     part_column("trials", "trials"),
                      {"RMS, dB FS", {"low_db", "high_db"}},
                      column("gaps", "gaps"),
                      column("samples beyond full scale", "cut_samples"),
                      column("trials where the card stopped", "lost")}};
   for (const ParticipantCourseRow& row : participants) {
-    if (row.masked_trials > 0 && row.masking_low_db && row.masking_high_db) {
-      const std::string low = rounded(*row.masking_low_db);
-      const std::string high = rounded(*row.masking_high_db);
-      table.rows.push_back({word(row.participant_id),
-                            count(row.masked_trials),
-                            {low == high ? low : fmt::format("{} to {}", low, high),
-                             {*row.masking_low_db, *row.masking_high_db}},
-                            count(row.masking_gaps),
-                            count(row.masking_cut_samples),
-                            count(row.masking_lost)});
+    if (row.stored_trials > 0 && is_in_real_time(row)) {
+      table.rows.push_back({word(row.participant_id), part(row.masked_trials, row.stored_trials),
+                            masking_level(row, table.columns[2]), count(row.masking_gaps),
+                            count(row.masking_cut_samples), count(row.masking_lost)});
     }
   }
   return table;
@@ -131,13 +152,16 @@ ReportTable masking_table(const Courses& participants) {
 }  // namespace
 
 ReportSection course_section(const Courses& participants,
-                             const std::vector<PracticeResult>& practice) {
+                             const std::vector<PracticeResult>& practice, bool has_masking) {
   ReportSection section{"How the sessions went"};
   section.name = "sessions";
   section.is_detail = true;
   section.tables = {course_table(participants),    exclusions_table(participants),
                     attention_table(participants), practice_table(practice),
-                    loop_table(participants),      masking_table(participants)};
+                    loop_table(participants),      saturation_table(participants)};
+  if (has_masking) {
+    section.tables.push_back(masking_table(participants));
+  }
   section.remarks.emplace_back(
       "Given up: trials that were skipped or timed out and not answered later.");
   if (section.tables[4].rows.empty()) {

@@ -16,6 +16,7 @@ struct PracticeResult {
 
 // How the sessions went: tables course, exclusions, practice, loop_quality and masking, a row a
 // participant, in the order of the rows. Only counts and extremes of what is stored.
+// has_masking: the protocol asks for masking noise.
 ReportSection course_section(const std::vector<results::ParticipantCourseRow>& participants,
-                             const std::vector<PracticeResult>& practice);
+                             const std::vector<PracticeResult>& practice, bool has_masking);
 }  // namespace tapstudy::analysis

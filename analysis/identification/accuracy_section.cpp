@@ -17,6 +17,10 @@ Column range_column(const std::string& heading, const std::string& key) {
   return {heading, {key + "_low", key + "_high"}};
 }
 
+Column exact_column() {
+  return range_column("exact (Clopper & Pearson 1934)", "exact");
+}
+
 ReportTable estimates_table(const IdentificationSummary& summary) {
   ReportTable table{
       "accuracy_estimates",
@@ -80,10 +84,10 @@ ReportTable participants_table(const IdentificationSummary& summary) {
   ReportTable table{"participants_against_chance",
                     "Each participant against chance",
                     {column("participant", "participant_id"), proportion_column("right", "right"),
-                     column("above chance", "p")}};
+                     exact_column(), column("above chance", "p")}};
   for (const ParticipantAccuracy& person : summary.participants) {
-    table.rows.push_back(
-        {word(person.participant_id), proportion(person.accuracy), probability(person.p)});
+    table.rows.push_back({word(person.participant_id), proportion(person.accuracy),
+                          range_cell(exact_interval(person.accuracy)), probability(person.p)});
   }
   return table;
 }
@@ -106,6 +110,31 @@ ReportSection accuracy_section(const IdentificationSummary& summary) {
   }
   section.remarks.push_back("All answers against chance: " + summary.chance_test + ".");
   add_remark_on_chance(summary, section);
+  return section;
+}
+
+ReportSection independent_accuracy_section(const IdentificationSummary& summary) {
+  ReportSection section{"Accuracy"};
+  ReportTable table{"independent_accuracy",
+                    "Right answers, if all were independent",
+                    {proportion_column("right (Wilson 1927)", "right"), exact_column(),
+                     column("chance", "chance"), column("above chance", "p")}};
+  if (has_other_answers(summary)) {
+    section.remarks.emplace_back(
+        "Some answers name no stimulus: there is no binomial test against chance.");
+  } else if (share_of_constant_answer(summary.matrix)) {
+    section.remarks.emplace_back(
+        "Answers were not right equally often: there is no binomial test against chance.");
+  } else {
+    const double chance = summary.matrix.chance();
+    table.rows.push_back({proportion(summary.accuracy),
+                          range_cell(exact_interval(summary.accuracy)), share(chance),
+                          probability(binomial_p_at_least(summary.accuracy, chance))});
+  }
+  section.tables.push_back(std::move(table));
+  section.remarks.emplace_back(
+      "Participants are not known: the exact binomial test (one-sided) and the intervals take all "
+      "answers as independent, which those of one person are not.");
   return section;
 }
 }  // namespace tapstudy::analysis

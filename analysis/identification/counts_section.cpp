@@ -16,8 +16,8 @@ void add_cells(const IdentificationData& data, const std::string& group, const s
       row += cell;
     }
     for (std::size_t j = 0; j < counts[i].size() && row > 0; ++j) {
-      table.rows.push_back({word(group), word(level), word(data.stimuli[i].name),
-                            word(data.responses[j].name), count(counts[i][j]),
+      table.rows.push_back({word(group), word(level), labelled(data.stimuli[i]),
+                            labelled(data.responses[j]), count(counts[i][j]),
                             share(static_cast<double>(counts[i][j]) / static_cast<double>(row))});
     }
   }

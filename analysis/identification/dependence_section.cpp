@@ -56,12 +56,18 @@ ReportTable residuals_table(const ConfusionMatrix& matrix) {
 }
 
 void add_square(const CountTable& square, ReportSection& section) {
-  ReportTable kappas{"kappa",
-                     "Agreement of answers with stimuli",
-                     {interval_column("κ (Cohen 1960; 95 %, answers independent)", "kappa"),
-                      column("standard error", "standard_error")}};
+  ReportTable kappas{
+      "kappa",
+      "Agreement of answers with stimuli",
+      {interval_column("κ (Cohen 1960; 95 % by Fleiss, Cohen & Everitt 1969, answers independent)",
+                       "kappa"),
+       column("standard error", "standard_error")}};
   if (const auto kappa = cohens_kappa(square)) {
-    kappas.rows.push_back({interval(kappa->kappa, kappa->interval), number(kappa->standard_error)});
+    // where all agree the large-sample error is 0, which is no certainty
+    const bool has_error = kappa->standard_error > 0.0;
+    kappas.rows.push_back(
+        {interval(kappa->kappa, has_error ? std::optional{kappa->interval} : std::nullopt),
+         has_error ? number(kappa->standard_error) : nothing(kappas.columns[1])});
   }
   ReportTable symmetry{
       "symmetry",
@@ -109,7 +115,7 @@ ReportTable naming_table(const MatrixOfParticipants& counted) {
   const std::vector<double> adjusted = holm_adjusted(p);
   for (std::size_t j = 0; j < contrasts.size(); ++j) {
     table.rows.push_back(
-        {word(matrix.responses[j].name), interval(contrasts[j].mean, contrasts[j].interval),
+        {labelled(matrix.responses[j]), interval(contrasts[j].mean, contrasts[j].interval),
          count(contrasts[j].participants), probability(p[j]), probability(adjusted[j])});
   }
   return table;
@@ -138,6 +144,9 @@ ReportSection dependence_section(const MatrixOfParticipants& counted) {
   }
   add_independence(counted, *test, section);
   section.tables.push_back(residuals_table(matrix));
+  section.remarks.emplace_back(
+      "V is the strength of the dependence, 0 to 1 (Cramér 1946); residuals are adjusted (Haberman "
+      "1973).");
   if (matrix.alternatives() < static_cast<std::int64_t>(matrix.responses.size())) {
     section.remarks.emplace_back(
         "Agreement and symmetry are left out: some answers are right for no stimulus.");

@@ -127,6 +127,10 @@ IdentificationSummary::IdentificationSummary(const BlockDesign& design, Confusio
       matrix{std::move(counted)},
       accuracy{overall_accuracy(matrix)},
       factors{factor_results(matrix)} {
+  are_only_counts_known = true;
+  if (accuracy.trials > 0) {
+    sections.push_back(independent_accuracy_section(*this));
+  }
   add_matrix_sections({matrix, {{"", matrix.counts}}, randomisation_of(matrix.counts)}, *this);
 }
 
@@ -165,8 +169,11 @@ std::string IdentificationSummary::methods() const {
 }
 
 std::vector<MainResult> IdentificationSummary::main_results() const {
-  if (!accuracy_over_participants) {
-    return {};
+  if (!accuracy_over_participants) {  // of counts alone all answers are taken as independent
+    return are_only_counts_known && accuracy.trials > 0
+               ? std::vector<MainResult>{{"accuracy", accuracy.value(), wilson_interval(accuracy),
+                                          std::nullopt, matrix.chance()}}
+               : std::vector<MainResult>{};
   }
   return {{"accuracy", accuracy_over_participants->mean, accuracy_over_participants->interval,
            chance_p, matrix.chance()}};

@@ -103,16 +103,16 @@ ReportTable pooled_table(const MatrixOfParticipants& counted, const std::string&
 std::vector<std::string> remarks_on(const MatrixOfParticipants& counted, const std::string& refusal,
                                     const std::optional<GuessedInformation>& guessed) {
   std::vector<std::string> remarks{
-      guessed
-          ? fmt::format("Information transfer (Miller & Nicely 1955) is biased upward; the "
-                        "Miller-Madow value is corrected for that; what guessing would give shows "
-                        "what is left of the bias: {} {}.",
-                        guessed->draws, counted.randomisation.words)
-          : fmt::format(
-                "Information transfer (Miller & Nicely 1955) is biased upward; the "
-                "Miller-Madow value is corrected for that. What guessing gives is not known: "
-                "{}.",
-                counted.randomisation.words)};
+      guessed ? fmt::format("Information transfer (Miller & Nicely 1955) is biased upward; the "
+                            "Miller-Madow value (Miller 1955) is corrected for that; what guessing "
+                            "would give shows "
+                            "what is left of the bias: {} {}.",
+                            guessed->draws, counted.randomisation.words)
+              : fmt::format("Information transfer (Miller & Nicely 1955) is biased upward; the "
+                            "Miller-Madow value (Miller 1955) is corrected for that. What guessing "
+                            "gives is not known: "
+                            "{}.",
+                            counted.randomisation.words)};
   if (refusal.empty() && counted.participants.size() > 1) {
     remarks.emplace_back(
         "The interval is a jackknife (Tukey 1958) over five participants or more of the corrected "
@@ -147,9 +147,33 @@ std::string sentence_of(const ConfusionMatrix& matrix, const std::string& refusa
 }
 }  // namespace
 
+namespace {
+// Empty: it can be estimated, of all answers at least.
+std::string why_left_out(const MatrixOfParticipants& counted, const std::string& refusal) {
+  const auto occurred = [](const std::vector<std::int64_t>& totals) {
+    return std::ranges::count_if(totals, [](std::int64_t total) { return total > 0; });
+  };
+  const TableTotals totals = totals_of(counted.matrix.counts);
+  if (occurred(totals.rows) < 2 || occurred(totals.columns) < 2) {
+    return "Nothing was transferred: fewer than two stimuli or answers occurred.";
+  }
+  return counted.participants.size() == 1 && !refusal.empty()
+             ? fmt::format("Not estimated of one participant: {}.", refusal)
+             : "";
+}
+}  // namespace
+
 InformationSection information_section(const MatrixOfParticipants& counted) {
   const CountTable& counts = counted.matrix.counts;
   const std::string refusal = too_few_for_information(counts);
+  if (const std::string why = why_left_out(counted, refusal); !why.empty()) {
+    InformationSection left_out;
+    left_out.section.title = "Information transfer";
+    left_out.section.tables.push_back(pooled_table(counted, refusal, std::nullopt));
+    left_out.section.tables.back().rows.clear();
+    left_out.section.remarks.push_back(why);
+    return left_out;
+  }
   std::optional<GuessedInformation> guessed;
   if (const auto& tables = counted.randomisation.tables) {
     guessed = guessed_information(*tables, Draws{}.of(*tables), information_seed);

@@ -96,9 +96,11 @@ void add_serial(const IdentificationData& data, ReportSection& section) {
   add("right for the trial before", found.last_right);
   section.tables.push_back(table);
   section.remarks.push_back(fmt::format(
-      "Expected: the mean of {} permutations of each participant's answers among trials of the "
-      "same stimulus; two-sided.",
-      draws));
+      "Expected: the mean over all permutations of each participant's answers among trials of the "
+      "same stimulus; two-sided, by {} of them{}.",
+      draws,
+      draws < fewest_draws_to_count ? ", whose spread is compared by Student's t (answers are many)"
+                                    : ""));
 }
 }  // namespace
 

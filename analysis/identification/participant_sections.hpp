@@ -5,6 +5,8 @@
 namespace tapstudy::analysis {
 // What the participants' answers say, beyond their sum.
 ReportSection accuracy_section(const IdentificationSummary& summary);
+// Of a matrix whose participants are not known.
+ReportSection independent_accuracy_section(const IdentificationSummary& summary);
 // Counts and shares of rows: pooled, by participant, technique, repetition and level.
 ReportSection counts_section(const IdentificationData& data);
 // Techniques and levels of factors against one another, within participants.

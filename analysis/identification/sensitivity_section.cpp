@@ -11,7 +11,7 @@ const Column& d_prime_column() {
 }
 
 ReportTable against_rest(const std::string& name, const std::string& title,
-                         const std::vector<std::string>& names, const CountTable& counts) {
+                         const std::vector<Item>& classes, const CountTable& counts) {
   ReportTable table{
       name,
       title,
@@ -19,7 +19,8 @@ ReportTable against_rest(const std::string& name, const std::string& title,
   const auto found = one_against_rest(counts);
   for (std::size_t i = 0; i < found.size(); ++i) {
     if (found[i]) {
-      table.rows.push_back({word(names[i]), interval(found[i]->d_prime, found[i]->d_prime_interval),
+      table.rows.push_back({labelled(classes[i]),
+                            interval(found[i]->d_prime, found[i]->d_prime_interval),
                             interval(found[i]->criterion, found[i]->criterion_interval)});
     }
   }
@@ -52,7 +53,7 @@ struct SensitivityOfPeople {
   ReportTable mean;
 };
 SensitivityOfPeople of_participants(const MatrixOfParticipants& counted,
-                                    const std::vector<std::string>& names) {
+                                    const std::vector<Item>& classes) {
   SensitivityOfPeople tables{{"d_prime_participants",
                               "Each participant's d'",
                               {column("participant", "participant_id"), column("class", "class"),
@@ -67,21 +68,21 @@ SensitivityOfPeople of_participants(const MatrixOfParticipants& counted,
     people.push_back(sensitivity_of(person, counted.matrix));
   }
   // of two classes the second one's d' is that of the first, its c the negative
-  const std::size_t classes = names.size() == 2 ? 1 : names.size();
-  for (std::size_t i = 0; i < classes; ++i) {
+  const std::size_t told_apart = classes.size() == 2 ? 1 : classes.size();
+  for (std::size_t i = 0; i < told_apart; ++i) {
     std::vector<double> d_primes;
     std::vector<double> criteria;
     for (const PersonsSensitivity& person : people) {
       if (const auto& of = person.classes.at(i)) {
         d_primes.push_back(of->d_prime);
         criteria.push_back(of->criterion);
-        tables.each.rows.push_back({word(person.participant_id), word(names[i]),
+        tables.each.rows.push_back({word(person.participant_id), labelled(classes[i]),
                                     interval(of->d_prime, of->d_prime_interval),
                                     interval(of->criterion, of->criterion_interval)});
       }
     }
     if (d_primes.size() > 1) {
-      tables.mean.rows.push_back({word(names[i]), count(std::ssize(d_primes)),
+      tables.mean.rows.push_back({labelled(classes[i]), count(std::ssize(d_primes)),
                                   mean_with_interval(d_primes), mean_with_interval(criteria)});
     }
   }
@@ -112,7 +113,11 @@ ReportTable levels_table(const ConfusionMatrix& matrix) {
                       interval_column("criterion c", "criterion")}};
   for (const std::string& factor : factors_of(matrix)) {
     if (const auto by = by_level(matrix, factor)) {
-      for (auto row : against_rest("", "", by->levels, by->counts).rows) {
+      std::vector<Item> levels_of_factor;
+      for (const std::string& level : by->levels) {
+        levels_of_factor.push_back({level, level});
+      }
+      for (auto row : against_rest("", "", levels_of_factor, by->counts).rows) {
         row.insert(row.begin(), word(factor));
         levels.rows.push_back(std::move(row));
       }
@@ -127,14 +132,10 @@ ReportSection sensitivity_section(const MatrixOfParticipants& counted) {
   ReportSection section{"Sensitivity"};
   const auto square = by_right_response(matrix.stimuli, matrix.responses, matrix.counts);
   if (square) {
-    std::vector<std::string> names;
-    for (const Item& response : matrix.responses) {
-      names.push_back(response.name);
-    }
     section.tables.push_back(
-        against_rest("d_prime", "Each class told from all others", names, *square));
+        against_rest("d_prime", "Each class told from all others", matrix.responses, *square));
     if (counted.are_known()) {
-      SensitivityOfPeople people = of_participants(counted, names);
+      SensitivityOfPeople people = of_participants(counted, matrix.responses);
       if (!people.each.rows.empty()) {
         section.remarks.push_back(fmt::format(
             "Means are of participants with at least {} trials of a class and as many others. "
@@ -155,8 +156,11 @@ ReportSection sensitivity_section(const MatrixOfParticipants& counted) {
   section.tables.push_back(equivalent_table(matrix));
   section.remarks.emplace_back(
       "d' = z(hits) - z(false alarms) and c = -(z(hits) + z(false alarms)) / 2 with rates "
-      "corrected by (k + 1/2) / (n + 1) (Hautus 1995); c above 0: the class is named too seldom. "
-      "The equivalent d' supposes an observer without preferences.");
+      "corrected by (k + 1/2) / (n + 1) (Hautus 1995), intervals by the variance of z (Gourevitch "
+      "& "
+      "Galanter 1967); c above 0: the class is named too seldom. The equivalent d' (Hacker & "
+      "Ratcliff 1979) supposes an observer without preferences; its interval is that of the "
+      "proportion (Wilson 1927).");
   if (matrix.share_of_alternatives() < 1.0) {
     section.remarks.emplace_back(
         "Some answers name no stimulus: the choice was not forced, and has no equivalent d'.");

@@ -14,7 +14,7 @@ ReportTable biases_table(const std::vector<Item>& classes, const SimilarityChoic
                     "Response biases of the similarity-choice model",
                     {column("class", "class"), column("bias", "bias")}};
   for (std::size_t i = 0; i < classes.size(); ++i) {
-    table.rows.push_back({word(classes[i].name), number(model.biases[i])});
+    table.rows.push_back({labelled(classes[i]), number(model.biases[i])});
   }
   return table;
 }
@@ -27,7 +27,7 @@ ReportTable similarities_table(const std::vector<Item>& classes, const Similarit
   for (std::size_t i = 0; i < classes.size(); ++i) {
     for (std::size_t j = i + 1; j < classes.size(); ++j) {
       table.rows.push_back(
-          {word(classes[i].name), word(classes[j].name), number(model.similarities[i][j])});
+          {labelled(classes[i]), labelled(classes[j]), number(model.similarities[i][j])});
     }
   }
   return table;
@@ -74,7 +74,7 @@ void add_map(const std::vector<Item>& classes, const SimilarityChoice& model,
     for (std::size_t i = 0; i < classes.size(); ++i) {
       const double x = map.points[i][0];
       const double y = map.points[i][1];
-      table.rows.push_back({word(classes[i].name), number(x), number(y)});
+      table.rows.push_back({labelled(classes[i]), number(x), number(y)});
       chart.points.push_back({x, y, 0.4, false, fmt::format("{}", i + 1)});
       chart.caption += fmt::format("{} {} {}", i == 0 ? "" : ",", i + 1, classes[i].label);
       all_x.push_back(x);

@@ -142,6 +142,20 @@ Shown shown_by(const Sightings& group, const std::vector<int>& impacts) {
   return shown;
 }
 
+std::optional<double> scatter_p_of(const std::vector<double>& values,
+                                   const std::vector<double>& errors) {
+  if (values.size() < 3) {
+    return std::nullopt;
+  }
+  const double mean = mean_and_spread(values).mean;
+  double chi_squared = 0.0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const double deviation = (values[i] - mean) / errors[i];
+    chi_squared += errors[i] > 0.0 ? deviation * deviation : 0.0;
+  }
+  return chi_squared_p(chi_squared, static_cast<double>(values.size()) - 1.0);
+}
+
 RepeatedMode summary_of(const Sightings& group, std::size_t taps, const std::vector<int>& impacts) {
   const Sightings agreed = of_standing(group, Standing::agreed);
   const Sightings lines = of_standing(group, Standing::line);
@@ -166,6 +180,7 @@ RepeatedMode summary_of(const Sightings& group, std::size_t taps, const std::vec
   const double freedom = shown->front().degrees_of_freedom;
   mode.frequency_hz =
       estimate_over_taps(mode.frequencies_hz, of_impacts.frequency_errors_hz, freedom);
+  mode.scatter_p = scatter_p_of(mode.frequencies_hz, of_impacts.frequency_errors_hz);
   mode.damping_ratio = estimate_over_taps(mode.ratios, of_impacts.ratio_errors, freedom);
   mode.degrees_of_freedom =
       mode.ratios.size() > 1 ? static_cast<double>(mode.ratios.size()) - 1.0 : freedom;

@@ -1,4 +1,6 @@
 #pragma once
+#include <optional>
+
 #include "analysis/modal_identification/tap_modes.hpp"
 #include "analysis/statistics/proportion.hpp"
 namespace tapstudy::analysis {
@@ -20,6 +22,9 @@ struct RepeatedMode {
   Estimate frequency_hz;
   Estimate damping_ratio;
   double degrees_of_freedom{};  // of their standard errors
+  // Of the frequencies' scatter over three taps or more: the probability that their own errors
+  // explain as much (chi-squared). Two modes that are too close to be told apart make it small.
+  std::optional<double> scatter_p{};
   Standing standing{Standing::doubtful};
   std::string why;
   int taps{};                          // that show it

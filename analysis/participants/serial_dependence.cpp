@@ -6,6 +6,7 @@
 #include <map>
 
 #include "analysis/resampling/replicates.hpp"
+#include "analysis/statistics/distributions.hpp"
 #include "core/error.hpp"
 #include "core/rng.hpp"
 namespace tapstudy::analysis {
@@ -100,6 +101,17 @@ void add_expected(const AnswerSequence& sequence, std::vector<double>& expected)
   }
 }
 
+// Of sums over very many trials: normal, with a known mean and the variance of the draws.
+double spread_p(const std::vector<double>& distances, double observed) {
+  double squares = 0.0;
+  for (const double distance : distances) {
+    squares += distance * distance;
+  }
+  const auto draws = static_cast<double>(distances.size());
+  const double variance = squares / draws;
+  return variance > 0.0 ? f_p(observed * observed / variance, 1.0, draws) : 1.0;  // t squared is F
+}
+
 // Counts that are equally far from the mean are so to the last bit.
 SerialEffect effect_of(const std::vector<std::vector<double>>& drawn, std::size_t which,
                        double observed, double expected, int trials) {
@@ -109,8 +121,10 @@ SerialEffect effect_of(const std::vector<std::vector<double>>& drawn, std::size_
     distances.push_back(std::abs(counts[which] - expected) + rounding);
   }
   const double n = std::max(1.0, static_cast<double>(trials));
-  return {observed / n, expected / n, monte_carlo_p(distances, std::abs(observed - expected)),
-          trials};
+  const double distance = std::abs(observed - expected);
+  const bool are_few = std::ssize(drawn) < fewest_draws_to_count;
+  return {observed / n, expected / n,
+          are_few ? spread_p(distances, distance) : monte_carlo_p(distances, distance), trials};
 }
 }  // namespace
 

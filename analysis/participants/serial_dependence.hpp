@@ -10,10 +10,13 @@ struct AnswerSequence {
   std::vector<std::size_t> responses;  // the answer that was given
 };
 
+// From so many draws on, p is the share of them that are as far from `expected`, both + 1.
+inline constexpr int fewest_draws_to_count = 999;
+
 struct SerialEffect {
   double observed{};  // share of the trials that follow another
   double expected{};  // the mean of all permutations, in closed form
-  double p{};         // two-sided: shares at least as far from `expected`, of permutations + 1
+  double p{};         // two-sided; of few draws: by t of their spread, of as many degrees of freedom
   int trials{};       // that follow another
 };
 struct SerialDependence {

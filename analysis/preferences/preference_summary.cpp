@@ -6,12 +6,34 @@
 #include <iterator>
 
 #include "analysis/blocks/pooled_proportion.hpp"
+#include "analysis/participants/mean_proportion.hpp"
 #include "analysis/preferences/preference_results.hpp"
 #include "analysis/statistics/sign_test.hpp"
 #include "analysis/tables/tabular_summary.hpp"
 #include "core/error.hpp"
 namespace tapstudy::analysis {
 namespace {
+// How often each participant preferred the stimulus, of the pairs that it was in.
+std::vector<Proportion> shares_of_people(const PreferenceResults& results, Eigen::Index item) {
+  std::vector<Proportion> people;
+  for (const ParticipantPreferences& person : results.participants) {
+    people.push_back(preferred(person.counts, item));
+  }
+  return people;
+}
+
+std::vector<MainResult> shares_preferred(const BlockDesign& design,
+                                         const PreferenceResults& results) {
+  std::vector<MainResult> shares;
+  for (std::size_t i = 0; i < design.stimuli.size(); ++i) {
+    const auto over = mean_proportion(shares_of_people(results, static_cast<Eigen::Index>(i)));
+    if (over) {
+      shares.push_back({"preferred: " + design.stimuli[i].label, over->mean, over->interval});
+    }
+  }
+  return shares;
+}
+
 ReportTable scale_table(const BlockDesign& design, const PreferenceResults& results) {
   const Column bradley =
       interval_column("Bradley-Terry (95 %, answers independent)", "bradley_terry");
@@ -22,17 +44,14 @@ ReportTable scale_table(const BlockDesign& design, const PreferenceResults& resu
                      bradley, thurstone}};
   for (std::size_t i = 0; i < design.stimuli.size(); ++i) {
     const auto item = static_cast<Eigen::Index>(i);
-    std::vector<Proportion> people;
-    for (const ParticipantPreferences& person : results.participants) {
-      people.push_back(preferred(person.counts, item));
-    }
-    table.rows.push_back({word(design.stimuli[i].name), pooled_proportion(people),
-                          results.bradley_terry ? interval(results.bradley_terry->values[item],
-                                                           results.bradley_terry->intervals[i])
-                                                : nothing(bradley),
-                          results.thurstone ? interval(results.thurstone->values[item],
-                                                       results.thurstone->intervals[i])
-                                            : nothing(thurstone)});
+    table.rows.push_back(
+        {labelled(design.stimuli[i]), pooled_proportion(shares_of_people(results, item)),
+         results.bradley_terry
+             ? interval(results.bradley_terry->values[item], results.bradley_terry->intervals[i])
+             : nothing(bradley),
+         results.thurstone
+             ? interval(results.thurstone->values[item], results.thurstone->intervals[i])
+             : nothing(thurstone)});
   }
   return table;
 }
@@ -45,7 +64,7 @@ ReportTable wins_table(const BlockDesign& design, const PreferenceResults& resul
     table.columns.push_back(column("to " + other.name, "to_" + other.name));
   }
   for (std::size_t i = 0; i < design.stimuli.size(); ++i) {
-    std::vector<Cell> row{word(design.stimuli[i].name)};
+    std::vector<Cell> row{labelled(design.stimuli[i])};
     for (std::size_t j = 0; j < design.stimuli.size(); ++j) {
       row.push_back(i == j ? nothing(table.columns[j + 1])
                            : count(results.counts.wins(static_cast<Eigen::Index>(i),
@@ -104,7 +123,7 @@ ReportTable participants_table(const BlockDesign& design, const PreferenceResult
   table.is_for_programs = true;
   for (const ParticipantPreferences& person : results.participants) {
     for (std::size_t i = 0; i < design.stimuli.size(); ++i) {
-      table.rows.push_back({word(person.participant_id), word(design.stimuli[i].name),
+      table.rows.push_back({word(person.participant_id), labelled(design.stimuli[i]),
                             proportion(preferred(person.counts, static_cast<Eigen::Index>(i)))});
     }
   }
@@ -195,6 +214,7 @@ std::shared_ptr<BlockSummary> summarise_preferences(const BlockDesign& design,
   summary->parts = {scale_table(design, results), wins_table(design, results),
                     ties_table(results),          position_table(results),
                     consistency_table(results),   participants_table(design, results)};
+  summary->main = shares_preferred(design, results);
   summary->remarks = remarks_on(design, results);
   for (const PlannedHypothesis& planned : design.hypotheses) {
     summary->hypotheses.push_back(tested(design, results, planned));

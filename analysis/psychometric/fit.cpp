@@ -141,35 +141,50 @@ std::vector<double> start_slopes(const AxisRange& range, const PsychometricBox& 
   if (box.low[log_slope_at] == box.high[log_slope_at]) {
     return {box.low[log_slope_at]};
   }
+  constexpr int slopes_between = 8;
+  const double gentlest = std::log(0.5 / range.length());
+  const double steepest = std::log(50.0 / range.smallest_gap);
   std::vector<double> slopes;
-  for (const double slope : {1.0 / range.length(), 4.0 / range.length(), 16.0 / range.length(),
-                             4.0 / range.smallest_gap, 50.0 / range.smallest_gap}) {
-    slopes.push_back(std::log(slope));
+  for (int i = 0; i <= slopes_between; ++i) {
+    slopes.push_back(gentlest + i * (steepest - gentlest) / slopes_between);
   }
   return slopes;
 }
 
-// The likeliest start of each slope.
+std::vector<double> start_lapses(const PsychometricBox& box) {
+  const double low = box.low[lapse_at];
+  const double high = box.high[lapse_at];
+  return low == high ? std::vector{low} : std::vector{low, 0.5 * (low + high), high};
+}
+
+PsychometricVector likeliest_position(const BinomialLikelihood& likelihood,
+                                      const PsychometricBox& box,
+                                      const std::vector<double>& positions, double slope,
+                                      double lapse) {
+  Maximum best{{}, -std::numeric_limits<double>::infinity()};
+  for (const double position : positions) {
+    for (const double share : {0.1, 0.5}) {
+      const double guess = box.low[guess_at] + share * (box.high[guess_at] - box.low[guess_at]);
+      const PsychometricVector at =
+          PsychometricVector{position, slope, guess, lapse}.cwiseMax(box.low).cwiseMin(box.high);
+      if (const double value = likelihood.value(at); !(value <= best.log_likelihood)) {
+        best = {at, value};
+      }
+    }
+  }
+  return best.at;
+}
+
+// The likeliest start of each slope and lapse rate: each may have a maximum of its own.
 std::vector<PsychometricVector> starts_of(const BinomialLikelihood& likelihood,
                                           const PsychometricBox& box) {
+  const std::vector<double> positions = start_positions(likelihood, box);
   std::vector<PsychometricVector> starts;
   for (const double slope :
        start_slopes(axis_range(likelihood.levels(), likelihood.shape()), box)) {
-    Maximum best{{}, -std::numeric_limits<double>::infinity()};
-    for (const double position : start_positions(likelihood, box)) {
-      for (const double rate : {0.1, 0.5}) {
-        const PsychometricVector at =
-            PsychometricVector{position, slope,
-                               box.low[guess_at] + rate * (box.high[guess_at] - box.low[guess_at]),
-                               box.low[lapse_at] + rate * (box.high[lapse_at] - box.low[lapse_at])}
-                .cwiseMax(box.low)
-                .cwiseMin(box.high);
-        if (const double value = likelihood.value(at); !(value <= best.log_likelihood)) {
-          best = {at, value};
-        }
-      }
+    for (const double lapse : start_lapses(box)) {
+      starts.push_back(likeliest_position(likelihood, box, positions, slope, lapse));
     }
-    starts.push_back(best.at);
   }
   return starts;
 }

@@ -90,6 +90,7 @@ std::shared_ptr<BlockSummary> summarise_rankings(const BlockDesign& design, cons
       participant_values_table("Mean places of each participant",
                                column("mean place", "mean_place"), results.participants,
                                results.stimuli, results.mean_places)};
+  summary->main = means_over_participants("mean place", results.stimuli, results.mean_places);
   summary->remarks = remarks_on(results);
   return summary;
 }

@@ -138,6 +138,10 @@ std::shared_ptr<BlockSummary> summarise_ratings(const BlockDesign& design, const
   summary->parts = {stimuli_table(design, results),
                     friedman_table(results.friedman, results.participants.size()),
                     pairs_table(results), participants_table(results)};
+  std::vector<std::string> stimuli;
+  std::ranges::transform(results.stimuli, std::back_inserter(stimuli), &StimulusRatings::stimulus);
+  summary->main =
+      means_over_participants("mean of participants' median ratings", stimuli, results.medians);
   summary->remarks = remarks_on(results);
   for (const PlannedHypothesis& planned : design.hypotheses) {
     summary->hypotheses.push_back(tested(design, results, planned));

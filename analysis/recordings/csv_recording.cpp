@@ -13,8 +13,8 @@
 #include "core/number_in.hpp"
 namespace tapstudy::analysis {
 namespace {
-constexpr double largest_value = 1e100;  // squares and their sums are finite
-constexpr double max_rate_difference = 0.01;
+constexpr double largest_value = 1e100;        // squares and their sums are finite
+constexpr double max_rate_difference = 0.001;  // more is a mistake, not rounded times
 
 [[noreturn]] void refuse(const std::string& file, int line, const std::string& what) {
   throw core::InvalidInput{fmt::format("{}:{}: {}", file, line, what)};

@@ -137,6 +137,13 @@ class TapFinder {
     if (!(loudest > 0.0)) {
       return recording_.file + ": holds no tap: all samples are the same";
     }
+    constexpr double tenfold = 10.0;
+    if (impacts == 0 && loudest >= tenfold * energies_.floor) {
+      return fmt::format(
+          "{}: holds no tap: its energy exceeds the noise floor {:.0f} times, but nowhere as "
+          "suddenly as after an impact",
+          recording_.file, loudest / energies_.floor);
+    }
     if (impacts == 0) {
       return fmt::format(
           "{}: holds no tap: nowhere does the energy exceed the noise floor tenfold (at most "

@@ -21,6 +21,13 @@ const BlockSummary* find_block(const Summary& summary, const std::string& name) 
   return found == summary.blocks.end() ? nullptr : found->get();
 }
 
+// That of the same name; of two reports of one block each, those two, whatever they are called.
+const BlockSummary* counterpart(const BlockSummary& block, const Summary& own,
+                                const Summary& other) {
+  const bool are_single = own.blocks.size() == 1 && other.blocks.size() == 1;
+  return are_single ? other.blocks.front().get() : find_block(other, block.block);
+}
+
 std::string participants_of(const NamedSummary& study) {
   const int number = study.summary->participants;
   return number == 0 ? study.name
@@ -105,7 +112,7 @@ void add_block(const BlockSummary& block, const NamedSummary& first, const Named
     comparison.deviations.push_back(
         fmt::format("block '{}' is not compared: {}", block.block, why));
   };
-  const BlockSummary* const other = find_block(*second.summary, block.block);
+  const BlockSummary* const other = counterpart(block, *first.summary, *second.summary);
   if (other == nullptr) {
     return leave_out(second.name + " has none of that name");
   }
@@ -136,7 +143,7 @@ Summary compare(const NamedSummary& first, const NamedSummary& second) {
     add_block(*block, first, second, comparison);
   }
   for (const Block& block : second.summary->blocks) {
-    if (find_block(*first.summary, block->block) == nullptr) {
+    if (counterpart(*block, *second.summary, *first.summary) == nullptr) {
       comparison.deviations.push_back(
           fmt::format("block '{}' is not compared: {} has none of that "
                       "name",

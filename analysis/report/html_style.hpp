@@ -36,7 +36,7 @@ section>h3{font-size:1.1rem;border-top:1px solid #cdd6df;padding-top:.6rem}secti
   .chart .line{stroke:#b9c9d6}.chart .band{fill:#274a68}.chart circle{fill:#6baed6;stroke:#6baed6}.chart circle.open{fill:#14191f}}
 @media print{body{margin:0;max-width:none;font-size:11pt}.scroll{overflow:visible;left:0;transform:none;width:auto;max-width:none}
   .data{font-size:8.5pt}.data.wide{font-size:7.5pt}.data th,.data td,.accuracy td{white-space:normal;padding-right:.4rem}
-  .data thead th{min-width:0;overflow-wrap:break-word}.charts{grid-template-columns:repeat(2,1fr)}figure,tr{break-inside:avoid}h2,h3{break-after:avoid}
+  .data thead th{min-width:0;overflow-wrap:break-word}.charts{grid-template-columns:repeat(2,1fr)}figure,tr{break-inside:avoid}h2,h3,h2+p,caption,.question{break-after:avoid}table{break-inside:auto}caption{break-inside:avoid}
   .matrix td{width:auto}.matrix td,.simulated{print-color-adjust:exact;-webkit-print-color-adjust:exact}}
 )css";
 }  // namespace tapstudy::analysis

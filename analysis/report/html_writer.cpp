@@ -35,8 +35,7 @@ std::string text_of(const std::string& html) {
   return text;
 }
 
-// With what was cited in it.
-void write_body(std::ostream& out, const Summary& summary) {
+std::string body_of(const Summary& summary) {
   std::ostringstream body;
   write_contents(body, summary);
   for (const auto& block : summary.blocks) {
@@ -53,17 +52,24 @@ void write_body(std::ostream& out, const Summary& summary) {
     write_sections_html(body, summary.sections, "study");
   }
   core::print(body, "<h2>Methods</h2><p>{}</p>\n", escaped(methods(summary)));
-  const std::string text = body.str();
-  out << text;
-  if (const auto cited = references_in(text_of(text)); !cited.empty()) {
-    out << "<h2>References</h2>\n<ul class=references>\n";
-    for (const std::string& reference : cited) {
-      core::print(out, "<li>{}</li>\n", escaped(reference));
-    }
-    out << "</ul>\n";
+  return body.str();
+}
+
+void write_references(std::ostream& out, const std::vector<std::string>& cited) {
+  if (cited.empty()) {
+    return;
   }
+  out << "<h2>References</h2>\n<ul class=references>\n";
+  for (const std::string& reference : cited) {
+    core::print(out, "<li>{}</li>\n", escaped(reference));
+  }
+  out << "</ul>\n";
 }
 }  // namespace
+
+std::vector<std::string> references_of(const Summary& summary) {
+  return references_in(text_of(body_of(summary)));
+}
 
 void write_html(std::ostream& out, const Summary& summary) {
   core::print(
@@ -84,10 +90,12 @@ void write_html(std::ostream& out, const Summary& summary) {
                 escaped(fmt::format("{}", fmt::join(summary.excluded, "; "))));
   }
   if (!summary.deviations.empty()) {
-    core::print(out, "<p>Not as planned: {}.</p>\n",
+    core::print(out, "<p>Notes: {}.</p>\n",
                 escaped(fmt::format("{}", fmt::join(summary.deviations, "; "))));
   }
-  write_body(out, summary);
+  const std::string body = body_of(summary);
+  out << body;
+  write_references(out, references_in(text_of(body)));
   if (!summary.notes.empty()) {
     core::print(out, "<h2>Notes of the protocol</h2><p class=notes>{}</p>\n",
                 escaped(summary.notes));

@@ -1,6 +1,5 @@
 #include <nlohmann/json.hpp>
 
-#include "analysis/report/references.hpp"
 #include "analysis/report/writers.hpp"
 namespace tapstudy::analysis {
 using Json = nlohmann::ordered_json;
@@ -38,7 +37,7 @@ void write_json(std::ostream& out, const Summary& summary) {
     json["provenance"][key] = value;
   }
   json["methods"] = methods(summary);
-  json["references"] = references_in(text_of(json, -1));
+  json["references"] = references_of(summary);
   out << text_of(json, 2) << '\n';
 }
 }  // namespace tapstudy::analysis

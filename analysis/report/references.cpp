@@ -20,9 +20,14 @@ constexpr std::array references{
     Reference{"Bradley & Terry 1952",
               "Bradley, R. A. & Terry, M. E. (1952). Rank analysis of incomplete block designs: I. "
               "The method of paired comparisons. Biometrika 39, 324–345."},
+    Reference{"Clopper & Pearson 1934",
+              "Clopper, C. J. & Pearson, E. S. (1934). The use of confidence or fiducial limits "
+              "illustrated in the case of the binomial. Biometrika 26, 404–413."},
     Reference{"Cohen 1960",
               "Cohen, J. (1960). A coefficient of agreement for nominal scales. Educational and "
               "Psychological Measurement 20, 37–46."},
+    Reference{"Cramér 1946",
+              "Cramér, H. (1946). Mathematical Methods of Statistics. Princeton University Press."},
     Reference{"Davidson 1970",
               "Davidson, R. R. (1970). On extending the Bradley-Terry model to accommodate ties in "
               "paired comparison experiments. Journal of the American Statistical Association 65, "
@@ -30,6 +35,9 @@ constexpr std::array references{
     Reference{"Efron 1987",
               "Efron, B. (1987). Better bootstrap confidence intervals. Journal of the American "
               "Statistical Association 82, 171–185."},
+    Reference{"Fleiss, Cohen & Everitt 1969",
+              "Fleiss, J. L., Cohen, J. & Everitt, B. S. (1969). Large sample standard errors of "
+              "kappa and weighted kappa. Psychological Bulletin 72, 323–327."},
     Reference{
         "Friedman 1937",
         "Friedman, M. (1937). The use of ranks to avoid the assumption of normality implicit in "
@@ -46,6 +54,12 @@ constexpr std::array references{
     Reference{"Gourevitch & Galanter 1967",
               "Gourevitch, V. & Galanter, E. (1967). A significance test for one parameter "
               "isosensitivity functions. Psychometrika 32, 25–33."},
+    Reference{"Haberman 1973",
+              "Haberman, S. J. (1973). The analysis of residuals in cross-classified tables. "
+              "Biometrics 29, 205–220."},
+    Reference{"Hacker & Ratcliff 1979",
+              "Hacker, M. J. & Ratcliff, R. (1979). A revised table of d' for M-alternative forced "
+              "choice. Perception & Psychophysics 26, 168–170."},
     Reference{"Hart 2006",
               "Hart, S. G. (2006). NASA-Task Load Index (NASA-TLX); 20 years later. Proceedings of "
               "the Human Factors and Ergonomics Society 50, 904–908."},
@@ -92,6 +106,9 @@ constexpr std::array references{
     Reference{"Maxwell 1970",
               "Maxwell, A. E. (1970). Comparing the classification of subjects by two independent "
               "judges. British Journal of Psychiatry 116, 651–655."},
+    Reference{"Miller 1955",
+              "Miller, G. A. (1955). Note on the bias of information estimates. In H. Quastler "
+              "(ed.), Information Theory in Psychology, 95–100."},
     Reference{"Miller & Nicely 1955",
               "Miller, G. A. & Nicely, P. E. (1955). An analysis of perceptual confusions among "
               "some English consonants. Journal of the Acoustical Society of America 27, 338–352."},

@@ -48,6 +48,13 @@ LoopQuality loop_quality(const std::vector<AnswerRow>& answers) {
   }
   return quality;
 }
+std::string left_out(const BlockDesign& block) {
+  std::string words = fmt::format("block '{}' is left out: it has no answer", block.name);
+  for (const PlannedHypothesis& planned : block.hypotheses) {
+    words += fmt::format("; hypothesis '{}' is not tested", planned.name);
+  }
+  return words;
+}
 }  // namespace
 
 Summary summarise(const StudyDesign& design, const std::vector<AnswerRow>& answers,
@@ -69,6 +76,10 @@ Summary summarise(const StudyDesign& design, const std::vector<AnswerRow>& answe
                          [&](const AnswerRow& answer) { return answer.block == block.name; });
     std::ranges::copy_if(visits, std::back_inserter(rows.visits),
                          [&](const VisitRow& visit) { return visit.block == block.name; });
+    if (rows.answers.empty()) {
+      summary.deviations.push_back(left_out(block));
+      continue;
+    }
     rows.orders = orders_of(presentations.orders, rows.answers);
     const auto missing = presentations.missing_replies.find(block.name);
     rows.missing_replies = missing == presentations.missing_replies.end() ? 0 : missing->second;

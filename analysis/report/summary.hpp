@@ -27,7 +27,7 @@ struct Summary {
   std::set<std::string> modes;  // results::Mode; also "counts" or "answers" if it is of a table
   std::vector<std::string> unfinished;  // sessions, with what was answered of what was planned
   std::vector<std::string> excluded;    // participants, with the operator's reason
-  std::vector<std::string> deviations;  // participants, with what was not as planned
+  std::vector<std::string> deviations;  // what was not as planned, or is left out
   int participants{};
   std::set<std::string> participant_ids{};  // where they are known
   std::vector<std::shared_ptr<const BlockSummary>> blocks;

@@ -15,7 +15,7 @@ void write_text(std::ostream& out, const Summary& summary) {
     core::print(out, "excluded by the operator: {}\n", participant);
   }
   for (const std::string& participant : summary.deviations) {
-    core::print(out, "not as planned: {}\n", participant);
+    core::print(out, "note: {}\n", participant);
   }
   for (const auto& block : summary.blocks) {
     core::print(out, "\n");

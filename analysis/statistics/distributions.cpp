@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <boost/math/distributions/beta.hpp>
 #include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/distributions/fisher_f.hpp>
 #include <boost/math/distributions/gamma.hpp>
@@ -62,6 +63,14 @@ double gamma_quantile(double probability, double shape) {
   check_probability(probability);
   check_degrees(shape);
   return boost::math::quantile(boost::math::gamma_distribution<>{shape}, probability);
+}
+
+double beta_quantile(double probability, double first_shape, double second_shape) {
+  check_probability(probability);
+  check_degrees(first_shape);
+  check_degrees(second_shape);
+  return boost::math::quantile(boost::math::beta_distribution<>{first_shape, second_shape},
+                               probability);
 }
 
 double chi_squared_quantile(double probability, double degrees_of_freedom) {

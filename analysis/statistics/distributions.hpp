@@ -13,6 +13,8 @@ double chi_squared_quantile(double probability, double degrees_of_freedom);
 double f_p(double f, double numerator_freedom, double denominator_freedom);
 // Of the gamma distribution with scale 1; probability in (0, 1), shape above 0
 double gamma_quantile(double probability, double shape);
+// probability in [0, 1], both shapes above 0
+double beta_quantile(double probability, double first_shape, double second_shape);
 // probability in (0, 1)
 double t_quantile(double probability, double degrees_of_freedom);
 // The two-sided probability of a statistic at least as far from 0.

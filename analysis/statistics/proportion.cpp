@@ -53,6 +53,14 @@ Interval wilson_interval(const Proportion& proportion) {
           proportion.successes == proportion.trials ? 1.0 : (centre + reach) / scale};
 }
 
+Interval exact_interval(const Proportion& proportion) {
+  constexpr double tail = 0.025;
+  const auto right = static_cast<double>(proportion.successes);
+  const auto wrong = static_cast<double>(proportion.trials - proportion.successes);
+  return {right > 0.0 ? beta_quantile(tail, right, wrong + 1.0) : 0.0,
+          wrong > 0.0 ? beta_quantile(1.0 - tail, right + 1.0, wrong) : 1.0};
+}
+
 double binomial_p_at_least(const Proportion& observed, double chance) {
   if (observed.successes <= 0) {
     return 1.0;

@@ -26,6 +26,9 @@ Proportion sum(const std::vector<Proportion>& parts);
 // The 95 % score interval of a proportion (Wilson 1927). trials > 0.
 Interval wilson_interval(const Proportion& proportion);
 
+// The exact 95 % interval (Clopper & Pearson 1934): it holds at least as often. trials > 0.
+Interval exact_interval(const Proportion& proportion);
+
 // P(X >= k) for X binomial(n, chance): the exact one-sided test of "more often than chance".
 double binomial_p_at_least(const Proportion& observed, double chance);
 

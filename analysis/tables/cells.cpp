@@ -33,6 +33,9 @@ std::string with_interval(double value, const Interval& interval) {
 Cell word(const std::string& text) {
   return {text, {text}};
 }
+Cell labelled(const Item& item) {
+  return {item.label, {item.name}};
+}
 
 Cell count(std::int64_t number) {
   return {fmt::format("{}", number), {number}};

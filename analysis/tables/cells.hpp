@@ -5,6 +5,7 @@
 #include <variant>
 #include <vector>
 
+#include "analysis/statistics/confusion_matrix.hpp"
 #include "analysis/statistics/proportion.hpp"
 namespace tapstudy::analysis {
 // A value as programs read it; unset where there is none. Infinite numbers are "inf" and "-inf".
@@ -37,6 +38,7 @@ std::string rounded(double value, int significant_digits = 3);
 std::string with_interval(double value, const Interval& interval);
 
 Cell word(const std::string& text);
+Cell labelled(const Item& item);  // its label for people, its name for programs
 Cell count(std::int64_t number);
 Cell flag(bool is_so);
 Cell number(double value, int significant_digits = 3);

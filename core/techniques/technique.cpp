@@ -11,7 +11,9 @@ const std::vector<Technique>& techniques() {
       {"fem-coupled", {&coupled_vibration}},
       {"fem-coupled+sinusoid", {&coupled_vibration, &decaying_sinusoid}},
       {"beam", {&plate_vibration}, Theory::beam},
+      {"beam+sinusoid", {&plate_vibration, &decaying_sinusoid}, Theory::beam},
       {"recorded", {&recorded_transient}},
+      {"recorded+sinusoid", {&recorded_transient, &decaying_sinusoid}},
   };
   return table;
 }

@@ -38,6 +38,7 @@ class ModalState {
   Eigen::ArrayXd qq_, qv_, vq_, vv_;  // StateTransition, one per mode
   Eigen::ArrayXd held_q_, held_v_;    // HeldForceResponse
   Eigen::ArrayXd displacement_, velocity_, previous_;
+  int since_flush_{0};      // ticks
   Eigen::ArrayXd touched_;  // the touched point's displacement along the normal, per mode
 };
 }  // namespace tapstudy::core

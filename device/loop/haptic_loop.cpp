@@ -139,6 +139,7 @@ void HapticLoop::take_requests() noexcept {
     alternatives_[wanted].take_over_from(alternatives_[current_]);
     current_ = wanted;
     is_silent_ = is_silence_wanted;
+    rendering_.store(is_silent_ ? nothing : current_, std::memory_order_release);
     if (taps_ != nullptr) {
       taps_->restart();
     }

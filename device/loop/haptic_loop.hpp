@@ -58,6 +58,13 @@ class HapticLoop {
   void request_silence(bool is_silent) noexcept {
     silence_requested_.store(is_silent, std::memory_order_release);
   }
+  // May be called from any thread: whether what was requested last is in effect.
+  bool is_as_requested() const noexcept {
+    return rendering_.load(std::memory_order_acquire) ==
+           (silence_requested_.load(std::memory_order_acquire)
+                ? nothing
+                : requested_.load(std::memory_order_acquire));
+  }
   // May be called from any thread: how often the finger has come down on an alternative.
   int contacts(std::size_t alternative) const noexcept {
     return contacts_.at(alternative).load(std::memory_order_acquire);
@@ -84,6 +91,7 @@ class HapticLoop {
   }
 
  private:
+  static constexpr std::size_t nothing = max_alternatives;
   void begin() noexcept;
   bool step() noexcept;  // false after a fault
   core::TickFault fault_of_time(Nanoseconds woke_at, Nanoseconds elapsed) noexcept;
@@ -106,6 +114,7 @@ class HapticLoop {
   ForceGate gate_;
   std::atomic<std::size_t> requested_{0};
   std::atomic<bool> silence_requested_{false};
+  std::atomic<std::size_t> rendering_{0};  // an alternative, or nothing
   std::atomic<bool> has_beaten_{false};
   std::atomic<Nanoseconds> ticked_at_{0};
   std::size_t current_{0};

@@ -19,11 +19,8 @@ bool may_have_thousands(const std::string& text) {
 }
 
 // Digits with at most one point or decimal comma: no sign, no exponent, no "inf".
-std::optional<double> plain_number(std::string text) {
-  if (may_have_thousands(text)) {
-    return std::nullopt;
-  }
-  std::ranges::replace(text, ',', '.');
+std::optional<double> plain_number(const std::string& typed) {
+  const std::string text = with_decimal_point(typed);
   if (text.size() > max_characters || text.find_first_not_of("0123456789.") != std::string::npos) {
     return std::nullopt;
   }
@@ -81,6 +78,13 @@ std::optional<std::string> setting_at(const std::string& text, std::size_t setti
   return place ? std::optional{std::to_string(*place)} : std::nullopt;
 }
 }  // namespace
+
+std::string with_decimal_point(std::string text) {
+  if (!may_have_thousands(text)) {
+    std::ranges::replace(text, ',', '.');
+  }
+  return text;
+}
 
 std::optional<std::string> answer_in(const std::string& text, const Answers& answers) {
   const std::string word = core::trimmed(text);

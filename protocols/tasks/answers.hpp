@@ -30,6 +30,8 @@ struct Answers {
   ScaleEnds ends{};                     // of a line, or where the options are steps of a scale
 };
 
+// A decimal comma as a point; "1,000" stays, which may be a thousand and is no number then.
+std::string with_decimal_point(std::string text);
 // The answer that a text gives: an option's name where the text is its place, from 1; a number
 // above 0 in decimal notation, at most 20 characters, in its shortest form; a setting's place; a
 // mark from 0 to 1, written likewise; all options' names with a space between, where the text has

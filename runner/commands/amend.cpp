@@ -106,14 +106,18 @@ void amend(const AmendOptions& options) {
       {protocol, session.id, store.excluded_participants().contains(options.participant),
        [&] { return seconds_since(session.started_utc); }},
       recorder};
+  std::string where;  // numbers count practice, which what participants read does not
   if (command.action == OperatorAction::correct) {
-    desk.answer_is_stored(in_view(answer_to(*command.trial, options, store), protocol));
+    const results::JournalledAnswer answer = answer_to(*command.trial, options, store);
+    where = fmt::format(", block '{}'{}", answer.trial.block,
+                        answer.trial.is_practice ? " (practice)" : "");
+    desk.answer_is_stored(in_view(answer, protocol));
   } else if (command.trial) {
     desk.trial_was(*command.trial);
   }
   const PostedCommand posted = desk.post(command);
   posted.stored.get();
-  fmt::print("participant {}: {}\n", options.participant, posted.said);
+  fmt::print("participant {}{}: {}\n", options.participant, where, posted.said);
 }
 }  // namespace
 

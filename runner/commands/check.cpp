@@ -13,6 +13,7 @@
 #include "runner/commands/commands.hpp"
 #include "runner/commands/families.hpp"
 #include "runner/commands/lost_modes.hpp"
+#include "runner/commands/planned_participants.hpp"
 #include "runner/commands/seed.hpp"
 #include "runner/devices/device_kind.hpp"
 #include "runner/devices/rigs.hpp"
@@ -25,7 +26,7 @@ namespace tapstudy::runner {
 namespace {
 struct CheckOptions {
   std::string protocol;
-  int participants{10};
+  std::string participants;
   std::string seed{"1"};
   std::string rig;
   int simulations{0};
@@ -164,10 +165,7 @@ void print_simulated(const SimulatedDesign& design, const protocols::Protocol& p
 
 void run_check(const CheckOptions& options) {
   const protocols::Protocol protocol = protocols::read_protocol(options.protocol);
-  if (options.participants < 1 || options.participants > 10000) {
-    throw core::InvalidInput{
-        fmt::format("--participants: {} is not allowed (from 1 to 10000)", options.participants)};
-  }
+  const int participants = planned_participants(options.participants, protocol);
   if (options.simulations < 0 || options.simulations > 10000) {
     throw core::InvalidInput{
         fmt::format("--simulations: {} is not allowed (from 0 to 10000)", options.simulations)};
@@ -183,7 +181,7 @@ void run_check(const CheckOptions& options) {
   for (const std::string& language : protocols::languages_of(protocol.translations)) {
     protocols::read_protocol(options.protocol, language);  // what only its sessions would meet
   }
-  print_design(protocol, options.participants);
+  print_design(protocol, participants);
   ModelLibrary models;
   print_models(protocol, models);
   if (rig) {
@@ -191,17 +189,17 @@ void run_check(const CheckOptions& options) {
   }
   print_families(protocol, models);
   print_contact(protocol, delay_ticks);
-  const int index = options.participants - 1;
+  const int index = participants - 1;
   const std::uint64_t seed =
       core::derived_seed(seed_from(options.seed, "--seed"), core::Purpose::participant,
                          static_cast<std::uint64_t>(index));
-  fmt::print("\nschedule of participant {} of a simulation with seed {}\n", options.participants,
+  fmt::print("\nschedule of participant {} of a simulation with seed {}\n", participants,
              options.seed);
   fmt::print("{}", protocols::described(make_schedule(protocol, seed, index)));
   if (options.simulations > 0) {
-    print_simulated({options.protocol, options.participants, options.simulations,
-                     seed_from(options.seed, "--seed")},
-                    protocol);
+    print_simulated(
+        {options.protocol, participants, options.simulations, seed_from(options.seed, "--seed")},
+        protocol);
   }
 }
 }  // namespace
@@ -210,7 +208,7 @@ void add_check(CommandParser& line) {
   Command command = line.add("check", "Validate a study and show its design, models and schedule");
   const auto options = std::make_shared<CheckOptions>();
   command.argument("protocol", options->protocol, "Study (YAML)");
-  command.option_with_default("--participants", options->participants, "How many are planned");
+  command.option("--participants", options->participants, participants_help);
   command.option_with_default("--seed", options->seed, "Seed of the schedule shown");
   command.option(
       "--rig", options->rig,

@@ -150,6 +150,10 @@ void print_procedures(const protocols::Stimulus& family, const protocols::Compar
   }
 }
 
+long minutes(double seconds) {
+  return std::lround(seconds / 60.0);
+}
+
 // "material: identification, 4 stimuli, 8 trials a participant"
 std::string heading(const protocols::Block& block, int trials) {
   return fmt::format(
@@ -212,10 +216,9 @@ void print_blocks(const protocols::Protocol& protocol, int participants) {
   for (const ScreenGroup& group : screens_of(protocol)) {
     screens_s += group.seconds;
   }
-  fmt::print(
-      "\n  {} participants, about {:.0f} min each: {:.0f} of tapping, {:.0f} for the screens "
-      "below\n",
-      participants, (total_s + screens_s) / 60.0, total_s / 60.0, screens_s / 60.0);
+  fmt::print("\n  {} participants, about {} min each: {} of tapping, {} for the screens below\n",
+             participants, minutes(total_s) + minutes(screens_s), minutes(total_s),
+             minutes(screens_s));
   fmt::print("  about {:.0f} MB of disk for all, if they tap no longer than simulated ones\n",
              1e-6 * results::usual_bytes_per_tick * recorded_s * protocol.rate_hz * participants);
 }
@@ -284,7 +287,8 @@ void print_design(const protocols::Protocol& protocol, int participants) {
   print_blocks(protocol, participants);
   warn_of_block_order(protocol, participants);
   if (protocol.masking) {
-    fmt::print("\nmasking\n  {}\n", described(*protocol.masking));
+    fmt::print("\nmasking\n  {} in every trial; {}\n", described(*protocol.masking),
+               protocol.masking->is_required ? "required" : "a session without a card is warned");
   }
   print_screens(protocol);
   print_languages(protocol);

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 
@@ -75,6 +77,24 @@ TapQuestion question_of(const IdentifyOptions& options) {
   return question;
 }
 
+// Nothing that could be pasted: noise has onsets, too.
+void check_holds_something(const TapIdentification& found) {
+  if (!found.agreed.empty() || found.sinusoid) {
+    return;
+  }
+  std::vector<std::string> doubtful;
+  for (const analysis::RepeatedMode& mode : found.modes) {
+    doubtful.push_back(fmt::format("{:.4g} Hz: {}", mode.frequency_hz.value, mode.why));
+  }
+  constexpr std::size_t most_told = 3;
+  doubtful.resize(std::min(doubtful.size(), most_told));
+  throw core::InvalidInput{fmt::format(
+      "{}: no mode and no decaying sinusoid could be identified in what begins like a tap; is it "
+      "noise?{}",
+      fmt::join(found.question.recordings, ", "),
+      doubtful.empty() ? "" : fmt::format(" Doubtful: {}", fmt::join(doubtful, "; ")))};
+}
+
 void run_identify(const IdentifyOptions& options) {
   const TapQuestion question = question_of(options);
   std::error_code error;
@@ -85,6 +105,7 @@ void run_identify(const IdentifyOptions& options) {
     Progress progress{"identifying"};
     return identify_taps(question, progress);
   }();
+  check_holds_something(found);
   write_files(options.out, found);
   if (options.wants_json) {
     fmt::print("{}\n", json_of(found));

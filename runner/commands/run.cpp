@@ -88,7 +88,10 @@ void warn_of_language(const protocols::Protocol& protocol, const RunOptions& opt
                      fmt::join(missing, ", ")));
   }
   if (options.console.empty() && options.language != "en") {
-    warn("the terminal's own words are English; the pages (--console) have other languages");
+    warn(fmt::format("the terminal's own words are English{}",
+                     pages_speak(options.language)
+                         ? fmt::format("; the pages (--console) have '{}'", options.language)
+                         : ""));
   } else if (!pages_speak(options.language)) {
     warn(fmt::format("the pages' own words are not given in '{}': English", options.language));
   }

@@ -108,7 +108,8 @@ std::string ConsoleApi::operator_events(SentToPage& sent) const {
   const LiveView::Steps steps = live_.since(sent.steps);
   if (!steps.steps.empty()) {
     sent.steps = steps.end;
-    text += event("live", live_json(steps, live_.totals(), scenes_.surface_along_normal_m()));
+    text += event("live", live_json(steps, live_.totals(), scenes_.surface_along_normal_m(),
+                                    scenes_.placement()));
   }
   return text;
 }

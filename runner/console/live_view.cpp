@@ -26,7 +26,7 @@ void LiveView::add(const core::TraceSample& sample) {
   const std::lock_guard lock{mutex_};
   const double interval_s =
       1e-9 * static_cast<double>(sample.t_ns - last_tick_ns_.value_or(sample.t_ns));
-  const Step step{std::hypot(x, y, z), core::along_normal(sample.position_m), interval_s};
+  const Step step{std::hypot(x, y, z), core::Vec3{sample.position_m.data()}, interval_s};
   last_tick_ns_ = sample.t_ns;
   pointer_ = {core::Vec3{sample.position_m.data()}, sample.touching, sample.alternative,
               pointer_.tick + 1};
@@ -41,7 +41,8 @@ void LiveView::add(const core::TraceSample& sample) {
     has_step_ = false;
   }
   if (has_step_) {
-    step_ = {std::max(step_.force_n, step.force_n), std::min(step_.normal_m, step.normal_m),
+    const bool is_lower = core::along_normal(step.lowest_m) < core::along_normal(step_.lowest_m);
+    step_ = {std::max(step_.force_n, step.force_n), is_lower ? step.lowest_m : step_.lowest_m,
              std::max(step_.interval_s, step.interval_s)};
   } else {
     step_ = step;

@@ -16,10 +16,10 @@ class LiveView {
     std::uint8_t alternative{};
     std::int64_t tick{-1};  // since the session's begin; -1: none yet
   };
-  struct Step {           // of step_s
-    double force_n{};     // magnitude: the largest
-    double normal_m{};    // position along the device's normal: the lowest
-    double interval_s{};  // between the beginnings of two ticks: the longest
+  struct Step {                               // of step_s
+    double force_n{};                         // magnitude: the largest
+    core::Vec3 lowest_m{core::Vec3::Zero()};  // device frame: where the hand was lowest
+    double interval_s{};                      // between the beginnings of two ticks: the longest
   };
   static constexpr double step_s = 0.01;
   struct Steps {

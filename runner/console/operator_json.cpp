@@ -115,19 +115,26 @@ std::string state_json(const SessionInView& session, const DeskView& desk,
 }
 
 std::string live_json(const LiveView::Steps& steps, const LiveView::Totals& totals,
-                      double surface_along_normal_m) {
+                      double surface_along_normal_m, const core::Placement& placement) {
+  Json x = Json::array();
+  Json y = Json::array();
   Json force = Json::array();
   Json height = Json::array();
   Json interval = Json::array();
   for (const LiveView::Step& step : steps.steps) {
     force.push_back(step.force_n);
-    height.push_back(step.normal_m - surface_along_normal_m);
+    const core::Vec3 on_plate_m = placement.to_plate({step.lowest_m, {}}).position_m;
+    x.push_back(on_plate_m.x());
+    y.push_back(on_plate_m.y());
+    height.push_back(core::along_normal(step.lowest_m) - surface_along_normal_m);
     interval.push_back(step.interval_s);
   }
   return dumped({{"t_s", LiveView::step_s * static_cast<double>(steps.end)},
                  {"step_s", LiveView::step_s},
                  {"force_n", force},
                  {"height_m", height},
+                 {"x_m", x},
+                 {"y_m", y},
                  {"interval_s", interval},
                  {"contacts", totals.contacts}});
 }

@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 
+#include "core/placement.hpp"
 #include "runner/console/live_view.hpp"
 #include "runner/operators/operator_desk.hpp"
 namespace tapstudy::runner {
@@ -29,7 +30,7 @@ std::string state_json(const SessionInView& session, const DeskView& desk,
                        const LiveView::Totals& totals);
 // Heights are above that place along the device's normal.
 std::string live_json(const LiveView::Steps& steps, const LiveView::Totals& totals,
-                      double surface_along_normal_m);
+                      double surface_along_normal_m, const core::Placement& placement);
 std::string refusal_json(const std::string& why);
 // Throws InvalidInput if there is none.
 std::string command_in(const std::string& json);

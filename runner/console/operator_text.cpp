@@ -7,6 +7,7 @@
 #include <array>
 #include <vector>
 
+#include "core/placement.hpp"
 #include "device/device.hpp"
 namespace tapstudy::runner {
 namespace {
@@ -102,7 +103,7 @@ std::string live_line(const LiveView::Steps& steps, const LiveView::Totals& tota
   double longest_s = 0.0;
   for (const LiveView::Step& step : steps.steps) {
     force_n.push_back(step.force_n);
-    height_mm.push_back(1e3 * (step.normal_m - surface_along_normal_m));
+    height_mm.push_back(1e3 * (core::along_normal(step.lowest_m) - surface_along_normal_m));
     longest_s = std::max(longest_s, step.interval_s);
   }
   const auto [low_mm, high_mm] = std::ranges::minmax(height_mm);

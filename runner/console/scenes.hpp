@@ -20,6 +20,7 @@ class Scenes {
   int count() const { return static_cast<int>(all_.size()); }
   const std::string& json(int number) const { return at(number).json; }
   double surface_along_normal_m() const;  // device frame
+  const core::Placement& placement() const { return placement_; }
   core::Vec3 to_scene(int number, const core::Vec3& device_position_m) const;
 
  private:

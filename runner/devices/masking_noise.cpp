@@ -44,12 +44,11 @@ core::AudioOutput output_of(const protocols::Rig& rig) {
 }  // namespace
 
 std::string described(const core::MaskingNoise& masking) {
-  return fmt::format("{}{} at {} dB FS in every trial, ramps of {} s{}", word_of(masking.kind),
+  return fmt::format("{}{} at {} dB FS, ramps of {} s", word_of(masking.kind),
                      masking.kind == core::NoiseKind::band
                          ? fmt::format(" from {} to {} Hz", masking.low_hz, masking.high_hz)
                          : "",
-                     masking.level_db_fs, masking.ramp_s,
-                     masking.is_required ? "; required" : "; a session without a card is warned");
+                     masking.level_db_fs, masking.ramp_s);
 }
 
 void check_masking(const protocols::Protocol& protocol, const protocols::Rig& rig) {

@@ -10,11 +10,11 @@
 #include <utility>
 
 #include "protocols/axes/axis.hpp"
-#include "protocols/block_order.hpp"
-#include "protocols/ordering.hpp"
 #include "protocols/schedule.hpp"
 #include "runner/devices/masking_noise.hpp"
 #include "runner/experiments/counted.hpp"
+#include "runner/experiments/given_forms.hpp"
+#include "runner/experiments/order_words.hpp"
 namespace tapstudy::runner {
 namespace {
 using protocols::Block;
@@ -28,63 +28,25 @@ std::string apparatus(const std::vector<results::SessionRow>& sessions) {
   return fmt::format("Apparatus: {}. ", fmt::join(devices, "; "));
 }
 
-std::string rendering(const Protocol& protocol) {
+// "" if the device rendered nothing.
+std::string rendering(const Protocol& protocol, const DoneBlocks& done) {
+  const std::set<std::string> rendered = rendered_stimuli(protocol, done);
   std::set<std::string_view> techniques;
   bool vibrates = false;
   for (const protocols::Stimulus& stimulus : protocol.stimuli) {
-    techniques.insert(stimulus.technique->name);
-    vibrates = vibrates || stimulus.technique->needs_model();
+    if (rendered.contains(stimulus.name)) {
+      techniques.insert(stimulus.technique->name);
+      vibrates = vibrates || stimulus.technique->needs_model();
+    }
+  }
+  if (techniques.empty()) {
+    return "";
   }
   return fmt::format(
       "Contact was rendered by a spring of {:g} N/m with {} {}{}. ",
       protocol.rendering.penalty_stiffness_n_per_m,
       techniques.size() == 1 ? "the technique" : "the techniques", fmt::join(techniques, ", "),
       vibrates ? fmt::format("; modes of vibration up to {:g} Hz", protocol.band_limit_hz) : "");
-}
-
-// Balance holds for whole sets of orders.
-std::string williams_words(int of_orders, std::size_t participants) {
-  const auto orders = static_cast<std::size_t>(of_orders);
-  return participants % orders == 0
-             ? ", in orders balanced for immediate sequence over participants (Williams 1949)"
-             : fmt::format(
-                   ", in orders of a balanced design (Williams 1949) that {} do not "
-                   "complete, of {} orders",
-                   counted(participants, "participant"), orders);
-}
-
-std::string order_words(const Block& block, std::size_t participants) {
-  if (!block.task->uses_order()) {
-    return "";
-  }
-  switch (block.order) {
-    case protocols::Order::listed:
-      return ", in one order for all";
-    case protocols::Order::shuffle:
-      return ", in random order";
-    case protocols::Order::shuffle_within_repetition:
-      return ", in an order that was random within each repetition";
-    case protocols::Order::williams:
-      return williams_words(protocols::williams_sequences(
-                                static_cast<int>(protocols::conditions(block)), block.repetitions),
-                            participants);
-  }
-  return "";
-}
-
-// "Each participant did 'a' (…), then 'b' (…). ", or how the blocks followed one another.
-std::string sequence_words(const Protocol& protocol, const std::vector<std::string>& blocks,
-                           std::size_t participants) {
-  const protocols::BlockOrder& order = protocol.block_order;
-  if (order.order == protocols::Order::listed) {
-    return fmt::format("Each participant did {}. ", fmt::join(blocks, ", then "));
-  }
-  return fmt::format(
-      "Each participant did {}, where '{}' exchanged their places among participants{}. ",
-      fmt::join(blocks, ", then "), fmt::join(order.blocks, "', '"),
-      order.order == protocols::Order::shuffle
-          ? ", in random order"
-          : williams_words(protocols::balanced_block_orders(protocol), participants));
 }
 
 std::string practice_words(const Block& block) {
@@ -131,18 +93,33 @@ std::string tap_words(const Block& block) {
               : "";
 }
 
-std::string block_words(const Block& block, std::size_t participants) {
+// Where not all participants did all of it; where it may end early, nobody knows what all of it is.
+std::string completion_words(const Block& block, const results::BlockCourseRow& done,
+                             std::size_t participants) {
+  std::string words;
+  if (done.participants.size() < participants) {
+    words += fmt::format(", by {} of {} participants", done.participants.size(), participants);
+  }
+  const auto planned = static_cast<std::size_t>(protocols::planned_trials(block)) * participants;
+  if (!may_end_early(block) && static_cast<std::size_t>(done.answered) < planned) {
+    words += fmt::format(", {} of {} answers given", done.answered, planned);
+  }
+  return words;
+}
+
+std::string block_words(const Block& block, const results::BlockCourseRow& done,
+                        std::size_t participants) {
   const auto trials = static_cast<std::size_t>(protocols::planned_trials(block));
   return fmt::format(
-      "'{}' ({} of {}{}, {}{}{}{}{}{}{}{})", block.name, block.task->name(),
+      "'{}' ({} of {}{}, {}{}{}{}{}{}{}{}{})", block.name, block.task->name(),
       block.stimuli.size() == 1 ? "one stimulus" : fmt::format("{} stimuli", block.stimuli.size()),
       block.presented == protocols::Presented::real_plates ? ", the real plates themselves" : "",
       may_end_early(block) ? "at most " : "", counted(trials, "trial"),
       block.catch_trials ? fmt::format(", {} of them catch trials", block.catch_trials->count) : "",
       block.confidence ? fmt::format(", each with confidence in {} steps", block.confidence->steps)
                        : "",
-      order_words(block, participants), level_words(block), tap_words(block),
-      practice_words(block));
+      order_words(block, participants), level_words(block), tap_words(block), practice_words(block),
+      completion_words(block, done, participants));
 }
 
 // Letters that stand for something else in each trial, and are what is answered.
@@ -151,7 +128,7 @@ bool has_blind_labels(const Block& block, const Protocol& protocol) {
   return !answers.options.empty() && answers.options.front().name == protocols::blind_label(0);
 }
 
-// What an answer to the block took.
+// What an answer to the block took, as a sentence without its subject; or "".
 std::string exploration(const Block& block) {
   std::vector<std::string> limits;
   if (block.presented == protocols::Presented::virtual_plates && block.explore.min_contacts > 0) {
@@ -165,15 +142,22 @@ std::string exploration(const Block& block) {
   if (block.explore.min_seconds > 0.0) {
     limits.push_back(fmt::format("at least {:g} s", block.explore.min_seconds));
   }
-  if (block.explore.max_seconds) {
-    limits.push_back(fmt::format("at most {:g} s", *block.explore.max_seconds));
+  std::vector<std::string> sentence;
+  if (!limits.empty()) {
+    sentence.push_back(fmt::format("required {}", fmt::join(limits, " and ")));
   }
-  return fmt::format("{}", fmt::join(limits, ", "));
+  if (block.explore.max_seconds) {
+    sentence.push_back(fmt::format("had to come within {:g} s", *block.explore.max_seconds));
+  }
+  return fmt::format("{}", fmt::join(sentence, " and "));
 }
 
-std::string explorations(const Protocol& protocol) {
+std::string explorations(const Protocol& protocol, const DoneBlocks& done) {
   std::vector<std::pair<std::string, std::vector<std::string>>> blocks_of;  // by what it took
   for (const Block& block : protocol.blocks) {
+    if (!done.contains(block.name)) {
+      continue;
+    }
     const std::string took = exploration(block);
     auto of = std::ranges::find(blocks_of, took, &decltype(blocks_of)::value_type::first);
     if (of == blocks_of.end()) {
@@ -186,15 +170,16 @@ std::string explorations(const Protocol& protocol) {
   for (const auto& [took, blocks] : blocks_of) {
     const std::string where =
         blocks_of.size() == 1 ? "" : fmt::format(" in {}", fmt::join(blocks, ", "));
-    text += took.empty() ? "" : fmt::format("An answer{} required {}. ", where, took);
+    text += took.empty() ? "" : fmt::format("An answer{} {}. ", where, took);
   }
   return text;
 }
 
 // Of people: a simulated participant sees nothing.
-std::string blinding(const Protocol& protocol) {
-  const bool are_labels_blind = std::ranges::any_of(
-      protocol.blocks, [&](const Block& block) { return has_blind_labels(block, protocol); });
+std::string blinding(const Protocol& protocol, const DoneBlocks& done) {
+  const bool are_labels_blind = std::ranges::any_of(protocol.blocks, [&](const Block& block) {
+    return done.contains(block.name) && has_blind_labels(block, protocol);
+  });
   return fmt::format(
       "Blinding: what participants saw did not depend on what was rendered{}; the operator's "
       "screen {} what was presented. ",
@@ -203,23 +188,70 @@ std::string blinding(const Protocol& protocol) {
           : "",
       protocol.display.is_operator_blind ? "did not show" : "showed");
 }
+// Of people: a simulated participant hears nothing.
+std::string masking(const Protocol& protocol, const DoneBlocks& done) {
+  if (!protocol.masking) {
+    return "";
+  }
+  int answered = 0;
+  int masked = 0;
+  for (const auto& [block, row] : done) {
+    answered += row.answered;
+    masked += row.masked;
+  }
+  const std::string noise = described(*protocol.masking);
+  if (masked == 0) {
+    return fmt::format("Masking: the protocol asks for {}; none was played. ", noise);
+  }
+  return fmt::format(
+      "Masking: {}, played in {}. ", noise,
+      masked == answered ? "every trial" : fmt::format("{} of {} trials", masked, answered));
+}
+
+// "Questionnaires: 'load' (session end). "
+std::string questionnaires(const Protocol& protocol) {
+  std::vector<std::string> forms;
+  for (const analysis::Questionnaire& form : questionnaires_of(protocol)) {
+    forms.push_back(fmt::format("'{}'{} (asked: {})", form.name,
+                                form.is_mean_scored ? ", the raw NASA-TLX (Hart 2006)" : "",
+                                fmt::join(form.asked, ", ")));
+  }
+  return forms.empty() ? "" : fmt::format("Questionnaires: {}. ", fmt::join(forms, "; "));
+}
+
+// What nobody began.
+std::string left_undone(const Protocol& protocol, const DoneBlocks& done) {
+  std::vector<std::string> names;
+  for (const Block& block : protocol.blocks) {
+    if (!done.contains(block.name)) {
+      names.push_back("'" + block.name + "'");
+    }
+  }
+  return names.empty() ? "" : fmt::format("Without an answer: {}. ", fmt::join(names, ", "));
+}
 }  // namespace
 
 std::string procedure_words(const Protocol& protocol,
-                            const std::vector<results::SessionRow>& sessions) {
-  std::set<std::string> participants;
-  for (const results::SessionRow& session : sessions) {
-    participants.insert(session.participant_id);
-  }
+                            const std::vector<results::SessionRow>& sessions,
+                            const std::set<std::string>& participants, const DoneBlocks& done) {
   std::vector<std::string> blocks;
+  bool is_by_all = true;
   for (const Block& block : protocol.blocks) {
-    blocks.push_back(block_words(block, participants.size()));
+    const auto row = done.find(block.name);
+    if (row != done.end()) {
+      blocks.push_back(block_words(block, row->second, participants.size()));
+      is_by_all = is_by_all && row->second.participants.size() == participants.size();
+    }
   }
-  std::string text = apparatus(sessions) + rendering(protocol);
-  text += sequence_words(protocol, blocks, participants.size());
-  text += explorations(protocol);
-  text += sessions.front().mode == results::Mode::simulated ? "" : blinding(protocol);
-  text += protocol.masking ? fmt::format("Masking: {}. ", described(*protocol.masking)) : "";
+  const bool are_people = sessions.front().mode != results::Mode::simulated;
+  std::string text = apparatus(sessions) + rendering(protocol, done);
+  text += sequence_words(protocol, is_by_all ? "Each participant" : "Participants", blocks,
+                         participants.size());
+  text += left_undone(protocol, done);
+  text += explorations(protocol, done);
+  if (are_people) {
+    text += blinding(protocol, done) + masking(protocol, done) + questionnaires(protocol);
+  }
   return text;
 }
 }  // namespace tapstudy::runner

@@ -8,6 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "analysis/figures/svg_formats.hpp"
+#include "analysis/report/figure_files.hpp"
 #include "analysis/report/table_files.hpp"
 #include "analysis/report/writers.hpp"
 #include "core/error.hpp"
@@ -103,6 +105,14 @@ void compare_file(const std::string& directory, const std::string& name, const s
   }
 }
 
+void compare_figures(const std::string& directory, const analysis::Summary& summary,
+                     std::vector<std::string>& differences) {
+  for (const auto& [name, svg] : analysis::figure_files(summary)) {
+    compare_file(directory, "figures/" + name + ".svg", svg, differences);
+    compare_file(directory, "figures/" + name + ".pdf", analysis::pdf_of_svg(svg), differences);
+  }
+}
+
 void compare_tables(const std::string& directory, const analysis::Summary& summary,
                     std::vector<std::string>& differences) {
   for (const auto& [name, text] : analysis::table_files(summary)) {
@@ -160,6 +170,7 @@ PublishedReport published_report(const std::string& directory, results::Store& s
   }
   compare_reports(published, anew, found.differences);
   compare_tables(directory, summary, found.differences);
+  compare_figures(directory, summary, found.differences);
   if (is_whole(published, anew)) {
     compare_whole(directory, published, anew, summary, found.differences);
   }

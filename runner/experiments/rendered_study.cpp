@@ -11,6 +11,7 @@
 #include "results/trace_stream.hpp"
 #include "runner/experiments/cached_model.hpp"
 #include "runner/experiments/counted_answers.hpp"
+#include "runner/experiments/done_blocks.hpp"
 #include "runner/experiments/rendered_words.hpp"
 #include "runner/stimuli/model_library.hpp"
 namespace tapstudy::runner {
@@ -157,7 +158,11 @@ analysis::RenderedStudy rendered_study(const Protocol& protocol,
   const core::ModelCache cache = models_of_this_user();
   const analysis::TapWindow window{protocol.rate_hz};
   RenderedStudy study;
+  const std::set<std::string> rendered = rendered_stimuli(protocol, done_blocks(stores, mode));
   for (const Stimulus& stimulus : protocol.stimuli) {
+    if (!rendered.contains(stimulus.name)) {
+      continue;
+    }
     study.stimuli.push_back(in_words(protocol, stimulus, cache));
     analysis::StimulusTaps taps{analysis::TapStatistics{window}, {}};
     for (const auto& [point, at_m] : protocol.tapping_points_m) {

@@ -62,7 +62,7 @@ analysis::ReportSection course(const protocols::Protocol& protocol,
       }
     }
   }
-  return analysis::course_section(participants, practice);
+  return analysis::course_section(participants, practice, protocol.masking.has_value());
 }
 
 std::vector<analysis::ConfidenceScale> confidence_scales(const protocols::Protocol& protocol) {

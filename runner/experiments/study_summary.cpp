@@ -123,10 +123,11 @@ Summary summary_of_study(const std::vector<StudyStore>& stores, Mode mode, Detai
     summary.sections.insert(summary.sections.begin(), std::move(*contrasts));
   }
   summary.provenance = provenance(study, all.sessions, mode);
-  summary.procedure = procedure_words(protocol, sessions_of(all.sessions, mode));
+  summary.procedure = procedure_words(protocol, sessions_of(all.sessions, mode),
+                                      summary.participant_ids, done_blocks(stores, mode));
   summary.unfinished = std::move(all.unfinished);
   summary.excluded = std::move(all.excluded);
-  summary.deviations = std::move(all.deviations);
+  std::ranges::move(all.deviations, std::back_inserter(summary.deviations));
   return summary;
 }
 }  // namespace tapstudy::runner

@@ -26,11 +26,28 @@ std::string what_to_type(const protocols::FormItem& item) {
   return "a line of text";
 }
 
-// Options are numbered at the terminal.
+// Options are numbered at the terminal; numbers may have a decimal comma.
 std::string as_stored(const protocols::FormItem& item, const std::string& typed) {
-  const auto number = whole_number(typed, 1, static_cast<int>(item.options.size()));
-  const bool is_option = item.kind == ItemKind::single_choice && number;
-  return is_option ? item.options[static_cast<std::size_t>(*number - 1)].name : typed;
+  switch (item.kind) {
+    case ItemKind::single_choice: {
+      const auto number = whole_number(typed, 1, static_cast<int>(item.options.size()));
+      return number ? item.options[static_cast<std::size_t>(*number - 1)].name : typed;
+    }
+    case ItemKind::scale:
+    case ItemKind::number:
+      return protocols::with_decimal_point(typed);
+    case ItemKind::likert:
+    case ItemKind::text:
+      break;
+  }
+  return typed;
+}
+
+// Options were shown in the participant's language, by number.
+std::string told(const protocols::FormItem& item, const std::string& wrong) {
+  return item.kind == ItemKind::single_choice && item.options.size() > 1
+             ? fmt::format("please answer with a number from 1 to {}", item.options.size())
+             : wrong;
 }
 }  // namespace
 
@@ -52,7 +69,7 @@ std::string TerminalParticipant::answer_to(const protocols::FormItem& item) {
     if (wrong.empty()) {
       return answer;
     }
-    say("  {}\n", wrong);
+    say("  {}\n", told(item, wrong));
   }
 }
 

@@ -124,11 +124,11 @@ void TerminalParticipant::feedback(bool is_correct, const std::string& right_lab
 }
 
 void TerminalParticipant::repeats(const TrialPrompt& prompt) {
-  say("  trial {} is presented again\n", prompt.number);
+  say("  trial {} is presented again\n", place_in(prompt.progress));
 }
 
 void TerminalParticipant::skipped(const TrialPrompt& prompt) {
-  say("  trial {} is skipped\n", prompt.number);
+  say("  trial {} is skipped\n", place_in(prompt.progress));
 }
 
 void TerminalParticipant::refused(const TrialPrompt& /*prompt*/, const TooEarly& why) {
@@ -136,7 +136,7 @@ void TerminalParticipant::refused(const TrialPrompt& /*prompt*/, const TooEarly&
 }
 
 void TerminalParticipant::timed_out(const TrialPrompt& prompt, bool is_presented_again) {
-  say("\n  the time for trial {} is over{}\n", prompt.number,
+  say("\n  the time for trial {} is over{}\n", place_in(prompt.progress),
       is_presented_again ? ": it comes again later" : "");
   wait_for_enter();  // or trials would run on without anybody
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <iterator>
 #include <numbers>
 
 #include "core/placement.hpp"
@@ -12,6 +13,7 @@ using device::FeltTick;
 constexpr double lowest_band_hz = 20.0;
 constexpr double early_s = 0.04;
 constexpr double late_s = 0.12;
+constexpr double rebound_s = 0.05;            // a finger that is off for less bounces
 constexpr double contact_threshold_n = 1e-6;  // threshold of contact detection
 
 double normal_force_n(const FeltTick& tick) {
@@ -21,8 +23,15 @@ double height_m(const FeltTick& tick) {
   return core::along_normal(tick.hand.position_m);
 }
 
-// The residuals of a linear least-squares fit of force against height.
-std::vector<double> without_spring(std::span<const FeltTick> contact) {
+bool is_contact(const FeltTick& tick) {
+  return std::abs(normal_force_n(tick)) > contact_threshold_n;
+}
+
+// The residuals of a linear least-squares fit of force against height in contact; out of contact
+// the spring is as where contact ends.
+std::vector<double> without_spring(std::span<const FeltTick> tap) {
+  std::vector<FeltTick> contact;
+  std::ranges::copy_if(tap, std::back_inserter(contact), is_contact);
   double mean_height = 0.0;
   double mean_force = 0.0;
   for (const FeltTick& tick : contact) {
@@ -41,9 +50,11 @@ std::vector<double> without_spring(std::span<const FeltTick> contact) {
   }
   const double slope = variance > 0.0 ? covariance / variance : 0.0;
   std::vector<double> rest;
-  rest.reserve(contact.size());
-  for (const FeltTick& tick : contact) {
-    rest.push_back(normal_force_n(tick) - mean_force - slope * (height_m(tick) - mean_height));
+  rest.reserve(tap.size());
+  for (const FeltTick& tick : tap) {
+    const bool is_predicted = is_contact(tick) || variance == 0.0;
+    const double spring = mean_force + slope * (height_m(tick) - mean_height);
+    rest.push_back(normal_force_n(tick) - (is_predicted ? spring : 0.0));
   }
   return rest;
 }
@@ -61,8 +72,8 @@ double power_at(std::span<const double> signal, double frequency_hz, double dt_s
   return 2.0 * std::norm(sum) / (count * count);
 }
 
-Features features_of(std::span<const FeltTick> contact, double dt_s, double threshold_n) {
-  const std::vector<double> rest = without_spring(contact);
+Features features_of(std::span<const FeltTick> tap, double dt_s, double threshold_n) {
+  const std::vector<double> rest = without_spring(tap);
   const std::span<const double> all{rest};
   const auto early = std::min(all.size(), static_cast<std::size_t>(std::lround(early_s / dt_s)));
   const std::array windows{all.first(early), all.subspan(early)};
@@ -84,18 +95,20 @@ Features features_of(std::span<const FeltTick> contact, double dt_s, double thre
 
 std::vector<FeltTap> felt_taps(std::span<const FeltTick> felt, double dt_s, double threshold_n) {
   const auto whole = static_cast<std::size_t>(std::lround((early_s + late_s) / dt_s));
-  const auto is_contact = [](const FeltTick& tick) {
-    return std::abs(normal_force_n(tick)) > contact_threshold_n;
-  };
+  const auto rebound = static_cast<std::ptrdiff_t>(std::lround(rebound_s / dt_s));
   std::vector<FeltTap> taps;
   for (auto first = std::ranges::find_if(felt, is_contact); first != felt.end();) {
-    const auto last = std::find_if_not(first, felt.end(), is_contact);
-    const auto length = std::min(static_cast<std::size_t>(last - first), whole);
-    if (length == whole) {
-      taps.push_back(
-          {first->hand.position_m, features_of(std::span{first, length}, dt_s, threshold_n)});
+    auto last = std::find_if_not(first, felt.end(), is_contact);
+    auto next = std::find_if(last, felt.end(), is_contact);
+    while (next != felt.end() && next - last < rebound) {
+      last = std::find_if_not(next, felt.end(), is_contact);
+      next = std::find_if(last, felt.end(), is_contact);
     }
-    first = std::find_if(last, felt.end(), is_contact);
+    if (static_cast<std::size_t>(last - first) >= whole) {
+      taps.push_back(
+          {first->hand.position_m, features_of(std::span{first, whole}, dt_s, threshold_n)});
+    }
+    first = next;
   }
   return taps;
 }

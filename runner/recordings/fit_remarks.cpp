@@ -33,6 +33,22 @@ std::vector<std::string> remarks_on_residuals(const std::vector<IdentifiedTap>& 
   return remarks;
 }
 
+std::vector<std::string> remarks_on_scatter(const std::vector<analysis::RepeatedMode>& modes) {
+  constexpr double improbable = 1e-3;
+  std::vector<std::string> remarks;
+  for (const analysis::RepeatedMode& mode : modes) {
+    if (mode.standing == analysis::Standing::agreed && mode.scatter_p.value_or(1.0) < improbable) {
+      remarks.push_back(fmt::format(
+          "the mode at {:.6g} Hz scatters more over the taps than their noise explains (p = "
+          "{:.1g}): "
+          "two modes too close to be told apart, or a plate that is not linear; its intervals may "
+          "hold neither",
+          mode.frequency_hz.value, *mode.scatter_p));
+    }
+  }
+  return remarks;
+}
+
 std::vector<std::string> remarks_on_resolution(const std::vector<IdentifiedTap>& taps) {
   std::vector<std::string> remarks;
   std::set<std::string> told;

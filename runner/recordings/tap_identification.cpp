@@ -228,6 +228,7 @@ class Identifier {
     std::vector<int> impacts;
     std::ranges::transform(result_.taps, std::back_inserter(impacts), &IdentifiedTap::impact);
     result_.modes = analysis::modes_over_taps(modes_of_taps(), impacts);
+    add_remarks(remarks_on_scatter(result_.modes));
     std::vector<analysis::MeasuredRatio> ratios;
     for (std::size_t i = 0; i < result_.modes.size(); ++i) {
       const analysis::RepeatedMode& mode = result_.modes[i];

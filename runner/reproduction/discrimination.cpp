@@ -66,8 +66,8 @@ Simulated simulated(const Bench& bench, const std::string& method, const std::st
                     const protocols::Protocol& protocol, int participants) {
   Simulated study{method, file, protocol, participants, {}};
   const std::vector<double> grid = bench.is_quick()
-                                       ? std::vector{6.0, 9.0, 13.0}
-                                       : std::vector{4.0, 6.0, 7.5, 9.0, 11.0, 13.0, 16.0, 20.0};
+                                       ? std::vector{9.0, 14.0, 20.0}
+                                       : std::vector{6.0, 9.0, 11.0, 12.5, 14.0, 16.0, 20.0, 26.0};
   for (const double noise_db : grid) {
     core::tell(bench.progress, fmt::format("{}, noise of {} dB", method, noise_db));
     study.by_noise.push_back(predicted(bench, study, noise_db));

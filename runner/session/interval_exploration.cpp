@@ -60,7 +60,10 @@ void IntervalExploration::follow() const {
     return;
   }
   if (state_.phase == Phase::gap) {
-    open();
+    ask_for_next();
+    if (inner().is_as_asked()) {  // not before the finger is off the plate
+      open();
+    }
   } else if (inner().contacts(next_) - contacts_before_ >= limits_.min_contacts) {
     close();
   }
@@ -70,11 +73,18 @@ void IntervalExploration::begin_gap(std::size_t next) const {
   next_ = next;
   until_s_ = time_s() + limits_.intervals->gap_seconds;
   state_.phase = Phase::gap;
+  is_next_asked_for_ = false;
+}
+
+void IntervalExploration::ask_for_next() const {
+  if (!is_next_asked_for_) {
+    inner().switch_to(next_);
+    inner().silence(false);
+    is_next_asked_for_ = true;
+  }
 }
 
 void IntervalExploration::open() const {
-  inner().switch_to(next_);
-  inner().silence(false);
   contacts_before_ = inner().contacts(next_);
   until_s_ = time_s() + limits_.intervals->seconds;
   state_.phase = Phase::open;

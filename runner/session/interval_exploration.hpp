@@ -7,9 +7,10 @@
 #include "runner/trial_loop/forwarded_exploration.hpp"
 namespace tapstudy::runner {
 // An exploration whose alternatives come one after the other, each in an interval of its own; with
-// nothing to feel in between. Nobody switches. Each go signal is an event `interval` and each end
-// an event `interval_end`, with the place of the alternative; each replay as `interval_replay`,
-// with its number. Without intervals in the limits nothing is changed.
+// nothing to feel in between. Nobody switches. An interval begins once its alternative is rendered:
+// a finger that still presses the last one has to leave it first. Each go signal is an event
+// `interval` and each end an event `interval_end`, with the place of the alternative; each replay
+// as `interval_replay`, with its number. Without intervals in the limits nothing is changed.
 class IntervalExploration final : public ForwardedExploration {
  public:
   IntervalExploration(Exploration& inner, const protocols::ExploreLimits& limits,
@@ -24,6 +25,7 @@ class IntervalExploration final : public ForwardedExploration {
  private:
   void follow() const;
   void begin_gap(std::size_t next) const;
+  void ask_for_next() const;
   void open() const;
   void close() const;
 
@@ -32,6 +34,7 @@ class IntervalExploration final : public ForwardedExploration {
   TrialEvents& events_;
   mutable IntervalState state_;
   mutable std::size_t next_{0};  // or the one that is open
+  mutable bool is_next_asked_for_{false};
   mutable double until_s_{0.0};  // of the gap or the interval
   mutable int contacts_before_{0};
 };

@@ -29,6 +29,8 @@ class Exploration {
   virtual std::size_t setting() const { return 0; }
   // Lets nothing be felt, or something again, from the next moment without contact on.
   virtual void silence(bool /*is_silent*/) {}
+  // Whether the alternative, or the silence, that was asked for last is what is felt by now.
+  virtual bool is_as_asked() const { return true; }
   // nullptr: alternatives are switched freely.
   virtual const IntervalState* intervals() const { return nullptr; }
   // All intervals once more, where the last is over and replays are left.

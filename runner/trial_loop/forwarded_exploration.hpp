@@ -16,6 +16,7 @@ class ForwardedExploration : public Exploration {
   void adjust(std::size_t setting) override { inner().adjust(setting); }
   std::size_t setting() const override { return inner().setting(); }
   void silence(bool is_silent) override { inner().silence(is_silent); }
+  bool is_as_asked() const override { return inner().is_as_asked(); }
   const IntervalState* intervals() const override { return inner().intervals(); }
   void replay() override { inner().replay(); }
   void enter_answer(const std::string& answer) override { inner().enter_answer(answer); }

@@ -21,6 +21,7 @@ class LiveExploration final : public Exploration {
   }
   std::size_t current() const override { return current_; }
   void silence(bool is_silent) override { loop_.request_silence(is_silent); }
+  bool is_as_asked() const override { return loop_.is_as_requested(); }
   void pass_time(double seconds) override {
     const auto until = std::chrono::steady_clock::now() + std::chrono::duration<double>{seconds};
     while (is_running() && std::chrono::steady_clock::now() < until) {

@@ -17,6 +17,7 @@ class VirtualExploration final : public Exploration {
   }
   std::size_t current() const override { return current_; }
   void silence(bool is_silent) override { loop_.request_silence(is_silent); }
+  bool is_as_asked() const override { return loop_.is_as_requested(); }
   void pass_time(double seconds) override {
     auto left = static_cast<std::int64_t>(std::llround(seconds / period_s_));
     while (left > 0 && is_running()) {

@@ -1,8 +1,10 @@
 // procedures_bench [RUNS]: what each procedure makes of the same simulated observers, two
 // alternatives, threshold 1, slope 3.5, 2 % lapses. Thresholds are estimated as reports do, by
-// maximum likelihood from all answers. Prints for each procedure its trials, how many runs have a
+// maximum likelihood from all answers, and as the procedure itself does: mean of its last
+// reversals, or of its posterior. Prints for each procedure its trials, how many runs have a
 // threshold, bias and standard deviation in decibels, and trials times variance relative to the
-// first: how many trials it takes for the same spread (Taylor & Creelman 1967, sweat factor).
+// first, of the report's estimates and of its own: how many trials it takes for the same spread
+// (Taylor & Creelman 1967, sweat factor).
 #include <fmt/format.h>
 
 #include <cmath>
@@ -41,8 +43,11 @@ const std::vector<std::pair<std::string, std::string>>& procedures() {
   return all;
 }
 
-std::vector<analysis::Level> answered(const protocols::TrackSettings& settings,
-                                      std::uint64_t seed) {
+struct Run {
+  std::vector<analysis::Level> levels;
+  std::optional<double> own_estimate;
+};
+Run answered(const protocols::TrackSettings& settings, std::uint64_t seed) {
   testing::KnownObserver observer{of_observer, seed};
   std::map<double, analysis::Proportion> counts;
   const auto track = settings.start(seed);
@@ -57,12 +62,17 @@ std::vector<analysis::Level> answered(const protocols::TrackSettings& settings,
   for (const auto& [value, of] : counts) {
     levels.push_back({value, of});
   }
-  return levels;
+  return {levels, track->summary().estimate};
 }
 
 struct Estimates {
   double trials{};                   // mean of a run
   std::vector<double> threshold_db;  // of runs that have one
+  std::vector<double> own_db;        // likewise; of a staircase where it settles
+  double effort(const std::vector<double>& of) const {
+    const double deviation = analysis::mean_and_spread(of).standard_deviation;
+    return trials * deviation * deviation;
+  }
 };
 
 Estimates estimates(const std::string& yaml, int runs) {
@@ -70,7 +80,10 @@ Estimates estimates(const std::string& yaml, int runs) {
   const analysis::PsychometricModel model{core::PsychometricShape::weibull, {0.5, 0.5}, {0.0, 0.1}};
   Estimates found;
   for (int run = 1; run <= runs; ++run) {
-    const auto levels = answered(*settings, static_cast<std::uint64_t>(run));
+    const auto [levels, own_estimate] = answered(*settings, static_cast<std::uint64_t>(run));
+    if (own_estimate) {
+      found.own_db.push_back(20.0 * std::log10(*own_estimate / of_observer.threshold));
+    }
     for (const analysis::Level& level : levels) {
       found.trials += static_cast<double>(level.answers.trials) / runs;
     }
@@ -85,17 +98,20 @@ Estimates estimates(const std::string& yaml, int runs) {
 
 int main(int argc, char** argv) {
   const int runs = argc > 1 ? std::atoi(argv[1]) : 200;
-  fmt::print("{:<28} {:>6} {:>10} {:>9} {:>7} {:>24}\n", "procedure", "trials", "thresholds",
-             "bias [dB]", "SD [dB]", "trials for the same SD");
+  fmt::print("{:<28} {:>6} {:>10} {:>9} {:>7} {:>24} {:>14}\n", "procedure", "trials", "thresholds",
+             "bias [dB]", "SD [dB]", "trials for the same SD", "own estimate");
   double first = 0.0;
+  double first_own = 0.0;
   for (const auto& [name, yaml] : procedures()) {
     const Estimates of = estimates(yaml, runs);
     const analysis::MeanAndSpread spread = analysis::mean_and_spread(of.threshold_db);
-    const double effort = of.trials * spread.standard_deviation * spread.standard_deviation;
+    const double effort = of.effort(of.threshold_db);
     first = first == 0.0 ? effort : first;
-    fmt::print("{:<28} {:>6.1f} {:>6}/{:<4} {:>8.2f} {:>7.2f} {:>22.2f} x\n", name, of.trials,
-               of.threshold_db.size(), runs, spread.mean, spread.standard_deviation,
-               effort / first);
+    first_own = first_own == 0.0 ? of.effort(of.own_db) : first_own;
+    fmt::print("{:<28} {:>6.1f} {:>6}/{:<4} {:>8.2f} {:>7.2f} {:>22.2f} x {:>12}\n", name,
+               of.trials, of.threshold_db.size(), runs, spread.mean, spread.standard_deviation,
+               effort / first,
+               of.own_db.empty() ? "–" : fmt::format("{:.2f} x", of.effort(of.own_db) / first_own));
   }
   return 0;
 }

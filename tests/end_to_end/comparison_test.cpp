@@ -57,15 +57,30 @@ TEST_CASE("shares of right answers at other levels of chance are not compared wi
   CHECK_THAT(said.standard_output, Contains("Guessing gives 0.5 in ") && Contains("0.333 in "));
 }
 
-TEST_CASE("studies with nothing in common are refused with the reasons", "[end_to_end]") {
+TEST_CASE("a printed matrix is compared with a study of one block, whatever it is called",
+          "[end_to_end]") {
   const testing::TempDirectory directory;
   testing::write(directory / "counts.csv", "stimulus,a,b\na,3,1\nb,0,4\n");
   testing::write(directory / "answers.csv", few_answers);
-  const auto refused = testing::tapstudy(
+  const auto said = testing::tapstudy(
       {"report", "--compare", directory / "counts.csv", directory / "answers.csv"});
+  INFO(said.standard_error);
+  REQUIRE(said.exit_code == 0);
+  CHECK_THAT(said.standard_output, Contains("accuracy") && Contains("0.875 (0.529 to 0.978)"));
+}
+
+TEST_CASE("studies with nothing in common are refused with the reasons", "[end_to_end]") {
+  const testing::TempDirectory directory;
+  testing::write(directory / "counts.csv", "stimulus,a,b\na,3,1\nb,0,4\n");
+  const std::string study = directory / "choice";
+  REQUIRE(testing::tapstudy({"simulate", testing::shipped("paper/reality_vibration.yaml").string(),
+                             "--participants", "2", "--no-traces", "--out", study})
+              .exit_code == 0);
+  const auto refused = testing::tapstudy({"report", "--compare", directory / "counts.csv", study});
   CHECK(refused.exit_code == 2);
   CHECK_THAT(refused.standard_error, Contains("nothing to compare") &&
-                                         Contains("no result with an interval over participants"));
+                                         Contains("its task is identification in") &&
+                                         Contains("choice in"));
   CHECK(testing::tapstudy({"report", "--compare", directory / "counts.csv"}).exit_code == 2);
 }
 

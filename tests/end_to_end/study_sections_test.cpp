@@ -105,7 +105,9 @@ TEST_CASE("the methods of a report say what the protocol asked for and what it r
   const std::string masked = methods_of(plain +
                                         "\nmasking: {kind: pink, level_db_fs: -24}\n"
                                         "display: {blind_operator: true}\n");
-  CHECK_THAT(masked, Contains("Masking: pink noise at -24 dB FS"));
+  CHECK_THAT(masked, Contains("Masking: the protocol asks for pink noise at -24 dB FS") &&
+                         Contains("none was played"));
+  CHECK_THAT(testing::contents(study + "_report/masking.csv"), Contains("0,8"));
   CHECK_THAT(masked, Contains("screen did not show what was presented"));
   CHECK_THAT(masked, !Contains("letters"));
 }

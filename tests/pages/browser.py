@@ -359,6 +359,12 @@ def command(driver, name):
     wait_until(driver, f"the action {name}", enabled).click()
 
 
+def command_by_keyboard(driver, name):
+    wait_until(driver, f"the action {name}", lambda: find(driver, f'button[data-action="{name}"]').is_enabled())
+    tab_to(driver, f'button[data-action="{name}"]')
+    press(driver, Keys.ENTER)
+
+
 def command_with_reason(driver, name, reason=""):
     """Presses the button of an action that asks for a reason, and gives it."""
     command(driver, name)
@@ -374,6 +380,12 @@ def is_dialog_open(driver):
 def write_note(driver, text):
     find(driver, "#note-text").send_keys(text)
     command(driver, "note")
+
+
+def write_note_by_keyboard(driver, text):
+    tab_to(driver, "#note-text")
+    press(driver, text)
+    command_by_keyboard(driver, "note")
 
 
 def switch_to(driver, index):

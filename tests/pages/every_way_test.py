@@ -27,7 +27,9 @@ PROCEDURES = {
     "psi": "psi: {function: weibull, " + GRID + ", slope: {values: [1, 3]}, guess: GUESS, lapse: 0.02, stop: {trials: 6}}",
 }
 # What the block says beside its name, task and question; the guess rate of tasks with procedures.
-VARIED = {"comparison": 0.5, "same_different": 0.5, "odd_one_out": 0.3333, "abx": 0.5}
+# Of tasks with procedures: the probability of a right guess.
+VARIED = {"comparison": 0.5, "comparison, alternatives: 4": 0.25, "same_different": 0.5,
+          "odd_one_out": 0.3333, "odd_one_out, alternatives: 4": 0.25, "abx": 0.5}
 FIXED = {
     "identification": "stimuli: [one, other]",
     "choice": "stimuli: [one, other, third], repetitions: 3",

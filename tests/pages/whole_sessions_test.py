@@ -69,18 +69,36 @@ class WholeSession(unittest.TestCase):
             return now and (now["kind"] != "trial" or now["progress"] != screen["progress"])
         browser.wait_until(self.driver, "the next screen", moved_on, 30)
 
+    def operate(self, by_keyboard):
+        """A note, a pause and its end: the trial begins again."""
+        browser.wait_for_state(self.operator, "exploring", "answering")
+        command = browser.command_by_keyboard if by_keyboard else browser.command
+        note = browser.write_note_by_keyboard if by_keyboard else browser.write_note
+        note(self.operator, "the participant coughed")
+        command(self.operator, "pause")
+        browser.wait_for_screen(self.driver, "paused")
+        browser.wait_for_state(self.operator, "paused")
+        command(self.operator, "resume")
+        browser.wait_for_screen(self.driver, "trial", patience_s=30)
+
+    def check_operated(self):
+        self.assertEqual(self.session.rows("SELECT action FROM operator_action ORDER BY action_id"),
+                         [("note",), ("pause",), ("resume",)])
+
     def finish(self):
         browser.wait_for_screen(self.driver, "ended", patience_s=30)
         self.assertEqual(self.session.wait(), 0, self.session.said())
 
     def test_discrimination_by_mouse(self):
-        self.identify_all(browser.answer_by_mouse)
+        self.identify_all(by_keyboard=False)
 
     def test_discrimination_by_keyboard_in_japanese_on_a_4k_screen(self):
-        self.identify_all(browser.answer_by_keyboard, "--language", "ja", width=3840, height=2160)
+        self.identify_all(True, "--language", "ja", width=3840, height=2160)
 
-    def identify_all(self, answer, *options, **look):
+    def identify_all(self, by_keyboard, *options, **look):
         self.start("protocols/paper/discrimination.yaml", *options, **look)
+        self.watch()
+        answer = browser.answer_by_keyboard if by_keyboard else browser.answer_by_mouse
         given = []
         for number in range(1, 9):
             self.next_trial(number)
@@ -90,10 +108,14 @@ class WholeSession(unittest.TestCase):
                 browser.check_axe(self.driver, ("serious", "critical"))
             if number == 2:
                 self.shoot(f"participant_{look.get('width', 1280)}")
+            if number == 3:
+                self.operate(by_keyboard)
+                self.next_trial(number)
             self.answer_until_accepted(answer, number % 4)
             given.append(DISCRIMINATION[number % 4])
         self.finish()
         self.assertEqual(self.session.responses(), given)
+        self.check_operated()
         browser.check_browser_log_is_empty(self.driver, but_for=("events", "ERR_"))
 
     def choose(self, by_keyboard):
@@ -111,6 +133,8 @@ class WholeSession(unittest.TestCase):
         self.answer_until_accepted(answer, count - 1, feel_all)
 
     def finish_choices(self, by_keyboard):
+        browser.wait_for_screen(self.driver, "trial", patience_s=30)
+        self.operate(by_keyboard)
         while browser.wait_for_screen(self.driver, "trial", "ended", patience_s=30)["kind"] == "trial":
             self.choose(by_keyboard)
         self.finish()
@@ -118,6 +142,7 @@ class WholeSession(unittest.TestCase):
             "SELECT response = (SELECT stimulus FROM alternative WHERE alternative.trial_id = "
             "trial.trial_id ORDER BY position DESC LIMIT 1) FROM current_response "
             "JOIN trial USING (trial_id) WHERE status = 'answered'")
+        self.check_operated()
         self.assertTrue(chosen)
         self.assertEqual({row[0] for row in chosen}, {1})  # the last label, whatever it stood for
 

@@ -99,3 +99,23 @@ TEST_CASE("constrained orders are those of the enumeration, each drawn equally o
   const auto degrees_of_freedom = static_cast<double>(times.size() - 1);
   CHECK(chi_squared < degrees_of_freedom + 5.0 * std::sqrt(2.0 * degrees_of_freedom) + 10.0);
 }
+
+// Too many orders to enumerate, of which none immediately repeats: 8 stimuli ten times each.
+TEST_CASE("ordinary designs are drawn however many orders they have", "[protocols][order]") {
+  protocols::Block block;
+  for (std::size_t i = 0; i < 8; ++i) {
+    block.stimuli.push_back(std::to_string(i));
+  }
+  block.repetitions = 10;
+  block.constraints.max_run = 1;
+  protocols::ConstrainedOrders orders{block};
+  REQUIRE(orders.count());
+  core::Rng rng{3};
+  for (int i = 0; i < 20; ++i) {
+    const Order order = orders.draw(rng);
+    CHECK(longest_run(order) == 1);
+    for (std::size_t stimulus = 0; stimulus < 8; ++stimulus) {
+      CHECK(std::ranges::count(order, stimulus) == 10);
+    }
+  }
+}

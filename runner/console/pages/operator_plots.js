@@ -1,4 +1,4 @@
-// The live plots: force, height and tick intervals of the last seconds, and what they say in words.
+// The live plots: force, position and tick intervals of the last seconds, and what they say in words.
 
 import { el, setText } from "./dom.js";
 import { Plot } from "./plot.js";
@@ -20,17 +20,22 @@ export class LivePlots {
     this.#parts = [
       this.#part("force", "N", 1, { least: 0, most: 1 }),
       this.#part("height", "mm", 1, { least: 0, most: 10 }),
+      this.#part("x", "mm", 1, { least: -10, most: 10 }),
+      this.#part("y", "mm", 1, { least: -10, most: 10 }),
       this.#part("interval", "ms", 2, { least: 0, most: 2 }),
     ];
     section.append(...this.#parts.map(({ figure }) => figure), this.#contacts);
     new ResizeObserver(() => this.draw()).observe(section);
   }
 
-  add({ t_s: time, step_s: step, force_n: force, height_m: height, interval_s: interval, contacts }) {
-    const [forces, heights, intervals] = this.#parts;
+  add({ t_s: time, step_s: step, force_n: force, height_m: height, x_m: x, y_m: y, interval_s: interval, contacts }) {
+    const [forces, heights, xs, ys, intervals] = this.#parts;
+    const thousandfold = (values) => values.map((value) => 1000 * value);
     forces.plot.add(time, step, force);
-    heights.plot.add(time, step, height.map((metres) => 1000 * metres));
-    intervals.plot.add(time, step, interval.map((seconds) => 1000 * seconds));
+    heights.plot.add(time, step, thousandfold(height));
+    xs.plot.add(time, step, thousandfold(x));
+    ys.plot.add(time, step, thousandfold(y));
+    intervals.plot.add(time, step, thousandfold(interval));
     this.#count = contacts;
     this.#lastTime = performance.now();
     clearTimeout(this.#silence);

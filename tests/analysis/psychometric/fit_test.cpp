@@ -3,6 +3,7 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <map>
 
 #include "analysis/psychometric/example_levels.hpp"
 #include "core/error.hpp"
@@ -213,6 +214,49 @@ TEST_CASE("levels that differ by rounding only are fitted as one", "[analysis][p
   CHECK(apart.curve->threshold == Approx(one.curve->threshold).epsilon(1e-6));
 }
 
+namespace {
+// The largest log-likelihood of a grid over the box.
+double best_of_grid(const PsychometricModel& model, const std::vector<Level>& levels) {
+  const analysis::BinomialLikelihood likelihood{model.shape, levels};
+  const analysis::PsychometricBox box = analysis::search_box(model, levels);
+  double best = -1e300;
+  for (int i = 0; i <= 400; ++i) {
+    for (int j = 0; j <= 40; ++j) {
+      for (const double lapse : {0.0, 0.03, 0.06, 0.1}) {
+        const double position = box.low[0] + i / 400.0 * (box.high[0] - box.low[0]);
+        const double log_slope = box.low[1] + j / 40.0 * (box.high[1] - box.low[1]);
+        best = std::max(best, likelihood.value({position, log_slope, model.guess.low, lapse}));
+      }
+    }
+  }
+  return best;
+}
+
+// Of a Weibull function of threshold 1 and slope 2, up by so many steps after a wrong answer.
+std::vector<Level> staircase_levels(core::Rng& rng, int downs_after, int trials) {
+  std::map<int, Level> levels;  // by step of 2 dB
+  int step = 8;
+  int right_in_row = 0;
+  for (int trial = 0; trial < trials; ++trial) {
+    const double value = std::pow(10.0, step / 10.0);
+    Level& level = levels.try_emplace(step, Level{value, {}}).first->second;
+    const bool is_right = rng.uniform() < 0.5 + 0.48 * (1.0 - std::exp(-value * value));
+    level.answers.add(is_right);
+    right_in_row = is_right ? right_in_row + 1 : 0;
+    step += is_right ? 0 : 1;
+    if (right_in_row == downs_after) {
+      right_in_row = 0;
+      --step;
+    }
+  }
+  std::vector<Level> all;
+  for (const auto& [at, level] : levels) {
+    all.push_back(level);
+  }
+  return all;
+}
+}  // namespace
+
 // Lapses make likelihoods with several maxima: a gentle function, and steps between levels.
 TEST_CASE("no point of a grid over the box is likelier than the fit", "[analysis][psychometric]") {
   core::Rng rng{7};
@@ -226,20 +270,19 @@ TEST_CASE("no point of a grid over the box is likelier than the fit", "[analysis
       levels.push_back(level);
     }
     const PsychometricModel model{PsychometricShape::cumulative_gaussian, {0.5, 0.5}, {0.0, 0.1}};
-    const auto fit = analysis::fit_psychometric(model, levels);
-    const analysis::BinomialLikelihood likelihood{model.shape, levels};
-    const analysis::PsychometricBox box = analysis::search_box(model, levels);
-    double best = -1e300;
-    for (int i = 0; i <= 400; ++i) {
-      for (int j = 0; j <= 40; ++j) {
-        for (const double lapse : {0.0, 0.03, 0.06, 0.1}) {
-          const double position = box.low[0] + i / 400.0 * (box.high[0] - box.low[0]);
-          const double log_slope = box.low[1] + j / 40.0 * (box.high[1] - box.low[1]);
-          best = std::max(best, likelihood.value({position, log_slope, 0.5, lapse}));
-        }
-      }
-    }
     CAPTURE(observer);
-    CHECK(fit.maximum.log_likelihood >= best - 1e-6);
+    CHECK(analysis::fit_psychometric(model, levels).maximum.log_likelihood >=
+          best_of_grid(model, levels) - 1e-6);
+  }
+}
+
+TEST_CASE("nor where a staircase left most trials at few levels", "[analysis][psychometric]") {
+  core::Rng rng{11};
+  const PsychometricModel model{PsychometricShape::weibull, {0.5, 0.5}, {0.0, 0.1}};
+  for (int observer = 0; observer < 120; ++observer) {
+    const std::vector<Level> levels = staircase_levels(rng, 1 + observer % 3, 60);
+    CAPTURE(observer);
+    CHECK(analysis::fit_psychometric(model, levels).maximum.log_likelihood >=
+          best_of_grid(model, levels) - 1e-6);
   }
 }

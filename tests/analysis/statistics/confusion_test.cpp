@@ -167,7 +167,9 @@ TEST_CASE(
   const Summary summary = summarise({"study", "", {block}}, {}, {});
   std::ostringstream text;
   write_text(text, summary);
-  CHECK_THAT(text.str(), Contains("not tested: there are no answers") && !Contains("p = "));
+  CHECK_THAT(text.str(), Contains("block 'empty' is left out: it has no answer; hypothesis 'h' is "
+                                  "not tested") &&
+                             !Contains("p = "));
 }
 
 TEST_CASE("the chance of a factor weighs stimuli as they were presented", "[analysis][confusion]") {

@@ -43,6 +43,20 @@ TEST_CASE("the Wilson interval solves its own equation", "[analysis]") {
   }
 }
 
+TEST_CASE("the exact interval is that of R's binom.test", "[analysis]") {
+  const std::vector<Proportion> proportions{{5, 8}, {0, 10}, {10, 10}, {43, 80}, {1, 1}};
+  const auto r = r_numbers(
+      "for (o in list(c(5, 8), c(0, 10), c(10, 10), c(43, 80), c(1, 1))) "
+      "out(binom.test(o[1], o[2])$conf.int)");
+  REQUIRE(r.size() == 2 * proportions.size());
+  for (std::size_t i = 0; i < proportions.size(); ++i) {
+    CAPTURE(proportions[i].successes, proportions[i].trials);
+    const Interval interval = exact_interval(proportions[i]);
+    CHECK(interval.low == Approx(r[2 * i]).epsilon(1e-9).margin(1e-15));
+    CHECK(interval.high == Approx(r[2 * i + 1]).epsilon(1e-9));
+  }
+}
+
 TEST_CASE("so many right answers are needed against chance, as by R's binom.test", "[analysis]") {
   const auto r = r_numbers(
       "t <- function(k, n, p) binom.test(k, n, p, 'greater')$p.value;"

@@ -1,6 +1,8 @@
 #include "runner/console/live_view.hpp"
 
 #include <catch2/catch.hpp>
+
+#include "core/placement.hpp"
 using namespace tapstudy;
 using runner::LiveView;
 
@@ -26,9 +28,9 @@ TEST_CASE("a screen's step has the largest force and the lowest position of its 
   const LiveView::Steps steps = live.since(-1);
   REQUIRE(steps.steps.size() == 2);  // the third is not over
   CHECK(steps.steps[0].force_n == 3.0);
-  CHECK(steps.steps[0].normal_m == 0.01);
+  CHECK(core::along_normal(steps.steps[0].lowest_m) == 0.01);
   CHECK(steps.steps[1].force_n == 1.0);
-  CHECK(steps.steps[1].normal_m == -0.002);
+  CHECK(core::along_normal(steps.steps[1].lowest_m) == -0.002);
   CHECK(live.since(steps.end).steps.empty());
   CHECK(live.totals().contacts == 1);
   CHECK(live.totals().ticks == 25);

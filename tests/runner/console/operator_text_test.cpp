@@ -59,7 +59,9 @@ TEST_CASE("a live line has the extremes of its steps in newtons, millimetres and
           "[runner][console]") {
   runner::LiveView::Steps steps;
   for (int i = 0; i < 100; ++i) {
-    steps.steps.push_back({i == 50 ? 3.0 : 1.0, i == 99 ? 0.099 : 0.101, i == 7 ? 0.004 : 0.001});
+    core::Vec3 lowest_m = core::Vec3::Zero();
+    lowest_m[core::normal_axis] = i == 99 ? 0.099 : 0.101;
+    steps.steps.push_back({i == 50 ? 3.0 : 1.0, lowest_m, i == 7 ? 0.004 : 0.001});
   }
   const std::string line = runner::live_line(steps, {0, 1, 2}, 0.1);
   CHECK_THAT(line, Contains("▁▁▁▁▁▁▁▁▁▁▁▁█▁▁▁▁▁▁▁▁▁▁▁▁ up to 3.00 N"));

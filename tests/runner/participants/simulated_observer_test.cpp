@@ -22,7 +22,7 @@ std::string discrimination() {
   return testing::contents(testing::shipped("paper/discrimination.yaml"));
 }
 std::string with_noise(const std::string& db, std::string text = discrimination()) {
-  return replaced(std::move(text), "noise_db: 9", "noise_db: " + db);
+  return replaced(std::move(text), "noise_db: 14", "noise_db: " + db);
 }
 analysis::Summary simulated(const std::string& text, int participants, std::uint64_t seed = 7) {
   const testing::TempDirectory directory;

@@ -29,7 +29,9 @@ class World final : public runner::Exploration {
     return contacts_.contains(alternative) ? contacts_.at(alternative) : 0;
   }
   bool is_silent() const { return is_silent_; }
+  bool is_as_asked() const override { return !presses; }
   bool taps{true};
+  bool presses{false};  // the finger stays on the plate, so that nothing changes
 
  private:
   std::int64_t ticks_{0};
@@ -105,6 +107,24 @@ TEST_CASE("an interval lasts until it was tapped, and only then an answer is tak
   in_turn.pass_time(5.0);
   CHECK(in_turn.intervals()->phase == Phase::over);
   CHECK_FALSE(too_early(prompt, "A", in_turn).has_value());
+}
+
+TEST_CASE("an interval begins, and its time counts, once its alternative is felt",
+          "[runner][session]") {
+  World world;
+  const protocols::ExploreLimits limits = limits_with(0);
+  runner::TrialEvents events;
+  runner::IntervalExploration in_turn{world, limits, 2, events};
+  in_turn.pass_time(1.0);
+  world.presses = true;  // from within the first interval until long after its end
+  in_turn.pass_time(2.0);
+  CHECK(in_turn.intervals()->phase == Phase::gap);
+  REQUIRE(events.rows().size() == 2);
+  world.presses = false;
+  in_turn.pass_time(5.0);
+  REQUIRE(events.rows().size() == 4);
+  CHECK(events.rows()[2].t_s == Approx(3.0).margin(0.03));
+  CHECK(events.rows()[3].t_s == Approx(4.0).margin(0.05));
 }
 
 TEST_CASE("all intervals come again as often as the protocol allows, and only when they are over",

@@ -1,0 +1,58 @@
+#include "runner/experiments/order_words.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "protocols/block_order.hpp"
+#include "protocols/ordering.hpp"
+#include "protocols/schedule.hpp"
+#include "runner/experiments/counted.hpp"
+namespace tapstudy::runner {
+using protocols::Block;
+using protocols::Protocol;
+namespace {
+// Balance holds for whole sets of orders.
+std::string williams_words(int of_orders, std::size_t participants) {
+  const auto orders = static_cast<std::size_t>(of_orders);
+  return participants % orders == 0
+             ? ", in orders balanced for immediate sequence over participants (Williams 1949)"
+             : fmt::format(
+                   ", in orders of a balanced design (Williams 1949) that {} do not "
+                   "complete, of {} orders",
+                   counted(participants, "participant"), orders);
+}
+}  // namespace
+
+std::string order_words(const Block& block, std::size_t participants) {
+  if (!block.task->uses_order()) {
+    return "";
+  }
+  switch (block.order) {
+    case protocols::Order::listed:
+      return ", in one order for all";
+    case protocols::Order::shuffle:
+      return ", in random order";
+    case protocols::Order::shuffle_within_repetition:
+      return ", in an order that was random within each repetition";
+    case protocols::Order::williams:
+      return williams_words(protocols::williams_sequences(
+                                static_cast<int>(protocols::conditions(block)), block.repetitions),
+                            participants);
+  }
+  return "";
+}
+
+std::string sequence_words(const Protocol& protocol, const std::string& who,
+                           const std::vector<std::string>& blocks, std::size_t participants) {
+  const protocols::BlockOrder& order = protocol.block_order;
+  if (order.order == protocols::Order::listed) {
+    return fmt::format("{} did {}. ", who, fmt::join(blocks, ", then "));
+  }
+  return fmt::format(
+      "{} did {}, where '{}' exchanged their places among participants{}. ", who,
+      fmt::join(blocks, ", then "), fmt::join(order.blocks, "', '"),
+      order.order == protocols::Order::shuffle
+          ? ", in random order"
+          : williams_words(protocols::balanced_block_orders(protocol), participants));
+}
+}  // namespace tapstudy::runner

@@ -74,7 +74,14 @@ double ConstrainedOrders::completions(const State& state) {
   if (is_too_large_) {
     return 0.0;
   }
-  double sum = 0.0;
+  const std::vector<double> weights = weights_of(state);
+  const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
+  counted_[key] = sum;
+  return sum;
+}
+
+std::vector<double> ConstrainedOrders::weights_of(const State& state) {
+  std::vector<double> weights(state.left.size(), 0.0);
   std::map<int, double> of_others;  // alike are those that are not recent and as often to come
   for (std::size_t i = 0; i < state.left.size(); ++i) {
     if (!may_come(state, i)) {
@@ -83,14 +90,12 @@ double ConstrainedOrders::completions(const State& state) {
     const bool is_recent = std::ranges::find(state.recent, i) != state.recent.end();
     const auto alike = of_others.find(state.left[i]);
     const bool is_known = !is_recent && alike != of_others.end();
-    const double orders = is_known ? alike->second : completions(after(state, i));
+    weights[i] = is_known ? alike->second : completions(after(state, i));
     if (!is_recent) {
-      of_others[state.left[i]] = orders;
+      of_others[state.left[i]] = weights[i];
     }
-    sum += orders;
   }
-  counted_[key] = sum;
-  return sum;
+  return weights;
 }
 
 std::optional<double> ConstrainedOrders::count() {
@@ -103,14 +108,13 @@ std::vector<std::size_t> ConstrainedOrders::draw(core::Rng& rng) {
   State state = begin_;
   const int presentations = std::accumulate(begin_.left.begin(), begin_.left.end(), 0);
   while (std::ssize(order) < presentations) {
-    double left = rng.uniform() * completions(state);
+    const std::vector<double> weights = weights_of(state);
+    double left = rng.uniform() * std::accumulate(weights.begin(), weights.end(), 0.0);
     std::size_t next = state.left.size();
-    for (std::size_t i = 0; i < state.left.size() && (next == state.left.size() || left >= 0.0);
-         ++i) {
-      const double weight = may_come(state, i) ? completions(after(state, i)) : 0.0;
-      if (weight > 0.0) {
+    for (std::size_t i = 0; i < weights.size() && (next == weights.size() || left >= 0.0); ++i) {
+      if (weights[i] > 0.0) {
         next = i;  // the last that may come, where rounding leaves a rest
-        left -= weight;
+        left -= weights[i];
       }
     }
     order.push_back(next);

@@ -29,6 +29,8 @@ class ConstrainedOrders {
   State after(State state, std::size_t stimulus) const;
   static std::string key_of(const State& state);
   double completions(const State& state);
+  // Of each stimulus: in how many orders it comes next.
+  std::vector<double> weights_of(const State& state);
 
   State begin_;
   OrderConstraints constraints_;

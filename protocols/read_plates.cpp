@@ -130,8 +130,13 @@ core::Shape read_surface_shape(MapReader& plate, const ReadFile& read_file, Prot
   core::Shape shape = core::Box{core::Vec3::Constant(10.0)};  // placeholder until read
   plate.map("surface", Presence::required, [&](MapReader& reader) {
     const std::string file = reader.text("file");
+    const std::size_t earlier_problems = reader.problems_in_file();
     const double metres_per_unit = reader.number("metres_per_unit", Range::positive(1000.0));
+    const bool is_scaled = reader.problems_in_file() == earlier_problems;
     const Eigen::Isometry3d pose = read_pose(reader);
+    if (!is_scaled) {
+      return;  // its size would be wrong
+    }
     try {
       const SurfaceSource& source = surface_of(file, read_file, protocol);
       core::TriangleSurface surface = read_surface(source, metres_per_unit);

@@ -74,6 +74,8 @@ struct BlockDesign {
   int alternatives{};            // presented in a trial
   double guess_rate{};           // of right answers
   std::optional<AdjustedAxis> adjusted{};
+  // Of a presentation in `redraw`: of a constrained order more than of a shuffled one.
+  std::size_t redraw_cost{1};
   std::string part_of{};  // the whole block's name, where this is a part; empty: it is whole
   // Ratings: from 1 to this; 0: marks on a line, from 0 to 1.
   int steps{};

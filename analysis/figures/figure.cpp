@@ -63,6 +63,13 @@ void write_panel(std::ostream& script, const Panel& panel, std::size_t index) {
   script << '\n';
 }
 
+// Points may lie anywhere.
+bool has_points(const Figure& figure) {
+  return std::ranges::any_of(figure.panels, [](const Panel& panel) {
+    return std::ranges::find(panel.series, Mark::points, &Series::mark) != panel.series.end();
+  });
+}
+
 std::string axes(const Figure& figure) {
   if (figure.scale == Scale::logarithmic) {
     return fmt::format(
@@ -89,7 +96,8 @@ std::string gnuplot_script(const Figure& figure, const std::string& file) {
   std::ostringstream script;
   script << fmt::format("set terminal svg size {},{} font 'sans,11' background 'white'\n",
                         panel_width * figure.columns, panel_height * rows + 40)
-         << "set output " << quoted(file) << "\nset grid\nset key top right\n"
+         << "set output " << quoted(file) << "\nset grid\nset key "
+         << (has_points(figure) ? "outside bottom center horizontal width 2\n" : "top right\n")
          << axes(figure) << fmt::format("set multiplot layout {},{} title ", rows, figure.columns)
          << quoted(figure.title) << " noenhanced\n";
   for (std::size_t i = 0; i < figure.panels.size(); ++i) {

@@ -119,22 +119,26 @@ ReportSection independent_accuracy_section(const IdentificationSummary& summary)
                     "Right answers, if all were independent",
                     {proportion_column("right (Wilson 1927)", "right"), exact_column(),
                      column("chance", "chance"), column("above chance", "p")}};
-  if (has_other_answers(summary)) {
+  std::vector<Cell> row{proportion(summary.accuracy), range_cell(exact_interval(summary.accuracy))};
+  section.remarks.emplace_back(
+      "Participants are not known: everything here takes all answers as independent, which those "
+      "of "
+      "one person are not.");
+  if (has_other_answers(summary) || share_of_constant_answer(summary.matrix)) {
+    row.push_back(nothing(table.columns[2]));
+    row.push_back(nothing(table.columns[3]));
     section.remarks.emplace_back(
-        "Some answers name no stimulus: there is no binomial test against chance.");
-  } else if (share_of_constant_answer(summary.matrix)) {
-    section.remarks.emplace_back(
-        "Answers were not right equally often: there is no binomial test against chance.");
+        has_other_answers(summary)
+            ? "Some answers name no stimulus: there is no binomial test against chance."
+            : "Answers were not right equally often: there is no binomial test against chance.");
   } else {
     const double chance = summary.matrix.chance();
-    table.rows.push_back({proportion(summary.accuracy),
-                          range_cell(exact_interval(summary.accuracy)), share(chance),
-                          probability(binomial_p_at_least(summary.accuracy, chance))});
+    row.push_back(share(chance));
+    row.push_back(probability(binomial_p_at_least(summary.accuracy, chance)));
+    section.remarks.emplace_back("The test against chance is exact binomial, one-sided.");
   }
+  table.rows.push_back(std::move(row));
   section.tables.push_back(std::move(table));
-  section.remarks.emplace_back(
-      "Participants are not known: the exact binomial test (one-sided) and the intervals take all "
-      "answers as independent, which those of one person are not.");
   return section;
 }
 }  // namespace tapstudy::analysis

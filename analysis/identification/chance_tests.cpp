@@ -42,7 +42,10 @@ NullTables by_own_orders(const BlockDesign& design, const IdentificationData& da
     }
     return stimuli;
   };
-  return redrawn_tables(std::move(answers), redraw, data.stimuli.size(), data.responses.size());
+  NullTables tables =
+      redrawn_tables(std::move(answers), redraw, data.stimuli.size(), data.responses.size());
+  tables.work *= design.redraw_cost;
+  return tables;
 }
 
 NullTables by_shuffles(const IdentificationData& data) {

@@ -157,8 +157,9 @@ std::string why_left_out(const MatrixOfParticipants& counted, const std::string&
   if (occurred(totals.rows) < 2 || occurred(totals.columns) < 2) {
     return "Nothing was transferred: fewer than two stimuli or answers occurred.";
   }
-  return counted.participants.size() == 1 && !refusal.empty()
-             ? fmt::format("Not estimated of one participant: {}.", refusal)
+  return counted.are_known() && counted.participants.size() == 1 && !refusal.empty()
+             ? fmt::format(
+                   "Not estimated of one participant: fewer than 5 k² answers for k classes.")
              : "";
 }
 }  // namespace

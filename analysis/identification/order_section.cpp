@@ -99,8 +99,9 @@ void add_serial(const IdentificationData& data, ReportSection& section) {
       "Expected: the mean over all permutations of each participant's answers among trials of the "
       "same stimulus; two-sided, by {} of them{}.",
       draws,
-      draws < fewest_draws_to_count ? ", whose spread is compared by Student's t (answers are many)"
-                                    : ""));
+      draws < fewest_draws_to_count
+          ? ", from whose spread p is computed by Student's t (answers are many)"
+          : ""));
 }
 }  // namespace
 

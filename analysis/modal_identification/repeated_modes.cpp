@@ -144,14 +144,21 @@ Shown shown_by(const Sightings& group, const std::vector<int>& impacts) {
 
 std::optional<double> scatter_p_of(const std::vector<double>& values,
                                    const std::vector<double>& errors) {
-  if (values.size() < 3) {
+  const bool are_known = std::ranges::all_of(errors, [](double error) { return error > 0.0; });
+  if (values.size() < 3 || !are_known) {
     return std::nullopt;
   }
-  const double mean = mean_and_spread(values).mean;
+  double weights = 0.0;
+  double mean = 0.0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    weights += 1.0 / (errors[i] * errors[i]);
+    mean += values[i] / (errors[i] * errors[i]);
+  }
+  mean /= weights;
   double chi_squared = 0.0;
   for (std::size_t i = 0; i < values.size(); ++i) {
     const double deviation = (values[i] - mean) / errors[i];
-    chi_squared += errors[i] > 0.0 ? deviation * deviation : 0.0;
+    chi_squared += deviation * deviation;
   }
   return chi_squared_p(chi_squared, static_cast<double>(values.size()) - 1.0);
 }

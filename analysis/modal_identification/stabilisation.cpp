@@ -13,14 +13,6 @@ struct Chain {
   Pole last() const { return {frequencies_hz.back(), ratios.back()}; }
 };
 
-bool continues(const Pole& from, const Pole& to) {
-  const double frequency_tolerance =
-      from.frequency_hz * std::max(0.01, std::abs(from.damping_ratio) / 3.0);
-  const double ratio_tolerance = std::max(0.003, 0.1 * std::abs(from.damping_ratio));
-  return std::abs(to.frequency_hz - from.frequency_hz) <= frequency_tolerance &&
-         std::abs(to.damping_ratio - from.damping_ratio) <= ratio_tolerance;
-}
-
 // The chain that ends at the order before and nearest to the pole.
 Chain* continued_by(std::vector<Chain>& chains, const Pole& pole, int order) {
   Chain* nearest = nullptr;
@@ -52,6 +44,14 @@ std::vector<Chain> chains_of(const std::vector<PolesOfOrder>& orders) {
   return chains;
 }
 }  // namespace
+
+bool continues(const Pole& from, const Pole& to) {
+  const double frequency_tolerance =
+      from.frequency_hz * std::max(0.01, std::abs(from.damping_ratio) / 3.0);
+  const double ratio_tolerance = std::max(0.003, 0.1 * std::abs(from.damping_ratio));
+  return std::abs(to.frequency_hz - from.frequency_hz) <= frequency_tolerance &&
+         std::abs(to.damping_ratio - from.damping_ratio) <= ratio_tolerance;
+}
 
 std::vector<StablePole> stable_poles(const std::vector<PolesOfOrder>& orders) {
   std::vector<StablePole> found;

@@ -161,7 +161,8 @@ PsychometricVector likeliest_position(const BinomialLikelihood& likelihood,
                                       const PsychometricBox& box,
                                       const std::vector<double>& positions, double slope,
                                       double lapse) {
-  Maximum best{{}, -std::numeric_limits<double>::infinity()};
+  Maximum best{{positions.front(), slope, box.low[guess_at], lapse},
+               -std::numeric_limits<double>::infinity()};  // if impossible at every position
   for (const double position : positions) {
     for (const double share : {0.1, 0.5}) {
       const double guess = box.low[guess_at] + share * (box.high[guess_at] - box.low[guess_at]);

@@ -140,7 +140,7 @@ class TapFinder {
     constexpr double tenfold = 10.0;
     if (impacts == 0 && loudest >= tenfold * energies_.floor) {
       return fmt::format(
-          "{}: holds no tap: its energy exceeds the noise floor {:.0f} times, but nowhere as "
+          "{}: holds no tap: its energy reaches {:.0f} times the noise floor, but nowhere as "
           "suddenly as after an impact",
           recording_.file, loudest / energies_.floor);
     }

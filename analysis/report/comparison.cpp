@@ -21,11 +21,12 @@ const BlockSummary* find_block(const Summary& summary, const std::string& name) 
   return found == summary.blocks.end() ? nullptr : found->get();
 }
 
-// That of the same name; of two reports of one block each, those two, whatever they are called.
+// That of the same name; of one block and a table, which has no name, those two.
 const BlockSummary* counterpart(const BlockSummary& block, const Summary& own,
                                 const Summary& other) {
   const bool are_single = own.blocks.size() == 1 && other.blocks.size() == 1;
-  return are_single ? other.blocks.front().get() : find_block(other, block.block);
+  const bool is_table = block.block.empty() || other.blocks.front()->block.empty();
+  return are_single && is_table ? other.blocks.front().get() : find_block(other, block.block);
 }
 
 std::string participants_of(const NamedSummary& study) {
@@ -65,6 +66,15 @@ void compare_chances(const MainResult& first, const MainResult& second, const Na
 
 // People of both studies answer more alike than different people do.
 std::string remark_on_people(const NamedSummary& a, const NamedSummary& b) {
+  for (const NamedSummary* const study : {&a, &b}) {
+    if (study->summary->participants == 0) {
+      return fmt::format(
+          "Participants of {} are not known: its interval, and so that of the difference, takes "
+          "all "
+          "answers as independent.",
+          study->name);
+    }
+  }
   std::vector<std::string> shared;
   std::ranges::set_intersection(a.summary->participant_ids, b.summary->participant_ids,
                                 std::back_inserter(shared));
@@ -127,7 +137,7 @@ void add_block(const BlockSummary& block, const NamedSummary& first, const Named
   }
   const auto compared = compare_blocks(block, *other, first, second);
   if (compared->parts.front().rows.empty()) {
-    return leave_out("it has no result with an interval over participants in both");
+    return leave_out("it has no result with an interval in both");
   }
   comparison.blocks.push_back(compared);
 }

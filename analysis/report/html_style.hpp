@@ -27,10 +27,11 @@ section>h3{font-size:1.1rem;border-top:1px solid #cdd6df;padding-top:.6rem}secti
 .note,.provenance{font-size:.85rem;color:#567}.provenance th{text-align:left;font-weight:500;padding-right:1rem;vertical-align:top}
 .provenance td{word-break:break-all}.notes{white-space:pre-line}
 @media (max-width:600px){.accuracy td{white-space:normal;padding-right:.5rem}.accuracy th{padding-right:.5rem;overflow-wrap:anywhere}.accuracy th[scope=row]{min-width:5.5rem}.accuracy thead th{overflow-wrap:normal}
-  .dot{width:72px}
-  .matrix td{width:4rem;min-width:3.5rem;height:3rem}.matrix th{padding:.3rem}h1{font-size:1.3rem}}
+  .dot{width:72px}.data thead{display:none}.data,.data tbody,.data tr,.data tbody th,.data td{display:block}.data tbody th,.data td,.data td.text{white-space:normal;max-width:none;padding:.1rem 0;overflow-wrap:anywhere}
+  .data tbody th{font-weight:500;text-align:left;margin-top:.5rem}.data td{display:flex;justify-content:space-between;gap:1rem}.data td::before{content:attr(data-heading);color:#567;text-align:left}
+  .matrix td{width:auto;min-width:2.4rem;height:2.6rem}.matrix td b{font-size:1rem}.matrix td span{font-size:.7rem}.matrix th{padding:.2rem;font-size:.75rem;overflow-wrap:anywhere}h1{font-size:1.3rem}}
 @media screen and (prefers-color-scheme:dark){:root{color-scheme:dark}body{background:#14191f;color:#dde5ec}
-  .simulated{background:#4a3a08;border-color:#d39e00}caption,figcaption,.matrix .total,.note,.provenance{color:#9fb0bf}
+  .simulated{background:#4a3a08;border-color:#d39e00}caption,figcaption,.matrix .total,.note,.provenance,.data td::before{color:#9fb0bf}
   .matrix td{border-color:#14191f}.matrix td.correct{outline-color:#dde5ec}.contents a{color:#8ab8e6}section>h3{border-color:#3a4754}
   .dot .axis{stroke:#3a4754}.dot .chance,.chart .chance,.chart .mark{stroke:#ef8a80}.dot .interval,.chart .interval{stroke:#6baed6}.dot circle{fill:#6baed6}
   .chart .line{stroke:#b9c9d6}.chart .band{fill:#274a68}.chart circle{fill:#6baed6;stroke:#6baed6}.chart circle.open{fill:#14191f}}

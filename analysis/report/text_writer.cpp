@@ -14,8 +14,8 @@ void write_text(std::ostream& out, const Summary& summary) {
   for (const std::string& participant : summary.excluded) {
     core::print(out, "excluded by the operator: {}\n", participant);
   }
-  for (const std::string& participant : summary.deviations) {
-    core::print(out, "note: {}\n", participant);
+  for (const std::string& deviation : summary.deviations) {
+    core::print(out, "note: {}\n", deviation);
   }
   for (const auto& block : summary.blocks) {
     core::print(out, "\n");

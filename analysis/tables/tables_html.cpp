@@ -11,26 +11,31 @@ constexpr std::size_t wide = 8;  // columns
 struct ShownColumn {
   std::size_t index{};
   const char* style{};  // an attribute
+  std::string heading;
 };
 
 std::vector<ShownColumn> styled_columns(const ReportTable& table) {
   std::vector<ShownColumn> styled;
   for (const std::size_t i : shown_columns(table)) {
-    styled.push_back({i, is_text_column(table, i) ? " class=text" : ""});
+    styled.push_back({i, is_text_column(table, i) ? " class=text" : "",
+                      escaped_numbers(table.columns[i].heading)});
   }
   return styled;
 }
 
+// On a phone a row is a list, each cell with its heading before it.
 void write_cells(std::ostream& out, const std::vector<ShownColumn>& shown,
                  const std::vector<Cell>& row) {
   out << "<tr>";
-  const char* tag = "th";
-  const char* scope = " scope=row";
+  bool is_first = true;
   for (const ShownColumn& column : shown) {
-    core::print(out, "<{0}{1}{2}>{3}</{0}>", tag, scope, column.style,
-                escaped_numbers(row[column.index].text));
-    tag = "td";
-    scope = "";
+    const std::string text = escaped_numbers(row[column.index].text);
+    if (is_first) {
+      core::print(out, "<th scope=row{}>{}</th>", column.style, text);
+    } else {
+      core::print(out, "<td{} data-heading=\"{}\">{}</td>", column.style, column.heading, text);
+    }
+    is_first = false;
   }
   out << "</tr>\n";
 }
@@ -43,8 +48,7 @@ void write_table_html(std::ostream& out, const ReportTable& table) {
               "<table class=\"data{1}\"><thead><tr>",
               escaped(table.title), shown.size() >= wide ? " wide" : "");
   for (const ShownColumn& column : shown) {
-    core::print(out, "<th scope=col{}>{}</th>", column.style,
-                escaped_numbers(table.columns[column.index].heading));
+    core::print(out, "<th scope=col{}>{}</th>", column.style, column.heading);
   }
   out << "</tr></thead><tbody>\n";
   for (const auto& row : table.rows) {

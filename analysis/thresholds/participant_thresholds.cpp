@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 
 #include "analysis/participants/mean_proportion.hpp"
 #include "analysis/resampling/parallel.hpp"
@@ -107,6 +108,26 @@ std::optional<MeanLogThreshold> mean_of(const std::vector<ParticipantThreshold>&
   return MeanLogThreshold{spread.mean, spread.standard_deviation, t_interval(logarithms),
                           static_cast<int>(logarithms.size())};
 }
+// Of a linear axis by the first order of the logarithm.
+std::optional<PopulationThreshold> population_of(const std::vector<ParticipantThreshold>& people,
+                                                 core::PsychometricShape shape) {
+  std::vector<double> means;
+  std::vector<double> errors;
+  for (const ParticipantThreshold& person : people) {
+    if (!person.posterior || !(person.posterior->threshold > 0.0)) {
+      continue;
+    }
+    const Marginal& position = person.posterior->position;
+    const bool is_logarithm = core::row_of(shape).is_logarithmic;
+    means.push_back(is_logarithm ? position.mean : std::log10(person.posterior->threshold));
+    errors.push_back(is_logarithm ? position.standard_deviation
+                                  : position.standard_deviation /
+                                        (person.posterior->threshold * std::numbers::ln10));
+  }
+  return means.size() < 3 ? std::nullopt
+                          : std::optional{PopulationThreshold{random_effects(means, errors),
+                                                              static_cast<int>(means.size())}};
+}
 }  // namespace
 
 PsychometricModel model_of(const BlockDesign& design) {
@@ -140,6 +161,7 @@ ThresholdResults participant_thresholds(const BlockDesign& design,
     }
   });
   results.mean_log = mean_of(results.participants);
+  results.population = population_of(results.participants, design.shape);
   return results;
 }
 }  // namespace tapstudy::analysis

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "analysis/blocks/block_summary.hpp"
+#include "analysis/participants/random_effects.hpp"
 #include "analysis/psychometric/inference.hpp"
 #include "analysis/psychometric/posterior.hpp"
 #include "analysis/thresholds/track_points.hpp"
@@ -39,11 +40,18 @@ struct MeanLogThreshold {
   int participants{};           // with a threshold
 };
 
+// Of the posteriors' log10 thresholds: each participant weighs as well as he is known.
+struct PopulationThreshold {
+  RandomEffects log10;
+  int participants{};
+};
+
 struct ThresholdResults {
   std::vector<ParticipantThreshold> participants;  // by name
   int draws{};                                     // of the tests of fit; 0: not made
   bool has_posteriors{};                           // they were computed
   std::optional<MeanLogThreshold> mean_log;        // of two thresholds or more
+  std::optional<PopulationThreshold> population;   // of three posteriors or more
 };
 
 // The block's psychometric function with its guess rate, or a free one, and a lapse rate of up to

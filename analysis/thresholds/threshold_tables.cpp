@@ -95,6 +95,25 @@ ReportTable pooled_table(const VariedAxis& axis, const ThresholdResults& results
   return table;
 }
 
+ReportTable population_table(const VariedAxis& axis, const ThresholdResults& results) {
+  ReportTable table{"population",
+                    "Over participants: random-effects mean of their posterior thresholds",
+                    {column("participants", "participants")}};
+  for (const Column& of_threshold : threshold_columns(axis)) {
+    table.columns.push_back(of_threshold);
+  }
+  table.columns.push_back(column("SD of log10 between participants", "between_sd_log10"));
+  if (results.population) {
+    const RandomEffects& of = results.population->log10;
+    std::vector<Cell> row{count(results.population->participants)};
+    add_threshold(row, axis, std::pow(10.0, of.mean),
+                  {std::pow(10.0, of.interval.low), std::pow(10.0, of.interval.high)});
+    row.push_back(number(of.between_sd));
+    table.rows.push_back(row);
+  }
+  return table;
+}
+
 Cell slope_cell(const ThresholdEstimate& of) {
   return of.is_step ? Cell{fmt::format("above {}", rounded(of.intervals.slope.low)),
                            {Value{}, of.intervals.slope.low, of.intervals.slope.high}}
@@ -201,6 +220,9 @@ ReportTable levels_over_participants(const BlockDesign& design, const ThresholdR
     table.rows.push_back({number(level), count(static_cast<std::int64_t>(correct.size())),
                           pooled_proportion(correct)});
   }
+  constexpr std::size_t most_rows_to_read =
+      20;  // of adaptive procedures: most with an answer or two
+  table.is_for_programs = table.rows.size() > most_rows_to_read;
   return table;
 }
 
@@ -230,6 +252,7 @@ std::vector<ReportTable> threshold_tables(const BlockDesign& design,
                                           const ThresholdResults& results) {
   return {participants_table(design, results),
           pooled_table(*design.axis, results),
+          population_table(*design.axis, results),
           fits_table(design, results),
           posteriors_table(results),
           levels_over_participants(design, results),

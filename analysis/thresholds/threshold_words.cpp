@@ -60,6 +60,12 @@ std::vector<std::string> remarks_on_mean(const ThresholdResults& results) {
       "Mean over participants: of the logarithms of their thresholds, each counting the same, "
       "interval by t. The standard deviation is that between participants and of their "
       "estimates' errors together. Answers of participants are not put together as if of one."};
+  if (results.population) {
+    remarks.emplace_back(
+        "Random-effects mean (Paule & Mandel 1982, interval of Hartung & Knapp 2001): each "
+        "posterior "
+        "counts as well as it is known; its standard deviation is that of participants alone.");
+  }
   const int without =
       static_cast<int>(results.participants.size()) - results.mean_log->participants;
   if (without > 0) {

@@ -105,8 +105,8 @@ void run_identify(const IdentifyOptions& options) {
     Progress progress{"identifying"};
     return identify_taps(question, progress);
   }();
+  write_files(options.out, found);  // its figures show why there is nothing in it
   check_holds_something(found);
-  write_files(options.out, found);
   if (options.wants_json) {
     fmt::print("{}\n", json_of(found));
   } else {

@@ -74,6 +74,8 @@ const char* name(IntervalState::Phase value) {
   switch (value) {
     case gap:
       return "gap";
+    case leaving:
+      return "leaving";
     case open:
       return "open";
     case over:

@@ -21,6 +21,22 @@ std::string williams_words(int of_orders, std::size_t participants) {
                    "complete, of {} orders",
                    counted(participants, "participant"), orders);
 }
+
+// " with no stimulus twice in a row"; "" without constraints.
+std::string constraint_words(const protocols::OrderConstraints& constraints) {
+  std::vector<std::string> limits;
+  if (constraints.max_run > 0) {
+    limits.push_back(
+        constraints.max_run == 1
+            ? "no stimulus twice in a row"
+            : fmt::format("no stimulus more than {} times in a row", constraints.max_run));
+  }
+  if (constraints.min_distance > 1) {
+    limits.push_back(fmt::format("presentations of a stimulus at least {} trials apart",
+                                 constraints.min_distance));
+  }
+  return limits.empty() ? "" : fmt::format(" with {}", fmt::join(limits, " and "));
+}
 }  // namespace
 
 std::string order_words(const Block& block, std::size_t participants) {
@@ -31,9 +47,10 @@ std::string order_words(const Block& block, std::size_t participants) {
     case protocols::Order::listed:
       return ", in one order for all";
     case protocols::Order::shuffle:
-      return ", in random order";
+      return ", in random order" + constraint_words(block.constraints);
     case protocols::Order::shuffle_within_repetition:
-      return ", in an order that was random within each repetition";
+      return ", in an order that was random within each repetition" +
+             constraint_words(block.constraints);
     case protocols::Order::williams:
       return williams_words(protocols::williams_sequences(
                                 static_cast<int>(protocols::conditions(block)), block.repetitions),

@@ -208,10 +208,17 @@ std::string masking(const Protocol& protocol, const DoneBlocks& done) {
       masked == answered ? "every trial" : fmt::format("{} of {} trials", masked, answered));
 }
 
-// "Questionnaires: 'load' (session end). "
-std::string questionnaires(const Protocol& protocol) {
+// "Questionnaires: 'load' (asked: session end). " Not of blocks that nobody answered.
+std::string questionnaires(const Protocol& protocol, const DoneBlocks& done) {
   std::vector<std::string> forms;
-  for (const analysis::Questionnaire& form : questionnaires_of(protocol)) {
+  for (analysis::Questionnaire& form : questionnaires_of(protocol)) {
+    std::erase_if(form.asked, [&](const std::string& place) {
+      return std::ranges::find(protocol.blocks, place, &Block::name) != protocol.blocks.end() &&
+             !done.contains(place);
+    });
+    if (form.asked.empty()) {
+      continue;
+    }
     forms.push_back(fmt::format("'{}'{} (asked: {})", form.name,
                                 form.is_mean_scored ? ", the raw NASA-TLX (Hart 2006)" : "",
                                 fmt::join(form.asked, ", ")));
@@ -250,7 +257,7 @@ std::string procedure_words(const Protocol& protocol,
   text += left_undone(protocol, done);
   text += explorations(protocol, done);
   if (are_people) {
-    text += blinding(protocol, done) + masking(protocol, done) + questionnaires(protocol);
+    text += blinding(protocol, done) + masking(protocol, done) + questionnaires(protocol, done);
   }
   return text;
 }

@@ -8,7 +8,6 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "analysis/figures/svg_formats.hpp"
 #include "analysis/report/figure_files.hpp"
 #include "analysis/report/table_files.hpp"
 #include "analysis/report/writers.hpp"
@@ -109,7 +108,6 @@ void compare_figures(const std::string& directory, const analysis::Summary& summ
                      std::vector<std::string>& differences) {
   for (const auto& [name, svg] : analysis::figure_files(summary)) {
     compare_file(directory, "figures/" + name + ".svg", svg, differences);
-    compare_file(directory, "figures/" + name + ".pdf", analysis::pdf_of_svg(svg), differences);
   }
 }
 

@@ -151,6 +151,8 @@ analysis::StudyDesign design_of(const protocols::Protocol& protocol, results::Mo
     add_task_settings(block, protocol, part);
     if (block.task->uses_order() && block.order != protocols::Order::listed) {
       part.redraw = redraw_of(protocol, i);
+      constexpr std::size_t constrained_cost = 20;
+      part.redraw_cost = block.constraints.are_any() ? constrained_cost : 1;
     }
     if (mode == results::Mode::simulated && block.task->needs_reference()) {
       part.premise = premise_of(protocol);

@@ -28,7 +28,7 @@ bool is_contact(const FeltTick& tick) {
 }
 
 // The residuals of a linear least-squares fit of force against height in contact; out of contact
-// the spring is as where contact ends.
+// the spring exerts nothing. For a hand that holds still, where a script taps, it is the mean.
 std::vector<double> without_spring(std::span<const FeltTick> tap) {
   std::vector<FeltTick> contact;
   std::ranges::copy_if(tap, std::back_inserter(contact), is_contact);

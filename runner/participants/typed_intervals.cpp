@@ -13,11 +13,13 @@ void TypedIntervals::announce(const Exploration& exploration) {
   if (state == nullptr || told_ == *state) {
     return;
   }
-  if (state->phase == Phase::open) {
+  if (state->phase == Phase::leaving) {
+    say("\n  lift your finger\n> ");
+  } else if (state->phase == Phase::open) {
     say("\n  now {}{}\n> ", labels_.at(exploration.current()), is_scripted_ ? "" : ": tap it");
   } else if (told_ && told_->phase == Phase::open) {
     say("\n  stop{}\n> ",
-        state->phase == Phase::gap ? "; the next one follows"
+        state->phase != Phase::over ? "; the next one follows"
         : state->replays_left > 0
             ? fmt::format("; your answer, or again (left: {})", state->replays_left)
             : "; your answer");

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "analysis/modal_identification/stabilisation.hpp"
 #include "runner/recordings/writers.hpp"
 namespace tapstudy::runner {
 namespace {
@@ -68,12 +69,20 @@ Panel spectrum_panel(const IdentifiedTap& tap, const std::string& title) {
 }
 
 Panel stabilisation_panel(const IdentifiedTap& tap, const std::string& title) {
-  Series poles{"poles", analysis::Axis::left, {}, {}, Mark::points};
+  Series stable{"poles that the order below has, too", analysis::Axis::left, {}, {}, Mark::points};
+  Series poles{"other poles", analysis::Axis::left, {}, {}, Mark::points};
+  const std::vector<analysis::Pole>* below = nullptr;
   for (const analysis::PolesOfOrder& order : tap.modes.pencil.orders) {
     for (const analysis::Pole& pole : order.poles) {
-      poles.x.push_back(pole.frequency_hz);
-      poles.y.push_back(order.order);
+      const bool is_continued =
+          below != nullptr && std::ranges::any_of(*below, [&](const analysis::Pole& other) {
+            return analysis::continues(other, pole);
+          });
+      Series& series = is_continued ? stable : poles;
+      series.x.push_back(pole.frequency_hz);
+      series.y.push_back(order.order);
     }
+    below = &order.poles;
   }
   Series agreed{"agreed modes", analysis::Axis::left, {}, {}, Mark::points};
   const double top = tap.modes.pencil.orders.empty() ? 0.0 : tap.modes.pencil.orders.back().order;
@@ -83,7 +92,7 @@ Panel stabilisation_panel(const IdentifiedTap& tap, const std::string& title) {
       agreed.y.push_back(top + 4.0);  // above the poles
     }
   }
-  return {title, {poles, agreed}};
+  return {title, {poles, stable, agreed}};
 }
 
 Figure panels_of(const TapIdentification& found, const Figure& labels,

@@ -151,8 +151,12 @@ Method judged(const World& world, const Study& study, const Felt& felt, const Be
   const std::vector<double> found = shares(felt, simulation, bench.seed);
   const double amplitude = world.virtual_plates.rendering.sinusoid.amplitude_n_s_per_m;
   Method method{fmt::format("{}, A = {} N s/m", world.method, amplitude),
-                fmt::format("tapstudy reproduce --seed {} --out DIR", bench.seed),
-                {}};
+                fmt::format("tapstudy reproduce --only reality --seed {} --out DIR", bench.seed),
+                {shown("median internal noise of an observer", simulation.observer.noise_db, "dB"),
+                 shown("standard deviation of its logarithm over observers",
+                       simulation.people.noise_spread, ""),
+                 shown("standard deviation of an observer's bias to an answer",
+                       simulation.people.bias, "squared noise")}};
   for (std::size_t i = 0; i < found.size(); ++i) {
     const auto& [stimulus, times] = study.chosen[i];
     const analysis::Interval interval = analysis::wilson_interval(times);
@@ -193,7 +197,8 @@ Claim claim_of(const Study& study, Bench& bench) {
   claim.remarks.emplace_back(
       "The sinusoid's amplitude A is not printed: the paper found it by cut and try. Beside the "
       "shipped protocols' 3 N s/m it is set to that of 0.1 to 30 N s/m which is nearest to the "
-      "real plate; 30 N s/m are 9 N in a tap of 0.3 m/s, about what a device exerts.");
+      "real plate; 30 N s/m are 9 N in a tap of 0.3 m/s, about what a device exerts. Where it is "
+      "30 N s/m, a larger one might be nearer still.");
   return claim;
 }
 }  // namespace

@@ -56,37 +56,56 @@ bool IntervalExploration::is_running() const {
 }
 
 void IntervalExploration::follow() const {
-  if (state_.phase == Phase::over || time_s() < until_s_) {
-    return;
+  switch (state_.phase) {
+    case Phase::gap:
+    case Phase::leaving:
+      return follow_gap();
+    case Phase::open:
+      return follow_interval();
+    case Phase::over:
+      return;
   }
-  if (state_.phase == Phase::gap) {
-    ask_for_next();
-    if (inner().is_as_asked()) {  // not before the finger is off the plate
+}
+
+// What was asked of the loop is in effect from a moment without contact on; time counts from then.
+bool IntervalExploration::is_in_effect(double seconds) const {
+  if (!is_in_effect_ && inner().is_as_asked()) {
+    is_in_effect_ = true;
+    until_s_ = time_s() + seconds;
+  }
+  return is_in_effect_;
+}
+
+void IntervalExploration::follow_gap() const {
+  if (is_in_effect(limits_.intervals->gap_seconds)) {
+    state_.phase = Phase::gap;
+    if (time_s() >= until_s_) {
       open();
     }
-  } else if (inner().contacts(next_) - contacts_before_ >= limits_.min_contacts) {
+  } else if (time_s() >= until_s_) {
+    state_.phase = Phase::leaving;
+  }
+}
+
+void IntervalExploration::follow_interval() const {
+  if (is_in_effect(limits_.intervals->seconds) && time_s() >= until_s_ &&
+      inner().contacts(next_) - contacts_before_ >= limits_.min_contacts) {
     close();
   }
 }
 
 void IntervalExploration::begin_gap(std::size_t next) const {
   next_ = next;
+  is_in_effect_ = false;
   until_s_ = time_s() + limits_.intervals->gap_seconds;
   state_.phase = Phase::gap;
-  is_next_asked_for_ = false;
-}
-
-void IntervalExploration::ask_for_next() const {
-  if (!is_next_asked_for_) {
-    inner().switch_to(next_);
-    inner().silence(false);
-    is_next_asked_for_ = true;
-  }
+  inner().switch_to(next);  // in silence
 }
 
 void IntervalExploration::open() const {
+  is_in_effect_ = false;
+  inner().silence(false);
   contacts_before_ = inner().contacts(next_);
-  until_s_ = time_s() + limits_.intervals->seconds;
   state_.phase = Phase::open;
   events_.add({time_s(), "interval", static_cast<double>(next_)});
 }

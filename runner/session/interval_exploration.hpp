@@ -7,10 +7,10 @@
 #include "runner/trial_loop/forwarded_exploration.hpp"
 namespace tapstudy::runner {
 // An exploration whose alternatives come one after the other, each in an interval of its own; with
-// nothing to feel in between. Nobody switches. An interval begins once its alternative is rendered:
-// a finger that still presses the last one has to leave it first. Each go signal is an event
-// `interval` and each end an event `interval_end`, with the place of the alternative; each replay
-// as `interval_replay`, with its number. Without intervals in the limits nothing is changed.
+// nothing to feel in between. Nobody switches. Gaps and intervals last from when the finger is off
+// the plate, so that what was asked of the loop is in effect. Each go signal is an event `interval`
+// and each end an event `interval_end`, with the place of the alternative; each replay as
+// `interval_replay`, with its number. Without intervals in the limits nothing is changed.
 class IntervalExploration final : public ForwardedExploration {
  public:
   IntervalExploration(Exploration& inner, const protocols::ExploreLimits& limits,
@@ -24,8 +24,10 @@ class IntervalExploration final : public ForwardedExploration {
 
  private:
   void follow() const;
+  void follow_gap() const;
+  void follow_interval() const;
+  bool is_in_effect(double seconds) const;
   void begin_gap(std::size_t next) const;
-  void ask_for_next() const;
   void open() const;
   void close() const;
 
@@ -33,9 +35,9 @@ class IntervalExploration final : public ForwardedExploration {
   std::size_t alternatives_;
   TrialEvents& events_;
   mutable IntervalState state_;
-  mutable std::size_t next_{0};  // or the one that is open
-  mutable bool is_next_asked_for_{false};
-  mutable double until_s_{0.0};  // of the gap or the interval
+  mutable std::size_t next_{0};       // or the one that is open
+  mutable bool is_in_effect_{false};  // the gap's silence, or the interval's alternative
+  mutable double until_s_{0.0};       // of the gap or the interval
   mutable int contacts_before_{0};
 };
 }  // namespace tapstudy::runner

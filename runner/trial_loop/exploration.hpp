@@ -4,9 +4,10 @@
 #include <string>
 namespace tapstudy::runner {
 // Where a trial is whose alternatives come one after the other: before one of them, in its
-// interval, or behind the last.
+// interval, or behind the last. leaving: the gap has not begun, since the finger is still on the
+// plate.
 struct IntervalState {
-  enum class Phase { gap, open, over };
+  enum class Phase { gap, leaving, open, over };
   Phase phase{Phase::gap};
   int replays_left{};
   bool operator==(const IntervalState& other) const = default;

@@ -56,12 +56,13 @@ def never_read(url):
 def load(url):
     signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGTERM])
     served = []
+    began = time.monotonic()
     acts = [(ask_on, (url, path, served)) for path in ("three.module.js", "")] * (FLOODS // 2)
     acts += [(never_read, (url,))] * UNREAD
     for act, arguments in acts + [(read_on, (url,))] * (STREAMS - UNREAD):
         threading.Thread(target=act, args=arguments, daemon=True).start()
     signal.sigwait([signal.SIGTERM])
-    print(sum(served) / 1e6, flush=True)
+    print(sum(served) / 1e6, len(served) / (time.monotonic() - began), flush=True)
     os._exit(0)
 
 
@@ -86,12 +87,12 @@ def take_part(session):
 
 
 def measure(session, flooded_page):
-    """p99.9 of each trial in microseconds, and what was served to the load in MB."""
+    """p99.9 of each trial in microseconds; of the load what was served in MB, and requests a second."""
     flood = [sys.executable, __file__, "--load", flooded_page] if flooded_page else ["true"]
     with subprocess.Popen(flood, stdout=subprocess.PIPE, text=True) as process:
         take_part(session)
         process.terminate()
-        served = float(process.communicate()[0] or 0)
+        served = [float(number) for number in process.communicate()[0].split()] or [0, 0]
     rows = session.rows("SELECT 1e6 * lateness_p999_s FROM tick_statistics")
     session.close()
     return [row[0] for row in rows], served
@@ -103,9 +104,9 @@ def compare(start):
     measured = {"quiet": [], "elsewhere": [], "flood": []}
     to_quiet, to_elsewhere = [], []
     print("lateness p99.9 of a trial [us], median\n"
-          "           no load  flood elsewhere  flood  flood/no load  flood/elsewhere  served [MB]")
+          "           no load  flood elsewhere  flood  flood/no load  flood/elsewhere  served [MB]  requests/s")
     for turn in range(1, TURNS + 1):
-        medians, served = {}, 0
+        medians, served = {}, [0, 0]
         for load_of, times in measured.items():
             session = start()
             pages = {"quiet": None, "elsewhere": other.participant, "flood": session.participant}
@@ -114,7 +115,7 @@ def compare(start):
             times += trials
         to_quiet.append(medians["flood"] / medians["quiet"])
         to_elsewhere.append(medians["flood"] / medians["elsewhere"])
-        show(f"turn {turn}", medians, to_quiet[-1], to_elsewhere[-1], f"{served:>13.0f}")
+        show(f"turn {turn}", medians, to_quiet[-1], to_elsewhere[-1], f"{served[0]:>13.0f}{served[1]:>12.0f}")
     other.close()
     show("all", {load: statistics.median(times) for load, times in measured.items()},
          statistics.median(to_quiet), statistics.median(to_elsewhere), "")

@@ -34,7 +34,9 @@ TEST_CASE("after a session any answer is corrected, remarks and exclusions are a
   const auto corrected = amend(directory, "sim-02", "correct @3 2");
   INFO(corrected.standard_error);
   CHECK(corrected.exit_code == 0);
-  CHECK_THAT(corrected.standard_output, Contains("participant sim-02: correct, trial 3"));
+  CHECK_THAT(corrected.standard_output,
+             Contains("participant sim-02, block 'discrimination': correct, "
+                      "trial 3"));
   CHECK(amend(directory, "sim-01", "note @5 coughed").exit_code == 0);
   CHECK(amend(directory, "sim-01", "exclude numb fingers").exit_code == 0);
   CHECK(sql(directory,

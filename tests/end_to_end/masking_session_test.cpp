@@ -146,8 +146,8 @@ TEST_CASE("check says what noise is played; a simulation plays none", "[end_to_e
   const std::string study = protocol(
       directory, "{kind: band, level_db_fs: -30, band_hz: [100, 1000], is_required: true}");
   const auto check = testing::tapstudy({"check", study});
-  CHECK_THAT(check.standard_output, Contains("noise from 100 to 1000 Hz at -30 dB FS in every "
-                                             "trial, ramps of 0.5 s; required"));
+  CHECK_THAT(check.standard_output, Contains("noise from 100 to 1000 Hz at -30 dB FS, ramps of "
+                                             "0.5 s in every trial; required"));
   const auto simulated = testing::tapstudy(
       {"simulate", study, "--participants", "1", "--seed", "1", "--out", directory / "the_study"});
   CHECK(simulated.exit_code == 0);

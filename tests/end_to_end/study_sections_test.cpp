@@ -83,9 +83,11 @@ TEST_CASE("the methods of a report say what the protocol asked for and what it r
           "[end_to_end][report]") {
   const testing::TempDirectory directory;
   const std::string study = directory / "study";
+  std::string latest;
   const auto methods_of = [&](const std::string& protocol) {
     testing::write(directory / "study.yaml", protocol);
     const std::string out = study + std::to_string(protocol.size());
+    latest = out;
     REQUIRE(testing::tapstudy({"run", directory / "study.yaml", "--participant", "P01", "--seed",
                                "5", "--out", out},
                               "1\n2\n3\n4\n1\n2\n3\n4\n")
@@ -107,7 +109,7 @@ TEST_CASE("the methods of a report say what the protocol asked for and what it r
                                         "display: {blind_operator: true}\n");
   CHECK_THAT(masked, Contains("Masking: the protocol asks for pink noise at -24 dB FS") &&
                          Contains("none was played"));
-  CHECK_THAT(testing::contents(study + "_report/masking.csv"), Contains("0,8"));
+  CHECK_THAT(testing::contents(latest + "_report/masking.csv"), Contains("P01,0,8,"));
   CHECK_THAT(masked, Contains("screen did not show what was presented"));
   CHECK_THAT(masked, !Contains("letters"));
 }

@@ -126,3 +126,25 @@ TEST_CASE("a participant without a trial is named with nothing done, and why who
   CHECK_FALSE(courses[0].masking_low_db);
   CHECK(courses[0].exclusion_reason == "fell asleep");
 }
+
+TEST_CASE(
+    "what was done of a block counts answers and masked ones, of those whose answers are reported",
+    "[results][store][course]") {
+  const testing::TempDirectory directory;
+  Store store = Store::open_or_create(directory.path(), testing::small_study::study);
+  add_eventful_session(store, "P01", 1);
+  add_eventful_session(store, "P02", 1);
+  SessionRow begun = testing::small_study::session("P03");  // who answered nothing
+  begun.participant_index = 2;
+  store.add_session(begun);
+  const auto done = [&] { return block_courses(store, Mode::real); };
+  const std::string block = testing::small_study::trial(1, 1, "a").trial.block;
+  CHECK(block_courses(store, Mode::pilot).empty());
+  REQUIRE(done().contains(block));
+  CHECK(done().at(block).participants == std::set<std::string>{"P01", "P02"});
+  CHECK(done().at(block).answered == 8);  // of each: three of eight, and one answered later
+  CHECK(done().at(block).masked == 6);
+  store.add_operator_action({1, 1.0, "exclude", {}, "fell asleep"});
+  CHECK(done().at(block).participants == std::set<std::string>{"P02"});
+  CHECK(done().at(block).answered == 4);
+}

@@ -118,7 +118,7 @@ function mount(key) {
 // A notice that came again is said again. It stays as long as intervals go on by themselves.
 function showNotice(isNewScreen) {
   const text = noticeText(screen.trial?.notice);
-  const isBetween = ["gap", "open"].includes(screen.trial?.intervals?.phase);
+  const isBetween = ["gap", "leaving", "open"].includes(screen.trial?.intervals?.phase);
   if (isBetween && !isNewScreen && !text) return;
   if (isNewScreen || text || notice) say(text);
   notice = text;

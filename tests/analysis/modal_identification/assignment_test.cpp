@@ -78,3 +78,36 @@ TEST_CASE("what channels say of one impact is one observation",
   CHECK(two.interval.low == Approx(one.interval.low).epsilon(1e-12));
   CHECK(modes_over_taps(two_channels).at(0).frequency_hz.interval.low > two.interval.low);
 }
+
+TEST_CASE("taps that differ as their errors say do not scatter, however unequal the errors",
+          "[analysis][modal_identification]") {
+  const auto tap_of = [](double frequency_hz, double error_hz) {
+    TapModes tap;
+    FittedMode fitted;
+    fitted.pole = {frequency_hz, 0.02};
+    fitted.frequency_error_hz = error_hz;
+    fitted.ratio_error = 1e-4;
+    tap.modes.push_back({fitted, Standing::agreed, "", {}, 5});
+    return tap;
+  };
+  const std::vector<double> errors_hz{0.01, 0.01, 0.01, 0.03, 0.03, 0.03, 0.1, 0.1};
+  core::Rng rng{2};
+  constexpr int recordings = 2000;
+  int improbable = 0;
+  for (int recording = 0; recording < recordings; ++recording) {
+    std::vector<TapModes> taps;
+    for (const double error_hz : errors_hz) {
+      taps.push_back(tap_of(100.0 + error_hz * rng.normal(), error_hz));
+    }
+    improbable += modes_over_taps(taps).at(0).scatter_p.value() < 0.05 ? 1 : 0;
+  }
+  CHECK(improbable / static_cast<double>(recordings) == Approx(0.05).margin(0.02));
+  // two modes, of which each tap shows the stronger one
+  std::vector<TapModes> two;
+  for (const double frequency_hz : {100.0, 100.0, 100.2, 100.0, 100.2}) {
+    two.push_back(tap_of(frequency_hz, 0.01));
+  }
+  CHECK(modes_over_taps(two).at(0).scatter_p.value() < 1e-6);
+  two.resize(2);
+  CHECK_FALSE(modes_over_taps(two).at(0).scatter_p);  // of two it would say little
+}

@@ -5,6 +5,7 @@
 
 #include "analysis/participants/serial_dependence.hpp"
 #include "core/error.hpp"
+#include "core/rng.hpp"
 #include "support/r_program.hpp"
 using namespace tapstudy;
 using namespace tapstudy::analysis;
@@ -62,6 +63,28 @@ TEST_CASE("who repeats the last answer is found, and what is confused with what 
   CHECK(serial_dependence({}, 9, 1).repeated_answer.p == 1.0);
   CHECK_THROWS_AS(serial_dependence({{{1}, {1}, {}}}, 9, 1), core::InvalidInput);
   CHECK_THROWS_AS(serial_dependence({confusing}, 0, 1), core::InvalidInput);
+}
+
+// p by the spread of few draws is that by counting many.
+TEST_CASE("of very many trials few permutations say how improbable an effect is",
+          "[analysis][response_times]") {
+  core::Rng rng{3};
+  AnswerSequence sequence;
+  for (std::size_t i = 0; i < 3000; ++i) {
+    const std::size_t stimulus = rng.below(4);
+    const bool repeats = i > 0 && rng.uniform() < 0.025;
+    sequence.stimuli.push_back(stimulus);
+    sequence.right.push_back(stimulus);
+    sequence.responses.push_back(repeats ? sequence.responses.back() : rng.below(4));
+  }
+  const double by_counting = serial_dependence({sequence}, 9999, 1).repeated_answer.p;
+  REQUIRE(by_counting > 0.001);
+  REQUIRE(by_counting < 0.2);
+  double mean_log = 0.0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    mean_log += std::log(serial_dependence({sequence}, 99, seed).repeated_answer.p) / 20.0;
+  }
+  CHECK(mean_log == Approx(std::log(by_counting)).margin(0.3));
 }
 
 TEST_CASE("what is expected of a trial after another is the mean over all permutations",

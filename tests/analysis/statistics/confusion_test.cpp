@@ -11,6 +11,7 @@
 #include "analysis/statistics/confusion_matrix.hpp"
 #include "analysis/statistics/counts_csv.hpp"
 #include "core/error.hpp"
+#include "support/r_program.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;
 using namespace tapstudy::analysis;
@@ -51,6 +52,21 @@ TEST_CASE("a matrix that is written is read back the same", "[analysis][confusio
   IdentificationSummary{BlockDesign{}, table2()}.tables().front().write(text);
   CHECK(matrix_from(text.str()).counts == table2().counts);
   CHECK(factors_of(matrix_from(text.str())) == std::vector<std::string>{"material", "structure"});
+}
+
+TEST_CASE("a printed matrix has the exact interval and binomial test of R's binom.test",
+          "[analysis][confusion]") {
+  const auto r = testing::r_numbers(
+      "b <- binom.test(43, 80, .25, 'greater'); out(binom.test(43, 80)$conf.int, b$p.value, "
+      "prop.test(43, 80, correct = FALSE)$conf.int)");
+  const auto row =
+      IdentificationSummary{BlockDesign{}, table2()}.as_json().at("independent_accuracy").at(0);
+  INFO(row.dump());
+  CHECK(row.at("exact_low").get<double>() == Approx(r[0]).epsilon(1e-9));
+  CHECK(row.at("exact_high").get<double>() == Approx(r[1]).epsilon(1e-9));
+  CHECK(row.at("p").get<double>() == Approx(r[2]).epsilon(1e-9));
+  CHECK(row.at("right_share_low").get<double>() == Approx(r[3]).epsilon(1e-9));
+  CHECK(row.at("right_share_high").get<double>() == Approx(r[4]).epsilon(1e-9));
 }
 
 TEST_CASE("a cell in quotes may hold commas, quotes and line ends, and is written back so",

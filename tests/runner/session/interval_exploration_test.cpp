@@ -118,13 +118,13 @@ TEST_CASE("an interval begins, and its time counts, once its alternative is felt
   in_turn.pass_time(1.0);
   world.presses = true;  // from within the first interval until long after its end
   in_turn.pass_time(2.0);
-  CHECK(in_turn.intervals()->phase == Phase::gap);
+  CHECK(in_turn.intervals()->phase == Phase::leaving);
   REQUIRE(events.rows().size() == 2);
   world.presses = false;
   in_turn.pass_time(5.0);
   REQUIRE(events.rows().size() == 4);
-  CHECK(events.rows()[2].t_s == Approx(3.0).margin(0.03));
-  CHECK(events.rows()[3].t_s == Approx(4.0).margin(0.05));
+  CHECK(events.rows()[2].t_s == Approx(3.5).margin(0.03));  // the gap is whole
+  CHECK(events.rows()[3].t_s == Approx(4.5).margin(0.05));
 }
 
 TEST_CASE("all intervals come again as often as the protocol allows, and only when they are over",

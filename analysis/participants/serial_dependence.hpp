@@ -16,8 +16,8 @@ inline constexpr int fewest_draws_to_count = 999;
 struct SerialEffect {
   double observed{};  // share of the trials that follow another
   double expected{};  // the mean of all permutations, in closed form
-  double p{};         // two-sided; of few draws: by t of their spread, of as many degrees of freedom
-  int trials{};       // that follow another
+  double p{};    // two-sided; of few draws: by t of their spread, of as many degrees of freedom
+  int trials{};  // that follow another
 };
 struct SerialDependence {
   SerialEffect repeated_answer;  // the answer is that of the trial before

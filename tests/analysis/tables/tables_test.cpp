@@ -41,7 +41,8 @@ TEST_CASE("every format of a table has the same values", "[analysis][tables]") {
   CHECK(first["height_high"] == "inf");
   CHECK(formats.json["heights"][1]["height_low"].is_null());
   CHECK_THAT(formats.text, Contains("a, <b>  1.5 (1 to ∞)"));
-  CHECK_THAT(formats.html, Contains("a, &lt;b&gt;</th><td>1.5 (1 to ∞)</td>"));
+  CHECK_THAT(formats.html,
+             Contains("a, &lt;b&gt;</th><td data-heading=\"height\">1.5 (1 to ∞)</td>"));
   CHECK_THAT(formats.text, !Contains("tall"));
   CHECK_THAT(formats.html, Contains("Of &lt;two&gt; people."));
 }

@@ -83,7 +83,7 @@ void add_serial(const IdentificationData& data, ReportSection& section) {
     return;
   }
   constexpr int most_shuffles = 9999;
-  constexpr int fewest_shuffles = 19;
+  constexpr int fewest_shuffles = 9;
   constexpr std::size_t cost_of_an_answer = 10;
   const int draws = affordable_replicates(cost_of_an_answer * number_of_answers(data),
                                           fewest_shuffles, most_shuffles);

@@ -225,7 +225,7 @@ struct Protocol {
   std::string title;
   std::string notes;
   std::optional<int> participants;  // that are planned
-  std::string instructions;  // for participants, before the first trial; may be empty
+  std::string instructions;         // for participants, before the first trial; may be empty
   double band_limit_hz{};
   double rate_hz{};
   core::RenderSettings rendering;

@@ -54,7 +54,9 @@ constexpr std::array sources{
            WHO "t_s form asked item answer",
            "form_answer JOIN v_sessions USING (session_id) "
            "ORDER BY session_id, t_s, form_answer.rowid"},
-    Source{"operator_actions", "One row per action of the operator, and per correction by the participant (answers: given_by).",
+    Source{"operator_actions",
+           "One row per action of the operator, and per correction by the participant (answers: "
+           "given_by).",
            "action_id " WHO "t_s action number detail",
            "operator_action JOIN v_sessions USING (session_id) ORDER BY action_id"},
 };

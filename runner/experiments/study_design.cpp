@@ -80,6 +80,17 @@ analysis::BlockDesign::Redraw redraw_of(const protocols::Protocol& protocol,
   };
 }
 
+// Where the order is random.
+void add_redraw(const protocols::Protocol& protocol, std::size_t block_index,
+                analysis::BlockDesign& design) {
+  constexpr std::size_t constrained_cost = 20;
+  const protocols::Block& block = protocol.blocks[block_index];
+  if (block.task->uses_order() && block.order != protocols::Order::listed) {
+    design.redraw = redraw_of(protocol, block_index);
+    design.redraw_cost = block.constraints.are_any() ? constrained_cost : 1;
+  }
+}
+
 // Of one that the protocol's reader has accepted.
 analysis::AxisName name_of(const std::string& axis) {
   const protocols::Axis& row = *protocols::find_axis(axis);
@@ -149,11 +160,7 @@ analysis::StudyDesign design_of(const protocols::Protocol& protocol, results::Mo
                                {},
                                vote_of(block)};
     add_task_settings(block, protocol, part);
-    if (block.task->uses_order() && block.order != protocols::Order::listed) {
-      part.redraw = redraw_of(protocol, i);
-      constexpr std::size_t constrained_cost = 20;
-      part.redraw_cost = block.constraints.are_any() ? constrained_cost : 1;
-    }
+    add_redraw(protocol, i, part);
     if (mode == results::Mode::simulated && block.task->needs_reference()) {
       part.premise = premise_of(protocol);
     }

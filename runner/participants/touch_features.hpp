@@ -6,8 +6,8 @@
 #include "device/hand/simulated_hand.hpp"
 namespace tapstudy::runner {
 // Perceptual features of one tap: third-octave vibration levels from 20 to 320 Hz, early (the first
-// 40 ms from the impact on, rebounds included) and late (the next 120 ms), in decibels above the detection threshold. Early
-// and late levels together capture amplitude and decay.
+// 40 ms from the impact on, rebounds included) and late (the next 120 ms), in decibels above the
+// detection threshold. Early and late levels together capture amplitude and decay.
 inline constexpr std::size_t bands = 13;
 using Features = std::array<double, 2 * bands>;
 

@@ -42,7 +42,7 @@ ReportTable transitions_table(const std::vector<Item>& stimuli, const BlockRows&
   }
   const auto counts = transitions(stimuli, rows);
   for (std::size_t i = 0; i < stimuli.size(); ++i) {
-    std::vector<Cell> row{Cell{stimuli[i].label, {stimuli[i].name}}};
+    std::vector<Cell> row{labelled(stimuli[i])};
     for (const std::int64_t switches : counts[i]) {
       row.push_back(count(switches));
     }

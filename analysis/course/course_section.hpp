@@ -14,9 +14,9 @@ struct PracticeResult {
   std::optional<bool> is_criterion_met{};  // unset: the block has none
 };
 
-// How the sessions went: tables course, exclusions, practice, loop_quality and masking, a row a
-// participant, in the order of the rows. Only counts and extremes of what is stored.
-// has_masking: the protocol asks for masking noise.
+// How the sessions went: tables course, exclusions, attention, practice, loop_quality or, in
+// virtual time, saturation, and masking, a row a participant, in the order of the rows. Only counts
+// and extremes of what is stored. has_masking: the protocol asks for masking noise.
 ReportSection course_section(const std::vector<results::ParticipantCourseRow>& participants,
                              const std::vector<PracticeResult>& practice, bool has_masking);
 }  // namespace tapstudy::analysis

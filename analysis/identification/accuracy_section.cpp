@@ -122,8 +122,7 @@ ReportSection independent_accuracy_section(const IdentificationSummary& summary)
   std::vector<Cell> row{proportion(summary.accuracy), range_cell(exact_interval(summary.accuracy))};
   section.remarks.emplace_back(
       "Participants are not known: everything here takes all answers as independent, which those "
-      "of "
-      "one person are not.");
+      "of one person are not.");
   if (has_other_answers(summary) || share_of_constant_answer(summary.matrix)) {
     row.push_back(nothing(table.columns[2]));
     row.push_back(nothing(table.columns[3]));

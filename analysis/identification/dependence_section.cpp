@@ -47,7 +47,7 @@ ReportTable residuals_table(const ConfusionMatrix& matrix) {
   }
   const auto residuals = adjusted_residuals(matrix.counts);
   for (std::size_t i = 0; i < matrix.stimuli.size(); ++i) {
-    table.rows.push_back({{matrix.stimuli[i].label, {matrix.stimuli[i].name}}});
+    table.rows.push_back({labelled(matrix.stimuli[i])});
     for (const double residual : residuals[i]) {
       table.rows.back().push_back({fmt::format("{:.1f}", residual), {residual}});
     }

@@ -145,9 +145,7 @@ std::string sentence_of(const ConfusionMatrix& matrix, const std::string& refusa
   }
   return sentence;
 }
-}  // namespace
 
-namespace {
 // Empty: it can be estimated, of all answers at least.
 std::string why_left_out(const MatrixOfParticipants& counted, const std::string& refusal) {
   const auto occurred = [](const std::vector<std::int64_t>& totals) {
@@ -158,8 +156,7 @@ std::string why_left_out(const MatrixOfParticipants& counted, const std::string&
     return "Nothing was transferred: fewer than two stimuli or answers occurred.";
   }
   return counted.are_known() && counted.participants.size() == 1 && !refusal.empty()
-             ? fmt::format(
-                   "Not estimated of one participant: fewer than 5 k² answers for k classes.")
+             ? "Not estimated of one participant: fewer than 5 k² answers for k classes."
              : "";
 }
 }  // namespace

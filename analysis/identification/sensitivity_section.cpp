@@ -157,8 +157,7 @@ ReportSection sensitivity_section(const MatrixOfParticipants& counted) {
   section.remarks.emplace_back(
       "d' = z(hits) - z(false alarms) and c = -(z(hits) + z(false alarms)) / 2 with rates "
       "corrected by (k + 1/2) / (n + 1) (Hautus 1995), intervals by the variance of z (Gourevitch "
-      "& "
-      "Galanter 1967); c above 0: the class is named too seldom. The equivalent d' (Hacker & "
+      "& Galanter 1967); c above 0: the class is named too seldom. The equivalent d' (Hacker & "
       "Ratcliff 1979) supposes an observer without preferences; its interval is that of the "
       "proportion (Wilson 1927).");
   if (matrix.share_of_alternatives() < 1.0) {

@@ -70,8 +70,7 @@ std::string remark_on_people(const NamedSummary& a, const NamedSummary& b) {
     if (study->summary->participants == 0) {
       return fmt::format(
           "Participants of {} are not known: its interval, and so that of the difference, takes "
-          "all "
-          "answers as independent.",
+          "all answers as independent.",
           study->name);
     }
   }

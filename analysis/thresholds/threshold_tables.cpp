@@ -76,42 +76,48 @@ ReportTable participants_table(const BlockDesign& design, const ThresholdResults
   return table;
 }
 
-ReportTable pooled_table(const VariedAxis& axis, const ThresholdResults& results) {
-  ReportTable table{"pooled",
-                    "Over participants: geometric mean of the thresholds",
-                    {column("participants", "participants")}};
+// Of log10 thresholds over participants.
+struct MeanThreshold {
+  int participants{};
+  double log10{};
+  Interval interval;
+  double standard_deviation{};
+};
+
+ReportTable mean_table(const std::string& name, const std::string& title, const Column& deviation,
+                       const VariedAxis& axis, const std::optional<MeanThreshold>& mean) {
+  ReportTable table{name, title, {column("participants", "participants")}};
   for (const Column& of_threshold : threshold_columns(axis)) {
     table.columns.push_back(of_threshold);
   }
-  table.columns.push_back(column("SD of log10 thresholds", "sd_log10"));
-  if (results.mean_log) {
-    const MeanLogThreshold& mean = *results.mean_log;
-    std::vector<Cell> row{count(mean.participants)};
-    add_threshold(row, axis, std::pow(10.0, mean.mean),
-                  {std::pow(10.0, mean.interval.low), std::pow(10.0, mean.interval.high)});
-    row.push_back(number(mean.standard_deviation));
+  table.columns.push_back(deviation);
+  if (mean) {
+    std::vector<Cell> row{count(mean->participants)};
+    add_threshold(row, axis, std::pow(10.0, mean->log10),
+                  {std::pow(10.0, mean->interval.low), std::pow(10.0, mean->interval.high)});
+    row.push_back(number(mean->standard_deviation));
     table.rows.push_back(row);
   }
   return table;
 }
 
+ReportTable pooled_table(const VariedAxis& axis, const ThresholdResults& results) {
+  std::optional<MeanThreshold> mean;
+  if (const auto& of = results.mean_log) {
+    mean = {of->participants, of->mean, of->interval, of->standard_deviation};
+  }
+  return mean_table("pooled", "Over participants: geometric mean of the thresholds",
+                    column("SD of log10 thresholds", "sd_log10"), axis, mean);
+}
+
 ReportTable population_table(const VariedAxis& axis, const ThresholdResults& results) {
-  ReportTable table{"population",
+  std::optional<MeanThreshold> mean;
+  if (const auto& of = results.population) {
+    mean = {of->participants, of->log10.mean, of->log10.interval, of->log10.between_sd};
+  }
+  return mean_table("population",
                     "Over participants: random-effects mean of their posterior thresholds",
-                    {column("participants", "participants")}};
-  for (const Column& of_threshold : threshold_columns(axis)) {
-    table.columns.push_back(of_threshold);
-  }
-  table.columns.push_back(column("SD of log10 between participants", "between_sd_log10"));
-  if (results.population) {
-    const RandomEffects& of = results.population->log10;
-    std::vector<Cell> row{count(results.population->participants)};
-    add_threshold(row, axis, std::pow(10.0, of.mean),
-                  {std::pow(10.0, of.interval.low), std::pow(10.0, of.interval.high)});
-    row.push_back(number(of.between_sd));
-    table.rows.push_back(row);
-  }
-  return table;
+                    column("SD of log10 between participants", "between_sd_log10"), axis, mean);
 }
 
 Cell slope_cell(const ThresholdEstimate& of) {

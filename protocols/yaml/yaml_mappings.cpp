@@ -28,14 +28,17 @@ void MapReader::map(const std::string& key, Presence presence, const ReadMap& re
 void MapReader::map_or_list(const std::string& key, Presence presence,
                             const std::vector<std::string>& keys, const ReadMap& read) {
   const auto node = find(key, presence != Presence::optional);
-  if (!node || !node->IsSequence()) {
-    if (node && !node->IsMap()) {
-      reject_at(*node, path_of(key),
-                fmt::format("{} is neither a mapping nor a list of {}", kind_of(*node),
-                            fmt::join(keys, ", ")));
-    } else if (node) {
-      read_inner(*node, path_of(key), pattern_of(key), read);
-    }
+  if (!node) {
+    return;
+  }
+  if (node->IsMap()) {
+    read_inner(*node, path_of(key), pattern_of(key), read);
+    return;
+  }
+  if (!node->IsSequence()) {
+    reject_at(*node, path_of(key),
+              fmt::format("{} is neither a mapping nor a list of {}", kind_of(*node),
+                          fmt::join(keys, ", ")));
     return;
   }
   if (node->size() > keys.size() || node->size() + 1 < keys.size()) {

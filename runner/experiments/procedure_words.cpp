@@ -188,6 +188,7 @@ std::string blinding(const Protocol& protocol, const DoneBlocks& done) {
           : "",
       protocol.display.is_operator_blind ? "did not show" : "showed");
 }
+
 // Of people: a simulated participant hears nothing.
 std::string masking(const Protocol& protocol, const DoneBlocks& done) {
   if (!protocol.masking) {

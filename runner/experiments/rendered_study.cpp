@@ -11,7 +11,6 @@
 #include "results/trace_stream.hpp"
 #include "runner/experiments/cached_model.hpp"
 #include "runner/experiments/counted_answers.hpp"
-#include "runner/experiments/done_blocks.hpp"
 #include "runner/experiments/rendered_words.hpp"
 #include "runner/stimuli/model_library.hpp"
 namespace tapstudy::runner {
@@ -154,11 +153,12 @@ class TapSorter {
 }  // namespace
 
 analysis::RenderedStudy rendered_study(const Protocol& protocol,
-                                       const std::vector<StudyStore>& stores, results::Mode mode) {
+                                       const std::vector<StudyStore>& stores, results::Mode mode,
+                                       const DoneBlocks& done) {
   const core::ModelCache cache = models_of_this_user();
   const analysis::TapWindow window{protocol.rate_hz};
   RenderedStudy study;
-  const std::set<std::string> rendered = rendered_stimuli(protocol, done_blocks(stores, mode));
+  const std::set<std::string> rendered = rendered_stimuli(protocol, done);
   for (const Stimulus& stimulus : protocol.stimuli) {
     if (!rendered.contains(stimulus.name)) {
       continue;

@@ -3,10 +3,12 @@
 
 #include "analysis/rendered/rendered_section.hpp"
 #include "protocols/protocol.hpp"
+#include "runner/experiments/done_blocks.hpp"
 #include "runner/experiments/study_store.hpp"
 namespace tapstudy::runner {
-// The stimuli of a study in words, with those of their models that are cached, and the taps of all
-// trials whose answers count, out of the stored traces. Traces are read once and not kept.
+// The stimuli that were rendered in words, with those of their models that are cached, and the taps
+// of all trials whose answers count, out of the stored traces. Traces are read once and not kept.
 analysis::RenderedStudy rendered_study(const protocols::Protocol& protocol,
-                                       const std::vector<StudyStore>& stores, results::Mode mode);
+                                       const std::vector<StudyStore>& stores, results::Mode mode,
+                                       const DoneBlocks& done);
 }  // namespace tapstudy::runner

@@ -90,11 +90,11 @@ analysis::ReportSection confidence(const protocols::Protocol& protocol,
 
 std::vector<analysis::ReportSection> study_sections(const protocols::Protocol& protocol,
                                                     const std::vector<StudyStore>& stores,
-                                                    results::Mode mode) {
+                                                    results::Mode mode, const DoneBlocks& done) {
   return {
       course(protocol, stores, mode), confidence(protocol, stores, mode),
       analysis::procedures_section(track_results(protocol, stores, mode)),
       analysis::questionnaires_section(questionnaires_of(protocol), given_answers(stores, mode)),
-      analysis::rendered_section(rendered_study(protocol, stores, mode))};
+      analysis::rendered_section(rendered_study(protocol, stores, mode, done))};
 }
 }  // namespace tapstudy::runner

@@ -117,14 +117,15 @@ Summary summary_of_study(const std::vector<StudyStore>& stores, Mode mode, Detai
     return analysis::summarise(design, all.answers, all.visits, all.presentations);
   }
   Summary summary = analysis::summarise(design, all.answers, all.visits, all.presentations);
-  summary.sections = study_sections(protocol, stores, mode);
+  const DoneBlocks done = done_blocks(stores, mode);
+  summary.sections = study_sections(protocol, stores, mode, done);
   const bool is_order_fixed = protocol.block_order.order == protocols::Order::listed;
   if (auto contrasts = analysis::block_contrasts(summary.blocks, is_order_fixed)) {
     summary.sections.insert(summary.sections.begin(), std::move(*contrasts));
   }
   summary.provenance = provenance(study, all.sessions, mode);
-  summary.procedure = procedure_words(protocol, sessions_of(all.sessions, mode),
-                                      summary.participant_ids, done_blocks(stores, mode));
+  summary.procedure =
+      procedure_words(protocol, sessions_of(all.sessions, mode), summary.participant_ids, done);
   summary.unfinished = std::move(all.unfinished);
   summary.excluded = std::move(all.excluded);
   std::ranges::move(all.deviations, std::back_inserter(summary.deviations));

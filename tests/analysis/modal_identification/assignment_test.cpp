@@ -12,6 +12,17 @@ using namespace tapstudy;
 using namespace tapstudy::analysis;
 
 namespace {
+// That shows one agreed mode.
+TapModes tap_of(double frequency_hz, double error_hz) {
+  TapModes tap;
+  FittedMode fitted;
+  fitted.pole = {frequency_hz, 0.02};
+  fitted.frequency_error_hz = error_hz;
+  fitted.ratio_error = 1e-4;
+  tap.modes.push_back({fitted, Standing::agreed, "", {}, 5});
+  return tap;
+}
+
 double cost_of(const std::vector<std::size_t>& columns, const Eigen::MatrixXd& cost) {
   double sum = 0.0;
   for (std::size_t row = 0; row < columns.size(); ++row) {
@@ -51,24 +62,15 @@ TEST_CASE("shapes in proportion have an assurance of 1, orthogonal ones and none
 
 TEST_CASE("what channels say of one impact is one observation",
           "[analysis][modal_identification]") {
-  const auto tap_of = [](double frequency_hz, double ratio) {
-    TapModes tap;
-    FittedMode fitted;
-    fitted.pole = {frequency_hz, ratio};
-    fitted.frequency_error_hz = 0.01;
-    fitted.ratio_error = 1e-4;
-    tap.modes.push_back({fitted, Standing::agreed, "", {}, 5});
-    return tap;
-  };
   std::vector<TapModes> one_channel;
   std::vector<TapModes> two_channels;
   std::vector<int> impacts;
   int impact = 0;
   for (const double frequency_hz : {100.0, 100.2, 99.9, 100.1}) {
-    one_channel.push_back(tap_of(frequency_hz, 0.02));
+    one_channel.push_back(tap_of(frequency_hz, 0.01));
     ++impact;
     for (const double apart : {-0.05, 0.05}) {
-      two_channels.push_back(tap_of(frequency_hz + apart, 0.02));
+      two_channels.push_back(tap_of(frequency_hz + apart, 0.01));
       impacts.push_back(impact);
     }
   }
@@ -81,15 +83,6 @@ TEST_CASE("what channels say of one impact is one observation",
 
 TEST_CASE("taps that differ as their errors say do not scatter, however unequal the errors",
           "[analysis][modal_identification]") {
-  const auto tap_of = [](double frequency_hz, double error_hz) {
-    TapModes tap;
-    FittedMode fitted;
-    fitted.pole = {frequency_hz, 0.02};
-    fitted.frequency_error_hz = error_hz;
-    fitted.ratio_error = 1e-4;
-    tap.modes.push_back({fitted, Standing::agreed, "", {}, 5});
-    return tap;
-  };
   const std::vector<double> errors_hz{0.01, 0.01, 0.01, 0.03, 0.03, 0.03, 0.1, 0.1};
   core::Rng rng{2};
   constexpr int recordings = 2000;

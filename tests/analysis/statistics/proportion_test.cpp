@@ -17,20 +17,25 @@ const std::string r_multinomial =
     "g <- as.matrix(expand.grid(rep(list(0:n), k - 1))); g <- g[rowSums(g) <= n, , drop = FALSE];"
     "p <- apply(cbind(g, n - rowSums(g)), 1, dmultinom, prob = e);"
     "sum(p[p <= dmultinom(o, prob = e) * (1 + 1e-9)]) };";
-}  // namespace
 
-TEST_CASE("the Wilson interval is that of R's prop.test without a correction", "[analysis]") {
+// of_r: a test of o[1] successes in o[2] trials that has a conf.int.
+void check_intervals(Interval (*interval_of)(const Proportion&), const std::string& of_r) {
   const std::vector<Proportion> proportions{{5, 8}, {0, 10}, {10, 10}, {43, 80}, {1, 1}};
-  const auto r = r_numbers(
-      "for (o in list(c(5, 8), c(0, 10), c(10, 10), c(43, 80), c(1, 1))) "
-      "out(suppressWarnings(prop.test(o[1], o[2], correct = FALSE))$conf.int)");
+  const auto r =
+      r_numbers("for (o in list(c(5, 8), c(0, 10), c(10, 10), c(43, 80), c(1, 1))) out(" + of_r +
+                "$conf.int)");
   REQUIRE(r.size() == 2 * proportions.size());
   for (std::size_t i = 0; i < proportions.size(); ++i) {
     CAPTURE(proportions[i].successes, proportions[i].trials);
-    const Interval interval = wilson_interval(proportions[i]);
+    const Interval interval = interval_of(proportions[i]);
     CHECK(interval.low == Approx(r[2 * i]).epsilon(1e-9).margin(1e-15));
     CHECK(interval.high == Approx(r[2 * i + 1]).epsilon(1e-9));
   }
+}
+}  // namespace
+
+TEST_CASE("the Wilson interval is that of R's prop.test without a correction", "[analysis]") {
+  check_intervals(wilson_interval, "suppressWarnings(prop.test(o[1], o[2], correct = FALSE))");
 }
 
 TEST_CASE("the Wilson interval solves its own equation", "[analysis]") {
@@ -44,17 +49,7 @@ TEST_CASE("the Wilson interval solves its own equation", "[analysis]") {
 }
 
 TEST_CASE("the exact interval is that of R's binom.test", "[analysis]") {
-  const std::vector<Proportion> proportions{{5, 8}, {0, 10}, {10, 10}, {43, 80}, {1, 1}};
-  const auto r = r_numbers(
-      "for (o in list(c(5, 8), c(0, 10), c(10, 10), c(43, 80), c(1, 1))) "
-      "out(binom.test(o[1], o[2])$conf.int)");
-  REQUIRE(r.size() == 2 * proportions.size());
-  for (std::size_t i = 0; i < proportions.size(); ++i) {
-    CAPTURE(proportions[i].successes, proportions[i].trials);
-    const Interval interval = exact_interval(proportions[i]);
-    CHECK(interval.low == Approx(r[2 * i]).epsilon(1e-9).margin(1e-15));
-    CHECK(interval.high == Approx(r[2 * i + 1]).epsilon(1e-9));
-  }
+  check_intervals(exact_interval, "binom.test(o[1], o[2])");
 }
 
 TEST_CASE("so many right answers are needed against chance, as by R's binom.test", "[analysis]") {

@@ -21,18 +21,33 @@ struct DecayFit {
   std::vector<FittedMode> modes;  // as many as poles were given, in their order
   double noise{};                 // standard deviation of a sample, from the residual in the band
   double explained{};             // share of the band's energy
+  double sum_of_squares{};        // of the residual in the band, over the real values
+  double values{};                // how many, two a bin
   double degrees_of_freedom{};
   bool has_converged{};
   Eigen::VectorXcd fitted;  // the spectrum's values by the modes and the nuisance terms
 };
 
-// Maximum likelihood in white noise from these poles on: variable projection (Golub & Pereyra 1973,
-// Kaufman's approximation) with Levenberg-Marquardt steps on the poles. The transform of a damped
-// exponential cut off after N samples, (1 - z^N) / (1 - z q), q = e^(-jw), is exact: a rectangular
-// window leaks nothing that is not in the model. A drift 1 / (1 - q) and 1, q, q^2 take up what
-// modes outside the band leave in it. Standard errors are those of the Cramer-Rao bound, with the
-// noise of the residual. Steady lines of these frequencies, such as hum, take part with amplitudes
-// alone. Throws InvalidInput for more unknowns than values.
+// Maximum likelihood in white noise from these poles on (decay_model.hpp, decay_descent.hpp).
+// Standard errors are those of the Cramer-Rao bound, with the noise of the residual. Steady lines
+// of these frequencies, such as hum, take part with amplitudes alone. Throws InvalidInput for more
+// unknowns than values.
 DecayFit fit_decay(const BandSpectrum& spectrum, const std::vector<Pole>& start,
                    const std::vector<double>& lines_hz = {});
+
+// One of several decays that some modes are common to.
+struct SharingDecay {
+  const BandSpectrum* spectrum{};
+  std::vector<Pole> own;  // of its other modes, which need not be those of other decays
+  std::vector<double> lines_hz;
+  double noise{1.0};  // standard deviation of a sample
+};
+struct SharedFit {
+  std::vector<DecayFit> decays;  // the shared modes first, with the errors of all together
+  double degrees_of_freedom{};
+  bool has_converged{};
+};
+// Likewise of all decays together, at least one: what differs from one to the next are amplitudes.
+SharedFit fit_shared_poles(const std::vector<SharingDecay>& decays,
+                           const std::vector<Pole>& shared);
 }  // namespace tapstudy::analysis

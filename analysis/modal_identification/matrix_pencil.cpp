@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/algebra/lapack.hpp"
 #include "core/error.hpp"
@@ -61,6 +62,23 @@ int count_above_noise(const Eigen::VectorXd& singular_values) {
 }
 }  // namespace
 
+namespace {
+MatrixPencil read_gram(Eigen::MatrixXd gram, double rate_hz, const Band& band, int max_order) {
+  const Eigen::Index pencil = gram.cols() - 1;
+  const core::EigenPairs pairs = core::symmetric_eigenpairs(std::move(gram));
+  MatrixPencil result;
+  result.singular_values = pairs.values.reverse().cwiseMax(0.0).cwiseSqrt();
+  result.significant_order = count_above_noise(result.singular_values);
+  const int last = std::min(
+      {max_order, result.significant_order + further_orders, static_cast<int>(pencil) - 2});
+  for (int order = 2; order <= last; order += 2) {
+    const Eigen::VectorXcd z = core::eigenvalues(shift_matrix(pairs.vectors.rightCols(order)));
+    result.orders.push_back({order, poles_in(z, rate_hz, band)});
+  }
+  return result;
+}
+}  // namespace
+
 MatrixPencil matrix_pencil(const FreeDecay& decay, const Band& band, int max_order) {
   const FreeDecay slow = decimated(decay, band.high_hz);
   const Eigen::Index pencil = std::min(slow.samples.size() / 3, max_pencil);
@@ -70,16 +88,28 @@ MatrixPencil matrix_pencil(const FreeDecay& decay, const Band& band, int max_ord
                     decay.duration_s(), band.high_hz,
                     decay.duration_s() - slow.duration_s() + 3.0 * min_pencil / slow.rate_hz)};
   }
-  const core::EigenPairs pairs = core::symmetric_eigenpairs(hankel_gram(slow.samples, pencil + 1));
-  MatrixPencil result;
-  result.singular_values = pairs.values.reverse().cwiseMax(0.0).cwiseSqrt();
-  result.significant_order = count_above_noise(result.singular_values);
-  const int last = std::min(
-      {max_order, result.significant_order + further_orders, static_cast<int>(pencil) - 2});
-  for (int order = 2; order <= last; order += 2) {
-    const Eigen::VectorXcd z = core::eigenvalues(shift_matrix(pairs.vectors.rightCols(order)));
-    result.orders.push_back({order, poles_in(z, slow.rate_hz, band)});
+  return read_gram(hankel_gram(slow.samples, pencil + 1), slow.rate_hz, band, max_order);
+}
+
+MatrixPencil matrix_pencil(const std::vector<FreeDecay>& decays, const std::vector<double>& noise,
+                           const Band& band, int max_order) {
+  std::vector<FreeDecay> slow;
+  std::vector<Eigen::Index> lengths;
+  for (const FreeDecay& decay : decays) {
+    slow.push_back(decimated(decay, band.high_hz));
+    lengths.push_back(slow.back().samples.size());
   }
-  return result;
+  std::ranges::nth_element(lengths, lengths.begin() + std::ssize(lengths) / 2);
+  const Eigen::Index pencil = std::min(lengths[lengths.size() / 2] / 3, max_pencil);
+  if (pencil < min_pencil) {
+    return {};
+  }
+  Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(pencil + 1, pencil + 1);
+  for (std::size_t i = 0; i < decays.size(); ++i) {
+    if (slow[i].samples.size() >= 2 * pencil) {
+      gram += hankel_gram(slow[i].samples, pencil + 1) / (noise[i] * noise[i]);
+    }
+  }
+  return read_gram(std::move(gram), slow.front().rate_hz, band, max_order);
 }
 }  // namespace tapstudy::analysis

@@ -20,4 +20,12 @@ struct MatrixPencil {
 // measured. Pencil parameter L a third of the samples, at most 400. The decay is decimated first.
 // Throws InvalidInput if fewer than 24 samples are left then.
 MatrixPencil matrix_pencil(const FreeDecay& decay, const Band& band, int max_order);
+
+// Of several decays of the same structure and one rate, with the standard deviations of their
+// noise (above 0): the Gram matrices of all, each over its noise's variance, are added. Modes too
+// close to be told apart in one decay are in several that excite them in different proportions
+// (as with several references, Vold et al. 1982). Decays shorter than two thirds of the median take
+// no part; empty if that is too short.
+MatrixPencil matrix_pencil(const std::vector<FreeDecay>& decays, const std::vector<double>& noise,
+                           const Band& band, int max_order);
 }  // namespace tapstudy::analysis

@@ -202,19 +202,18 @@ const char* name(Standing standing) {
   return "";
 }
 
-namespace {
 // A mode has four unknowns, a line two; each value of the spectrum gives two numbers.
 std::size_t most_modes(const BandSpectrum& spectrum, const std::vector<double>& lines_hz) {
   const Eigen::Index values = spectrum.values.size();
   const auto beside_lines = (2 * values - 5 - 2 * std::ssize(lines_hz)) / 4;
   return static_cast<std::size_t>(std::clamp<Eigen::Index>(beside_lines, 0, (values - 4) / 3));
 }
-}  // namespace
 
 TapModes identify_modes(const FreeDecay& decay, const ModeFinding& finding) {
   const Band wide{0.8 * finding.band.low_hz,
                   std::min(1.25 * finding.band.high_hz, 0.47 * decay.rate_hz)};
   TapModes result;
+  result.lines_hz = finding.lines_hz;
   result.pencil = matrix_pencil(decay, wide, finding.max_order);
   result.spectrum = band_spectrum(decay, wide);
   const std::size_t room = most_modes(result.spectrum, finding.lines_hz);

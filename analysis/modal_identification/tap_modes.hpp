@@ -13,16 +13,17 @@ const char* name(Standing standing);
 struct TapMode {
   FittedMode fitted;
   Standing standing{Standing::doubtful};
-  std::string why;                      // why doubtful, or which line
+  std::string why;  // why doubtful, which line, or that it took all taps to tell it from another
   std::optional<Pole> by_rational_fit;  // unset: not found so
   int stable_orders{};                  // 0: not found by the matrix pencil
 };
 
 struct TapModes {
-  std::vector<TapMode> modes;  // inside the band, ascending frequency
-  MatrixPencil pencil;         // whose stabilisation diagram can be drawn
-  BandSpectrum spectrum;       // of a band somewhat wider than asked for
-  DecayFit fit;                // of all modes in it
+  std::vector<TapMode> modes;    // inside the band, ascending frequency
+  MatrixPencil pencil;           // whose stabilisation diagram can be drawn
+  BandSpectrum spectrum;         // of a band somewhat wider than asked for
+  DecayFit fit;                  // of all modes in it
+  std::vector<double> lines_hz;  // steady tones that took part in the fit
 };
 
 struct ModeFinding {
@@ -40,6 +41,9 @@ struct ModeFinding {
 // significantly, is a line; by less than 40 %, also where a harmonic of the mains is. Throws
 // InvalidInput for decays that are too short.
 TapModes identify_modes(const FreeDecay& decay, const ModeFinding& finding);
+
+// How many modes can be fitted to a spectrum beside lines.
+std::size_t most_modes(const BandSpectrum& spectrum, const std::vector<double>& lines_hz);
 
 // Lines that some taps show and this one does not, within 1 % of any mode of its own: beside a mode
 // of nearly the same frequency hum may go unnoticed, and falsify its damping. Each once.

@@ -128,6 +128,9 @@ void add_identify(CommandParser& line) {
   command.option("--stimulus", question.stimulus, "Which of its stimuli was tapped");
   command.number_within("--rate", question.reading.rate_hz, 0.0, 1e7,
                         "Samples a second, of tables without a time column");
+  command.number_within("--rate-error", question.rate_error, 0.0, 0.1,
+                        "Relative error of the recordings' rate that intervals include; default: "
+                        "0.001 (a quartz: 0.0001)");
   command.list("--column", question.columns,
                "Headers or numbers (from 1) of the channels; default: the only one");
   command.option("--force-column", question.force_column,

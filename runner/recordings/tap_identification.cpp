@@ -12,6 +12,8 @@
 #include "runner/recordings/fit_remarks.hpp"
 #include "runner/recordings/impact_table.hpp"
 #include "runner/recordings/measured_file.hpp"
+#include "runner/recordings/modes_over_all.hpp"
+#include "runner/recordings/rate_error.hpp"
 #include "runner/recordings/sinusoid_law.hpp"
 #include "runner/recordings/sought_band.hpp"
 namespace tapstudy::runner {
@@ -56,6 +58,7 @@ class Identifier {
     give_speeds(impacts);
     give_places(impacts);
     sum_up();
+    include_rate_error(result_.question.rate_error, result_);
     return std::move(result_);
   }
 
@@ -193,41 +196,10 @@ class Identifier {
     return shapes;
   }
 
-  std::vector<analysis::TapModes> modes_of_taps() const {
-    std::vector<analysis::TapModes> modes;
-    for (const IdentifiedTap& tap : result_.taps) {
-      modes.push_back(tap.modes);
-    }
-    return modes;
-  }
-
-  // With steady tones that other taps show.
-  void identify_again(IdentifiedTap& tap, const analysis::ModeFinding& finding) {
-    try {
-      tap.modes = analysis::identify_modes(tap.decay, finding);
-    } catch (const core::InvalidInput& error) {
-      result_.remarks.push_back(
-          fmt::format("{}: the tap at {:.3f} s rings too short for the {} steady tones that other "
-                      "taps show: they may falsify its damping ({})",
-                      tap.file, tap.time_s, finding.lines_hz.size(), error.what()));
-    }
-  }
-
   void sum_up() {
-    const std::vector<analysis::TapModes> of_taps = modes_of_taps();
-    for (IdentifiedTap& tap : result_.taps) {
-      const std::vector<double> lines_hz = analysis::lines_missed(tap.modes, of_taps);
-      if (!lines_hz.empty()) {
-        analysis::ModeFinding finding{result_.band};
-        finding.lines_hz = lines_hz;
-        identify_again(tap, finding);
-      }
-    }
+    result_.modes = modes_over_all(result_.band, result_.taps, result_.remarks);
     add_remarks(remarks_on_residuals(result_.taps));
     add_remarks(remarks_on_resolution(result_.taps));
-    std::vector<int> impacts;
-    std::ranges::transform(result_.taps, std::back_inserter(impacts), &IdentifiedTap::impact);
-    result_.modes = analysis::modes_over_taps(modes_of_taps(), impacts);
     add_remarks(remarks_on_scatter(result_.modes));
     std::vector<analysis::MeasuredRatio> ratios;
     for (std::size_t i = 0; i < result_.modes.size(); ++i) {

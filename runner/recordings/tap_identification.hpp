@@ -14,6 +14,7 @@ namespace tapstudy::runner {
 struct TapQuestion {
   std::vector<std::string> recordings;
   analysis::ReadingOptions reading;  // its column left open
+  double rate_error{0.001};          // by how much of it the recordings' rate may be wrong
   std::vector<std::string> columns;  // of each recording, as ReadingOptions::column; empty: one
   std::string force_column;          // of what struck [N], likewise; may be empty
   analysis::Quantity quantity{analysis::Quantity::acceleration};
@@ -75,7 +76,8 @@ struct TapIdentification {
   std::optional<double> loop_rate_hz{};  // likewise
 };
 
-// Reads, finds the taps, identifies modes, damping, sinusoid and Young's modulus. Throws
+// Reads, finds the taps, identifies modes, damping, sinusoid and Young's modulus; intervals include
+// the rate's error. Throws
 // InvalidInput for what cannot be read, recordings without a tap, a band that does not fit, speeds
 // or places that are not as many as impacts; ModelError if the stimulus's model cannot be built.
 TapIdentification identify_taps(const TapQuestion& question, Progress& progress);

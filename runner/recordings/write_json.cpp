@@ -151,6 +151,7 @@ std::string json_of(const TapIdentification& found) {
   Json json{{"schema_version", 1},
             {"quantity", name(found.question.quantity)},
             {"band_hz", {found.band.low_hz, found.band.high_hz}},
+            {"rate_error", found.question.rate_error},
             {"taps", Json::array()},
             {"modes", Json::array()},
             {"rayleigh", nullptr},

@@ -29,14 +29,17 @@ void print_taps(const TapIdentification& found) {
 
 void print_modes(const TapIdentification& found) {
   fmt::print(
-      "\nModes (95 % intervals {}):\n"
+      "\nModes (95 % intervals {}{}):\n"
       "  frequency_hz                     damping_ratio                    taps\n",
-      found.taps.size() > 1 ? "over taps" : "of this tap's noise");
+      found.taps.size() > 1 ? "over taps" : "of this tap's noise",
+      found.question.rate_error > 0.0
+          ? fmt::format(", and of a rate wrong by {:g} %", 100.0 * found.question.rate_error)
+          : "");
   for (const analysis::RepeatedMode& mode : found.modes) {
     fmt::print("  {:>9.3f}  {:<20}  {:>9.5f}  {:<20}  {:>2} of {}{}\n", mode.frequency_hz.value,
                interval(mode.frequency_hz), mode.damping_ratio.value, interval(mode.damping_ratio),
                mode.standing == Standing::agreed ? mode.agreed : mode.taps, found.taps.size(),
-               mode.standing == Standing::agreed ? ""
+               mode.standing == Standing::agreed ? mode.why.empty() ? "" : "  " + mode.why
                : mode.standing == Standing::line ? "  no mode: " + mode.why
                                                  : "  doubtful: " + mode.why);
   }

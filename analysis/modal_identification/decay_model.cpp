@@ -1,0 +1,85 @@
+#include "analysis/modal_identification/decay_model.hpp"
+
+#include <limits>
+
+#include "analysis/modal_identification/cut_exponential.hpp"
+#include "core/algebra/lapack.hpp"
+namespace tapstudy::analysis {
+namespace {
+using Complex = std::complex<double>;
+constexpr Eigen::Index smooth_terms = 4;
+
+Eigen::VectorXd stacked(const Eigen::VectorXcd& values) {
+  Eigen::VectorXd all{2 * values.size()};
+  all << values.real(), values.imag();
+  return all;
+}
+
+// The columns of cosine and sine.
+void set_pair(Eigen::MatrixXd& columns, Eigen::Index first, const CutExponential& both) {
+  columns.col(first) = stacked(both.plus);
+  columns.col(first + 1) = stacked(Complex{0.0, -1.0} * both.minus);
+}
+}  // namespace
+
+DecayModel::DecayModel(const BandSpectrum& spectrum, Eigen::Index poles,
+                       const std::vector<double>& lines_hz)
+    : spectrum_{spectrum},
+      poles_{poles},
+      length_{static_cast<double>(spectrum.length)},
+      data_{stacked(spectrum.values)} {
+  const Eigen::ArrayXcd q = (Complex{0.0, -1.0} * spectrum.rad_per_sample.cast<Complex>()).exp();
+  const auto lines = static_cast<Eigen::Index>(lines_hz.size());
+  nuisance_ = Eigen::MatrixXd{data_.size(), smooth_terms + 2 * lines};
+  nuisance_.col(0) = stacked((1.0 / (1.0 - q)).matrix());
+  for (int power = 0; power < smooth_terms - 1; ++power) {
+    nuisance_.col(power + 1) = stacked(q.pow(power).matrix());
+  }
+  for (Eigen::Index k = 0; k < lines; ++k) {
+    const Complex log_z = log_of({lines_hz[static_cast<std::size_t>(k)], 0.0}, spectrum.rate_hz);
+    set_pair(nuisance_, smooth_terms + 2 * k, cut_exponential(log_z, spectrum));
+  }
+}
+
+DecayModel::State DecayModel::at(const Eigen::VectorXd& logs) const {
+  State state{logs, {}, Eigen::MatrixXd{data_.size(), 2 * poles_ + nuisance_.cols()}, {}, 0.0};
+  for (Eigen::Index k = 0; k < poles_; ++k) {
+    set_pair(state.basis, 2 * k, cut_exponential(log_of_pole(logs, k), spectrum_));
+  }
+  state.basis.rightCols(nuisance_.cols()) = nuisance_;
+  if (!state.basis.allFinite()) {  // a pole that grows beyond all bounds fits nothing
+    state.shares = Eigen::VectorXd::Zero(state.basis.cols());
+    state.residual = data_;
+    state.sum_of_squares = std::numeric_limits<double>::infinity();
+    return state;
+  }
+  const Eigen::RowVectorXd size = state.basis.colwise().norm().cwiseMax(1e-300);
+  state.shares = core::least_squares(state.basis * size.cwiseInverse().asDiagonal(), data_)
+                     .solution.cwiseQuotient(size.transpose());
+  state.residual = data_ - state.basis * state.shares;
+  state.sum_of_squares = state.residual.squaredNorm();
+  return state;
+}
+
+Eigen::MatrixXd DecayModel::jacobian(const State& state) const {
+  Eigen::MatrixXd result{data_.size(), unknowns()};
+  for (Eigen::Index k = 0; k < poles_; ++k) {
+    const Complex share{state.shares[2 * k], -state.shares[2 * k + 1]};
+    const CutExponential slopes =
+        cut_exponential_slope(share, log_of_pole(state.logs, k), spectrum_);
+    result.col(2 * k) = stacked(slopes.plus) / length_;
+    result.col(2 * k + 1) = stacked(Complex{0.0, 1.0} * slopes.minus) / length_;
+  }
+  result.rightCols(2 * poles_ + nuisance_.cols()) = state.basis;
+  return result;
+}
+
+Eigen::VectorXd DecayModel::logs_of(const std::vector<Pole>& poles) const {
+  Eigen::VectorXd logs{2 * std::ssize(poles)};
+  for (Eigen::Index k = 0; k < std::ssize(poles); ++k) {
+    const Complex log_z = log_of(poles[static_cast<std::size_t>(k)], spectrum_.rate_hz);
+    logs.segment<2>(2 * k) << log_z.real() * length_, log_z.imag() * length_;
+  }
+  return logs;
+}
+}  // namespace tapstudy::analysis

@@ -7,7 +7,7 @@
 #include "analysis/figures/face_views.hpp"
 #include "analysis/tables/cells.hpp"
 #include "runner/reproduction/claim_table.hpp"
-#include "runner/reproduction/colour_svg.hpp"
+#include "runner/reproduction/colour_pictures.hpp"
 #include "runner/reproduction/routes.hpp"
 #include "runner/reproduction/shipped_protocols.hpp"
 namespace tapstudy::runner {
@@ -95,14 +95,14 @@ void add(Bench& bench, const Shown& shown_plate, Claim& claim) {
   claim.drawings.push_back(
       {fmt::format("{}: {} after a strike, red is {} µm", shown_plate.method, shown_plate.stimulus,
                    analysis::rounded(largest_anywhere(map))),
-       colour_svgs(map)});
+       colour_figures(map)});
   analysis::ColourMap modes = analysis::map_of_modes(*bench.models.plate_of(protocol, stimulus),
                                                      std::get<core::Box>(stimulus.plate->shape),
                                                      "mode of " + stimulus.name);
   keep_first(modes);
   claim.drawings.push_back(
       {fmt::format("{}: the first mode shapes of {}", shown_plate.method, shown_plate.stimulus),
-       colour_svgs(modes), false});
+       colour_figures(modes), false});
 }
 }  // namespace
 

@@ -1,12 +1,11 @@
 #pragma once
-#include <condition_variable>
-#include <mutex>
+#include <memory>
 #include <string>
-#include <thread>
 
 #include "core/model/progress_hook.hpp"
 namespace tapstudy::runner {
-// Progress messages on stderr: none in the first second, then the activity and elapsed time.
+// Progress messages on stderr: none in the first second, then the activity and elapsed time. What
+// begins while another one talks is a stage of that one, so that there is one line at a time.
 class Progress {
  public:
   explicit Progress(std::string what);
@@ -18,11 +17,8 @@ class Progress {
   core::ProgressHook hook();
 
  private:
-  void talk(const std::stop_token& stop);
-  std::string what_;
-  std::mutex mutex_;
-  std::string stage_;
-  std::condition_variable_any ended_;
-  std::jthread thread_;
+  class Speaker;
+  std::shared_ptr<Speaker> speaker_;
+  std::string prefix_;  // of its stages; empty for the one that talks
 };
 }  // namespace tapstudy::runner

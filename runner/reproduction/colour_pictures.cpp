@@ -1,4 +1,4 @@
-#include "runner/reproduction/colour_svg.hpp"
+#include "runner/reproduction/colour_pictures.hpp"
 
 #include <fmt/format.h>
 
@@ -11,8 +11,7 @@
 #include "analysis/figures/svg_formats.hpp"
 namespace tapstudy::runner {
 namespace {
-constexpr std::size_t shades = 16;
-constexpr std::size_t stride = 2;
+constexpr std::size_t shades = 64;
 
 double largest_value(const analysis::ColourMap& map) {
   double most = 0.0;
@@ -35,18 +34,17 @@ std::string colour(std::size_t shade) {
   return fmt::format("#{:02x}{:02x}{:02x}", mixed(0), mixed(1), mixed(2));
 }
 
-// Squares of a shade as one path, the lowest row at the bottom.
+// Squares of a shade as one path.
 std::string squares(const analysis::ColourMap& map, const analysis::ColourPanel& panel,
                     double most) {
   std::array<std::string, shades> paths;
-  const std::size_t rows = (map.rows + stride - 1) / stride;
-  for (std::size_t row = 0; row < map.rows; row += stride) {
-    for (std::size_t column = 0; column < map.columns; column += stride) {
+  for (std::size_t row = 0; row < map.rows; ++row) {
+    for (std::size_t column = 0; column < map.columns; ++column) {
       const double share =
           most > 0.0 ? std::abs(panel.values.at(row * map.columns + column)) / most : 0.0;
       const auto shade =
           std::min(shades - 1, static_cast<std::size_t>(share * static_cast<double>(shades)));
-      paths.at(shade) += fmt::format("M{} {}h1v1h-1z", column / stride, rows - 1 - row / stride);
+      paths.at(shade) += fmt::format("M{} {}h1v1h-1z", column, map.rows - 1 - row);
     }
   }
   std::string svg;
@@ -58,24 +56,39 @@ std::string squares(const analysis::ColourMap& map, const analysis::ColourPanel&
   return svg;
 }
 
-// Of squares, across and up.
-std::pair<std::size_t, std::size_t> size_of(const analysis::ColourMap& map) {
-  return {(map.columns + stride - 1) / stride, (map.rows + stride - 1) / stride};
+// A pixel a value.
+std::vector<std::string> pictures(const analysis::ColourMap& map) {
+  std::vector<std::string> uris;
+  for (const std::string& svg : colour_svgs(map)) {
+    uris.push_back(
+        analysis::png_data_uri(analysis::png_of_svg(svg, static_cast<int>(map.columns))));
+  }
+  return uris;
 }
 }  // namespace
 
 std::vector<std::string> colour_svgs(const analysis::ColourMap& map) {
   const double most = largest_value(map);
-  const auto [width, height] = size_of(map);
-  std::vector<std::string> figures;
+  std::vector<std::string> all;
   for (const analysis::ColourPanel& panel : map.panels) {
-    std::string svg = fmt::format(
-        "<figure><svg class=map viewBox=\"0 0 {} {}\" role=img shape-rendering=crispEdges "
-        "aria-label=\"{}\">",
-        width, height, analysis::escaped(map.title + ", " + panel.title));
-    figures.push_back(svg + squares(map, panel, most) +
-                      fmt::format("</svg><figcaption>{}</figcaption></figure>\n",
-                                  analysis::escaped(panel.title)));
+    all.push_back(
+        fmt::format("<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" "
+                    "viewBox=\"0 0 {0} {1}\" shape-rendering=\"crispEdges\">{2}</svg>",
+                    map.columns, map.rows, squares(map, panel, most)));
+  }
+  return all;
+}
+
+std::vector<std::string> colour_figures(const analysis::ColourMap& map) {
+  const std::vector<std::string> uris = pictures(map);
+  std::vector<std::string> figures;
+  for (std::size_t i = 0; i < uris.size(); ++i) {
+    const std::string& title = map.panels[i].title;
+    figures.push_back(
+        fmt::format("<figure><img class=map width={} height={} src=\"{}\" alt=\"{}\">"
+                    "<figcaption>{}</figcaption></figure>\n",
+                    map.columns, map.rows, uris[i], analysis::escaped(map.title + ", " + title),
+                    analysis::escaped(title)));
   }
   return figures;
 }
@@ -83,14 +96,12 @@ std::vector<std::string> colour_svgs(const analysis::ColourMap& map) {
 std::string colour_animation(const analysis::ColourMap& map) {
   constexpr int pixels = 360;
   constexpr unsigned frame_ms = 200;
-  const double most = largest_value(map);
-  const auto [width, height] = size_of(map);
   std::vector<std::string> frames;
-  for (const analysis::ColourPanel& panel : map.panels) {
+  for (const std::string& uri : pictures(map)) {
     frames.push_back(analysis::png_of_svg(
-        fmt::format("<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" "
-                    "viewBox=\"0 0 {0} {1}\" shape-rendering=\"crispEdges\">{2}</svg>",
-                    width, height, squares(map, panel, most)),
+        fmt::format("<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\">"
+                    "<image width=\"{0}\" height=\"{1}\" href=\"{2}\"/></svg>",
+                    map.columns, map.rows, uri),
         pixels));
   }
   return analysis::animated_png(frames, frame_ms);

@@ -67,7 +67,8 @@ enum class Purpose : std::uint64_t {
   interleaving,
   study,
   resampling,
-  block_order
+  block_order,
+  square_order
 };
 
 // The seed of one stream of a study. Mixes by the finaliser of SplitMix64 (Steele et al. 2014).

@@ -26,10 +26,14 @@ std::vector<OrderedCondition> listed(const Block& block) {
 std::vector<OrderedCondition> williams(const Block& block,
                                        const Counterbalancing& counterbalancing) {
   const int n = static_cast<int>(conditions(block));
-  const int sequence =
-      balanced_sequence(williams_sequences(n, block.repetitions), counterbalancing);
+  const int rows = williams_rows(n);
+  const int groups = williams_sequences(n, block.repetitions) / rows;
+  const std::uint64_t group_seed =
+      core::derived_seed(counterbalancing.seed, core::Purpose::square_order);
+  const int group = balanced_sequence(groups, {counterbalancing.order_index / rows, group_seed});
+  const int row = balanced_sequence(rows, counterbalancing);
   std::vector<OrderedCondition> all;
-  for (const int i : williams_sequence(n, block.repetitions, sequence)) {
+  for (const int i : williams_sequence(n, block.repetitions, group * rows + row)) {
     all.push_back({static_cast<std::size_t>(i), 1 + static_cast<int>(all.size()) / n});
   }
   return all;

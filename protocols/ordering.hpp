@@ -37,7 +37,9 @@ int williams_rows(int n);
 
 // The whole of a participant's presentations: in each repetition a row of such a square, joined so
 // that over williams_sequences(n, repetitions) participants every condition follows every other
-// equally often, across repetitions too, and none follows itself. n > 1.
+// equally often, across repetitions too, and none follows itself; over williams_rows(n) sequences
+// that begin at a multiple of it, every condition is at every place of a repetition equally often.
+// n > 1.
 std::vector<int> williams_sequence(int n, int repetitions, int sequence);
 int williams_sequences(int n, int repetitions);
 }  // namespace tapstudy::protocols

@@ -65,9 +65,7 @@ StudyRow study_from(const Json& line) {
     const auto bytes = decompressed(from_hex(surface.at("zstd_hex")), surface.at("size"),
                                     surface.at("file").get<std::string>());
     SurfaceRow row{surface.at("file"), surface.at("sha256"), {}};
-    for (const std::byte byte : bytes) {
-      row.bytes += std::to_integer<char>(byte);
-    }
+    std::ranges::transform(bytes, std::back_inserter(row.bytes), std::to_integer<char>);
     study.surfaces.push_back(std::move(row));
   }
   return study;
@@ -98,9 +96,10 @@ SessionRow session_from(const Json& line) {
 
 JournalledAnswer answer_from(const Json& line) {
   JournalledAnswer answer;
+  constexpr TrialStatus status = TrialStatus::answered;
   answer.trial = {
       line.at("session_id"), line.at("number"),      line.at("attempt"),         line.at("block"),
-      line.at("task"),       line.at("is_practice"), line.at("repetition"),      "answered",
+      line.at("task"),       line.at("is_practice"), line.at("repetition"),      status,
       line.at("duration_s"), line.at("is_catch"),    line.at("is_of_real_plate")};
   for (const Json& alternative : line.at("alternatives")) {
     answer.alternatives.push_back({static_cast<int>(answer.alternatives.size()),

@@ -31,15 +31,16 @@ std::vector<StoredTrial> stored_trials(Store& store) {
       "dropped_samples, ticks IS NOT NULL FROM trial_context "
       "LEFT JOIN tick_statistics USING (trial_id) ORDER BY trial_id",
       [&](Statement& row) {
-        trials.push_back({row.integer(0),
-                          row.text(1),
-                          {row.integer(2), row.small_integer(3), row.small_integer(4), row.text(5),
-                           row.text(6), row.flag(7), row.small_integer(8), row.text(9),
-                           row.real(10), row.flag(11), row.flag(12)},
-                          row.integer(13),
-                          row.integer(14),
-                          row.integer(15),
-                          row.flag(16)});
+        trials.push_back(
+            {row.integer(0),
+             row.text(1),
+             {row.integer(2), row.small_integer(3), row.small_integer(4), row.text(5), row.text(6),
+              row.flag(7), row.small_integer(8), trial_status_from(row.text(9)), row.real(10),
+              row.flag(11), row.flag(12)},
+             row.integer(13),
+             row.integer(14),
+             row.integer(15),
+             row.flag(16)});
       });
   return trials;
 }
@@ -187,10 +188,10 @@ class Comparison {
   }
 
   void compare_times(const StoredAnswer& answer, const std::vector<EventRow>& events) {
-    const auto contact = std::ranges::find(events, "contact", &EventRow::kind);
-    const std::optional<double> expected =
-        contact == events.end() ? std::nullopt
-                                : std::optional{answer.row.response_time_s - contact->t_s};
+    std::optional<double> expected;
+    if (const auto contact_s = first_contact_s(events)) {
+      expected = answer.row.response_time_s - *contact_s;
+    }
     note(fmt::format("response {}: time_from_first_contact_s", answer.id),
          to_text(answer.row.time_from_first_contact_s), to_text(expected));
   }

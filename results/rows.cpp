@@ -18,6 +18,33 @@ std::string to_text(GivenBy given_by) {
   return given_by == GivenBy::participant ? "participant" : "operator";
 }
 
+std::string to_text(TrialStatus status) {
+  switch (status) {
+    case TrialStatus::answered:
+      return "answered";
+    case TrialStatus::interrupted:
+      return "interrupted";
+    case TrialStatus::repeated:
+      return "repeated";
+    case TrialStatus::timed_out:
+      return "timed_out";
+    case TrialStatus::skipped:
+      return "skipped";
+  }
+  return "";
+}
+
+TrialStatus trial_status_from(const std::string& text) {
+  using enum TrialStatus;
+  for (const TrialStatus status : {answered, interrupted, repeated, timed_out, skipped}) {
+    if (to_text(status) == text) {
+      return status;
+    }
+  }
+  throw StoreError{"trial.status: '" + text +
+                   "' is none of answered, interrupted, repeated, timed_out, skipped"};
+}
+
 GivenBy given_by_from(const std::string& text) {
   for (const GivenBy given_by : {GivenBy::participant, GivenBy::operator_of_session}) {
     if (to_text(given_by) == text) {

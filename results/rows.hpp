@@ -138,6 +138,12 @@ struct TickStatisticsRow {
   double worst_lateness_s{};
   std::string fault;  // empty: none
 };
+// How a trial ended. interrupted: it comes again; repeated: likewise, its answer does not count;
+// timed_out: it had no answer in time; skipped by the operator.
+enum class TrialStatus { answered, interrupted, repeated, timed_out, skipped };
+std::string to_text(TrialStatus status);
+TrialStatus trial_status_from(const std::string& text);
+
 struct TrialRow {
   std::int64_t session_id{};
   int number{};    // in the planned order, from 1
@@ -146,9 +152,7 @@ struct TrialRow {
   std::string task;
   bool is_practice{};
   int repetition{};
-  // answered; interrupted; repeated: its answer does not count; timed_out: it had none in time;
-  // skipped by the operator
-  std::string status;
+  TrialStatus status{TrialStatus::answered};
   double duration_s{};
   bool is_catch{};          // there to see who attends
   bool is_of_real_plate{};  // not rendered: a plate that was mounted

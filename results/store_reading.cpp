@@ -101,9 +101,10 @@ std::vector<JournalledAnswer> Store::journalled_answers(Statement& row) {
   std::vector<JournalledAnswer> answers;
   while (row.step()) {
     JournalledAnswer answer;
-    answer.trial = {row.integer(1), row.small_integer(2), row.small_integer(3), row.text(4),
-                    row.text(5),    row.flag(6),          row.small_integer(7), row.text(8),
-                    row.real(9),    row.flag(15),         row.flag(16)};
+    answer.trial = {
+        row.integer(1), row.small_integer(2), row.small_integer(3), row.text(4),
+        row.text(5),    row.flag(6),          row.small_integer(7), trial_status_from(row.text(8)),
+        row.real(9),    row.flag(15),         row.flag(16)};
     answer.response = {row.text(10), row.optional_flag(11), row.real(12), row.optional_real(13),
                        row.optional_int(14)};
     answer.alternatives = alternatives_of(row.integer(0));

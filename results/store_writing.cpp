@@ -135,7 +135,7 @@ SaveOutcome Store::add_trial(const TrialRecord& record) {
 }
 
 void Store::add_to_journal(const TrialRecord& record) {
-  if (record.response && record.trial.status == "answered") {
+  if (record.response && record.trial.status == TrialStatus::answered) {
     journal({.answers = {{record.trial, record.alternatives, *record.response}}},
             record.trial.session_id);
   }
@@ -160,7 +160,7 @@ void Store::insert_trial(const TrialRecord& record) {
       .bind(trial.is_catch)
       .bind(std::string{trial.is_of_real_plate ? "real" : "virtual"})
       .bind(trial.repetition)
-      .bind(trial.status)
+      .bind(to_text(trial.status))
       .bind(trial.duration_s)
       .finish();
   add_details(database_.last_row_id(), record);

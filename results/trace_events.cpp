@@ -1,5 +1,7 @@
 #include "results/trace_events.hpp"
 
+#include <algorithm>
+
 #include "core/placement.hpp"
 namespace tapstudy::results {
 namespace {
@@ -38,5 +40,10 @@ void TraceEvents::add(const core::TraceSample& sample, std::vector<EventRow>& ev
   }
   previous_ = sample;
   has_previous_ = true;
+}
+
+std::optional<double> first_contact_s(const std::vector<EventRow>& events) {
+  const auto contact = std::ranges::find(events, "contact", &EventRow::kind);
+  return contact == events.end() ? std::nullopt : std::optional{contact->t_s};
 }
 }  // namespace tapstudy::results

@@ -23,6 +23,7 @@ class TraceEvents {
   std::optional<std::int64_t> last_late_ns_;
   bool has_previous_{false};
 };
+std::optional<double> first_contact_s(const std::vector<EventRow>& events);
 // Time of a tick from the first one of its trial.
 double time_s(const core::TraceSample& sample);
 }  // namespace tapstudy::results

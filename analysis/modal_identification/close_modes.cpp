@@ -7,10 +7,11 @@
 #include <utility>
 
 #include "analysis/modal_identification/neighbouring_modes.hpp"
-#include "analysis/statistics/distributions.hpp"
+#include "analysis/statistics/quantiles.hpp"
 namespace tapstudy::analysis {
 namespace {
-constexpr int highest_order = 60;
+constexpr double line_tolerance = 1e-3;
+constexpr std::size_t max_groups = 12;
 const char* const by_all_taps = "told from its neighbour by all taps together";
 
 double frequency_of(const FittedMode& mode) {
@@ -19,7 +20,8 @@ double frequency_of(const FittedMode& mode) {
 
 bool is_line(const TapModes& tap, const FittedMode& fitted) {
   return std::ranges::any_of(tap.modes, [&](const TapMode& mode) {
-    return mode.standing == Standing::line && frequency_of(mode.fitted) == frequency_of(fitted);
+    return mode.standing == Standing::line &&
+           std::abs(frequency_of(mode.fitted) / frequency_of(fitted) - 1.0) < line_tolerance;
   });
 }
 
@@ -28,7 +30,7 @@ std::vector<SharingDecay> sharing(const std::vector<TapModes>& taps, const Neigh
                                   std::size_t shared) {
   std::vector<SharingDecay> decays;
   for (const TapModes& tap : taps) {
-    SharingDecay decay{&tap.spectrum, {}, tap.lines_hz, std::max(tap.fit.noise, 1e-300)};
+    SharingDecay decay{&tap.spectrum, {}, tap.lines_hz, std::max(tap.fit.noise, 1e-150)};
     for (const FittedMode& fitted : tap.fit.modes) {
       if (!neighbours.range.holds(frequency_of(fitted)) || is_line(tap, fitted)) {
         decay.own.push_back(fitted.pole);
@@ -90,6 +92,13 @@ Criterion criterion_of_impacts(const std::vector<TapModes>& taps, const std::vec
     }
     const std::vector<Pole>& most = *std::ranges::max_element(poles, {}, &std::vector<Pole>::size);
     const std::vector<SharingDecay> decays = sharing(channels, neighbours, most.size());
+    if (decays.empty()) {  // a channel too short for what another one shows
+      for (std::size_t i = 0; i < channels.size(); ++i) {
+        all.unknowns += 2.0 * static_cast<double>(poles[i].size());
+        all.add(channels[i].fit, poles[i].size());
+      }
+      continue;
+    }
     const Criterion one = criterion_of(fit_shared_poles(decays, most), most.size());
     all.deviance += one.deviance;
     all.unknowns += one.unknowns;
@@ -106,63 +115,73 @@ std::vector<Pole> shared_poles(const SharedFit& fit, std::size_t shared) {
   return poles;
 }
 
-// For each impact the pseudo-value of each shared pole, n all - (n - 1) without it.
-std::vector<std::vector<Pole>> pseudo_values(const std::vector<SharingDecay>& decays,
+// The shared poles without each group of impacts in turn, at most max_groups groups; empty if one
+// of them is not what was found with all.
+std::vector<std::vector<Pole>> poles_without(const std::vector<SharingDecay>& decays,
                                              const std::vector<int>& impacts,
-                                             const std::vector<Pole>& of_all) {
+                                             const std::vector<Pole>& of_all,
+                                             const Neighbours& neighbours) {
   const std::set<int> different{impacts.begin(), impacts.end()};
-  const auto count = static_cast<double>(different.size());
-  std::vector<std::vector<Pole>> values;
-  for (const int without : different) {
+  const std::vector<int> numbers{different.begin(), different.end()};
+  const std::size_t groups = std::min(numbers.size(), max_groups);
+  std::vector<std::vector<Pole>> all;
+  for (std::size_t group = 0; group < groups && groups > 1; ++group) {
     std::vector<SharingDecay> others;
     for (std::size_t i = 0; i < decays.size(); ++i) {
-      if (impacts[i] != without) {
+      const auto place = std::ranges::lower_bound(numbers, impacts[i]) - numbers.begin();
+      if (static_cast<std::size_t>(place) % groups != group) {
         others.push_back(decays[i]);
       }
     }
-    std::vector<Pole> poles = of_all;
-    if (!others.empty()) {
-      const std::vector<Pole> of_others =
-          shared_poles(fit_shared_poles(others, of_all), of_all.size());
-      for (std::size_t k = 0; k < poles.size(); ++k) {
-        poles[k].frequency_hz +=
-            (count - 1.0) * (poles[k].frequency_hz - of_others[k].frequency_hz);
-        poles[k].damping_ratio +=
-            (count - 1.0) * (poles[k].damping_ratio - of_others[k].damping_ratio);
-      }
+    all.push_back(shared_poles(fit_shared_poles(others, of_all), of_all.size()));
+    if (!std::ranges::all_of(all.back(),
+                             [&](const Pole& pole) { return neighbours.may_hold(pole); })) {
+      return {};
     }
-    values.push_back(std::move(poles));
   }
-  return values;
+  return all;
 }
 
-// Student's over impacts, and not narrower than what the noise alone gives: where few of the
-// impacts tell the modes apart, their pseudo-values are not normal.
-Estimate estimate(const std::vector<double>& values, double error, double degrees_of_freedom) {
-  const std::vector<double> errors(values.size(),
-                                   error * std::sqrt(static_cast<double>(values.size())));
-  Estimate estimate = estimate_over_taps(values, errors, degrees_of_freedom);
-  const double half = t_quantile(0.975, degrees_of_freedom) * error;
-  estimate.interval.low = std::min(estimate.interval.low, estimate.value - half);
-  estimate.interval.high = std::max(estimate.interval.high, estimate.value + half);
-  return estimate;
+// The jackknife's error over groups of impacts (Tukey 1958), with Student's interval that is not
+// narrower than what the noise alone gives: where few of the impacts tell the modes apart, the
+// jackknife's error is of few degrees of freedom.
+Estimate estimate(double of_all, const std::vector<double>& without, double of_noise,
+                  double degrees_of_freedom) {
+  const Estimate by_noise = t_estimate(of_all, of_noise, degrees_of_freedom);
+  if (without.size() < 2) {
+    return by_noise;
+  }
+  const auto groups = static_cast<double>(without.size());
+  const double error =
+      mean_and_spread(without).standard_deviation * (groups - 1.0) / std::sqrt(groups);
+  Estimate over_groups = t_estimate(of_all, error, groups - 1.0);
+  over_groups.standard_error = std::max(error, of_noise);
+  const bool is_wider = over_groups.interval.high > by_noise.interval.high;
+  over_groups.interval = is_wider ? over_groups.interval : by_noise.interval;
+  return over_groups;
 }
 
-RepeatedMode repeated(const std::vector<std::vector<Pole>>& values, std::size_t k,
+RepeatedMode repeated(const std::vector<std::vector<Pole>>& without, std::size_t k,
                       const SharedFit& together) {
   const FittedMode& fitted = together.decays.front().modes[k];
-  RepeatedMode mode;
-  for (const std::vector<Pole>& poles : values) {
-    mode.frequencies_hz.push_back(poles[k].frequency_hz);
-    mode.ratios.push_back(poles[k].damping_ratio);
+  std::vector<double> frequencies_hz;
+  std::vector<double> ratios;
+  for (const std::vector<Pole>& poles : without) {
+    frequencies_hz.push_back(poles[k].frequency_hz);
+    ratios.push_back(poles[k].damping_ratio);
   }
   const double freedom = together.degrees_of_freedom;
-  mode.frequency_hz = estimate(mode.frequencies_hz, fitted.frequency_error_hz, freedom);
-  mode.damping_ratio = estimate(mode.ratios, fitted.ratio_error, freedom);
-  mode.degrees_of_freedom = values.size() > 1 ? static_cast<double>(values.size()) - 1.0 : freedom;
+  RepeatedMode mode;
+  mode.frequency_hz =
+      estimate(fitted.pole.frequency_hz, frequencies_hz, fitted.frequency_error_hz, freedom);
+  mode.damping_ratio = estimate(fitted.pole.damping_ratio, ratios, fitted.ratio_error, freedom);
+  mode.degrees_of_freedom =
+      without.size() > 1 ? static_cast<double>(without.size()) - 1.0 : freedom;
   mode.standing = Standing::agreed;
   mode.why = by_all_taps;
-  mode.taps = static_cast<int>(together.decays.size());
+  mode.taps = static_cast<int>(std::ranges::count_if(together.decays, [&](const DecayFit& decay) {
+    return decay.modes[k].significance >= min_significance;
+  }));
   mode.agreed = mode.taps;
   return mode;
 }
@@ -173,11 +192,28 @@ void replace_in_tap(const Neighbours& neighbours, const DecayFit& fit, std::size
     return mode.standing != Standing::line && neighbours.range.holds(frequency_of(mode.fitted));
   });
   for (std::size_t k = 0; k < shared; ++k) {
-    tap.modes.push_back(
-        {fit.modes[k], Standing::agreed, by_all_taps, std::nullopt, min_stable_orders});
+    const bool is_seen = fit.modes[k].significance >= min_significance;
+    tap.modes.push_back({fit.modes[k], is_seen ? Standing::agreed : Standing::doubtful,
+                         is_seen ? by_all_taps : "not significant in this tap", std::nullopt,
+                         min_stable_orders});
   }
   std::ranges::sort(tap.modes, {}, [](const TapMode& mode) { return frequency_of(mode.fitted); });
   tap.fit = fit;
+}
+
+// A mode whose frequency depends on its amplitude is, to first order, one pole and another of the
+// same frequency and three times its decay (a cubic stiffness, Nayfeh & Mook 1979).
+bool may_be_one_nonlinear_mode(const std::vector<Pole>& poles) {
+  for (std::size_t i = 0; i < poles.size(); ++i) {
+    for (std::size_t k = i + 1; k < poles.size(); ++k) {
+      const auto [less, more] = std::minmax(poles[i].damping_ratio, poles[k].damping_ratio);
+      const double apart_hz = std::abs(poles[i].frequency_hz - poles[k].frequency_hz);
+      if (more > 2.0 * less && apart_hz < 0.2 * less * poles[i].frequency_hz) {
+        return true;
+      }
+    }
+  }
+  return false;
 }
 
 // Nothing is changed unless they are told apart.
@@ -190,21 +226,54 @@ void tell_apart(const Neighbours& neighbours, const std::vector<Pole>& poles,
   const SharedFit together = fit_shared_poles(decays, poles);
   const std::vector<Pole> fitted = shared_poles(together, poles.size());
   const bool are_inside =
+      together.decays.front().has_converged &&
       std::ranges::all_of(fitted, [&](const Pole& pole) { return neighbours.may_hold(pole); });
-  if (!are_inside || criterion_of(together, poles.size()).value() >=
-                         criterion_of_impacts(found.taps, impacts, neighbours).value()) {
+  if (!are_inside || may_be_one_nonlinear_mode(fitted) ||
+      criterion_of(together, poles.size()).value() >=
+          criterion_of_impacts(found.taps, impacts, neighbours).value()) {
+    return;
+  }
+  const std::vector<std::vector<Pole>> without = poles_without(decays, impacts, fitted, neighbours);
+  if (without.empty() && std::ranges::count(impacts, impacts.front()) != std::ssize(impacts)) {
     return;
   }
   std::erase_if(found.modes, [&](const RepeatedMode& mode) {
     return mode.standing != Standing::line && neighbours.range.holds(mode.frequency_hz.value);
   });
-  const std::vector<std::vector<Pole>> values = pseudo_values(decays, impacts, fitted);
   for (std::size_t k = 0; k < poles.size(); ++k) {
-    found.modes.push_back(repeated(values, k, together));
+    found.modes.push_back(repeated(without, k, together));
   }
   for (std::size_t i = 0; i < found.taps.size(); ++i) {
     replace_in_tap(neighbours, together.decays[i], poles.size(), found.taps[i]);
   }
+}
+
+double noise_of(const TapModes& tap, const FreeDecay& decay) {
+  constexpr double least = 1e-9;  // of the decay: synthetic ones may have none
+  const double rms = decay.samples.norm() / std::sqrt(static_cast<double>(decay.samples.size()));
+  return std::max({tap.fit.noise, least * rms, 1e-150});
+}
+
+// Of the most decays that share a rate to a thousandth.
+MatrixPencil pencil_of(const std::vector<FreeDecay>& decays, const std::vector<TapModes>& taps,
+                       const Band& band) {
+  const auto is_of = [](double rate_hz) {
+    return [rate_hz](const FreeDecay& decay) {
+      return std::abs(decay.rate_hz / rate_hz - 1.0) < 1e-3;
+    };
+  };
+  const FreeDecay& commonest = *std::ranges::max_element(decays, {}, [&](const FreeDecay& one) {
+    return std::ranges::count_if(decays, is_of(one.rate_hz));
+  });
+  std::vector<FreeDecay> some;
+  std::vector<double> noise;
+  for (std::size_t i = 0; i < decays.size(); ++i) {
+    if (is_of(commonest.rate_hz)(decays[i])) {
+      some.push_back(decays[i]);
+      noise.push_back(noise_of(taps[i], decays[i]));
+    }
+  }
+  return matrix_pencil(some, noise, band, max_model_order);
 }
 }  // namespace
 
@@ -212,16 +281,7 @@ ModesOfTaps tell_close_modes_apart(const std::vector<FreeDecay>& decays,
                                    const std::vector<int>& impacts, const Band& band,
                                    const ModesOfTaps& found) {
   ModesOfTaps result = found;
-  const bool is_of_one_rate = std::ranges::all_of(
-      decays, [&](const FreeDecay& decay) { return decay.rate_hz == decays.front().rate_hz; });
-  if (!is_of_one_rate) {
-    return result;
-  }
-  std::vector<double> noise;
-  for (const TapModes& tap : found.taps) {
-    noise.push_back(std::max(tap.fit.noise, 1e-300));
-  }
-  const MatrixPencil pencil = matrix_pencil(decays, noise, band, highest_order);
+  const MatrixPencil pencil = pencil_of(decays, found.taps, band);
   for (const Neighbours& neighbours : neighbours_among(found.modes)) {
     const std::vector<Pole> poles = poles_by_all(pencil, neighbours);
     if (!poles.empty()) {

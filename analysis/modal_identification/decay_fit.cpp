@@ -128,9 +128,9 @@ SharedFit fit_shared_poles(const std::vector<SharingDecay>& sharing,
     decays.push_back(started(decay, shared));
   }
   SharedFit fit;
-  fit.has_converged = descend(decays, std::ssize(shared));
+  const bool has_converged = descend(decays, std::ssize(shared));
   for (const WeightedDecay& decay : decays) {
-    fit.decays.push_back(described(decay.model, decay.state, fit.has_converged));
+    fit.decays.push_back(described(decay.model, decay.state, has_converged));
   }
   set_shared_errors(decays, shared.size(), fit);
   return fit;

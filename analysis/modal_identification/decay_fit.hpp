@@ -45,7 +45,6 @@ struct SharingDecay {
 struct SharedFit {
   std::vector<DecayFit> decays;  // the shared modes first, with the errors of all together
   double degrees_of_freedom{};
-  bool has_converged{};
 };
 // Likewise of all decays together, at least one: what differs from one to the next are amplitudes.
 SharedFit fit_shared_poles(const std::vector<SharingDecay>& decays,

@@ -1,5 +1,6 @@
 #include "analysis/modal_identification/decay_model.hpp"
 
+#include <algorithm>
 #include <limits>
 
 #include "analysis/modal_identification/cut_exponential.hpp"
@@ -8,17 +9,20 @@ namespace tapstudy::analysis {
 namespace {
 using Complex = std::complex<double>;
 constexpr Eigen::Index smooth_terms = 4;
-
-Eigen::VectorXd stacked(const Eigen::VectorXcd& values) {
-  Eigen::VectorXd all{2 * values.size()};
-  all << values.real(), values.imag();
-  return all;
-}
+constexpr double max_growth = 30.0;
 
 // The columns of cosine and sine.
 void set_pair(Eigen::MatrixXd& columns, Eigen::Index first, const CutExponential& both) {
   columns.col(first) = stacked(both.plus);
   columns.col(first + 1) = stacked(Complex{0.0, -1.0} * both.minus);
+}
+
+// Squares of e^(2 max_growth) can still be added up.
+bool grows_beyond_bounds(const Eigen::VectorXd& logs) {
+  const Eigen::Index poles = logs.size() / 2;
+  return poles > 0 &&
+         !(Eigen::Map<const Eigen::VectorXd, 0, Eigen::InnerStride<2>>(logs.data(), poles)
+               .maxCoeff() <= 2.0 * max_growth);
 }
 }  // namespace
 
@@ -47,7 +51,7 @@ DecayModel::State DecayModel::at(const Eigen::VectorXd& logs) const {
     set_pair(state.basis, 2 * k, cut_exponential(log_of_pole(logs, k), spectrum_));
   }
   state.basis.rightCols(nuisance_.cols()) = nuisance_;
-  if (!state.basis.allFinite()) {  // a pole that grows beyond all bounds fits nothing
+  if (grows_beyond_bounds(logs) || !state.basis.allFinite()) {  // fits nothing
     state.shares = Eigen::VectorXd::Zero(state.basis.cols());
     state.residual = data_;
     state.sum_of_squares = std::numeric_limits<double>::infinity();
@@ -78,7 +82,7 @@ Eigen::VectorXd DecayModel::logs_of(const std::vector<Pole>& poles) const {
   Eigen::VectorXd logs{2 * std::ssize(poles)};
   for (Eigen::Index k = 0; k < std::ssize(poles); ++k) {
     const Complex log_z = log_of(poles[static_cast<std::size_t>(k)], spectrum_.rate_hz);
-    logs.segment<2>(2 * k) << log_z.real() * length_, log_z.imag() * length_;
+    logs.segment<2>(2 * k) << std::min(log_z.real() * length_, max_growth), log_z.imag() * length_;
   }
   return logs;
 }

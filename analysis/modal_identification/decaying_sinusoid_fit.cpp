@@ -181,9 +181,7 @@ Estimate amplitude_per_speed(const std::vector<double>& speeds_m_s,
     squares += misfit * misfit;
   }
   const auto freedom = static_cast<double>(speeds_m_s.size() - 1);
-  const double error = std::sqrt(squares / freedom / speed_squares);
-  const double half = t_quantile(0.975, freedom) * error;
-  return {slope, error, {slope - half, slope + half}, std::nullopt};
+  return t_estimate(slope, std::sqrt(squares / freedom / speed_squares), freedom);
 }
 
 std::optional<AmplitudeLine> amplitude_line(const std::vector<double>& speeds_m_s,
@@ -200,13 +198,9 @@ std::optional<AmplitudeLine> amplitude_line(const std::vector<double>& speeds_m_
   const double offset = amplitude.mean() - slope * speed.mean();
   const auto freedom = static_cast<double>(count - 2);
   const double variance = (amplitude - offset - slope * speed).square().sum() / freedom;
-  const auto estimate = [&](double value, double error) {
-    const double half = t_quantile(0.975, freedom) * error;
-    return Estimate{value, error, {value - half, value + half}, std::nullopt};
-  };
-  return AmplitudeLine{
-      estimate(offset, std::sqrt(variance * (1.0 / static_cast<double>(count) +
-                                             speed.mean() * speed.mean() / spread))),
-      estimate(slope, std::sqrt(variance / spread))};
+  const double offset_variance =
+      variance * (1.0 / static_cast<double>(count) + speed.mean() * speed.mean() / spread);
+  return AmplitudeLine{t_estimate(offset, std::sqrt(offset_variance), freedom),
+                       t_estimate(slope, std::sqrt(variance / spread), freedom)};
 }
 }  // namespace tapstudy::analysis

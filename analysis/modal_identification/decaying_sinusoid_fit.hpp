@@ -2,8 +2,8 @@
 #include <optional>
 #include <vector>
 
+#include "analysis/modal_identification/estimate.hpp"
 #include "analysis/modal_identification/free_decay.hpp"
-#include "analysis/modal_identification/repeated_modes.hpp"
 namespace tapstudy::analysis {
 // amplitude e^(-decay t) sin(2 pi frequency t), t from start_s on (the paper, 5.2.3).
 struct FittedSinusoid {

@@ -39,6 +39,11 @@ bool has_small_factors(Eigen::Index n) {
 }
 }  // namespace
 
+double frequency_tolerance_hz(const Pole& pole, double share, double error_hz) {
+  const double bandwidth_hz = 2.0 * std::abs(pole.damping_ratio) * pole.frequency_hz;
+  return std::max({share * pole.frequency_hz, bandwidth_hz / 6.0, 4.0 * error_hz});
+}
+
 std::complex<double> log_of(const Pole& pole, double rate_hz) {
   const double omega = 2.0 * pi * pole.frequency_hz / rate_hz;
   return {-pole.damping_ratio * omega,
@@ -64,6 +69,12 @@ FreeDecay decimated(const FreeDecay& decay, double high_hz) {
     result.samples[i] = taps.dot(decay.samples.segment(i * factor, taps.size()));
   }
   return result;
+}
+
+Eigen::MatrixXd stacked(const Eigen::MatrixXcd& values) {
+  Eigen::MatrixXd all{2 * values.rows(), values.cols()};
+  all << values.real(), values.imag();
+  return all;
 }
 
 BandSpectrum band_spectrum(const FreeDecay& decay, const Band& band) {

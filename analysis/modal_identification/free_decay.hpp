@@ -25,6 +25,10 @@ struct Pole {
   double damping_ratio{};  // -Re s / |s|
 };
 
+// How far apart the frequencies of one mode may be said to be: this share of it, a sixth of the
+// half-power bandwidth (2 damping_ratio frequency_hz) or four standard errors, whichever is most.
+double frequency_tolerance_hz(const Pole& pole, double share, double error_hz = 0.0);
+
 // ln z of the pole with the positive imaginary part, and back. |damping_ratio| < 1.
 std::complex<double> log_of(const Pole& pole, double rate_hz);
 Pole pole_of(const std::complex<double>& log_z, double rate_hz);
@@ -42,6 +46,8 @@ struct BandSpectrum {
   Eigen::ArrayXd rad_per_sample;  // ascending
   Eigen::VectorXcd values;
 };
+// Complex values as real ones, the imaginary parts below the real.
+Eigen::MatrixXd stacked(const Eigen::MatrixXcd& values);
 // Throws InvalidInput for a band that holds fewer than 8 bins, with how long a decay has to be.
 BandSpectrum band_spectrum(const FreeDecay& decay, const Band& band);
 }  // namespace tapstudy::analysis

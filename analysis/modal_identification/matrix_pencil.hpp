@@ -1,6 +1,8 @@
 #pragma once
 #include "analysis/modal_identification/free_decay.hpp"
 namespace tapstudy::analysis {
+inline constexpr int max_model_order = 60;
+
 // The poles found with one model order (an even number of exponentials, two a mode).
 struct PolesOfOrder {
   int order{};
@@ -24,8 +26,8 @@ MatrixPencil matrix_pencil(const FreeDecay& decay, const Band& band, int max_ord
 // Of several decays of the same structure and one rate, with the standard deviations of their
 // noise (above 0): the Gram matrices of all, each over its noise's variance, are added. Modes too
 // close to be told apart in one decay are in several that excite them in different proportions
-// (as with several references, Vold et al. 1982). Decays shorter than two thirds of the median take
-// no part; empty if that is too short.
+// (as with several references, Vold et al. 1982). The pencil parameter follows from the median
+// length; decays shorter than twice that take no part. Empty if it is too small.
 MatrixPencil matrix_pencil(const std::vector<FreeDecay>& decays, const std::vector<double>& noise,
                            const Band& band, int max_order);
 }  // namespace tapstudy::analysis

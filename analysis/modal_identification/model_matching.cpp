@@ -166,7 +166,9 @@ FactorError error_of(const Assignment& found, const std::vector<Estimate>& measu
     return {std::sqrt(squares / (count - 1.0) / count), count - 1.0};
   }
   const Estimate& only = measured_hz[found.pairs.front().measured];
-  return {only.standard_error / only.value, 1e6};
+  constexpr double many = 1e6;  // its interval is taken as it is
+  const double half = (only.interval.high - only.interval.low) / 2.0 / t_quantile(0.975, many);
+  return {half / only.value, many};
 }
 }  // namespace
 

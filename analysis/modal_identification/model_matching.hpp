@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "analysis/modal_identification/repeated_modes.hpp"
+#include "analysis/modal_identification/estimate.hpp"
 namespace tapstudy::analysis {
 struct MatchedMode {
   std::size_t measured{};             // index into the measured modes

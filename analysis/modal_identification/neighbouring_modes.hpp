@@ -3,7 +3,8 @@
 
 #include "analysis/modal_identification/repeated_modes.hpp"
 namespace tapstudy::analysis {
-// Modes within a half-power bandwidth of one another.
+// Modes whose intervals, frequency plus and minus half-power bandwidth, overlap; a mode alone is a
+// group of its own.
 struct Neighbours {
   Band range;
   std::size_t agreed{};

@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "analysis/modal_identification/repeated_modes.hpp"
+#include "analysis/modal_identification/estimate.hpp"
 #include "core/model/elements/material.hpp"
 namespace tapstudy::analysis {
 struct MeasuredRatio {

@@ -8,14 +8,9 @@
 #include <numeric>
 
 #include "analysis/modal_identification/assignment.hpp"
-#include "analysis/participants/mean_proportion.hpp"
 #include "analysis/statistics/distributions.hpp"
-#include "analysis/statistics/quantiles.hpp"
 namespace tapstudy::analysis {
 namespace {
-constexpr std::size_t min_taps_to_resample = 5;
-constexpr int bootstrap_draws = 2000;
-constexpr std::uint64_t bootstrap_seed = 1;
 constexpr double same_frequency = 0.02;
 
 struct Sighting {
@@ -46,10 +41,9 @@ const FittedMode& most_significant(const Sightings& group) {
 // Of their frequencies, over what may lie between those of one mode: up to 1 for the same.
 double distance(const Sightings& group, const Sighting& one) {
   const FittedMode& known = most_significant(group);
-  const double tolerance =
-      std::max({same_frequency * known.pole.frequency_hz,
-                std::abs(known.pole.damping_ratio) / 3.0 * known.pole.frequency_hz,
-                4.0 * std::hypot(known.frequency_error_hz, one.mode->fitted.frequency_error_hz)});
+  const double tolerance = frequency_tolerance_hz(
+      known.pole, same_frequency,
+      std::hypot(known.frequency_error_hz, one.mode->fitted.frequency_error_hz));
   return std::abs(frequency_of(one) - known.pole.frequency_hz) / tolerance;
 }
 
@@ -182,41 +176,16 @@ RepeatedMode summary_of(const Sightings& group, std::size_t taps, const std::vec
     mode.why = doubtful.empty() ? "in one tap only" : doubtful.front().mode->why;
   }
   const Shown of_impacts = shown_by(*shown, impacts);
-  mode.frequencies_hz = of_impacts.frequencies_hz;
-  mode.ratios = of_impacts.ratios;
   const double freedom = shown->front().degrees_of_freedom;
   mode.frequency_hz =
-      estimate_over_taps(mode.frequencies_hz, of_impacts.frequency_errors_hz, freedom);
-  mode.scatter_p = scatter_p_of(mode.frequencies_hz, of_impacts.frequency_errors_hz);
-  mode.damping_ratio = estimate_over_taps(mode.ratios, of_impacts.ratio_errors, freedom);
+      estimate_over_taps(of_impacts.frequencies_hz, of_impacts.frequency_errors_hz, freedom);
+  mode.scatter_p = scatter_p_of(of_impacts.frequencies_hz, of_impacts.frequency_errors_hz);
+  mode.damping_ratio = estimate_over_taps(of_impacts.ratios, of_impacts.ratio_errors, freedom);
   mode.degrees_of_freedom =
-      mode.ratios.size() > 1 ? static_cast<double>(mode.ratios.size()) - 1.0 : freedom;
+      of_impacts.ratios.size() > 1 ? static_cast<double>(of_impacts.ratios.size()) - 1.0 : freedom;
   return mode;
 }
 }  // namespace
-
-Estimate estimate_over_taps(const std::vector<double>& values, const std::vector<double>& errors,
-                            double degrees_of_freedom_of_one) {
-  const auto count = static_cast<double>(values.size());
-  Estimate estimate;
-  double freedom = degrees_of_freedom_of_one;
-  estimate.value = values.front();
-  estimate.standard_error = errors.front();
-  double error = errors.front();
-  if (values.size() > 1) {
-    const MeanAndSpread over = mean_and_spread(values);
-    freedom = count - 1.0;
-    estimate.value = over.mean;
-    error = over.standard_deviation / std::sqrt(count);
-    estimate.standard_error = std::max(error, norm_of(errors) / count);
-  }
-  const double half = t_quantile(0.975, freedom) * error;
-  estimate.interval = {estimate.value - half, estimate.value + half};
-  if (values.size() >= min_taps_to_resample) {
-    estimate.bootstrap = bootstrap_interval(values, bootstrap_draws, bootstrap_seed);
-  }
-  return estimate;
-}
 
 std::vector<RepeatedMode> modes_over_taps(const std::vector<TapModes>& taps,
                                           const std::vector<int>& impacts) {

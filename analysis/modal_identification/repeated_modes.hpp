@@ -1,22 +1,9 @@
 #pragma once
 #include <optional>
 
+#include "analysis/modal_identification/estimate.hpp"
 #include "analysis/modal_identification/tap_modes.hpp"
-#include "analysis/statistics/proportion.hpp"
 namespace tapstudy::analysis {
-// A value with its 95 % interval.
-struct Estimate {
-  double value{};
-  double standard_error{};            // over taps, not below what their noise alone gives
-  Interval interval;                  // Student's t: over taps, or of one tap's noise
-  std::optional<Interval> bootstrap;  // over taps, bias-corrected and accelerated, of 5 and more
-};
-
-// Of one tap: the value and its standard error with so many degrees of freedom. Of several: their
-// mean, and the interval over taps. Values and errors as many, at least one.
-Estimate estimate_over_taps(const std::vector<double>& values, const std::vector<double>& errors,
-                            double degrees_of_freedom_of_one);
-
 // One mode, as several taps show it.
 struct RepeatedMode {
   Estimate frequency_hz;
@@ -27,13 +14,11 @@ struct RepeatedMode {
   std::optional<double> scatter_p{};
   Standing standing{Standing::doubtful};
   std::string why;
-  int taps{};                          // that show it
-  int agreed{};                        // of these, with both methods
-  std::vector<double> frequencies_hz;  // of each impact that shows it, mean over its channels
-  std::vector<double> ratios;
+  int taps{};    // that show it
+  int agreed{};  // of these, with both methods
 };
 
-// Modes of different taps are one if their frequencies differ by 2 % at most (a third of the
+// Modes of different taps are one if their frequencies differ by 2 % at most (a sixth of the
 // half-power bandwidth or four standard errors if that is more); each tap shows one at most, and of
 // several close ones each the nearest, all together. A mode is agreed if at least half of the taps
 // that show it say so, and, of several taps, two do; its estimates are of these taps alone.

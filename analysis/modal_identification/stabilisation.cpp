@@ -46,10 +46,8 @@ std::vector<Chain> chains_of(const std::vector<PolesOfOrder>& orders) {
 }  // namespace
 
 bool continues(const Pole& from, const Pole& to) {
-  const double frequency_tolerance =
-      from.frequency_hz * std::max(0.01, std::abs(from.damping_ratio) / 3.0);
   const double ratio_tolerance = std::max(0.003, 0.1 * std::abs(from.damping_ratio));
-  return std::abs(to.frequency_hz - from.frequency_hz) <= frequency_tolerance &&
+  return std::abs(to.frequency_hz - from.frequency_hz) <= frequency_tolerance_hz(from, 0.01) &&
          std::abs(to.damping_ratio - from.damping_ratio) <= ratio_tolerance;
 }
 

@@ -12,7 +12,6 @@
 #include "core/error.hpp"
 namespace tapstudy::analysis {
 namespace {
-constexpr double min_significance = 25.0;
 constexpr double max_ratio = 0.7;
 // How far a tone falls within the tap, in nepers. Below the first it is steady, or drifts; what
 // falls by less than the second must do so for certain, and not be where the mains hum.
@@ -31,15 +30,10 @@ struct Candidate {
   std::optional<Pole> by_rational_fit;
 };
 
-double frequency_tolerance(const Pole& pole, double error_hz) {
-  return std::max({0.01 * pole.frequency_hz, std::abs(pole.damping_ratio) / 3.0 * pole.frequency_hz,
-                   4.0 * error_hz});
-}
-
 bool agree(const FittedMode& fitted, const Pole& other) {
   const Pole& pole = fitted.pole;
   return std::abs(other.frequency_hz - pole.frequency_hz) <=
-             frequency_tolerance(pole, fitted.frequency_error_hz) &&
+             frequency_tolerance_hz(pole, 0.01, fitted.frequency_error_hz) &&
          std::abs(other.damping_ratio - pole.damping_ratio) <=
              std::max({0.25 * std::abs(pole.damping_ratio), 0.003, 4.0 * fitted.ratio_error});
 }
@@ -214,7 +208,7 @@ TapModes identify_modes(const FreeDecay& decay, const ModeFinding& finding) {
                   std::min(1.25 * finding.band.high_hz, 0.47 * decay.rate_hz)};
   TapModes result;
   result.lines_hz = finding.lines_hz;
-  result.pencil = matrix_pencil(decay, wide, finding.max_order);
+  result.pencil = matrix_pencil(decay, wide, max_model_order);
   result.spectrum = band_spectrum(decay, wide);
   const std::size_t room = most_modes(result.spectrum, finding.lines_hz);
   std::vector<StablePole> stable = stable_poles(result.pencil.orders);

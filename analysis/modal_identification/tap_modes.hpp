@@ -5,6 +5,9 @@
 #include "analysis/modal_identification/decay_fit.hpp"
 #include "analysis/modal_identification/stabilisation.hpp"
 namespace tapstudy::analysis {
+// Chi-squared of the two parts of an amplitude, below which a mode is not there.
+inline constexpr double min_significance = 25.0;
+
 // agreed: both methods find it, and it is stable over orders; line: it does not decay, and is no
 // mode but hum or another steady tone.
 enum class Standing { agreed, doubtful, line };
@@ -28,14 +31,13 @@ struct TapModes {
 
 struct ModeFinding {
   Band band;
-  int max_order{60};
   std::vector<double> lines_hz{};  // steady tones known to be there, from other taps
 };
 
 // Modes of one tap. Poles that are stable by the matrix pencil and those by vector fitting are
 // fitted together (fit_decay), in a band up to a quarter wider, so that a mode just outside is not
 // felt inside; poles whose amplitude is not significant (chi-squared below 25) are dropped, the
-// weakest first. What remains is agreed if both methods found it: frequencies within 1 % (a third
+// weakest first. What remains is agreed if both methods found it: frequencies within 1 % (a sixth
 // of the half-power bandwidth or four standard errors if that is more), damping ratios within a
 // quarter (or 0.003, or four standard errors). What falls by less than 14 % over the tap, or not
 // significantly, is a line; by less than 40 %, also where a harmonic of the mains is. Throws

@@ -75,12 +75,6 @@ Poles zeros_of(const Poles& poles, const Eigen::VectorXd& c) {
   return zeros;
 }
 
-Eigen::MatrixXd stacked(const Eigen::MatrixXcd& values) {
-  Eigen::MatrixXd all{2 * values.rows(), values.cols()};
-  all << values.real(), values.imag();
-  return all;
-}
-
 Poles relocated(const Poles& poles, const Eigen::ArrayXcd& z, const Eigen::VectorXcd& values) {
   const Eigen::Index n = poles.count();
   const Eigen::MatrixXcd fractions = partial_fractions(poles, z);

@@ -105,15 +105,7 @@ PsychometricPosterior psychometric_posterior(const PsychometricModel& model,
   if (posterior.outcome != FitOutcome::fitted) {
     return posterior;
   }
-  const std::vector<Level> checked = checked_levels(levels, model.shape);
-  const PosteriorEstimates estimates = estimates_of(model, checked, confidence);
-  const AxisRange range = axis_range(checked, model.shape);
-  if (estimates.position.median < range.low || estimates.position.median > range.high) {
-    posterior.outcome = estimates.position.median < range.low ? FitOutcome::threshold_below
-                                                              : FitOutcome::threshold_above;
-  } else {
-    posterior.estimates = estimates;
-  }
+  posterior.estimates = estimates_of(model, checked_levels(levels, model.shape), confidence);
   return posterior;
 }
 }  // namespace tapstudy::analysis

@@ -31,8 +31,8 @@ struct PosteriorEstimates {
 
 struct PsychometricPosterior {
   FitOutcome outcome{};  // that of the maximum likelihood, a step counting as fitted: the prior
-                         // limits the slope; threshold_below or _above if its median lies there
-  std::optional<PosteriorEstimates> estimates;  // if fitted
+                         // limits the slope
+  std::optional<PosteriorEstimates> estimates;  // if fitted; the median may lie outside the levels
 };
 
 // The posterior of beta-binomial answers on a grid that is narrowed to where the posterior is

@@ -8,8 +8,8 @@ namespace tapstudy::analysis {
 // comments (#) and a header. A column is the time if its header says so (t, time, and a unit s, ms
 // or us in brackets or after an underscore) or, with no header and no rate given, if it is the
 // first of several and ascends. The rate is that of the even times nearest to these (least
-// squares). A rate given as well must be the same within 1 %. Throws InvalidInput as read_recording
-// says.
+// squares). A rate given as well must be the same within 0.1 %. Throws InvalidInput as
+// read_recording says.
 Recording read_csv_recording(std::istream& text, const std::string& file,
                              const ReadingOptions& options);
 }  // namespace tapstudy::analysis

@@ -11,7 +11,7 @@
 #include "core/print.hpp"
 namespace tapstudy::analysis {
 namespace {
-// Of the blocks, if there are several.
+// Links to the blocks and to the study as a whole, where there are two or more.
 void write_contents(std::ostream& out, const Summary& summary) {
   if (summary.blocks.size() + (summary.sections.empty() ? 0 : 1) < 2) {
     return;

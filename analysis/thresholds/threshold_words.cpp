@@ -28,6 +28,13 @@ std::string d_prime_words(const BlockDesign& design) {
                            find_decision_model(design.decision_model)->summary);
 }
 
+// Catch trials, at 0, aside.
+bool is_beyond_levels(double threshold, const std::vector<Level>& levels) {
+  const auto lowest =
+      std::ranges::find_if(levels, [](const Level& one) { return one.value != 0.0; });
+  return lowest != levels.end() && (threshold < lowest->value || threshold > levels.back().value);
+}
+
 std::vector<std::string> remarks_on_people(const std::vector<ParticipantThreshold>& people) {
   std::vector<std::string> remarks;
   for (const ParticipantThreshold& person : people) {
@@ -40,6 +47,14 @@ std::vector<std::string> remarks_on_people(const std::vector<ParticipantThreshol
     if (person.estimate && !person.no_posterior.empty()) {
       remarks.push_back(fmt::format("{} has a threshold but no posterior: {}.",
                                     person.participant_id, person.no_posterior));
+    }
+  }
+  for (const ParticipantThreshold& person : people) {
+    if (person.posterior && is_beyond_levels(person.posterior->threshold, person.levels)) {
+      remarks.push_back(
+          fmt::format("The median of {}'s posterior lies beyond the levels that were presented: it "
+                      "rests on the prior.",
+                      person.participant_id));
     }
   }
   if (std::ranges::any_of(people, [](const ParticipantThreshold& person) {

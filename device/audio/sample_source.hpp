@@ -1,7 +1,7 @@
 #pragma once
 #include <span>
 namespace tapstudy::device {
-// What is played: noise for the ears, or the vibration of an actuator.
+// What is played into the ears.
 class SampleSource {
  public:
   virtual ~SampleSource() = default;

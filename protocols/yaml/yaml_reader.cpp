@@ -101,6 +101,9 @@ void MapReader::reject(const std::string& key, const std::string& what) {
   const YAML::Node& whole = *node_;
   const YAML::Node value = whole[key];
   reject_at(value.IsDefined() ? value : written(), path_of(key), what);
+  if (std::ranges::find(known_, key) == known_.end()) {
+    known_.push_back(key);  // it has its error
+  }
 }
 
 std::string MapReader::stated_at() const {

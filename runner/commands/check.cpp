@@ -12,6 +12,7 @@
 #include "runner/commands/check_design.hpp"
 #include "runner/commands/commands.hpp"
 #include "runner/commands/families.hpp"
+#include "runner/commands/impact_energy.hpp"
 #include "runner/commands/lost_modes.hpp"
 #include "runner/commands/planned_participants.hpp"
 #include "runner/commands/seed.hpp"
@@ -102,6 +103,7 @@ void print_models(const protocols::Protocol& protocol, ModelLibrary& models) {
         "{{accuracy: 0.02}} refines until they hold still)\n");
   }
   warn_of_overdamped_modes(protocol, models);
+  warn_of_light_plates(protocol, models);
   if (models.bodies_used() == 0) {
     fmt::print("  none: no technique here needs a model\n");
   }

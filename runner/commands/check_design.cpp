@@ -23,25 +23,27 @@ namespace {
 constexpr double alpha = 0.05;
 
 void warn_of_balance(const protocols::Block& block, int participants) {
-  if (!block.task->uses_order()) {
-    return;
-  }
   const int conditions = static_cast<int>(protocols::conditions(block));
-  if (conditions < 2) {
+  if (!block.task->uses_order() || conditions < 2) {
     return;
   }
-  const int rows = protocols::williams_sequences(conditions, block.repetitions);
+  const int rows = protocols::williams_rows(conditions);
+  const int sequences = protocols::williams_sequences(conditions, block.repetitions);
   if (block.order == protocols::Order::listed) {
     fmt::print("    note: the order is the same for every participant, and not balanced\n");
   } else if (block.order != protocols::Order::williams) {
     fmt::print(
-        "    note: random orders balance only on average; order: williams balances {} "
-        "stimuli, {} each, over every {} participants\n",
-        conditions, block.repetitions == 1 ? "once" : fmt::format("{} times", block.repetitions),
-        rows);
+        "    note: random orders balance only on average; order: williams balances {} stimuli over "
+        "every {} participants\n",
+        conditions, rows);
   } else if (participants % rows != 0) {
     fmt::print("    warning: {} participants do not balance the {} orders (use a multiple of {})\n",
                participants, rows, rows);
+  } else if (participants % sequences != 0) {
+    fmt::print(
+        "    note: balanced within each repetition; what follows what from one repetition to the "
+        "next is with a multiple of {} participants\n",
+        sequences);
   }
 }
 

@@ -57,6 +57,11 @@ TapQuestion question_of(const IdentifyOptions& options) {
   if (question.recordings.empty()) {
     throw core::InvalidInput{"identify takes at least one recording (CSV or WAV)"};
   }
+  for (const std::string& file : question.recordings) {
+    if (std::ranges::count(question.recordings, file) > 1) {
+      throw core::InvalidInput{file + ": is given twice"};
+    }
+  }
   if (question.protocol.empty() != question.stimulus.empty()) {
     throw core::InvalidInput{"--protocol and --stimulus go together"};
   }

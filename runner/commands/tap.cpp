@@ -82,7 +82,8 @@ void print_summary(const TapOptions& options, const protocols::PresentedStimulus
     fmt::print("  impact         {:.3f} s, {:.4f} m/s\n", seconds_of(*impact),
                -core::along_normal(impact->velocity_m_s));
   }
-  fmt::print("  impacts        {}\n", std::ranges::count(trace, true, &TraceSample::impact));
+  fmt::print("  impacts        {}{}\n", std::ranges::count(trace, true, &TraceSample::impact),
+             impact == trace.end() ? "  (the tip met nothing: is the point beside the body?)" : "");
   fmt::print("  penalty        {:.4g} N at most\n",
              largest(trace, [](const TraceSample& s) { return s.penalty_n; }));
   fmt::print("  vibration      {:.4g} N at most\n",

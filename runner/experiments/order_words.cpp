@@ -52,9 +52,8 @@ std::string order_words(const Block& block, std::size_t participants) {
       return ", in an order that was random within each repetition" +
              constraint_words(block.constraints);
     case protocols::Order::williams:
-      return williams_words(protocols::williams_sequences(
-                                static_cast<int>(protocols::conditions(block)), block.repetitions),
-                            participants);
+      return williams_words(
+          protocols::williams_rows(static_cast<int>(protocols::conditions(block))), participants);
   }
   return "";
 }

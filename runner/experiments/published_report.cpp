@@ -13,6 +13,7 @@
 #include "analysis/report/writers.hpp"
 #include "core/error.hpp"
 #include "core/plain_text.hpp"
+#include "results/journal.hpp"
 #include "results/store_error.hpp"
 #include "runner/experiments/study_summary.hpp"
 namespace tapstudy::runner {
@@ -142,6 +143,13 @@ ordered_json read_published(const fs::path& file) {
   }
   return published;
 }
+
+bool is_older(const fs::path& file, const fs::path& than) {
+  std::error_code error;
+  const auto of_file = fs::last_write_time(file, error);
+  const auto of_other = fs::last_write_time(than, error);
+  return !error && of_file < of_other;
+}
 }  // namespace
 
 PublishedReport published_report(const std::string& directory, results::Store& store) {
@@ -171,6 +179,11 @@ PublishedReport published_report(const std::string& directory, results::Store& s
   compare_figures(directory, summary, found.differences);
   if (is_whole(published, anew)) {
     compare_whole(directory, published, anew, summary, found.differences);
+  }
+  if (!found.differences.empty() && is_older(file, results::journal_file(directory))) {
+    found.differences.clear();
+    found.not_compared =
+        "it is older than the last entry of answers.journal (make it anew: report --replace)";
   }
   return found;
 }

@@ -11,6 +11,7 @@ struct PublishedReport {
   std::vector<std::string> differences{};  // "report.json /blocks/0/…: 61, made anew 41", files
 };
 // Compares what report.json, the tables beside it and the page hold; where it was made is left out,
-// and what it leaves out (--only) is not missed. Throws StoreError if report.json is none.
+// and what it leaves out (--only) is not missed; one that differs and is older than the journal's
+// last entry is not compared. Throws StoreError if report.json is none.
 PublishedReport published_report(const std::string& directory, results::Store& store);
 }  // namespace tapstudy::runner

@@ -57,8 +57,8 @@ std::vector<std::string> excluded_of(const Excluded& excluded,
   return found;
 }
 
-// "P03: 2 answers corrected (1 of them from wrong to right), 1 trial skipped"; empty: all went as
-// planned.
+// "P03: answers corrected: 2 (1 of them from wrong to right), trials skipped: 1"; empty: all went
+// as planned.
 std::string deviations_of(const results::ParticipantCourseRow& course) {
   std::vector<std::string> parts;
   if (course.corrected > 0) {
@@ -141,6 +141,9 @@ StoredResults stored_results(results::Store& store, const protocols::Protocol& p
   found.deviations = deviations_of(store, mode);
   found.presentations = {analysis::orders_of(visit_orders(store), found.answers),
                          missing_replies(store, participants)};
+  std::erase_if(found.sessions, [&](const results::SessionRow& session) {
+    return session.mode != mode || excluded.contains(session.participant_id);
+  });
   return found;
 }
 

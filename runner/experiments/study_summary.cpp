@@ -23,32 +23,22 @@ using analysis::Summary;
 using results::Mode;
 
 std::vector<std::pair<std::string, std::string>> provenance(
-    const results::StudyRow& study, const std::vector<results::SessionRow>& sessions, Mode mode) {
+    const results::StudyRow& study, const std::vector<results::SessionRow>& sessions) {
   std::set<std::string> programs;
   std::set<std::string> devices;
   std::vector<std::string> seeds;
   for (const results::SessionRow& session : sessions) {
-    if (session.mode == mode) {
-      programs.insert(
-          fmt::format("{} ({}, {})", session.program_version, session.git_hash, session.compiler));
-      devices.insert(
-          fmt::format("{}, {} Hz, {}", session.device, session.rate_hz, session.scheduler));
-      seeds.push_back(fmt::format("{} {}", session.participant_id, session.seed));
-    }
+    programs.insert(
+        fmt::format("{} ({}, {})", session.program_version, session.git_hash, session.compiler));
+    devices.insert(
+        fmt::format("{}, {} Hz, {}", session.device, session.rate_hz, session.scheduler));
+    seeds.push_back(fmt::format("{} {}", session.participant_id, session.seed));
   }
   return {{"protocol", study.protocol_file},
           {"protocol SHA-256", study.protocol_sha256},
           {"tapstudy", fmt::format("{}", fmt::join(programs, "; "))},
           {"device", fmt::format("{}", fmt::join(devices, "; "))},
           {"seeds", fmt::format("{}", fmt::join(seeds, ", "))}};
-}
-
-std::vector<results::SessionRow> sessions_of(const std::vector<results::SessionRow>& all,
-                                             Mode mode) {
-  std::vector<results::SessionRow> of;
-  std::ranges::copy_if(all, std::back_inserter(of),
-                       [&](const results::SessionRow& session) { return session.mode == mode; });
-  return of;
 }
 
 void check_same_protocol(const std::vector<StudyStore>& stores) {
@@ -89,7 +79,6 @@ void check_different_participants(const std::vector<StudyStore>& stores) {
     }
   }
 }
-
 }  // namespace
 
 Summary summary_of_study(const std::vector<StudyStore>& stores, Mode mode, Detail detail) {
@@ -123,9 +112,8 @@ Summary summary_of_study(const std::vector<StudyStore>& stores, Mode mode, Detai
   if (auto contrasts = analysis::block_contrasts(summary.blocks, is_order_fixed)) {
     summary.sections.insert(summary.sections.begin(), std::move(*contrasts));
   }
-  summary.provenance = provenance(study, all.sessions, mode);
-  summary.procedure =
-      procedure_words(protocol, sessions_of(all.sessions, mode), summary.participant_ids, done);
+  summary.provenance = provenance(study, all.sessions);
+  summary.procedure = procedure_words(protocol, all.sessions, summary.participant_ids, done);
   summary.unfinished = std::move(all.unfinished);
   summary.excluded = std::move(all.excluded);
   std::ranges::move(all.deviations, std::back_inserter(summary.deviations));

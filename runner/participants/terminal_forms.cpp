@@ -49,6 +49,9 @@ std::string told(const protocols::FormItem& item, const std::string& wrong) {
              ? fmt::format("please answer with a number from 1 to {}", item.options.size())
              : wrong;
 }
+
+constexpr std::string_view without_this_form =
+    "every answer given before this form is kept; --resume begins the form again";
 }  // namespace
 
 std::string TerminalParticipant::answer_to(const protocols::FormItem& item) {
@@ -61,7 +64,7 @@ std::string TerminalParticipant::answer_to(const protocols::FormItem& item) {
     const auto line = next_of_participant([] { return true; });
     if (!line || asks_to_quit(*line)) {
       ask_to_stop();
-      stop_if_asked();
+      stop_if_asked(without_this_form);
       return "";
     }
     const std::string answer = as_stored(item, *line);
@@ -76,7 +79,7 @@ std::string TerminalParticipant::answer_to(const protocols::FormItem& item) {
 Participant::FormAnswers TerminalParticipant::fill_in(const protocols::Form& form) {
   if (forget_typed_ahead()) {
     ask_to_stop();
-    stop_if_asked();
+    stop_if_asked(without_this_form);
   }
   say("\n{}\n{}\n", form.title, marked_text(form.text, is_shown_by_terminal()));
   FormAnswers answers;

@@ -13,6 +13,9 @@
 #include "runner/terminal/whole_number.hpp"
 namespace tapstudy::runner {
 namespace {
+constexpr std::string_view kept_for_resume =
+    "every answer given so far is kept (go on with --resume)";
+
 std::optional<std::size_t> number_in(const std::string& word, std::size_t most) {
   const auto number = whole_number(word, 1, static_cast<int>(most));
   return number ? std::optional{static_cast<std::size_t>(*number - 1)} : std::nullopt;
@@ -32,7 +35,7 @@ bool TerminalParticipant::forget_typed_ahead() {
 void TerminalParticipant::wait_until(std::chrono::steady_clock::time_point earliest) {
   const auto is_early = [&] { return std::chrono::steady_clock::now() < earliest; };
   while (is_early()) {
-    stop_if_asked();
+    stop_if_asked(kept_for_resume);
     const auto line =
         input_.is_terminal() ? next_of_participant(is_early) : std::optional<std::string>{};
     if (line && asks_to_quit(*line)) {
@@ -60,7 +63,7 @@ void TerminalParticipant::wait_for_enter(std::chrono::steady_clock::time_point l
     say("{}", has_quit ? "" : "Type quit to stop here; or press Enter. ");
   }
   ask_to_stop();
-  stop_if_asked();
+  stop_if_asked(kept_for_resume);
 }
 
 void TerminalParticipant::wait_while(const std::function<bool()>& is_paused) {

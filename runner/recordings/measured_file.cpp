@@ -36,6 +36,11 @@ MeasuredFile read_measured_file(const std::string& file, const TapQuestion& ques
   for (const std::string& column :
        question.columns.empty() ? std::vector<std::string>{""} : question.columns) {
     measured.channels.push_back(read_column(file, question, column));
+    const std::string& channel = measured.channels.back().channel;
+    if (std::ranges::count(measured.channels, channel, &analysis::Recording::channel) > 1) {
+      throw core::InvalidInput{
+          fmt::format("{}: --column: the channel '{}' is named twice", file, channel)};
+    }
   }
   if (!question.force_column.empty()) {
     measured.force = read_column(file, question, question.force_column);
@@ -64,7 +69,8 @@ analysis::FoundTaps find_taps(const MeasuredFile& measured, const analysis::TapF
     try {
       analysis::FoundTaps found = struck ? analysis::taps_at(*struck, channel, finding)
                                          : analysis::find_taps(channel, finding);
-      const double over_noise = largest(channel) / std::max(found.noise_rms, 1e-300);
+      const double over_noise =
+          found.noise_rms > 0.0 ? largest(channel) / found.noise_rms : 0.0;  // a dead sensor
       if (!clearest || over_noise > most) {
         most = over_noise;
         clearest = std::move(found);

@@ -27,6 +27,12 @@ analysis::FreeDecay between(const analysis::Recording& recording, std::size_t be
   return {recording.rate_hz, all.segment(first, count)};
 }
 
+// A sensor that is off or disconnected.
+bool is_dead(const Eigen::VectorXd& samples) {
+  const double most = samples.cwiseAbs().maxCoeff();
+  return samples.maxCoeff() - samples.minCoeff() <= 1e-12 * most;
+}
+
 class Identifier {
  public:
   Identifier(const TapQuestion& question, Progress& progress) : hook_{progress.hook()} {
@@ -110,6 +116,11 @@ class Identifier {
     one.time_s = static_cast<double>(tap.onset) / recording.rate_hz;
     one.noise_rms = resting.noise_rms;
     one.decay = between(recording, tap.begin, tap.end);
+    if (is_dead(one.decay.samples)) {
+      result_.remarks.push_back(fmt::format("{}, {}: does not change in the tap at {:.3f} s",
+                                            recording.file, recording.channel, one.time_s));
+      return false;
+    }
     one.decay.samples.array() -= one.decay.samples.mean();
     try {
       one.modes = analysis::identify_modes(one.decay, {result_.band});
@@ -197,6 +208,7 @@ class Identifier {
   }
 
   void sum_up() {
+    hook_("all taps together");
     result_.modes = modes_over_all(result_.band, result_.taps, result_.remarks);
     add_remarks(remarks_on_residuals(result_.taps));
     add_remarks(remarks_on_resolution(result_.taps));

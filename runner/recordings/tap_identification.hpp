@@ -5,6 +5,7 @@
 
 #include "analysis/modal_identification/decaying_sinusoid_fit.hpp"
 #include "analysis/modal_identification/rayleigh_fit.hpp"
+#include "analysis/modal_identification/repeated_modes.hpp"
 #include "analysis/modal_identification/tap_modes.hpp"
 #include "analysis/recordings/taps.hpp"
 #include "runner/recordings/model_comparison.hpp"

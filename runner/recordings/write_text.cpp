@@ -119,7 +119,7 @@ void print_model(const TapIdentification& found, const ModelComparison& model) {
                one.assurance ? fmt::format("{:>20.3f}", *one.assurance) : "");
   }
   for (const std::size_t i : update.unmatched) {
-    fmt::print("  {:>11.3f}     -         -  no mode of the model within {:.0f} %\n",
+    fmt::print("  {:>11.3f}     -         -  no mode of the model is left for it within {:.0f} %\n",
                found.modes[found.agreed[i]].frequency_hz.value,
                100.0 * analysis::max_match_difference);
   }

@@ -207,7 +207,8 @@ Claim smaller_in_aluminium(const std::vector<Taps>& all) {
 
 // The figures: of each route the whole force on one scale, the vibration alone on another.
 Drawing waveforms(const Taps& taps, const char* fixations) {
-  const bool is_open = std::string_view{fixations} == "two" && taps.route.aluminium == "aluminium";
+  const bool is_open =
+      std::string_view{fixations} == "two" && !taps.route.differs_in_aluminium_only;
   Drawing drawing{fmt::format("{}, {} fixations", taps.route.name, fixations), {}, is_open};
   for (const std::string& material : taps.route.materials()) {
     for (const char* const point : {"P1", "P2", "P3"}) {

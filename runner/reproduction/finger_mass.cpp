@@ -49,17 +49,16 @@ struct Fingers {
 std::vector<Fingers> fingers(const Bench& bench) {
   std::vector<Fingers> all;
   for (const Route& route : bench.plates) {
-    if (route.aluminium != "aluminium") {
+    if (route.differs_in_aluminium_only) {
       continue;  // differs in aluminium only
     }
     const protocols::Protocol heavy = shipped_protocol(route.file);
     protocols::Protocol light = heavy;
     light.rendering.finger.mass_kg = real_finger_kg;
-    const bool is_printed = route.name == method::printed;
     all.push_back(
         {route.name, route.file, light, heavy,
-         with_real_finger(is_printed ? shipped_protocol("protocols/recommended/forces.yaml")
-                                     : heavy)});
+         with_real_finger(route.is_printed ? shipped_protocol("protocols/recommended/forces.yaml")
+                                           : heavy)});
   }
   return all;
 }

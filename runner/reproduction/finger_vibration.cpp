@@ -54,7 +54,7 @@ enum class Pad { contact_spring, as_needed };
 std::vector<TappedPlate> real_taps(Bench& bench, Pad pad) {
   std::vector<TappedPlate> all;
   for (const Route& route : bench.plates) {
-    if (route.name == method::printed || route.aluminium != "aluminium") {
+    if (route.is_printed || route.differs_in_aluminium_only) {
       continue;
     }
     const protocols::Protocol protocol = with_real_finger(shipped_protocol(route.file));

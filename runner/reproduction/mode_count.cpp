@@ -30,7 +30,7 @@ std::vector<Held> held_at_four(const std::vector<Route>& plates) {
                          "protocols/paper/plate_model.yaml",
                          {"mdf", "acrylic", "aluminium"}}};
   for (const Route& route : plates) {
-    if (route.name == method::printed) {
+    if (route.is_printed) {
       continue;
     }
     std::vector<std::string> stimuli = route.materials();

@@ -119,7 +119,7 @@ std::vector<Claim> mode_shapes(Bench& bench) {
   add(bench, {std::string{method::printed}, "protocols/paper/plate_model.yaml", "aluminium"},
       claim);
   for (const Route& route : bench.plates) {
-    if (route.name != method::printed && route.aluminium == "aluminium") {
+    if (!route.is_printed && !route.differs_in_aluminium_only) {
       add(bench, {route.name, route.file, route.aluminium + "_four"}, claim);
     }
   }

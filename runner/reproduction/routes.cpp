@@ -10,10 +10,11 @@
 namespace tapstudy::runner {
 const std::vector<Route>& routes() {
   static const std::vector<Route> all{
-      {std::string{method::printed}, "protocols/paper/forces.yaml", "aluminium"},
+      {std::string{method::printed}, "protocols/paper/forces.yaml", "aluminium", true},
       {std::string{method::recommended}, "protocols/recommended/forces.yaml", "aluminium"},
       {"5 mm thick", "protocols/recommended/forces_thin.yaml", "aluminium"},
-      {"5 mm thick, aluminium of 70 GPa", "protocols/recommended/forces_thin.yaml", "metal"},
+      {"5 mm thick, aluminium of 70 GPa", "protocols/recommended/forces_thin.yaml", "metal", false,
+       true},
   };
   return all;
 }

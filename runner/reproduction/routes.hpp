@@ -11,6 +11,8 @@ struct Route {
   std::string name;
   std::string file;       // of the protocol, shipped
   std::string aluminium;  // which of its materials that is
+  bool is_printed{};
+  bool differs_in_aluminium_only{};  // from the one before
   std::vector<std::string> materials() const { return {"mdf", "acrylic", aluminium}; }
 };
 

@@ -20,22 +20,23 @@ std::optional<SessionState> state_of(TrialEnding ending) {
   return std::nullopt;
 }
 
-std::string status_of(TrialEnding ending, bool is_answered) {
+results::TrialStatus status_of(TrialEnding ending, bool is_answered) {
+  using results::TrialStatus;
   switch (ending) {
     case TrialEnding::answered:
-      return "answered";
+      return TrialStatus::answered;
     case TrialEnding::repeated:
-      return "repeated";
+      return TrialStatus::repeated;
     case TrialEnding::timed_out:
-      return "timed_out";
+      return TrialStatus::timed_out;
     case TrialEnding::skipped:
-      return "skipped";
+      return TrialStatus::skipped;
     case TrialEnding::faulted:
-      return is_answered ? "answered" : "interrupted";
+      return is_answered ? TrialStatus::answered : TrialStatus::interrupted;
     case TrialEnding::paused:
     case TrialEnding::interrupted:
       break;
   }
-  return "interrupted";
+  return TrialStatus::interrupted;
 }
 }  // namespace tapstudy::runner

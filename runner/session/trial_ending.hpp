@@ -1,7 +1,7 @@
 #pragma once
 #include <optional>
-#include <string>
 
+#include "results/rows.hpp"
 #include "runner/session/session_states.hpp"
 namespace tapstudy::runner {
 enum class TrialEnding { answered, repeated, timed_out, skipped, paused, interrupted, faulted };
@@ -9,6 +9,6 @@ enum class TrialEnding { answered, repeated, timed_out, skipped, paused, interru
 // The session's state after it; nullopt: it is about to be stopped.
 std::optional<SessionState> state_of(TrialEnding ending);
 
-// As a TrialRow has it. A fault after the answer does not take it back.
-std::string status_of(TrialEnding ending, bool is_answered);
+// A fault after the answer does not take it back.
+results::TrialStatus status_of(TrialEnding ending, bool is_answered);
 }  // namespace tapstudy::runner

@@ -14,7 +14,6 @@
 #include "runner/terminal/stop_signal.hpp"
 namespace tapstudy::runner {
 using protocols::PlannedTrial;
-using Ending = TrialEnding;
 
 namespace {
 bool has_late_impact(const TrialResult& result) {
@@ -196,30 +195,30 @@ void TrialEngine::give_feedback(const PlannedTrial& trial, const TrialPrompt& pr
   }
 }
 
-TrialEngine::Ending TrialEngine::ending_of(const Presentation& presentation,
-                                           const PlannedTrial& trial) {
+TrialEnding TrialEngine::ending_of(const Presentation& presentation, const PlannedTrial& trial) {
   if (presentation.result.loop.stopped_by != core::TickFault::none) {
-    return Ending::faulted;
+    return TrialEnding::faulted;
   }
   if (presentation.request) {
-    return *presentation.request == TrialRequest::skip ? Ending::skipped : Ending::repeated;
+    return *presentation.request == TrialRequest::skip ? TrialEnding::skipped
+                                                       : TrialEnding::repeated;
   }
   if (presentation.is_paused) {
-    return Ending::paused;
+    return TrialEnding::paused;
   }
   const bool is_late = presentation.answer && has_late_impact(presentation.result);
   if (presentation.is_answered_in_a_stall ||
       (is_late && repeats_after_late_impacts_[trial.number]++ <
                       parts_.protocol.block(trial.block).max_late_impact_repeats)) {
-    return Ending::repeated;
+    return TrialEnding::repeated;
   }
   if (presentation.answer) {
-    return Ending::answered;
+    return TrialEnding::answered;
   }
-  return presentation.is_timed_out ? Ending::timed_out : Ending::interrupted;
+  return presentation.is_timed_out ? TrialEnding::timed_out : TrialEnding::interrupted;
 }
 
-void TrialEngine::store(const PlannedTrial& trial, Presentation presentation, Ending ending) {
+void TrialEngine::store(const PlannedTrial& trial, Presentation presentation, TrialEnding ending) {
   const core::TickFault fault = presentation.result.loop.stopped_by;
   if (const auto state = state_of(ending)) {
     parts_.states.enter(*state, trial.number, core::to_text(fault));
@@ -251,39 +250,39 @@ TrialEngine::Outcome TrialEngine::run_trial(const PlannedTrial& planned, const C
   const protocols::Block& block = parts_.protocol.block(trial.block);
   Presentation presentation = present({trial, prompt, attempts_[trial.number] + 1}, parts_);
   ticks_ += presentation.result.loop.ticks;
-  const Ending ending = ending_of(presentation, trial);
-  if (ending == Ending::answered) {
+  const TrialEnding ending = ending_of(presentation, trial);
+  if (ending == TrialEnding::answered) {
     ask_confidence(block, trial.number, *presentation.answer);
   }
   const std::optional<Answer> answer = presentation.answer;
   const core::TickFault fault = presentation.result.loop.stopped_by;
   store(trial, std::move(presentation), ending);
   switch (ending) {
-    case Ending::faulted:
+    case TrialEnding::faulted:
       if (answer) {
         note_answer(trial, prompt, answer->response);
       }
       parts_.participant.interrupted();
       return {.interruption = Interruption{trial.number, fault, answer.has_value(),
                                            parts_.trial_loop.is_force_off()}};
-    case Ending::timed_out: {
+    case TrialEnding::timed_out: {
       const bool is_requeued = block.explore.at_limit == protocols::AtLimit::requeue;
       parts_.participant.timed_out(prompt, is_requeued);
       return {.is_requeued = is_requeued};
     }
-    case Ending::repeated:
+    case TrialEnding::repeated:
       parts_.participant.repeats(prompt);
       return {.is_repeated = true};
-    case Ending::paused:
+    case TrialEnding::paused:
       return {.is_repeated = true};
-    case Ending::skipped:
+    case TrialEnding::skipped:
       parts_.participant.skipped(prompt);
       return {.is_requeued = do_skipped_trials_come_again(block)};
-    case Ending::interrupted:
+    case TrialEnding::interrupted:
       throw Stopped{fmt::format(
           "stopped in trial {} of {}; every answer given so far is kept (go on with --resume)",
           trial.number, prompt.total)};
-    case Ending::answered:
+    case TrialEnding::answered:
       break;
   }
   note_answer(trial, prompt, answer->response);

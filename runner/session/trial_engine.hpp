@@ -62,9 +62,8 @@ class TrialEngine {
   void give_feedback(const protocols::PlannedTrial& trial, const TrialPrompt& prompt,
                      const std::string& response);
   void wait_while_paused();
-  using Ending = TrialEnding;
-  Ending ending_of(const Presentation& presentation, const protocols::PlannedTrial& trial);
-  void store(const protocols::PlannedTrial& trial, Presentation presentation, Ending ending);
+  TrialEnding ending_of(const Presentation& presentation, const protocols::PlannedTrial& trial);
+  void store(const protocols::PlannedTrial& trial, Presentation presentation, TrialEnding ending);
   void note_answer(const protocols::PlannedTrial& trial, const TrialPrompt& prompt,
                    const std::string& response);
   struct Course {

@@ -1,20 +1,17 @@
 #include "runner/session/trial_record.hpp"
 
 #include <algorithm>
+
+#include "results/trace_events.hpp"
 namespace tapstudy::runner {
 namespace {
-std::optional<double> first_contact_s(const std::vector<results::EventRow>& events) {
-  const auto contact = std::ranges::find(events, "contact", &results::EventRow::kind);
-  return contact == events.end() ? std::nullopt : std::optional{contact->t_s};
-}
-
 results::ResponseRow response_row(const protocols::PlannedTrial& trial,
                                   const protocols::Block& block, const Answer& answer,
                                   const std::vector<results::EventRow>& events) {
   results::ResponseRow response{answer.response,
                                 trial.task->is_correct(trial, block, answer.response),
                                 answer.response_time_s, std::nullopt, answer.confidence};
-  if (const auto contact_s = first_contact_s(events)) {
+  if (const auto contact_s = results::first_contact_s(events)) {
     response.time_from_first_contact_s = answer.response_time_s - *contact_s;
   }
   return response;
@@ -22,8 +19,9 @@ results::ResponseRow response_row(const protocols::PlannedTrial& trial,
 }  // namespace
 
 results::TrialRecord trial_record(std::int64_t session_id, const protocols::PlannedTrial& trial,
-                                  const protocols::Block& block, int attempt, std::string status,
-                                  const std::optional<Answer>& answer, TrialResult result) {
+                                  const protocols::Block& block, int attempt,
+                                  results::TrialStatus status, const std::optional<Answer>& answer,
+                                  TrialResult result) {
   results::TrialRecord record;
   record.trial = {session_id,
                   trial.number,
@@ -32,7 +30,7 @@ results::TrialRecord trial_record(std::int64_t session_id, const protocols::Plan
                   std::string{trial.task->name()},
                   trial.is_practice,
                   trial.repetition,
-                  std::move(status),
+                  status,
                   result.trace.duration_s,
                   trial.is_catch,
                   block.presented == protocols::Presented::real_plates};

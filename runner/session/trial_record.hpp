@@ -10,8 +10,9 @@ struct Answer {
   double response_time_s{};
   std::optional<int> confidence{};
 };
-// A trial as the store takes it; its status is a TrialRow's.
+// A trial as the store takes it.
 results::TrialRecord trial_record(std::int64_t session_id, const protocols::PlannedTrial& trial,
-                                  const protocols::Block& block, int attempt, std::string status,
-                                  const std::optional<Answer>& answer, TrialResult result);
+                                  const protocols::Block& block, int attempt,
+                                  results::TrialStatus status, const std::optional<Answer>& answer,
+                                  TrialResult result);
 }  // namespace tapstudy::runner

@@ -1,5 +1,7 @@
 #include "runner/terminal/stop_signal.hpp"
 
+#include <fmt/format.h>
+
 #include <array>
 #include <atomic>
 #include <csignal>
@@ -38,9 +40,9 @@ bool stop_was_asked() {
   return asked.load();
 }
 
-void stop_if_asked() {
+void stop_if_asked(std::string_view kept) {
   if (stop_was_asked()) {
-    throw Stopped{"stopped by the operator; every answer given so far is kept"};
+    throw Stopped{fmt::format("stopped by the operator; {}", kept)};
   }
 }
 }  // namespace tapstudy::runner

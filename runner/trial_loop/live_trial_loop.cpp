@@ -5,23 +5,17 @@
 #include <thread>
 
 #include "device/loop/realtime.hpp"
+#include "runner/trial_loop/loop_exploration.hpp"
 namespace tapstudy::runner {
 namespace {
 constexpr std::size_t ring_capacity = 1U << 16U;  // a minute at 1 kHz, should the disk stall
 constexpr std::chrono::milliseconds poll_interval{5};
 
-class LiveExploration final : public Exploration {
+class LiveExploration final : public LoopExploration {
  public:
   LiveExploration(device::HapticLoop& loop, device::TickClock& clock,
                   const std::atomic<bool>& has_ended)
-      : loop_{loop}, clock_{clock}, has_ended_{has_ended} {}
-  void switch_to(std::size_t alternative) override {
-    current_ = alternative;
-    loop_.request_alternative(alternative);
-  }
-  std::size_t current() const override { return current_; }
-  void silence(bool is_silent) override { loop_.request_silence(is_silent); }
-  bool is_as_asked() const override { return loop_.is_as_requested(); }
+      : LoopExploration{loop}, clock_{clock}, has_ended_{has_ended} {}
   void pass_time(double seconds) override {
     const auto until = std::chrono::steady_clock::now() + std::chrono::duration<double>{seconds};
     while (is_running() && std::chrono::steady_clock::now() < until) {
@@ -30,23 +24,19 @@ class LiveExploration final : public Exploration {
   }
   // Called continually by the trial's supervisor, so it also sends the loop's heartbeat.
   bool is_running() const override {
-    loop_.beat();
+    loop().beat();
     return !has_ended_.load(std::memory_order_acquire);
   }
-  bool is_rendering() const override { return is_running() && loop_.is_ticking(clock_.now()); }
+  bool is_rendering() const override { return is_running() && loop().is_ticking(clock_.now()); }
   // As the trace counts it: the thread's and the device's set-up are before the trial.
   double time_s() const override {
-    const device::Nanoseconds began_at = loop_.began_at();
+    const device::Nanoseconds began_at = loop().began_at();
     return began_at == 0 ? 0.0 : 1e-9 * static_cast<double>(clock_.now() - began_at);
   }
 
-  int contacts(std::size_t alternative) const override { return loop_.contacts(alternative); }
-
  private:
-  device::HapticLoop& loop_;
   device::TickClock& clock_;
   const std::atomic<bool>& has_ended_;
-  std::size_t current_{0};
 };
 
 // RAII: the recorder follows the collector during this object's lifetime.

@@ -2,42 +2,33 @@
 
 #include <algorithm>
 #include <cmath>
+
+#include "runner/trial_loop/loop_exploration.hpp"
 namespace tapstudy::runner {
 namespace {
 constexpr std::size_t slice_ticks = 1024;
 
-class VirtualExploration final : public Exploration {
+class VirtualExploration final : public LoopExploration {
  public:
   VirtualExploration(device::HapticLoop& loop, results::TraceCollector& collector, double period_s,
                      Keep keep)
-      : loop_{loop}, collector_{collector}, period_s_{period_s}, keep_{keep} {}
-  void switch_to(std::size_t alternative) override {
-    current_ = alternative;
-    loop_.request_alternative(alternative);
-  }
-  std::size_t current() const override { return current_; }
-  void silence(bool is_silent) override { loop_.request_silence(is_silent); }
-  bool is_as_asked() const override { return loop_.is_as_requested(); }
+      : LoopExploration{loop}, collector_{collector}, period_s_{period_s}, keep_{keep} {}
   void pass_time(double seconds) override {
     auto left = static_cast<std::int64_t>(std::llround(seconds / period_s_));
     while (left > 0 && is_running()) {
       const std::int64_t slice = std::min<std::int64_t>(left, slice_ticks);
-      loop_.run_ticks(slice);
+      loop().run_ticks(slice);
       keep_ == Keep::nothing ? collector_.discard() : collector_.drain();
       left -= slice;
     }
   }
-  bool is_running() const override { return loop_.report().stopped_by == core::TickFault::none; }
-  double time_s() const override { return static_cast<double>(loop_.report().ticks) * period_s_; }
-
-  int contacts(std::size_t alternative) const override { return loop_.contacts(alternative); }
+  bool is_running() const override { return loop().report().stopped_by == core::TickFault::none; }
+  double time_s() const override { return static_cast<double>(loop().report().ticks) * period_s_; }
 
  private:
-  device::HapticLoop& loop_;
   results::TraceCollector& collector_;
   double period_s_;
   Keep keep_;
-  std::size_t current_{0};
 };
 }  // namespace
 

@@ -163,6 +163,32 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("each run of participants that fills a Williams square is balanced in every repetition",
+          "[protocols][schedule]") {
+  const int n = GENERATE(3, 4, 5, 12);
+  const std::uint64_t seed = GENERATE(1U, 2U);
+  protocols::Block block;
+  block.order = protocols::Order::williams;
+  block.repetitions = 3;
+  for (int i = 0; i < n; ++i) {
+    block.stimuli.push_back(std::string(1, static_cast<char>('a' + i)));
+  }
+  const int rows = protocols::williams_rows(n);
+  for (int first = 0; first < 3 * rows; first += rows) {
+    std::map<std::pair<std::size_t, std::size_t>, int> places;
+    for (int participant = first; participant < first + rows; ++participant) {
+      core::Rng rng{1};
+      const auto order = protocols::ordered_conditions(block, rng, {participant, seed});
+      for (std::size_t place = 0; place < order.size(); ++place) {
+        ++places[{order[place].condition, place}];
+      }
+    }
+    CAPTURE(n, seed, first);
+    CHECK(places.size() == static_cast<std::size_t>(n * n * block.repetitions));
+    CHECK(std::ranges::all_of(places, [&](const auto& one) { return one.second == rows / n; }));
+  }
+}
+
 TEST_CASE("the seed of the study assigns the balanced orders to participants",
           "[protocols][schedule]") {
   protocols::Protocol protocol = paper("discrimination.yaml");

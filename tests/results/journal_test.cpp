@@ -17,7 +17,7 @@ StudyRow empty_study() {
   return {"a study", "study.yaml", "format: tapstudy/1\n", "hash", {{"s.stl", "hash", "solid\n"}}};
 }
 JournalledAnswer answer(int number, const std::string& response) {
-  return {{1, number, 1, "main", "identification", false, 1, "answered", 2.0},
+  return {{1, number, 1, "main", "identification", false, 1, results::TrialStatus::answered, 2.0},
           {{0, "A", "one"}, {1, "B", "two"}},
           {response, true, 0.1, std::nullopt}};
 }

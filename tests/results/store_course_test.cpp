@@ -16,15 +16,16 @@ void add_eventful_session(Store& store, const std::string& participant, int offs
   SessionRow session = testing::small_study::session(participant);
   session.participant_index = participant == "P01" ? 0 : 1;
   store.add_session(session);
-  const std::vector<const char*> statuses{"answered",  "interrupted", "repeated", "timed_out",
-                                          "timed_out", "skipped",     "answered", "answered"};
+  using enum TrialStatus;
+  const std::vector<TrialStatus> statuses{answered,  interrupted, repeated, timed_out,
+                                          timed_out, skipped,     answered, answered};
   for (std::size_t i = 0; i < statuses.size(); ++i) {
     const int number = offset + static_cast<int>(i);
     TrialRecord record = testing::small_study::trial(session.id, number, i % 2 == 0 ? "a" : "b");
     record.trial.status = statuses[i];
     record.trial.is_catch = i >= 6;
     record.trial.is_practice = i == 0;
-    if (record.trial.status != "answered") {
+    if (record.trial.status != answered) {
       record.response.reset();
     }
     record.statistics = {100 + number, 7, 3, 2, 1, 1e-4 * number, 1e-3 * number, ""};

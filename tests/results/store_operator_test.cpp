@@ -63,7 +63,7 @@ TEST_CASE("what was not as planned is counted for each participant", "[results][
   store.add_trial(small_study::trial(row.id, 2, "a"));
   auto skipped = small_study::trial(row.id, 3, "a");
   skipped.response.reset();
-  skipped.trial.status = "skipped";
+  skipped.trial.status = results::TrialStatus::skipped;
   store.add_trial(skipped);
   for (const char* const response : {"c", "a"}) {
     store.add_correction({row.id, 1, response, response == std::string{"a"}},

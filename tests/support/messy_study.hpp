@@ -44,7 +44,7 @@ inline void add_people(const std::string& directory) {
   store.add_trial(trial(first.id, 1, "bare"));
   results::TrialRecord skipped = trial(first.id, 2, "bare");
   skipped.response.reset();
-  skipped.trial.status = "skipped";
+  skipped.trial.status = results::TrialStatus::skipped;
   store.add_trial(skipped);
   store.add_trial(trial(first.id, 3, formula));
   store.add_correction({first.id, 3, "ringing", false}, {first.id, 9.5, "correct", 3, formula});

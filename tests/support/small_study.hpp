@@ -45,7 +45,9 @@ inline void set_trace(results::TrialRecord& record, const std::vector<core::Trac
 inline results::TrialRecord trial(std::int64_t session_id, int number,
                                   const std::string& response) {
   results::TrialRecord record;
-  record.trial = {session_id, number, 1, "main", "identification", false, 1, "answered", 2.0};
+  record.trial = {
+      session_id, number, 1, "main", "identification", false, 1, results::TrialStatus::answered,
+      2.0};
   record.alternatives = {{0, "", "a"}};
   record.response = results::ResponseRow{response, response == "a", 1.5, 1.25};
   set_trace(record, {sample(0, false), sample(250'000'000, true), sample(2'000'000'000, true)});

@@ -148,3 +148,29 @@ TEST_CASE("what is told apart replaces what the taps alone showed",
     CHECK(tap.fit.explained > 0.99);
   }
 }
+
+TEST_CASE("a mode whose frequency falls with its amplitude is not taken for two",
+          "[analysis][modal_identification]") {
+  core::Rng rng{4};
+  std::vector<FreeDecay> decays;
+  std::vector<int> impacts;
+  std::vector<TapModes> alone;
+  for (int impact = 0; impact < 6; ++impact) {
+    FreeDecay decay{sampled_hz, Eigen::VectorXd(std::lround(sampled_hz * ring_s))};
+    double phase_rad = 0.0;
+    for (Eigen::Index n = 0; n < decay.samples.size(); ++n) {
+      const double omega = 2.0 * std::numbers::pi * low_hz;
+      const double amplitude =
+          std::exp(-ratio * omega * static_cast<double>(n) / sampled_hz) * (0.8 + 0.05 * impact);
+      decay.samples[n] = amplitude * std::sin(phase_rad) + 0.01 * rng.normal();
+      phase_rad += omega * (1.0 - 0.005 * amplitude * amplitude) / sampled_hz;
+    }
+    decays.push_back(decay);
+    impacts.push_back(impact);
+    alone.push_back(identify_modes(decay, {sought}));
+  }
+  const ModesOfTaps by_taps{alone, modes_over_taps(alone, impacts)};
+  REQUIRE(agreed_near(by_taps, low_hz).size() == 1);
+  const ModesOfTaps found = tell_close_modes_apart(decays, impacts, sought, by_taps);
+  CHECK(agreed_near(found, low_hz).size() == 1);
+}

@@ -9,6 +9,7 @@
 #include "analysis/modal_identification/decaying_sinusoid_fit.hpp"
 #include "analysis/modal_identification/model_matching.hpp"
 #include "analysis/modal_identification/rayleigh_fit.hpp"
+#include "analysis/modal_identification/repeated_modes.hpp"
 #include "core/error.hpp"
 #include "core/model/modes/damping.hpp"
 #include "support/python_program.hpp"

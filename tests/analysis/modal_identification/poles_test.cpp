@@ -254,7 +254,7 @@ TEST_CASE("hum beside a mode falsifies its damping until another tap tells of it
   const std::vector<double> lines_hz = lines_missed(alone, taps);
   REQUIRE(lines_hz.size() == 1);
   CHECK(lines_hz.front() == Approx(50.0).margin(0.05));
-  const TapModes told = identify_modes(decay, {{20.0, 200.0}, 60, lines_hz});
+  const TapModes told = identify_modes(decay, {{20.0, 200.0}, lines_hz});
   REQUIRE(told.modes.size() == 1);
   const FittedMode& mode = told.modes.front().fitted;
   CHECK(std::abs(mode.pole.damping_ratio - 0.055) < 3.0 * mode.ratio_error);

@@ -1,0 +1,22 @@
+#pragma once
+#include <optional>
+#include <vector>
+
+#include "analysis/statistics/proportion.hpp"
+namespace tapstudy::analysis {
+// A value with its 95 % interval.
+struct Estimate {
+  double value{};
+  double standard_error{};            // over taps, not below what their noise alone gives
+  Interval interval;                  // Student's t: over taps, or of one tap's noise
+  std::optional<Interval> bootstrap;  // over taps, bias-corrected and accelerated, of 5 and more
+};
+
+// Without a bootstrap; Student's interval.
+Estimate t_estimate(double value, double standard_error, double degrees_of_freedom);
+
+// Of one tap: the value and its standard error with so many degrees of freedom. Of several: their
+// mean, and the interval over taps. Values and errors as many, at least one.
+Estimate estimate_over_taps(const std::vector<double>& values, const std::vector<double>& errors,
+                            double degrees_of_freedom_of_one);
+}  // namespace tapstudy::analysis

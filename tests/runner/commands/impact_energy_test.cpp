@@ -1,0 +1,42 @@
+#include "runner/commands/impact_energy.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "core/tick/plate_vibration.hpp"
+#include "protocols/read_protocol.hpp"
+#include "runner/reproduction/shipped_protocols.hpp"
+#include "support/built_paths.hpp"
+#include "support/processes.hpp"
+#include "support/texts.hpp"
+using namespace tapstudy;
+using Catch::Matchers::Contains;
+
+TEST_CASE("the share of a finger's energy that a strike takes is what the modes have after it",
+          "[runner][check]") {
+  const protocols::Protocol protocol = runner::shipped_protocol("protocols/paper/plate_model.yaml");
+  runner::ModelLibrary models;
+  const auto stimulus = stimulus_with(protocol, protocol.stimulus("aluminium"));
+  const auto plate = models.plate_of(protocol, stimulus);
+  const Eigen::Vector2d at_m{0.05, -0.1};
+  core::ModalState state{plate->model, core::Integrator::exact, 1e-3};
+  state.touch(plate->locator->locate(at_m.x(), at_m.y()), core::Vec3::UnitZ());
+  constexpr double finger_kg = 0.03;
+  constexpr double speed_m_s = 0.4;
+  state.strike(-finger_kg * speed_m_s);
+  const double of_finger_j = 0.5 * finger_kg * speed_m_s * speed_m_s;
+  CHECK(runner::impact_energy_share(*plate, at_m, finger_kg) ==
+        Approx(state.energy_j() / of_finger_j).epsilon(1e-9));
+}
+
+TEST_CASE("check warns of plates that take more energy than the finger has, or can move as a whole",
+          "[end_to_end][check]") {
+  const testing::TempDirectory directory;
+  const std::string file = directory / "study.yaml";
+  const std::string shipped = testing::contents(testing::source_directory() +
+                                                "/protocols/examples/cantilever_techniques.yaml");
+  testing::write(file, testing::replaced(shipped, "mass_kg: 0.02", "mass_kg: 0.2"));
+  const auto heavy = testing::tapstudy({"check", file});
+  CHECK_THAT(heavy.standard_output, Contains("beam is too light for the finger: struck at free"));
+  testing::write(file, shipped);
+  CHECK_THAT(testing::tapstudy({"check", file}).standard_output, !Contains("too light"));
+}

@@ -55,6 +55,7 @@ TEST_CASE("after a session any answer is corrected, remarks and exclusions are a
   CHECK_THAT(report.standard_output, Contains("numb fingers"));
   CHECK(amend(directory, "sim-01", "include").exit_code == 0);
   CHECK(sql(directory, "SELECT count(*) FROM excluded_participant") == "0\n");
+  CHECK(amend(directory, "sim-02", "exclude sleepy").exit_code == 0);
   const auto verified = testing::tapstudy({"verify", directory / "study"});
   CHECK(verified.exit_code == 0);
   CHECK_THAT(verified.standard_output, Contains("older than the last entry"));

@@ -91,6 +91,19 @@ WeightedDecay started(const SharingDecay& decay, const std::vector<Pole>& shared
   return {std::move(model), std::move(state), 1.0 / variance};
 }
 
+// Of the shared modes' amplitudes, the poles being known by all decays.
+void set_significance(const DecayModel::State& state, double variance, std::size_t shared,
+                      DecayFit& fit) {
+  const Eigen::VectorXd scale = state.basis.colwise().norm().cwiseMax(1e-300).cwiseInverse();
+  const Eigen::MatrixXd scaled = state.basis * scale.asDiagonal();
+  const Eigen::MatrixXd inverse = core::pseudo_inverse(scaled.transpose() * scaled) * variance;
+  for (std::size_t k = 0; k < shared; ++k) {
+    const auto row = 2 * static_cast<Eigen::Index>(k);
+    const Eigen::Vector2d parts = state.shares.segment<2>(row).cwiseQuotient(scale.segment<2>(row));
+    fit.modes[k].significance = parts.dot(inverse.block<2, 2>(row, row).ldlt().solve(parts));
+  }
+}
+
 // The shared poles' errors are those of all decays together.
 void set_shared_errors(const std::vector<WeightedDecay>& decays, std::size_t shared,
                        SharedFit& fit) {
@@ -133,6 +146,10 @@ SharedFit fit_shared_poles(const std::vector<SharingDecay>& sharing,
     fit.decays.push_back(described(decay.model, decay.state, has_converged));
   }
   set_shared_errors(decays, shared.size(), fit);
+  for (std::size_t i = 0; i < decays.size(); ++i) {
+    const double variance = decays[i].state.sum_of_squares / fit.decays[i].degrees_of_freedom;
+    set_significance(decays[i].state, variance, shared.size(), fit.decays[i]);
+  }
   return fit;
 }
 }  // namespace tapstudy::analysis

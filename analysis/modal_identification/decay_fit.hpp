@@ -43,7 +43,9 @@ struct SharingDecay {
   double noise{1.0};  // standard deviation of a sample
 };
 struct SharedFit {
-  std::vector<DecayFit> decays;  // the shared modes first, with the errors of all together
+  // The shared modes first, with the errors of all together, and the significance of their
+  // amplitudes where the poles are known.
+  std::vector<DecayFit> decays;
   double degrees_of_freedom{};
 };
 // Likewise of all decays together, at least one: what differs from one to the next are amplitudes.

@@ -146,6 +146,7 @@ TEST_CASE("what is told apart replaces what the taps alone showed",
     CHECK(tap.modes.size() == 4);
     CHECK(tap.fit.modes.size() == 4);
     CHECK(tap.fit.explained > 0.99);
+    CHECK(std::ranges::count(tap.modes, Standing::agreed, &TapMode::standing) == 4);
   }
 }
 

@@ -1,7 +1,27 @@
 #include "results/rows.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <initializer_list>
+
 #include "results/store_error.hpp"
 namespace tapstudy::results {
+namespace {
+// The one of that name. Throws StoreError, with where it was read and what it could have been.
+template <class Enum>
+Enum named(const std::string& text, std::initializer_list<Enum> all, const char* where) {
+  std::vector<std::string> names;
+  for (const Enum one : all) {
+    names.push_back(to_text(one));
+    if (names.back() == text) {
+      return one;
+    }
+  }
+  throw StoreError{fmt::format("{}: '{}' is none of {}", where, text, fmt::join(names, ", "))};
+}
+}  // namespace
+
 std::string to_text(Mode mode) {
   switch (mode) {
     case Mode::real:
@@ -36,30 +56,14 @@ std::string to_text(TrialStatus status) {
 
 TrialStatus trial_status_from(const std::string& text) {
   using enum TrialStatus;
-  for (const TrialStatus status : {answered, interrupted, repeated, timed_out, skipped}) {
-    if (to_text(status) == text) {
-      return status;
-    }
-  }
-  throw StoreError{"trial.status: '" + text +
-                   "' is none of answered, interrupted, repeated, timed_out, skipped"};
+  return named(text, {answered, interrupted, repeated, timed_out, skipped}, "trial.status");
 }
 
 GivenBy given_by_from(const std::string& text) {
-  for (const GivenBy given_by : {GivenBy::participant, GivenBy::operator_of_session}) {
-    if (to_text(given_by) == text) {
-      return given_by;
-    }
-  }
-  throw StoreError{"response.given_by: '" + text + "' is none of participant, operator"};
+  return named(text, {GivenBy::participant, GivenBy::operator_of_session}, "response.given_by");
 }
 
 Mode mode_from(const std::string& text) {
-  for (const Mode mode : {Mode::real, Mode::pilot, Mode::simulated}) {
-    if (to_text(mode) == text) {
-      return mode;
-    }
-  }
-  throw StoreError{"session.mode: '" + text + "' is none of real, pilot, simulated"};
+  return named(text, {Mode::real, Mode::pilot, Mode::simulated}, "session.mode");
 }
 }  // namespace tapstudy::results

@@ -25,6 +25,11 @@ bool is_line(const TapModes& tap, const FittedMode& fitted) {
   });
 }
 
+// Whether it is one of the neighbours, as the tap alone shows them.
+bool is_among(const Neighbours& neighbours, const TapModes& tap, const FittedMode& fitted) {
+  return neighbours.range.holds(frequency_of(fitted)) && !is_line(tap, fitted);
+}
+
 // What one tap shows beside the neighbours. Empty: a tap too short for so many modes.
 std::vector<SharingDecay> sharing(const std::vector<TapModes>& taps, const Neighbours& neighbours,
                                   std::size_t shared) {
@@ -32,7 +37,7 @@ std::vector<SharingDecay> sharing(const std::vector<TapModes>& taps, const Neigh
   for (const TapModes& tap : taps) {
     SharingDecay decay{&tap.spectrum, {}, tap.lines_hz, std::max(tap.fit.noise, 1e-150)};
     for (const FittedMode& fitted : tap.fit.modes) {
-      if (!neighbours.range.holds(frequency_of(fitted)) || is_line(tap, fitted)) {
+      if (!is_among(neighbours, tap, fitted)) {
         decay.own.push_back(fitted.pole);
       }
     }
@@ -52,9 +57,15 @@ struct Criterion {
   double values{};
 
   void add(const DecayFit& fit, std::size_t modes) {
-    deviance += fit.values * std::log(std::max(fit.sum_of_squares, 1e-300) / fit.values);
+    const double of_fit = 2.0 * static_cast<double>(fit.fitted.size());  // two a bin
+    deviance += of_fit * std::log(std::max(fit.sum_of_squares, 1e-300) / of_fit);
     unknowns += 2.0 * static_cast<double>(modes);
-    values += fit.values;
+    values += of_fit;
+  }
+  void add(const Criterion& other) {
+    deviance += other.deviance;
+    unknowns += other.unknowns;
+    values += other.values;
   }
   double value() const { return deviance + unknowns * std::log(values); }
 };
@@ -70,7 +81,7 @@ Criterion criterion_of(const SharedFit& fit, std::size_t shared) {
 std::vector<Pole> own_poles(const TapModes& tap, const Neighbours& neighbours) {
   std::vector<Pole> poles;
   for (const FittedMode& fitted : tap.fit.modes) {
-    if (neighbours.range.holds(frequency_of(fitted)) && !is_line(tap, fitted)) {
+    if (is_among(neighbours, tap, fitted)) {
       poles.push_back(fitted.pole);
     }
   }
@@ -99,10 +110,7 @@ Criterion criterion_of_impacts(const std::vector<TapModes>& taps, const std::vec
       }
       continue;
     }
-    const Criterion one = criterion_of(fit_shared_poles(decays, most), most.size());
-    all.deviance += one.deviance;
-    all.unknowns += one.unknowns;
-    all.values += one.values;
+    all.add(criterion_of(fit_shared_poles(decays, most), most.size()));
   }
   return all;
 }
@@ -199,21 +207,6 @@ void replace_in_tap(const Neighbours& neighbours, const DecayFit& fit, std::size
   }
   std::ranges::sort(tap.modes, {}, [](const TapMode& mode) { return frequency_of(mode.fitted); });
   tap.fit = fit;
-}
-
-// A mode whose frequency depends on its amplitude is, to first order, one pole and another of the
-// same frequency and three times its decay (a cubic stiffness, Nayfeh & Mook 1979).
-bool may_be_one_nonlinear_mode(const std::vector<Pole>& poles) {
-  for (std::size_t i = 0; i < poles.size(); ++i) {
-    for (std::size_t k = i + 1; k < poles.size(); ++k) {
-      const auto [less, more] = std::minmax(poles[i].damping_ratio, poles[k].damping_ratio);
-      const double apart_hz = std::abs(poles[i].frequency_hz - poles[k].frequency_hz);
-      if (more > 2.0 * less && apart_hz < 0.2 * less * poles[i].frequency_hz) {
-        return true;
-      }
-    }
-  }
-  return false;
 }
 
 // Nothing is changed unless they are told apart.

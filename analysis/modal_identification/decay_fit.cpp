@@ -70,7 +70,6 @@ DecayFit described(const DecayModel& model, const DecayModel::State& state, bool
   fit.noise = std::sqrt(2.0 * variance / model.length());
   fit.explained = 1.0 - state.sum_of_squares / std::max(model.data().squaredNorm(), 1e-300);
   fit.sum_of_squares = state.sum_of_squares;
-  fit.values = static_cast<double>(model.data().size());
   fit.degrees_of_freedom = freedom;
   fit.has_converged = has_converged;
   const Eigen::VectorXd all = state.basis * state.shares;

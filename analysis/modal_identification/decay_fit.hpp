@@ -22,7 +22,6 @@ struct DecayFit {
   double noise{};                 // standard deviation of a sample, from the residual in the band
   double explained{};             // share of the band's energy
   double sum_of_squares{};        // of the residual in the band, over the real values
-  double values{};                // how many, two a bin
   double degrees_of_freedom{};
   bool has_converged{};
   Eigen::VectorXcd fitted;  // the spectrum's values by the modes and the nuisance terms

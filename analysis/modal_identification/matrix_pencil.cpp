@@ -60,9 +60,7 @@ int count_above_noise(const Eigen::VectorXd& singular_values) {
   const double limit = std::max(3.0 * singular_values[half + half / 2], 1e-7 * singular_values[0]);
   return static_cast<int>((singular_values.array() > limit).count());
 }
-}  // namespace
 
-namespace {
 MatrixPencil read_gram(Eigen::MatrixXd gram, double rate_hz, const Band& band, int max_order) {
   const Eigen::Index pencil = gram.cols() - 1;
   const core::EigenPairs pairs = core::symmetric_eigenpairs(std::move(gram));

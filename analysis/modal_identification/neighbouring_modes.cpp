@@ -1,6 +1,7 @@
 #include "analysis/modal_identification/neighbouring_modes.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <utility>
 
@@ -67,5 +68,18 @@ std::vector<Pole> poles_by_all(const MatrixPencil& pencil, const Neighbours& nei
     }
   }
   return medians;
+}
+
+bool may_be_one_nonlinear_mode(const std::vector<Pole>& poles) {
+  for (std::size_t i = 0; i < poles.size(); ++i) {
+    for (std::size_t k = i + 1; k < poles.size(); ++k) {
+      const auto [less, more] = std::minmax(poles[i].damping_ratio, poles[k].damping_ratio);
+      const double apart_hz = std::abs(poles[i].frequency_hz - poles[k].frequency_hz);
+      if (more > 2.0 * less && apart_hz < 0.2 * less * poles[i].frequency_hz) {
+        return true;
+      }
+    }
+  }
+  return false;
 }
 }  // namespace tapstudy::analysis

@@ -21,32 +21,34 @@ double largest(const analysis::Recording& recording) {
   const auto [low, high] = std::ranges::minmax(recording.samples);
   return std::max(std::abs(low), std::abs(high));
 }
+
+// By header or by number.
+void check_named_once(const MeasuredFile& measured) {
+  std::vector<std::string> names;
+  std::ranges::transform(measured.channels, std::back_inserter(names),
+                         &analysis::Recording::channel);
+  if (measured.force) {
+    names.push_back(measured.force->channel);
+  }
+  std::ranges::sort(names);
+  if (const auto twice = std::ranges::adjacent_find(names); twice != names.end()) {
+    throw core::InvalidInput{fmt::format("--column, --force-column: '{}' is named twice", *twice)};
+  }
+}
 }  // namespace
 
 MeasuredFile read_measured_file(const std::string& file, const TapQuestion& question) {
-  std::vector<std::string> asked = question.columns;
-  if (!question.force_column.empty()) {
-    asked.push_back(question.force_column);
-  }
-  std::ranges::sort(asked);
-  if (const auto twice = std::ranges::adjacent_find(asked); twice != asked.end()) {
-    throw core::InvalidInput{fmt::format("--column, --force-column: '{}' is named twice", *twice)};
-  }
   MeasuredFile measured;
   for (const std::string& column :
        question.columns.empty() ? std::vector<std::string>{""} : question.columns) {
     measured.channels.push_back(read_column(file, question, column));
-    const std::string& channel = measured.channels.back().channel;
-    if (std::ranges::count(measured.channels, channel, &analysis::Recording::channel) > 1) {
-      throw core::InvalidInput{
-          fmt::format("{}: --column: the channel '{}' is named twice", file, channel)};
-    }
   }
   if (!question.force_column.empty()) {
     measured.force = read_column(file, question, question.force_column);
     measured.force_rails = analysis::rail_samples(measured.force->samples,
                                                   analysis::resting(*measured.force).noise_rms);
   }
+  check_named_once(measured);
   return measured;
 }
 

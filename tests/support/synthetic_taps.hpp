@@ -36,10 +36,15 @@ inline analysis::FreeDecay planted_decay(const std::vector<PlantedMode>& modes, 
   return decay;
 }
 
-// White noise with the ratio of the mean power of the decay to the noise's, in dB.
-inline double add_noise(analysis::FreeDecay& decay, double signal_to_noise_db, core::Rng& rng) {
+// The standard deviation of noise, by the ratio of the decay's mean power to it, in dB.
+inline double noise_for(const analysis::FreeDecay& decay, double signal_to_noise_db) {
   const double power = decay.samples.squaredNorm() / static_cast<double>(decay.samples.size());
-  const double noise = std::sqrt(power * std::pow(10.0, -signal_to_noise_db / 10.0));
+  return std::sqrt(power * std::pow(10.0, -signal_to_noise_db / 10.0));
+}
+
+// White noise of that ratio.
+inline double add_noise(analysis::FreeDecay& decay, double signal_to_noise_db, core::Rng& rng) {
+  const double noise = noise_for(decay, signal_to_noise_db);
   for (double& sample : decay.samples) {
     sample += noise * rng.normal();
   }

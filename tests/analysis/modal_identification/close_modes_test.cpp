@@ -52,9 +52,9 @@ ModesOfTaps found_in(const std::vector<Channel>& channels, double signal_to_nois
   std::vector<int> impacts;
   std::vector<TapModes> alone;
   for (const Channel& channel : channels) {
-    FreeDecay decay = testing::planted_decay(channel.modes, sampled_hz, 0.2);
-    const double noise = testing::add_noise(decay, signal_to_noise_db, rng);
-    decay = testing::planted_decay(channel.modes, sampled_hz, ring_s);
+    const double noise = testing::noise_for(testing::planted_decay(channel.modes, sampled_hz, 0.2),
+                                            signal_to_noise_db);
+    FreeDecay decay = testing::planted_decay(channel.modes, sampled_hz, ring_s);
     for (double& sample : decay.samples) {
       sample += noise * rng.normal();
     }

@@ -19,9 +19,7 @@ const std::vector<PlantedMode> covered_modes{
 
 // The ratio of the mean power over the first 0.2 s to that of the noise.
 double noise_for(const std::vector<PlantedMode>& modes, double signal_to_noise_db) {
-  const FreeDecay decay = testing::planted_decay(modes, rate_hz, 0.2);
-  const double power = decay.samples.squaredNorm() / static_cast<double>(decay.samples.size());
-  return std::sqrt(power * std::pow(10.0, -signal_to_noise_db / 10.0));
+  return testing::noise_for(testing::planted_decay(modes, rate_hz, 0.2), signal_to_noise_db);
 }
 
 std::vector<TapModes> modes_of(const Recording& recording) {

@@ -28,7 +28,7 @@ TEST_CASE("the share of a finger's energy that a strike takes is what the modes 
         Approx(state.energy_j() / of_finger_j).epsilon(1e-9));
 }
 
-TEST_CASE("check warns of plates that take more energy than the finger has, or can move as a whole",
+TEST_CASE("check warns of plates that take more energy than the finger has",
           "[end_to_end][check]") {
   const testing::TempDirectory directory;
   const std::string file = directory / "study.yaml";
@@ -39,4 +39,36 @@ TEST_CASE("check warns of plates that take more energy than the finger has, or c
   CHECK_THAT(heavy.standard_output, Contains("beam is too light for the finger: struck at free"));
   testing::write(file, shipped);
   CHECK_THAT(testing::tapstudy({"check", file}).standard_output, !Contains("too light"));
+}
+
+TEST_CASE("check warns of a plate that nothing holds", "[end_to_end][check]") {
+  const testing::TempDirectory directory;
+  const std::string file = directory / "study.yaml";
+  testing::write(file, R"(format: tapstudy/1
+title: A loose plate
+finger: {mass_kg: 0.0058, stiffness_n_per_m: 300, damping_n_s_per_m: 3}
+rendering: {rate_hz: 4000, penalty_stiffness_n_per_m: 3000, band_limit_hz: 1500, integrator: exact}
+placement: {origin_m: [0, 0, 0], lateral_scale: 0.2}
+materials:
+  steel: {youngs_modulus_pa: 2.0e11, density_kg_per_m3: 7800, poissons_ratio: 0.3, damping: {ratio: 0.01}}
+plates:
+  held:
+    size_m: [0.2, 0.1, 0.01]
+    fixations: [{region: side, side: left}]
+    mesh: {order: 2}
+  loose:
+    size_m: [0.2, 0.1, 0.01]
+    fixations: []
+    mesh: {order: 2}
+tapping_points_m: {P1: [0.02, 0.01]}
+stimuli:
+  held: {plate: held, material: steel, technique: fem-coupled}
+  loose: {plate: loose, material: steel, technique: fem-coupled}
+blocks:
+  - {name: which, task: identification, question: Which, stimuli: [held, loose]}
+)");
+  const auto checked = testing::tapstudy({"check", file});
+  INFO(checked.standard_error);
+  CHECK_THAT(checked.standard_output, Contains("loose can move as a rigid body in 6 ways"));
+  CHECK_THAT(checked.standard_output, !Contains("held can move"));
 }

@@ -1,9 +1,11 @@
 #pragma once
 #include <chrono>
 #include <cstdint>
+#include <memory>
 #include <optional>
 
 #include "device/device.hpp"
+#include "device/remote/datagram_pipe.hpp"
 #include "device/remote/exerted_force.hpp"
 #include "device/remote/velocity_check.hpp"
 namespace tapstudy::device {
@@ -14,6 +16,8 @@ class RemoteHand final : public Device {
   // Asks forty times, for two to four seconds: the other program may still wait for an earlier one.
   // Throws DeviceError if nobody answers.
   RemoteHand(std::uint16_t port, std::chrono::microseconds max_reply);
+  RemoteHand(std::uint16_t port, std::chrono::microseconds max_reply,
+             std::unique_ptr<DatagramPipe> pipe);
   ~RemoteHand() override;
   RemoteHand(const RemoteHand& other) = delete;
   RemoteHand& operator=(const RemoteHand& other) = delete;
@@ -41,11 +45,11 @@ class RemoteHand final : public Device {
   core::TickFault ask(core::HandState& hand) noexcept;
   core::TickFault receive(core::HandState& hand) noexcept;
   core::TickFault fault_of_report() noexcept;
-  bool wait_until(std::chrono::steady_clock::time_point end) const noexcept;
+  void sleep_for(std::chrono::nanoseconds duration) noexcept;
 
   std::uint16_t port_;
-  std::chrono::microseconds max_reply_;
-  int socket_;
+  std::chrono::nanoseconds max_reply_;
+  std::unique_ptr<DatagramPipe> pipe_;
   std::uint32_t number_{0};
   core::Vec3 force_n_{core::Vec3::Zero()};
   HeldHand held_;

@@ -1,18 +1,12 @@
 // What every fault of a remote device does in every state of the loop.
-#include <arpa/inet.h>
-#include <poll.h>
-#include <sys/socket.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <array>
-#include <atomic>
-#include <bit>
 #include <catch2/catch.hpp>
+#include <chrono>
 #include <cstring>
+#include <deque>
 #include <limits>
 #include <numbers>
-#include <thread>
 #include <vector>
 
 #include "core/rng.hpp"
@@ -21,8 +15,14 @@
 #include "support/staged_loop.hpp"
 using namespace tapstudy;
 using core::TickFault;
+using device::DatagramOutcome;
+using device::Nanoseconds;
+using namespace std::chrono_literals;
 
 namespace {
+constexpr Nanoseconds slow_reply = 20'000'000;
+constexpr auto max_reply = 5ms;
+
 enum class Trouble {
   none,
   deaf,
@@ -46,64 +46,84 @@ enum class Trouble {
   gone
 };
 
-// A program that drives a device: a finger held by a muscle, pushed by the force.
-class MockProgram {
+// A program that drives a device: a finger held by a muscle, pushed by the force. Time passes only
+// while it is waited for; a datagram takes none, and datagrams are obeyed one after the other.
+class MockProgram final : public device::DatagramPipe {
  public:
-  MockProgram() {
-    sockaddr_in address{};
-    address.sin_family = AF_INET;
-    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    auto generic = std::bit_cast<sockaddr>(address);
-    REQUIRE(bind(socket_, &generic, sizeof generic) == 0);
-    socklen_t size = sizeof generic;
-    REQUIRE(getsockname(socket_, &generic, &size) == 0);
-    port = ntohs(std::bit_cast<sockaddr_in>(generic).sin_port);
-    thread_ = std::jthread{[this](const std::stop_token& stop) { serve(stop); }};
-  }
-  std::uint16_t port{};
-  std::atomic<Trouble> trouble{Trouble::none};
-  std::atomic<bool> is_version_2{false};
-  std::atomic<double> height_m{0.01};
-  std::atomic<double> velocity_m_s{0.0};
-  std::atomic<double> exerted_n{0.0};
-  std::atomic<int> forces_since_trouble{0};
+  Trouble trouble{Trouble::none};
+  bool is_version_2{false};
+  double height_m{0.01};
+  double velocity_m_s{0.0};
+  double exerted_n{0.0};
+  int forces_since_trouble{0};
 
- private:
-  void serve(const std::stop_token& stop) {
-    while (!stop.stop_requested() && trouble != Trouble::gone) {
-      std::array<std::uint8_t, 64> request{};
-      sockaddr from{};
-      socklen_t size = sizeof from;
-      pollfd waiting{socket_, POLLIN, 0};
-      if (poll(&waiting, 1, 1) == 1 &&
-          recvfrom(socket_, request.data(), request.size(), 0, &from, &size) == 36) {
-        obey(request, from, size);
+  Nanoseconds now() noexcept override { return now_; }
+  void wait_until(Nanoseconds moment) noexcept override {
+    while (!requests_.empty() && free_at_ <= moment) {
+      now_ = std::max(now_, free_at_);
+      const Request request = requests_.front();
+      requests_.pop_front();
+      if (trouble != Trouble::deaf) {
+        obey(request);
       }
     }
-    close(socket_);
+    now_ = std::max(now_, moment);
   }
-  void obey(const std::array<std::uint8_t, 64>& request, const sockaddr& from, socklen_t size) {
-    if (trouble == Trouble::deaf) {
-      return;
+  // As the loopback does: a closed port is told of by what follows the first datagram.
+  DatagramOutcome send(std::span<const std::uint8_t> out) noexcept override {
+    if (trouble == Trouble::gone) {
+      return std::exchange(is_refused_, true) ? DatagramOutcome::gone : DatagramOutcome::ok;
     }
+    std::ranges::copy(out, requests_.emplace_back().begin());
+    wait_until(now_);
+    return DatagramOutcome::ok;
+  }
+  device::ReceivedDatagram receive(std::span<std::uint8_t> in,
+                                   Nanoseconds deadline) noexcept override {
+    if (std::exchange(is_refused_, false)) {
+      return {DatagramOutcome::gone, 0};
+    }
+    while (now_ < deadline) {
+      if (!replies_.empty() && replies_.front().at <= now_) {
+        const Reply reply = replies_.front();
+        replies_.pop_front();
+        const std::size_t length = std::min(in.size(), reply.length);
+        std::copy_n(reply.bytes.begin(), length, in.begin());
+        return {DatagramOutcome::ok, length};
+      }
+      const Nanoseconds next_reply = replies_.empty() ? deadline : replies_.front().at;
+      const Nanoseconds next_request = requests_.empty() ? deadline : free_at_;
+      wait_until(std::min({deadline, next_reply, next_request}));
+    }
+    return {DatagramOutcome::timed_out, 0};
+  }
+
+ private:
+  using Request = std::array<std::uint8_t, 36>;
+  struct Reply {
+    Nanoseconds at;
+    std::array<std::uint8_t, 88> bytes;
+    std::size_t length;
+  };
+
+  void obey(const Request& request) {
     double force_n = 0.0;
     std::memcpy(&force_n, request.data() + 20, sizeof force_n);
     exerted_n = force_n;
     forces_since_trouble += trouble != Trouble::none && force_n > 0.0 ? 1 : 0;
     const bool is_left_out =
-        trouble == Trouble::every_other && request[4] == 1 && ++requests_ % 2 == 0;
+        trouble == Trouble::every_other && request[4] == 1 && ++asked_ % 2 == 0;
     if (request[4] == 1 && trouble != Trouble::mute && !is_left_out) {
-      usleep(trouble == Trouble::slow ? 20'000 : 0);
-      const auto reply = reply_to(request);
+      free_at_ = now_ + (trouble == Trouble::slow ? slow_reply : 0);
       const std::size_t length = trouble == Trouble::short_reply ? 30 : tells_of_force() ? 88 : 60;
-      static_cast<void>(sendto(socket_, reply.data(), length, 0, &from, size));
+      replies_.push_back({free_at_, reply_to(request), length});
     }
   }
   bool tells_of_force() const {
     return (is_version_2 && trouble != Trouble::falls_back) || trouble == Trouble::no_power ||
            trouble == Trouble::overload;
   }
-  std::array<std::uint8_t, 88> reply_to(const std::array<std::uint8_t, 64>& request) {
+  std::array<std::uint8_t, 88> reply_to(const Request& request) {
     std::array<std::uint8_t, 88> reply{'T', 'A', 'P', 'R', 1};
     reply[4] = tells_of_force() ? 2 : 1;
     const std::uint32_t on = trouble == Trouble::no_power ? 0 : device::motors_on;
@@ -124,14 +144,14 @@ class MockProgram {
     reply[8] = static_cast<std::uint8_t>(reply[8] - (trouble == Trouble::old_number ? 1 : 0));
     const double y_m = trouble == Trouble::not_a_number ? std::numeric_limits<double>::quiet_NaN()
                        : trouble == Trouble::jump       ? 0.3
-                                                        : height_m.load();
+                                                        : height_m;
     std::memcpy(reply.data() + 20, &y_m, sizeof y_m);
     return reply;
   }
 
   double measured_n() {
     gauge_n_.push_back(exerted_n);
-    switch (trouble.load()) {
+    switch (trouble) {
       case Trouble::overload:
         return 80.0;
       case Trouble::limp:
@@ -149,24 +169,28 @@ class MockProgram {
 
   core::Rng rng_{1};
   std::vector<double> gauge_n_;
-  int requests_{0};
-  int socket_{socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)};
-  std::jthread thread_;
+  int asked_{0};
+  Nanoseconds now_{0};
+  Nanoseconds free_at_{0};
+  std::deque<Request> requests_;
+  std::deque<Reply> replies_;
+  bool is_refused_{false};
 };
 
-struct Stage : MockProgram {
-  device::RemoteHand hand{port, std::chrono::milliseconds{5}};
+struct Stage {
+  std::unique_ptr<MockProgram> owned = std::make_unique<MockProgram>();
+  MockProgram& program{*owned};
+  device::RemoteHand hand{40'000, max_reply, std::move(owned)};
   testing::StagedLoop loop{hand};
 
   void arm() { loop.tick(5); }
   void press() {
     loop.tick(200);
     for (int i = 1; i <= 100; ++i) {
-      height_m = 0.01 - 1.1e-4 * i;  // 1 mm deep, slowly enough
+      program.height_m = 0.01 - 1.1e-4 * i;  // 1 mm deep, slowly enough
       loop.tick(1);
     }
-    usleep(3000);  // the last force is under way
-    REQUIRE(exerted_n == Approx(3.0).epsilon(0.01));
+    REQUIRE(program.exerted_n == Approx(3.0).epsilon(0.01));
   }
 };
 
@@ -208,10 +232,11 @@ TEST_CASE("the fault matrix of a remote device: no force is sent once the fault 
       Stage stage;
       (stage.*state.reach)();
       const std::int64_t before = stage.loop.loop->report().ticks;
-      stage.trouble = fault.trouble;
-      usleep(3000);
+      const Nanoseconds began = stage.program.now();
+      stage.program.trouble = fault.trouble;
       const TickFault seen = (stage.loop.*state.go_on)();
-      usleep(30'000);
+      const Nanoseconds took = stage.program.now() - began;
+      stage.program.wait_until(stage.program.now() + 1'000'000'000);
       const auto& report = stage.loop.loop->report();
       const std::int64_t ticks = report.ticks - before;
       const bool is_confirmed = report.stop == device::StopOutcome::confirmed;
@@ -225,10 +250,12 @@ TEST_CASE("the fault matrix of a remote device: no force is sent once the fault 
       CHECK(is_latched);
       CHECK(is_confirmed == fault.is_stop_confirmed);
       CHECK(ticks <= 1 + device::max_missed_replies);
-      CHECK(stage.forces_since_trouble <= 2 * ticks);
+      CHECK(took <= (ticks + device::zero_force_packets) * Nanoseconds{max_reply / 1ns} +
+                        30'000'000);  // and a millisecond before each further request for zero
+      CHECK(stage.program.forces_since_trouble <= 2 * ticks);
       // whoever hears us exerts nothing at the end
       const bool hears = fault.trouble != Trouble::deaf && fault.trouble != Trouble::gone;
-      CHECK((!hears || stage.exerted_n == 0.0));
+      CHECK((!hears || stage.program.exerted_n == 0.0));
     }
   }
 }
@@ -248,10 +275,10 @@ TEST_CASE(
   for (const auto& [trouble, fault] : troubles) {
     CAPTURE(core::to_text(fault));
     Stage stage;
-    stage.is_version_2 = true;
+    stage.program.is_version_2 = true;
     stage.press();
     const std::int64_t before = stage.loop.loop->report().ticks;
-    stage.trouble = trouble;
+    stage.program.trouble = trouble;
     stage.loop.tick(100);
     CHECK(stage.loop.loop->report().stopped_by == fault);
     CHECK(stage.loop.loop->report().ticks - before < 60);
@@ -274,8 +301,8 @@ TEST_CASE("a velocity that is not the change of position ends the trial; one tha
                      0.004 * std::sin(phase) * 2.0 * std::numbers::pi / 0.4};
   };
   for (int tick = 0; tick < 4000; ++tick) {
-    stage.height_m = moves(tick).first;
-    stage.velocity_m_s = scale * moves(tick - lag_ticks).second;
+    stage.program.height_m = moves(tick).first;
+    stage.program.velocity_m_s = scale * moves(tick - lag_ticks).second;
     stage.loop.tick(1);
   }
   CHECK(stage.loop.loop->report().stopped_by == fault);
@@ -284,8 +311,8 @@ TEST_CASE("a velocity that is not the change of position ends the trial; one tha
 TEST_CASE("a program that reports a released force in every reply is not believed",
           "[device][safety][remote]") {
   Stage stage;
-  stage.is_version_2 = true;
-  stage.trouble = Trouble::releases;
+  stage.program.is_version_2 = true;
+  stage.program.trouble = Trouble::releases;
   CHECK(stage.hand.release_after(std::chrono::milliseconds{20}) ==
         device::RemoteHand::Release::always_reported);
   stage.loop.tick(200);
@@ -294,9 +321,9 @@ TEST_CASE("a program that reports a released force in every reply is not believe
 
 TEST_CASE("a stop that a later reply contradicts is not confirmed", "[device][safety][remote]") {
   Stage stage;
-  stage.is_version_2 = true;
+  stage.program.is_version_2 = true;
   CHECK(stage.hand.zero_force() == device::StopOutcome::confirmed);
-  stage.trouble = Trouble::overload;
+  stage.program.trouble = Trouble::overload;
   CHECK(stage.hand.zero_force() == device::StopOutcome::unconfirmed);
 }
 
@@ -305,9 +332,9 @@ TEST_CASE("a stop is confirmed though the device measures its force coarsely or 
   for (const Trouble trouble : {Trouble::coarse, Trouble::late}) {
     CAPTURE(static_cast<int>(trouble));
     Stage stage;
-    stage.is_version_2 = true;
+    stage.program.is_version_2 = true;
     stage.press();
-    stage.trouble = trouble;
+    stage.program.trouble = trouble;
     for (int i = 0; i < 20; ++i) {
       REQUIRE(stage.hand.zero_force() == device::StopOutcome::confirmed);
     }
@@ -316,8 +343,12 @@ TEST_CASE("a stop is confirmed though the device measures its force coarsely or 
 
 TEST_CASE("a program that replies in another format is told from one that is not there",
           "[device][remote]") {
-  MockProgram program;
-  program.trouble = Trouble::short_reply;
-  CHECK_THROWS_WITH((device::RemoteHand{program.port, std::chrono::milliseconds{5}}),
-                    Catch::Contains("but not as version 1 or 2"));
+  for (const auto& [trouble, said] :
+       {std::pair{Trouble::short_reply, "but not as version 1 or 2"},
+        std::pair{Trouble::mute, "nobody answers"}, std::pair{Trouble::gone, "nobody answers"}}) {
+    auto program = std::make_unique<MockProgram>();
+    program->trouble = trouble;
+    CHECK_THROWS_WITH((device::RemoteHand{40'000, max_reply, std::move(program)}),
+                      Catch::Contains(said));
+  }
 }

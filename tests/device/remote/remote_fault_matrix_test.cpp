@@ -8,7 +8,6 @@
 #include <array>
 #include <atomic>
 #include <bit>
-#include <catch2/catch.hpp>
 #include <cstring>
 #include <limits>
 #include <numbers>
@@ -18,6 +17,7 @@
 #include "core/rng.hpp"
 #include "device/remote/packets.hpp"
 #include "device/remote/remote_hand.hpp"
+#include "support/catch.hpp"
 #include "support/staged_loop.hpp"
 using namespace tapstudy;
 using core::TickFault;
@@ -319,5 +319,5 @@ TEST_CASE("a program that replies in another format is told from one that is not
   MockProgram program;
   program.trouble = Trouble::short_reply;
   CHECK_THROWS_WITH((device::RemoteHand{program.port, std::chrono::milliseconds{5}}),
-                    Catch::Contains("but not as version 1 or 2"));
+                    Contains("but not as version 1 or 2"));
 }

@@ -9,13 +9,13 @@
 
 #include <array>
 #include <bit>
-#include <catch2/catch.hpp>
 #include <cstring>
 #include <limits>
 #include <thread>
 
 #include "device/hand/replay_hand.hpp"
 #include "device/remote/packets.hpp"
+#include "support/catch.hpp"
 #include "support/example_bridge.hpp"
 using namespace tapstudy;
 using core::TickFault;
@@ -66,7 +66,7 @@ TEST_CASE("the bridge's finger moves under the force it is sent", "[device][remo
 
 TEST_CASE("a remote device that is not there is said, not waited for", "[device][remote]") {
   CHECK_THROWS_WITH((device::RemoteHand{free_port(), std::chrono::milliseconds{3}}),
-                    Catch::Matchers::Contains("nobody answers"));
+                    Contains("nobody answers"));
 }
 
 TEST_CASE("a replayed hand goes where the recorded one went, and stays there", "[device][replay]") {

@@ -6,7 +6,7 @@ source "$(dirname "$0")/cmake/set_up.sh"
 root=$PWD
 install_packages packages.txt
 build_program
-tapstudy="$root/build/release/tapstudy"
+tapstudy="$root/$build/tapstudy"
 
 if [ $# -gt 0 ]; then
   cd "$calling_directory"

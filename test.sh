@@ -4,8 +4,8 @@
 source "$(dirname "$0")/cmake/set_up.sh"
 install_packages packages.txt tests/packages.txt
 build_program_and_tests
-tests=build/release/tests/tapstudy_tests
+tests=$build/tests/tapstudy_tests
 if [ $# -gt 0 ]; then
-  exec "$tests" --order rand --rng-seed time --use-colour no "$@"
+  exec "$tests" --order rand --rng-seed time "$@"
 fi
 exec tests/run_in_parallel "$tests"

@@ -16,13 +16,16 @@ install_packages() {
   $sudo env DEBIAN_FRONTEND=noninteractive apt-get install -y -q --no-install-recommends "${missing[@]}" >&2
 }
 
+preset=${TAPSTUDY_PRESET:-release}  # of CMakePresets.json; checks build the same with another
+build=build/$preset
+
 build_program() {
-  [ -f build/release/build.ninja ] || cmake --preset release -DBUILD_TESTING=OFF >&2
-  cmake --build build/release --target tapstudy >&2
+  [ -f "$build/build.ninja" ] || cmake --preset "$preset" -DBUILD_TESTING=OFF >&2
+  cmake --build "$build" --target tapstudy >&2
 }
 
 build_program_and_tests() {
-  grep -qs 'BUILD_TESTING:BOOL=ON' build/release/CMakeCache.txt ||
-    cmake --preset release -DBUILD_TESTING=ON >&2
-  cmake --build build/release >&2
+  grep -qs 'BUILD_TESTING:BOOL=ON' "$build/CMakeCache.txt" ||
+    cmake --preset "$preset" -DBUILD_TESTING=ON >&2
+  cmake --build "$build" >&2
 }

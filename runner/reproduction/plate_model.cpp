@@ -15,13 +15,13 @@ constexpr double corner_constraints = 12;  // four nodes, three axes
 const char* const model_file = "protocols/paper/plate_model.yaml";
 const char* const model_plate = "mdf";
 
-const core::ModelReport& report_of(Bench& bench, const protocols::Protocol& protocol) {
+core::ModelReport report_of(Bench& bench, const protocols::Protocol& protocol) {
   return bench.models.body_of(protocol, stimulus_with(protocol, protocol.stimulus(model_plate)))
       ->report;
 }
 
 Claim tetrahedra(Bench& bench) {
-  const core::ModelReport& report = report_of(bench, shipped_protocol(model_file));
+  const core::ModelReport report = report_of(bench, shipped_protocol(model_file));
   Claim claim{
       .name = "tetrahedra",
       .section = "Table 1",
@@ -55,7 +55,7 @@ std::vector<Measure> meshes_of(const protocols::Plate& body) {
 
 Claim all_modes(Bench& bench) {
   const protocols::Protocol protocol = shipped_protocol(model_file);
-  const core::ModelReport& report = report_of(bench, protocol);
+  const core::ModelReport report = report_of(bench, protocol);
   Claim claim{
       .name = "all_modes",
       .section = "section 5.1",

@@ -3,12 +3,12 @@
 #include <unistd.h>
 
 #include <atomic>
-#include <catch2/catch.hpp>
 #include <csignal>
 #include <thread>
 #include <vector>
 
 #include "core/error.hpp"
+#include "support/catch.hpp"
 #include "support/sanitized.hpp"
 using namespace tapstudy;
 using core::ChildJob;

@@ -1,14 +1,13 @@
 // Files that belong together appear together or not at all.
 #include "core/output_file.hpp"
 
-#include <catch2/catch.hpp>
 #include <filesystem>
 #include <stdexcept>
 
 #include "core/error.hpp"
+#include "support/catch.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;
-using Catch::Matchers::Contains;
 namespace fs = std::filesystem;
 
 TEST_CASE("where one of several files cannot be written, the others stay as they were",

@@ -1,7 +1,8 @@
 #include "core/placement.hpp"
 
 #include <Eigen/Geometry>
-#include <catch2/catch.hpp>
+
+#include "support/catch.hpp"
 using namespace tapstudy::core;
 
 namespace {

@@ -1,9 +1,9 @@
 #include "core/plain_text.hpp"
 
-#include <catch2/catch.hpp>
 #include <string>
 #include <vector>
 
+#include "support/catch.hpp"
 #include "support/python_program.hpp"
 using namespace tapstudy;
 

@@ -3,12 +3,12 @@
 
 #include <fmt/format.h>
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <sstream>
 #include <tuple>
 
 #include "core/error.hpp"
+#include "support/catch.hpp"
 #include "support/processes.hpp"
 using namespace tapstudy;
 using core::PsychometricShape;

@@ -1,6 +1,6 @@
 #include "core/techniques/technique.hpp"
 
-#include <catch2/catch.hpp>
+#include "support/catch.hpp"
 using namespace tapstudy::core;
 
 // Two springs in series beside a third.

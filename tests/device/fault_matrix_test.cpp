@@ -1,11 +1,11 @@
 // What every fault does in every state of the loop, on a simulated SPIDAR behind the real libusb.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "support/catch.hpp"
 #include "support/staged_loop.hpp"
 #include "support/usb/spidar_on_bus.hpp"
 using namespace tapstudy;

@@ -1,12 +1,11 @@
 // What an operator says of a session after it.
 #include <algorithm>
-#include <catch2/catch.hpp>
 
 #include "support/built_paths.hpp"
+#include "support/catch.hpp"
 #include "support/processes.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;
-using Catch::Matchers::Contains;
 using testing::TempDirectory;
 
 namespace {

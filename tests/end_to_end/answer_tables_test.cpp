@@ -1,7 +1,7 @@
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
+#include "support/catch.hpp"
 #include "support/processes.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;
@@ -29,7 +29,7 @@ TEST_CASE("exported answers are counted as the study's own report counts them, a
   const auto table = testing::tapstudy(
       {"report", "--counts", directory / "csv/trials.csv", "--out", directory / "of_table"});
   REQUIRE(table.exit_code == 0);
-  CHECK_THAT(table.standard_output, Catch::Matchers::Contains("SIMULATED"));
+  CHECK_THAT(table.standard_output, Contains("SIMULATED"));
   REQUIRE(testing::tapstudy({"report", directory / "study", "--replace"}).exit_code == 0);
   const nlohmann::json own = block_of(directory / "study/report.json");
   const nlohmann::json read = block_of(directory / "of_table/report.json");
@@ -50,7 +50,7 @@ TEST_CASE("a file that is named twice is refused, not counted twice", "[end_to_e
   const auto run = testing::tapstudy(
       {"report", "--counts", directory / "answers.csv", directory / "answers.csv"});
   CHECK(run.exit_code == 2);
-  CHECK_THAT(run.standard_error, Catch::Matchers::Contains("holds the same rows as"));
+  CHECK_THAT(run.standard_error, Contains("holds the same rows as"));
 }
 
 TEST_CASE("an export says which of interleaved staircases chose each level", "[end_to_end]") {

@@ -1,11 +1,10 @@
 // Blocks whose order is balanced over participants, through a whole study.
-#include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
+#include "support/catch.hpp"
 #include "support/processes.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;
-using Catch::Matchers::Contains;
 
 namespace {
 // The paper's study twice, in blocks of two plates each.

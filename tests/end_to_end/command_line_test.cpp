@@ -1,18 +1,17 @@
 // What a researcher types and what comes back: output and exit code of the program itself.
 #include <fmt/format.h>
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "support/built_paths.hpp"
+#include "support/catch.hpp"
 #include "support/processes.hpp"
 #include "support/sanitized.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;
-using Catch::Matchers::Contains;
 using testing::replaced;
 using testing::TempDirectory;
 
@@ -98,7 +97,7 @@ TEST_CASE("modes gives frequencies, damping, sizes and times as JSON", "[end_to_
   CHECK(json["elements"] == 445);
   CHECK(json["dof"].get<int>() == 3 * 172 - 12);
   CHECK(json["seconds"]["total"].get<double>() > 0.0);
-  CHECK_THAT(testing::contents(directory / "plate.ele"), Catch::StartsWith("445 4 0"));
+  CHECK_THAT(testing::contents(directory / "plate.ele"), Catch::Matchers::StartsWith("445 4 0"));
 }
 
 TEST_CASE("the techniques differ as they must", "[end_to_end]") {

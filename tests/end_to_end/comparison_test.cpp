@@ -1,10 +1,9 @@
-#include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
+#include "support/catch.hpp"
 #include "support/processes.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;
-using Catch::Matchers::Contains;
 
 namespace {
 const char* const few_answers =

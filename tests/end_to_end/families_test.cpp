@@ -1,13 +1,12 @@
 // --set at the command line, and families in check.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
+#include "support/catch.hpp"
 #include "support/processes.hpp"
 #include "support/varied_study.hpp"
 using namespace tapstudy;
-using Catch::Matchers::Contains;
 
 namespace {
 class Study {

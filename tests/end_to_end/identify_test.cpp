@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <complex>
 #include <filesystem>
@@ -14,11 +13,11 @@
 #include "protocols/axes/presented_stimulus.hpp"
 #include "protocols/read_protocol.hpp"
 #include "runner/stimuli/model_library.hpp"
+#include "support/catch.hpp"
 #include "support/processes.hpp"
 #include "support/synthetic_taps.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;
-using Catch::Matchers::Contains;
 using Json = nlohmann::json;
 
 namespace {

@@ -3,16 +3,15 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cstring>
 #include <iomanip>
 #include <sstream>
 
 #include "support/built_paths.hpp"
+#include "support/catch.hpp"
 #include "support/processes.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;
-using Catch::Matchers::Contains;
 using testing::TempDirectory;
 
 namespace {

@@ -1,10 +1,8 @@
 // Practice to a criterion, real plates, a factor that is asked for, catch trials, corrections.
-#include <catch2/catch.hpp>
-
+#include "support/catch.hpp"
 #include "support/processes.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;
-using Catch::Matchers::Contains;
 using testing::TempDirectory;
 
 namespace {

@@ -1,8 +1,8 @@
 // The pages of a live session, in a browser (Chromium, driven by Selenium) and against attacks.
-#include <catch2/catch.hpp>
 #include <cstdlib>
 
 #include "support/built_paths.hpp"
+#include "support/catch.hpp"
 #include "support/patient_spidar_study.hpp"
 #include "support/processes.hpp"
 #include "support/sanitized.hpp"

@@ -1,12 +1,11 @@
 // Scripted taps: what a trial presents to a hand that holds the device still.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <sstream>
 
+#include "support/catch.hpp"
 #include "support/processes.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;
-using Catch::Matchers::Contains;
 using testing::TempDirectory;
 
 namespace {

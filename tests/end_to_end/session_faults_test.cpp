@@ -1,14 +1,13 @@
 // What a session does when its context fail: nothing that was confirmed is lost.
 #include <fmt/format.h>
 
-#include <catch2/catch.hpp>
 #include <filesystem>
 
 #include "support/built_paths.hpp"
+#include "support/catch.hpp"
 #include "support/processes.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;
-using Catch::Matchers::Contains;
 using testing::TempDirectory;
 
 namespace {
@@ -186,7 +185,7 @@ TEST_CASE("a report that cannot be written leaves nothing behind, and the next o
             "(ulimit -f 8; tapstudy report $out --out reports >/dev/null; echo $?); ls reports\n"
             "tapstudy report $out --out reports >/dev/null; echo $?; ls reports");
   CHECK_THAT(result.standard_output,
-             Catch::StartsWith("2\n0\n") && Contains("report.html\nreport.json\n"));
+             Catch::Matchers::StartsWith("2\n0\n") && Contains("report.html\nreport.json\n"));
 }
 
 TEST_CASE("a report of a study names the sessions that ended early", "[end_to_end]") {

@@ -1,14 +1,12 @@
 // A person's session at the terminal, in real time with a simulated hand.
 #include <fmt/format.h>
 
-#include <catch2/catch.hpp>
-
 #include "support/built_paths.hpp"
+#include "support/catch.hpp"
 #include "support/example_bridge.hpp"
 #include "support/processes.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;
-using Catch::Matchers::Contains;
 using testing::TempDirectory;
 
 namespace {

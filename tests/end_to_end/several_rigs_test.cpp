@@ -1,11 +1,10 @@
 // A study that was run on several machines, each with a store of its own.
-#include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
+#include "support/catch.hpp"
 #include "support/processes.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;
-using Catch::Matchers::Contains;
 using testing::TempDirectory;
 
 namespace {

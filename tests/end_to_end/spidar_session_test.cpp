@@ -1,6 +1,5 @@
 // tapstudy as it is, in a process of its own, against SPIDARs that are plugged into a mocked
 // kernel.
-#include <catch2/catch.hpp>
 #include <csignal>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -9,12 +8,12 @@
 #include <vector>
 
 #include "support/built_paths.hpp"
+#include "support/catch.hpp"
 #include "support/patient_spidar_study.hpp"
 #include "support/processes.hpp"
 #include "support/sanitized.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;
-using Catch::Matchers::Contains;
 
 #if !TAPSTUDY_SANITIZED  // two libraries cannot both be the first to be loaded
 namespace {

@@ -1,8 +1,8 @@
-#include <catch2/catch.hpp>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <regex>
 
+#include "support/catch.hpp"
 #include "support/processes.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;
@@ -40,7 +40,7 @@ TEST_CASE("verify notices what was changed of a study, its sessions or its stati
   REQUIRE(changed.exit_code == 0);
   const auto verified = testing::tapstudy({"verify", directory / "s"});
   CHECK(verified.exit_code == 5);
-  CHECK_THAT(verified.standard_output, Catch::Contains("differs: ") && Catch::Contains(words));
+  CHECK_THAT(verified.standard_output, Contains("differs: ") && Contains(words));
 }
 
 TEST_CASE("verify makes the report anew and names the numbers that were changed", "[end_to_end]") {
@@ -54,7 +54,7 @@ TEST_CASE("verify makes the report anew and names the numbers that were changed"
   REQUIRE(testing::tapstudy({"report", study}).exit_code == 0);
   const auto sound = testing::tapstudy({"verify", study});
   CHECK(sound.exit_code == 0);
-  CHECK_THAT(sound.standard_output, Catch::Contains("identical to a regenerated report"));
+  CHECK_THAT(sound.standard_output, Contains("identical to a regenerated report"));
   const std::string report = study + "/report.json";
   const auto json = nlohmann::json::parse(testing::contents(report));
   const auto changed = [&](const nlohmann::json::json_pointer& at) {
@@ -63,7 +63,7 @@ TEST_CASE("verify makes the report anew and names the numbers that were changed"
     testing::write(report, other.dump());
     const auto verified = testing::tapstudy({"verify", study});
     CHECK(verified.exit_code == 5);
-    CHECK_THAT(verified.standard_output, Catch::Contains("differs: report.json /blocks/"));
+    CHECK_THAT(verified.standard_output, Contains("differs: report.json /blocks/"));
     testing::write(report, json.dump());
   };
   changed("/blocks/0/accuracy/successes"_json_pointer);
@@ -73,11 +73,11 @@ TEST_CASE("verify makes the report anew and names the numbers that were changed"
   testing::write(table, testing::contents(table) + "x,0,0,0,0\n");
   const auto verified = testing::tapstudy({"verify", study});
   CHECK(verified.exit_code == 5);
-  CHECK_THAT(verified.standard_output, Catch::Contains("discrimination_confusion.csv: is not"));
+  CHECK_THAT(verified.standard_output, Contains("discrimination_confusion.csv: is not"));
   std::filesystem::remove(table);
   nlohmann::json older = json;
   older["participants"] = 2;
   testing::write(report, older.dump());
   CHECK_THAT(testing::tapstudy({"verify", study}).standard_output,
-             Catch::Contains("not compared: it was made of fewer participants"));
+             Contains("not compared: it was made of fewer participants"));
 }

@@ -1,14 +1,13 @@
 // What a report says of a study besides its blocks.
 #include <fmt/format.h>
 
-#include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
 #include "results/store.hpp"
+#include "support/catch.hpp"
 #include "support/processes.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;
-using Catch::Matchers::Contains;
 
 namespace {
 // Each participant marks every line of the task's load at a tenth of their session's id.

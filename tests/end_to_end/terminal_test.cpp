@@ -1,8 +1,8 @@
 // A session at a pseudo-terminal, as a participant has it.
-#include <catch2/catch.hpp>
 #include <cstdlib>
 
 #include "support/built_paths.hpp"
+#include "support/catch.hpp"
 #include "support/processes.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;

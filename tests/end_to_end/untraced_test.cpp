@@ -1,9 +1,7 @@
-#include <catch2/catch.hpp>
-
+#include "support/catch.hpp"
 #include "support/processes.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;
-using Catch::Matchers::Contains;
 
 namespace {
 void simulate(const std::string& out, const std::vector<std::string>& options = {}) {

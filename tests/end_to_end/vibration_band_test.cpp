@@ -1,12 +1,11 @@
 #include <fmt/format.h>
 
-#include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
+#include "support/catch.hpp"
 #include "support/processes.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;
-using Catch::Matchers::Contains;
 
 TEST_CASE("check names the modes that the device does not render, and no other", "[end_to_end]") {
   const testing::TempDirectory directory;

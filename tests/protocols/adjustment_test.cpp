@@ -1,14 +1,13 @@
 // How runs of the method of adjustment are planned, and what is refused.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <set>
 
 #include "core/error.hpp"
 #include "protocols/read_protocol.hpp"
 #include "protocols/schedule.hpp"
+#include "support/catch.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;
-using Catch::Matchers::Contains;
 
 namespace {
 std::string with_block(const std::string& keys, int repetitions = 12) {

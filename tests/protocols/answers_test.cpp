@@ -1,9 +1,10 @@
 // What answers are read from, at the terminal and from pages alike.
 #include "protocols/tasks/answers.hpp"
 
-#include <catch2/catch.hpp>
 #include <map>
 #include <string>
+
+#include "support/catch.hpp"
 using namespace tapstudy;
 using protocols::answer_in;
 using protocols::AnswerKind;

@@ -1,16 +1,15 @@
 #include "protocols/block_order.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <map>
 #include <set>
 
 #include "core/error.hpp"
 #include "protocols/read_protocol.hpp"
 #include "protocols/schedule.hpp"
+#include "support/catch.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;
-using Catch::Matchers::Contains;
 
 namespace {
 using Names = std::vector<std::string>;

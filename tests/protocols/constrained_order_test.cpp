@@ -2,9 +2,10 @@
 #include "protocols/constrained_order.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <map>
+
+#include "support/catch.hpp"
 using namespace tapstudy;
 using Order = std::vector<std::size_t>;
 

@@ -1,11 +1,9 @@
 // What plates touch, as it is read.
-#include <catch2/catch.hpp>
-
 #include "core/error.hpp"
 #include "protocols/read_protocol.hpp"
+#include "support/catch.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;
-using Catch::Matchers::Contains;
 
 namespace {
 std::string on_feet() {

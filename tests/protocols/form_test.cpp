@@ -1,9 +1,8 @@
 #include "protocols/form.hpp"
 
-#include <catch2/catch.hpp>
-
 #include "protocols/nasa_tlx.hpp"
 #include "protocols/read_protocol.hpp"
+#include "support/catch.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy::protocols;
 

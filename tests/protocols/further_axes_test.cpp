@@ -1,11 +1,9 @@
-#include <catch2/catch.hpp>
-
 #include "core/error.hpp"
 #include "protocols/protocol.hpp"
 #include "protocols/read_protocol.hpp"
+#include "support/catch.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;
-using Catch::Matchers::Contains;
 
 namespace {
 std::string example() {

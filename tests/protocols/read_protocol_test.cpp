@@ -3,14 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <filesystem>
 #include <string>
 
 #include "core/error.hpp"
+#include "support/catch.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;
-using Catch::Matchers::Contains;
 using testing::replaced;
 
 namespace {
@@ -188,7 +187,8 @@ TEST_CASE("a coupled finger without a mass, or not held to the hand, is one erro
   const auto only_error = [&](const std::string& text, const std::string& key) {
     const std::string said = refusal(text);
     CHECK(std::count(said.begin(), said.end(), '\n') == 0);
-    CHECK_THAT(said, Catch::StartsWith(fmt::format("study.yaml:{}:", line_of(text, key))));
+    CHECK_THAT(said,
+               Catch::Matchers::StartsWith(fmt::format("study.yaml:{}:", line_of(text, key))));
     return said;
   };
   CHECK_THAT(only_error(replaced(coupled, "  mass_kg: 0.058", "  # no mass"), "stiffness_n_per_m"),

@@ -1,6 +1,5 @@
 // protocols/README.md against the JSON schemas from which it is generated.
-#include <catch2/catch.hpp>
-
+#include "support/catch.hpp"
 #include "support/processes.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;

@@ -1,7 +1,6 @@
 #include "protocols/schedule.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <map>
 #include <set>
@@ -9,6 +8,7 @@
 #include "core/error.hpp"
 #include "protocols/ordering.hpp"
 #include "protocols/read_protocol.hpp"
+#include "support/catch.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;
 using protocols::make_schedule;

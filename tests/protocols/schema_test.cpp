@@ -1,5 +1,4 @@
 // The JSON schema that editors use against the reader that decides.
-#include <catch2/catch.hpp>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -11,6 +10,7 @@
 #include "protocols/read_protocol.hpp"
 #include "protocols/spidar_calibration.hpp"
 #include "runner/devices/rigs.hpp"
+#include "support/catch.hpp"
 #include "support/processes.hpp"
 #include "support/schema_keys.hpp"
 #include "support/texts.hpp"

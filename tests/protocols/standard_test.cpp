@@ -1,12 +1,10 @@
 // The standard of a comparison.
-#include <catch2/catch.hpp>
-
 #include "core/error.hpp"
 #include "protocols/protocol.hpp"
 #include "protocols/read_protocol.hpp"
+#include "support/catch.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;
-using Catch::Matchers::Contains;
 
 namespace {
 // The example, with a table of thicknesses instead of Young's modulus.

@@ -1,14 +1,13 @@
 // What discrimination tasks present, and which answers are right.
-#include <catch2/catch.hpp>
 #include <map>
 #include <set>
 
 #include "core/error.hpp"
 #include "protocols/read_protocol.hpp"
 #include "protocols/schedule.hpp"
+#include "support/catch.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;
-using Catch::Matchers::Contains;
 
 namespace {
 protocols::Protocol every_task() {

@@ -2,15 +2,14 @@
 
 #include <sys/resource.h>
 
-#include <catch2/catch.hpp>
 #include <csignal>
 #include <fstream>
 
 #include "results/store_error.hpp"
+#include "support/catch.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;
 using namespace tapstudy::results;
-using Catch::Matchers::Contains;
 
 namespace {
 StudyRow empty_study() {

@@ -1,9 +1,7 @@
 // What a study stores twice: one is recomputed from the other.
-#include <catch2/catch.hpp>
-
+#include "support/catch.hpp"
 #include "support/messy_study.hpp"
 using namespace tapstudy;
-using Catch::Matchers::Contains;
 using testing::TempDirectory;
 namespace messy = testing::messy_study;
 

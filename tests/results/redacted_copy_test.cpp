@@ -1,10 +1,9 @@
 // A copy of a study to be given away.
-#include <catch2/catch.hpp>
 #include <filesystem>
 
+#include "support/catch.hpp"
 #include "support/messy_study.hpp"
 using namespace tapstudy;
-using Catch::Matchers::Contains;
 using testing::TempDirectory;
 namespace fs = std::filesystem;
 namespace messy = testing::messy_study;

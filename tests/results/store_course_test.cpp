@@ -1,9 +1,9 @@
-#include <catch2/catch.hpp>
 #include <string>
 #include <vector>
 
 #include "results/participant_courses.hpp"
 #include "results/store.hpp"
+#include "support/catch.hpp"
 #include "support/python_program.hpp"
 #include "support/small_study.hpp"
 #include "support/texts.hpp"

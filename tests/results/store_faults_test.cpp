@@ -3,7 +3,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <catch2/catch.hpp>
 #include <chrono>
 #include <csignal>
 #include <filesystem>
@@ -12,6 +11,7 @@
 #include "core/rng.hpp"
 #include "results/recorder.hpp"
 #include "results/store_error.hpp"
+#include "support/catch.hpp"
 #include "support/processes.hpp"
 #include "support/small_study.hpp"
 #include "support/texts.hpp"

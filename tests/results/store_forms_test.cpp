@@ -1,7 +1,7 @@
-#include <catch2/catch.hpp>
 #include <filesystem>
 
 #include "results/store.hpp"
+#include "support/catch.hpp"
 #include "support/small_study.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;

@@ -1,11 +1,11 @@
 // Corrections, exclusions, and who gets which of the balanced orders.
-#include <catch2/catch.hpp>
 #include <filesystem>
 
 #include "results/participant_courses.hpp"
 #include "results/store.hpp"
 #include "results/store_error.hpp"
 #include "results/stored_answers.hpp"
+#include "support/catch.hpp"
 #include "support/small_study.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;

@@ -2,7 +2,6 @@
 
 #include <sys/stat.h>
 
-#include <catch2/catch.hpp>
 #include <filesystem>
 
 #include "core/error.hpp"
@@ -11,13 +10,13 @@
 #include "results/store_error.hpp"
 #include "results/stored_answers.hpp"
 #include "results/trace_stream.hpp"
+#include "support/catch.hpp"
 #include "support/processes.hpp"
 #include "support/small_study.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;
 using namespace tapstudy::results;
 using namespace tapstudy::testing::small_study;
-using Catch::Matchers::Contains;
 using tapstudy::core::sha256;
 namespace fs = std::filesystem;
 
@@ -195,7 +194,7 @@ TEST_CASE("a seed that is no whole number is refused, not read as another one",
     Statement{database, "UPDATE session SET seed = ?"}.bind(seed).finish();
   }
   Store store = Store::open_existing(directory.path());
-  CHECK_THROWS_WITH(store.sessions(), Catch::Contains("study.db: session 1: the seed '" + seed));
+  CHECK_THROWS_WITH(store.sessions(), Contains("study.db: session 1: the seed '" + seed));
 }
 
 TEST_CASE("a pipe is no study", "[results][store]") {
@@ -289,5 +288,5 @@ TEST_CASE("SHA-256 agrees with sha256sum", "[results]") {
   const testing::TempDirectory directory;
   testing::write(directory / "text", "tapstudy\n");
   const auto result = testing::run_program({"/usr/bin/sha256sum", directory / "text"});
-  CHECK_THAT(result.standard_output, Catch::StartsWith(sha256("tapstudy\n")));
+  CHECK_THAT(result.standard_output, Catch::Matchers::StartsWith(sha256("tapstudy\n")));
 }

@@ -1,12 +1,12 @@
 #include "results/trace_codec.hpp"
 
-#include <catch2/catch.hpp>
 #include <cstring>
 #include <limits>
 
 #include "core/rng.hpp"
 #include "results/store_error.hpp"
 #include "results/trace_collector.hpp"
+#include "support/catch.hpp"
 using namespace tapstudy;
 using core::TraceSample;
 

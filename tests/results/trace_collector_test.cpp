@@ -1,7 +1,8 @@
 #include "results/trace_collector.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
+
+#include "support/catch.hpp"
 using namespace tapstudy;
 
 TEST_CASE("an impact up to 5 ms after a late tick is noted as one, and no other is",

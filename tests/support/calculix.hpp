@@ -1,7 +1,6 @@
 #pragma once
 #include <fmt/format.h>
 
-#include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -10,6 +9,7 @@
 
 #include "core/model/fixation.hpp"
 #include "core/model/plate.hpp"
+#include "support/catch.hpp"
 #include "support/processes.hpp"
 #include "support/texts.hpp"
 // Bodies and springs as CalculiX reads them, and what it says of them.

@@ -5,11 +5,11 @@
 #include <unistd.h>
 
 #include <array>
-#include <catch2/catch.hpp>
 #include <cstdint>
 #include <string>
 
 #include "support/built_paths.hpp"
+#include "support/catch.hpp"
 
 extern char** environ;
 namespace tapstudy::testing {

@@ -1,6 +1,5 @@
 #pragma once
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -8,6 +7,7 @@
 
 #include "analysis/blocks/block_summary.hpp"
 #include "analysis/report/statistic.hpp"
+#include "support/catch.hpp"
 namespace tapstudy::testing {
 // A summary in each of its formats.
 struct Formats {

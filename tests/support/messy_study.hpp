@@ -1,9 +1,9 @@
 #pragma once
 #include <array>
-#include <catch2/catch.hpp>
 #include <string>
 
 #include "results/store.hpp"
+#include "support/catch.hpp"
 #include "support/processes.hpp"
 #include "support/small_study.hpp"
 #include "support/texts.hpp"

@@ -1,9 +1,9 @@
 #include "support/no_alloc.hpp"
 
 #include <Eigen/Core>
-#include <catch2/catch.hpp>
 #include <memory>
 
+#include "support/catch.hpp"
 #include "support/sanitized.hpp"
 using namespace tapstudy::testing;
 

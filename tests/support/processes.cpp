@@ -4,9 +4,8 @@
 #include <spawn.h>
 #include <sys/wait.h>
 
-#include <catch2/catch.hpp>
-
 #include "support/built_paths.hpp"
+#include "support/catch.hpp"
 #include "support/texts.hpp"
 
 extern char** environ;

@@ -1,9 +1,9 @@
 #pragma once
-#include <catch2/catch.hpp>
 #include <sstream>
 #include <string>
 #include <vector>
 
+#include "support/catch.hpp"
 #include "support/processes.hpp"
 namespace tapstudy::testing {
 // The numbers that a script for Debian's python3 prints by `out(...)`, in order.

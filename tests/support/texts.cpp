@@ -2,12 +2,12 @@
 
 #include <unistd.h>
 
-#include <catch2/catch.hpp>
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
 
 #include "support/built_paths.hpp"
+#include "support/catch.hpp"
 namespace tapstudy::testing {
 namespace fs = std::filesystem;
 

@@ -1,9 +1,8 @@
-#include <catch2/catch.hpp>
-
 #include "analysis/agreement/independence.hpp"
 #include "analysis/agreement/kappa.hpp"
 #include "analysis/agreement/symmetry.hpp"
 #include "core/error.hpp"
+#include "support/catch.hpp"
 #include "support/confusion_tables.hpp"
 #include "support/python_program.hpp"
 #include "support/r_program.hpp"

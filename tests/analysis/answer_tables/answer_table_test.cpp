@@ -1,16 +1,15 @@
 #include "analysis/answer_tables/answer_table.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <sstream>
 
 #include "analysis/answer_tables/json_rows.hpp"
 #include "analysis/report/summary.hpp"
 #include "core/error.hpp"
+#include "support/catch.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;
 using namespace tapstudy::analysis;
-using Catch::Matchers::Contains;
 
 namespace {
 NamedCsv csv_of(const std::string& text, const std::string& file = "answers.csv") {

@@ -2,11 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <catch2/catch.hpp>
-
 #include "analysis/participants/mean_proportion.hpp"
+#include "support/catch.hpp"
 using namespace tapstudy::analysis;
-using Catch::Matchers::Contains;
 
 TEST_CASE("the interval of pooled answers is that over participants, never the score interval",
           "[analysis][participants]") {

@@ -2,14 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <catch2/catch.hpp>
 #include <sstream>
 
 #include "analysis/choice/choice_summary.hpp"
+#include "support/catch.hpp"
 #include "support/python_program.hpp"
 using namespace tapstudy;
 using namespace tapstudy::analysis;
-using Catch::Matchers::Contains;
 
 namespace {
 // Stimuli a, b, c under the labels A, B, C in this order; what was chosen, and visited.

@@ -1,6 +1,6 @@
 #include "analysis/confidence/confidence_section.hpp"
 
-#include <catch2/catch.hpp>
+#include "support/catch.hpp"
 using namespace tapstudy;
 
 TEST_CASE("confidence is counted by its steps, with what was right at each",
@@ -25,6 +25,6 @@ TEST_CASE("confidence is counted by its steps, with what was right at each",
   REQUIRE(rows.size() == 2);
   CHECK(rows[0][2].text == "guessed");
   CHECK(rows[1][3].text == "3");
-  CHECK_THAT(rows[1][5].text, Catch::StartsWith("2/3"));
+  CHECK_THAT(rows[1][5].text, Catch::Matchers::StartsWith("2/3"));
   CHECK(analysis::confidence_section({{"other", 3, "", ""}}, answers).tables.empty());
 }

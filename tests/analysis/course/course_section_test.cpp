@@ -1,10 +1,10 @@
 #include "analysis/course/course_section.hpp"
 
-#include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 #include <regex>
 #include <sstream>
 
+#include "support/catch.hpp"
 #include "support/formats.hpp"
 using namespace tapstudy;
 using namespace tapstudy::analysis;

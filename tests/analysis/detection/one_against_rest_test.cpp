@@ -1,9 +1,8 @@
 #include "analysis/detection/one_against_rest.hpp"
 
-#include <catch2/catch.hpp>
-
 #include "analysis/detection/decision_model.hpp"
 #include "core/error.hpp"
+#include "support/catch.hpp"
 #include "support/confusion_tables.hpp"
 #include "support/r_program.hpp"
 using namespace tapstudy;

@@ -2,12 +2,12 @@
 #include "analysis/detection/rates.hpp"
 
 #include <array>
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "analysis/detection/decision_model.hpp"
 #include "core/error.hpp"
 #include "core/rng.hpp"
+#include "support/catch.hpp"
 #include "support/r_program.hpp"
 using namespace tapstudy;
 

@@ -1,4 +1,3 @@
-#include <catch2/catch.hpp>
 #include <random>
 
 #include "analysis/detection/decision_model.hpp"
@@ -8,11 +7,11 @@
 #include "analysis/statistics/distributions.hpp"
 #include "core/error.hpp"
 #include "core/rng.hpp"
+#include "support/catch.hpp"
 #include "support/formats.hpp"
 #include "support/r_program.hpp"
 using namespace tapstudy;
 using namespace tapstudy::analysis;
-using Catch::Matchers::Contains;
 using testing::r_numbers;
 using testing::reported;
 
@@ -115,7 +114,7 @@ TEST_CASE("where no decision model is known there is no d', and the report says 
   const auto report = reported(statistic, design_of("", 3), answers);
   CHECK(report.json["participants"][0]["d_prime"].is_null());
   CHECK(report.json["participants"][0]["p"].get<double>() > 0.0);
-  CHECK_THAT(report.text, Catch::Matchers::Contains("There is no d'"));
+  CHECK_THAT(report.text, Contains("There is no d'"));
 }
 
 TEST_CASE(

@@ -1,13 +1,12 @@
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
 
 #include "core/error.hpp"
+#include "support/catch.hpp"
 #include "support/formats.hpp"
 #include "support/r_program.hpp"
 using namespace tapstudy;
 using namespace tapstudy::analysis;
-using Catch::Matchers::Contains;
 using testing::reported;
 
 namespace {

@@ -3,14 +3,12 @@
 
 #include <fmt/format.h>
 
-#include <catch2/catch.hpp>
-
 #include "analysis/tables/chart.hpp"
 #include "core/error.hpp"
+#include "support/catch.hpp"
 #include "support/processes.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;
-using Catch::Matchers::Contains;
 
 TEST_CASE("a figure's PDF is one page of its size that holds its words as text",
           "[analysis][figures]") {

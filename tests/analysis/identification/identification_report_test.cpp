@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <catch2/catch.hpp>
 #include <sstream>
 
 #include "analysis/agreement/independence.hpp"
@@ -10,12 +9,12 @@
 #include "analysis/information/information_transfer.hpp"
 #include "analysis/statistics/counts_csv.hpp"
 #include "core/rng.hpp"
+#include "support/catch.hpp"
 #include "support/formats.hpp"
 #include "support/r_program.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;
 using namespace tapstudy::analysis;
-using Catch::Matchers::Contains;
 using testing::r_numbers;
 using testing::reported;
 

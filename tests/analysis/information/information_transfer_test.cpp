@@ -1,10 +1,10 @@
 #include "analysis/information/information_transfer.hpp"
 
 #include <boost/math/distributions/beta.hpp>
-#include <catch2/catch.hpp>
 
 #include "core/error.hpp"
 #include "core/rng.hpp"
+#include "support/catch.hpp"
 #include "support/confusion_tables.hpp"
 #include "support/r_program.hpp"
 using namespace tapstudy;

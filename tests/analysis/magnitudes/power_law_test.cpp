@@ -1,10 +1,10 @@
 // Stevens' power law from magnitude estimates, against R's lm and t.test.
 #include "analysis/magnitudes/power_law.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "core/error.hpp"
+#include "support/catch.hpp"
 #include "support/r_program.hpp"
 using namespace tapstudy;
 using analysis::Estimates;
@@ -84,7 +84,7 @@ TEST_CASE("magnitudes without a logarithm or a slope are refused", "[analysis][m
   CHECK_THROWS_AS(analysis::power_law({fine, {{1.0, 2.0}}}), core::InvalidInput);
   CHECK_THROWS_AS(analysis::power_law({fine, {{1.0, 2.0}, {2.0, 0.0}}}), core::InvalidInput);
   CHECK_THROWS_WITH(analysis::power_law({fine, {{1.0, 2.0}, {20.0, 5.0}}}),
-                    Catch::Contains("the same values"));
+                    Contains("the same values"));
   CHECK_THROWS_AS(analysis::power_law({fine, {{-1.0, 2.0}, {2.0, 1.0}}}), core::InvalidInput);
 }
 

@@ -2,11 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <catch2/catch.hpp>
-
 #include "analysis/modal_identification/modal_assurance.hpp"
 #include "analysis/modal_identification/repeated_modes.hpp"
 #include "core/rng.hpp"
+#include "support/catch.hpp"
 #include "support/python_program.hpp"
 using namespace tapstudy;
 using namespace tapstudy::analysis;

@@ -3,9 +3,9 @@
 #include "analysis/modal_identification/close_modes.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 
+#include "support/catch.hpp"
 #include "support/synthetic_taps.hpp"
 using namespace tapstudy;
 using namespace tapstudy::analysis;

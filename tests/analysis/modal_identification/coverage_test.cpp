@@ -1,11 +1,11 @@
 // What was planted comes back inside its stated 95 % interval about 95 times in 100.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "analysis/modal_identification/repeated_modes.hpp"
 #include "analysis/recordings/taps.hpp"
 #include "analysis/statistics/distributions.hpp"
+#include "support/catch.hpp"
 #include "support/synthetic_taps.hpp"
 using namespace tapstudy;
 using namespace tapstudy::analysis;

@@ -3,7 +3,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "analysis/modal_identification/decaying_sinusoid_fit.hpp"
@@ -12,6 +11,7 @@
 #include "analysis/modal_identification/repeated_modes.hpp"
 #include "core/error.hpp"
 #include "core/model/modes/damping.hpp"
+#include "support/catch.hpp"
 #include "support/python_program.hpp"
 #include "support/synthetic_taps.hpp"
 using namespace tapstudy;

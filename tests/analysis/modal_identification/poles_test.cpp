@@ -1,17 +1,16 @@
 // Natural frequencies and damping ratios of a free decay, by both methods and by SciPy.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "analysis/modal_identification/cut_exponential.hpp"
 #include "analysis/modal_identification/tap_modes.hpp"
 #include "analysis/modal_identification/vector_fitting.hpp"
 #include "core/error.hpp"
+#include "support/catch.hpp"
 #include "support/python_program.hpp"
 #include "support/synthetic_taps.hpp"
 using namespace tapstudy;
 using namespace tapstudy::analysis;
-using Catch::Matchers::Contains;
 using testing::PlantedMode;
 
 namespace {

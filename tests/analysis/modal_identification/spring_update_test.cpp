@@ -1,9 +1,9 @@
 #include "analysis/modal_identification/spring_update.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "core/rng.hpp"
+#include "support/catch.hpp"
 using namespace tapstudy;
 
 namespace {

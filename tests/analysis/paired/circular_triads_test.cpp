@@ -1,10 +1,9 @@
 // Circular triads, counted one by one.
 #include "analysis/paired/circular_triads.hpp"
 
-#include <catch2/catch.hpp>
-
 #include "core/error.hpp"
 #include "core/rng.hpp"
+#include "support/catch.hpp"
 using namespace tapstudy;
 
 namespace {

@@ -1,11 +1,11 @@
 // Scales from paired comparisons, against the R packages BradleyTerry2 and stats.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <vector>
 
 #include "analysis/paired/bradley_terry.hpp"
 #include "analysis/paired/thurstone.hpp"
 #include "core/error.hpp"
+#include "support/catch.hpp"
 #include "support/r_program.hpp"
 using namespace tapstudy;
 using analysis::PairedCounts;
@@ -139,13 +139,12 @@ TEST_CASE("items that comparisons do not connect are refused by their places",
           "[analysis][paired]") {
   PairedCounts counts{square({0, 3, 2, 2, 1, 0, 2, 0, 0, 0, 0, 3, 0, 0, 1, 0}),
                       Eigen::MatrixXi::Zero(4, 4)};
-  const auto refusal =
-      Catch::Contains("of items 3, 4, none was ever preferred to any of items 1, 2");
+  const auto refusal = Contains("of items 3, 4, none was ever preferred to any of items 1, 2");
   CHECK_THROWS_WITH(analysis::bradley_terry(counts), refusal);
   CHECK_THROWS_WITH(analysis::thurstone_case_v(counts), refusal);
   const PairedCounts reversed = counts_of(counts.wins.reverse());
   CHECK_THROWS_WITH(analysis::bradley_terry(reversed),
-                    Catch::Contains("of items 1, 2, none was ever preferred to any of items 3, 4"));
+                    Contains("of items 1, 2, none was ever preferred to any of items 3, 4"));
   counts.ties(1, 3) = counts.ties(3, 1) = 1;  // half a preference of 4 to 2
   CHECK_THROWS_WITH(analysis::bradley_terry(counts), refusal);
   CHECK_NOTHROW(analysis::thurstone_case_v(counts));

@@ -1,13 +1,13 @@
 #include <fmt/format.h>
 
 #include <boost/math/distributions/beta.hpp>
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "analysis/participants/mean_proportion.hpp"
 #include "analysis/participants/paired_contrast.hpp"
 #include "core/error.hpp"
 #include "core/rng.hpp"
+#include "support/catch.hpp"
 #include "support/python_program.hpp"
 #include "support/r_program.hpp"
 using namespace tapstudy;

@@ -1,11 +1,11 @@
 // The mean of people who differ, against statsmodels.
 #include "analysis/participants/random_effects.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "core/error.hpp"
 #include "core/rng.hpp"
+#include "support/catch.hpp"
 #include "support/python_program.hpp"
 using namespace tapstudy;
 using analysis::random_effects;

@@ -1,15 +1,14 @@
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
 
 #include "analysis/paired/bradley_terry.hpp"
 #include "analysis/paired/thurstone.hpp"
 #include "core/error.hpp"
+#include "support/catch.hpp"
 #include "support/formats.hpp"
 #include "support/r_program.hpp"
 using namespace tapstudy;
 using namespace tapstudy::analysis;
-using Catch::Matchers::Contains;
 using testing::r_numbers;
 using testing::reported;
 

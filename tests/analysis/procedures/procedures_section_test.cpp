@@ -1,8 +1,9 @@
 #include "analysis/procedures/procedures_section.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
+
+#include "support/catch.hpp"
 using namespace tapstudy;
 
 namespace {

@@ -1,13 +1,13 @@
 // Psychometric functions by maximum likelihood, against R's glm, psyphy's links and R's optim.
 #include "analysis/psychometric/fit.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <map>
 
 #include "analysis/psychometric/example_levels.hpp"
 #include "core/error.hpp"
 #include "core/rng.hpp"
+#include "support/catch.hpp"
 using namespace tapstudy;
 using analysis::FitOutcome;
 using analysis::Level;
@@ -192,7 +192,7 @@ TEST_CASE("a fit refuses counts and values that are not possible", "[analysis][p
   };
   refuses(model, {});
   CHECK_THROWS_WITH(analysis::fit_psychometric(model, {{1.0, {3, 5}}, {1.0, {4, 5}}}),
-                    Catch::Contains("two different values above 0 or more, not 1"));
+                    Contains("two different values above 0 or more, not 1"));
   refuses(model, {{0.0, {3, 5}}, {1.0, {4, 5}}});  // one value has a logarithm
   refuses(model, {{1.0, {3, 5}}, {2.0, {0, 0}}});
   refuses(model, {{1.0, {6, 5}}, {2.0, {4, 5}}});

@@ -1,12 +1,12 @@
 // Intervals and goodness of fit of psychometric functions, against R's glm and chi-squared.
 #include "analysis/psychometric/inference.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "analysis/psychometric/example_levels.hpp"
 #include "analysis/statistics/distributions.hpp"
 #include "core/error.hpp"
+#include "support/catch.hpp"
 using namespace tapstudy;
 using analysis::Level;
 using analysis::PsychometricModel;

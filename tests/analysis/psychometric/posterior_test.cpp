@@ -3,7 +3,6 @@
 #include "analysis/psychometric/posterior.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <iterator>
 #include <sstream>
@@ -13,6 +12,7 @@
 #include "analysis/psychometric/inference.hpp"
 #include "analysis/psychometric/posterior_grid.hpp"
 #include "core/error.hpp"
+#include "support/catch.hpp"
 #include "support/processes.hpp"
 using namespace tapstudy;
 using analysis::FitOutcome;

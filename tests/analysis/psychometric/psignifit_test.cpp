@@ -1,10 +1,10 @@
 // Psychometric functions with a free lapse rate, against psignifit (Wichmann & Hill 2001a).
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <sstream>
 
 #include "analysis/psychometric/example_levels.hpp"
 #include "analysis/psychometric/fit.hpp"
+#include "support/catch.hpp"
 #include "support/processes.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;

@@ -1,13 +1,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "analysis/questionnaires/questionnaires_section.hpp"
 #include "core/error.hpp"
 #include "core/rng.hpp"
+#include "support/catch.hpp"
 #include "support/python_program.hpp"
 using namespace tapstudy;
 using namespace tapstudy::analysis;

@@ -1,5 +1,4 @@
 // Tests of ratings and ranks, against R's friedman.test, wilcox.test, p.adjust and quantile.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 
@@ -9,6 +8,7 @@
 #include "analysis/statistics/quantiles.hpp"
 #include "core/error.hpp"
 #include "core/rng.hpp"
+#include "support/catch.hpp"
 #include "support/r_program.hpp"
 using namespace tapstudy;
 using analysis::RatingTable;
@@ -143,7 +143,7 @@ TEST_CASE("ratings that cannot be compared are refused", "[analysis][rank_tests]
   CHECK_THROWS_AS(analysis::friedman_test({{1}, {2}}), core::InvalidInput);
   CHECK_THROWS_AS(analysis::friedman_test({{1, 2}, {2}}), core::InvalidInput);
   CHECK_THROWS_AS(analysis::friedman_test({{1, 2}, {2, std::nan("")}}), core::InvalidInput);
-  CHECK_THROWS_WITH(analysis::friedman_test({{1, 1}, {2, 2}}), Catch::Contains("the same"));
+  CHECK_THROWS_WITH(analysis::friedman_test({{1, 1}, {2, 2}}), Contains("the same"));
   CHECK_THROWS_AS(analysis::signed_rank_test({}), core::InvalidInput);
   CHECK_THROWS_AS(analysis::signed_rank_test({1.0, std::numeric_limits<double>::infinity()}),
                   core::InvalidInput);

@@ -1,16 +1,15 @@
 // Rankings of all stimuli, against R's conditional logit: a ranking is a choice of the first among
 // all, then of the second among those left, and so on (Luce 1959).
-#include <catch2/catch.hpp>
 #include <random>
 #include <sstream>
 
 #include "analysis/rankings/plackett_luce.hpp"
 #include "core/error.hpp"
+#include "support/catch.hpp"
 #include "support/formats.hpp"
 #include "support/r_program.hpp"
 using namespace tapstudy;
 using namespace tapstudy::analysis;
-using Catch::Matchers::Contains;
 using testing::r_numbers;
 using testing::r_vector;
 using testing::reported;

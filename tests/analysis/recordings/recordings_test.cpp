@@ -2,19 +2,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <sstream>
 
 #include "analysis/recordings/csv_recording.hpp"
 #include "analysis/recordings/taps.hpp"
 #include "core/error.hpp"
+#include "support/catch.hpp"
 #include "support/python_program.hpp"
 #include "support/synthetic_taps.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;
 using namespace tapstudy::analysis;
-using Catch::Matchers::Contains;
 
 namespace {
 constexpr int rows = 80;

@@ -1,13 +1,12 @@
 // What was rendered, as a report says it.
-#include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "analysis/rendered/rendered_section.hpp"
+#include "support/catch.hpp"
 #include "support/processes.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;
-using Catch::Matchers::Contains;
 
 namespace {
 // A tick a millisecond.

@@ -1,10 +1,10 @@
 #include "analysis/report/block_contrasts.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "analysis/participants/paired_contrast.hpp"
 #include "analysis/tables/tabular_summary.hpp"
+#include "support/catch.hpp"
 using namespace tapstudy;
 using analysis::PersonalValues;
 

@@ -1,8 +1,7 @@
 #include "analysis/report/block_parts.hpp"
 
-#include <catch2/catch.hpp>
-
 #include "core/error.hpp"
+#include "support/catch.hpp"
 using namespace tapstudy;
 using namespace tapstudy::analysis;
 

@@ -1,4 +1,3 @@
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <map>
 #include <stdexcept>
@@ -8,6 +7,7 @@
 #include "analysis/statistics/distributions.hpp"
 #include "analysis/statistics/log_factorial.hpp"
 #include "core/error.hpp"
+#include "support/catch.hpp"
 #include "support/confusion_tables.hpp"
 #include "support/r_program.hpp"
 using namespace tapstudy;

@@ -1,11 +1,11 @@
 #include "analysis/response_times/response_times.hpp"
 
 #include <array>
-#include <catch2/catch.hpp>
 
 #include "analysis/participants/serial_dependence.hpp"
 #include "core/error.hpp"
 #include "core/rng.hpp"
+#include "support/catch.hpp"
 #include "support/r_program.hpp"
 using namespace tapstudy;
 using namespace tapstudy::analysis;

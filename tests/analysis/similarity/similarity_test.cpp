@@ -1,9 +1,9 @@
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "analysis/similarity/scaling.hpp"
 #include "analysis/similarity/similarity_choice.hpp"
 #include "core/error.hpp"
+#include "support/catch.hpp"
 #include "support/confusion_tables.hpp"
 #include "support/r_program.hpp"
 using namespace tapstudy;

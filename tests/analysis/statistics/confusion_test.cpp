@@ -1,4 +1,3 @@
-#include <catch2/catch.hpp>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -11,11 +10,11 @@
 #include "analysis/statistics/confusion_matrix.hpp"
 #include "analysis/statistics/counts_csv.hpp"
 #include "core/error.hpp"
+#include "support/catch.hpp"
 #include "support/r_program.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;
 using namespace tapstudy::analysis;
-using Catch::Matchers::Contains;
 
 namespace {
 ConfusionMatrix matrix_from(const std::string& text) {

@@ -1,6 +1,5 @@
 // Each test and interval over a thousand studies of which its hypothesis is true.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <functional>
 
@@ -15,6 +14,7 @@
 #include "analysis/statistics/independent_difference.hpp"
 #include "analysis/statistics/sign_test.hpp"
 #include "core/rng.hpp"
+#include "support/catch.hpp"
 using namespace tapstudy;
 using namespace tapstudy::analysis;
 using core::Rng;

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <map>
 
@@ -14,6 +13,7 @@
 #include "protocols/read_protocol.hpp"
 #include "protocols/schedule.hpp"
 #include "runner/experiments/study_design.hpp"
+#include "support/catch.hpp"
 #include "support/r_program.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;

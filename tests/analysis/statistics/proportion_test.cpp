@@ -1,10 +1,9 @@
 #include "analysis/statistics/proportion.hpp"
 
-#include <catch2/catch.hpp>
-
 #include "analysis/blocks/wording.hpp"
 #include "analysis/statistics/permutation_test.hpp"
 #include "core/rng.hpp"
+#include "support/catch.hpp"
 #include "support/r_program.hpp"
 using namespace tapstudy;
 using namespace tapstudy::analysis;

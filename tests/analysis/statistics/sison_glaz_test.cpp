@@ -3,9 +3,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <catch2/catch.hpp>
-
 #include "core/error.hpp"
+#include "support/catch.hpp"
 #include "support/python_program.hpp"
 using namespace tapstudy;
 

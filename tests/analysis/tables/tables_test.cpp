@@ -1,14 +1,13 @@
-#include <catch2/catch.hpp>
 #include <limits>
 
 #include "analysis/blocks/text_parts.hpp"
 #include "analysis/statistics/csv_rows.hpp"
 #include "analysis/tables/table_writers.hpp"
 #include "analysis/tables/tabular_summary.hpp"
+#include "support/catch.hpp"
 #include "support/formats.hpp"
 using namespace tapstudy;
 using namespace tapstudy::analysis;
-using Catch::Matchers::Contains;
 
 namespace {
 TabularSummary small_summary() {

@@ -1,4 +1,3 @@
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
 
@@ -7,12 +6,12 @@
 #include "analysis/psychometric/posterior.hpp"
 #include "core/error.hpp"
 #include "core/psychometric_function.hpp"
+#include "support/catch.hpp"
 #include "support/formats.hpp"
 #include "support/python_program.hpp"
 #include "support/r_program.hpp"
 using namespace tapstudy;
 using namespace tapstudy::analysis;
-using Catch::Matchers::Contains;
 using core::PsychometricShape;
 using testing::Formats;
 using testing::reported;

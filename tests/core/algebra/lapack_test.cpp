@@ -1,10 +1,10 @@
 #include "core/algebra/lapack.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <complex>
 
 #include "core/rng.hpp"
+#include "support/catch.hpp"
 using namespace tapstudy;
 
 namespace {

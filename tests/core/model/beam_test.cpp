@@ -1,11 +1,11 @@
 #include "core/model/beam.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
 
 #include "core/error.hpp"
 #include "core/model/plate_model.hpp"
+#include "support/catch.hpp"
 using namespace tapstudy;
 using namespace tapstudy::core;
 

@@ -1,7 +1,6 @@
 // The same meshes and constraints through CalculiX (Dhondt), which shares no code with us.
 #include "support/calculix.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <fstream>
 #include <numbers>
@@ -10,6 +9,7 @@
 #include "core/model/mesh/tetgen_mesher.hpp"
 #include "core/model/modes/modal_solver.hpp"
 #include "core/model/plate_model.hpp"
+#include "support/catch.hpp"
 #include "support/plates.hpp"
 #include "support/surfaces.hpp"
 #include "support/texts.hpp"

@@ -1,7 +1,6 @@
 // Bodies joined by springs.
 #include "core/model/contacts/contacts.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <memory>
 #include <numbers>
@@ -11,6 +10,7 @@
 #include "core/model/modes/damping.hpp"
 #include "core/model/plate_model.hpp"
 #include "support/calculix.hpp"
+#include "support/catch.hpp"
 #include "support/plates.hpp"
 using namespace tapstudy;
 
@@ -270,9 +270,8 @@ TEST_CASE("modal ratios are refused in contact, and a contact that touches nothi
   core::Contacts beside = *spec.contacts;
   beside.springs.front().to.region.at_m.x() = 5.0;
   spec.contacts = std::make_shared<const core::Contacts>(beside);
-  CHECK_THROWS_WITH(core::build_plate_model(spec),
-                    Catch::Contains("contact spring 1, to: the disc") &&
-                        Catch::Contains("touches no node of the body"));
+  CHECK_THROWS_WITH(core::build_plate_model(spec), Contains("contact spring 1, to: the disc") &&
+                                                       Contains("touches no node of the body"));
 }
 
 TEST_CASE("models differ by every property of a contact, and of what is touched", "[core][model]") {
@@ -318,8 +317,8 @@ TEST_CASE("contacts that no shift of a body brings together are refused", "[core
     return core::solve_body(core::body_of(spec)).modes.report.rigid_body_modes;
   };
   CHECK(joined_at(0.0) == 7);  // as one body, and a turn about the line of contacts
-  CHECK_THROWS_WITH(joined_at(0.01), Catch::Contains("contact spring 2 joins places") &&
-                                         Catch::Contains("cannot lie on one another"));
+  CHECK_THROWS_WITH(joined_at(0.01), Contains("contact spring 2 joins places") &&
+                                         Contains("cannot lie on one another"));
 }
 
 TEST_CASE("three bodies in a ring are refused unless all of their contacts meet at once",
@@ -340,5 +339,5 @@ TEST_CASE("three bodies in a ring are refused unless all of their contacts meet 
     core::solve_body(core::body_of(spec));
   };
   CHECK_NOTHROW(ring_with(0.0));
-  CHECK_THROWS_WITH(ring_with(0.02), Catch::Contains("contact spring 3 joins places"));
+  CHECK_THROWS_WITH(ring_with(0.02), Contains("contact spring 3 joins places"));
 }

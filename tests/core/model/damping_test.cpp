@@ -1,12 +1,10 @@
 #include "core/model/modes/damping.hpp"
 
-#include <catch2/catch.hpp>
-
 #include "core/error.hpp"
 #include "core/model/elements/material.hpp"
+#include "support/catch.hpp"
 #include "support/plates.hpp"
 using namespace tapstudy;
-using Catch::Matchers::Contains;
 
 TEST_CASE("two ratios put through eq. 13 come back out of eq. 12", "[core][damping]") {
   const core::TwoRatioDamping wanted{0.17, 0.09};

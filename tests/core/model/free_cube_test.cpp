@@ -2,11 +2,11 @@
 // it: displacements as products of Legendre polynomials, whose integrals have closed forms.
 #include <Eigen/Eigenvalues>
 #include <array>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <vector>
 
 #include "core/model/plate_model.hpp"
+#include "support/catch.hpp"
 using namespace tapstudy;
 
 namespace {

@@ -1,13 +1,12 @@
 // Bodies whose frequencies are known from theory, order 2, each at a stated mesh.
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "core/error.hpp"
 #include "core/model/mesh/tetgen_mesher.hpp"
 #include "core/model/plate_model.hpp"
+#include "support/catch.hpp"
 #include "support/plates.hpp"
 using namespace tapstudy;
-using Catch::Matchers::Contains;
 
 namespace {
 constexpr double youngs_pa = 70e9;

@@ -1,12 +1,11 @@
-#include <catch2/catch.hpp>
 #include <map>
 
 #include "core/error.hpp"
 #include "core/model/fixation.hpp"
 #include "core/model/mesh/tetgen_mesher.hpp"
+#include "support/catch.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;
-using Catch::Matchers::Contains;
 using core::Box;
 
 namespace {
@@ -97,7 +96,8 @@ TEST_CASE("a mesh is written in TetGen's form and never over a file", "[core][me
   const testing::TempDirectory directory;
   const core::TetMesh mesh = core::mesh_shape(plate, {});
   core::write_tetgen_files(mesh, directory / "plate");
-  CHECK_THAT(testing::contents(directory / "plate.node"), Catch::StartsWith("172 3 0 0\n"));
-  CHECK_THAT(testing::contents(directory / "plate.ele"), Catch::StartsWith("445 4 0\n"));
+  CHECK_THAT(testing::contents(directory / "plate.node"),
+             Catch::Matchers::StartsWith("172 3 0 0\n"));
+  CHECK_THAT(testing::contents(directory / "plate.ele"), Catch::Matchers::StartsWith("445 4 0\n"));
   CHECK_THROWS_AS(core::write_tetgen_files(mesh, directory / "plate"), core::InvalidInput);
 }

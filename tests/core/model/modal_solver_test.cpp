@@ -1,13 +1,13 @@
 #include "core/model/modes/modal_solver.hpp"
 
 #include <Eigen/Eigenvalues>
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "core/error.hpp"
 #include "core/model/mesh/tetgen_mesher.hpp"
 #include "core/model/modes/shifted_factor.hpp"
 #include "core/model/plate_model.hpp"
+#include "support/catch.hpp"
 #include "support/plates.hpp"
 using namespace tapstudy;
 using core::StiffnessAndMass;

@@ -1,8 +1,7 @@
 #include "core/model/plate_model.hpp"
 
-#include <catch2/catch.hpp>
-
 #include "core/error.hpp"
+#include "support/catch.hpp"
 #include "support/plates.hpp"
 using namespace tapstudy;
 using core::build_plate_model;

@@ -1,8 +1,9 @@
 // Which motions of a body nothing resists.
 #include "core/model/elements/rigid_motions.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
+
+#include "support/catch.hpp"
 using namespace tapstudy;
 
 TEST_CASE("motions that nothing resists are counted beside those that thousands of nodes resist",

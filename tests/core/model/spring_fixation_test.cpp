@@ -1,12 +1,12 @@
 // Bodies on springs: what a rigid body on an elastic foundation does, and where springs become
 // constraints.
 #include <array>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
 
 #include "core/error.hpp"
 #include "core/model/plate_model.hpp"
+#include "support/catch.hpp"
 #include "support/plates.hpp"
 using namespace tapstudy;
 

@@ -2,8 +2,8 @@
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
-#include <catch2/catch.hpp>
 
+#include "support/catch.hpp"
 #include "support/plates.hpp"
 using namespace tapstudy;
 using Matrix3 = Eigen::Matrix3d;

@@ -1,12 +1,12 @@
 #include "core/model/vtu_file.hpp"
 
-#include <catch2/catch.hpp>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "core/error.hpp"
 #include "core/model/elements/assembly.hpp"
 #include "core/model/plate_model.hpp"
+#include "support/catch.hpp"
 #include "support/plates.hpp"
 #include "support/processes.hpp"
 #include "support/texts.hpp"

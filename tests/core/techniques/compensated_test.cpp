@@ -2,10 +2,11 @@
 #include "core/techniques/compensated.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <complex>
 #include <numbers>
+
+#include "support/catch.hpp"
 using namespace tapstudy;
 
 namespace {

@@ -6,7 +6,6 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
 #include <sstream>
@@ -16,6 +15,7 @@
 #include "core/techniques/make_renderer.hpp"
 #include "core/tick/coupled_vibration.hpp"
 #include "core/tick/plate_contact.hpp"
+#include "support/catch.hpp"
 #include "support/no_alloc.hpp"
 #include "support/processes.hpp"
 #include "support/uniform_plate.hpp"

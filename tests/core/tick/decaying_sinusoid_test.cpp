@@ -1,8 +1,9 @@
 #include "core/tick/decaying_sinusoid.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
+
+#include "support/catch.hpp"
 
 using namespace tapstudy::core;
 

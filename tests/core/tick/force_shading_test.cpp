@@ -1,13 +1,13 @@
 // The force of a tip that slides over triangles, as over the smooth surface they stand for.
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <functional>
 #include <vector>
 
 #include "core/rng.hpp"
 #include "core/tick/surface_contact.hpp"
+#include "support/catch.hpp"
 #include "support/no_alloc.hpp"
 #include "support/surfaces.hpp"
 using namespace tapstudy::core;

@@ -1,11 +1,11 @@
 #include "core/tick/modal_state.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "core/model/plate_model.hpp"
 #include "core/rng.hpp"
 #include "core/tick/vibrating_plate.hpp"
+#include "support/catch.hpp"
 #include "support/no_alloc.hpp"
 #include "support/plates.hpp"
 using namespace tapstudy;

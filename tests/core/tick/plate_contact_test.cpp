@@ -1,10 +1,10 @@
 #include "core/tick/plate_contact.hpp"
 
-#include <catch2/catch.hpp>
 #include <vector>
 
 #include "core/placement.hpp"
 #include "core/rng.hpp"
+#include "support/catch.hpp"
 using namespace tapstudy::core;
 
 namespace {

@@ -1,11 +1,11 @@
 #include "core/tick/recorded_transient.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
 
 #include "core/techniques/make_renderer.hpp"
 #include "core/tick/decaying_sinusoid.hpp"
+#include "support/catch.hpp"
 #include "support/no_alloc.hpp"
 using namespace tapstudy;
 

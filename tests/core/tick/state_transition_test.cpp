@@ -1,8 +1,9 @@
 #include "core/tick/state_transition.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <initializer_list>
+
+#include "support/catch.hpp"
 using namespace tapstudy::core;
 
 namespace {

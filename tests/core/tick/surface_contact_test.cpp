@@ -2,11 +2,11 @@
 
 #include <Eigen/Geometry>
 #include <array>
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "core/rng.hpp"
 #include "core/tick/plate_contact.hpp"
+#include "support/catch.hpp"
 #include "support/no_alloc.hpp"
 #include "support/surfaces.hpp"
 using namespace tapstudy::core;

@@ -1,12 +1,12 @@
 // Where a finger meets elements of order 2, and bodies that are no plates.
 #include "core/tick/surface_point.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "core/model/plate_model.hpp"
 #include "core/rng.hpp"
 #include "core/techniques/make_renderer.hpp"
+#include "support/catch.hpp"
 #include "support/plates.hpp"
 #include "support/surfaces.hpp"
 using namespace tapstudy;

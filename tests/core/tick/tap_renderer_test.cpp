@@ -1,11 +1,11 @@
 #include "core/tick/tap_renderer.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <vector>
 
 #include "core/model/plate_model.hpp"
 #include "core/techniques/make_renderer.hpp"
+#include "support/catch.hpp"
 #include "support/no_alloc.hpp"
 #include "support/plates.hpp"
 using namespace tapstudy::core;

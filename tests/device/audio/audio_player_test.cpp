@@ -2,10 +2,10 @@
 #include "device/audio/audio_player.hpp"
 
 #include <atomic>
-#include <catch2/catch.hpp>
 
 #include "device/audio/alsa_sink.hpp"
 #include "support/alsa_file.hpp"
+#include "support/catch.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;
 using device::PcmOutcome;

@@ -1,12 +1,12 @@
 // What ALSA was given to play, measured.
 #include "device/audio/noise.hpp"
 
-#include <catch2/catch.hpp>
 #include <map>
 #include <unsupported/Eigen/FFT>
 
 #include "device/audio/alsa_sink.hpp"
 #include "support/alsa_file.hpp"
+#include "support/catch.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;
 using core::NoiseKind;
@@ -132,5 +132,5 @@ TEST_CASE("the same seed gives the same noise, another one another", "[device][a
 
 TEST_CASE("a card that is not there is refused by its name", "[device][audio]") {
   CHECK_THROWS_WITH(device::open_alsa({.card = "hw:31"}),
-                    Catch::Matchers::Contains("audio: card 'hw:31' cannot be opened"));
+                    Contains("audio: card 'hw:31' cannot be opened"));
 }

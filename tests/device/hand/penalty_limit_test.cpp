@@ -1,7 +1,8 @@
 #include "device/hand/penalty_limit.hpp"
 
-#include <catch2/catch.hpp>
 #include <unsupported/Eigen/MatrixFunctions>
+
+#include "support/catch.hpp"
 
 using namespace tapstudy;
 

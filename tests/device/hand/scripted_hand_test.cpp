@@ -1,11 +1,11 @@
 #include "device/hand/scripted_hand.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <vector>
 
 #include "device/loop/haptic_loop.hpp"
+#include "support/catch.hpp"
 #include "support/no_alloc.hpp"
 #include "support/trace_samples.hpp"
 using namespace tapstudy;

@@ -1,6 +1,6 @@
 #include "device/hand/simulated_hand.hpp"
 
-#include <catch2/catch.hpp>
+#include "support/catch.hpp"
 using namespace tapstudy;
 using core::Vec3;
 using device::PlannedTap;

@@ -1,11 +1,11 @@
 #include "device/loop/force_gate.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 
 #include "core/rng.hpp"
 #include "device/spidar/string_support.hpp"
+#include "support/catch.hpp"
 using namespace tapstudy;
 using core::GateSettings;
 using core::TickFault;

@@ -1,10 +1,10 @@
 #include "device/loop/haptic_loop.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 #include <vector>
 
+#include "support/catch.hpp"
 #include "support/no_alloc.hpp"
 #include "support/trace_samples.hpp"
 using namespace tapstudy;

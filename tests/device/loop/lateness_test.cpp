@@ -1,11 +1,11 @@
 #include "device/loop/lateness.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <vector>
 
 #include "core/rng.hpp"
+#include "support/catch.hpp"
 using namespace tapstudy;
 
 TEST_CASE("a share of the ticks is told to 19 %, from above", "[device][loop]") {

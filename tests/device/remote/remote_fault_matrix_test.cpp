@@ -1,7 +1,6 @@
 // What every fault of a remote device does in every state of the loop.
 #include <algorithm>
 #include <array>
-#include <catch2/catch.hpp>
 #include <chrono>
 #include <cstring>
 #include <deque>
@@ -12,6 +11,7 @@
 #include "core/rng.hpp"
 #include "device/remote/packets.hpp"
 #include "device/remote/remote_hand.hpp"
+#include "support/catch.hpp"
 #include "support/staged_loop.hpp"
 using namespace tapstudy;
 using core::TickFault;
@@ -341,14 +341,13 @@ TEST_CASE("a stop is confirmed though the device measures its force coarsely or 
   }
 }
 
-TEST_CASE("a program that replies in another format is told from one that is not there",
+TEST_CASE("a program that replies in another format is told from one that is mute or is not there",
           "[device][remote]") {
   for (const auto& [trouble, said] :
        {std::pair{Trouble::short_reply, "but not as version 1 or 2"},
         std::pair{Trouble::mute, "nobody answers"}, std::pair{Trouble::gone, "nobody answers"}}) {
     auto program = std::make_unique<MockProgram>();
     program->trouble = trouble;
-    CHECK_THROWS_WITH((device::RemoteHand{40'000, max_reply, std::move(program)}),
-                      Catch::Contains(said));
+    CHECK_THROWS_WITH((device::RemoteHand{40'000, max_reply, std::move(program)}), Contains(said));
   }
 }

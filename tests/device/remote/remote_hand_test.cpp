@@ -9,13 +9,13 @@
 
 #include <array>
 #include <bit>
-#include <catch2/catch.hpp>
 #include <chrono>
 #include <cstring>
 #include <limits>
 
 #include "device/hand/replay_hand.hpp"
 #include "device/remote/packets.hpp"
+#include "support/catch.hpp"
 #include "support/example_bridge.hpp"
 using namespace tapstudy;
 using core::TickFault;

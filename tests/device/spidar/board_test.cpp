@@ -1,8 +1,8 @@
 #include <algorithm>
-#include <catch2/catch.hpp>
 
 #include "device/spidar/sh4_board.hpp"
 #include "device/spidar/simple_board.hpp"
+#include "support/catch.hpp"
 #include "support/usb/spidar_on_bus.hpp"
 using namespace tapstudy;
 using device::DacCounts;

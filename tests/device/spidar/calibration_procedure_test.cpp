@@ -2,7 +2,6 @@
 
 #include <unistd.h>
 
-#include <catch2/catch.hpp>
 #include <sstream>
 #include <thread>
 
@@ -10,10 +9,10 @@
 #include "device/device.hpp"
 #include "device/spidar/calibration.hpp"
 #include "protocols/spidar_calibration.hpp"
+#include "support/catch.hpp"
 #include "support/texts.hpp"
 #include "support/usb/spidar_on_bus.hpp"
 using namespace tapstudy;
-using Catch::Matchers::Contains;
 
 namespace {
 // A board whose eight strings differ: metres a count, newtons a digit, friction.

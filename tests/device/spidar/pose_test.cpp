@@ -1,10 +1,10 @@
 #include "device/spidar/pose.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "core/error.hpp"
 #include "device/spidar/string_support.hpp"
+#include "support/catch.hpp"
 #include "support/no_alloc.hpp"
 using namespace tapstudy;
 using device::FoundPose;
@@ -109,7 +109,6 @@ TEST_CASE("lengths that no pose has do not hang and are told", "[device][spidar]
 }
 
 TEST_CASE("only geometries that can hold a grip are offered", "[device][spidar]") {
-  CHECK_THROWS_WITH(device::spidar_geometry("X3F"),
-                    Catch::Matchers::Contains("do not give wrench closure"));
-  CHECK_THROWS_WITH(device::spidar_geometry("X9"), Catch::Matchers::Contains("one of: X3R, X3L"));
+  CHECK_THROWS_WITH(device::spidar_geometry("X3F"), Contains("do not give wrench closure"));
+  CHECK_THROWS_WITH(device::spidar_geometry("X9"), Contains("one of: X3R, X3L"));
 }

@@ -1,12 +1,12 @@
 #include "device/spidar/spidar_g6.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <thread>
 
 #include "core/techniques/make_renderer.hpp"
 #include "device/hand/penalty_limit.hpp"
 #include "device/loop/haptic_loop.hpp"
+#include "support/catch.hpp"
 #include "support/no_alloc.hpp"
 #include "support/usb/played_back.hpp"
 #include "support/usb/spidar_on_bus.hpp"
@@ -62,7 +62,7 @@ TEST_CASE("a SPIDAR starts with no force, tightens to its least tension and is h
   CHECK(bench.hardware.tension_n().maxCoeff() <= 0.3);
   CHECK(bench.tick(Vec3::Zero()) == TickFault::none);
   CHECK(bench.seen.position_m.norm() < 1e-5);
-  CHECK_THAT(bench.spidar.description(), Catch::Matchers::Contains("rotary switch 3"));
+  CHECK_THAT(bench.spidar.description(), Contains("rotary switch 3"));
 }
 
 TEST_CASE("a hundred thousand ticks follow the hand and give it the force that was asked",
@@ -443,5 +443,5 @@ TEST_CASE("a board that does not answer is refused at once", "[device][spidar][u
   device::LibusbPipe pipe{node, {}, std::chrono::milliseconds{3}};
   const auto board = device::board_of(device::sh4_product);
   CHECK_THROWS_WITH((device::SpidarG6{pipe, *board, testing::simulated_settings()}),
-                    Catch::Matchers::Contains("does not answer: no reply in time"));
+                    Contains("does not answer: no reply in time"));
 }

@@ -1,10 +1,10 @@
 #include "device/spidar/tensions.hpp"
 
 #include <Eigen/LU>
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "device/spidar/string_support.hpp"
+#include "support/catch.hpp"
 #include "support/no_alloc.hpp"
 using namespace tapstudy;
 using device::BoxQp;

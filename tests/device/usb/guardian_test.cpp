@@ -5,7 +5,6 @@
 #include <unistd.h>
 
 #include <array>
-#include <catch2/catch.hpp>
 #include <csignal>
 #include <cstdlib>
 #include <fstream>
@@ -14,6 +13,7 @@
 
 #include "device/relay/dead_man_relay.hpp"
 #include "device/spidar/sh4_board.hpp"
+#include "support/catch.hpp"
 #include "support/usb/fake_bus.hpp"
 using namespace tapstudy;
 using testing::Bytes;
@@ -276,9 +276,8 @@ TEST_CASE("a relay is kept closed while all is well, and by nothing else",
 TEST_CASE("a port that is none, or is another's, is refused", "[device][guardian]") {
   const SerialPort port;
   const device::DeadManRelay relay{port.name};
-  CHECK_THROWS_WITH(device::DeadManRelay{port.name}, Catch::Matchers::Contains("another session"));
-  CHECK_THROWS_WITH(device::DeadManRelay{"/dev/null"},
-                    Catch::Matchers::Contains("not a serial port"));
+  CHECK_THROWS_WITH(device::DeadManRelay{port.name}, Contains("another session"));
+  CHECK_THROWS_WITH(device::DeadManRelay{"/dev/null"}, Contains("not a serial port"));
   CHECK_THROWS_WITH(device::DeadManRelay{"/dev/ttyNone"},
-                    Catch::Matchers::Contains("cannot be opened: No such file"));
+                    Contains("cannot be opened: No such file"));
 }

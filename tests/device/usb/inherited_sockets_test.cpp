@@ -9,7 +9,8 @@
 
 #include <array>
 #include <bit>
-#include <catch2/catch.hpp>
+
+#include "support/catch.hpp"
 using namespace tapstudy;
 
 namespace {

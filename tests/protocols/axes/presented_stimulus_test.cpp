@@ -1,15 +1,14 @@
 #include "protocols/axes/presented_stimulus.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 #include <set>
 #include <tuple>
 
 #include "core/error.hpp"
+#include "support/catch.hpp"
 #include "support/varied_study.hpp"
 using namespace tapstudy;
-using Catch::Matchers::Contains;
 using protocols::AxisValues;
 
 namespace {

@@ -1,9 +1,9 @@
 // The JSON schemas of procedures against their readers.
-#include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "core/error.hpp"
+#include "support/catch.hpp"
 #include "support/procedures.hpp"
 #include "support/processes.hpp"
 #include "support/schema_keys.hpp"

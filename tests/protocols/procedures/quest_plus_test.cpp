@@ -1,5 +1,4 @@
 // QUEST+ against python3-questplus (Debian), by answers to stimuli drawn at random.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -7,6 +6,7 @@
 #include "core/rng.hpp"
 #include "protocols/procedures/posterior.hpp"
 #include "protocols/procedures/quest_plus_track.hpp"
+#include "support/catch.hpp"
 #include "support/procedures.hpp"
 #include "support/processes.hpp"
 #include "support/texts.hpp"

@@ -1,11 +1,11 @@
 // QUEST+ on observers whose psychometric function is known.
 #include <fmt/format.h>
 
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "core/error.hpp"
 #include "protocols/procedures/quest_plus_track.hpp"
+#include "support/catch.hpp"
 #include "support/known_observer.hpp"
 #include "support/procedures.hpp"
 using namespace tapstudy;
@@ -119,7 +119,7 @@ TEST_CASE("an answer that no parameters allow is refused and changes nothing",
                          "{values: [0]}, stop: {trials: 3}}")
                          ->start(1);
   const auto before = track->next();
-  CHECK_THROWS_WITH(track->observe({1000.0}, 0), Catch::Contains("impossible"));
+  CHECK_THROWS_WITH(track->observe({1000.0}, 0), Contains("impossible"));
   CHECK_THROWS_AS(track->observe({-1.0}, 0), core::InvalidInput);
   CHECK(track->trials() == 0);
   CHECK(track->next() == before);

@@ -1,10 +1,9 @@
 // Settings with which no procedure could do its work, by line and key.
 #include <fmt/format.h>
 
-#include <catch2/catch.hpp>
-
 #include "core/error.hpp"
 #include "protocols/procedures/likelihood_table.hpp"
+#include "support/catch.hpp"
 #include "support/procedures.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;
@@ -171,7 +170,7 @@ TEST_CASE("settings of procedures that make no sense are refused by line and key
   }));
   INFO(from << " -> " << to);
   const std::string found = message_of(testing::replaced(*base, from, to));
-  CHECK_THAT(found, Catch::Contains(fmt::format("p.yaml:{}:", line)) && Catch::Contains(message));
+  CHECK_THAT(found, Contains(fmt::format("p.yaml:{}:", line)) && Contains(message));
 }
 
 TEST_CASE("a table refuses models and priors that are none", "[protocols][procedures]") {

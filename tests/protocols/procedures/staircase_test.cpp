@@ -1,11 +1,11 @@
 // Up-down staircases: where they settle, how they move.
 #include <fmt/format.h>
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <numeric>
 
 #include "protocols/procedures/procedure.hpp"
+#include "support/catch.hpp"
 #include "support/known_observer.hpp"
 #include "support/procedures.hpp"
 using namespace tapstudy;

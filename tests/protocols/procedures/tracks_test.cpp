@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <map>
 #include <set>
@@ -11,6 +10,7 @@
 #include "core/error.hpp"
 #include "core/rng.hpp"
 #include "protocols/procedures/interleaved_tracks.hpp"
+#include "support/catch.hpp"
 #include "support/known_observer.hpp"
 #include "support/procedures.hpp"
 #include "support/processes.hpp"

@@ -1,6 +1,5 @@
 // Bodies from surfaces: what is refused and what becomes of the rest.
 #include <Eigen/Geometry>
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "core/error.hpp"
@@ -10,10 +9,10 @@
 #include "protocols/surface/check_surface.hpp"
 #include "protocols/surface/surface_file.hpp"
 #include "protocols/yaml/text_file.hpp"
+#include "support/catch.hpp"
 #include "support/surfaces.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;
-using Catch::Matchers::Contains;
 using protocols::check_surface;
 
 namespace {
@@ -278,7 +277,7 @@ TEST_CASE("a triangle whose corner lies on its opposite side is refused with wha
       "3 2 7 6\n3 1 2 6\n3 1 6 5\n3 0 4 7\n3 0 7 3\n";
   CHECK_THROWS_WITH(protocols::check_surface(
                         protocols::read_surface(protocols::surface_source("cap.off", text), 1.0)),
-                    Catch::Matchers::Contains("is flat: a corner lies on the opposite side"));
+                    Contains("is flat: a corner lies on the opposite side"));
 }
 
 TEST_CASE(

@@ -1,14 +1,13 @@
 // A study as a dataset of the Brain Imaging Data Structure.
-#include <catch2/catch.hpp>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 
 #include "results/export/bids_labels.hpp"
+#include "support/catch.hpp"
 #include "support/messy_study.hpp"
 using namespace tapstudy;
 using namespace tapstudy::results;
-using Catch::Matchers::Contains;
 using testing::TempDirectory;
 namespace fs = std::filesystem;
 namespace messy = testing::messy_study;

@@ -1,7 +1,6 @@
 // A study as tidy tables: what other programs read of them is what is in the store.
 #include <sys/resource.h>
 
-#include <catch2/catch.hpp>
 #include <csignal>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -11,10 +10,10 @@
 
 #include "results/export/columns.hpp"
 #include "results/export/csv_file.hpp"
+#include "support/catch.hpp"
 #include "support/messy_study.hpp"
 using namespace tapstudy;
 using namespace tapstudy::results;
-using Catch::Matchers::Contains;
 using testing::TempDirectory;
 namespace fs = std::filesystem;
 namespace messy = testing::messy_study;

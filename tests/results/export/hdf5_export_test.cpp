@@ -1,11 +1,10 @@
 // A study as one HDF5 file.
-#include <catch2/catch.hpp>
 #include <filesystem>
 
 #include "support/built_paths.hpp"
+#include "support/catch.hpp"
 #include "support/messy_study.hpp"
 using namespace tapstudy;
-using Catch::Matchers::Contains;
 using Catch::Matchers::EndsWith;
 using testing::TempDirectory;
 namespace fs = std::filesystem;

@@ -1,6 +1,6 @@
 #include "runner/accuracy/errors.hpp"
 
-#include <catch2/catch.hpp>
+#include "support/catch.hpp"
 
 using namespace tapstudy;
 using namespace tapstudy::runner;

@@ -1,10 +1,9 @@
 #include "runner/accuracy/hand_on_plate.hpp"
 
-#include <catch2/catch.hpp>
-
 #include "core/techniques/make_renderer.hpp"
 #include "core/tick/tap_renderer.hpp"
 #include "device/hand/penalty_limit.hpp"
+#include "support/catch.hpp"
 using namespace tapstudy;
 
 TEST_CASE("a hand rests on a wall softer than its limit and chatters on a stiffer one",

@@ -1,12 +1,12 @@
 #include "runner/accuracy/trade.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "core/rng.hpp"
 #include "protocols/read_protocol.hpp"
+#include "support/catch.hpp"
 #include "support/processes.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;
@@ -146,7 +146,7 @@ TEST_CASE("a setting that finds no mode is refused in words, the protocol's own 
         }) == 14);
   CHECK(std::ranges::count(trade.refused, true, &runner::Refused::is_protocols) == 1);
   for (const runner::Refused& one : trade.refused) {
-    CHECK_THAT(one.words, Catch::Matchers::Contains("no mode"));
+    CHECK_THAT(one.words, Contains("no mode"));
   }
 }
 
@@ -155,7 +155,7 @@ TEST_CASE("nothing is traded where nothing vibrates", "[runner][trade]") {
   testing::write(directory / "study.yaml", cantilever());
   const auto run = testing::tapstudy({"trade", directory / "study.yaml", "--stimulus", "silent"});
   CHECK(run.exit_code == 2);
-  CHECK_THAT(run.standard_error, Catch::Matchers::Contains("technique 'none'"));
+  CHECK_THAT(run.standard_error, Contains("technique 'none'"));
 }
 
 TEST_CASE("trade refuses what it cannot write or compare with before it measures",
@@ -174,7 +174,7 @@ TEST_CASE("trade refuses what it cannot write or compare with before it measures
     const auto run = testing::tapstudy(line);
     CAPTURE(more, run.standard_error);
     CHECK(run.exit_code == 2);
-    CHECK_THAT(run.standard_error, !Catch::Matchers::Contains("iterating"));
+    CHECK_THAT(run.standard_error, !Contains("iterating"));
   }
   CHECK(testing::contents(directory / "trade.svg") == "kept");
 }

@@ -1,15 +1,13 @@
 #include "runner/commands/impact_energy.hpp"
 
-#include <catch2/catch.hpp>
-
 #include "core/tick/plate_vibration.hpp"
 #include "protocols/read_protocol.hpp"
 #include "runner/reproduction/shipped_protocols.hpp"
 #include "support/built_paths.hpp"
+#include "support/catch.hpp"
 #include "support/processes.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;
-using Catch::Matchers::Contains;
 
 TEST_CASE("the share of a finger's energy that a strike takes is what the modes have after it",
           "[runner][check]") {

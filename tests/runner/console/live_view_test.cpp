@@ -1,8 +1,7 @@
 #include "runner/console/live_view.hpp"
 
-#include <catch2/catch.hpp>
-
 #include "core/placement.hpp"
+#include "support/catch.hpp"
 using namespace tapstudy;
 using runner::LiveView;
 

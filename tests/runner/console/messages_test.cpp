@@ -1,8 +1,8 @@
 // The catalogue of what the pages say.
-#include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "support/catch.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;
 using Json = nlohmann::json;

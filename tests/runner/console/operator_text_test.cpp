@@ -1,9 +1,8 @@
 #include "runner/console/operator_text.hpp"
 
-#include <catch2/catch.hpp>
+#include "support/catch.hpp"
 
 using namespace tapstudy;
-using Catch::Matchers::Contains;
 
 namespace {
 runner::DeskView desk_with(const protocols::Block& block) {

@@ -1,6 +1,6 @@
 #include "runner/console/rate_limit.hpp"
 
-#include <catch2/catch.hpp>
+#include "support/catch.hpp"
 using namespace tapstudy::runner;
 using namespace std::chrono_literals;
 

@@ -1,8 +1,7 @@
 // Which plate a participant's page draws: never one that tells the answer, or that is not felt.
 #include "runner/console/scenes.hpp"
 
-#include <catch2/catch.hpp>
-
+#include "support/catch.hpp"
 #include "support/varied_study.hpp"
 using namespace tapstudy;
 

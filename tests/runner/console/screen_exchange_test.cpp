@@ -1,9 +1,8 @@
 #include "runner/console/screen_exchange.hpp"
 
-#include <catch2/catch.hpp>
-
 #include "core/error.hpp"
 #include "protocols/nasa_tlx.hpp"
+#include "support/catch.hpp"
 using namespace tapstudy;
 using namespace tapstudy::runner;
 

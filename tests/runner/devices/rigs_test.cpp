@@ -1,13 +1,11 @@
 #include "runner/devices/rigs.hpp"
 
-#include <catch2/catch.hpp>
-
 #include "core/error.hpp"
 #include "protocols/read_protocol.hpp"
 #include "protocols/read_rig.hpp"
+#include "support/catch.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;
-using Catch::Matchers::Contains;
 using testing::replaced;
 
 namespace {

@@ -1,9 +1,9 @@
 #include "runner/experiments/response_meanings.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 
 #include "protocols/read_protocol.hpp"
+#include "support/catch.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;
 using Meanings = std::vector<std::pair<std::string, std::string>>;

@@ -9,7 +9,6 @@
 #include <termios.h>
 #include <unistd.h>
 
-#include <catch2/catch.hpp>
 #include <chrono>
 #include <csignal>
 #include <cstdint>
@@ -21,9 +20,9 @@
 #include "runner/markers/line_markers.hpp"
 #include "runner/markers/osc_markers.hpp"
 #include "runner/session/session_states.hpp"
+#include "support/catch.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;
-using Catch::Matchers::Contains;
 using results::SessionEventRow;
 using runner::Sent;
 using testing::TempDirectory;

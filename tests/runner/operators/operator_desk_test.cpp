@@ -2,14 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <catch2/catch.hpp>
-
 #include "core/error.hpp"
 #include "protocols/read_protocol.hpp"
 #include "results/recorder.hpp"
 #include "results/stored_answers.hpp"
 #include "runner/session/session_row.hpp"
 #include "runner/session/trial_engine.hpp"
+#include "support/catch.hpp"
 #include "support/no_real_plates.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;
@@ -203,6 +202,6 @@ TEST_CASE("an answer that waits for its confidence is not mistaken for the one b
   } catch (const core::InvalidInput& error) {
     refused = error.what();
   }
-  CHECK_THAT(refused, Catch::Matchers::Contains("once its confidence is given"));
+  CHECK_THAT(refused, Contains("once its confidence is given"));
   CHECK_NOTHROW(desk.post(parse_operator_command(fmt::format("correct @{} 1", trial.number))));
 }

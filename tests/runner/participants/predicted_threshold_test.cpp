@@ -1,7 +1,6 @@
 // What a simulated observer's internal noise makes of its thresholds.
 #include <fmt/format.h>
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
@@ -12,6 +11,7 @@
 #include "runner/experiments/simulated_study.hpp"
 #include "runner/experiments/study_summary.hpp"
 #include "runner/participants/touch_features.hpp"
+#include "support/catch.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;
 

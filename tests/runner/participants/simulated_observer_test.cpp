@@ -1,8 +1,6 @@
 // The simulated observer must earn its answers: it is given what a hand felt, never a name.
 #include "runner/participants/simulated_observer.hpp"
 
-#include <catch2/catch.hpp>
-
 #include "analysis/choice/choice_summary.hpp"
 #include "analysis/identification/identification_summary.hpp"
 #include "analysis/report/summary.hpp"
@@ -11,6 +9,7 @@
 #include "results/stored_answers.hpp"
 #include "runner/experiments/simulated_study.hpp"
 #include "runner/experiments/study_design.hpp"
+#include "support/catch.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;
 using analysis::ConfusionMatrix;

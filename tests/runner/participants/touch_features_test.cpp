@@ -1,9 +1,8 @@
 // Which ticks make a tap that can be felt.
 #include "runner/participants/touch_features.hpp"
 
-#include <catch2/catch.hpp>
-
 #include "core/placement.hpp"
+#include "support/catch.hpp"
 using namespace tapstudy;
 
 namespace {

@@ -1,8 +1,9 @@
 #include "runner/recordings/sinusoid_law.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
+
+#include "support/catch.hpp"
 using namespace tapstudy;
 
 TEST_CASE("sensors of one impact are one tap, and each has an amplitude of its own",

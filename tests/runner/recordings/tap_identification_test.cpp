@@ -2,14 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <catch2/catch.hpp>
-
 #include "core/error.hpp"
+#include "support/catch.hpp"
 #include "support/processes.hpp"
 #include "support/synthetic_taps.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;
-using Catch::Matchers::Contains;
 
 namespace {
 // A sensor that works, another that shows 0.37 all the time.

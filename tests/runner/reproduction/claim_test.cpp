@@ -1,7 +1,6 @@
 // Judgements follow from numbers by the stated rule, and every format says the same.
 #include "runner/reproduction/claim.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -10,6 +9,7 @@
 #include "analysis/blocks/html_parts.hpp"
 #include "analysis/tables/cells.hpp"
 #include "runner/reproduction/writers.hpp"
+#include "support/catch.hpp"
 using namespace tapstudy;
 using namespace tapstudy::runner;
 

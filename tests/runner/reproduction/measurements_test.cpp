@@ -1,7 +1,6 @@
 // What claims are measured with: laws of the parts, and the commands that the claims name.
 #include <algorithm>
 #include <array>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -17,6 +16,7 @@
 #include "runner/reproduction/shipped_protocols.hpp"
 #include "runner/reproduction/table_fit.hpp"
 #include "runner/reproduction/tap_force.hpp"
+#include "support/catch.hpp"
 #include "support/processes.hpp"
 #include "support/python_program.hpp"
 #include "support/texts.hpp"

@@ -1,11 +1,11 @@
 // How the settings of an alternative are rendered: each by a position of the loop.
 #include "runner/session/adjusted_exploration.hpp"
 
-#include <catch2/catch.hpp>
 #include <map>
 
 #include "protocols/read_protocol.hpp"
 #include "protocols/schedule.hpp"
+#include "support/catch.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;
 

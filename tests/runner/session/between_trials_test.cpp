@@ -1,7 +1,6 @@
 #include "runner/session/between_trials.hpp"
 
-#include <catch2/catch.hpp>
-
+#include "support/catch.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;
 

@@ -2,12 +2,12 @@
 #include "runner/session/interval_exploration.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <map>
 
 #include "runner/participants/participant.hpp"
 #include "runner/session/explore_limits.hpp"
+#include "support/catch.hpp"
 using namespace tapstudy;
 using Phase = runner::IntervalState::Phase;
 

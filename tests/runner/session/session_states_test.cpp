@@ -1,7 +1,8 @@
 #include "runner/session/session_states.hpp"
 
-#include <catch2/catch.hpp>
 #include <stdexcept>
+
+#include "support/catch.hpp"
 using namespace tapstudy::runner;
 
 TEST_CASE("a session's changes of state are kept in order with their times", "[runner][session]") {

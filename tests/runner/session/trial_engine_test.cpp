@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 
 #include "protocols/read_protocol.hpp"
 #include "results/store.hpp"
 #include "results/stored_answers.hpp"
 #include "runner/session/session_row.hpp"
+#include "support/catch.hpp"
 #include "support/no_real_plates.hpp"
 #include "support/processes.hpp"
 #include "support/texts.hpp"

@@ -1,6 +1,6 @@
 #include "runner/session/waiting_trials.hpp"
 
-#include <catch2/catch.hpp>
+#include "support/catch.hpp"
 using namespace tapstudy;
 
 namespace {

@@ -1,16 +1,15 @@
 // Members of a family against the stimulus that a study states directly.
 #include "runner/stimuli/family.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "core/error.hpp"
 #include "runner/devices/rigs.hpp"
 #include "runner/experiments/scripted_tap.hpp"
 #include "runner/stimuli/model_library.hpp"
+#include "support/catch.hpp"
 #include "support/varied_study.hpp"
 using namespace tapstudy;
-using Catch::Matchers::Contains;
 using protocols::AxisValues;
 
 namespace {

@@ -1,11 +1,10 @@
 #include "runner/stimuli/model_library.hpp"
 
-#include <catch2/catch.hpp>
-
 #include "core/model/plate_model.hpp"
 #include "protocols/axes/presented_stimulus.hpp"
 #include "protocols/read_protocol.hpp"
 #include "runner/stimuli/trial_stimuli.hpp"
+#include "support/catch.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;
 
@@ -108,7 +107,7 @@ TEST_CASE("a body that does not vibrate in the band is refused, with its first f
                         "band_limit_hz: 300", "band_limit_hz: 20"),
       "study.yaml");
   runner::ModelLibrary models{core::ModelCache{"", ""}};
-  CHECK_THROWS_WITH(models.build_all(protocol),
-                    Catch::Matchers::Contains("no mode lies below band_limit_hz (20 Hz)") &&
-                        Catch::Matchers::Contains("its first is at "));
+  CHECK_THROWS_WITH(
+      models.build_all(protocol),
+      Contains("no mode lies below band_limit_hz (20 Hz)") && Contains("its first is at "));
 }

@@ -5,11 +5,11 @@
 #include <unistd.h>
 
 #include <array>
-#include <catch2/catch.hpp>
 #include <string>
 #include <vector>
 
 #include "runner/terminal/no_flow_control.hpp"
+#include "support/catch.hpp"
 using namespace tapstudy;
 namespace {
 struct Terminal {
@@ -112,7 +112,7 @@ TEST_CASE("a line that is too long is no answer, nor is its tail", "[runner][ter
   type(ends[1], text);
   close(ends[1]);
   const auto next = [&] { return input.next([] { return true; }).value_or("nothing"); };
-  CHECK_THAT(next(), Catch::Matchers::Contains("too long"));
+  CHECK_THAT(next(), Contains("too long"));
   CHECK(next() == "2");
   close(ends[0]);
 }

@@ -1,6 +1,6 @@
 #include "runner/terminal/marked_text.hpp"
 
-#include <catch2/catch.hpp>
+#include "support/catch.hpp"
 using tapstudy::runner::marked_text;
 
 TEST_CASE("A heading and bold words are shown at a terminal without their marks",

@@ -4,11 +4,11 @@
 #include <unistd.h>
 
 #include <array>
-#include <catch2/catch.hpp>
 #include <string>
 
 #include "runner/terminal/exit_code.hpp"
 #include "runner/terminal/operator_at_terminal.hpp"
+#include "support/catch.hpp"
 using namespace tapstudy;
 
 namespace {

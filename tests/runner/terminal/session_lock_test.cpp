@@ -3,11 +3,11 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <catch2/catch.hpp>
 #include <csignal>
 #include <memory>
 
 #include "core/error.hpp"
+#include "support/catch.hpp"
 using namespace tapstudy;
 using runner::SessionLock;
 

@@ -2,7 +2,8 @@
 #include "runner/trial_loop/masked_trial_loop.hpp"
 
 #include <atomic>
-#include <catch2/catch.hpp>
+
+#include "support/catch.hpp"
 using namespace tapstudy;
 using device::PcmOutcome;
 using namespace std::chrono_literals;

@@ -66,8 +66,8 @@ class UdpPipe final : public DatagramPipe {
       return false;
     }
     pollfd waiting{socket_, POLLIN, 0};
-    const timespec patience{left / second, left % second};
-    return ppoll(&waiting, 1, &patience, nullptr) > 0;
+    const timespec time_left{left / second, left % second};
+    return ppoll(&waiting, 1, &time_left, nullptr) > 0;
   }
 
   int socket_;

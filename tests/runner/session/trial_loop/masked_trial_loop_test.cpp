@@ -12,15 +12,15 @@ struct Card {
   std::atomic<PcmOutcome> outcome{PcmOutcome::played};
   std::atomic<float> latest{0.0F};
 };
+// A card with a buffer of a second, so that a player need not keep step with it.
 class FakeSink final : public device::PcmSink {
  public:
   explicit FakeSink(Card& card) : card_{card} {}
   double rate_hz() const override { return 48'000.0; }
   std::size_t period_frames() const override { return 480; }
-  std::size_t buffer_frames() const override { return 480; }
+  std::size_t buffer_frames() const override { return 48'000; }
   void begin() noexcept override {}
   PcmOutcome write(std::span<const float> period) noexcept override {
-    std::this_thread::sleep_for(5ms);
     card_.latest = period.back();
     return card_.outcome;
   }

@@ -105,7 +105,8 @@ bool is_among(const Neighbours& neighbours, const TapModes& tap, const FittedMod
   return neighbours.range.holds(frequency_of(fitted)) && !is_line(tap, fitted);
 }
 
-// What one tap shows beside the neighbours. Empty: a tap too short for so many modes.
+// The decays of each channel with its modes beside the neighbours. Empty if one tap is too short
+// for so many modes.
 std::vector<SharingDecay> sharing(const std::vector<TapModes>& taps, const Neighbours& neighbours,
                                   std::size_t shared) {
   std::vector<SharingDecay> decays;
@@ -163,7 +164,7 @@ std::vector<Pole> own_poles(const TapModes& tap, const Neighbours& neighbours) {
   return poles;
 }
 
-// With poles of each impact's own, those that one of its channels shows; its channels share them.
+// The criterion of the model in which each impact has its own poles, shared by its channels.
 Criterion criterion_of_impacts(const std::vector<TapModes>& taps, const std::vector<int>& impacts,
                                const Neighbours& neighbours) {
   std::map<int, std::vector<TapModes>> by_impact;
@@ -284,7 +285,7 @@ void replace_in_tap(const Neighbours& neighbours, const DecayFit& fit, std::size
   tap.fit = fit;
 }
 
-// Nothing is changed unless they are told apart.
+// Changes nothing unless the modes are resolved.
 void tell_apart(const Neighbours& neighbours, const std::vector<Pole>& poles,
                 const std::vector<int>& impacts, ModesOfTaps& found) {
   const std::vector<SharingDecay> decays = sharing(found.taps, neighbours, poles.size());
@@ -322,7 +323,7 @@ double noise_of(const TapModes& tap, const FreeDecay& decay) {
   return std::max({tap.fit.noise, least * rms, 1e-150});
 }
 
-// Of the most decays that share a rate to a thousandth.
+// The pencil of the largest group of decays whose rates agree to a thousandth.
 MatrixPencil pencil_of(const std::vector<FreeDecay>& decays, const std::vector<TapModes>& taps,
                        const Band& band) {
   const auto is_of = [](double rate_hz) {

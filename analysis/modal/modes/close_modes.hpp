@@ -38,7 +38,8 @@ struct ModesOfTaps {
 // not taken for two modes, if they are found without any of the impacts as well, and if they are
 // not one mode whose frequency depends on its amplitude. Intervals are by the jackknife over
 // impacts, and not narrower than what the noise alone gives. Decays and impacts belong to the taps.
-// Of decays of different rates the most that have one take part in the pencil, all in the fit.
+// Where decays differ in rate, the largest group of one rate enters the pencil, and all enter the
+// fit.
 ModesOfTaps tell_close_modes_apart(const std::vector<FreeDecay>& decays,
                                    const std::vector<int>& impacts, const Band& band,
                                    const ModesOfTaps& found);

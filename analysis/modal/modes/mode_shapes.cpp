@@ -21,7 +21,7 @@ constexpr double step_s = 2e-5;
 constexpr double unlikely_s = 0.004;  // costs as much as a quarter of all agreement
 constexpr int rounds = 4;
 
-// At the impact, per unit of impulse: a row for each tap, a column for each mode.
+// Complex amplitudes at the impact per unit of impulse: a row per tap, a column per mode.
 Eigen::MatrixXcd excited(const std::vector<Pole>& poles, const std::vector<PlacedTap>& taps) {
   Eigen::MatrixXcd all(static_cast<Eigen::Index>(taps.size()),
                        static_cast<Eigen::Index>(poles.size()));
@@ -85,7 +85,7 @@ class Alignment {
   Eigen::Index sensor_of(std::size_t tap) const {
     return static_cast<Eigen::Index>(taps_[tap].sensor);
   }
-  // As if the impact had been so much later than it was taken to be.
+  // The amplitude if the impact had occurred this much later than assumed.
   Complex shifted_by(std::size_t tap, Eigen::Index mode, double late_s) const {
     return excited_(static_cast<Eigen::Index>(tap), mode) *
            std::polar(1.0, rad_per_s_[mode] * late_s);

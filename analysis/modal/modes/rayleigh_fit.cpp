@@ -95,7 +95,8 @@ Coefficients one_free(const Weighted& system, Eigen::Index which) {
   return result;
 }
 
-// At 0, with the error that it had: how large it may be is known no better for that.
+// Holds a coefficient at 0 with its unconstrained error: the bound does not tell how large it may
+// be.
 void hold(Eigen::Index which, const Coefficients& both, Coefficients& fit) {
   fit.unbounded[which] = both.value[which];
   fit.variance[which] = both.variance[which];

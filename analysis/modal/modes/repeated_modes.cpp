@@ -38,7 +38,8 @@ const FittedMode& most_significant(const Sightings& group) {
       ->mode->fitted;
 }
 
-// Of their frequencies, over what may lie between those of one mode: up to 1 for the same.
+// The distance between frequencies relative to the tolerance of one mode: up to 1 for the same
+// mode.
 double distance(const Sightings& group, const Sighting& one) {
   const FittedMode& known = most_significant(group);
   const double tolerance = frequency_tolerance_hz(
@@ -100,7 +101,7 @@ Sightings of_standing(const Sightings& group, Standing standing) {
   return some;
 }
 
-// What the channels of one impact say, averaged.
+// The mean of one mode over the channels of one impact.
 struct Shown {
   std::vector<double> frequencies_hz;
   std::vector<double> ratios;

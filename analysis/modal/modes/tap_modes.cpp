@@ -13,8 +13,8 @@
 namespace tapstudy::analysis {
 namespace {
 constexpr double max_ratio = 0.7;
-// How far a tone falls within the tap, in nepers. Below the first it is steady, or drifts; what
-// falls by less than the second must do so for certain, and not be where the mains hum.
+// The fall of a tone within the tap, in nepers. Below steady_fall it is steady or drifts; below the
+// second limit the fall must be significant, and the frequency no harmonic of the mains.
 constexpr double steady_fall = 0.15;
 constexpr double plain_fall = 0.5;
 constexpr double min_decay_z = 2.0;

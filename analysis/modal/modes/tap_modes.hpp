@@ -44,7 +44,7 @@ struct ModeFinding {
 // InvalidInput for decays that are too short.
 TapModes identify_modes(const FreeDecay& decay, const ModeFinding& finding);
 
-// How many modes can be fitted to a spectrum beside lines.
+// The largest number of modes that can be fitted to a spectrum beside lines.
 std::size_t most_modes(const BandSpectrum& spectrum, const std::vector<double>& lines_hz);
 
 // Lines that some taps show and this one does not, within 1 % of any mode of its own: beside a mode

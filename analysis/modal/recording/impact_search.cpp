@@ -124,8 +124,8 @@ constexpr double pulse_over_noise = 6.0;
 constexpr double resting_share = 0.3;  // of where a pulse begins
 constexpr double pulse_pause_s = 0.001;
 
-// By how much a linear prediction errs more at a frame than since the last impact, in energy; unset
-// so soon after it that nothing can be compared.
+// The ratio of the prediction error at a frame to that since the last impact, in energy; unset so
+// soon after it that there is nothing to compare with.
 std::optional<double> surprise(std::size_t frame, std::size_t last_impact,
                                const Energies& energies) {
   const std::size_t first = std::max(last_impact + settled_frames,

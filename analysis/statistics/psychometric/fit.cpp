@@ -196,7 +196,7 @@ std::vector<double> thinned(const std::vector<double>& all, std::size_t most) {
   return some;
 }
 
-// At the levels and between them: a step there may be likelier than any gentle slope.
+// Starts lie at the levels and between them: a step there may be likelier than any gentle slope.
 std::vector<double> start_positions(const BinomialLikelihood& likelihood,
                                     const PsychometricBox& box) {
   constexpr std::size_t most = 21;

@@ -270,7 +270,7 @@ Marginals marginals_on(const PosteriorAxes& axes, const PsychometricModel& model
 }
 
 namespace {
-// From the first to the last cell that is not negligible, and one further on either side.
+// The axis from the first to the last cell that is not negligible, and one further on either side.
 GridAxis narrowed(const GridAxis& axis, const std::vector<double>& marginal) {
   const double negligible = 1e-5 * *std::ranges::max_element(marginal);
   const auto is_kept = [&](double probability) { return probability > negligible; };

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 namespace tapstudy::core {
-// To a file or pipe; false where it fails, with errno.
+// Writes to a file or pipe; false on failure, with errno.
 bool write_all(int descriptor, std::string_view bytes);
 
 using Write = std::function<void(std::ostream&)>;

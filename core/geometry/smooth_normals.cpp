@@ -150,7 +150,8 @@ std::optional<SmoothNormals::Foot> SmoothNormals::foot_on(
   return std::nullopt;
 }
 
-// To the nearest coordinates within the triangle, with the distance along the normal there.
+// Moves the foot to the nearest coordinates within the triangle, with the distance along the normal
+// there.
 void SmoothNormals::pull_to_edge(Foot& foot, const Point& inside_m,
                                  const TriangleSurface& surface) const noexcept {
   double sum = 0.0;

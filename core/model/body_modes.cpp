@@ -92,8 +92,8 @@ SolvedBody solve_once(const BodySpec& body, const MeshSize& size, const Progress
   return solved;
 }
 
-// What is followed as the mesh is refined: the frequencies in the band or, where there are none,
-// the first above it, which a finer mesh may bring down into the band. Empty where it is far above.
+// The frequencies tracked under refinement: those in the band or, where there are none, the first
+// above it, which a finer mesh may bring down into the band. Empty where it is far above.
 Eigen::ArrayXd followed(const BodySpec& body, const MeshSize& size, const SolvedBody& solved) {
   constexpr int max_doublings = 8;
   if (solved.modes.kappa_rad_per_m.size() > 0) {
@@ -113,8 +113,8 @@ double largest_move(const Eigen::ArrayXd& before, const Eigen::ArrayXd& after) {
   return both == 0 ? 0.0 : (before.head(both) / after.head(both) - 1.0).abs().maxCoeff();
 }
 
-// What further refinement would still move: the moves shrink by a constant ratio as elements do
-// (Richardson 1911). Infinite where they do not shrink.
+// The change that further refinement would still cause: changes shrink by a constant ratio with the
+// element size (Richardson 1911). Infinite where they do not shrink.
 double still_to_move(double moved_before, double moved) {
   const double ratio = moved / moved_before;
   return ratio < 1.0 ? moved * ratio / (1.0 - ratio) : HUGE_VAL;
@@ -141,8 +141,8 @@ void check_can_settle(const std::vector<Fixation>& fixations) {
   }
 }
 
-// What each fixation holds must settle as well: a region that goes on catching nodes stiffens the
-// body while its elements soften.
+// The area held by each fixation must settle as well: a region that keeps catching nodes stiffens
+// the body while its elements soften.
 std::string unsettled_region(const std::vector<double>& before_m2,
                              const std::vector<double>& after_m2) {
   constexpr double still = 0.1;

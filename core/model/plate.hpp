@@ -15,8 +15,8 @@ struct Meshing {
   std::optional<double> accuracy{};
 };
 
-// By which a body's modes are found: elasticity, by finite elements; or that of Euler-Bernoulli
-// beams, in closed form (core/model/beam.hpp).
+// The theory by which a body's modes are found: elasticity, by finite elements; or that of
+// Euler-Bernoulli beams, in closed form (core/model/beam.hpp).
 enum class Theory { solid, beam };
 
 // A plate, or any other body, without its material: shape, mesh settings and boundary conditions.

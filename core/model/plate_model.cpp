@@ -24,7 +24,8 @@ void check_band(const BodyModes& body, const Material& material, double band_lim
                     band_limit_hz, solved_hz)};
   }
 }
-// Of each body its part, and of each spring half of its loss factor (Ungar & Kerwin 1962).
+// Damping ratios: each body contributes its part, and each spring half of its loss factor (Ungar &
+// Kerwin 1962).
 DampedModes damped_in_contact(const BodyModes& body, const Material& material,
                               const Contacts& contacts, const Eigen::ArrayXd& omega_rad_s) {
   const Eigen::Index modes = omega_rad_s.size();

@@ -27,7 +27,7 @@ constexpr const char* child_name = "tapstudy-child";
 const ChildJob* all_jobs = nullptr;
 bool is_served = false;
 
-// Of this process now; 0 if unknown.
+// Memory of this process now; 0 if unknown.
 std::size_t memory_in_use_bytes() {
   std::size_t pages = 0;
   if (FILE* const file = std::fopen("/proc/self/statm", "re")) {
@@ -80,7 +80,7 @@ std::string all_from(int descriptor) {
   }
 }
 
-// What libraries print on standard output must not become part of the result.
+// Redirects standard output, so that what libraries print there does not become part of the result.
 int result_instead_of_output() {
   const int result = dup(STDOUT_FILENO);
   const int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);  // NOLINT: variadic in C

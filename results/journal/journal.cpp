@@ -61,7 +61,7 @@ void Journal::flush() {
   }
 }
 
-// What other programs have appended since, too. Half a line at the end is cut off.
+// Reads the lines that other programs have appended since. Half a line at the end is cut off.
 bool Journal::read_on(int descriptor) {
   struct stat status {};
   fstat(descriptor, &status);

@@ -1,4 +1,4 @@
-// What reads a study's rows back.
+// Store: reading a study's rows back.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -260,8 +260,8 @@ std::vector<core::TraceSample> Store::trace(std::int64_t trial_id) {
   return samples;
 }
 
-// What makes sure that a trial is stored: on the disk, in the file of the study's name, whatever
-// became of that file meanwhile.
+// These functions make sure that a trial is stored: on the disk, in the file of the study's name,
+// whatever became of that file meanwhile.
 namespace fs = std::filesystem;
 
 void Store::write_unconfirmed() {

@@ -1,4 +1,4 @@
-// What adds rows to a study.
+// Store: adding rows to a study.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,7 +13,7 @@ namespace tapstudy::results {
 namespace fs = std::filesystem;
 using namespace std::string_literals;
 namespace {
-// Whose last session the operator ended.
+// Selects the participants whose last session the operator ended.
 constexpr const char* ended_by_operator =
     "SELECT participant_id FROM session AS last WHERE session_id = "
     "  (SELECT max(session_id) FROM session WHERE participant_id = last.participant_id) "
@@ -313,7 +313,7 @@ std::vector<FormAnswerRow> Store::forms_for_journal() {
   return answers;
 }
 
-// What the operator adds to a study, and what follows from it.
+// Appends the entries of a session to the journal.
 void Store::journal(const JournalEntries& entries, std::int64_t session_id) {
   if (!journal_) {
     return;

@@ -26,11 +26,11 @@ struct ScreenGroup {
   int count{};
   double seconds{};  // that all of them take, roughly; of trials without the tapping
 };
-// What one participant sees, in this order: the most that there can be, if no trial is repeated.
+// The screens that one participant sees, in this order; an upper bound if no trial is repeated.
 std::vector<ScreenGroup> screens_of(const protocols::Protocol& protocol);
 
 namespace {
-// What a screen takes, roughly, from what one sees in laboratories: not measured.
+// Rough durations of screens, from experience in laboratories: not measured.
 constexpr double instructions_s = 30.0;
 constexpr double question_s = 8.0;
 constexpr double decision_s = 5.0;
@@ -74,7 +74,7 @@ std::vector<ScreenGroup> trial_screens(const protocols::Block& block) {
   return screens;
 }
 
-// In a block that takes so long without them, the last trial being followed by none.
+// The number of breaks in a block of this duration without them; none follows the last trial.
 int number_of(const protocols::Breaks& breaks, int trials, double block_s) {
   int number = breaks.every_trials ? (trials - 1) / *breaks.every_trials : 0;
   if (breaks.every_seconds) {

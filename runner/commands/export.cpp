@@ -47,7 +47,7 @@ std::vector<results::BlockText> block_texts(const protocols::Protocol& protocol)
   return texts;
 }
 
-// What answers that are not their own text mean.
+// The meanings of answers that are not their own text.
 std::vector<results::Level> levels_of(const protocols::FormItem& item) {
   std::vector<results::Level> levels;
   for (const protocols::Option& option : item.options) {

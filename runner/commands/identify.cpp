@@ -82,7 +82,7 @@ TapQuestion question_of(const IdentifyOptions& options) {
   return question;
 }
 
-// Nothing that could be pasted: noise has onsets, too.
+// Noise has onsets, too: without a mode or a sinusoid there is nothing to paste into a protocol.
 void check_holds_something(const TapIdentification& found) {
   if (!found.agreed.empty() || found.sinusoid) {
     return;

@@ -80,7 +80,7 @@ Summary summary_of_directories(const ReportOptions& options,
   return summary_of_study(studies, mode_to_report(options, sessions));
 }
 
-// As a row of a table has them: a comma within an answer is in quotes.
+// Splits the text as a row of a table: a comma within an answer is in quotes.
 std::vector<std::string> listed(const std::string& words, const std::string& option) {
   std::istringstream stream{words};
   const analysis::CsvText csv = analysis::read_csv(stream, option);
@@ -120,7 +120,7 @@ void write_files(const ReportOptions& options, const Summary& summary) {
                          : "");
 }
 
-// Before what takes long.
+// Called before the long computation.
 void check_is_free(const ReportOptions& options) {
   const std::string page = (fs::path{options.out} / "report.html").string();
   std::error_code error;

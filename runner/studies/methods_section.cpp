@@ -168,7 +168,8 @@ std::string tap_words(const Block& block) {
               : "";
 }
 
-// Where not all participants did all of it; where it may end early, nobody knows what all of it is.
+// The completed share of the block, if not all participants did all of it; the total is unknown
+// where a block may end early.
 std::string completion_words(const Block& block, const results::BlockCourseRow& done,
                              std::size_t participants) {
   std::string words;
@@ -203,7 +204,7 @@ bool has_blind_labels(const Block& block, const Protocol& protocol) {
   return !answers.options.empty() && answers.options.front().name == protocols::blind_label(0);
 }
 
-// What an answer to the block took, as a sentence without its subject; or "".
+// The requirements of an answer in the block, as a sentence without its subject; or "".
 std::string exploration(const Block& block) {
   std::vector<std::string> limits;
   if (block.presented == protocols::Presented::virtual_plates && block.explore.min_contacts > 0) {
@@ -250,7 +251,7 @@ std::string explorations(const Protocol& protocol, const DoneBlocks& done) {
   return text;
 }
 
-// Of people: a simulated participant sees nothing.
+// Only for human participants: a simulated one sees nothing.
 std::string blinding(const Protocol& protocol, const DoneBlocks& done) {
   const bool are_labels_blind = std::ranges::any_of(protocol.blocks, [&](const Block& block) {
     return done.contains(block.name) && has_blind_labels(block, protocol);
@@ -264,7 +265,7 @@ std::string blinding(const Protocol& protocol, const DoneBlocks& done) {
       protocol.display.is_operator_blind ? "did not show" : "showed");
 }
 
-// Of people: a simulated participant hears nothing.
+// Only for human participants: a simulated one hears nothing.
 std::string masking(const Protocol& protocol, const DoneBlocks& done) {
   if (!protocol.masking) {
     return "";
@@ -302,7 +303,7 @@ std::string questionnaires(const Protocol& protocol, const DoneBlocks& done) {
   return forms.empty() ? "" : fmt::format("Questionnaires: {}. ", fmt::join(forms, "; "));
 }
 
-// What nobody began.
+// Blocks that no participant started.
 std::string left_undone(const Protocol& protocol, const DoneBlocks& done) {
   std::vector<std::string> names;
   for (const Block& block : protocol.blocks) {

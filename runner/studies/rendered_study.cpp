@@ -82,7 +82,7 @@ std::string region_words(const core::Fixation& fixation) {
   return "";
 }
 
-// Nothing of what is held along all axes.
+// Empty for a fixation along all axes.
 std::string hold_words(const core::Fixation& fixation) {
   if (fixation.springs_n_per_m) {
     const core::Vec3& springs = *fixation.springs_n_per_m;

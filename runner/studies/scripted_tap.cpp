@@ -134,7 +134,7 @@ void check(const ScriptedTap& tap) {
   }
 }
 
-// In virtual time, every tick kept as it is.
+// Runs the loop in virtual time and keeps every tick.
 std::vector<core::TraceSample> samples_of(device::Device& hand,
                                           std::span<core::TapRenderer> alternatives,
                                           const device::LoopSettings& settings, double seconds) {
@@ -152,7 +152,7 @@ std::vector<core::TraceSample> samples_of(device::Device& hand,
   return samples;
 }
 
-// Where the muscle aims in each tick, in the device frame.
+// The aim of the muscle in each tick, in the device frame.
 std::vector<core::Vec3> aims_of(const ScriptPath& path, const core::Shape& shape,
                                 const core::Placement& placement, double dt_s) {
   const core::TopHeight top{shape};

@@ -80,7 +80,7 @@ std::vector<PlannedSession> add_sessions(const SimulatedStudy& study,
   return sessions;
 }
 
-// Who does not get through practice leaves, as a person would.
+// A participant who does not get through practice leaves, as a person would.
 void take_part(TrialEngine& engine, const protocols::Schedule& schedule) {
   std::set<int> done;
   try {
@@ -136,7 +136,7 @@ struct Tapped {
   std::atomic<int> trials{0};
 };
 
-// What all sessions share.
+// The parts shared by all sessions.
 struct Laboratory {
   const SimulatedStudy& study;
   const protocols::Protocol& protocol;

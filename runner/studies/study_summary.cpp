@@ -95,7 +95,7 @@ analysis::BlockDesign::Redraw redraw_of(const protocols::Protocol& protocol,
   };
 }
 
-// Where the order is random.
+// Only a random order can be drawn again.
 void add_redraw(const protocols::Protocol& protocol, std::size_t block_index,
                 analysis::BlockDesign& design) {
   constexpr std::size_t constrained_cost = 20;
@@ -106,7 +106,7 @@ void add_redraw(const protocols::Protocol& protocol, std::size_t block_index,
   }
 }
 
-// Of one that the protocol's reader has accepted.
+// The axis has passed the protocol's reader.
 analysis::AxisName name_of(const std::string& axis) {
   const protocols::Axis& row = *protocols::find_axis(axis);
   return {axis, std::string{row.quantity}, std::string{row.unit}};
@@ -194,7 +194,8 @@ using results::ParticipantCourseRow;
 
 using Answers = std::vector<results::JournalledAnswer>;
 
-// Of one block; no trials if it was not practised, or has no right answers.
+// The share of right answers in the practice of one block; no trials if it was not practised, or
+// has no right answers.
 analysis::Proportion right_in(const protocols::Block& block, const Answers& answers) {
   analysis::Proportion right;
   for (const results::JournalledAnswer& answer : answers) {
@@ -310,7 +311,8 @@ void check_same_protocol(const std::vector<StudyStore>& stores) {
   }
 }
 
-// Of whatever name: a redacted copy has the sessions of its study.
+// Sessions are compared whatever the participants' names, because a redacted copy holds the
+// sessions of its study.
 void check_different_participants(const std::vector<StudyStore>& stores) {
   std::map<std::string, std::string> directories;
   std::map<std::pair<std::uint64_t, std::string>, std::string> begun;

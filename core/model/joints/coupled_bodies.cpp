@@ -81,7 +81,7 @@ class Elongations {
     return std::max(bounds(shape_of(spring.from.body)).size_m().norm(),
                     bounds(shape_of(spring.to.body)).size_m().norm());
   }
-  // By which each body comes to lie where the first springs that reach it join it.
+  // The translation of each body to where the first springs that reach it join it.
   std::vector<Vec3> shifts_of_bodies() const {
     std::vector<std::optional<Vec3>> shifts_m(system_.bodies.size());
     for (std::optional<Vec3>& first : shifts_m) {
@@ -108,7 +108,7 @@ class Elongations {
     }
     return false;
   }
-  // From one end of a spring to the other.
+  // The translation from one end of a spring to the other.
   Vec3 shift_m(std::size_t spring) const {
     const ContactSpring& joins = contacts_.springs[spring];
     return mean_place_m({joins.to, spring, "to"}) - mean_place_m({joins.from, spring, "from"});
@@ -235,7 +235,7 @@ std::vector<DiscreteBody> all_discretised(const BodySpec& body, const ProgressHo
   return all;
 }
 
-// Of each mode.
+// The squared elongation in each mode.
 Eigen::ArrayXd squares(const Elongation& elongation, const Eigen::MatrixXd& shapes) {
   Eigen::ArrayXd displacement = Eigen::ArrayXd::Zero(shapes.cols());
   for (const auto& [dof, weight] : elongation.weights) {

@@ -114,7 +114,7 @@ double newtons_per_unit(const SinusoidLaw& law, analysis::Quantity quantity,
 
 using Fits = std::vector<const IdentifiedTap*>;
 
-// By impact: its channels vary together.
+// Groups the fits by impact, because the channels of one impact vary together.
 std::map<int, Fits> fits_of(const TapIdentification& found) {
   std::map<int, Fits> fits;
   for (const IdentifiedTap& tap : found.taps) {

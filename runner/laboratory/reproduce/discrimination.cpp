@@ -71,7 +71,8 @@ std::vector<double> drawn_shares(const Row& answers, core::Rng& rng) {
   return shares;
 }
 
-// Of tables whose rows are drawn from these shares, as rare under the probabilities as the counts.
+// The share of tables, with rows drawn from these shares, that are at most as probable as the
+// counts.
 template <class SharesOf>
 double share_as_rare(const analysis::CountTable& counts, const Rows& rows,
                      const Probabilities& probabilities, std::uint64_t seed, SharesOf shares_of) {
@@ -139,7 +140,7 @@ ConfusionMatrix printed_table() {
   return analysis::read_counts(analysis::read_csv(stream, table_file), table_file);
 }
 
-// What simulated participants answer, of each stimulus, with this internal noise.
+// The answers of simulated participants to each stimulus at this internal noise.
 struct Predicted {
   double noise_db{};
   ConfusionMatrix answers;

@@ -66,7 +66,7 @@ const char* words(Part part) {
                              : "vibration above 100 Hz";
 }
 
-// How much of a part of the vibration is seen at a point of the plates.
+// A limit on one part of the vibration at a point of the plates.
 struct Question {
   const char* point;
   std::vector<const char*> fixations;

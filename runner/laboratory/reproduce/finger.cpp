@@ -93,7 +93,7 @@ double virtual_db(Bench& bench, const protocols::Protocol& protocol, const std::
                       .matrix());
 }
 
-// By how much the force of a real tap differs from that on a rigid surface.
+// The level of the difference between the force of a real tap and that on a rigid surface.
 double plates_part_db(Bench& bench, const protocols::Protocol& real, const std::string& plate,
                       const Eigen::Vector2d& at_m) {
   const auto stimulus = stimulus_with(real, real.stimulus(plate));
@@ -226,7 +226,7 @@ struct TappedPlate {
   RealTap found;
 };
 
-// Which pad and damper a mass would need to ring as the paper's finger does.
+// The pad stiffness and damper with which a mass rings as the paper's finger does.
 struct NeededFinger {
   double pad_n_per_m{};
   double damping_n_s_per_m{};
@@ -240,7 +240,8 @@ NeededFinger needed(const core::Finger& finger) {
 
 enum class Pad { contact_spring, as_needed };
 
-// On P1, beside a fixed point, where the paper's users complained. Screws hold real plates.
+// The taps are on P1, beside a fixed point, where the paper's users complained. Screws hold real
+// plates.
 std::vector<TappedPlate> real_taps(Bench& bench, Pad pad) {
   std::vector<TappedPlate> all;
   for (const Route& route : bench.plates) {
@@ -339,7 +340,7 @@ Claim twice_as_fast(const std::vector<TappedPlate>& taps) {
   return claim;
 }
 
-// What a tap with the sinusoid alone renders, from the impact on.
+// The force of a tap with the sinusoid alone, from the impact on.
 std::vector<double> rendered_n(Bench& bench, const protocols::Protocol& protocol,
                                const char* stimulus, double speed_m_s, double& impact_m_s) {
   const auto presented = stimulus_with(protocol, protocol.stimulus(stimulus));

@@ -46,7 +46,7 @@ Claim tetrahedra(Bench& bench) {
   return claim;
 }
 
-// What TetGen's bound on an element's shape does to the mesh.
+// The effect of TetGen's bound on element shape on the mesh.
 std::vector<Measure> meshes_of(const protocols::Plate& body) {
   std::vector<Measure> found;
   for (const double ratio : {1.2, 1.414, 2.0, 4.0}) {
@@ -143,8 +143,8 @@ double modes_in_band(Bench& bench, const protocols::Protocol& protocol, const st
   return static_cast<double>(bench.models.plate_of(protocol, stimulus)->model.frequency_hz.size());
 }
 
-// Of linear elements as `trade` measures them, in the protocol's band and at its rate: the coarsest
-// mesh it tries.
+// The frequency error of the coarsest mesh of linear elements that `trade` tries, in the protocol's
+// band and at its rate.
 Measure error_of_linear_elements(const Bench& bench, const protocols::Protocol& protocol,
                                  const std::string& name) {
   const Trade trade =
@@ -208,7 +208,7 @@ double printed_last_hz(const Eigen::ArrayXd& frequencies_hz) {
   return frequencies_hz.size() > last ? frequencies_hz[last] : std::nan("");
 }
 
-// Of a thin plate: its frequencies grow with its thickness (Kirchhoff).
+// Frequencies of a thin plate are proportional to its thickness (Kirchhoff).
 analysis::Chart chart_of_counts(const std::string& material, const Eigen::ArrayXd& frequencies_hz,
                                 double band_limit_hz) {
   analysis::Chart chart;
@@ -315,7 +315,7 @@ constexpr double printed_longest_ms = 0.22;
 constexpr Eigen::Index printed_modes_in_band = 55;
 constexpr int timed_ticks = 20'000;
 
-// With as many modes as the paper simulates, wherever below wide_hz their frequencies lie.
+// A model with as many modes as the paper simulates, wherever below wide_hz their frequencies lie.
 core::VibratingPlate plate_with_printed_modes(Bench& bench, protocols::Protocol protocol,
                                               const std::string& name, double wide_hz) {
   protocol.band_limit_hz = wide_hz;
@@ -330,7 +330,7 @@ core::VibratingPlate plate_with_printed_modes(Bench& bench, protocols::Protocol 
   return core::VibratingPlate{core::model_of(*body, material, (1.0 + 1e-9) * last_hz)};
 }
 
-// Of this thread: while another program runs, none passes.
+// Processor time of this thread, which does not advance while another program runs.
 double processor_time_s() {
   timespec now{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);

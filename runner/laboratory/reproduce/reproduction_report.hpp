@@ -8,7 +8,7 @@ namespace tapstudy::runner {
 // the figures. Neither computes anything.
 void write_html(std::ostream& out, const Reproduction& reproduction);
 void write_json(std::ostream& out, const Reproduction& reproduction);
-// To stdout: every claim with its judgement.
+// Prints every claim with its judgement to stdout.
 void print(const Reproduction& reproduction);
 
 // Creates the directory, so that output errors are found before the computation. Throws

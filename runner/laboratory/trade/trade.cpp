@@ -31,8 +31,8 @@ class Workbench {
   void fix_damping(const core::BodyModes& body);
   core::ModalModel model_of(const core::BodyModes& body, double band_limit_hz) const;
   core::VibratingPlate plate_of(core::ModalModel model) const;
-  // For 0.3 s after a strike on each tapping point, at the protocol's ticks whatever the rate,
-  // which must be a whole multiple of the protocol's.
+  // Forces for 0.3 s after a strike on each tapping point, at the protocol's ticks whatever the
+  // rate, which must be a whole multiple of the protocol's.
   Forces forces_n(const core::VibratingPlate& plate, core::Integrator integrator,
                   double rate_hz) const;
   double tick_ns(const core::VibratingPlate& plate) const;

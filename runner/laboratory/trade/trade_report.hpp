@@ -6,8 +6,8 @@
 #include "runner/laboratory/trade/stability.hpp"
 #include "runner/laboratory/trade/trade.hpp"
 namespace tapstudy::runner {
-// To stdout: the reference, the front, the protocol's own setting, the cheapest one inside the
-// tolerance, and the extremes. `directory` is where all settings were written, or empty.
+// Prints to stdout the reference, the front, the protocol's own setting, the cheapest one inside
+// the tolerance, and the extremes. `directory` is where all settings were written, or empty.
 void print(const Trade& trade, const Stability& stability, const std::string& directory);
 
 std::string json_of(const Trade& trade, const Stability& stability);

@@ -61,7 +61,7 @@ class SmoothNormals {
   }
   // The edge to cross among those beyond which the barycentric coordinates lie; none if all are
   // sharp.
-  int way_out(int triangle, const std::array<double, 3>& at) const noexcept;
+  int exit_edge(int triangle, const std::array<double, 3>& at) const noexcept;
   std::optional<Foot> foot_on(int triangle, const Point& inside_m,
                               const TriangleSurface& surface) const noexcept;
   void pull_to_edge(Foot& foot, const Point& inside_m,

@@ -81,7 +81,7 @@ std::string all_from(int descriptor) {
 }
 
 // Redirects standard output, so that what libraries print there does not become part of the result.
-int result_instead_of_output() {
+int redirect_output() {
   const int result = dup(STDOUT_FILENO);
   const int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);  // NOLINT: variadic in C
   dup2(nowhere, STDOUT_FILENO);
@@ -206,7 +206,7 @@ void serve_if_child(int count, char** words) {
   if (job == nullptr) {
     _exit(1);
   }
-  const int result = result_instead_of_output();
+  const int result = redirect_output();
   restrict_this_process({std::atoi(words[2]), std::strtoull(words[3], nullptr, 10)});
   write_all(result, outcome_of(*job, all_from(STDIN_FILENO)));
   _exit(0);

@@ -46,7 +46,7 @@ class Journal {
                 const JournalEntries& entries);
 
  private:
-  bool read_on(int descriptor);  // false: it is another file now
+  bool read_appended(int descriptor);  // false: it is another file now
   std::string chained(const std::string& body);
   std::string file_;
   Flush flush_{Flush::each_time};

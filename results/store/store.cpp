@@ -243,7 +243,7 @@ void Store::each_row(const std::string& select, const std::function<void(Stateme
   }
 }
 
-void Store::at_one_moment(const std::function<void()>& read) {
+void Store::in_read_transaction(const std::function<void()>& read) {
   database_.run("BEGIN");
   try {
     read();

@@ -21,7 +21,8 @@ constexpr const char* ended_by_operator =
     "             AND action = 'end')";
 }  // namespace
 
-Store::Place Store::place_of(const std::string& participant_id, Mode mode, const Others& others) {
+Store::Place Store::place_of(const std::string& participant_id, Mode mode,
+                             const OtherParticipants& others) {
   Statement row{
       database_,
       "SELECT participant_index, order_index, mode FROM participant WHERE participant_id = ?"};
@@ -46,7 +47,7 @@ int Store::next_participant_index(Mode mode) {
 
 // Used by who has answered what counts, unless the operator ended their last session before its
 // end.
-int Store::free_order_index(Mode mode, const Others& others) {
+int Store::free_order_index(Mode mode, const OtherParticipants& others) {
   const std::map<std::string, std::string> excluded = excluded_participants();
   Statement row{database_,
                 "SELECT participant_id, order_index, participant_id IN "

@@ -22,7 +22,7 @@
 #include "runner/studies/counted.hpp"
 namespace tapstudy::runner {
 struct ScreenGroup {
-  std::string shown;  // in words
+  std::string shown;  // description
   int count{};
   double seconds{};  // that all of them take, roughly; of trials without the tapping
 };
@@ -216,7 +216,7 @@ void warn_of_guess_rate(const protocols::TrackSettings& track, double of_task) {
   }
 }
 
-const char* words(protocols::Side side) {
+const char* describe_side(protocols::Side side) {
   switch (side) {
     case protocols::Side::above:
       return "above";
@@ -260,7 +260,7 @@ void print_procedures(const protocols::Stimulus& family, const protocols::Compar
     const auto [low, high] = track->ranges().front();
     fmt::print("    {}{} of {}: {} against {:.6g}, from {:.6g} to {:.6g}\n",
                track->may_end_early() ? "at most " : "", counted(track->max_trials(), "trial"),
-               comparison.axis, words(comparison.side), comparison.standard,
+               comparison.axis, describe_side(comparison.side), comparison.standard,
                comparison.value_at(low), comparison.value_at(high));
     for (std::size_t i = 0; i < comparison.further_axes.size(); ++i) {
       const auto [least, greatest] = track->ranges().at(i + 1);

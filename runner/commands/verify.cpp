@@ -269,7 +269,7 @@ std::string print_recomputed(const results::Recomputation& recomputed) {
 }
 
 // Returns a description of the fault, or an empty text.
-std::string print_heads(const std::vector<std::string>& differences) {
+std::string print_study_differences(const std::vector<std::string>& differences) {
   for (const std::string& difference : differences) {
     fmt::print("differs: {}\n", difference);
   }
@@ -321,10 +321,10 @@ void verify(const VerifyOptions& options) {
   fmt::print("study.db         {} trials, {} answers, {} ticks: sound\n", store.trials().size(),
              in_store.answers.size(), recomputed.ticks);
   const results::JournalContent journal = results::read_journal(options.directory);
-  std::vector<std::string> wrong{
-      print_recomputed(recomputed),
-      print_heads(results::differing_study_and_sessions(store.study(), store.sessions(), journal)),
-      print_compared(in_store, journal.entries)};
+  std::vector<std::string> wrong{print_recomputed(recomputed),
+                                 print_study_differences(results::differing_study_and_sessions(
+                                     store.study(), store.sessions(), journal)),
+                                 print_compared(in_store, journal.entries)};
   std::erase(wrong, "");
   if (wrong.empty()) {  // else a report made anew would be wrong, too
     wrong.push_back(print_published(published_report(options.directory, store)));

@@ -11,7 +11,7 @@ namespace tapstudy::runner {
 // the answers in its blocks: apparatus, rendering, blocks and their orders, requirements of an
 // answer, blinding, masking, questionnaires. sessions, participants: those that are reported; at
 // least one.
-std::string procedure_words(const protocols::Protocol& protocol,
-                            const std::vector<results::SessionRow>& sessions,
-                            const std::set<std::string>& participants, const DoneBlocks& done);
+std::string describe_procedure(const protocols::Protocol& protocol,
+                               const std::vector<results::SessionRow>& sessions,
+                               const std::set<std::string>& participants, const DoneBlocks& done);
 }  // namespace tapstudy::runner

@@ -45,9 +45,9 @@ struct ModeFinding {
 TapModes identify_modes(const FreeDecay& decay, const ModeFinding& finding);
 
 // The largest number of modes that can be fitted to a spectrum beside lines.
-std::size_t most_modes(const BandSpectrum& spectrum, const std::vector<double>& lines_hz);
+std::size_t max_mode_count(const BandSpectrum& spectrum, const std::vector<double>& lines_hz);
 
 // Lines that some taps show and this one does not, within 1 % of any mode of its own: beside a mode
 // of nearly the same frequency hum may go unnoticed, and falsify its damping. Each once.
-std::vector<double> lines_missed(const TapModes& tap, const std::vector<TapModes>& taps);
+std::vector<double> missed_lines(const TapModes& tap, const std::vector<TapModes>& taps);
 }  // namespace tapstudy::analysis

@@ -71,7 +71,7 @@ BinomialLikelihood likelihood_of(const PsychometricModel& model, const std::vect
 // The box that fit_psychometric searches: thresholds up to three times the levels' range beyond
 // them, slopes from nearly constant to a step within the smallest gap.
 PsychometricBox search_box(const PsychometricModel& model, const std::vector<Level>& levels);
-// The greatest likelihood in the box, from a grid of starts and from any given.
-Maximum greatest(const BinomialLikelihood& likelihood, const PsychometricBox& box,
-                 const std::vector<PsychometricVector>& further_starts = {});
+// The maximum of the likelihood in the box, from a grid of starts and from any given.
+Maximum global_maximum(const BinomialLikelihood& likelihood, const PsychometricBox& box,
+                       const std::vector<PsychometricVector>& further_starts = {});
 }  // namespace tapstudy::analysis

@@ -57,7 +57,7 @@ class TopHeight {
   std::optional<double> at_m(const Eigen::Vector2d& sideways_m) const;
   // For messages, the region that can be touched from above: a plate's extent, or the place on a
   // body nearest to a point that misses it.
-  std::string outline_words(const Eigen::Vector2d& sideways_m) const;
+  std::string describe_touchable(const Eigen::Vector2d& sideways_m) const;
 
  private:
   Bounds bounds_;

@@ -82,8 +82,8 @@ class Identifier {
     }
     const double slowest_hz = rate_of(*std::ranges::min_element(files, {}, rate_of));
     check_playback_rate(files);
-    result_.band = sought_band(result_.question, slowest_hz,
-                               protocol_ ? std::optional{protocol_->band_limit_hz} : std::nullopt);
+    result_.band = modal_band(result_.question, slowest_hz,
+                              protocol_ ? std::optional{protocol_->band_limit_hz} : std::nullopt);
     int impacts = 0;
     for (const MeasuredFile& file : files) {
       impacts += add(file, impacts);

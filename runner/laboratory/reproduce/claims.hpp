@@ -32,8 +32,8 @@ Measure within(double low, double high, const std::string& name, double value,
 Measure shown(const std::string& name, double value, const std::string& unit = {});
 double difference_percent(double value, double printed);
 // "1.25 mm"; and of a measure that is judged "at least 1.5 mm", "between 1 and 2 mm".
-std::string value_in_words(const Measure& measure);
-std::string limits_in_words(const Measure& measure);
+std::string describe_value(const Measure& measure);
+std::string describe_limits(const Measure& measure);
 
 // One way to compute what the claim is about.
 struct Method {

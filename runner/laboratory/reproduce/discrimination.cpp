@@ -227,11 +227,11 @@ Method cross_validated(const Bench& bench, const ConfusionMatrix& table, const S
   return method;
 }
 
-std::string what_command_shows(const std::vector<Simulated>& studies) {
+std::string describe_commands(const std::vector<Simulated>& studies) {
   return fmt::format(
       "The command simulates the protocol's own noise, {} dB; another is a line of the protocol, "
       "simulation.observer.noise_db. 5 mm thick: as recommended, with {}.",
-      studies.front().protocol.simulation.observer.noise_db, how_thin);
+      studies.front().protocol.simulation.observer.noise_db, thin_plate_changes);
 }
 
 Claim table_of_observer(const Bench& bench, const ConfusionMatrix& table,
@@ -248,7 +248,7 @@ Claim table_of_observer(const Bench& bench, const ConfusionMatrix& table,
   for (const Simulated& study : studies) {
     claim.methods.push_back(cross_validated(bench, table, study));
   }
-  claim.remarks.push_back(what_command_shows(studies));
+  claim.remarks.push_back(describe_commands(studies));
   return claim;
 }
 
@@ -291,7 +291,7 @@ Claim structure_well_material_less(const Bench& bench, const ConfusionMatrix& ta
                    "%"),
           within(100.0 * interval.low, 100.0 * interval.high, "material right", material, "%")}});
   }
-  claim.remarks.push_back(what_command_shows(studies));
+  claim.remarks.push_back(describe_commands(studies));
   return claim;
 }
 

@@ -231,7 +231,7 @@ struct NeededFinger {
   double pad_n_per_m{};
   double damping_n_s_per_m{};
 };
-NeededFinger needed(const core::Finger& finger) {
+NeededFinger finger_ringing_as_printed(const core::Finger& finger) {
   const double decay = slowed_by * printed_decay_per_s;
   const double omega = 2.0 * pi * slowed_by * printed_hz;
   return {finger.mass_kg * (omega * omega + decay * decay) - finger.stiffness_n_per_m,
@@ -254,7 +254,7 @@ std::vector<TappedPlate> real_taps(Bench& bench, Pad pad) {
       const auto plate = bench.models.plate_of(protocol, stimulus);
       TappedPlate tap{route, name, stimulus.rendering, {}};
       if (pad == Pad::as_needed) {
-        const NeededFinger wanted = needed(tap.settings.finger);
+        const NeededFinger wanted = finger_ringing_as_printed(tap.settings.finger);
         tap.settings.penalty_stiffness_n_per_m = wanted.pad_n_per_m;
         tap.settings.finger.damping_n_s_per_m = wanted.damping_n_s_per_m;
         tap.route.name +=
@@ -332,7 +332,7 @@ Claim twice_as_fast(const std::vector<TappedPlate>& taps) {
     method.measures.push_back(
         within(decay / tolerance, decay * tolerance, tap.stimulus + ": decay", found_decay, "1/s"));
   }
-  const NeededFinger wanted = needed(taps.front().settings.finger);
+  const NeededFinger wanted = finger_ringing_as_printed(taps.front().settings.finger);
   claim.findings = {
       shown("pad stiffness with which 5.8 g in contact ring at 500 Hz", 1e-3 * wanted.pad_n_per_m,
             "kN/m"),

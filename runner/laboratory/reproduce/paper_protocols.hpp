@@ -30,7 +30,7 @@ const std::vector<Route>& routes();
 
 // A protocol with its plates 5 mm thick, meshed as in protocols/recommended/forces_thin.yaml.
 protocols::Protocol with_thin_plates(protocols::Protocol protocol);
-inline constexpr const char* how_thin =
+inline constexpr const char* thin_plate_changes =
     "size_m: [0.6, 0.6, 0.005] and the mesh of protocols/recommended/forces_thin.yaml";
 
 // The command that shows a plate's modes; that taps it at a named point, with what is asked beside.

@@ -102,7 +102,7 @@ core::BodyModes Workbench::solve(const core::Meshing& mesh, double band_limit_hz
 
 void Workbench::fix_damping(const core::BodyModes& body) {
   const auto* ratios = std::get_if<core::TwoRatioDamping>(&spec_.material.damping);
-  if (spec_.contacts || ratios == nullptr) {
+  if (spec_.joints || ratios == nullptr) {
     return;
   }
   if (const auto rayleigh = model_of(body, spec_.band_limit_hz).damping) {
@@ -113,7 +113,7 @@ void Workbench::fix_damping(const core::BodyModes& body) {
 }
 
 core::ModalModel Workbench::model_of(const core::BodyModes& body, double band_limit_hz) const {
-  return core::model_of(body, spec_.material, band_limit_hz, spec_.contacts.get());
+  return core::model_of(body, spec_.material, band_limit_hz, spec_.joints.get());
 }
 
 core::VibratingPlate Workbench::plate_of(core::ModalModel model) const {

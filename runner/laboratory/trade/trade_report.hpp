@@ -20,7 +20,7 @@ analysis::Figure figure_of(const Trade& trade);
 
 // Creates the directory, so that output errors are found before the computation. Throws
 // InvalidInput if it cannot be created or one of the files below already exists.
-void make_room(const std::string& directory);
+void create_trade_directory(const std::string& directory);
 
 // trade.csv, trade.json, trade.svg and stability.csv. Throws InvalidInput if one exists already or
 // cannot be written.

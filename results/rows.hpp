@@ -138,8 +138,8 @@ struct TickStatisticsRow {
   double worst_lateness_s{};
   std::string fault;  // empty: none
 };
-// How a trial ended. interrupted: it comes again; repeated: likewise, its answer does not count;
-// timed_out: it had no answer in time; skipped by the operator.
+// The end of a trial. An interrupted trial comes again; so does a repeated one, whose answer does
+// not count; timed_out: no answer in time; skipped by the operator.
 enum class TrialStatus { answered, interrupted, repeated, timed_out, skipped };
 std::string to_text(TrialStatus status);
 TrialStatus trial_status_from(const std::string& text);
@@ -158,8 +158,8 @@ struct TrialRow {
   bool is_of_real_plate{};  // not rendered: a plate that was mounted
 };
 
-// How the sessions of one participant went. Trials are presentations, practice aside; the loop's
-// are of every stored trial.
+// The course of one participant's sessions. Trials are presentations, practice aside; values of the
+// loop are over every stored trial.
 struct ParticipantCourseRow {
   std::string participant_id;
   Mode mode{};
@@ -252,7 +252,7 @@ struct BlockCourseRow {
   int masked{};  // of these; with masking noise
 };
 
-// How long and how often each alternative was felt, where there were several.
+// The time and number of visits to each alternative in trials with several.
 struct VisitRow {
   std::string participant_id;
   std::string block;

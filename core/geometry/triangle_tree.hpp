@@ -20,7 +20,7 @@ class TriangleTree {
     double along{1.0};  // 0 at the segment's start, 1 at its end
   };
 
-  // At least one triangle.
+  // The surface has at least one triangle.
   explicit TriangleTree(TriangleSurface surface);
 
   // The first triangle that the segment crosses from its outer to its inner side. An edge belongs

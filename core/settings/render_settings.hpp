@@ -35,8 +35,8 @@ struct RecordedTaps {
 enum class Integrator { exact, newmark };
 
 // The paper's finger model: the striking mass (eq. 14, grip included) and the spring and damper
-// through which vibration is felt (eq. 17). Of a coupled finger (core/tick/coupled_finger.hpp) the
-// mass that the spring and damper hold to the hand.
+// through which vibration is felt (eq. 17). For a coupled finger (core/tick/coupled_finger.hpp),
+// mass_kg is the mass that the spring and damper hold to the hand.
 struct Finger {
   double mass_kg{0.058};
   double stiffness_n_per_m{300.0};

@@ -87,7 +87,7 @@ class Store {
   std::optional<std::int64_t> session_of_trial(const std::string& participant_id, int number);
   // Numbers of the trials that the participant has answered, in any session.
   std::vector<int> answered_trials(const std::string& participant_id);
-  // How often each trial was presented, by its number.
+  // The number of presentations of each trial, by its number.
   std::map<int, int> presentations(const std::string& participant_id);
   // Trials that were presented, timed out or skipped, and not answered later; in the order in which
   // that was last.

@@ -31,8 +31,7 @@ std::vector<FormAnswerRow> stored_form_answers(Store& store);
 void each_rig_of_trial(Store& store,
                        const std::function<void(std::int64_t trial_id, std::string rig)>& take);
 
-// How the sessions of each participant went; of all participants, sorted by mode and index. Throws
-// StoreError.
+// The course of the sessions of each participant; sorted by mode and index. Throws StoreError.
 std::vector<ParticipantCourseRow> participant_courses(Store& store);
 // The course of each block with an answer, by name. Throws StoreError.
 std::map<std::string, BlockCourseRow> block_courses(Store& store, Mode mode);

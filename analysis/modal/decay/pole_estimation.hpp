@@ -42,7 +42,7 @@ inline constexpr int min_stable_orders = 4;
 // half-power bandwidth if that is more) and 10 % (or 0.003) of its damping ratio.
 bool continues(const Pole& from, const Pole& to);
 // A stabilisation diagram, read: poles that at least min_stable_orders successive orders found,
-// each continuing the one before. Of chains at one pole the longest counts.
+// each continuing the one before. The longest chain at a pole counts.
 std::vector<StablePole> stable_poles(const std::vector<PolesOfOrder>& orders);
 
 // Poles of a rational fit to a spectrum by vector fitting (Gustavsen & Semlyen 1999), in z: the

@@ -81,7 +81,7 @@ struct Marginal {
   double median{};
   Interval credible;  // equal tails
   // The middles of the grid's cells, ascending, and the density there: its sum times the distance
-  // of two of them is 1. Of a fixed parameter empty.
+  // of two of them is 1. Empty for a fixed parameter.
   std::vector<double> at{};
   std::vector<double> density{};
 };

@@ -13,8 +13,8 @@ void parallel_for(std::size_t count, unsigned threads,
 using Replicate = std::function<double(std::uint64_t seed)>;
 
 // count replicates, in order, on so many threads (0: one a processor). Each has a seed derived from
-// `seed` and its number, so that the results do not depend on the threads. What a replicate throws
-// is thrown. Throws InvalidInput if count is below 0.
+// `seed` and its number, so that the results do not depend on the threads. An exception of a
+// replicate is rethrown. Throws InvalidInput if count is below 0.
 std::vector<double> replicates(int count, const Replicate& replicate, std::uint64_t seed,
                                unsigned threads = 0);
 

@@ -5,7 +5,7 @@
 #include "analysis/report/figures/figure.hpp"
 #include "runner/laboratory/identify/tap_identification.hpp"
 namespace tapstudy::runner {
-// To stdout: taps, modes, damping, sinusoid, the model beside it, and remarks.
+// Prints taps, modes, damping, sinusoid, the model beside it, and remarks to stdout.
 void print(const TapIdentification& found);
 
 // The results as keys of a protocol, with intervals as comments: the whole material under

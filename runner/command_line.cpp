@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <string_view>
+
 #include "runner/build_info.hpp"
 #include "runner/commands/commands.hpp"
 namespace tapstudy::runner {
@@ -24,6 +26,10 @@ ExitCode run_command_line(int argc, const char* const* argv) {
   add_devices(line);
   add_doctor(line);
   add_calibrate(line);
+  if (argc == 3 && std::string_view{argv[1]} == "--documents") {  // for the build: not in --help
+    write_command_documents(line.definition(), argv[2]);
+    return ExitCode::done;
+  }
   return line.parse(argc, argv);
 }
 }  // namespace tapstudy::runner

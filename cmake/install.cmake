@@ -40,12 +40,14 @@ configure_package_config_file(cmake/install/tapstudyConfig.cmake.in tapstudyConf
 write_basic_package_version_file(tapstudyConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/tapstudyConfig.cmake cmake/core_dependencies.cmake
   ${PROJECT_BINARY_DIR}/tapstudyConfigVersion.cmake DESTINATION ${package_dir})
+file(RELATIVE_PATH prefix_from_pkgconfig /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
 configure_file(cmake/install/tapstudy-core.pc.in tapstudy-core.pc @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/tapstudy-core.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 install(DIRECTORY core/example/ DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/libtapstudy-core-dev/examples)
 install(FILES LICENSE RENAME copyright
   DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/libtapstudy-core-dev)
 
+set(CMAKE_SKIP_INSTALL_ALL_DEPENDENCY ON)  # packages need no tests
 set(CPACK_GENERATOR DEB)
 set(CPACK_COMPONENTS_ALL program development)
 set(CPACK_PACKAGE_CONTACT "tapstudy maintainers <maintainers@tapstudy.invalid>")

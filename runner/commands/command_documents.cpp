@@ -54,24 +54,27 @@ std::string command_synopsis(const CommandDefinition& command) {
   return text + (has_optional ? " [\\fIOPTION\\fR ...]" : "");
 }
 
+std::string tag_of(const OptionDefinition& option) {
+  std::string tag;
+  if (!option.names.empty()) {
+    tag = fmt::format("\\fB{}\\fR", in_roff(fmt::format("{}", fmt::join(option.names, ", "))));
+  }
+  if (!option.value.empty()) {
+    tag += fmt::format("{}\\fI{}\\fR", tag.empty() ? "" : " ", in_roff(option.value));
+  }
+  return tag;
+}
+
 std::string manual_page(const ProgramDefinition& program) {
   std::string text = fmt::format(
-      ".TH {} 1 \"\" \"{} {}\"\n.SH NAME\n{} \\- {}\n.SH SYNOPSIS\n.B {}\n\\fICOMMAND\\fR "
+      ".TH {0} 1 \"\" \"{1}\"\n.SH NAME\n{0} \\- {2}\n.SH SYNOPSIS\n.B {0}\n\\fICOMMAND\\fR "
       "[\\fIARGUMENT\\fR ...]\n.SH COMMANDS\n",
-      program.name, program.name, in_roff(program.version), program.name, in_roff(program.help),
-      program.name);
+      program.name, in_roff(program.version), in_roff(program.help));
   for (const CommandDefinition& command : program.commands) {
-    text += fmt::format(".SS {}\n{}.\n", command_synopsis(command), in_roff(command.help));
+    text += fmt::format(".SS {} {}\n{}.\n", program.name, command_synopsis(command),
+                        in_roff(command.help));
     for (const OptionDefinition& option : command.options) {
-      std::string tag =
-          option.names.empty()
-              ? std::string{}
-              : fmt::format("\\fB{}\\fR",
-                            in_roff(fmt::format("{}", fmt::join(option.names, ", "))));
-      if (!option.value.empty()) {
-        tag += fmt::format("{}\\fI{}\\fR", tag.empty() ? "" : " ", in_roff(option.value));
-      }
-      text += fmt::format(".TP\n{}\n{}\n", tag, in_roff(described(option)));
+      text += fmt::format(".TP\n{}\n{}\n", tag_of(option), in_roff(described(option)));
     }
   }
   return text;

@@ -202,7 +202,7 @@ SimulatedObserver& SimulatedParticipant::observer_of(const protocols::Block& blo
 void SimulatedParticipant::remember(ModelLibrary& models, TrainedObserver& by) {
   const protocols::Protocol reality = with_real_plates(protocol_);
   VirtualTrialLoop world{hand_, settings_, Keep::nothing};
-  using Body = std::tuple<const core::Plate*, const core::Material*, const core::Contacts*>;
+  using Body = std::tuple<const core::Plate*, const core::Material*, const core::Joints*>;
   std::map<Body, std::vector<FeltTap>> felt;
   const auto felt_of = [&](const protocols::PresentedStimulus& stimulus) {
     TrialStimuli stimuli = build_trial_stimuli(reality, {stimulus}, models);

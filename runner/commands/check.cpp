@@ -206,10 +206,10 @@ void run_check(const CheckOptions& options) {
 void add_check(CommandParser& line) {
   Command command = line.add("check", "Validate a study and show its design, models and schedule");
   const auto options = std::make_shared<CheckOptions>();
-  command.argument("protocol", options->protocol, "Study (YAML)");
+  command.shipped_file("protocol", options->protocol, "Study (YAML)");
   command.option("--participants", options->participants, participants_help);
   command.option_with_default("--seed", options->seed, "Seed of the schedule shown");
-  command.option(
+  command.shipped_file(
       "--rig", options->rig,
       "Check that this device reaches the tapping points; bound of its contact; modes that it "
       "does not render");

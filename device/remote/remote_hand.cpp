@@ -2,11 +2,75 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
 #include "device/remote/packets.hpp"
 namespace tapstudy::device {
+using core::TickFault;
+namespace {
+constexpr double peak_kept_a_tick = 0.9;  // a tenth is left after 22 ticks
+constexpr double max_ratio = 2.0;
+constexpr double margin_n = 1.0;
+constexpr int max_ticks_above = 2;
+constexpr int max_ticks_against = 5;
+constexpr double min_ratio = 0.05;
+constexpr int max_ticks_without = 30;
+}  // namespace
+
+TickFault ExertedForce::judge(const core::Vec3& commanded_n,
+                              const core::Vec3& reported_n) noexcept {
+  const double commanded = commanded_n.norm();
+  const double reported = reported_n.norm();
+  recent_peak_n_ = std::max(commanded, peak_kept_a_tick * recent_peak_n_);
+  if (std::isnan(reported)) {
+    return TickFault::none;
+  }
+  const bool is_above = reported > max_ratio * recent_peak_n_ + margin_n;
+  const bool is_force = commanded >= noticeable_n;
+  const double along = is_force ? reported_n.dot(commanded_n) / commanded : 0.0;
+  const bool is_against = along <= -noticeable_n;
+  const bool is_without = is_force && along < min_ratio * commanded;
+  ticks_above_ = is_above ? ticks_above_ + 1 : 0;
+  ticks_against_ = is_against ? ticks_against_ + 1 : 0;
+  ticks_without_ = is_without ? ticks_without_ + 1 : 0;
+  return ticks_above_ > max_ticks_above || ticks_against_ > max_ticks_against ||
+                 ticks_without_ > max_ticks_without
+             ? TickFault::force_not_followed
+             : TickFault::none;
+}
+
+using core::TickFault;
+namespace {
+constexpr double window_length_s = 0.05;
+constexpr double noticeable_m = 0.002;
+constexpr double tolerance = 0.5;
+constexpr int max_disagreements = 20;
+}  // namespace
+
+TickFault VelocityCheck::judge(const core::HandState& hand, double elapsed_s) noexcept {
+  if (has_begun_) {
+    integrated_m_ += elapsed_s * hand.velocity_m_s;
+    window_s_ += elapsed_s;
+    if (window_s_ < window_length_s) {
+      return TickFault::none;
+    }
+    const core::Vec3 moved_m = hand.position_m - began_at_m_;
+    const double larger_m = std::max(moved_m.norm(), integrated_m_.norm());
+    if (larger_m >= noticeable_m) {
+      const bool agrees = (moved_m - integrated_m_).norm() <= tolerance * larger_m;
+      disagreements_ = std::max(disagreements_ + (agrees ? -1 : 1), 0);
+    }
+  }
+  has_begun_ = true;
+  began_at_m_ = hand.position_m;
+  integrated_m_.setZero();
+  window_s_ = 0.0;
+  return disagreements_ > max_disagreements ? TickFault::velocity_wrong : TickFault::none;
+}
+
 using core::TickFault;
 namespace {
 constexpr double untold = std::numeric_limits<double>::quiet_NaN();

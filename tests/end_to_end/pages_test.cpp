@@ -4,9 +4,9 @@
 
 #include "support/built_paths.hpp"
 #include "support/catch.hpp"
-#include "support/patient_spidar_study.hpp"
+#include "support/no_alloc.hpp"
 #include "support/processes.hpp"
-#include "support/sanitized.hpp"
+#include "support/study_files.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;
 
@@ -112,6 +112,16 @@ TEST_CASE("operators, vanished pages and killed browsers interrupt a session tha
   pass(whole_sessions, "Interruption");
 }
 #endif
+
+// A session at a pseudo-terminal, as a participant has it.
+TEST_CASE("the paper's three studies are answered at a terminal, which may stop or vanish",
+          "[end_to_end][slow]") {
+  setenv("TAPSTUDY_PROGRAM", testing::tapstudy_program().c_str(), 1);
+  const auto result = testing::run_program(
+      {"/usr/bin/python3", "-B", testing::source("tests/terminal/terminal_session_test.py")});
+  INFO(result.standard_output << result.standard_error);
+  CHECK(result.exit_code == 0);
+}
 
 TEST_CASE("each class of the pages' scripts is run by a test of its own", "[end_to_end][pages]") {
   const std::string tests = testing::contents(testing::source("tests/end_to_end/pages_test.cpp"));

@@ -66,7 +66,7 @@ struct SharedFit {
   std::vector<DecayFit> decays;
   double degrees_of_freedom{};
 };
-// Likewise of all decays together, at least one: what differs from one to the next are amplitudes.
+// As fit_decay, for one or more decays that share these poles: only amplitudes differ between them.
 SharedFit fit_shared_poles(const std::vector<SharingDecay>& decays,
                            const std::vector<Pole>& shared);
 }  // namespace tapstudy::analysis

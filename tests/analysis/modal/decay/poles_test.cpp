@@ -252,8 +252,8 @@ TEST_CASE("hum beside a mode falsifies its damping until another tap tells of it
   const std::vector<TapModes> taps{alone, identify_modes(long_decay, {{20.0, 200.0}})};
   REQUIRE(alone.modes.size() == 1);
   REQUIRE(taps[1].modes.size() == 2);
-  CHECK(lines_missed(taps[1], taps).empty());
-  const std::vector<double> lines_hz = lines_missed(alone, taps);
+  CHECK(missed_lines(taps[1], taps).empty());
+  const std::vector<double> lines_hz = missed_lines(alone, taps);
   REQUIRE(lines_hz.size() == 1);
   CHECK(lines_hz.front() == Approx(50.0).margin(0.05));
   const TapModes told = identify_modes(decay, {{20.0, 200.0}, lines_hz});

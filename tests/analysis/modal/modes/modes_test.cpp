@@ -164,7 +164,7 @@ ModesOfTaps found_in(const std::vector<Channel>& channels, double signal_to_nois
     impacts.push_back(channel.impact);
     alone.push_back(identify_modes(decay, {sought}));
   }
-  return tell_close_modes_apart(decays, impacts, sought, {alone, modes_over_taps(alone, impacts)});
+  return resolve_close_modes(decays, impacts, sought, {alone, modes_over_taps(alone, impacts)});
 }
 
 std::vector<RepeatedMode> agreed_near(const ModesOfTaps& found, double frequency_hz) {
@@ -274,7 +274,7 @@ TEST_CASE("a mode whose frequency falls with its amplitude is not taken for two"
   }
   const ModesOfTaps by_taps{alone, modes_over_taps(alone, impacts)};
   REQUIRE(agreed_near(by_taps, low_hz).size() == 1);
-  const ModesOfTaps found = tell_close_modes_apart(decays, impacts, sought, by_taps);
+  const ModesOfTaps found = resolve_close_modes(decays, impacts, sought, by_taps);
   CHECK(agreed_near(found, low_hz).size() == 1);
 }
 

@@ -55,8 +55,8 @@ bool is_in_libusb(const void* return_address) {
         &range);
     return range;
   }();
-  const auto address = reinterpret_cast<ElfW(Addr)>(return_address);
-  return libusb.first <= address && address < libusb.second;
+  const auto caller = reinterpret_cast<ElfW(Addr)>(return_address);
+  return libusb.first <= caller && caller < libusb.second;
 }
 }  // namespace
 

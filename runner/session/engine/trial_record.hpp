@@ -21,7 +21,7 @@ struct Interruption {
   int trial{};
   core::TickFault fault{};
   bool is_answered{};
-  bool is_force_off{};  // confirmed by the device, or taken from its guardian
+  bool is_force_off{};  // confirmed by the device, to the loop or to its guardian
 };
 std::string to_text(const Interruption& interruption);
 

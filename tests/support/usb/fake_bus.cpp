@@ -3,8 +3,10 @@
 #include <link.h>
 #include <linux/usbdevice_fs.h>
 #include <poll.h>
+#include <pthread.h>
 #include <sys/eventfd.h>
 #include <sys/ioctl.h>
+#include <sys/socket.h>
 #include <sys/syscall.h>
 #include <unistd.h>
 
@@ -58,18 +60,38 @@ bool is_in_libusb(const void* return_address) {
   const auto caller = reinterpret_cast<ElfW(Addr)>(return_address);
   return libusb.first <= caller && caller < libusb.second;
 }
+
+int generation = 0;  // of processes, counted from the test program on
+
+// A transfer of a forked process, there and back.
+struct Forwarded {
+  unsigned long request;
+  unsigned endpoint;
+  unsigned length;
+  int result;
+  std::array<std::uint8_t, 512> bytes;
+};
 }  // namespace
 
 FakeBus::FakeBus(std::uint16_t vendor, std::uint16_t product, Answer answer)
     : descriptor_{eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)},
       descriptors_{descriptors_of(vendor, product)},
       answer_{std::move(answer)},
-      usbfs_{*this, address, bus_now} {
+      usbfs_{*this, address, bus_now},
+      generation_{generation} {
+  static const int is_counted = pthread_atfork(nullptr, nullptr, [] { ++generation; });
+  static_cast<void>(is_counted);
+  socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, line_.data());
+  answering_ = std::thread{[this] { answer_forked_processes(); }};
   const std::lock_guard lock{buses_mutex};
   buses()[descriptor_] = this;
 }
 
 FakeBus::~FakeBus() {
+  shutdown(line_[0], SHUT_RDWR);
+  answering_.join();
+  close(line_[0]);
+  close(line_[1]);
   const std::lock_guard lock{buses_mutex};
   buses().erase(descriptor_);
   if (!is_open_) {
@@ -136,18 +158,59 @@ Bytes FakeBus::answer(std::span<const std::uint8_t> request) {
   return answer_(request);
 }
 
-int FakeBus::take_plain_bulk(std::span<const std::uint8_t> request) {
-  requests_.emplace_back(request.begin(), request.end());
-  const bool is_copied =
-      plain_bulk_copy_ < 0 || write(plain_bulk_copy_, request.data(), request.size()) >= 0;
-  return is_copied ? 0 : -EIO;
+void FakeBus::answer_forked_processes() {
+  Forwarded asked{};
+  while (recv(line_[0], &asked, sizeof asked, 0) == sizeof asked) {
+    {
+      const std::lock_guard lock{mutex_};
+      usbdevfs_bulktransfer transfer{asked.endpoint, asked.length, 0, asked.bytes.data()};
+      asked.result = usbfs_.ioctl(asked.request, &transfer);
+      show_news();
+    }
+    send(line_[0], &asked, sizeof asked, MSG_NOSIGNAL);
+  }
+}
+
+// The kernel waits for a reply as long as the transfer says. No lock: in a forked process nobody
+// may be left to release it.
+int FakeBus::ask_from_forked_process(unsigned long request, void* argument) {
+  close(std::exchange(line_[0], -1));  // or the test program's end would go unnoticed
+  auto* const transfer =
+      request == USBDEVFS_BULK ? static_cast<usbdevfs_bulktransfer*>(argument) : nullptr;
+  Forwarded asked{request, 0, 0, 0, {}};
+  if (transfer != nullptr) {
+    asked.endpoint = transfer->ep;
+    asked.length = transfer->len;
+    std::memcpy(asked.bytes.data(), transfer->data, transfer->len);
+  }
+  const bool is_read = asked.endpoint == in_endpoint;
+  const auto end = Clock::now() + std::chrono::milliseconds{is_read ? transfer->timeout : 0};
+  while (true) {
+    if (send(line_[1], &asked, sizeof asked, MSG_NOSIGNAL) < 0 ||
+        recv(line_[1], &asked, sizeof asked, 0) != sizeof asked) {
+      return -ENODEV;
+    }
+    if (!is_read || asked.result != -ETIMEDOUT || Clock::now() >= end) {
+      break;
+    }
+    usleep(200);
+  }
+  if (is_read && asked.result > 0) {
+    std::memcpy(transfer->data, asked.bytes.data(), static_cast<std::size_t>(asked.result));
+  }
+  const bool is_copied = is_read || transfer == nullptr || plain_bulk_copy_ < 0 ||
+                         asked.result < 0 ||
+                         write(plain_bulk_copy_, transfer->data, transfer->len) >= 0;
+  return is_copied ? asked.result : -EIO;
 }
 
 int FakeBus::ioctl(unsigned long request, void* argument) {
-  const std::lock_guard lock{mutex_};
-  const int result = usbfs_.ioctl(request, argument);
-  // A plain bulk request is the guardian's, whose old copy of this bus shares the descriptor.
-  if (request != USBDEVFS_BULK) {
+  int result = 0;
+  if (generation_ != generation && (request == USBDEVFS_BULK || request == USBDEVFS_CLEAR_HALT)) {
+    result = ask_from_forked_process(request, argument);
+  } else {
+    const std::lock_guard lock{mutex_};
+    result = usbfs_.ioctl(request, argument);
     show_news();
   }
   if (result < 0) {

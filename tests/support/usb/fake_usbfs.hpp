@@ -39,8 +39,6 @@ class UsbBoard {
   virtual ~UsbBoard() = default;
   // Empty: no reply is due.
   virtual Bytes answer(std::span<const std::uint8_t> request) = 0;
-  // A request that is sent without libusb, and whose reply nobody waits for; 0 or a negative errno.
-  virtual int take_plain_bulk(std::span<const std::uint8_t> request) = 0;
 };
 
 // Time since some fixed moment.
@@ -102,6 +100,7 @@ class FakeUsbfs {
   int discard(const void* urb);
   void forget_transfers();
   int bulk(const usbdevfs_bulktransfer& transfer);
+  int bulk_in(const usbdevfs_bulktransfer& transfer);
   Trouble trouble_now();
 
   UsbBoard& board_;

@@ -110,11 +110,11 @@ std::optional<ReportSection> block_contrasts(
   }
   ReportSection section{"Blocks compared", {differences, ratios}};
   section.name = "contrasts";
-  section.remarks.emplace_back(
+  section.remarks.emplace_back(core::citing(
       "Of participants with a value in both blocks; ratios are geometric means. Two-sided "
       "permutation test by changing the signs of participants' differences, of logarithms for "
-      "ratios (all patterns up to 16, else 9999), adjusted by Holm 1979 for the pairs of a "
-      "measure.");
+      "ratios (all patterns up to 16, else 9999), adjusted by {} for the pairs of a measure.",
+      "Holm 1979"_source));
   if (is_order_fixed) {
     section.remarks.emplace_back(
         "All participants did the blocks in the same order: differences between blocks are "
@@ -165,7 +165,7 @@ void add_rows(const MainResult& first, const MainResult& second, const NamedSumm
 }
 
 void compare_chances(const MainResult& first, const MainResult& second, const NamedSummary& a,
-                     const NamedSummary& b, std::vector<std::string>& remarks) {
+                     const NamedSummary& b, std::vector<CitingText>& remarks) {
   constexpr double rounding = 1e-9;
   if (first.chance && second.chance && std::abs(*first.chance - *second.chance) > rounding) {
     remarks.push_back(fmt::format(
@@ -197,31 +197,30 @@ std::string remark_on_people(const NamedSummary& a, const NamedSummary& b) {
       shared.size(), shared.size() == 1 ? " has" : "s have", fmt::join(shared, ", "));
 }
 
-std::shared_ptr<TabularSummary> compare_blocks(const BlockSummary& first,
-                                               const BlockSummary& second, const NamedSummary& a,
-                                               const NamedSummary& b) {
+std::shared_ptr<BlockSummary> compare_blocks(const BlockSummary& first, const BlockSummary& second,
+                                             const NamedSummary& a, const NamedSummary& b) {
   BlockDesign design;
   design.name = first.block;
   design.task = first.task;
   design.question = first.question;
-  auto compared = std::make_shared<TabularSummary>(design);
+  auto compared = std::make_shared<BlockSummary>(design);
   ReportTable table{"side_by_side",
                     "The second study against the first: difference, or ratio",
                     {column("result", "result"), column("study", "study"),
                      interval_column("estimate (95 % CI)", "estimate")}};
-  const std::vector<MainResult> others = second.main_results();
-  for (const MainResult& result : first.main_results()) {
+  const std::vector<MainResult> others = second.main_results;
+  for (const MainResult& result : first.main_results) {
     const auto other = std::ranges::find(others, result.name, &MainResult::name);
     if (other != others.end()) {
       add_rows(result, *other, a, b, table);
-      compare_chances(result, *other, a, b, compared->remarks);
+      compare_chances(result, *other, a, b, compared->results().remarks);
     }
   }
   if (first.question != second.question) {
-    compared->remarks.push_back(fmt::format("{} asked: {}", b.name, second.question));
+    compared->results().remarks.push_back(fmt::format("{} asked: {}", b.name, second.question));
   }
-  compared->remarks.push_back(remark_on_people(a, b));
-  compared->parts.push_back(std::move(table));
+  compared->results().remarks.push_back(remark_on_people(a, b));
+  compared->results().tables.push_back(std::move(table));
   return compared;
 }
 
@@ -246,7 +245,7 @@ void add_block(const BlockSummary& block, const NamedSummary& first, const Named
                                  other->personal->measure, second.name));
   }
   const auto compared = compare_blocks(block, *other, first, second);
-  if (compared->parts.front().rows.empty()) {
+  if (compared->results().tables.front().rows.empty()) {
     return leave_out("it has no result with an interval in both");
   }
   comparison.blocks.push_back(compared);
@@ -283,10 +282,11 @@ Summary compare(const NamedSummary& first, const NamedSummary& second) {
       comparison.provenance.emplace_back(study->name + ": " + key, value);
     }
   }
-  comparison.stated_methods =
+  comparison.stated_methods = core::citing(
       "Estimates and 95 % intervals are those of the studies' own reports. Differences, and ratios "
       "of geometric means, take the two studies' participants for different people, with intervals "
-      "recovered from the estimates' own (Zou & Donner 2008), of ratios from their logarithms.";
+      "recovered from the estimates' own ({}), of ratios from their logarithms.",
+      "Zou & Donner 2008"_source);
   return comparison;
 }
 }  // namespace tapstudy::analysis

@@ -135,7 +135,7 @@ namespace {
 std::vector<std::string> tests_of(const Summary& summary) {
   std::vector<std::string> sentences;
   for (const auto& block : summary.blocks) {
-    const std::string sentence = block->methods();
+    const std::string sentence = block->methods;
     if (!sentence.empty() && std::ranges::find(sentences, sentence) == sentences.end()) {
       sentences.push_back(sentence);
     }
@@ -163,7 +163,7 @@ std::string banner(const Summary& summary) {
   return "";
 }
 
-std::string methods(const Summary& summary) {
+CitingText methods(const Summary& summary) {
   if (!summary.stated_methods.empty()) {
     return summary.stated_methods;
   }
@@ -171,12 +171,13 @@ std::string methods(const Summary& summary) {
     return "Computed from a table of counts; participants are not known, so intervals and "
            "probabilities treat all answers as independent.";
   }
-  std::string text = fmt::format("{} participant{} ({}). ", summary.participants,
-                                 summary.participants == 1 ? "" : "s", words_of_modes(summary));
+  CitingText text = fmt::format("{} participant{} ({}). ", summary.participants,
+                                summary.participants == 1 ? "" : "s", words_of_modes(summary));
   text += summary.procedure;
-  text +=
-      "Intervals of proportions are 95 % score intervals (Wilson 1927) where nothing else is said; "
-      "those over participants hold for participants of whom these are a sample. ";
+  text += core::citing(
+      "Intervals of proportions are 95 % score intervals ({}) where nothing else is said; those "
+      "over participants hold for participants of whom these are a sample. ",
+      "Wilson 1927"_source);
   for (const std::string& sentence : tests_of(summary)) {
     text += sentence + " ";
   }

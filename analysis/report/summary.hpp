@@ -34,8 +34,8 @@ struct Summary {
   std::vector<ReportSection> sections;  // of the study as a whole
   std::optional<LoopQuality> loop;
   std::vector<std::pair<std::string, std::string>> provenance;
-  std::string stated_methods{};  // in place of what methods() would say
-  std::string procedure{};       // how the study was run, in sentences; methods() begins with it
+  CitingText stated_methods{};  // in place of what methods() would say
+  CitingText procedure{};       // how the study was run, in sentences; methods() begins with it
 };
 
 // What a report needs besides answers and visits; all of it may be unknown.
@@ -60,7 +60,7 @@ std::string words_of_modes(const Summary& summary);
 // What must stand above everything else where the participants are not those of a study; or empty.
 std::string banner(const Summary& summary);
 // A paragraph on how the numbers were computed, for a methods section.
-std::string methods(const Summary& summary);
+CitingText methods(const Summary& summary);
 
 // Leaves out of a report all blocks and sections but those named. What a report must say anyway,
 // whose data these are and what was not as planned, stays.

@@ -13,7 +13,6 @@
 #include "analysis/report/document/formats.hpp"
 #include "analysis/report/document/sections.hpp"
 #include "analysis/report/html_style.hpp"
-#include "analysis/report/references.hpp"
 #include "core/text/print.hpp"
 namespace tapstudy::analysis {
 void write_text(std::ostream& out, const Summary& summary) {
@@ -37,11 +36,11 @@ void write_text(std::ostream& out, const Summary& summary) {
     }
     block->write_text(out);
   }
-  std::vector<ReportSection> shown = summary.sections;
-  if (!summary.blocks.empty()) {
-    std::erase_if(shown, [](const ReportSection& section) { return section.is_detail; });
+  for (const ReportSection& section : summary.sections) {
+    if (summary.blocks.empty() || !section.is_detail) {
+      write_sections_text(out, {&section, 1});
+    }
   }
-  write_sections_text(out, shown);
 }
 
 namespace {
@@ -59,18 +58,8 @@ void write_contents(std::ostream& out, const Summary& summary) {
   }
   out << "</ul></nav>\n";
 }
-// Ampersands as they are cited.
-std::string text_of(const std::string& html) {
-  std::string text = html;
-  constexpr std::string_view escape{"&amp;"};
-  for (auto at = text.find(escape); at != std::string::npos; at = text.find(escape, at + 1)) {
-    text.replace(at, escape.size(), "&");
-  }
-  return text;
-}
 
-std::string body_of(const Summary& summary) {
-  std::ostringstream body;
+void write_body(std::ostream& body, const Summary& summary) {
   write_contents(body, summary);
   for (const auto& block : summary.blocks) {
     if (block->block.empty()) {
@@ -86,7 +75,6 @@ std::string body_of(const Summary& summary) {
     write_sections_html(body, summary.sections, "study");
   }
   core::print(body, "<h2>Methods</h2><p>{}</p>\n", escaped(methods(summary)));
-  return body.str();
 }
 
 void write_references(std::ostream& out, const std::vector<std::string>& cited) {
@@ -102,7 +90,19 @@ void write_references(std::ostream& out, const std::vector<std::string>& cited) 
 }  // namespace
 
 std::vector<std::string> references_of(const Summary& summary) {
-  return references_in(text_of(body_of(summary)));
+  const std::vector<core::Source> of_methods = methods(summary).sources;
+  std::set<core::Source> cited{of_methods.begin(), of_methods.end()};
+  for (const auto& block : summary.blocks) {
+    cited.merge(block->sources());
+  }
+  for (const ReportSection& section : summary.sections) {
+    add_sources(cited, section);
+  }
+  std::vector<std::string> references;
+  for (const core::Source& source : cited) {
+    references.emplace_back(source.reference().full);
+  }
+  return references;
 }
 
 void write_html(std::ostream& out, const Summary& summary) {
@@ -127,9 +127,8 @@ void write_html(std::ostream& out, const Summary& summary) {
     core::print(out, "<p>Notes: {}.</p>\n",
                 escaped(fmt::format("{}", fmt::join(summary.deviations, "; "))));
   }
-  const std::string body = body_of(summary);
-  out << body;
-  write_references(out, references_in(text_of(body)));
+  write_body(out, summary);
+  write_references(out, references_of(summary));
   if (!summary.notes.empty()) {
     core::print(out, "<h2>Notes of the protocol</h2><p class=notes>{}</p>\n",
                 escaped(summary.notes));
@@ -178,7 +177,7 @@ void write_json(std::ostream& out, const Summary& summary) {
   for (const auto& [key, value] : summary.provenance) {
     json["provenance"][key] = value;
   }
-  json["methods"] = methods(summary);
+  json["methods"] = methods(summary).words;
   json["references"] = references_of(summary);
   out << text_of(json, 2) << '\n';
 }
@@ -193,11 +192,11 @@ std::string label_of(const std::string& block, const std::string& table) {
 }
 
 void write_tables(std::ostream& out, const std::string& block,
-                  const std::vector<ReportTable>& tables) {
-  for (const ReportTable& table : tables) {
-    if (!table.is_for_programs && !table.rows.empty()) {
+                  const std::vector<ReportSection>& sections) {
+  for (const ReportSection& section : sections) {
+    for (const ReportTable* const table : tables_shown(section, &ShownIn::latex)) {
       out << '\n';
-      write_table_latex(out, table, label_of(block, table.name));
+      write_table_latex(out, *table, label_of(block, table->name));
     }
   }
 }
@@ -210,10 +209,11 @@ void write_latex(std::ostream& out, const Summary& summary) {
     core::print(out, "% {}\n", warning);
   }
   for (const auto& block : summary.blocks) {
-    write_tables(out, block->block, block->report_tables());
+    write_tables(out, block->block, block->sections);
   }
-  for (const ReportSection& section : summary.sections) {
-    write_tables(out, "", section.tables);
+  write_tables(out, "", summary.sections);
+  for (const std::string& reference : references_of(summary)) {
+    core::print(out, "% {}\n", latex_text(reference));
   }
 }
 
@@ -253,7 +253,11 @@ std::vector<FigureFile> figure_files(const Summary& summary) {
     }
   };
   for (const auto& block : summary.blocks) {
-    add(block->block, block->figures());
+    std::vector<Chart> charts;
+    for (const ReportSection& section : block->sections) {
+      charts.insert(charts.end(), section.charts.begin(), section.charts.end());
+    }
+    add(block->block, charts);
   }
   for (const ReportSection& section : summary.sections) {
     add(section.name, section.charts);

@@ -41,7 +41,7 @@ class ConstantSettings final : public TrackSettings {
     return {{values_.front(), values_.back()}};
   }
 
-  std::string words() const override {
+  core::CitingText describe() const override {
     return fmt::format("the method of constant stimuli at {} levels, {} times each", values_.size(),
                        repetitions_);
   }

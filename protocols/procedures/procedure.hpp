@@ -9,8 +9,11 @@
 #include <vector>
 
 #include "core/psychometric_function.hpp"
+#include "core/text/citations.hpp"
 #include "protocols/yaml/yaml_reader.hpp"
 namespace tapstudy::protocols {
+using core::operator""_source;
+
 class MapReader;
 
 // A change of direction of a staircase: at which trial (from 1) and at which value it turned.
@@ -102,7 +105,7 @@ class TrackSettings {
   virtual bool is_harder_below() const { return true; }
   virtual std::unique_ptr<Track> start(std::uint64_t seed) const = 0;
   // As a methods section says it, with its source: "a 1 up, 2 down staircase (Levitt 1971)".
-  virtual std::string words() const = 0;
+  virtual core::CitingText describe() const = 0;
 };
 
 // A psychophysical procedure: which stimulus value comes next. To add one: a file beside this with

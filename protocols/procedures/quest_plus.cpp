@@ -133,7 +133,8 @@ class DesignReader {
                                   : Range{-largest_value, largest_value};
   }
 
-  std::shared_ptr<const TrackSettings> built(const QuestPlusStop& stop, const std::string& method) {
+  std::shared_ptr<const TrackSettings> built(const QuestPlusStop& stop,
+                                             const core::CitingText& method) {
     if (!is_complete()) {
       return nullptr;
     }
@@ -221,7 +222,7 @@ class QuestPlus final : public Procedure {
     design.read_parameter("lapse", rate);
     design.read_further_axes();
     design.check_rates();
-    return design.built(read_stop(reader, true), "QUEST+ (Watson 2017)");
+    return design.built(read_stop(reader, true), core::citing("QUEST+ ({})", "Watson 2017"_source));
   }
 };
 
@@ -236,7 +237,8 @@ class Psi final : public Procedure {
     design.read_fixed("guess", rate);
     design.read_fixed("lapse", rate);
     design.check_rates();
-    return design.built(read_stop(reader, false), "the psi method (Kontsevich & Tyler 1999)");
+    return design.built(read_stop(reader, false),
+                        core::citing("the psi method ({})", "Kontsevich & Tyler 1999"_source));
   }
 };
 }  // namespace

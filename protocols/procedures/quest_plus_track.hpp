@@ -57,7 +57,8 @@ class QuestPlusSettings final : public TrackSettings {
  public:
   // Throws InvalidInput as LikelihoodTable does, and where the prior is narrow enough to stop.
   struct Method {
-    std::string words{"QUEST+ (Watson 2017)"};  // its name and source
+    core::CitingText description{
+        core::citing("QUEST+ ({})", "Watson 2017"_source)};  // its name and source
     std::optional<core::PsychometricShape> shape{};
   };
   QuestPlusSettings(QuestPlusDesign design, const QuestPlusStop& stop, Method method);
@@ -71,7 +72,7 @@ class QuestPlusSettings final : public TrackSettings {
   // A QuestPlusTrack. Nothing in it is random.
   std::unique_ptr<Track> start(std::uint64_t seed) const override;
   std::optional<core::PsychometricShape> shape() const override { return method_.shape; }
-  std::string words() const override { return method_.words; }
+  core::CitingText describe() const override { return method_.description; }
   const LikelihoodTable& table() const { return *table_; }
 
  private:

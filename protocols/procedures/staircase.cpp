@@ -172,12 +172,13 @@ class StaircaseStart final : public TrackSettings {
   }
   std::optional<double> settles_at() const override { return staircase_target(settings_); }
   bool is_harder_below() const override { return settings_.is_harder_below; }
-  std::string words() const override {
-    const std::string rule = settings_.easier_per_harder == 1.0
-                                 ? fmt::format("a {} up, {} down staircase (Levitt 1971)",
-                                               settings_.n_up, settings_.n_down)
-                                 : "a weighted up-down staircase (Kaernbach 1991)";
-    return fmt::format("{} that settles at {:.3g} correct", rule, staircase_target(settings_));
+  core::CitingText describe() const override {
+    const core::CitingText rule =
+        settings_.easier_per_harder == 1.0
+            ? core::citing("a {} up, {} down staircase ({})", settings_.n_up, settings_.n_down,
+                           "Levitt 1971"_source)
+            : core::citing("a weighted up-down staircase ({})", "Kaernbach 1991"_source);
+    return core::citing("{} that settles at {:.3g} correct", rule, staircase_target(settings_));
   }
   // Nothing in it is random.
   std::unique_ptr<Track> start(std::uint64_t /*seed*/) const override {

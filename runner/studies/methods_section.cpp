@@ -20,25 +20,20 @@
 #include "runner/studies/counted.hpp"
 #include "runner/studies/stored_study.hpp"
 namespace tapstudy::runner {
-// ", in random order": of a block's trials; "" where its task has an order of its own.
-std::string describe_order(const protocols::Block& block, std::size_t participants);
-// "Each participant did 'a' (…), then 'b' (…). ", or how the blocks followed one another.
-// blocks: each in words.
-std::string describe_sequence(const protocols::Protocol& protocol, const std::string& who,
-                              const std::vector<std::string>& blocks, std::size_t participants);
-
+using core::citing;
+using core::CitingText;
+using core::operator""_source;
 using protocols::Block;
 using protocols::Protocol;
 namespace {
-// Balance holds for whole sets of orders.
-std::string describe_williams_orders(int of_orders, std::size_t participants) {
+// Only whole sets of orders are balanced.
+CitingText describe_williams_orders(int of_orders, std::size_t participants) {
   const auto orders = static_cast<std::size_t>(of_orders);
   return participants % orders == 0
-             ? ", in orders balanced for immediate sequence over participants (Williams 1949)"
-             : fmt::format(
-                   ", in orders of a balanced design (Williams 1949) that {} do not "
-                   "complete, of {} orders",
-                   counted(participants, "participant"), orders);
+             ? citing(", in orders balanced for immediate sequence over participants ({})",
+                      "Williams 1949"_source)
+             : citing(", in orders of a balanced design ({}) that {} do not complete, of {} orders",
+                      "Williams 1949"_source, counted(participants, "participant"), orders);
 }
 
 // " with no stimulus twice in a row"; "" without constraints.
@@ -56,9 +51,9 @@ std::string describe_constraints(const protocols::OrderConstraints& constraints)
   }
   return limits.empty() ? "" : fmt::format(" with {}", fmt::join(limits, " and "));
 }
-}  // namespace
 
-std::string describe_order(const Block& block, std::size_t participants) {
+// ", in random order"; "" where the block's task has an order of its own.
+CitingText describe_order(const Block& block, std::size_t participants) {
   if (!block.task->uses_order()) {
     return "";
   }
@@ -77,23 +72,21 @@ std::string describe_order(const Block& block, std::size_t participants) {
   return "";
 }
 
-std::string describe_sequence(const Protocol& protocol, const std::string& who,
-                              const std::vector<std::string>& blocks, std::size_t participants) {
+// "Each participant did 'a' (…), then 'b' (…). ", or how the blocks followed one another.
+// blocks: their descriptions.
+CitingText describe_sequence(const Protocol& protocol, const std::string& who,
+                             const std::vector<CitingText>& blocks, std::size_t participants) {
   const protocols::BlockOrder& order = protocol.block_order;
   if (order.order == protocols::Order::listed) {
-    return fmt::format("{} did {}. ", who, fmt::join(blocks, ", then "));
+    return citing("{} did {}. ", who, core::joined(blocks, ", then "));
   }
-  return fmt::format(
+  return citing(
       "{} did {}, where '{}' exchanged their places among participants{}. ", who,
-      fmt::join(blocks, ", then "), fmt::join(order.blocks, "', '"),
+      core::joined(blocks, ", then "), fmt::join(order.blocks, "', '"),
       order.order == protocols::Order::shuffle
-          ? ", in random order"
+          ? CitingText{", in random order"}
           : describe_williams_orders(protocols::balanced_block_orders(protocol), participants));
 }
-
-namespace {
-using protocols::Block;
-using protocols::Protocol;
 
 std::string apparatus(const std::vector<results::SessionRow>& sessions) {
   std::set<std::string> devices;
@@ -136,27 +129,27 @@ std::string describe_practice(const Block& block) {
 }
 
 // "levels by QUEST+ (Watson 2017)", alike procedures taken together.
-std::string describe_levels(const Block& block) {
+CitingText describe_levels(const Block& block) {
   if (!block.comparison) {
     return "";
   }
-  std::map<std::string, int> tracks;
+  std::map<CitingText, int> tracks;
   for (const auto& track : block.comparison->tracks) {
-    ++tracks[track->words()];
+    ++tracks[track->describe()];
   }
-  std::vector<std::string> parts;
-  for (const auto& [words, count] : tracks) {
-    parts.push_back(count == 1 ? words : fmt::format("{} interleaved tracks of {}", count, words));
+  std::vector<CitingText> parts;
+  for (const auto& [procedure, count] : tracks) {
+    parts.push_back(count == 1 ? procedure
+                               : citing("{} interleaved tracks of {}", count, procedure));
   }
   const auto quantity = [](const std::string& axis) {
     return protocols::find_axis(axis)->quantity;
   };
   std::vector<std::string_view> further;
   std::ranges::transform(block.comparison->further_axes, std::back_inserter(further), quantity);
-  return fmt::format(
-      ", levels of {}{} by {}", quantity(block.comparison->axis),
-      further.empty() ? "" : fmt::format(" and values of {}", fmt::join(further, ", ")),
-      fmt::join(parts, " and "));
+  return citing(", levels of {}{} by {}", quantity(block.comparison->axis),
+                further.empty() ? "" : fmt::format(" and values of {}", fmt::join(further, ", ")),
+                core::joined(parts, " and "));
 }
 
 std::string describe_taps(const Block& block) {
@@ -183,10 +176,10 @@ std::string describe_completion(const Block& block, const results::BlockCourseRo
   return words;
 }
 
-std::string describe_block(const Block& block, const results::BlockCourseRow& done,
-                           std::size_t participants) {
+CitingText describe_block(const Block& block, const results::BlockCourseRow& done,
+                          std::size_t participants) {
   const auto trials = static_cast<std::size_t>(protocols::planned_trials(block));
-  return fmt::format(
+  return citing(
       "'{}' ({} of {}{}, {}{}{}{}{}{}{}{}{})", block.name, block.task->name(),
       block.stimuli.size() == 1 ? "one stimulus" : fmt::format("{} stimuli", block.stimuli.size()),
       block.presented == protocols::Presented::real_plates ? ", the real plates themselves" : "",
@@ -286,8 +279,8 @@ std::string masking(const Protocol& protocol, const DoneBlocks& done) {
 }
 
 // "Questionnaires: 'load' (asked: session end). " Not of blocks that nobody answered.
-std::string questionnaires(const Protocol& protocol, const DoneBlocks& done) {
-  std::vector<std::string> forms;
+CitingText questionnaires(const Protocol& protocol, const DoneBlocks& done) {
+  std::vector<CitingText> forms;
   for (analysis::Questionnaire& form : questionnaires_of(protocol)) {
     std::erase_if(form.asked, [&](const std::string& place) {
       return std::ranges::find(protocol.blocks, place, &Block::name) != protocol.blocks.end() &&
@@ -296,11 +289,12 @@ std::string questionnaires(const Protocol& protocol, const DoneBlocks& done) {
     if (form.asked.empty()) {
       continue;
     }
-    forms.push_back(fmt::format("'{}'{} (asked: {})", form.name,
-                                form.is_mean_scored ? ", the raw NASA-TLX (Hart 2006)" : "",
-                                fmt::join(form.asked, ", ")));
+    forms.push_back(citing(
+        "'{}'{} (asked: {})", form.name,
+        form.is_mean_scored ? citing(", the raw NASA-TLX ({})", "Hart 2006"_source) : CitingText{},
+        fmt::join(form.asked, ", ")));
   }
-  return forms.empty() ? "" : fmt::format("Questionnaires: {}. ", fmt::join(forms, "; "));
+  return forms.empty() ? "" : citing("Questionnaires: {}. ", core::joined(forms, "; "));
 }
 
 // Blocks that no participant started.
@@ -315,10 +309,11 @@ std::string unstarted_blocks(const Protocol& protocol, const DoneBlocks& done) {
 }
 }  // namespace
 
-std::string describe_procedure(const Protocol& protocol,
-                               const std::vector<results::SessionRow>& sessions,
-                               const std::set<std::string>& participants, const DoneBlocks& done) {
-  std::vector<std::string> blocks;
+core::CitingText describe_procedure(const Protocol& protocol,
+                                    const std::vector<results::SessionRow>& sessions,
+                                    const std::set<std::string>& participants,
+                                    const DoneBlocks& done) {
+  std::vector<CitingText> blocks;
   bool is_by_all = true;
   for (const Block& block : protocol.blocks) {
     const auto row = done.find(block.name);
@@ -328,13 +323,14 @@ std::string describe_procedure(const Protocol& protocol,
     }
   }
   const bool are_people = sessions.front().mode != results::Mode::simulated;
-  std::string text = apparatus(sessions) + rendering(protocol, done);
+  CitingText text = apparatus(sessions) + rendering(protocol, done);
   text += describe_sequence(protocol, is_by_all ? "Each participant" : "Participants", blocks,
                             participants.size());
   text += unstarted_blocks(protocol, done);
   text += explorations(protocol, done);
   if (are_people) {
-    text += blinding(protocol, done) + masking(protocol, done) + questionnaires(protocol, done);
+    text += blinding(protocol, done) + masking(protocol, done);
+    text += questionnaires(protocol, done);
   }
   return text;
 }

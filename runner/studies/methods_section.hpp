@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "core/text/citations.hpp"
 #include "protocols/protocol.hpp"
 #include "results/rows.hpp"
 #include "runner/studies/stored_study.hpp"
@@ -11,7 +12,8 @@ namespace tapstudy::runner {
 // the answers in its blocks: apparatus, rendering, blocks and their orders, requirements of an
 // answer, blinding, masking, questionnaires. sessions, participants: those that are reported; at
 // least one.
-std::string describe_procedure(const protocols::Protocol& protocol,
-                               const std::vector<results::SessionRow>& sessions,
-                               const std::set<std::string>& participants, const DoneBlocks& done);
+core::CitingText describe_procedure(const protocols::Protocol& protocol,
+                                    const std::vector<results::SessionRow>& sessions,
+                                    const std::set<std::string>& participants,
+                                    const DoneBlocks& done);
 }  // namespace tapstudy::runner

@@ -249,7 +249,7 @@ std::vector<ResultOfDesign> simulate_design(const SimulatedDesign& design,
   for (int i = 0; i < design.studies; ++i) {
     stop_if_asked();
     for (const auto& block : summary_of_one(design, i, protocol).blocks) {
-      for (const analysis::MainResult& result : block->main_results()) {
+      for (const analysis::MainResult& result : block->main_results) {
         auto known = std::ranges::find_if(all, [&](const Found& found) {
           return found.block == block->block && found.name == result.name;
         });

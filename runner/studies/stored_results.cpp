@@ -66,7 +66,7 @@ bool is_fixed(const protocols::ParameterPosterior& posterior) {
 TrackResult result_of(const protocols::Track& track, const protocols::TrackSettings& settings) {
   const TrackSummary summary = track.summary();
   TrackResult result;
-  result.procedure = settings.words();
+  result.procedure = settings.describe();
   result.trials = summary.trials;
   result.is_finished = summary.is_finished;
   result.estimate = summary.estimate;

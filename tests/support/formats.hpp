@@ -2,10 +2,12 @@
 #include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <sstream>
 #include <string>
 
 #include "analysis/report/document/block_summary.hpp"
+#include "analysis/report/document/formats.hpp"
 #include "analysis/report/statistic.hpp"
 #include "support/catch.hpp"
 namespace tapstudy::testing {
@@ -17,6 +19,16 @@ struct Formats {
   std::map<std::string, std::string> csv;  // by file
 };
 
+// The page names exactly the publications that the summary's texts say they cite.
+inline void check_citations(const std::string& page, const std::set<core::Source>& sources) {
+  for (std::size_t place = 0; place < core::references.size(); ++place) {
+    const core::Source source{place};
+    const std::string key = analysis::escaped(std::string{source.reference().key});
+    INFO(key);
+    CHECK((page.find(key) != std::string::npos) == sources.contains(source));
+  }
+}
+
 inline Formats formats_of(const analysis::BlockSummary& summary) {
   Formats formats;
   std::ostringstream text;
@@ -25,6 +37,7 @@ inline Formats formats_of(const analysis::BlockSummary& summary) {
   std::ostringstream html;
   summary.write_html(html);
   formats.html = html.str();
+  check_citations(formats.html, summary.sources());
   formats.json = summary.as_json();
   for (const analysis::CsvTable& table : summary.tables()) {
     std::ostringstream csv;

@@ -36,9 +36,8 @@ struct AnswerTable {
   bool are_participants_known{};
   std::size_t rows{};         // that meet the conditions
   std::size_t unanswered{};   // of these: left out, for the answer is empty, NA, None or null
-  std::size_t not_counted{};  // likewise: tapstudy's own practice, catch trials, excluded people …
-  // Likewise: where some are of real sessions, those of others; else, if some are pilots,
-  // simulated.
+  std::size_t not_counted{};  // of these: tapstudy's own practice, catch trials, excluded people …
+  // Rows of other modes than the one reported: real before pilot before simulated.
   std::size_t of_other_modes{};
   bool has_times{};
   std::string possible_time{};  // a column that was not read, but may hold times; empty: none

@@ -214,7 +214,7 @@ ReportTable settings_table(const AdjustmentResults& results) {
                     "All settings",
                     {column("participant", "participant_id"), column("start", "start"),
                      column("setting", "setting")}};
-  table.is_for_programs = true;
+  table.shown_in = programs_only;
   for (const ParticipantSettings& person : results.participants) {
     for (const Setting& setting : person.settings) {
       table.rows.push_back(
@@ -224,12 +224,12 @@ ReportTable settings_table(const AdjustmentResults& results) {
   return table;
 }
 
-std::vector<std::string> remarks_on(const BlockDesign& design, const AdjustmentResults& results) {
+std::vector<CitingText> remarks_on(const BlockDesign& design, const AdjustmentResults& results) {
   if (results.participants.empty()) {
     return {"There are no answers."};
   }
   const AdjustedAxis& axis = *design.adjusted;
-  std::vector<std::string> remarks{fmt::format(
+  std::vector<CitingText> remarks{fmt::format(
       "Each participant counts as the {} of the settings; intervals over participants{}. The "
       "standard deviation of a participant's settings estimates the difference threshold{}.",
       axis.is_logarithmic ? "geometric mean" : "mean",
@@ -291,23 +291,24 @@ std::shared_ptr<BlockSummary> summarise_adjustments(const BlockDesign& design,
                                                     const BlockRows& rows) {
   const AdjustmentResults results = adjustment_results(design, rows.answers);
   const AdjustedAxis& axis = *design.adjusted;
-  auto summary = std::make_shared<TabularSummary>(design);
-  summary->parts = {estimates_table(axis, results), participants_table(axis, results),
-                    settings_table(results)};
-  summary->remarks = remarks_on(design, results);
+  auto summary = std::make_shared<BlockSummary>(design);
+  summary->results().tables = {estimates_table(axis, results), participants_table(axis, results),
+                               settings_table(results)};
+  summary->results().remarks = remarks_on(design, results);
   if (design.premise.empty()) {
     summary->personal = means_of(axis, results);
   }
   if (const auto chart = chart_of(axis, results)) {
-    summary->charts.push_back(*chart);
+    summary->results().charts.push_back(*chart);
   }
   if (results.equality && results.equality->interval) {
-    summary->main.push_back({fmt::format("point of subjective equality, {}", axis.name.with_unit()),
-                             results.equality->mean,
-                             *results.equality->interval,
-                             {},
-                             {},
-                             axis.is_logarithmic});
+    summary->main_results.push_back(
+        {fmt::format("point of subjective equality, {}", axis.name.with_unit()),
+         results.equality->mean,
+         *results.equality->interval,
+         {},
+         {},
+         axis.is_logarithmic});
   }
   return summary;
 }

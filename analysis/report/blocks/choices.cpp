@@ -5,8 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <set>
 
+#include "analysis/report/document/formats.hpp"
+#include "analysis/report/document/wording.hpp"
 #include "analysis/statistics/numerics.hpp"
 #include "analysis/statistics/proportion.hpp"
 #include "core/error.hpp"
@@ -254,7 +257,9 @@ HypothesisResult tested(const ChoiceSummary& summary, const PlannedHypothesis& p
 }
 }  // namespace
 
-std::vector<MainResult> ChoiceSummary::main_results() const {
+namespace {
+// Each alternative alone: a participant has one vote.
+std::vector<MainResult> shares_chosen(const std::vector<AlternativeResult>& alternatives) {
   std::vector<MainResult> shares;
   for (const AlternativeResult& alternative : alternatives) {
     if (alternative.chosen.trials > 0) {
@@ -264,6 +269,89 @@ std::vector<MainResult> ChoiceSummary::main_results() const {
   }
   return shares;
 }
+
+// "7/10 = 70 % (95 % CI 34–91 %)", the interval that of all alternatives at once.
+Cell chosen_cell(const AlternativeResult& result, double chance) {
+  const auto end = [](const std::optional<Interval>& interval, double Interval::*which) {
+    return interval ? Value{(*interval).*which} : Value{};
+  };
+  Cell cell{fraction(result.chosen),
+            {result.chosen.successes, result.chosen.trials, end(result.interval, &Interval::low),
+             end(result.interval, &Interval::high), end(result.sison_glaz, &Interval::low),
+             end(result.sison_glaz, &Interval::high)}};
+  if (result.interval) {
+    cell.text = fmt::format("{} (95 % CI {})", fraction_and_percent(result.chosen),
+                            percent_range(*result.interval));
+    cell.dot = Dot{result.chosen.value(), *result.interval, chance};
+  }
+  return cell;
+}
+
+ReportTable choices_table(const std::vector<AlternativeResult>& alternatives) {
+  ReportTable table{
+      "choices",
+      "Choices",
+      {column("stimulus", "stimulus"),
+       {"chosen",
+        {"votes", "voters", "goodman_low", "goodman_high", "sison_glaz_low", "sison_glaz_high"}},
+       column("visits", "visits"),
+       column("time tried", "dwell_s")}};
+  table.shown_in.json = false;  // which has them as `alternatives`
+  table.note = core::citing(
+      "Intervals: 95 %, of all alternatives at once ({}); in the tables also others ({}).",
+      "Goodman 1965"_source, "Sison & Glaz 1995"_source);
+  for (const AlternativeResult& result : alternatives) {
+    table.rows.push_back({labelled(result.item),
+                          chosen_cell(result, 1.0 / static_cast<double>(alternatives.size())),
+                          count(result.visits),
+                          {fmt::format("{:.1f} s", result.dwell_s), {result.dwell_s}}});
+  }
+  return table;
+}
+
+// The p value of the votes and its test, or why there is none.
+std::string remark_on_votes(const ChoiceSummary& summary) {
+  std::string remark = "All alternatives equally likely: ";
+  if (!summary.untested.empty()) {
+    remark += "not tested: " + summary.untested + ".";
+  } else if (summary.multinomial_p) {
+    remark += p_value(*summary.multinomial_p) + " (exact multinomial, outcomes by probability).";
+  } else {
+    remark += "not computed, too many possible outcomes.";
+  }
+  if (summary.has_repeated_choices) {
+    remark +=
+        fmt::format(" Of {} choices each participant has one vote: {}.", summary.choices.size(),
+                    summary.vote == Vote::first ? "the first choice"
+                                                : "the most frequent choice, of equals the first");
+  }
+  return remark;
+}
+
+using Json = nlohmann::ordered_json;
+
+Json values_of(const ChoiceSummary& summary) {
+  const auto ends = [](const std::optional<Interval>& interval) {
+    return interval ? Json{interval->low, interval->high} : Json(nullptr);
+  };
+  Json json{{"alternatives", Json::array()}, {"choices", Json::array()}};
+  for (const AlternativeResult& result : summary.alternatives) {
+    json["alternatives"].push_back({{"stimulus", result.item.name},
+                                    {"chosen", as_json(result.chosen)},
+                                    {"goodman_95", ends(result.interval)},
+                                    {"sison_glaz_95", ends(result.sison_glaz)},
+                                    {"visits", result.visits},
+                                    {"dwell_s", result.dwell_s}});
+  }
+  for (const auto& [participant, stimulus] : summary.choices) {
+    json["choices"].push_back({{"participant_id", participant}, {"stimulus", stimulus}});
+  }
+  json["exact_multinomial_p"] =
+      summary.multinomial_p ? Json(*summary.multinomial_p) : Json(nullptr);
+  json["has_repeated_choices"] = summary.has_repeated_choices;
+  return json;
+}
+}  // namespace
 
 std::shared_ptr<BlockSummary> summarise_choice(const BlockDesign& design, const BlockRows& rows) {
   const std::vector<results::AnswerRow>& answers = rows.answers;
@@ -296,14 +384,16 @@ std::shared_ptr<BlockSummary> summarise_choice(const BlockDesign& design, const 
   for (const PlannedHypothesis& planned : design.hypotheses) {
     summary->hypotheses.push_back(tested(*summary, planned));
   }
-  summary->sections = {choosing_section(design, rows)};
+  if (summary->untested.empty()) {
+    summary->methods =
+        "Choices are tested by the exact binomial and multinomial distributions, one vote a "
+        "participant.";
+  }
+  summary->main_results = shares_chosen(summary->alternatives);
+  summary->results().tables = {choices_table(summary->alternatives)};
+  summary->results().remarks = {remark_on_votes(*summary)};
+  summary->values = std::make_shared<const Json>(values_of(*summary));
+  summary->sections.push_back(choosing_section(design, rows));
   return summary;
-}
-
-std::string ChoiceSummary::methods() const {
-  return untested.empty()
-             ? "Choices are tested by the exact binomial and multinomial distributions, one vote a "
-               "participant."
-             : std::string{};
 }
 }  // namespace tapstudy::analysis

@@ -45,14 +45,6 @@ struct AlternativeResult {
 class ChoiceSummary final : public BlockSummary {
  public:
   using BlockSummary::BlockSummary;
-  void write_text(std::ostream& out) const override;
-  void write_html(std::ostream& out) const override;
-  nlohmann::ordered_json as_json() const override;
-  std::vector<CsvTable> tables() const override;
-  std::vector<ReportTable> report_tables() const override;
-  std::string methods() const override;
-  // Of each alternative alone: a participant has one vote.
-  std::vector<MainResult> main_results() const override;
 
   std::vector<AlternativeResult> alternatives;
   std::vector<std::pair<std::string, std::string>> choices;  // participant, stimulus
@@ -60,7 +52,6 @@ class ChoiceSummary final : public BlockSummary {
   Vote vote{Vote::majority};
   bool has_repeated_choices{};  // some participants chose several times
   std::string untested;         // why nothing is tested; empty: it is
-  std::vector<ReportSection> sections;
 };
 
 // Missing replies, choices by label and order of visits, switches between alternatives: tables

@@ -300,12 +300,12 @@ ReportTable models_table(const DiscriminationResults& results) {
   return table;
 }
 
-std::vector<std::string> remarks_on(const BlockDesign& design,
-                                    const DiscriminationResults& results) {
+std::vector<CitingText> remarks_on(const BlockDesign& design,
+                                   const DiscriminationResults& results) {
   if (results.participants.empty()) {
     return {"There are no answers."};
   }
-  std::vector<std::string> remarks{
+  std::vector<CitingText> remarks{
       fmt::format("Chance is {:.3g}. Exact binomial tests, one-sided: places are drawn, so that of "
                   "those who feel no difference every answer is right with that chance, whatever "
                   "they prefer. Each participant: Wilson interval.",
@@ -346,10 +346,10 @@ std::vector<std::string> remarks_on(const BlockDesign& design,
     remarks.emplace_back(
         "A d' of proportions correct assumes unbiased participants, and is too small where they "
         "are not: that by rates is not.");
-    remarks.emplace_back(
-        "By rates: k + 1/2 in n + 1 (Hautus 1995), intervals by the variance of their z "
-        "(Gourevitch & Galanter 1967); d' is 0 where there are no more hits than false "
-        "alarms. Bias c above 0: \"same\" is preferred.");
+    remarks.emplace_back(core::citing(
+        "By rates: k + 1/2 in n + 1 ({}), intervals by the variance of their z ({}); d' is 0 where "
+        "there are no more hits than false alarms. Bias c above 0: \"same\" is preferred.",
+        "Hautus 1995"_source, "Gourevitch & Galanter 1967"_source));
   }
   return remarks;
 }
@@ -380,14 +380,14 @@ std::optional<PersonalValues> shares_right(const BlockDesign& design,
 std::shared_ptr<BlockSummary> summarise_discrimination(const BlockDesign& design,
                                                        const BlockRows& rows) {
   const DiscriminationResults results = discrimination_results(design, rows.answers);
-  auto summary = std::make_shared<TabularSummary>(design);
-  summary->parts = {all_table(design, results), participants_table(results),
-                    pairs_table(results),       rates_table(results),
-                    models_table(results),      answer_counts_table(rows.answers)};
-  summary->remarks = remarks_on(design, results);
+  auto summary = std::make_shared<BlockSummary>(design);
+  summary->results().tables = {all_table(design, results), participants_table(results),
+                               pairs_table(results),       rates_table(results),
+                               models_table(results),      answer_counts_table(rows.answers)};
+  summary->results().remarks = remarks_on(design, results);
   summary->personal = shares_right(design, results);
   if (const auto over = mean_proportion(correct_of(results.participants))) {
-    summary->main = {
+    summary->main_results = {
         {"share of right answers", over->mean, over->interval, results.p, design.guess_rate}};
   }
   for (const PlannedHypothesis& planned : design.hypotheses) {

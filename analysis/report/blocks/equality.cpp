@@ -185,7 +185,7 @@ ReportTable levels_table(const VariedAxis& axis, const EqualityResults& results)
                     {column("participant", "participant_id"), column("level", "level"),
                      column(axis.name.with_unit(), "value"),
                      proportion_column("judged greater", "judged_greater")}};
-  table.is_for_programs = true;
+  table.shown_in = programs_only;
   for (const ParticipantEquality& person : results.participants) {
     for (const Level& level : person.levels) {
       table.rows.push_back({word(person.participant_id), number(level.value, 9),
@@ -203,11 +203,11 @@ ReportTable tracks_of(const EqualityResults& results) {
   return table;
 }
 
-std::vector<std::string> remarks_on(const BlockDesign& design, const EqualityResults& results) {
+std::vector<CitingText> remarks_on(const BlockDesign& design, const EqualityResults& results) {
   if (results.participants.empty()) {
     return {"There are no answers."};
   }
-  std::vector<std::string> remarks{
+  std::vector<CitingText> remarks{
       fmt::format("The standard is {:.6g}. A {} function of how often the comparison is judged "
                   "greater, by maximum likelihood, with one rate of lapses from 0 to 0.1 at "
                   "both ends; intervals by profile likelihood. At equality it is at 50 %; the just "
@@ -299,19 +299,20 @@ PersonalValues points_of_equality(const VariedAxis& axis, const EqualityResults&
 std::shared_ptr<BlockSummary> summarise_equality(const BlockDesign& design, const BlockRows& rows) {
   const EqualityResults results = equality_results(design, rows.answers);
   const VariedAxis& axis = *design.axis;
-  auto summary = std::make_shared<TabularSummary>(design);
-  summary->parts = {participants_table(axis, results), over_participants_table(design, results),
-                    levels_table(axis, results), tracks_of(results)};
-  summary->charts = charts_of(results, design.shape);
-  summary->remarks = remarks_on(design, results);
+  auto summary = std::make_shared<BlockSummary>(design);
+  summary->results().tables = {participants_table(axis, results),
+                               over_participants_table(design, results),
+                               levels_table(axis, results), tracks_of(results)};
+  summary->results().charts = charts_of(results, design.shape);
+  summary->results().remarks = remarks_on(design, results);
   if (design.premise.empty()) {
     summary->personal = points_of_equality(axis, results);
   }
   if (results.equality && results.equality->interval) {
-    summary->main = {{"point of subjective equality, " + axis.name.with_unit(),
-                      value_at(axis, results.equality->mean),
-                      values_at(axis, *results.equality->interval),
-                      design.premise.empty() ? std::optional{results.equality->p} : std::nullopt}};
+    summary->main_results = {
+        {"point of subjective equality, " + axis.name.with_unit(),
+         value_at(axis, results.equality->mean), values_at(axis, *results.equality->interval),
+         design.premise.empty() ? std::optional{results.equality->p} : std::nullopt}};
   }
   return summary;
 }

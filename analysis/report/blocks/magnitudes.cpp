@@ -187,7 +187,7 @@ ReportTable participants_table(const Magnitudes& results) {
   return table;
 }
 
-std::vector<std::string> remarks_on(const BlockDesign& design, const Magnitudes& results) {
+std::vector<CitingText> remarks_on(const BlockDesign& design, const Magnitudes& results) {
   if (results.empty()) {
     return {"There are no answers."};
   }
@@ -196,7 +196,7 @@ std::vector<std::string> remarks_on(const BlockDesign& design, const Magnitudes&
         "Each participant's repeated estimates of a stimulus count as their geometric mean. There "
         "is no exponent: the stimuli have no values on an axis."};
   }
-  std::vector<std::string> remarks{
+  std::vector<CitingText> remarks{
       "Each participant's repeated estimates of a value count as their geometric mean. Exponents "
       "by least squares of logarithms; the interval is by t over the participants' exponents."};
   for (const StimulusMagnitudes& of : results) {
@@ -243,15 +243,16 @@ Chart chart_of(const BlockDesign& design, const StimulusMagnitudes& of) {
 std::shared_ptr<BlockSummary> summarise_magnitudes(const BlockDesign& design,
                                                    const BlockRows& rows) {
   const Magnitudes results = magnitude_results(design, rows.answers);
-  auto summary = std::make_shared<TabularSummary>(design);
-  summary->parts = {exponents_table(design, results), means_table(design, results),
-                    participants_table(results)};
-  summary->remarks = remarks_on(design, results);
+  auto summary = std::make_shared<BlockSummary>(design);
+  summary->results().tables = {exponents_table(design, results), means_table(design, results),
+                               participants_table(results)};
+  summary->results().remarks = remarks_on(design, results);
   for (const StimulusMagnitudes& of : results) {
     if (of.power_law) {
-      summary->charts.push_back(chart_of(design, of));
+      summary->results().charts.push_back(chart_of(design, of));
       if (const auto& range = of.power_law->exponent_interval) {
-        summary->main.push_back({"exponent of " + of.stimulus, of.power_law->exponent, *range});
+        summary->main_results.push_back(
+            {"exponent of " + of.stimulus, of.power_law->exponent, *range});
       }
     }
   }

@@ -267,7 +267,7 @@ ReportTable participants_table(const BlockDesign& design, const PreferenceResult
                     "Preferences of each participant",
                     {column("participant", "participant_id"), column("stimulus", "stimulus"),
                      proportion_column("preferred", "preferred")}};
-  table.is_for_programs = true;
+  table.shown_in = programs_only;
   for (const ParticipantPreferences& person : results.participants) {
     for (std::size_t i = 0; i < design.stimuli.size(); ++i) {
       table.rows.push_back({word(person.participant_id), labelled(design.stimuli[i]),
@@ -289,17 +289,17 @@ ReportTable position_table(const PreferenceResults& results) {
   return table;
 }
 
-std::vector<std::string> remarks_on(const BlockDesign& design, const PreferenceResults& results) {
+std::vector<CitingText> remarks_on(const BlockDesign& design, const PreferenceResults& results) {
   if (results.participants.empty()) {
     return {"There are no answers."};
   }
-  std::vector<std::string> remarks;
+  std::vector<CitingText> remarks;
   if (results.no_scale.empty()) {
     remarks.emplace_back(
-        "Scales by maximum likelihood, intervals of plus or minus 1.96 standard errors; both take "
-        "all answers as independent. Bradley-Terry (Bradley & Terry 1952): logarithms of "
-        "abilities; "
-        "Thurstone's Case V (Thurstone 1927): standard deviations of a difference.");
+        core::citing("Scales by maximum likelihood, intervals of plus or minus 1.96 standard "
+                     "errors; both take all answers as independent. Bradley-Terry ({}): logarithms "
+                     "of abilities; Thurstone's Case V ({}): standard deviations of a difference.",
+                     "Bradley & Terry 1952"_source, "Thurstone 1927"_source));
   } else {
     std::string items;
     for (std::size_t i = 0; i < design.stimuli.size(); ++i) {
@@ -311,14 +311,15 @@ std::vector<std::string> remarks_on(const BlockDesign& design, const PreferenceR
   }
   if (results.counts.ties.size() != 0) {
     remarks.emplace_back(
-        "Proportions are of comparisons with a preference. In Bradley-Terry a tie between two "
-        "equal stimuli is nu times as probable as either preference (Davidson 1970); Thurstone "
-        "takes a tie for half a preference each way.");
+        core::citing("Proportions are of comparisons with a preference. In Bradley-Terry a tie "
+                     "between two equal stimuli is nu times as probable as either preference ({}); "
+                     "Thurstone takes a tie for half a preference each way.",
+                     "Davidson 1970"_source));
   }
-  remarks.emplace_back(
+  remarks.emplace_back(core::citing(
       "Circular triads: A preferred to B, B to C, C to A; zeta is 1 without them, 0 with as many "
-      "as there can be (Kendall & Babington Smith 1940). Without a bias the first position is "
-      "preferred in half of the trials.");
+      "as there can be ({}). Without a bias the first position is preferred in half of the trials.",
+      "Kendall & Babington Smith 1940"_source));
   return remarks;
 }
 
@@ -357,12 +358,12 @@ HypothesisResult tested(const BlockDesign& design, const PreferenceResults& resu
 std::shared_ptr<BlockSummary> summarise_preferences(const BlockDesign& design,
                                                     const BlockRows& rows) {
   const PreferenceResults results = preference_results(design, rows.answers);
-  auto summary = std::make_shared<TabularSummary>(design);
-  summary->parts = {scale_table(design, results), wins_table(design, results),
-                    ties_table(results),          position_table(results),
-                    consistency_table(results),   participants_table(design, results)};
-  summary->main = shares_preferred(design, results);
-  summary->remarks = remarks_on(design, results);
+  auto summary = std::make_shared<BlockSummary>(design);
+  summary->results().tables = {scale_table(design, results), wins_table(design, results),
+                               ties_table(results),          position_table(results),
+                               consistency_table(results),   participants_table(design, results)};
+  summary->main_results = shares_preferred(design, results);
+  summary->results().remarks = remarks_on(design, results);
   for (const PlannedHypothesis& planned : design.hypotheses) {
     summary->hypotheses.push_back(tested(design, results, planned));
   }

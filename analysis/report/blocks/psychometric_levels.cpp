@@ -55,7 +55,7 @@ ReportTable tracks_table(const std::string& success, const std::string& success_
       "Levels in order of time",
       {column("participant", "participant_id"), column("trial", "trial"), column("track", "track"),
        column("level", "level"), column(success, success_key)}};
-  table.is_for_programs = true;
+  table.shown_in = programs_only;
   return table;
 }
 

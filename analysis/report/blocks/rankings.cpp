@@ -125,7 +125,8 @@ ReportTable pairs_table(const RankingResults& results) {
       interval_column("log worth, difference (95 %, answers independent)", "difference");
   ReportTable table{
       "pairs",
-      "Pairs of stimuli: signed-rank tests (Wilcoxon 1945) of participants' mean places",
+      core::citing("Pairs of stimuli: signed-rank tests ({}) of participants' mean places",
+                   "Wilcoxon 1945"_source),
       {column("first", "first"), column("second", "second"), of_difference, column("p", "p"),
        column("by Holm", "p_holm"), column("exact", "is_exact")}};
   for (const PairwiseTest& pair : results.pairwise) {
@@ -143,35 +144,38 @@ ReportTable pairs_table(const RankingResults& results) {
   return table;
 }
 
-std::vector<std::string> remarks_on(const RankingResults& results) {
+std::vector<CitingText> remarks_on(const RankingResults& results) {
   if (results.rankings == 0) {
     return {"There are no answers."};
   }
   return {
       results.no_worths.empty()
-          ? "Worths (Plackett 1975; Luce 1959): each place goes to one of the stimuli that are "
-            "left in "
-            "proportion to its worth. Natural logarithms, mean 0, by maximum likelihood; intervals "
-            "of plus or minus 1.96 standard errors take all rankings as independent."
-          : "There are no worths: " + results.no_worths + ".",
+          ? core::citing(
+                "Worths ({}; {}): each place goes to one of the stimuli that are left in "
+                "proportion to its worth. Natural logarithms, mean 0, by maximum likelihood; "
+                "intervals of plus or minus 1.96 standard errors take all rankings as independent.",
+                "Plackett 1975"_source, "Luce 1959"_source)
+          : core::citing("There are no worths: {}.", results.no_worths),
       results.no_tests.empty()
-          ? "Tests take the mean of each participant's places of a stimulus. Two-sided p of pairs, "
-            "and the same adjusted for their number (Holm 1979)."
-          : "Not tested: " + results.no_tests + "."};
+          ? core::citing("Tests take the mean of each participant's places of a stimulus. "
+                         "Two-sided p of pairs, and the same adjusted for their number ({}).",
+                         "Holm 1979"_source)
+          : core::citing("Not tested: {}.", results.no_tests)};
 }
 }  // namespace
 
 std::shared_ptr<BlockSummary> summarise_rankings(const BlockDesign& design, const BlockRows& rows) {
   const RankingResults results = ranking_results(design, rows.answers);
-  auto summary = std::make_shared<TabularSummary>(design);
-  summary->parts = {
+  auto summary = std::make_shared<BlockSummary>(design);
+  summary->results().tables = {
       stimuli_table(results), friedman_table(results.friedman, results.participants.size()),
       pairs_table(results),
       participant_values_table("Mean places of each participant",
                                column("mean place", "mean_place"), results.participants,
                                results.stimuli, results.mean_places)};
-  summary->main = means_over_participants("mean place", results.stimuli, results.mean_places);
-  summary->remarks = remarks_on(results);
+  summary->main_results =
+      means_over_participants("mean place", results.stimuli, results.mean_places);
+  summary->results().remarks = remarks_on(results);
   return summary;
 }
 }  // namespace tapstudy::analysis

@@ -123,11 +123,12 @@ RatingResults rating_results(const BlockDesign& design, const std::vector<Answer
 }
 
 ReportTable friedman_table(const std::optional<FriedmanTest>& test, std::size_t participants) {
-  ReportTable table{"friedman",
-                    "Test of ranks over participants (Friedman 1937)",
-                    {column("participants", "participants"), column("chi squared", "chi_squared"),
-                     column("df", "degrees_of_freedom"), column("p", "p"),
-                     column("W (Kendall & Babington Smith 1939)", "kendalls_w")}};
+  ReportTable table{
+      "friedman",
+      core::citing("Test of ranks over participants ({})", "Friedman 1937"_source),
+      {column("participants", "participants"), column("chi squared", "chi_squared"),
+       column("df", "degrees_of_freedom"), column("p", "p"),
+       column(core::citing("W ({})", "Kendall & Babington Smith 1939"_source), "kendalls_w")}};
   if (test) {
     table.rows.push_back({count(static_cast<std::int64_t>(participants)), number(test->chi_squared),
                           number(test->degrees_of_freedom), probability(test->p),
@@ -143,7 +144,7 @@ ReportTable participant_values_table(const std::string& title, const Column& of,
   ReportTable table{"participants",
                     title,
                     {column("participant", "participant_id"), column("stimulus", "stimulus"), of}};
-  table.is_for_programs = true;
+  table.shown_in = programs_only;
   for (std::size_t person = 0; person < participants.size(); ++person) {
     for (std::size_t i = 0; i < stimuli.size(); ++i) {
       table.rows.push_back(
@@ -192,11 +193,12 @@ ReportTable stimuli_table(const BlockDesign& design, const RatingResults& result
 }
 
 ReportTable pairs_table(const RatingResults& results) {
-  ReportTable table{"pairs",
-                    "Pairs of stimuli: signed-rank tests (Wilcoxon 1945)",
-                    {column("first", "first"), column("second", "second"), column("V", "v"),
-                     column("pairs that differ", "differing"), column("p", "p"),
-                     column("by Holm", "p_holm"), column("exact", "is_exact")}};
+  ReportTable table{
+      "pairs",
+      core::citing("Pairs of stimuli: signed-rank tests ({})", "Wilcoxon 1945"_source),
+      {column("first", "first"), column("second", "second"), column("V", "v"),
+       column("pairs that differ", "differing"), column("p", "p"), column("by Holm", "p_holm"),
+       column("exact", "is_exact")}};
   for (const PairwiseTest& pair : results.pairwise) {
     table.rows.push_back(
         {word(results.stimuli[pair.first].stimulus), word(results.stimuli[pair.second].stimulus),
@@ -213,11 +215,11 @@ ReportTable participants_table(const RatingResults& results) {
                                   results.participants, stimuli, results.medians);
 }
 
-std::vector<std::string> remarks_on(const RatingResults& results) {
+std::vector<CitingText> remarks_on(const RatingResults& results) {
   if (results.participants.empty() && results.left_out.empty()) {
     return {"There are no answers."};
   }
-  std::vector<std::string> remarks{
+  std::vector<CitingText> remarks{
       "Medians and quartiles (and counts of steps) are of all ratings. Tests take the median of "
       "each participant's ratings of a stimulus; ranks count from the lowest rating."};
   if (!results.left_out.empty()) {
@@ -226,8 +228,9 @@ std::vector<std::string> remarks_on(const RatingResults& results) {
   }
   remarks.push_back(
       results.no_tests.empty()
-          ? "Two-sided p of pairs, and the same adjusted for their number (Holm 1979)."
-          : "Not tested: " + results.no_tests + ".");
+          ? core::citing("Two-sided p of pairs, and the same adjusted for their number ({}).",
+                         "Holm 1979"_source)
+          : core::citing("Not tested: {}.", results.no_tests));
   return remarks;
 }
 
@@ -289,15 +292,15 @@ HypothesisResult tested(const BlockDesign& design, const RatingResults& results,
 
 std::shared_ptr<BlockSummary> summarise_ratings(const BlockDesign& design, const BlockRows& rows) {
   const RatingResults results = rating_results(design, rows.answers);
-  auto summary = std::make_shared<TabularSummary>(design);
-  summary->parts = {stimuli_table(design, results),
-                    friedman_table(results.friedman, results.participants.size()),
-                    pairs_table(results), participants_table(results)};
+  auto summary = std::make_shared<BlockSummary>(design);
+  summary->results().tables = {stimuli_table(design, results),
+                               friedman_table(results.friedman, results.participants.size()),
+                               pairs_table(results), participants_table(results)};
   std::vector<std::string> stimuli;
   std::ranges::transform(results.stimuli, std::back_inserter(stimuli), &StimulusRatings::stimulus);
-  summary->main =
+  summary->main_results =
       means_over_participants("mean of participants' median ratings", stimuli, results.medians);
-  summary->remarks = remarks_on(results);
+  summary->results().remarks = remarks_on(results);
   for (const PlannedHypothesis& planned : design.hypotheses) {
     summary->hypotheses.push_back(tested(design, results, planned));
   }

@@ -209,7 +209,7 @@ ReportTable levels_table(const BlockDesign& design, const ThresholdResults& resu
     }
   }
   constexpr std::size_t most_rows_to_read = 60;
-  table.is_for_programs = table.rows.size() > most_rows_to_read;
+  table.shown_in = table.rows.size() > most_rows_to_read ? programs_only : ShownIn{};
   return table;
 }
 
@@ -230,7 +230,7 @@ ReportTable levels_over_participants(const BlockDesign& design, const ThresholdR
   }
   constexpr std::size_t most_rows_to_read =
       20;  // of adaptive procedures: most with an answer or two
-  table.is_for_programs = table.rows.size() > most_rows_to_read;
+  table.shown_in = table.rows.size() > most_rows_to_read ? programs_only : ShownIn{};
   return table;
 }
 

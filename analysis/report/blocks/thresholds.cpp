@@ -111,7 +111,8 @@ std::optional<MeanLogThreshold> mean_of(const std::vector<ParticipantThreshold>&
   return MeanLogThreshold{spread.mean, spread.standard_deviation, t_interval(logarithms),
                           static_cast<int>(logarithms.size())};
 }
-// Of a linear axis by the first order of the logarithm.
+
+// On a linear axis the standard error of log10(threshold) is SE / (threshold ln 10) (delta method).
 std::optional<PopulationThreshold> population_of(const std::vector<ParticipantThreshold>& people,
                                                  core::PsychometricShape shape) {
   std::vector<double> means;
@@ -177,12 +178,13 @@ std::string level_words(const VariedAxis& axis) {
 }
 
 namespace {
-// Empty: there is none.
-std::string d_prime_words(const BlockDesign& design) {
+// Empty where no d' is computed.
+CitingText describe_d_prime(const BlockDesign& design) {
   if (design.has_own_guess_rate) {
-    return "d' at a level: same-different of a differencing observer, because levels change from "
-           "trial to trial (Macmillan & Creelman 2005, ch. 9), by hits there and all false alarms, "
-           "k + 1/2 in n + 1 (Hautus 1995).";
+    return core::citing(
+        "d' at a level: same-different of a differencing observer, because levels change from "
+        "trial to trial ({}, ch. 9), by hits there and all false alarms, k + 1/2 in n + 1 ({}).",
+        "Macmillan & Creelman 2005"_source, "Hautus 1995"_source);
   }
   return design.decision_model.empty()
              ? ""
@@ -197,8 +199,8 @@ bool is_beyond_levels(double threshold, const std::vector<Level>& levels) {
   return lowest != levels.end() && (threshold < lowest->value || threshold > levels.back().value);
 }
 
-std::vector<std::string> remarks_on_people(const std::vector<ParticipantThreshold>& people) {
-  std::vector<std::string> remarks;
+std::vector<CitingText> remarks_on_people(const std::vector<ParticipantThreshold>& people) {
+  std::vector<CitingText> remarks;
   for (const ParticipantThreshold& person : people) {
     if (!person.estimate) {
       remarks.push_back(
@@ -229,19 +231,19 @@ std::vector<std::string> remarks_on_people(const std::vector<ParticipantThreshol
   return remarks;
 }
 
-std::vector<std::string> remarks_on_mean(const ThresholdResults& results) {
+std::vector<CitingText> remarks_on_mean(const ThresholdResults& results) {
   if (!results.mean_log) {
     return {"No mean over participants: it takes two with a threshold."};
   }
-  std::vector<std::string> remarks{
+  std::vector<CitingText> remarks{
       "Mean over participants: of the logarithms of their thresholds, each counting the same, "
       "interval by t. The standard deviation is that between participants and of their "
       "estimates' errors together. Answers of participants are not put together as if of one."};
   if (results.population) {
     remarks.emplace_back(
-        "Random-effects mean (Paule & Mandel 1982, interval of Hartung & Knapp 2001): each "
-        "posterior "
-        "counts as well as it is known; its standard deviation is that of participants alone.");
+        core::citing("Random-effects mean ({}, interval of {}): each posterior counts as well as "
+                     "it is known; its standard deviation is that of participants alone.",
+                     "Paule & Mandel 1982"_source, "Hartung & Knapp 2001"_source));
   }
   const int without =
       static_cast<int>(results.participants.size()) - results.mean_log->participants;
@@ -254,12 +256,12 @@ std::vector<std::string> remarks_on_mean(const ThresholdResults& results) {
 }
 }  // namespace
 
-std::vector<std::string> threshold_remarks(const BlockDesign& design,
-                                           const ThresholdResults& results) {
+std::vector<CitingText> threshold_remarks(const BlockDesign& design,
+                                          const ThresholdResults& results) {
   if (results.participants.empty()) {
     return {"There are no answers."};
   }
-  std::vector<std::string> remarks{
+  std::vector<CitingText> remarks{
       "Levels: " + level_words(*design.axis) + ".",
       fmt::format("Thresholds: maximum likelihood of a {} function of the level, {}, lapse rate "
                   "from 0 to 0.1; intervals by profile likelihood. At the threshold the function "
@@ -278,10 +280,11 @@ std::vector<std::string> threshold_remarks(const BlockDesign& design,
                         results.draws)
           : "Deviance tests are not made for so many levels.");
   remarks.emplace_back(results.has_posteriors
-                           ? "Posteriors: beta-binomial answers and the priors of Schütt et al. "
-                             "2016, which limit the slope where the answers alone do not."
+                           ? core::citing("Posteriors: beta-binomial answers and the priors of {}, "
+                                          "which limit the slope where the answers alone do not.",
+                                          "Schütt et al. 2016"_source)
                            : "Posteriors are not computed for so many levels.");
-  if (const std::string words = d_prime_words(design); !words.empty()) {
+  if (const CitingText words = describe_d_prime(design); !words.empty()) {
     remarks.push_back(words);
   }
   return remarks;
@@ -316,16 +319,16 @@ PersonalValues thresholds_of(const BlockDesign& design, const ThresholdResults& 
 std::shared_ptr<BlockSummary> summarise_thresholds(const BlockDesign& design,
                                                    const BlockRows& rows) {
   const ThresholdResults results = participant_thresholds(design, rows.answers);
-  auto summary = std::make_shared<TabularSummary>(design);
-  summary->parts = threshold_tables(design, results);
+  auto summary = std::make_shared<BlockSummary>(design);
+  summary->results().tables = threshold_tables(design, results);
   if (!design.has_own_guess_rate) {  // there the false alarms are the bias
-    summary->parts.push_back(answer_counts_table(rows.answers));
+    summary->results().tables.push_back(answer_counts_table(rows.answers));
   }
-  summary->charts = threshold_charts(design, results);
-  summary->remarks = threshold_remarks(design, results);
+  summary->results().charts = threshold_charts(design, results);
+  summary->results().remarks = threshold_remarks(design, results);
   summary->personal = thresholds_of(design, results);
   if (results.mean_log) {
-    summary->main = {mean_threshold(*design.axis, *results.mean_log)};
+    summary->main_results = {mean_threshold(*design.axis, *results.mean_log)};
   }
   return summary;
 }

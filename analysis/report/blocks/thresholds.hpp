@@ -71,8 +71,8 @@ ThresholdResults participant_thresholds(const BlockDesign& design,
 std::vector<ReportTable> threshold_tables(const BlockDesign& design,
                                           const ThresholdResults& results);
 std::vector<Chart> threshold_charts(const BlockDesign& design, const ThresholdResults& results);
-std::vector<std::string> threshold_remarks(const BlockDesign& design,
-                                           const ThresholdResults& results);
+std::vector<CitingText> threshold_remarks(const BlockDesign& design,
+                                          const ThresholdResults& results);
 // What levels are of, with the axis.
 std::string level_words(const VariedAxis& axis);
 

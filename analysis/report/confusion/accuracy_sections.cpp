@@ -76,12 +76,12 @@ Cell range_cell(const std::optional<Interval>& interval) {
                   : Cell{"–", {Value{}, Value{}}};
 }
 
-Column range_column(const std::string& heading, const std::string& key) {
+Column range_column(const CitingText& heading, const std::string& key) {
   return {heading, {key + "_low", key + "_high"}};
 }
 
 Column exact_column() {
-  return range_column("exact (Clopper & Pearson 1934)", "exact");
+  return range_column(core::citing("exact ({})", "Clopper & Pearson 1934"_source), "exact");
 }
 
 ReportTable estimates_table(const IdentificationSummary& summary) {
@@ -163,13 +163,13 @@ ReportSection accuracy_section(const IdentificationSummary& summary) {
     section.tables.push_back(participants_table(summary));
   }
   if (summary.accuracy_over_participants) {
-    section.remarks.emplace_back(
+    section.remarks.emplace_back(core::citing(
         "95 % intervals hold for participants of whom these are a sample: profile likelihood of a "
-        "beta-binomial distribution (Williams 1975) with the quantile of t for the number of "
-        "participants, which holds the mean in more than 95 % of studies where participants are "
-        "few; t and the bootstrap (BCa, Efron 1987, expanded after Hesterberg 2015) over "
-        "participants' shares are given beside it. Wilson's interval would hold if all answers "
-        "were independent of one another.");
+        "beta-binomial distribution ({}) with the quantile of t for the number of participants, "
+        "which holds the mean in more than 95 % of studies where participants are few; t and the "
+        "bootstrap (BCa, {}, expanded after {}) over participants' shares are given beside it. "
+        "Wilson's interval would hold if all answers were independent of one another.",
+        "Williams 1975"_source, "Efron 1987"_source, "Hesterberg 2015"_source));
   }
   section.remarks.push_back("All answers against chance: " + summary.chance_test + ".");
   add_remark_on_chance(summary, section);
@@ -180,8 +180,8 @@ ReportSection independent_accuracy_section(const IdentificationSummary& summary)
   ReportSection section{"Accuracy"};
   ReportTable table{"independent_accuracy",
                     "Right answers, if all were independent",
-                    {proportion_column("right (Wilson 1927)", "right"), exact_column(),
-                     column("chance", "chance"), column("above chance", "p")}};
+                    {proportion_column(core::citing("right ({})", "Wilson 1927"_source), "right"),
+                     exact_column(), column("chance", "chance"), column("above chance", "p")}};
   std::vector<Cell> row{proportion(summary.accuracy), range_cell(exact_interval(summary.accuracy))};
   section.remarks.emplace_back(
       "Participants are not known: everything here takes all answers as independent, which those "
@@ -276,7 +276,7 @@ ReportSection counts_section(const IdentificationData& data) {
                     {column("by", "by"), column("level", "level"), column("presented", "stimulus"),
                      column("answered", "response"), column("count", "count"),
                      column("of its row", "row_share")}};
-  cells.is_for_programs = true;
+  cells.shown_in = programs_only;
   Grouping by_stimulus{"stimulus", {}, {}};
   for (std::size_t i = 0; i < data.stimuli.size(); ++i) {
     by_stimulus.levels.push_back(data.stimuli[i].name);
@@ -379,10 +379,11 @@ ReportSection contrasts_section(const IdentificationData& data) {
     return section;
   }
   section.remarks.emplace_back(
-      "Differences of a participant's shares right; two-sided permutation test by changing the "
-      "signs of participants' differences (all patterns up to 16, else 9999), adjusted within a "
-      "technique or factor by Holm 1979. A participant who prefers some answers is right more "
-      "often where they are right.");
+      core::citing("Differences of a participant's shares right; two-sided permutation test by "
+                   "changing the signs of participants' differences (all patterns up to 16, else "
+                   "9999), adjusted within a technique or factor by {}. A participant who prefers "
+                   "some answers is right more often where they are right.",
+                   "Holm 1979"_source));
   return section;
 }
 }  // namespace tapstudy::analysis

@@ -27,8 +27,8 @@ void add_independence(const MatrixOfParticipants& counted, const Independence& t
     const MonteCarloTest drawn =
         monte_carlo_independence(*tables, Draws{}.of(*tables), dependence_seed);
     row.insert(row.end(), {probability(drawn.p), count(drawn.draws)});
-    section.remarks.push_back(fmt::format("X² is compared with {} {} (Hope 1968).", drawn.draws,
-                                          counted.randomisation.words));
+    section.remarks.push_back(core::citing("X² is compared with {} {} ({}).", drawn.draws,
+                                           counted.randomisation.words, "Hope 1968"_source));
   } else {
     row.insert(row.end(), {nothing(table.columns[4]), count(0)});
     section.remarks.push_back("X² is not tested: " + counted.randomisation.words + ".");
@@ -59,7 +59,8 @@ void add_square(const CountTable& square, ReportSection& section) {
   ReportTable kappas{
       "kappa",
       "Agreement of answers with stimuli",
-      {interval_column("κ (Cohen 1960; 95 % by Fleiss, Cohen & Everitt 1969, answers independent)",
+      {interval_column(core::citing("κ ({}; 95 % by {}, answers independent)", "Cohen 1960"_source,
+                                    "Fleiss, Cohen & Everitt 1969"_source),
                        "kappa"),
        column("standard error", "standard_error")}};
   if (const auto kappa = cohens_kappa(square)) {
@@ -74,16 +75,18 @@ void add_square(const CountTable& square, ReportSection& section) {
       "Symmetry of confusions",
       {column("test", "test"), column("χ²", "chi_squared"), column("df", "degrees_of_freedom"),
        column("p (answers independent)", "p")}};
-  const auto add = [&](const std::string& name, const std::optional<ChiSquaredTest>& test) {
+  const auto add = [&](const CitingText& name, const std::optional<ChiSquaredTest>& test) {
     if (test) {
       symmetry.rows.push_back({word(name), number(test->chi_squared),
                                number(test->degrees_of_freedom), probability(test->p)});
     } else {
-      section.remarks.push_back(name + ": nothing to test.");
+      section.remarks.push_back(core::citing("{}: nothing to test.", name));
     }
   };
-  add("i for j as often as j for i (Bowker 1948)", bowker_test(square));
-  add("named as often as presented (Stuart 1955, Maxwell 1970)", stuart_maxwell_test(square));
+  add(core::citing("i for j as often as j for i ({})", "Bowker 1948"_source), bowker_test(square));
+  add(core::citing("named as often as presented ({}, {})", "Stuart 1955"_source,
+                   "Maxwell 1970"_source),
+      stuart_maxwell_test(square));
   section.tables.push_back(kappas);
   section.tables.push_back(symmetry);
 }
@@ -145,8 +148,8 @@ ReportSection dependence_section(const MatrixOfParticipants& counted) {
   add_independence(counted, *test, section);
   section.tables.push_back(residuals_table(matrix));
   section.remarks.emplace_back(
-      "V is the strength of the dependence, 0 to 1 (Cramér 1946); residuals are adjusted (Haberman "
-      "1973).");
+      core::citing("V is the strength of the dependence, 0 to 1 ({}); residuals are adjusted ({}).",
+                   "Cramér 1946"_source, "Haberman 1973"_source));
   if (matrix.alternatives() < static_cast<std::int64_t>(matrix.responses.size())) {
     section.remarks.emplace_back(
         "Agreement and symmetry are left out: some answers are right for no stimulus.");
@@ -255,24 +258,24 @@ ReportTable pooled_table(const MatrixOfParticipants& counted, const std::string&
   return table;
 }
 
-std::vector<std::string> remarks_on(const MatrixOfParticipants& counted, const std::string& refusal,
-                                    const std::optional<GuessedInformation>& guessed) {
-  std::vector<std::string> remarks{
-      guessed ? fmt::format("Information transfer (Miller & Nicely 1955) is biased upward; the "
-                            "Miller-Madow value (Miller 1955) is corrected for that; what guessing "
-                            "would give shows "
-                            "what is left of the bias: {} {}.",
-                            guessed->draws, counted.randomisation.words)
-              : fmt::format("Information transfer (Miller & Nicely 1955) is biased upward; the "
-                            "Miller-Madow value (Miller 1955) is corrected for that. What guessing "
-                            "gives is not known: "
-                            "{}.",
-                            counted.randomisation.words)};
+std::vector<CitingText> remarks_on(const MatrixOfParticipants& counted, const std::string& refusal,
+                                   const std::optional<GuessedInformation>& guessed) {
+  std::vector<CitingText> remarks{
+      guessed ? core::citing("Information transfer ({}) is biased upward; the Miller-Madow value "
+                             "({}) is corrected for that; what guessing would give shows what is "
+                             "left of the bias: {} {}.",
+                             "Miller & Nicely 1955"_source, "Miller 1955"_source, guessed->draws,
+                             counted.randomisation.words)
+              : core::citing("Information transfer ({}) is biased upward; the Miller-Madow value "
+                             "({}) is corrected for that. What guessing gives is not known: {}.",
+                             "Miller & Nicely 1955"_source, "Miller 1955"_source,
+                             counted.randomisation.words)};
   if (refusal.empty() && counted.participants.size() > 1) {
     remarks.emplace_back(
-        "The interval is a jackknife (Tukey 1958) over five participants or more of the corrected "
-        "value and of the logit of its share. The answers of participants who confuse differently "
-        "transfer less together than they do on average.");
+        core::citing("The interval is a jackknife ({}) over five participants or more of the "
+                     "corrected value and of the logit of its share. The answers of participants "
+                     "who confuse differently transfer less together than they do on average.",
+                     "Tukey 1958"_source));
   }
   if (refusal.empty() &&
       information_transfer(counted.matrix.counts).miller_madow_bits > most_bits(counted.matrix)) {
@@ -339,7 +342,7 @@ InformationSection information_section(const MatrixOfParticipants& counted) {
   });
   if (counted.are_known()) {
     result.section.tables.push_back(participants_table(counted));
-    result.section.tables.back().is_for_programs = !has_enough;
+    result.section.tables.back().shown_in = !has_enough ? programs_only : ShownIn{};
   }
   result.section.remarks = remarks_on(counted, refusal, guessed);
   result.sentence = sentence_of(counted.matrix, refusal, guessed);

@@ -132,6 +132,11 @@ IdentificationSummary::IdentificationSummary(const BlockDesign& design, Confusio
     sections.push_back(independent_accuracy_section(*this));
   }
   add_matrix_sections({matrix, {{"", matrix.counts}}, randomisation_of(matrix.counts)}, *this);
+  if (accuracy.trials > 0) {  // all answers are taken as independent
+    main_results = {
+        {"accuracy", accuracy.value(), wilson_interval(accuracy), std::nullopt, matrix.chance()}};
+  }
+  add_results();
 }
 
 IdentificationSummary::IdentificationSummary(const BlockDesign& design,
@@ -152,31 +157,22 @@ IdentificationSummary::IdentificationSummary(const BlockDesign& design,
   add_over_participants(counted, *this);
   personal = shares_right(*this);
   add_tests(design, counted.randomisation, *this);
-  if (accuracy.trials == 0) {
-    return;
+  if (chance_p) {
+    methods = "Accuracy of identification against chance: " + chance_test + ".";
   }
-  sections.push_back(accuracy_section(*this));
-  add_matrix_sections(counted, *this);
-  for (const auto section :
-       {counts_section, contrasts_section, order_section, times_section, exploration_section}) {
-    sections.push_back(section(data));
+  if (accuracy_over_participants) {
+    main_results = {{"accuracy", accuracy_over_participants->mean,
+                     accuracy_over_participants->interval, chance_p, matrix.chance()}};
   }
-}
-
-std::string IdentificationSummary::methods() const {
-  return chance_p ? "Accuracy of identification against chance: " + chance_test + "."
-                  : std::string{};
-}
-
-std::vector<MainResult> IdentificationSummary::main_results() const {
-  if (!accuracy_over_participants) {  // of counts alone all answers are taken as independent
-    return are_only_counts_known && accuracy.trials > 0
-               ? std::vector<MainResult>{{"accuracy", accuracy.value(), wilson_interval(accuracy),
-                                          std::nullopt, matrix.chance()}}
-               : std::vector<MainResult>{};
+  if (accuracy.trials > 0) {
+    sections.push_back(accuracy_section(*this));
+    add_matrix_sections(counted, *this);
+    for (const auto section :
+         {counts_section, contrasts_section, order_section, times_section, exploration_section}) {
+      sections.push_back(section(data));
+    }
   }
-  return {{"accuracy", accuracy_over_participants->mean, accuracy_over_participants->interval,
-           chance_p, matrix.chance()}};
+  add_results();
 }
 
 std::shared_ptr<BlockSummary> summarise_identification(const BlockDesign& design,

@@ -34,15 +34,6 @@ class IdentificationSummary final : public BlockSummary {
   // From every answer.
   IdentificationSummary(const BlockDesign& design, const IdentificationData& data);
 
-  void write_text(std::ostream& out) const override;  // the essentials
-  void write_html(std::ostream& out) const override;
-  nlohmann::ordered_json as_json() const override;
-  std::vector<CsvTable> tables() const override;
-  std::vector<ReportTable> report_tables() const override;
-  std::vector<Chart> figures() const override;
-  std::string methods() const override;
-  std::vector<MainResult> main_results() const override;
-
   ConfusionMatrix matrix;
   Proportion accuracy;
   std::optional<MeanProportion> accuracy_over_participants;
@@ -52,7 +43,10 @@ class IdentificationSummary final : public BlockSummary {
   std::optional<double> chance_p;  // its probability
   bool are_only_counts_known{};    // participants are not
   std::string information;         // a sentence on information transfer
-  std::vector<ReportSection> sections;
+
+ private:
+  // The tables, sentences and values of the results; the last step of either constructor.
+  void add_results();
 };
 
 // Throws InvalidInput if an answer does not fit the design.

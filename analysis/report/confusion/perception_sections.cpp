@@ -90,7 +90,7 @@ SensitivityOfPeople of_participants(const MatrixOfParticipants& counted,
     }
   }
   constexpr std::size_t most_rows_to_read = 60;
-  tables.each.is_for_programs = tables.each.rows.size() > most_rows_to_read;
+  tables.each.shown_in = tables.each.rows.size() > most_rows_to_read ? programs_only : ShownIn{};
   return tables;
 }
 
@@ -157,12 +157,13 @@ ReportSection sensitivity_section(const MatrixOfParticipants& counted) {
         fmt::format("Factor {} is left out: all stimuli have the same level of it.", factor));
   }
   section.tables.push_back(equivalent_table(matrix));
-  section.remarks.emplace_back(
+  section.remarks.emplace_back(core::citing(
       "d' = z(hits) - z(false alarms) and c = -(z(hits) + z(false alarms)) / 2 with rates "
-      "corrected by (k + 1/2) / (n + 1) (Hautus 1995), intervals by the variance of z (Gourevitch "
-      "& Galanter 1967); c above 0: the class is named too seldom. The equivalent d' (Hacker & "
-      "Ratcliff 1979) supposes an observer without preferences; its interval is that of the "
-      "proportion (Wilson 1927).");
+      "corrected by (k + 1/2) / (n + 1) ({}), intervals by the variance of z ({}); c above 0: the "
+      "class is named too seldom. The equivalent d' ({}) supposes an observer without preferences; "
+      "its interval is that of the proportion ({}).",
+      "Hautus 1995"_source, "Gourevitch & Galanter 1967"_source, "Hacker & Ratcliff 1979"_source,
+      "Wilson 1927"_source));
   if (matrix.share_of_alternatives() < 1.0) {
     section.remarks.emplace_back(
         "Some answers name no stimulus: the choice was not forced, and has no equivalent d'.");
@@ -222,7 +223,7 @@ void add_map(const std::vector<Item>& classes, const SimilarityChoice& model,
              ReportSection& section) {
   ReportTable table{
       "map", "Map of the classes", {column("class", "class"), column("x", "x"), column("y", "y")}};
-  table.is_for_programs = true;
+  table.shown_in = programs_only;
   const bool has_distances = std::ranges::all_of(model.similarities, [](const auto& row) {
     return std::ranges::all_of(row, [](double similarity) { return similarity > 0.0; });
   });
@@ -231,10 +232,10 @@ void add_map(const std::vector<Item>& classes, const SimilarityChoice& model,
   } else if (classes.size() > 2) {
     const ScaledMap map = classical_scaling(distances_of(model.similarities), 2);
     Chart chart;
-    chart.caption = fmt::format(
+    chart.caption = core::citing(
         "Classes on a map, far apart where seldom confused: distances −ln η, classical "
-        "scaling (Torgerson 1952), {:.0f} % in two dimensions.",
-        100.0 * map.explained);
+        "scaling ({}), {:.0f} % in two dimensions.",
+        "Torgerson 1952"_source, 100.0 * map.explained);
     chart.alternative = "Map of the classes";
     std::vector<double> all_x;
     std::vector<double> all_y;
@@ -277,11 +278,11 @@ ReportSection similarity_section(const MatrixOfParticipants& counted) {
   section.tables = {biases_table(matrix.responses, model),
                     similarities_table(matrix.responses, model), fit_table(*square, model)};
   section.remarks.emplace_back(
-      "Similarity-choice model (Luce 1963): class i is answered with j in proportion to bias b(j) "
-      "times similarity η(i, j), by maximum likelihood; biases add up to 1, η(i, i) = 1. A small p "
-      "of G², of up to 5000 answers given the totals (Besag & Clifford 1989), of more by "
-      "chi-squared, "
-      "says that the model does not describe the answers.");
+      core::citing("Similarity-choice model ({}): class i is answered with j in proportion to bias "
+                   "b(j) times similarity η(i, j), by maximum likelihood; biases add up to 1, η(i, "
+                   "i) = 1. A small p of G², of up to 5000 answers given the totals ({}), of more "
+                   "by chi-squared, says that the model does not describe the answers.",
+                   "Luce 1963"_source, "Besag & Clifford 1989"_source));
   add_map(matrix.responses, model, section);
   return section;
 }

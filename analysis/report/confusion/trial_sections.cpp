@@ -300,9 +300,10 @@ ReportSection times_section(const IdentificationData& data) {
   add_conditional_accuracy(data, section);
   section.tables.push_back(balanced_table(data));
   section.remarks.emplace_back(
-      "Times from the start of the trial, and from the first contact with the plate. The balanced "
-      "integration score is z(share right) - z(mean time of right answers) over the participants "
-      "(Liesefeld & Janczyk 2019); who was never right has none.");
+      core::citing("Times from the start of the trial, and from the first contact with the plate. "
+                   "The balanced integration score is z(share right) - z(mean time of right "
+                   "answers) over the participants ({}); who was never right has none.",
+                   "Liesefeld & Janczyk 2019"_source));
   return section;
 }
 

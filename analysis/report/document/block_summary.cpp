@@ -6,10 +6,55 @@
 #include <algorithm>
 #include <iterator>
 #include <map>
+#include <nlohmann/json.hpp>
+#include <span>
 #include <unordered_set>
 
+#include "analysis/report/document/formats.hpp"
 #include "core/error.hpp"
 namespace tapstudy::analysis {
+void BlockSummary::write_text(std::ostream& out) const {
+  write_contents_text(out, results());
+  write_hypotheses_text(out, hypotheses);
+  for (const ReportSection& section : std::span{sections}.subspan(1)) {
+    if (!section.is_detail) {
+      write_sections_text(out, {&section, 1});
+    }
+  }
+}
+
+void BlockSummary::write_html(std::ostream& out) const {
+  write_contents_html(out, results());
+  write_hypotheses_html(out, hypotheses);
+  write_sections_html(out, std::span{sections}.subspan(1), block.empty() ? "counts" : block);
+}
+
+nlohmann::ordered_json BlockSummary::as_json() const {
+  nlohmann::ordered_json json{{"block", block}, {"task", task}};
+  if (values) {
+    json.update(*values);
+  }
+  add_sections(json, sections);
+  json["hypotheses"] = analysis::as_json(hypotheses);
+  return json;
+}
+
+std::vector<CsvTable> BlockSummary::tables() const {
+  return csv_of(sections);
+}
+
+std::set<core::Source> BlockSummary::sources() const {
+  std::set<core::Source> cited;
+  for (const ReportSection& section : sections) {
+    add_sources(cited, section);
+  }
+  if (std::ranges::any_of(hypotheses,
+                          [](const auto& result) { return result.p_holm.has_value(); })) {
+    cited.insert("Holm 1979"_source);
+  }
+  return cited;
+}
+
 std::vector<VisitOrder> orders_of(const std::vector<VisitOrder>& all,
                                   const std::vector<results::AnswerRow>& answers) {
   std::unordered_set<std::int64_t> trials;

@@ -1,16 +1,16 @@
 #pragma once
-#include <functional>
 #include <map>
+#include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <ostream>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "analysis/report/document/block_design.hpp"
-#include "analysis/report/document/cells.hpp"
-#include "analysis/report/document/chart.hpp"
+#include "analysis/report/document/sections.hpp"
 #include "analysis/statistics/proportion.hpp"
 #include "results/rows.hpp"
 namespace tapstudy::analysis {
@@ -77,14 +77,8 @@ struct BlockRows {
   int missing_replies{};             // trials that were presented, and not answered later
 };
 
-// A separate CSV table: its file name suffix and its writer.
-struct CsvTable {
-  std::string name;
-  std::function<void(std::ostream&)> write;
-};
-
-// The results of a statistic for a block, with its output in each format. Writers only format; they
-// compute nothing.
+// The results of a statistic for a block: the data that every format is made from. Text and HTML
+// show the words of the cells, JSON and CSV their values.
 class BlockSummary {
  public:
   explicit BlockSummary(const BlockDesign& design)
@@ -95,18 +89,17 @@ class BlockSummary {
   BlockSummary(BlockSummary&&) = default;
   BlockSummary& operator=(BlockSummary&&) = default;
 
-  virtual void write_text(std::ostream& out) const = 0;  // for a terminal
-  virtual void write_html(std::ostream& out) const = 0;  // a part of a page
-  virtual nlohmann::ordered_json as_json() const = 0;
-  virtual std::vector<CsvTable> tables() const = 0;
-  // Those for people.
-  virtual std::vector<ReportTable> report_tables() const = 0;
-  // Its figures; marks within tables are none.
-  virtual std::vector<Chart> figures() const { return {}; }
-  // How it was tested, as a sentence for a methods section; may be empty.
-  virtual std::string methods() const { return {}; }
-  // Empty: the answers do not determine it.
-  virtual std::vector<MainResult> main_results() const { return {}; }
+  void write_text(std::ostream& out) const;  // in 100 columns, without the sections of detail
+  void write_html(std::ostream& out) const;  // a part of a page
+  // {"block", "task", what `values` holds, TABLE: [{key: value}], "remarks": [sentence],
+  // "hypotheses"}
+  nlohmann::ordered_json as_json() const;
+  std::vector<CsvTable> tables() const;  // TABLE.csv, a header of keys; the summary outlives them
+  // The publications that the page cites here.
+  std::set<core::Source> sources() const;
+  // What the block was made to find out.
+  ReportSection& results() { return sections.front(); }
+  const ReportSection& results() const { return sections.front(); }
 
   std::string block;    // empty where only a table of counts is known
   std::string part_of;  // the whole block, of which this is a part; empty: it is whole
@@ -114,6 +107,12 @@ class BlockSummary {
   std::string question;
   std::vector<HypothesisResult> hypotheses;
   std::optional<PersonalValues> personal{};  // unset: none, or they are not to be compared
+  std::vector<ReportSection> sections =
+      std::vector<ReportSection>(1);  // the results, then what else the answers say
+  std::string methods{};  // how it was tested, as a sentence for a methods section; may be empty
+  std::vector<MainResult> main_results{};  // empty: the answers do not determine it
+  // An object of what programs read that is no table; unset: nothing.
+  std::shared_ptr<const nlohmann::ordered_json> values{};
 };
 
 struct BlockPart {

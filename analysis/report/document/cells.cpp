@@ -30,8 +30,8 @@ std::string with_interval(double value, const Interval& interval) {
                      rounded(interval.high));
 }
 
-Cell word(const std::string& text) {
-  return {text, {text}};
+Cell word(const CitingText& text) {
+  return {text, {text.words}};
 }
 Cell labelled(const Item& item) {
   return {item.label, {item.name}};
@@ -99,19 +99,19 @@ Cell nothing(const Column& column, const std::string& text) {
   return {text, std::vector<Value>(column.keys.size())};
 }
 
-Column column(const std::string& heading, const std::string& key) {
+Column column(const CitingText& heading, const std::string& key) {
   return {heading, {key}};
 }
 
-Column interval_column(const std::string& heading, const std::string& key) {
+Column interval_column(const CitingText& heading, const std::string& key) {
   return {heading, {key, key + "_low", key + "_high"}};
 }
 
-Column counted_column(const std::string& heading, const std::string& key) {
+Column counted_column(const CitingText& heading, const std::string& key) {
   return {heading, {key, key + "_of", key + "_share"}};
 }
 
-Column proportion_column(const std::string& heading, const std::string& key) {
+Column proportion_column(const CitingText& heading, const std::string& key) {
   return {heading, {key, key + "_of", key + "_share", key + "_share_low", key + "_share_high"}};
 }
 }  // namespace tapstudy::analysis

@@ -7,29 +7,57 @@
 
 #include "analysis/statistics/confusion_matrix.hpp"
 #include "analysis/statistics/proportion.hpp"
+#include "core/text/citations.hpp"
 namespace tapstudy::analysis {
+using core::CitingText;
+using core::operator""_source;
+
 // A value as programs read it; unset where there is none. Infinite numbers are "inf" and "-inf".
 using Value = std::variant<std::monostate, bool, std::int64_t, double, std::string>;
 
 // heading: as people read it; empty: the column is in JSON and CSV only.
 // keys: of its values in JSON and CSV (a value and its interval are three).
 struct Column {
-  std::string heading;
+  CitingText heading;
   std::vector<std::string> keys;
+};
+
+// A share with its interval, drawn on a scale from 0 to 100 % with chance as a line.
+struct Dot {
+  double share{};
+  Interval interval;
+  double chance{};
 };
 
 // text: as people read it, in text and HTML. values: as many as the column has keys.
 struct Cell {
-  std::string text;
+  CitingText text;
   std::vector<Value> values;
+  std::optional<Dot> dot{};  // drawn beside the text on the page
+  bool is_right{};           // of a matrix: the count of right answers
 };
+
+// The formats that a table is written in.
+struct ShownIn {
+  bool text{true};
+  bool page{true};
+  bool latex{true};
+  bool json{true};
+  bool csv{true};
+};
+inline constexpr ShownIn programs_only{false, false, false, true, true};
+inline constexpr ShownIn page_only{false, true, false, false, false};
 
 struct ReportTable {
   std::string name;  // its key in JSON, its file in CSV
-  std::string title;
+  CitingText title;
   std::vector<Column> columns;
   std::vector<std::vector<Cell>> rows{};
-  bool is_for_programs{};  // in JSON and CSV only: people see a figure
+  ShownIn shown_in{};  // programs_only: people see a figure
+  CitingText note{};   // below it on the page
+  // Counts of answers to each stimulus: shaded by their share of the row on the page; a terminal
+  // shows the names of stimuli and answers, which are shorter than their labels.
+  bool is_matrix{};
 };
 
 // "0.123", with so many significant digits; "–" for NaN
@@ -37,7 +65,7 @@ std::string rounded(double value, int significant_digits = 3);
 // "0.12 (0.1 to 0.15)"
 std::string with_interval(double value, const Interval& interval);
 
-Cell word(const std::string& text);
+Cell word(const CitingText& text);
 Cell labelled(const Item& item);  // its label for people, its name for programs
 Cell count(std::int64_t number);
 Cell flag(bool is_so);
@@ -59,8 +87,8 @@ Cell proportion(const Proportion& proportion);
 Cell counted(const Proportion& proportion);
 Cell nothing(const Column& column, const std::string& text = "–");
 
-Column column(const std::string& heading, const std::string& key);
-Column interval_column(const std::string& heading, const std::string& key);
-Column counted_column(const std::string& heading, const std::string& key);
-Column proportion_column(const std::string& heading, const std::string& key);
+Column column(const CitingText& heading, const std::string& key);
+Column interval_column(const CitingText& heading, const std::string& key);
+Column counted_column(const CitingText& heading, const std::string& key);
+Column proportion_column(const CitingText& heading, const std::string& key);
 }  // namespace tapstudy::analysis

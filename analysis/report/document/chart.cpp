@@ -233,7 +233,7 @@ std::string standalone_svg(const Chart& chart, const std::string& mark) {
   std::string below;
   double y = chart_height;
   for (const std::string& line :
-       lines_of(mark.empty() ? chart.caption : mark + ": " + chart.caption, line_characters)) {
+       lines_of((mark.empty() ? "" : mark + ": ") + chart.caption.words, line_characters)) {
     y += line_height;
     below += fmt::format("<text class=\"caption\" x=\"8\" y=\"{}\">{}</text>\n", y, escaped(line));
   }

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "analysis/statistics/proportion.hpp"
+#include "core/text/citations.hpp"
 namespace tapstudy::analysis {
 // A small figure within a page, in the page's colours, that scales with the page's width.
 struct ChartPoint {
@@ -14,7 +15,7 @@ struct ChartPoint {
 };
 
 struct Chart {
-  std::string caption;
+  core::CitingText caption;
   std::string alternative;  // what it shows, for those who cannot see it
   std::string x_label;
   std::string y_label;

@@ -1,5 +1,9 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <span>
 #include <string_view>
 
 #include "analysis/report/document/formats.hpp"
@@ -47,32 +51,16 @@ std::string escaped_numbers(const std::string& text) {
   return html;
 }
 
-std::string dot_plot(double share, const Interval& interval, double chance,
-                     const std::string& alternative) {
+namespace {
+std::string dot_plot(const Dot& dot, const std::string& alternative) {
   return fmt::format(
       R"(<svg class=dot viewBox="0 0 200 16" role=img aria-label="{}">)"
       "<line class=axis x1=0 y1=8 x2=200 y2=8 /><line class=chance x1={:.1f} y1=0 x2={:.1f} y2=16 "
       "/><line class=interval x1={:.1f} y1=8 x2={:.1f} y2=8 /><circle cx={:.1f} cy=8 r=4 /></svg>",
-      escaped(alternative), 200 * chance, 200 * chance, 200 * interval.low, 200 * interval.high,
-      200 * share);
+      escaped(alternative), 200 * dot.chance, 200 * dot.chance, 200 * dot.interval.low,
+      200 * dot.interval.high, 200 * dot.share);
 }
-
-std::string dot_plot(const Proportion& proportion, double chance) {
-  return proportion.trials == 0 ? ""
-                                : dot_plot(proportion.value(), wilson_interval(proportion), chance,
-                                           with_interval(proportion));
-}
-
-void write_dot_row(std::ostream& out, const std::string& title, const std::string& words,
-                   const std::string& dots) {
-  core::print(out, "<tr><th scope=row>{}</th><td>{}</td><td>{}</td></tr>\n", escaped(title),
-              escaped_numbers(words), dots);
-}
-
-void write_accuracy_row(std::ostream& out, const std::string& title, const Proportion& proportion,
-                        double chance) {
-  write_dot_row(out, title, with_interval(proportion), dot_plot(proportion, chance));
-}
+}  // namespace
 
 void write_hypotheses_html(std::ostream& out, const std::vector<HypothesisResult>& hypotheses) {
   if (hypotheses.empty()) {
@@ -85,7 +73,8 @@ void write_hypotheses_html(std::ostream& out, const std::vector<HypothesisResult
                                                    fraction(result.observed), 100.0 * result.chance)
                                      : "";
     const std::string adjusted =
-        result.p_holm ? fmt::format("; {} after Holm 1979", p_value(*result.p_holm)) : "";
+        result.p_holm ? fmt::format("; {} after {}", p_value(*result.p_holm), "Holm 1979"_source)
+                      : "";
     core::print(out, "<li>{} <b>{}</b> ({}{}{})</li>\n", escaped(result.planned.statement),
                 escaped(p_value(result)), observed, escaped(result.test), escaped(adjusted));
   }
@@ -99,13 +88,16 @@ struct ShownColumn {
   std::size_t index{};
   const char* style{};  // an attribute
   std::string heading;
+  bool has_dots{};
 };
 
 std::vector<ShownColumn> styled_columns(const ReportTable& table) {
   std::vector<ShownColumn> styled;
   for (const std::size_t i : shown_columns(table)) {
-    styled.push_back({i, is_text_column(table, i) ? " class=text" : "",
-                      escaped_numbers(table.columns[i].heading)});
+    styled.push_back(
+        {i, is_text_column(table, i) ? " class=text" : "",
+         escaped_numbers(table.columns[i].heading),
+         std::ranges::any_of(table.rows, [&](const auto& row) { return row[i].dot.has_value(); })});
   }
   return styled;
 }
@@ -116,50 +108,97 @@ void write_cells(std::ostream& out, const std::vector<ShownColumn>& shown,
   out << "<tr>";
   bool is_first = true;
   for (const ShownColumn& column : shown) {
-    const std::string text = escaped_numbers(row[column.index].text);
+    const Cell& cell = row[column.index];
+    const std::string text = escaped_numbers(cell.text);
     if (is_first) {
       core::print(out, "<th scope=row{}>{}</th>", column.style, text);
     } else {
       core::print(out, "<td{} data-heading=\"{}\">{}</td>", column.style, column.heading, text);
     }
+    if (column.has_dots) {
+      core::print(out, "<td>{}</td>", cell.dot ? dot_plot(*cell.dot, cell.text) : "");
+    }
     is_first = false;
   }
   out << "</tr>\n";
 }
+
+// The relative luminance of a colour in sRGB, which the contrast ratio is made of (WCAG 2.1).
+double luminance(const std::array<int, 3>& colour) {
+  constexpr std::array<double, 3> weights{0.2126, 0.7152, 0.0722};
+  double sum = 0.0;
+  for (std::size_t i = 0; i < colour.size(); ++i) {
+    const double part = colour[i] / 255.0;
+    sum += weights[i] * (part <= 0.03928 ? part / 12.92 : std::pow((part + 0.055) / 1.055, 2.4));
+  }
+  return sum;
+}
+
+// The ground goes from white to deep blue; the text is white or black, whichever contrasts more.
+std::string cell_style(double share) {
+  const double x = std::sqrt(share);
+  const auto mix = [&](int from, int to) {
+    return static_cast<int>(std::lround(from + x * (to - from)));
+  };
+  const std::array<int, 3> colour{mix(247, 8), mix(251, 69), mix(255, 148)};
+  const double ground = luminance(colour) + 0.05;
+  return fmt::format("background:rgb({},{},{});color:{}", colour[0], colour[1], colour[2],
+                     1.05 / ground > ground / 0.05 ? "#fff" : "#000");
+}
+
+void write_matrix_html(std::ostream& out, const ReportTable& table) {
+  out << "<div class=scroll tabindex=0 role=group aria-label=\"Confusion matrix\">"
+         "<table class=matrix><caption>Rows: presented. Columns: answered. Each cell: count and "
+         "share of its row.</caption><thead><tr><td></td>";
+  const std::vector<std::size_t> shown = shown_columns(table);
+  const std::span<const std::size_t> counts = std::span{shown}.subspan(1);
+  for (const std::size_t column : counts) {
+    core::print(out, "<th scope=col>{}</th>", escaped(table.columns[column].heading));
+  }
+  out << "<th class=total scope=col>n</th></tr></thead><tbody>\n";
+  for (const std::vector<Cell>& row : table.rows) {
+    core::print(out, "<tr><th scope=row>{}</th>", escaped(row[shown.front()].text));
+    std::int64_t total = 0;
+    for (const std::size_t column : counts) {
+      total += std::get<std::int64_t>(row[column].values.front());
+    }
+    for (const std::size_t column : counts) {
+      const Proportion cell{std::get<std::int64_t>(row[column].values.front()), total};
+      core::print(out, R"(<td class="{}" style="{}"><b>{}</b><span>{}</span></td>)",
+                  row[column].is_right ? "correct" : "",
+                  cell_style(total == 0 ? 0.0 : cell.value()), cell.successes, percent(cell));
+    }
+    core::print(out, "<td class=total>{}</td></tr>\n", total);
+  }
+  out << "</tbody></table></div>\n";
+}
 }  // namespace
 
 void write_table_html(std::ostream& out, const ReportTable& table) {
+  if (table.is_matrix) {
+    write_matrix_html(out, table);
+    return;
+  }
   const std::vector<ShownColumn> shown = styled_columns(table);
+  const bool has_dots = std::ranges::any_of(shown, &ShownColumn::has_dots);
   core::print(out,
               "<h3>{0}</h3><div class=scroll tabindex=0 role=group aria-label=\"{0}\">"
-              "<table class=\"data{1}\"><thead><tr>",
-              escaped(table.title), shown.size() >= wide ? " wide" : "");
+              "<table class=\"{1}\"><thead><tr>",
+              escaped(table.title),
+              has_dots               ? "accuracy"
+              : shown.size() >= wide ? "data wide"
+                                     : "data");
   for (const ShownColumn& column : shown) {
-    core::print(out, "<th scope=col{}>{}</th>", column.style, column.heading);
+    core::print(out, "<th scope=col{}>{}</th>{}", column.style, column.heading,
+                column.has_dots ? "<td></td>" : "");
   }
   out << "</tr></thead><tbody>\n";
   for (const auto& row : table.rows) {
     write_cells(out, shown, row);
   }
   out << "</tbody></table></div>\n";
-}
-
-void TabularSummary::write_html(std::ostream& out) const {
-  for (const ReportTable& table : parts) {
-    if (!table.is_for_programs && !table.rows.empty()) {
-      write_table_html(out, table);
-    }
+  if (!table.note.empty()) {
+    core::print(out, "<p class=note>{}</p>\n", escaped(table.note));
   }
-  if (!charts.empty()) {
-    out << "<div class=charts>\n";
-    for (const Chart& chart : charts) {
-      out << inline_svg(chart);
-    }
-    out << "</div>\n";
-  }
-  for (const std::string& remark : remarks) {
-    core::print(out, "<p class=note>{}</p>\n", escaped(remark));
-  }
-  write_hypotheses_html(out, hypotheses);
 }
 }  // namespace tapstudy::analysis

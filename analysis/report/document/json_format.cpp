@@ -72,13 +72,4 @@ nlohmann::ordered_json table_json(const ReportTable& table) {
   return rows;
 }
 
-nlohmann::ordered_json TabularSummary::as_json() const {
-  Json json{{"block", block}, {"task", task}};
-  for (const ReportTable& table : parts) {
-    json[table.name] = table_json(table);
-  }
-  json["remarks"] = remarks;
-  json["hypotheses"] = analysis::as_json(hypotheses);
-  return json;
-}
 }  // namespace tapstudy::analysis

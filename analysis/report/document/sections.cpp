@@ -8,13 +8,19 @@
 #include "analysis/report/document/formats.hpp"
 #include "core/text/print.hpp"
 namespace tapstudy::analysis {
-namespace {
-bool is_shown(const ReportTable& table) {
-  return !table.is_for_programs && !table.rows.empty();
+std::vector<const ReportTable*> tables_shown(const ReportSection& section, bool ShownIn::*format) {
+  std::vector<const ReportTable*> shown;
+  for (const ReportTable& table : section.tables) {
+    if (table.shown_in.*format && !table.rows.empty()) {
+      shown.push_back(&table);
+    }
+  }
+  return shown;
 }
 
+namespace {
 bool has_content(const ReportSection& section) {
-  return std::ranges::any_of(section.tables, is_shown) || !section.charts.empty() ||
+  return !tables_shown(section, &ShownIn::page).empty() || !section.charts.empty() ||
          !section.remarks.empty();
 }
 
@@ -28,13 +34,11 @@ void write_charts(std::ostream& out, const std::vector<Chart>& charts) {
   }
   out << "</div>\n";
 }
+}  // namespace
 
-void write_section(std::ostream& out, const ReportSection& section, const std::string& id) {
-  core::print(out, "<section id=\"{}\"><h3>{}</h3>\n", escaped(id), escaped(section.title));
-  for (const ReportTable& table : section.tables) {
-    if (is_shown(table)) {
-      write_table_html(out, table);
-    }
+void write_contents_html(std::ostream& out, const ReportSection& section) {
+  for (const ReportTable* const table : tables_shown(section, &ShownIn::page)) {
+    write_table_html(out, *table);
   }
   write_charts(out, section.charts);
   if (!section.folded_charts.empty()) {
@@ -46,28 +50,30 @@ void write_section(std::ostream& out, const ReportSection& section, const std::s
   for (const std::string& remark : section.remarks) {
     core::print(out, "<p class=note>{}</p>\n", escaped(remark));
   }
-  out << "</section>\n";
 }
-}  // namespace
 
-void write_sections_text(std::ostream& out, const std::vector<ReportSection>& sections) {
+void write_contents_text(std::ostream& out, const ReportSection& section) {
+  for (const ReportTable* const table : tables_shown(section, &ShownIn::text)) {
+    write_table_text(out, *table);
+  }
+  for (const std::string& line : section.terminal_lines) {
+    out << wrapped(line, 2);
+  }
+  for (const std::string& remark : section.remarks) {
+    out << wrapped(remark, 2);
+  }
+}
+
+void write_sections_text(std::ostream& out, std::span<const ReportSection> sections) {
   for (const ReportSection& section : sections) {
-    if (!has_content(section)) {
-      continue;
-    }
-    core::print(out, "\n{}\n\n", section.title);
-    for (const ReportTable& table : section.tables) {
-      if (is_shown(table)) {
-        write_table_text(out, table);
-      }
-    }
-    for (const std::string& remark : section.remarks) {
-      out << wrapped(remark, 2);
+    if (has_content(section)) {
+      core::print(out, "\n{}\n\n", section.title);
+      write_contents_text(out, section);
     }
   }
 }
 
-void write_sections_html(std::ostream& out, const std::vector<ReportSection>& sections,
+void write_sections_html(std::ostream& out, std::span<const ReportSection> sections,
                          const std::string& anchor) {
   const auto id_of = [&](std::size_t i) { return fmt::format("{}-{}", anchor, i + 1); };
   const bool is_long = std::ranges::count_if(sections, has_content) > 1;
@@ -83,7 +89,10 @@ void write_sections_html(std::ostream& out, const std::vector<ReportSection>& se
   out << (is_long ? "</ul></nav>\n" : "");
   for (std::size_t i = 0; i < sections.size(); ++i) {
     if (has_content(sections[i])) {
-      write_section(out, sections[i], id_of(i));
+      core::print(out, "<section id=\"{}\"><h3>{}</h3>\n", escaped(id_of(i)),
+                  escaped(sections[i].title));
+      write_contents_html(out, sections[i]);
+      out << "</section>\n";
     }
   }
 }
@@ -92,7 +101,9 @@ void add_sections(nlohmann::ordered_json& json, const std::vector<ReportSection>
   auto remarks = nlohmann::ordered_json::array();
   for (const ReportSection& section : sections) {
     for (const ReportTable& table : section.tables) {
-      json[table.name] = table_json(table);
+      if (table.shown_in.json) {
+        json[table.name] = table_json(table);
+      }
     }
     for (const std::string& remark : section.remarks) {
       if (std::ranges::find(remarks, nlohmann::ordered_json(remark)) == remarks.end()) {
@@ -107,10 +118,39 @@ std::vector<CsvTable> csv_of(const std::vector<ReportSection>& sections) {
   std::vector<CsvTable> written;
   for (const ReportSection& section : sections) {
     for (const ReportTable& table : section.tables) {
-      written.push_back(
-          {table.name + ".csv", [&table](std::ostream& out) { write_table_csv(out, table); }});
+      if (table.shown_in.csv) {
+        written.push_back(
+            {table.name + ".csv", [&table](std::ostream& out) { write_table_csv(out, table); }});
+      }
     }
   }
   return written;
+}
+
+namespace {
+void add_to(std::set<core::Source>& sources, const CitingText& text) {
+  sources.insert(text.sources.begin(), text.sources.end());
+}
+}  // namespace
+
+void add_sources(std::set<core::Source>& sources, const ReportSection& section) {
+  for (const ReportTable* const table : tables_shown(section, &ShownIn::page)) {
+    add_to(sources, table->title);
+    add_to(sources, table->note);
+    for (const std::size_t column : shown_columns(*table)) {
+      add_to(sources, table->columns[column].heading);
+      for (const auto& row : table->rows) {
+        add_to(sources, row[column].text);
+      }
+    }
+  }
+  for (const auto* const charts : {&section.charts, &section.folded_charts}) {
+    for (const Chart& chart : *charts) {
+      add_to(sources, chart.caption);
+    }
+  }
+  for (const CitingText& remark : section.remarks) {
+    add_to(sources, remark);
+  }
 }
 }  // namespace tapstudy::analysis

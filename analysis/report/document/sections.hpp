@@ -1,9 +1,12 @@
 #pragma once
+#include <functional>
 #include <nlohmann/json_fwd.hpp>
+#include <ostream>
+#include <set>
+#include <span>
 #include <string>
 #include <vector>
 
-#include "analysis/report/document/block_summary.hpp"
 #include "analysis/report/document/cells.hpp"
 #include "analysis/report/document/chart.hpp"
 namespace tapstudy::analysis {
@@ -12,40 +15,34 @@ struct ReportSection {
   std::string title;
   std::vector<ReportTable> tables{};  // those without rows are left out for people
   std::vector<Chart> charts{};
-  std::vector<std::string> remarks{};  // how it was computed, and what could not be
+  std::vector<CitingText> remarks{};   // how it was computed, and what could not be
   std::vector<Chart> folded_charts{};  // shown on demand
   bool is_detail{};                    // for the page and files; not printed beside results
   std::string name{};                  // by which it is asked for, where it is of a whole study
+  std::vector<std::string> terminal_lines{};  // results in words; in text only
 };
 
+// A separate CSV table: its file name suffix and its writer.
+struct CsvTable {
+  std::string name;
+  std::function<void(std::ostream&)> write;
+};
+
+// The same without its title.
+void write_contents_text(std::ostream& out, const ReportSection& section);
+void write_contents_html(std::ostream& out, const ReportSection& section);
 // Titles, tables and remarks; figures are left out.
-void write_sections_text(std::ostream& out, const std::vector<ReportSection>& sections);
+void write_sections_text(std::ostream& out, std::span<const ReportSection> sections);
 // A list of contents with links where there are several, then the sections. `anchor`: of the block,
 // unlike that of others.
-void write_sections_html(std::ostream& out, const std::vector<ReportSection>& sections,
+void write_sections_html(std::ostream& out, std::span<const ReportSection> sections,
                          const std::string& anchor);
 // Every table under its name, and "remarks".
 void add_sections(nlohmann::ordered_json& json, const std::vector<ReportSection>& sections);
 // TABLE.csv of every table; the sections outlive what is returned.
 std::vector<CsvTable> csv_of(const std::vector<ReportSection>& sections);
-
-// A summary as tables, sentences and figures. Every format is made from the same cells: text and
-// HTML show their words, JSON and CSV their values. Text has the figures' tables instead.
-class TabularSummary final : public BlockSummary {
- public:
-  using BlockSummary::BlockSummary;
-  void write_text(std::ostream& out) const override;  // in 100 columns
-  void write_html(std::ostream& out) const override;
-  // {"block", "task", TABLE: [{key: value}], "remarks": [sentence], "hypotheses"}
-  nlohmann::ordered_json as_json() const override;
-  std::vector<CsvTable> tables() const override;  // TABLE.csv, a header of keys
-  std::vector<ReportTable> report_tables() const override { return parts; }
-  std::vector<Chart> figures() const override { return charts; }
-  std::vector<MainResult> main_results() const override { return main; }
-
-  std::vector<ReportTable> parts;    // those without rows are left out for people
-  std::vector<std::string> remarks;  // how it was computed, and what could not be
-  std::vector<Chart> charts;
-  std::vector<MainResult> main;
-};
+// Every table that people see of a section in this format.
+std::vector<const ReportTable*> tables_shown(const ReportSection& section, bool ShownIn::*format);
+// Adds the publications that the page cites in the section.
+void add_sources(std::set<core::Source>& sources, const ReportSection& section);
 }  // namespace tapstudy::analysis

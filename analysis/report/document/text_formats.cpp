@@ -69,7 +69,8 @@ std::string wrapped(const std::string& text, std::size_t indent) {
 void write_hypotheses_text(std::ostream& out, const std::vector<HypothesisResult>& hypotheses) {
   for (const HypothesisResult& result : hypotheses) {
     const std::string adjusted =
-        result.p_holm ? fmt::format(", {} after Holm 1979", p_value(*result.p_holm)) : "";
+        result.p_holm ? fmt::format(", {} after {}", p_value(*result.p_holm), "Holm 1979"_source)
+                      : "";
     out << wrapped(result.planned.statement, 2)
         << wrapped(result.p ? fmt::format("{} against {:.0f} % by chance: {} ({}){}",
                                           fraction(result.observed), 100.0 * result.chance,
@@ -90,9 +91,14 @@ Grid grid_of(const ReportTable& table) {
   Grid grid;
   grid.rows.resize(table.rows.size());
   for (const std::size_t i : shown_columns(table)) {
-    grid.headings.push_back(table.columns[i].heading);
+    const Column& column = table.columns[i];
+    grid.headings.push_back(!table.is_matrix ? column.heading.words
+                            : i == 0         ? "presented \\ answered"
+                                             : column.keys.front());
     for (std::size_t row = 0; row < table.rows.size(); ++row) {
-      grid.rows[row].push_back(table.rows[row][i].text);
+      const Cell& cell = table.rows[row][i];
+      grid.rows[row].push_back(
+          table.is_matrix && i == 0 ? std::get<std::string>(cell.values.front()) : cell.text.words);
     }
   }
   return grid;
@@ -140,7 +146,7 @@ void write_table_text(std::ostream& out, const ReportTable& table) {
     total += width + 2;
   }
   out << wrapped(table.title, 2);
-  if (total > terminal_columns) {
+  if (total > terminal_columns && !table.is_matrix) {
     write_entries(out, grid);
   } else {
     write_line(out, grid.headings, widths);
@@ -149,18 +155,6 @@ void write_table_text(std::ostream& out, const ReportTable& table) {
     }
   }
   out << '\n';
-}
-
-void TabularSummary::write_text(std::ostream& out) const {
-  for (const ReportTable& table : parts) {
-    if (!table.is_for_programs && !table.rows.empty()) {
-      write_table_text(out, table);
-    }
-  }
-  for (const std::string& remark : remarks) {
-    out << wrapped(remark, 2);
-  }
-  write_hypotheses_text(out, hypotheses);
 }
 
 namespace {
@@ -173,7 +167,6 @@ struct ToCsv {
   std::string operator()(std::int64_t value) const { return fmt::format("{}", value); }
   std::string operator()(const std::string& text) const { return csv_cell(text); }
 };
-
 }  // namespace
 
 void write_table_csv(std::ostream& out, const ReportTable& table) {
@@ -195,15 +188,6 @@ void write_table_csv(std::ostream& out, const ReportTable& table) {
     }
     out << '\n';
   }
-}
-
-std::vector<CsvTable> TabularSummary::tables() const {
-  std::vector<CsvTable> written;
-  for (const ReportTable& table : parts) {
-    written.push_back(
-        {table.name + ".csv", [&table](std::ostream& out) { write_table_csv(out, table); }});
-  }
-  return written;
 }
 
 namespace {
@@ -259,7 +243,7 @@ void write_table_latex(std::ostream& out, const ReportTable& table, const std::s
   core::print(out,
               "\\begin{{table}}[htbp]\n\\centering\n\\caption{{{}}}\n\\label{{tab:{}}}\n"
               "\\begin{{tabular}}{{{}}}\n\\toprule\n",
-              latex_text(table.title), label, alignment);
+              latex_text(table.title.words), label, alignment);
   const auto write_row = [&](const auto& text_of) {
     const std::string& first = text_of(shown.front());
     out << (first.starts_with('[') || first.starts_with('*') ? "{}" : "");  // no option of the line

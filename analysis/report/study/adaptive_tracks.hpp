@@ -19,7 +19,7 @@ struct TrackResult {
   std::string participant_id;
   std::string block;
   int track{};            // of the block, from 1
-  std::string procedure;  // with its source
+  CitingText procedure;  // with its source
   std::size_t trials{};
   bool is_finished{};
   bool is_signed{};                             // its levels lie on both sides of the standard

@@ -222,8 +222,9 @@ ReportSection questionnaires_section(const std::vector<Questionnaire>& forms,
       "Marks on a line are from 0 (low) to 1 (high). Free text is counted, not printed.");
   if (is_any_scored) {
     section.remarks.emplace_back(
-        "Task load is the raw TLX: the mean of the six scales of NASA-TLX without weights, from 0 "
-        "to 100 (Hart and Staveland 1988; Hart 2006), of those who answered all six.");
+        core::citing("Task load is the raw TLX: the mean of the six scales of NASA-TLX without "
+                     "weights, from 0 to 100 ({}; {}), of those who answered all six.",
+                     "Hart and Staveland 1988"_source, "Hart 2006"_source));
   }
   return section;
 }

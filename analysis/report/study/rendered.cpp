@@ -40,8 +40,8 @@ ReportTable participants_taps_table(const std::map<std::string, TapsOfParticipan
                           interval(contacts_s.back(), none)});
   }
   if (participants.size() > 1) {
-    table.rows.push_back(
-        {word("mean"), count(all), mean_cell(speeds_m_s), mean_cell(peaks_n), mean_cell(contacts_s)});
+    table.rows.push_back({word("mean"), count(all), mean_cell(speeds_m_s), mean_cell(peaks_n),
+                          mean_cell(contacts_s)});
   }
   return table;
 }
@@ -123,7 +123,7 @@ ReportTable modes_table(const RenderedStudy& study) {
                     "Modes in the band",
                     {column("", "stimulus"), column("", "mode"), column("", "frequency_hz"),
                      column("", "damping_ratio")}};
-  table.is_for_programs = true;
+  table.shown_in = programs_only;
   for (const RenderedStimulus& stimulus : study.stimuli) {
     const std::size_t modes = stimulus.model ? stimulus.model->frequencies_hz.size() : 0;
     for (std::size_t i = 0; i < modes; ++i) {
@@ -192,7 +192,7 @@ ReportTable waveforms_table(const RenderedStudy& study) {
                     {column("", "stimulus"), column("", "point"), column("", "time_s"),
                      column("", "taps"), column("", "total_n"), column("", "total_sd_n"),
                      column("", "added_n"), column("", "added_sd_n")}};
-  table.is_for_programs = true;
+  table.shown_in = programs_only;
   for (std::size_t i = 0; i < study.stimuli.size(); ++i) {
     for (const PointTaps& at : study.taps[i].points) {
       const TapStatistics& taps = at.taps;
@@ -213,7 +213,7 @@ ReportTable spectra_table(const RenderedStudy& study) {
                     "Magnitude of what is added to the contact spring",
                     {column("", "stimulus"), column("", "point"), column("", "frequency_hz"),
                      column("", "added_n_per_hz")}};
-  table.is_for_programs = true;
+  table.shown_in = programs_only;
   for (std::size_t i = 0; i < study.stimuli.size(); ++i) {
     for (const PointTaps& at : study.taps[i].points) {
       if (at.taps.taps() == 0 || !at.taps.has_added()) {

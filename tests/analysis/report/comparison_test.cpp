@@ -16,7 +16,7 @@ void add(Blocks& blocks, const std::string& name, const PersonalValues& values,
   analysis::BlockDesign design;
   design.name = name;
   design.part_of = part_of;
-  auto block = std::make_shared<analysis::TabularSummary>(design);
+  auto block = std::make_shared<analysis::BlockSummary>(design);
   block->personal = values;
   blocks.push_back(block);
 }

@@ -128,7 +128,7 @@ TEST_CASE("answers of known participants are summarised over participants",
   }
   const Summary summary = summarise(answers_in(text), "answers", "tell_apart");
   CHECK(summary.participants == 3);
-  const auto results = summary.blocks.front()->main_results();
+  const auto results = summary.blocks.front()->main_results;
   REQUIRE(results.size() == 1);
   CHECK(results.front().estimate == Approx(7.0 / 8.0).margin(0.001));
   CHECK(results.front().p.has_value());

@@ -15,8 +15,8 @@ using namespace tapstudy;
 using namespace tapstudy::analysis;
 
 namespace {
-TabularSummary small_summary() {
-  TabularSummary summary{BlockDesign{}};
+BlockSummary small_summary() {
+  BlockSummary summary{BlockDesign{}};
   ReportTable table{
       "heights",
       "Heights",
@@ -25,8 +25,8 @@ TabularSummary small_summary() {
                         interval(1.5, {1.0, std::numeric_limits<double>::infinity()}),
                         word("tall")});
   table.rows.push_back({word("c"), nothing(table.columns[1]), {"", {Value{}}}});
-  summary.parts.push_back(table);
-  summary.remarks.emplace_back("Of <two> people.");
+  summary.results().tables.push_back(table);
+  summary.results().remarks.emplace_back("Of <two> people.");
   return summary;
 }
 }  // namespace
@@ -64,7 +64,7 @@ TEST_CASE("a table for LaTeX shows every character as itself", "[analysis][table
 }
 
 TEST_CASE("a table too wide for a terminal is written entry by entry", "[analysis][tables]") {
-  TabularSummary summary{BlockDesign{}};
+  BlockSummary summary{BlockDesign{}};
   ReportTable table{"wide", "Wide", {}};
   std::vector<Cell> row;
   for (int i = 0; i < 12; ++i) {
@@ -72,7 +72,7 @@ TEST_CASE("a table too wide for a terminal is written entry by entry", "[analysi
     row.push_back(word("value " + std::to_string(i)));
   }
   table.rows.push_back(row);
-  summary.parts.push_back(table);
+  summary.results().tables.push_back(table);
   const std::string text = testing::formats_of(summary).text;
   CHECK(testing::longest_line(text) <= 100);
   CHECK_THAT(text, Contains("    heading 11: value 11\n"));
@@ -184,7 +184,7 @@ TEST_CASE("the interval of pooled answers is that over participants, never the s
         std::vector<Value>{26, 48, 26.0 / 48.0, over->interval.low, over->interval.high});
   const Interval score = wilson_interval({26, 48});
   CHECK(over->interval.high - over->interval.low > 1.5 * (score.high - score.low));
-  CHECK_THAT(cell.text,
+  CHECK_THAT(cell.text.words,
              Contains(fmt::format("26/48 = 54 % ({:.0f} % estimated over 6 participants, 95 % CI ",
                                   100.0 * over->mean)));
 }
@@ -196,5 +196,5 @@ TEST_CASE("answers of one participant have their score interval, of none no shar
   CHECK(none.values == proportion({0, 0}).values);
   const Cell one_of_two = pooled_proportion({{6, 8}, {0, 0}});
   CHECK(one_of_two.values == std::vector<Value>{6, 8, 0.75, Value{}, Value{}});
-  CHECK_THAT(one_of_two.text, !Contains("CI"));
+  CHECK_THAT(one_of_two.text.words, !Contains("CI"));
 }

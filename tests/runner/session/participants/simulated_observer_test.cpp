@@ -332,7 +332,7 @@ double as_level_db(double fraction) {
 double threshold_db(double internal_noise_db, const std::string& values, int participants = 10) {
   const std::string constant = fmt::format("{{constant: {{values: {}, repetitions: 24}}}}", values);
   const auto block = reported(internal_noise_db, constant, participants);
-  return as_level_db(block->main_results().at(0).estimate);
+  return as_level_db(block->main_results.at(0).estimate);
 }
 
 struct Recovered {

@@ -1,16 +1,25 @@
-#include "analysis/report/references.hpp"
+#pragma once
+#include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
-namespace tapstudy::analysis {
-namespace {
+#include <compare>
+#include <concepts>
+#include <cstddef>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace tapstudy::core {
 struct Reference {
-  std::string_view key;  // as it is cited
+  std::string_view key;  // as a text names it: "Author year"
   std::string_view full;
 };
-constexpr std::array references{
-    Reference{"Berger 1982",
-              "Berger, R. L. (1982). Multiparameter hypothesis testing and acceptance sampling. "
-              "Technometrics 24, 295–300."},
+
+// The publications that texts cite, by author. Each is cited by some text of the program.
+inline constexpr std::array references{
     Reference{"Besag & Clifford 1989",
               "Besag, J. & Clifford, P. (1989). Generalized Monte Carlo significance tests. "
               "Biometrika 76, 633–642."},
@@ -42,12 +51,6 @@ constexpr std::array references{
         "Friedman 1937",
         "Friedman, M. (1937). The use of ranks to avoid the assumption of normality implicit in "
         "the analysis of variance. Journal of the American Statistical Association 32, 675–701."},
-    Reference{
-        "Frijters 1979",
-        "Frijters, J. E. R. (1979). Variations of the triangular method and the relationship "
-        "of its unidimensional probabilistic models to three-alternative forced-choice signal "
-        "detection theory models. British Journal of Mathematical and Statistical Psychology "
-        "32, 229–241."},
     Reference{"Goodman 1965",
               "Goodman, L. A. (1965). On simultaneous confidence intervals for multinomial "
               "proportions. Technometrics 7, 247–254."},
@@ -107,6 +110,9 @@ constexpr std::array references{
     Reference{"Luce 1963",
               "Luce, R. D. (1963). Detection and recognition. In R. D. Luce, R. R. Bush & E. "
               "Galanter (eds.), Handbook of Mathematical Psychology 1, 103–189."},
+    Reference{"Macmillan & Creelman 2005",
+              "Macmillan, N. A. & Creelman, C. D. (2005). Detection Theory: A User's Guide, 2nd "
+              "ed. Lawrence Erlbaum."},
     Reference{"Maxwell 1970",
               "Maxwell, A. E. (1970). Comparing the classification of subjects by two independent "
               "judges. British Journal of Psychiatry 116, 651–655."},
@@ -163,15 +169,79 @@ constexpr std::array references{
     Reference{"Zou & Donner 2008",
               "Zou, G. Y. & Donner, A. (2008). Construction of confidence limits about effect "
               "measures: a general approach. Statistics in Medicine 27, 1693–1702."}};
-}  // namespace
 
-std::vector<std::string> references_in(std::string_view text) {
-  std::vector<std::string> found;
-  for (const Reference& reference : references) {
-    if (text.find(reference.key) != std::string_view::npos) {
-      found.emplace_back(reference.full);
-    }
+// A publication of the table above.
+struct Source {
+  std::size_t place{};
+  constexpr const Reference& reference() const { return references[place]; }
+  std::string_view view() const { return reference().key; }
+  auto operator<=>(const Source&) const = default;
+};
+
+// The source with this key. A key that is not in the table does not compile.
+consteval Source operator""_source(const char* key, std::size_t length) {
+  const auto found = std::ranges::find(references, std::string_view{key, length}, &Reference::key);
+  if (found == references.end()) {
+    throw std::invalid_argument{"the table of references has no such key"};
   }
-  return found;
+  return {static_cast<std::size_t>(found - references.begin())};
 }
-}  // namespace tapstudy::analysis
+
+// A text with the sources that it names. It converts to its words, but not silently in a longer
+// text, which would lose the sources: `citing` puts texts together.
+struct CitingText {
+  std::string words{};
+  std::vector<Source> sources{};
+
+  CitingText() = default;
+  CitingText(std::string text) : words{std::move(text)} {}
+  CitingText(const char* text) : words{text} {}
+  operator const std::string&() const { return words; }
+  std::string_view view() const { return words; }
+  bool empty() const { return words.empty(); }
+  CitingText& operator+=(const CitingText& more) {
+    words += more.words;
+    sources.insert(sources.end(), more.sources.begin(), more.sources.end());
+    return *this;
+  }
+  bool operator==(const CitingText& other) const { return words == other.words; }
+  auto operator<=>(const CitingText& other) const { return words <=> other.words; }
+};
+
+inline void note_sources(CitingText& text, const Source& source) {
+  text.sources.push_back(source);
+}
+inline void note_sources(CitingText& text, const CitingText& part) {
+  text.sources.insert(text.sources.end(), part.sources.begin(), part.sources.end());
+}
+template <class Other>
+void note_sources(CitingText&, const Other&) {}
+
+// As fmt::format; the text has the sources among the parts, which show as their keys, and those of
+// the parts.
+template <class... Parts>
+CitingText citing(fmt::format_string<Parts...> format, Parts&&... parts) {
+  CitingText text{fmt::format(format, std::forward<Parts>(parts)...)};
+  (note_sources(text, parts), ...);
+  return text;
+}
+
+// The texts with this between them.
+inline CitingText joined(const std::vector<CitingText>& texts, const char* between) {
+  CitingText all;
+  for (std::size_t i = 0; i < texts.size(); ++i) {
+    all += i == 0 ? "" : between;
+    all += texts[i];
+  }
+  return all;
+}
+}  // namespace tapstudy::core
+
+template <class Text>
+requires std::same_as<Text, tapstudy::core::Source> ||
+    std::same_as<Text, tapstudy::core::CitingText>
+struct fmt::formatter<Text> : fmt::formatter<std::string_view> {
+  auto format(const Text& text, format_context& context) const {
+    return fmt::formatter<std::string_view>::format(text.view(), context);
+  }
+};

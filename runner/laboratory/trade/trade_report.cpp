@@ -7,10 +7,9 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "analysis/statistics/csv_rows.hpp"
+#include "analysis/report/document/formats.hpp"
 #include "core/error.hpp"
 #include "core/files/output_files.hpp"
-#include "core/text/print.hpp"
 namespace tapstudy::runner {
 namespace {
 std::string row(const Evaluation& one) {
@@ -112,53 +111,62 @@ void print(const Trade& trade, const Stability& stability, const std::string& di
   print_stability(stability);
 }
 
-void write_csv(std::ostream& out, const Trade& trade) {
-  out << "order,elements,dof,band_limit_hz,modes,integrator,rate_hz,build_s,tick_ns,cost_s,"
-         "frequency_error,missing_modes,extra_modes,level_error_db,decay_error_db,force_error,is_"
-         "on_front,is_inside_tolerance,is_protocols\n";
-  for (const Evaluation& one : trade.settings) {
-    core::print(out,
-                "{},{},{},{},{},{},{},{:.6g},{:.6g},{:.6g},{:.9g},{},{},{:.9g},{:.9g},{:.9g},{:d},{"
-                ":d},{:d}\n",
-                one.setting.mesh.order, one.tets, one.dofs, one.setting.band_limit_hz, one.modes,
-                name(one.setting.integrator), one.setting.rate_hz, one.build_s, one.tick_ns,
-                one.cost_s, one.frequency_error, one.missing_modes, one.extra_modes,
-                one.level_error_db, one.decay_error_db, one.force_error, one.is_on_front,
-                one.is_inside_tolerance, one.setting.is_protocols);
-  }
-}
-
-void write_csv(std::ostream& out, const Stability& stability) {
-  out << "property,value,outcome,words\n";
-  for (const StabilityCase& one : stability.cases) {
-    core::print(out, "{},{:.17g},{},{}\n", one.property, one.value, name(one.outcome),
-                analysis::csv_cell(one.words));
-  }
-}
-
 namespace {
-// The library writes infinity as null.
-nlohmann::ordered_json json_of(const Evaluation& one) {
-  return {{"order", one.setting.mesh.order},
-          {"max_tet_volume_m3", one.setting.mesh.size.max_tet_volume_m3.value_or(0.0)},
-          {"elements", one.tets},
-          {"dof", one.dofs},
-          {"band_limit_hz", one.setting.band_limit_hz},
-          {"modes", one.modes},
-          {"integrator", name(one.setting.integrator)},
-          {"rate_hz", one.setting.rate_hz},
-          {"build_s", one.build_s},
-          {"tick_ns", one.tick_ns},
-          {"cost_s", one.cost_s},
-          {"frequency_error", one.frequency_error},
-          {"missing_modes", one.missing_modes},
-          {"extra_modes", one.extra_modes},
-          {"level_error_db", one.level_error_db},
-          {"decay_error_db", one.decay_error_db},
-          {"force_error", one.force_error},
-          {"is_on_front", one.is_on_front},
-          {"is_inside_tolerance", one.is_inside_tolerance},
-          {"is_protocols", one.setting.is_protocols}};
+using analysis::count;
+using analysis::flag;
+using analysis::number;
+using analysis::ReportTable;
+using analysis::word;
+
+// Every row has the same keys.
+void add_row(ReportTable& table, const std::vector<std::pair<const char*, analysis::Cell>>& cells) {
+  const bool is_first = table.rows.empty();
+  table.rows.emplace_back();
+  for (const auto& [key, cell] : cells) {
+    table.rows.back().push_back(cell);
+    if (is_first) {
+      table.columns.push_back(analysis::column("", key));
+    }
+  }
+}
+
+ReportTable settings_table(const Trade& trade) {
+  ReportTable table{"settings", "", {}};
+  for (const Evaluation& one : trade.settings) {
+    const double volume_m3 = one.setting.mesh.size.max_tet_volume_m3.value_or(0.0);
+    add_row(table, {{"order", count(one.setting.mesh.order)},
+                    {"max_tet_volume_m3", number(volume_m3)},
+                    {"elements", count(one.tets)},
+                    {"dof", count(one.dofs)},
+                    {"band_limit_hz", number(one.setting.band_limit_hz)},
+                    {"modes", count(one.modes)},
+                    {"integrator", word(std::string{name(one.setting.integrator)})},
+                    {"rate_hz", number(one.setting.rate_hz)},
+                    {"build_s", number(one.build_s)},
+                    {"tick_ns", number(one.tick_ns)},
+                    {"cost_s", number(one.cost_s)},
+                    {"frequency_error", number(one.frequency_error)},
+                    {"missing_modes", count(one.missing_modes)},
+                    {"extra_modes", count(one.extra_modes)},
+                    {"level_error_db", number(one.level_error_db)},
+                    {"decay_error_db", number(one.decay_error_db)},
+                    {"force_error", number(one.force_error)},
+                    {"is_on_front", flag(one.is_on_front)},
+                    {"is_inside_tolerance", flag(one.is_inside_tolerance)},
+                    {"is_protocols", flag(one.setting.is_protocols)}});
+  }
+  return table;
+}
+
+ReportTable stability_table(const Stability& stability) {
+  ReportTable table{"stability", "", {}};
+  for (const StabilityCase& one : stability.cases) {
+    add_row(table, {{"property", word(one.property)},
+                    {"value", number(one.value)},
+                    {"outcome", word(std::string{name(one.outcome)})},
+                    {"words", word(one.words)}});
+  }
+  return table;
 }
 
 nlohmann::ordered_json json_of(const Reference& reference) {
@@ -181,10 +189,7 @@ std::string json_of(const Trade& trade, const Stability& stability) {
                        {"level_db", trade.tolerance.level_db},
                        {"default_from", "Israr & Tan 2006"}};
   json["reference"] = json_of(trade.reference);
-  json["settings"] = nlohmann::ordered_json::array();
-  for (const Evaluation& one : trade.settings) {
-    json["settings"].push_back(json_of(one));
-  }
+  json["settings"] = analysis::table_json(settings_table(trade));
   json["refused"] = nlohmann::ordered_json::array();
   for (const Refused& one : trade.refused) {
     json["refused"].push_back({{"order", one.mesh.order},
@@ -198,13 +203,7 @@ std::string json_of(const Trade& trade, const Stability& stability) {
     json["cheapest"] = trade.cheapest;
   }
   json["penalty_limit_n_per_m"] = stability.penalty_limit_n_per_m;
-  json["stability"] = nlohmann::ordered_json::array();
-  for (const StabilityCase& one : stability.cases) {
-    json["stability"].push_back({{"property", one.property},
-                                 {"value", one.value},
-                                 {"outcome", name(one.outcome)},
-                                 {"words", one.words}});
-  }
+  json["stability"] = analysis::table_json(stability_table(stability));
   return json.dump(2);
 }
 
@@ -277,10 +276,12 @@ void create_trade_directory(const std::string& directory) {
 }
 
 void write_files(const std::string& directory, const Trade& trade, const Stability& stability) {
-  core::write_new_file(in(directory, "trade.csv"),
-                       [&](std::ostream& out) { write_csv(out, trade); });
-  core::write_new_file(in(directory, "stability.csv"),
-                       [&](std::ostream& out) { write_csv(out, stability); });
+  core::write_new_file(in(directory, "trade.csv"), [&](std::ostream& out) {
+    analysis::write_table_csv(out, settings_table(trade));
+  });
+  core::write_new_file(in(directory, "stability.csv"), [&](std::ostream& out) {
+    analysis::write_table_csv(out, stability_table(stability));
+  });
   core::write_new_file(in(directory, "trade.json"),
                        [&](std::ostream& out) { out << json_of(trade, stability) << '\n'; });
   analysis::draw_svg(figure_of(trade), in(directory, "trade.svg"));

@@ -1,5 +1,4 @@
 #pragma once
-#include <ostream>
 #include <string>
 
 #include "analysis/report/figures/figure.hpp"
@@ -12,8 +11,6 @@ void print(const Trade& trade, const Stability& stability, const std::string& di
 
 std::string json_of(const Trade& trade, const Stability& stability);
 
-void write_csv(std::ostream& out, const Trade& trade);
-void write_csv(std::ostream& out, const Stability& stability);
 // Error over cost of every setting: of the force with the front, of the worst frequency with the
 // tolerance.
 analysis::Figure figure_of(const Trade& trade);

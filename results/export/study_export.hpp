@@ -63,9 +63,9 @@ struct StudyExport {
   std::vector<std::int64_t> trials;  // whose traces are written: each must have one
 };
 
-// Fills a directory: a file NAME.csv a table, csv-metadata.json (csv_export.cpp), protocol.yaml, and of
-// each trial that has a trace traces/trial_000001.csv. Throws InvalidInput where it cannot be
-// written, StoreError where the study cannot be read.
+// Fills a directory: a file NAME.csv a table, csv-metadata.json (csv_export.cpp), protocol.yaml,
+// and of each trial that has a trace traces/trial_000001.csv. Throws InvalidInput where it cannot
+// be written, StoreError where the study cannot be read.
 void write_csv_files(const std::string& directory, Store& store, const StudyExport& study);
 
 // Writes one new HDF5 file. Errors as above.

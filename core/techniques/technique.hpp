@@ -22,10 +22,11 @@ struct ForcePart {
   double (*added_stiffness_n_per_m)(const RenderSettings& settings){};
 };
 
-extern const ForcePart plate_vibration;     // plate_vibration_part.cpp
-extern const ForcePart coupled_vibration;   // coupled_vibration_part.cpp
-extern const ForcePart decaying_sinusoid;   // decaying_sinusoid_part.cpp
-extern const ForcePart recorded_transient;  // recorded_transient_part.cpp
+// force_parts.cpp
+extern const ForcePart plate_vibration;
+extern const ForcePart coupled_vibration;
+extern const ForcePart decaying_sinusoid;
+extern const ForcePart recorded_transient;
 
 // A rendering technique: the components added to the penalty force of the contact spring. The
 // components of a technique are distinct, and are added in order.

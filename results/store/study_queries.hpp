@@ -38,8 +38,9 @@ std::map<std::string, BlockCourseRow> block_courses(Store& store, Mode mode);
 
 using TakeChunk = std::function<void(std::int64_t trial_id, std::span<const core::TraceSample>)>;
 
-// Every trace of a study in one pass, trials by id, each in order of time: one chunk (4096 ticks)
-// is held at a time. Throws StoreError if a chunk cannot be decoded.
+// Every trace of a study in one pass, by session, number and attempt, each in order of time: one
+// chunk (4096 ticks) is held at a time. Ids follow the order of storing, which differs from run to
+// run where sessions are simulated at once. Throws StoreError if a chunk cannot be decoded.
 void each_trace_chunk(Store& store, const TakeChunk& take);
 
 // The samples of a row of trace_chunk, whose columns from this one on are codec, ticks and bytes.

@@ -1,5 +1,5 @@
 // Sections 5.2.2 and 5.2.3: which technique people choose as the most realistic, beside an observer
-// that chooses the one whose felt taps are nearest to those of a real plate (real_tap.hpp).
+// that chooses the one whose felt taps are nearest to those of a real plate (tap_responses.hpp).
 #include <fmt/format.h>
 
 #include <algorithm>

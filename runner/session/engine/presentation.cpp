@@ -14,7 +14,9 @@ namespace {
 // The operator's requests reach the trial, its selected alternative the operator, and each answer
 // that is entered, changed or withdrawn becomes a state of the session.
 TrialLinks links_of(const TrialInView& view, const SessionParts& parts) {
-  return {[&by = parts.by] { return OperatorRequests{by.take_switch(), by.request(), by.is_paused()}; },
+  return {[&by = parts.by] {
+            return OperatorRequests{by.take_switch(), by.request(), by.is_paused()};
+          },
           [&by = parts.by](std::size_t alternative) { by.alternative_is_selected(alternative); },
           [&](const std::string& answer) {
             const protocols::PlannedTrial& trial = view.trial;

@@ -88,8 +88,7 @@ class Participant {
   virtual void get_ready(const TrialPrompt& /*prompt*/) {}
   // Explores and answers: one of the prompt's answers, or nullopt if the trial could not be
   // finished.
-  virtual std::optional<std::string> perform(const TrialPrompt& prompt,
-                                             TrialControl& control) = 0;
+  virtual std::optional<std::string> perform(const TrialPrompt& prompt, TrialControl& control) = 0;
   // How sure the participant is of the answer just given; nullopt if that is not said.
   virtual std::optional<int> confidence(const protocols::Confidence& /*scale*/) { return {}; }
   // Which answer was right.

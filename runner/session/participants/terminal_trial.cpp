@@ -255,8 +255,7 @@ bool TerminalParticipant::corrects(const std::string& line, const TrialPrompt& p
     return true;
   }
   const std::shared_future<void> stored = prompt.previous->correct(text);
-  while (stored.wait_for(std::chrono::seconds{0}) != std::future_status::ready &&
-         control.poll()) {
+  while (stored.wait_for(std::chrono::seconds{0}) != std::future_status::ready && control.poll()) {
     control.pass_time(0.01);
   }
   try {
@@ -333,8 +332,8 @@ std::optional<std::string> TerminalParticipant::answer_by_itself(const TrialProm
   return std::nullopt;
 }
 
-std::optional<std::string> TerminalParticipant::answer_among_alternatives(
-    const TrialPrompt& prompt, TrialControl& control) {
+std::optional<std::string> TerminalParticipant::answer_among_alternatives(const TrialPrompt& prompt,
+                                                                          TrialControl& control) {
   const std::vector<std::string>& labels = prompt.alternative_labels;
   while (const auto line = next_line(prompt, control)) {
     wait_for_intervals(prompt, control);
@@ -355,9 +354,8 @@ std::optional<std::string> TerminalParticipant::answer_among_alternatives(
       continue;
     }
     say("  please type {}{}, or quit\n",
-        control.intervals() == nullptr
-            ? fmt::format("{} to feel one, ", fmt::join(labels, ", "))
-            : "",
+        control.intervals() == nullptr ? fmt::format("{} to feel one, ", fmt::join(labels, ", "))
+                                       : "",
         expected_among_alternatives(prompt));
   }
   return std::nullopt;

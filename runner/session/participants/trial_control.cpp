@@ -6,7 +6,8 @@ namespace {
 constexpr double interval_step_s = 0.01;  // an interval is so late at most in virtual time
 }  // namespace
 
-TrialControl::TrialControl(Exploration& loop, TrialRules rules, TrialEvents& events, TrialLinks links)
+TrialControl::TrialControl(Exploration& loop, TrialRules rules, TrialEvents& events,
+                           TrialLinks links)
     : loop_{loop}, rules_{std::move(rules)}, events_{events}, links_{std::move(links)} {
   if (rules_.settings) {
     setting_ = rules_.settings->start;
@@ -127,8 +128,8 @@ int TrialControl::contacts(std::size_t alternative) const {
 }
 
 Explored TrialControl::explored() const {
-  Explored so_far{time_s(), {},
-                  !sequence_ || sequence_->state().phase == IntervalState::Phase::over};
+  Explored so_far{
+      time_s(), {}, !sequence_ || sequence_->state().phase == IntervalState::Phase::over};
   for (std::size_t i = 0; i < rules_.alternatives; ++i) {
     so_far.contacts.push_back(contacts(i));
   }

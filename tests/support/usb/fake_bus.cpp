@@ -61,6 +61,8 @@ bool is_in_libusb(const void* return_address) {
   return libusb.first <= caller && caller < libusb.second;
 }
 
+// A forked process that waits for a reply asks so often; the bus's time passes meanwhile.
+constexpr std::chrono::microseconds between_reads{200};
 int generation = 0;  // of processes, counted from the test program on
 
 // A transfer of a forked process, there and back.
@@ -164,6 +166,7 @@ void FakeBus::answer_forked_processes() {
     {
       const std::lock_guard lock{mutex_};
       usbdevfs_bulktransfer transfer{asked.endpoint, asked.length, 0, asked.bytes.data()};
+      bus_time = bus_now() + between_reads;
       asked.result = usbfs_.ioctl(asked.request, &transfer);
       show_news();
     }
@@ -184,16 +187,16 @@ int FakeBus::ask_from_forked_process(unsigned long request, void* argument) {
     std::memcpy(asked.bytes.data(), transfer->data, transfer->len);
   }
   const bool is_read = asked.endpoint == in_endpoint;
-  const auto end = Clock::now() + std::chrono::milliseconds{is_read ? transfer->timeout : 0};
-  while (true) {
+  const std::chrono::milliseconds patience{is_read ? transfer->timeout : 0};
+  for (std::chrono::microseconds waited{0};; waited += between_reads) {
     if (send(line_[1], &asked, sizeof asked, MSG_NOSIGNAL) < 0 ||
         recv(line_[1], &asked, sizeof asked, 0) != sizeof asked) {
       return -ENODEV;
     }
-    if (!is_read || asked.result != -ETIMEDOUT || Clock::now() >= end) {
+    if (!is_read || asked.result != -ETIMEDOUT || waited >= patience) {
       break;
     }
-    usleep(200);
+    usleep(between_reads.count());
   }
   if (is_read && asked.result > 0) {
     std::memcpy(transfer->data, asked.bytes.data(), static_cast<std::size_t>(asked.result));

@@ -184,7 +184,7 @@ void FakeUsbfs::forget_transfers() {
 // Without libusb, and without waiting. A transfer that libusb has under way is served first.
 int FakeUsbfs::bulk_in(const usbdevfs_bulktransfer& transfer) {
   deliver_what_is_due();
-  if (replies_.empty() || replies_.front().due > Clock::now()) {
+  if (replies_.empty() || replies_.front().due > now_()) {
     return -ETIMEDOUT;
   }
   const Reply reply = std::move(replies_.front());

@@ -79,8 +79,7 @@ out(stats.chi2.sf(chi, 2), np.max(abs(0.5 * (x[0] / w + x[1] * w) / z - 1)))
   CHECK(fit->largest_misfit == Approx(numbers[6]));
 }
 
-TEST_CASE("planted Rayleigh coefficients lie inside 95 % of their intervals",
-          "[analysis][modal]") {
+TEST_CASE("planted Rayleigh coefficients lie inside 95 % of their intervals", "[analysis][modal]") {
   const core::RayleighDamping planted{30.0, 4e-5};
   core::Rng rng{8};
   constexpr int fits = 400;
@@ -173,8 +172,7 @@ TEST_CASE("a coefficient is never negative", "[analysis][modal]") {
   CHECK_THROWS_AS(fit_rayleigh({{50.0, 0.08, 0.0}, {90.0, 0.07, 0.001}}), core::InvalidInput);
 }
 
-TEST_CASE("Young's modulus follows the square of the frequencies",
-          "[analysis][modal]") {
+TEST_CASE("Young's modulus follows the square of the frequencies", "[analysis][modal]") {
   const double factor = GENERATE(0.9, 1.0, 1.07);
   std::vector<double> measured;
   for (const double frequency_hz : {48.0, 142.0, 231.0}) {  // not every mode is excited
@@ -230,8 +228,7 @@ TEST_CASE("modes are assigned as SciPy's assignment does", "[analysis][modal]") 
   }
 }
 
-TEST_CASE("Young's modulus is found from a stated one that is far off",
-          "[analysis][modal]") {
+TEST_CASE("Young's modulus is found from a stated one that is far off", "[analysis][modal]") {
   const double stated_over_true = GENERATE(0.3, 0.5, 0.75, 1.0, 1.6, 3.3);
   CAPTURE(stated_over_true);
   core::Rng rng{8};
@@ -251,8 +248,7 @@ TEST_CASE("Young's modulus is found from a stated one that is far off",
   CHECK_FALSE(update->rival_pa);
 }
 
-TEST_CASE("a mode that the model does not have stays without a partner",
-          "[analysis][modal]") {
+TEST_CASE("a mode that the model does not have stays without a partner", "[analysis][modal]") {
   const auto update =
       update_youngs_modulus(estimates({48.0, 70.0, 97.0, 142.0}), five_modes_hz, 1e9);
   REQUIRE(update);
@@ -287,8 +283,7 @@ out(x[:4], np.sqrt(np.diag(cov))[:3], data)
   CHECK(fit->explained > 0.99);
 }
 
-TEST_CASE("a sensor that points the other way measures the same sinusoid",
-          "[analysis][modal]") {
+TEST_CASE("a sensor that points the other way measures the same sinusoid", "[analysis][modal]") {
   FreeDecay decay = testing::planted_decay({{{250.0, 0.3}, 2.0}}, 20000.0, 0.02);
   const auto one = fit_decaying_sinusoid(decay, {20.0, 2000.0});
   decay.samples *= -1.0;

@@ -156,8 +156,7 @@ out(np.sqrt(np.diag(np.linalg.inv(J.T @ J)))[:4] * sigma)
   CHECK(mode.phase_error_rad == Approx(bound[3]).epsilon(0.01));
 }
 
-TEST_CASE("two modes closer than their half-power bandwidth are told apart",
-          "[analysis][modal]") {
+TEST_CASE("two modes closer than their half-power bandwidth are told apart", "[analysis][modal]") {
   FreeDecay decay =
       testing::planted_decay({{{118.0, 0.03}, 1.0}, {{122.0, 0.03}, 0.8}}, 2000.0, 0.5);
   core::Rng rng{11};
@@ -179,8 +178,7 @@ TEST_CASE("noise has no agreed mode", "[analysis][modal]") {
   }
 }
 
-TEST_CASE("an undamped line is no mode, and at the mains it is called hum",
-          "[analysis][modal]") {
+TEST_CASE("an undamped line is no mode, and at the mains it is called hum", "[analysis][modal]") {
   using Line = std::tuple<double, double, std::string>;
   // the last falls a little, significantly, but by no more than a tenth in the whole tap
   const auto [line_hz, ratio, words] = GENERATE(values<Line>({{50.0, 0.0, "50 Hz hum"},
@@ -214,8 +212,7 @@ TEST_CASE("a mode whose tap is over before it has fallen by half is a mode, not 
   }
 }
 
-TEST_CASE("a pole that does not last over the orders is not stable",
-          "[analysis][modal]") {
+TEST_CASE("a pole that does not last over the orders is not stable", "[analysis][modal]") {
   std::vector<PolesOfOrder> orders;
   for (int order = 2; order <= 20; order += 2) {
     std::vector<Pole> poles{{100.0, 0.02}};

@@ -64,8 +64,7 @@ TEST_CASE("shapes in proportion have an assurance of 1, orthogonal ones and none
   CHECK(modal_assurance(shape, Eigen::Vector3d::Zero()) == 0.0);
 }
 
-TEST_CASE("what channels say of one impact is one observation",
-          "[analysis][modal]") {
+TEST_CASE("what channels say of one impact is one observation", "[analysis][modal]") {
   std::vector<TapModes> one_channel;
   std::vector<TapModes> two_channels;
   std::vector<int> impacts;
@@ -227,8 +226,7 @@ TEST_CASE("two modes that are one pole come back as one", "[analysis][modal]") {
   CHECK(contains(near.front().damping_ratio, ratio));
 }
 
-TEST_CASE("a mode whose frequency depends on the tap is not taken for two",
-          "[analysis][modal]") {
+TEST_CASE("a mode whose frequency depends on the tap is not taken for two", "[analysis][modal]") {
   std::vector<Channel> channels;
   for (int impact = 0; impact < 6; ++impact) {
     const Pole pole{low_hz * (1.0 - 0.003 * impact), ratio};
@@ -238,8 +236,7 @@ TEST_CASE("a mode whose frequency depends on the tap is not taken for two",
   CHECK(agreed_near(found, low_hz).size() == 1);
 }
 
-TEST_CASE("what is told apart replaces what the taps alone showed",
-          "[analysis][modal]") {
+TEST_CASE("what is told apart replaces what the taps alone showed", "[analysis][modal]") {
   const std::vector<Channel> channels = channels_of({low_hz, ratio}, {low_hz + 2.0, ratio});
   const ModesOfTaps found = found_in(channels, 30.0, 3);
   REQUIRE(agreed_near(found, low_hz).size() == 2);

@@ -154,8 +154,7 @@ class Hasty final : public runner::Participant {
       return std::nullopt;
     }
     control.pass_time(1.0);
-    return control.poll() ? std::optional{prompt.answers.options.front().name}
-                                    : std::nullopt;
+    return control.poll() ? std::optional{prompt.answers.options.front().name} : std::nullopt;
   }
   void refused(const runner::TrialPrompt& /*prompt*/, const runner::TooEarly& why) override {
     reasons.push_back(to_text(why));

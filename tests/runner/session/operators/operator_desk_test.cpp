@@ -71,8 +71,7 @@ class Scripted final : public Participant {
     } catch (const core::InvalidInput& error) {
       refusals.emplace_back(error.what());
     }
-    return control.poll() ? std::optional{prompt.answers.options.front().name}
-                                    : std::nullopt;
+    return control.poll() ? std::optional{prompt.answers.options.front().name} : std::nullopt;
   }
   void wait_while(const std::function<bool()>& is_paused) override {
     ++pauses;

@@ -1,4 +1,6 @@
 // What a participant and an operator can do in a trial.
+#include "runner/session/participants/trial_control.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -7,7 +9,6 @@
 
 #include "protocols/reader/read_protocol.hpp"
 #include "protocols/schedule/schedule.hpp"
-#include "runner/session/participants/trial_control.hpp"
 #include "support/catch.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;
@@ -70,7 +71,7 @@ TEST_CASE("a setting is rendered at once, felt by itself, and an event with its 
   Positions positions;
   positions.contacts_ = {{0, 5}, {3, 7}, {11, 0}};
   runner::TrialEvents events;
-  runner::TrialControl adjusted{positions, rules_of(trial, planned.block), events};
+  runner::TrialControl adjusted{positions, runner::rules_of(trial, planned.block), events};
   CHECK(values.at(adjusted.setting()) == start);
   adjusted.switch_to(1);
   CHECK(positions.current() == 1 + adjusted.setting());
@@ -106,8 +107,8 @@ TEST_CASE("alternatives without settings keep their positions", "[runner][sessio
     }
     Positions positions;
     runner::TrialEvents events;
-    runner::TrialControl same{positions, rules_of(trial, planned.protocol.block(trial.block)),
-                              events};
+    runner::TrialControl same{positions,
+                              runner::rules_of(trial, planned.protocol.block(trial.block)), events};
     for (std::size_t i = 0; i < trial.alternatives.size(); ++i) {
       positions.contacts_[i] = 10 + static_cast<int>(i);
       same.switch_to(i);

@@ -12,7 +12,6 @@
 #include "analysis/report/answer_tables/counts_csv.hpp"
 #include "analysis/report/document/formats.hpp"
 #include "analysis/report/document/sections.hpp"
-#include "analysis/report/html_style.hpp"
 #include "core/text/print.hpp"
 namespace tapstudy::analysis {
 void write_text(std::ostream& out, const Summary& summary) {
@@ -106,12 +105,7 @@ std::vector<std::string> references_of(const Summary& summary) {
 }
 
 void write_html(std::ostream& out, const Summary& summary) {
-  core::print(
-      out,
-      "<!DOCTYPE html>\n<html lang=en><head><meta charset=utf-8><meta name=viewport "
-      "content=\"width=device-width\"><title>{}</title><style>{}</style></head><body><main>\n"
-      "<h1>{}</h1>\n",
-      escaped(summary.title), html_style, escaped(summary.title));
+  begin_page(out, summary.title);
   if (const std::string warning = banner(summary); !warning.empty()) {
     core::print(out, "<p class=simulated>{}</p>\n", escaped(warning));
   }
@@ -133,14 +127,7 @@ void write_html(std::ostream& out, const Summary& summary) {
     core::print(out, "<h2>Notes of the protocol</h2><p class=notes>{}</p>\n",
                 escaped(summary.notes));
   }
-  if (!summary.provenance.empty()) {
-    out << "<h2>Provenance</h2><table class=provenance>\n";
-    for (const auto& [key, value] : summary.provenance) {
-      core::print(out, "<tr><th scope=row>{}</th><td>{}</td></tr>\n", escaped(key), escaped(value));
-    }
-    out << "</table>\n";
-  }
-  out << "</main></body></html>\n";
+  end_page(out, summary.provenance);
 }
 
 using Json = nlohmann::ordered_json;

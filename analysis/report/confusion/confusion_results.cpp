@@ -28,7 +28,8 @@ ReportTable matrix_table(const ConfusionMatrix& matrix) {
     for (std::size_t j = 0; j < matrix.responses.size(); ++j) {
       const Proportion share{matrix.counts[i][j], matrix.row_total(i)};
       row.push_back({fmt::format("{} ({})", share.successes, percent(share)), {share.successes}});
-      row.back().is_right = matrix.stimuli[i].is_answered_by(matrix.responses[j].name);
+      row.back().style =
+          matrix.stimuli[i].is_answered_by(matrix.responses[j].name) ? "correct" : "";
     }
     table.rows.push_back(row);
   }
@@ -62,7 +63,7 @@ ReportTable right_answers_table(const std::vector<FactorResult>& results) {
   return table;
 }
 
-ReportTable participants_table(const IdentificationSummary& summary) {
+ReportTable participant_shares_table(const IdentificationSummary& summary) {
   ReportTable table = shares_table("Participants", "participant");
   for (const ParticipantAccuracy& one : summary.participants) {
     table.rows.push_back(share_row({one.participant_id, "", one.accuracy, summary.matrix.chance()},
@@ -131,7 +132,8 @@ void IdentificationSummary::add_results() {
   if (!information.empty()) {
     results().terminal_lines.push_back(information);
   }
-  results().tables = {matrix_table(matrix), right_answers_table(shares), participants_table(*this)};
+  results().tables = {matrix_table(matrix), right_answers_table(shares),
+                      participant_shares_table(*this)};
   results().tables.at(participants.empty() ? 1 : 2).note =
       fmt::format("Dot: share of all answers; bar: {}; dashed line: chance.",
                   accuracy_over_participants

@@ -83,11 +83,6 @@ class BlockSummary {
  public:
   explicit BlockSummary(const BlockDesign& design)
       : block{design.name}, part_of{design.part_of}, task{design.task}, question{design.question} {}
-  virtual ~BlockSummary() = default;
-  BlockSummary(const BlockSummary&) = default;
-  BlockSummary& operator=(const BlockSummary&) = default;
-  BlockSummary(BlockSummary&&) = default;
-  BlockSummary& operator=(BlockSummary&&) = default;
 
   void write_text(std::ostream& out) const;  // in 100 columns, without the sections of detail
   void write_html(std::ostream& out) const;  // a part of a page

@@ -34,7 +34,8 @@ struct Cell {
   CitingText text;
   std::vector<Value> values;
   std::optional<Dot> dot{};  // drawn beside the text on the page
-  bool is_right{};           // of a matrix: the count of right answers
+  std::string style{};       // a class of the page; of a matrix, "correct": counts right answers
+  std::string anchor{};      // of what the text is about, on the page
 };
 
 // The formats that a table is written in.

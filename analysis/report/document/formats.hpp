@@ -4,6 +4,7 @@
 #include <ostream>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "analysis/report/document/block_summary.hpp"
@@ -23,6 +24,10 @@ std::string escaped(const std::string& text);
 // The same, where a number is not parted from its sign or its unit: with minus signs, and spaces
 // that do not break.
 std::string escaped_numbers(const std::string& text);
+// A page that needs nothing beside it: what comes before its contents, and after. more_style: CSS.
+void begin_page(std::ostream& out, const std::string& title, const std::string& more_style = {});
+void end_page(std::ostream& out,
+              const std::vector<std::pair<std::string, std::string>>& provenance);
 void write_hypotheses_html(std::ostream& out, const std::vector<HypothesisResult>& hypotheses);
 
 // JSON elements shared by the block summaries.
@@ -33,7 +38,8 @@ nlohmann::ordered_json as_json(const std::vector<HypothesisResult>& hypotheses);
 void write_table_text(std::ostream& out, const ReportTable& table);  // in 100 columns
 // A wide table scrolls within its own frame, which the keyboard reaches.
 void write_table_html(std::ostream& out, const ReportTable& table);
-void write_table_csv(std::ostream& out, const ReportTable& table);  // a header of keys
+void write_framed_html(std::ostream& out, const ReportTable& table);  // without title and note
+void write_table_csv(std::ostream& out, const ReportTable& table);    // a header of keys
 // A float with rules of the package booktabs; `label` without special characters.
 void write_table_latex(std::ostream& out, const ReportTable& table, const std::string& label);
 // The columns that people see: those with a heading and, where there are rows, something in one.

@@ -9,6 +9,7 @@
 #include "analysis/report/document/formats.hpp"
 #include "analysis/report/document/sections.hpp"
 #include "analysis/report/document/wording.hpp"
+#include "analysis/report/html_style.hpp"
 #include "core/text/print.hpp"
 namespace tapstudy::analysis {
 std::string escaped(const std::string& text) {
@@ -109,7 +110,13 @@ void write_cells(std::ostream& out, const std::vector<ShownColumn>& shown,
   bool is_first = true;
   for (const ShownColumn& column : shown) {
     const Cell& cell = row[column.index];
-    const std::string text = escaped_numbers(cell.text);
+    std::string text = escaped_numbers(cell.text);
+    if (!cell.anchor.empty()) {
+      text = fmt::format("<a href=\"#{}\">{}</a>", escaped(cell.anchor), text);
+    }
+    if (!cell.style.empty()) {
+      text = fmt::format("<span class=\"{}\">{}</span>", cell.style, text);
+    }
     if (is_first) {
       core::print(out, "<th scope=row{}>{}</th>", column.style, text);
     } else {
@@ -165,8 +172,8 @@ void write_matrix_html(std::ostream& out, const ReportTable& table) {
     for (const std::size_t column : counts) {
       const Proportion cell{std::get<std::int64_t>(row[column].values.front()), total};
       core::print(out, R"(<td class="{}" style="{}"><b>{}</b><span>{}</span></td>)",
-                  row[column].is_right ? "correct" : "",
-                  cell_style(total == 0 ? 0.0 : cell.value()), cell.successes, percent(cell));
+                  row[column].style, cell_style(total == 0 ? 0.0 : cell.value()), cell.successes,
+                  percent(cell));
     }
     core::print(out, "<td class=total>{}</td></tr>\n", total);
   }
@@ -174,16 +181,12 @@ void write_matrix_html(std::ostream& out, const ReportTable& table) {
 }
 }  // namespace
 
-void write_table_html(std::ostream& out, const ReportTable& table) {
-  if (table.is_matrix) {
-    write_matrix_html(out, table);
-    return;
-  }
+void write_framed_html(std::ostream& out, const ReportTable& table) {
   const std::vector<ShownColumn> shown = styled_columns(table);
   const bool has_dots = std::ranges::any_of(shown, &ShownColumn::has_dots);
   core::print(out,
-              "<h3>{0}</h3><div class=scroll tabindex=0 role=group aria-label=\"{0}\">"
-              "<table class=\"{1}\"><thead><tr>",
+              "<div class=scroll tabindex=0 role=group aria-label=\"{}\">"
+              "<table class=\"{}\"><thead><tr>",
               escaped(table.title),
               has_dots               ? "accuracy"
               : shown.size() >= wide ? "data wide"
@@ -197,8 +200,38 @@ void write_table_html(std::ostream& out, const ReportTable& table) {
     write_cells(out, shown, row);
   }
   out << "</tbody></table></div>\n";
+}
+
+void write_table_html(std::ostream& out, const ReportTable& table) {
+  if (table.is_matrix) {
+    write_matrix_html(out, table);
+    return;
+  }
+  core::print(out, "<h3>{}</h3>", escaped(table.title));
+  write_framed_html(out, table);
   if (!table.note.empty()) {
     core::print(out, "<p class=note>{}</p>\n", escaped(table.note));
   }
+}
+
+void begin_page(std::ostream& out, const std::string& title, const std::string& more_style) {
+  core::print(
+      out,
+      "<!DOCTYPE html>\n<html lang=en><head><meta charset=utf-8><meta name=viewport "
+      "content=\"width=device-width\"><title>{0}</title><style>{1}{2}</style></head><body><main>\n"
+      "<h1>{0}</h1>\n",
+      escaped(title), html_style, more_style);
+}
+
+void end_page(std::ostream& out,
+              const std::vector<std::pair<std::string, std::string>>& provenance) {
+  if (!provenance.empty()) {
+    out << "<h2>Provenance</h2><table class=provenance>\n";
+    for (const auto& [key, value] : provenance) {
+      core::print(out, "<tr><th scope=row>{}</th><td>{}</td></tr>\n", escaped(key), escaped(value));
+    }
+    out << "</table>\n";
+  }
+  out << "</main></body></html>\n";
 }
 }  // namespace tapstudy::analysis

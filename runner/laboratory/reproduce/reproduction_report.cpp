@@ -12,7 +12,6 @@
 
 #include "analysis/report/document/formats.hpp"
 #include "analysis/report/figures/image_formats.hpp"
-#include "analysis/report/html_style.hpp"
 #include "core/error.hpp"
 #include "core/files/output_files.hpp"
 #include "core/text/print.hpp"
@@ -45,51 +44,49 @@ body{background:#12181f;color:#dbe3ea}.simulated{background:#3a3010;border-color
 
 namespace {
 using analysis::escaped;
+using analysis::ReportTable;
+using analysis::Value;
 
 std::string verdict(const Claim& claim) {
   return fmt::format("<span class=\"verdict {0}\">{0}</span>", name(claim.verdict()));
 }
 
-void begin_table(std::ostream& out, const std::string& label, const std::string& headings) {
-  core::print(out,
-              "<div class=scroll tabindex=0 role=region aria-label=\"{}\"><table class=data><thead>"
-              "<tr>{}</tr></thead><tbody>\n",
-              escaped(label), headings);
-}
-constexpr const char* end_table = "</tbody></table></div>\n";
-
-void write_measure(std::ostream& out, const Measure& measure) {
-  core::print(out, "<tr><th scope=row>{}</th><td>{}</td><td{}>{}</td></tr>\n",
-              escaped(measure.name), escaped(describe_value(measure)),
-              measure.holds() ? "" : " class=missed",
-              measure.is_judged() ? fmt::format("{}: {}", escaped(describe_limits(measure)),
-                                                measure.holds() ? "holds" : "does not hold")
-                                  : "");
+// Programs read null where there is no number.
+Value finite(std::optional<double> number) {
+  return number && std::isfinite(*number) ? Value{*number} : Value{};
 }
 
-void write_method(std::ostream& out, const Method& method) {
-  core::print(out, "<h4>{}: {}</h4>\n<p><code>{}</code></p>\n", escaped(method.name),
-              method.confirms() ? "holds" : "does not hold", escaped(method.command));
-  begin_table(out, method.name,
-              "<th scope=col>measure</th><th scope=col>value</th><th scope=col>must be</th>");
-  for (const Measure& measure : method.measures) {
-    write_measure(out, measure);
+ReportTable table_of(const std::string& title, const std::vector<Measure>& measures) {
+  ReportTable table{"measures",
+                    title,
+                    {analysis::column("measure", "name"),
+                     {"value", {"value", "unit"}},
+                     {"must be", {"at_least", "at_most", "holds"}}}};
+  for (const Measure& measure : measures) {
+    const bool holds = measure.holds();
+    analysis::Cell limits{"", {finite(measure.at_least), finite(measure.at_most), holds}};
+    if (measure.is_judged()) {
+      limits.text =
+          fmt::format("{}: {}", describe_limits(measure), holds ? "holds" : "does not hold");
+      limits.style = holds ? "" : "missed";
+    }
+    table.rows.push_back({analysis::word(measure.name),
+                          {describe_value(measure), {finite(measure.value), measure.unit}},
+                          limits});
   }
-  out << end_table;
+  return table;
 }
 
-void write_findings(std::ostream& out, const Claim& claim) {
-  if (claim.findings.empty()) {
-    return;
+void write_numbers(std::ostream& out, const Claim& claim) {
+  for (const Method& method : claim.methods) {
+    core::print(out, "<h4>{}: {}</h4>\n<p><code>{}</code></p>\n", escaped(method.name),
+                method.confirms() ? "holds" : "does not hold", escaped(method.command));
+    write_framed_html(out, table_of(method.name, method.measures));
   }
-  out << "<h4>Beside the judgement</h4>\n";
-  begin_table(out, "Beside the judgement of " + claim.name,
-              "<th scope=col>what</th><th scope=col>value</th>");
-  for (const Measure& finding : claim.findings) {
-    core::print(out, "<tr><th scope=row>{}</th><td>{}</td></tr>\n", escaped(finding.name),
-                escaped(describe_value(finding)));
+  if (!claim.findings.empty()) {
+    out << "<h4>Beside the judgement</h4>\n";
+    write_framed_html(out, table_of("Beside the judgement of " + claim.name, claim.findings));
   }
-  out << end_table;
 }
 
 void write_claim(std::ostream& out, const Claim& claim) {
@@ -104,10 +101,7 @@ void write_claim(std::ostream& out, const Claim& claim) {
     core::print(out, "<p>{}</p>\n", escaped(remark));
   }
   out << "<details><summary>Numbers and commands</summary>\n";
-  for (const Method& method : claim.methods) {
-    write_method(out, method);
-  }
-  write_findings(out, claim);
+  write_numbers(out, claim);
   out << "</details>\n";
   for (const Drawing& drawing : claim.drawings) {
     core::print(out, "<details{}><summary>{}</summary>\n<div class=\"charts small\">\n",
@@ -138,83 +132,59 @@ std::string confirming(const Claim& claim) {
   return claim.verdict() == ClaimVerdict::depends ? fmt::format("{}", fmt::join(names, "; ")) : "";
 }
 
-void write_overview(std::ostream& out, const Reproduction& reproduction) {
-  out << "<div class=overview>";
-  begin_table(out, "All claims",
-              "<th scope=col>claim</th><th scope=col>judgement</th><th scope=col>if it depends, it "
-              "holds</th><th scope=col>the paper</th>");
+ReportTable overview_of(const Reproduction& reproduction) {
+  ReportTable table{
+      "claims",
+      "All claims",
+      {analysis::column("claim", "statement"), analysis::column("judgement", "verdict"),
+       analysis::column("if it depends, it holds", "confirming"),
+       analysis::column("the paper", "section")}};
   for (const MeasuredGroup& group : reproduction.groups) {
     for (const Claim& claim : group.claims) {
-      core::print(out,
-                  "<tr><th scope=row><a href=\"#{}\">{}</a></th><td>{}</td><td>{}</td><td>{}</td>"
-                  "</tr>\n",
-                  escaped(claim.name), escaped(claim.statement), verdict(claim),
-                  escaped(confirming(claim)), escaped(claim.section));
+      const std::string judged{name(claim.verdict())};
+      table.rows.push_back({analysis::word(claim.statement), analysis::word(judged),
+                            analysis::word(confirming(claim)), analysis::word(claim.section)});
+      table.rows.back()[0].anchor = claim.name;
+      table.rows.back()[1].style = "verdict " + judged;
     }
   }
-  out << end_table << "</div>\n";
+  return table;
 }
 
-void write_not_reproducible(std::ostream& out, const Reproduction& reproduction) {
-  out << "<h2 id=\"not-reproducible\">What no computation can show</h2>\n";
-  begin_table(out, "What no computation can show",
-              "<th scope=col>the paper says</th><th scope=col>section</th><th scope=col>why</th>");
-  for (const NotReproducible& one : reproduction.not_reproducible) {
-    core::print(out, "<tr><th scope=row>{}</th><td>{}</td><td>{}</td></tr>\n",
-                escaped(one.statement), escaped(one.section), escaped(one.why));
+ReportTable table_of(const std::vector<NotReproducible>& statements) {
+  ReportTable table{"not_reproducible",
+                    "What no computation can show",
+                    {analysis::column("the paper says", "statement"),
+                     analysis::column("section", "section"), analysis::column("why", "why")}};
+  for (const NotReproducible& one : statements) {
+    table.rows.push_back(
+        {analysis::word(one.statement), analysis::word(one.section), analysis::word(one.why)});
   }
-  out << end_table;
+  return table;
 }
 }  // namespace
 
 void write_html(std::ostream& out, const Reproduction& reproduction) {
-  core::print(
-      out,
-      "<!DOCTYPE html>\n<html lang=en><head><meta charset=utf-8><meta name=viewport "
-      "content=\"width=device-width\"><title>{0}</title><style>{1}{2}</style></head><body>\n"
-      "<h1>{0}</h1>\n<p>{3}</p>\n<p>{4}</p>\n",
-      escaped(page_title), analysis::html_style, reproduction_style, escaped(introduction),
-      escaped(judging_rule));
-  core::print(out, "<p class=simulated>{}</p>\n", escaped(simulated_note));
-  write_overview(out, reproduction);
+  analysis::begin_page(out, page_title, reproduction_style);
+  core::print(out, "<p>{}</p>\n<p>{}</p>\n<p class=simulated>{}</p>\n<div class=overview>",
+              escaped(introduction), escaped(judging_rule), escaped(simulated_note));
+  write_framed_html(out, overview_of(reproduction));
+  out << "</div>\n";
   for (const MeasuredGroup& group : reproduction.groups) {
     core::print(out, "<h2>{}</h2>\n", escaped(group.title));
     for (const Claim& claim : group.claims) {
       write_claim(out, claim);
     }
   }
-  write_not_reproducible(out, reproduction);
-  core::print(
-      out,
-      "<h2>Provenance</h2><table class=provenance>\n<tr><th scope=row>program</th><td>{}</td>"
-      "</tr>\n<tr><th scope=row>command</th><td><code>{}</code></td></tr>\n<tr><th "
-      "scope=row>times measured on</th><td>{}</td></tr>\n</table>\n</body></html>\n",
-      escaped(reproduction.program), escaped(command_of(reproduction)),
-      escaped(reproduction.machine));
+  out << "<h2 id=\"not-reproducible\">What no computation can show</h2>\n";
+  write_framed_html(out, table_of(reproduction.not_reproducible));
+  analysis::end_page(out, {{"program", reproduction.program},
+                           {"command", command_of(reproduction)},
+                           {"times measured on", reproduction.machine}});
 }
 
 namespace {
 using Json = nlohmann::ordered_json;
-
-Json number(double value) {
-  return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
-
-Json as_json(const Measure& measure) {
-  Json json{{"name", measure.name}, {"value", number(measure.value)}, {"unit", measure.unit}};
-  json["at_least"] = number(measure.at_least.value_or(std::nan("")));
-  json["at_most"] = number(measure.at_most.value_or(std::nan("")));
-  json["holds"] = measure.holds();
-  return json;
-}
-
-Json as_json(const std::vector<Measure>& measures) {
-  Json all = Json::array();
-  for (const Measure& measure : measures) {
-    all.push_back(as_json(measure));
-  }
-  return all;
-}
 
 Json as_json(const Claim& claim, const std::string& group) {
   Json json{{"name", claim.name},
@@ -229,9 +199,9 @@ Json as_json(const Claim& claim, const std::string& group) {
     json["methods"].push_back({{"name", method.name},
                                {"command", method.command},
                                {"confirms", method.confirms()},
-                               {"measures", as_json(method.measures)}});
+                               {"measures", table_json(table_of("", method.measures))}});
   }
-  json["findings"] = as_json(claim.findings);
+  json["findings"] = table_json(table_of("", claim.findings));
   json["remarks"] = claim.remarks;
   return json;
 }
@@ -252,11 +222,7 @@ void write_json(std::ostream& out, const Reproduction& reproduction) {
       json["claims"].push_back(as_json(claim, group.title));
     }
   }
-  json["not_reproducible"] = Json::array();
-  for (const NotReproducible& one : reproduction.not_reproducible) {
-    json["not_reproducible"].push_back(
-        {{"section", one.section}, {"statement", one.statement}, {"why", one.why}});
-  }
+  json["not_reproducible"] = table_json(table_of(reproduction.not_reproducible));
   out << json.dump(2) << '\n';
 }
 

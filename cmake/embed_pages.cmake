@@ -27,6 +27,6 @@ add_custom_command(OUTPUT ${pages_object}
   DEPENDS ${page_paths} ${THREE_MODULE} VERBATIM)
 # A target of its own: a command of the library's would wait for all that the library links.
 add_custom_target(tapstudy_pages DEPENDS ${pages_object})
-add_dependencies(tapstudy_runner tapstudy_pages)
-target_link_libraries(tapstudy_runner PRIVATE ${pages_object})
-target_include_directories(tapstudy_runner PRIVATE ${pages_dir}/table)
+add_dependencies(tapstudy_runner_console tapstudy_pages)
+target_link_libraries(tapstudy_runner_console PRIVATE ${pages_object})
+target_include_directories(tapstudy_runner_console PRIVATE ${pages_dir}/table)

@@ -1,4 +1,5 @@
-# One static library per top-level folder: the folder is the target is the namespace.
+# One static library per folder: the folder is the target, and analysis_report is analysis/report. The
+# top-level folder is the namespace.
 #   tapstudy_library(name LINK <what its headers need> PRIVATE <what only its sources need>)
 add_library(tapstudy_flags INTERFACE)
 target_compile_options(tapstudy_flags INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion
@@ -34,8 +35,9 @@ endfunction()
 
 function(tapstudy_library name)
   cmake_parse_arguments(ARG "" "" "LINK;PRIVATE" ${ARGN})
-  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${name}/*.cpp)
-  list(FILTER sources EXCLUDE REGEX "/main\\.cpp$|/example/")
+  string(REGEX REPLACE "^(analysis|runner)_" "\\1/" folder ${name})
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${folder}/*.cpp)
+  list(FILTER sources EXCLUDE REGEX "/example/")
   add_library(tapstudy_${name} STATIC ${sources})
   set_target_properties(tapstudy_${name} PROPERTIES UNITY_BUILD_MODE GROUP)
   unite_by_folder(${sources})

@@ -1,11 +1,50 @@
 #pragma once
 #include <limits>
+#include <optional>
 #include <string>
 
 #include "core/error.hpp"
-#include "core/haptic_state.hpp"
-#include "device/held_hand.hpp"
+#include "core/haptics/haptic_state.hpp"
 namespace tapstudy::device {
+// So many replies in a row may be missing before it is a fault; the loop lets force fade meanwhile.
+inline constexpr int max_missed_replies = 3;
+// In the long run a tenth may be missing: each counts for ten, and 20 at once are too many.
+inline constexpr int replies_for_a_missed_one = 10;
+inline constexpr int max_missed_in_debt = 20;
+
+// The hand as last read, which stands in for a reply that is missing.
+class HeldHand {
+ public:
+  void forget() noexcept {
+    hand_.reset();
+    missed_replies_ = 0;
+    debt_ = 0;
+  }
+  void keep(const core::HandState& hand) noexcept {
+    hand_ = hand;
+    missed_replies_ = 0;
+    debt_ -= debt_ > 0 ? 1 : 0;
+  }
+  // False where nothing is known, or has stood in for too long.
+  bool use_last_reading(core::HandState& hand) noexcept {
+    if (!hand_ || missed_replies_ == max_missed_replies ||
+        debt_ >= replies_for_a_missed_one * max_missed_in_debt) {
+      return false;
+    }
+    ++missed_replies_;
+    debt_ += replies_for_a_missed_one;
+    hand = *hand_;
+    return true;
+  }
+  bool is_known() const noexcept { return hand_.has_value(); }
+  int missed_replies() const noexcept { return missed_replies_; }
+
+ private:
+  std::optional<core::HandState> hand_;
+  int missed_replies_{0};
+  int debt_{0};  // in replies
+};
+
 class DeviceError : public core::Error {
  public:
   using core::Error::Error;
@@ -35,7 +74,7 @@ struct DeviceDetail {
 };
 
 // A force-feedback device, real or simulated, as used by the haptic thread: read() and write() are
-// called alternately, once per tick. Device frame (core/haptic_state.hpp). Apart from
+// called alternately, once per tick. Device frame (core/haptics/haptic_state.hpp). Apart from
 // description(), nothing here throws, locks or allocates; an underlying library may: libusb
 // allocates two small blocks per pair of transfers, and locks its own mutexes.
 class Device {

@@ -4,11 +4,11 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <iterator>
 #include <optional>
 
-#include "core/number_in.hpp"
-#include "core/plain_text.hpp"
+#include "core/text/plain_text.hpp"
 namespace tapstudy::protocols {
 namespace {
 std::vector<std::string> names_of(const std::vector<Option>& options) {
@@ -52,5 +52,93 @@ std::string wrong_with(const FormItem& item, const std::string& answer) {
   return core::character_count(answer) <= max_form_text
              ? ""
              : fmt::format("at most {} characters", max_form_text);
+}
+
+namespace {
+struct Ends {
+  const char* low;
+  const char* high;
+};
+struct Wording {
+  const char* language;
+  const char* title;
+  const char* text;
+  Ends demand;
+  Ends performance;
+  std::array<const char*, 6> questions;
+};
+
+constexpr std::array<const char*, 6> item_names{
+    "mental_demand", "physical_demand", "temporal_demand", "performance", "effort", "frustration"};
+constexpr std::string_view of_performance = "performance";
+
+constexpr std::array<Wording, 3> wordings{
+    {{"en",
+      "Task load",
+      "Please mark on each line how the task was for you.",
+      {"Very low", "Very high"},
+      {"Perfect", "Failure"},
+      {"How mentally demanding was the task?", "How physically demanding was the task?",
+       "How hurried or rushed was the pace of the task?",
+       "How successful were you in accomplishing what you were asked to do?",
+       "How hard did you have to work to accomplish your level of performance?",
+       "How insecure, discouraged, irritated, stressed, and annoyed were you?"}},
+     {"de",
+      "Beanspruchung durch die Aufgabe",
+      "Bitte markieren Sie auf jeder Linie, wie die Aufgabe für Sie war.",
+      {"Sehr gering", "Sehr hoch"},
+      {"Perfekt", "Misserfolg"},
+      {"Wie hoch war die geistige Anforderung der Aufgabe?",
+       "Wie hoch war die körperliche Anforderung der Aufgabe?",
+       "Wie gehetzt oder eilig war das Tempo der Aufgabe?",
+       "Wie erfolgreich haben Sie ausgeführt, worum Sie gebeten wurden?",
+       "Wie sehr mussten Sie sich anstrengen, um Ihre Leistung zu erreichen?",
+       "Wie verunsichert, entmutigt, gereizt, gestresst und verärgert waren Sie?"}},
+     {"ja",
+      "課題の負荷",
+      "課題がどうであったか、それぞれの線の上に印を付けてください。",
+      {"とても低い", "とても高い"},
+      {"完璧", "失敗"},
+      {"課題はどのくらい知的・知覚的に負担でしたか？", "課題はどのくらい身体的に負担でしたか？",
+       "課題のペースはどのくらい慌ただしいものでしたか？",
+       "求められたことをどのくらいうまく達成できましたか？",
+       "その成績を達成するために、どのくらい努力が必要でしたか？",
+       "どのくらい不安、落胆、いらいら、ストレス、不快を感じましたか？"}}}};
+
+FormItem scale(const Wording& wording, std::size_t index) {
+  const Ends& ends = item_names[index] == of_performance ? wording.performance : wording.demand;
+  FormItem item;
+  item.name = item_names[index];
+  item.kind = ItemKind::scale;
+  item.question = wording.questions[index];
+  item.low = ends.low;
+  item.high = ends.high;
+  return item;
+}
+}  // namespace
+
+const std::vector<std::string>& nasa_tlx_languages() {
+  static const std::vector<std::string> languages = [] {
+    std::vector<std::string> all;
+    std::ranges::transform(wordings, std::back_inserter(all), &Wording::language);
+    return all;
+  }();
+  return languages;
+}
+
+bool is_raw_tlx(const Form& form) {
+  return std::ranges::equal(form.items, item_names, {}, &FormItem::name) &&
+         std::ranges::all_of(form.items,
+                             [](const FormItem& item) { return item.kind == ItemKind::scale; });
+}
+
+Form nasa_tlx(const std::string& language) {
+  const auto found = std::ranges::find(wordings, language, &Wording::language);
+  const Wording& wording = found == wordings.end() ? wordings.front() : *found;
+  Form form{"nasa_tlx", wording.title, wording.text, {}};
+  for (std::size_t i = 0; i < item_names.size(); ++i) {
+    form.items.push_back(scale(wording, i));
+  }
+  return form;
 }
 }  // namespace tapstudy::protocols

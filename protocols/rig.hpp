@@ -3,11 +3,10 @@
 #include <optional>
 #include <string>
 
-#include "core/placement.hpp"
-#include "core/settings/audio_output.hpp"
-#include "core/settings/device_response.hpp"
-#include "core/settings/gate_settings.hpp"
-#include "core/settings/realtime_request.hpp"
+#include "core/haptics/haptic_state.hpp"
+#include "core/settings/audio_settings.hpp"
+#include "core/settings/device_settings.hpp"
+#include "core/settings/render_settings.hpp"
 namespace tapstudy::protocols {
 // Base class of the device-specific settings in a rig.
 struct DeviceSection {
@@ -16,7 +15,7 @@ struct DeviceSection {
   virtual double max_reply_time_s() const { return 0.0; }
 };
 
-// Who is told of a session's changes of state: runner/markers/README.md.
+// Who is told of a session's changes of state: runner/session/markers/README.md.
 struct OscTarget {
   std::string host{"127.0.0.1"};
   int port{};

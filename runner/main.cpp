@@ -9,14 +9,14 @@
 #include <new>
 #include <system_error>
 
-#include "core/algebra/blas_threads.hpp"
-#include "core/bounded_child.hpp"
+#include "core/algebra/blas.hpp"
 #include "core/error.hpp"
+#include "core/process/bounded_child.hpp"
 #include "device/device.hpp"
 #include "results/store_error.hpp"
-#include "runner/command_line.hpp"
-#include "runner/terminal/exit_code.hpp"
+#include "runner/commands/command_line.hpp"
 #include "runner/terminal/logging.hpp"
+#include "runner/terminal/process_exit.hpp"
 namespace {
 using tapstudy::runner::ExitCode;
 

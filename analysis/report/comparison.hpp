@@ -1,8 +1,21 @@
 #pragma once
+#include <memory>
+#include <optional>
 #include <string>
+#include <vector>
 
+#include "analysis/report/document/block_summary.hpp"
+#include "analysis/report/document/sections.hpp"
 #include "analysis/report/summary.hpp"
 namespace tapstudy::analysis {
+// Blocks of one measure against one another, within participants: the mean difference or the
+// geometric mean ratio, its 95 % interval by t, and the permutation test by signs
+// (paired_contrast), adjusted by Holm 1979 for all pairs of a measure. Parts of a block are
+// compared with other parts of the same one. is_order_fixed: all participants did the blocks in the
+// same order. Unset where no two blocks have values of two participants in common.
+std::optional<ReportSection> block_contrasts(
+    const std::vector<std::shared_ptr<const BlockSummary>>& blocks, bool is_order_fixed);
+
 struct NamedSummary {
   std::string name;
   const Summary* summary{};

@@ -2,16 +2,16 @@
 
 #include <algorithm>
 
-#include "analysis/adjustments/adjustment_summary.hpp"
-#include "analysis/choice/choice_summary.hpp"
-#include "analysis/discrimination/discrimination_summary.hpp"
-#include "analysis/equality/equality_summary.hpp"
-#include "analysis/identification/identification_summary.hpp"
-#include "analysis/magnitudes/magnitude_summary.hpp"
-#include "analysis/preferences/preference_summary.hpp"
-#include "analysis/rankings/ranking_summary.hpp"
-#include "analysis/ratings/rating_summary.hpp"
-#include "analysis/thresholds/threshold_summary.hpp"
+#include "analysis/report/blocks/adjustments.hpp"
+#include "analysis/report/blocks/choices.hpp"
+#include "analysis/report/blocks/discrimination.hpp"
+#include "analysis/report/blocks/equality.hpp"
+#include "analysis/report/blocks/magnitudes.hpp"
+#include "analysis/report/blocks/preferences.hpp"
+#include "analysis/report/blocks/rankings.hpp"
+#include "analysis/report/blocks/ratings.hpp"
+#include "analysis/report/blocks/thresholds.hpp"
+#include "analysis/report/confusion/confusion_summary.hpp"
 #include "core/error.hpp"
 namespace tapstudy::analysis {
 const std::vector<Statistic>& statistics() {

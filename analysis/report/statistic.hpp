@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "analysis/blocks/block_summary.hpp"
+#include "analysis/report/document/block_summary.hpp"
 namespace tapstudy::analysis {
 // A way to summarise a block. To add one: a folder with its BlockSummary, and a row in
 // statistic.cpp; each task names its own.

@@ -7,11 +7,12 @@
 #include <iterator>
 #include <set>
 
-#include "analysis/answer_tables/answer_names.hpp"
-#include "analysis/identification/identification_summary.hpp"
-#include "analysis/rank_tests/signed_rank.hpp"
-#include "analysis/report/block_parts.hpp"
+#include "analysis/report/answer_tables/answer_table.hpp"
+#include "analysis/report/confusion/confusion_summary.hpp"
+#include "analysis/report/document/block_summary.hpp"
 #include "analysis/report/statistic.hpp"
+#include "analysis/statistics/rank_tests.hpp"
+#include "core/error.hpp"
 namespace tapstudy::analysis {
 namespace {
 using results::AnswerRow;
@@ -188,5 +189,39 @@ std::string methods(const Summary& summary) {
         summary.loop->dropped_samples, summary.loop->late_impacts, summary.loop->impacts);
   }
   return text;
+}
+
+namespace {
+std::vector<std::string> names_in(const Summary& summary) {
+  std::vector<std::string> names;
+  for (const auto& block : summary.blocks) {
+    names.push_back(block->block);
+    if (std::ranges::find(names, block->part_of) == names.end()) {
+      names.push_back(block->part_of);
+    }
+  }
+  for (const ReportSection& section : summary.sections) {
+    names.push_back(section.name);
+  }
+  std::erase(names, "");
+  return names;
+}
+}  // namespace
+
+void keep_only(Summary& summary, const std::vector<std::string>& names) {
+  const std::vector<std::string> known = names_in(summary);
+  for (const std::string& name : names) {
+    if (std::ranges::find(known, name) == known.end()) {
+      throw core::InvalidInput{fmt::format("--only {}: is not part of this report (one of: {})",
+                                           name, fmt::join(known, ", "))};
+    }
+  }
+  const auto is_left_out = [&](const std::string& name) {
+    return std::ranges::find(names, name) == names.end();
+  };
+  std::erase_if(summary.blocks, [&](const auto& block) {
+    return is_left_out(block->block) && (block->part_of.empty() || is_left_out(block->part_of));
+  });
+  std::erase_if(summary.sections, [&](const auto& part) { return is_left_out(part.name); });
 }
 }  // namespace tapstudy::analysis

@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
-#include "analysis/answer_tables/answer_table.hpp"
-#include "analysis/blocks/block_summary.hpp"
-#include "analysis/tables/sections.hpp"
+#include "analysis/report/answer_tables/answer_table.hpp"
+#include "analysis/report/document/block_summary.hpp"
+#include "analysis/report/document/sections.hpp"
 namespace tapstudy::analysis {
 struct LoopQuality {
   std::int64_t ticks{};
@@ -61,4 +61,9 @@ std::string words_of_modes(const Summary& summary);
 std::string banner(const Summary& summary);
 // A paragraph on how the numbers were computed, for a methods section.
 std::string methods(const Summary& summary);
+
+// Leaves out of a report all blocks and sections but those named. What a report must say anyway,
+// whose data these are and what was not as planned, stays.
+// Throws InvalidInput for a name that is none, with those that there are.
+void keep_only(Summary& summary, const std::vector<std::string>& names);
 }  // namespace tapstudy::analysis

@@ -12,4 +12,19 @@ void write_latex(std::ostream& out, const Summary& summary);  // tables to be co
 void write_json(std::ostream& out, const Summary& summary);   // for programs; schema_version 1
 // The full references of what the page cites, by author.
 std::vector<std::string> references_of(const Summary& summary);
+
+struct FigureFile {
+  std::string name;  // letters, digits, - and _; unlike all others
+  std::string svg;
+};
+// Every figure of a report as a file of its own, those behind "More figures" too. Marks within
+// tables are no figures. Where participants are not those of a study, each says so.
+std::vector<FigureFile> figure_files(const Summary& summary);
+
+struct TableFile {
+  std::string name;
+  std::string text;  // CSV
+};
+// The tables of a report; one that leaves it still says whose answers it holds.
+std::vector<TableFile> table_files(const Summary& summary);
 }  // namespace tapstudy::analysis

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "core/error.hpp"
-#include "core/number_in.hpp"
+#include "core/text/plain_text.hpp"
 namespace tapstudy::analysis {
 namespace {
 constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";

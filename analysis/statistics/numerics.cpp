@@ -3,14 +3,39 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <boost/math/quadrature/gauss_kronrod.hpp>
 #include <boost/math/special_functions/digamma.hpp>
 #include <boost/math/special_functions/trigamma.hpp>
 #include <boost/math/tools/minima.hpp>
 #include <boost/math/tools/toms748_solve.hpp>
+#include <cmath>
+#include <numbers>
 
 #include "core/error.hpp"
 namespace tapstudy::analysis {
+namespace {
+constexpr std::size_t tabulated = 1024;
+
+std::array<double, tabulated> table_of_log_factorials() {
+  std::array<double, tabulated> table{};
+  for (std::size_t n = 1; n < tabulated; ++n) {
+    table[n] = table[n - 1] + std::log(static_cast<double>(n));
+  }
+  return table;
+}
+}  // namespace
+
+double log_factorial(std::int64_t n) {
+  static const std::array<double, tabulated> table = table_of_log_factorials();
+  if (n < static_cast<std::int64_t>(tabulated)) {
+    return table[static_cast<std::size_t>(n)];
+  }
+  const auto x = static_cast<double>(n);
+  return (x + 0.5) * std::log(x) - x + 0.5 * std::log(2.0 * std::numbers::pi) + 1.0 / (12.0 * x) -
+         1.0 / (360.0 * x * x * x);
+}
+
 double integral(const RealFunction& function, double low, double high) {
   constexpr unsigned max_depth = 12;
   constexpr double tolerance = 1e-10;

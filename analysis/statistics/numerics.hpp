@@ -1,6 +1,10 @@
 #pragma once
+#include <cstdint>
 #include <functional>
 namespace tapstudy::analysis {
+// ln n!, n >= 0, from any thread: a table below 1024, Stirling's series above (to 1e-15, relative).
+double log_factorial(std::int64_t n);
+
 using RealFunction = std::function<double(double)>;
 
 // The integral over [low, high], both finite, by adaptive Gauss-Kronrod quadrature (Boost.Math, 31

@@ -42,4 +42,30 @@ std::optional<double> exact_multinomial_p(const std::vector<int>& counts);
 int critical_successes(int trials, double chance, double alpha);
 // The probability of reaching critical_successes when the true proportion is `truth`.
 double binomial_power(int trials, double chance, double alpha, double truth);
+
+// 95 % intervals of the probabilities of all classes at once (Goodman 1965): with A the 1 - .05 / k
+// quantile of chi-squared of one degree of freedom, (A + 2 n_i -+ sqrt(A (A + 4 n_i (N - n_i) /
+// N))) / (2 (N + A)). counts of independent choices. Throws InvalidInput for fewer than two
+// classes, counts below 0, and no counts above 0.
+std::vector<Interval> simultaneous_intervals(const std::vector<int>& counts);
+
+// 95 % intervals of the probabilities of all classes at once (Sison & Glaz 1995): each share - c/N
+// to + (c + 2 g)/N, within 0 and 1. c is the largest whole number for which P(|X_i - n_i| <= c for
+// all i), X multinomial with the observed shares, does not exceed .95, and g interpolates to c + 1.
+// That probability is a product of truncated Poisson ones times an Edgeworth series of their sum
+// (Levin 1981, four moments). Between unlike shares the intervals are all of one width.
+// Counts of independent choices. Throws InvalidInput for fewer than two classes, counts below 0,
+// and no counts above 0.
+std::vector<Interval> sison_glaz_intervals(const std::vector<int>& counts);
+
+struct IntervalEstimate {
+  double value{};
+  Interval interval;  // at any level, the same for all that are compared
+};
+// Of b - a, for estimates of independent samples, at the level of their own intervals: the variance
+// is recovered from how far these reach on the side that matters (MOVER; Zou & Donner 2008). For
+// score intervals of proportions it is Newcombe's (1998) method 10.
+IntervalEstimate independent_difference(const IntervalEstimate& a, const IntervalEstimate& b);
+// Of b / a, both above 0: that of their logarithms.
+IntervalEstimate independent_ratio(const IntervalEstimate& a, const IntervalEstimate& b);
 }  // namespace tapstudy::analysis

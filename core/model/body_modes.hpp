@@ -5,7 +5,7 @@
 #include "core/model/mesh/tet_mesh.hpp"
 #include "core/model/modal_model.hpp"
 #include "core/model/plate.hpp"
-#include "core/model/progress_hook.hpp"
+#include "core/model/progress.hpp"
 namespace tapstudy::core {
 // Identical text for bodies with identical solutions.
 std::string content_key(const BodySpec& body);

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/model/mesh/tetgen_mesher.hpp"
-#include "core/model/stopwatch.hpp"
+#include "core/model/progress.hpp"
 namespace tapstudy::core {
 DiscreteBody discretised(const Plate& plate, const Material& material, const MeshSize& size,
                          const std::vector<Fixation>& regions, const ProgressHook& progress) {

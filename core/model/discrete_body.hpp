@@ -7,7 +7,7 @@
 #include "core/model/modal_model.hpp"
 #include "core/model/modes/modal_solver.hpp"
 #include "core/model/plate.hpp"
-#include "core/model/progress_hook.hpp"
+#include "core/model/progress.hpp"
 namespace tapstudy::core {
 // A body as finite elements: mesh, constraints and matrices (paper section 4.2.1).
 struct DiscreteBody {

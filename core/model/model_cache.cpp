@@ -7,7 +7,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "core/sha256.hpp"
+#include "core/files/sha256.hpp"
 namespace tapstudy::core {
 namespace {
 namespace fs = std::filesystem;

@@ -6,7 +6,7 @@
 
 #include "core/model/elements/material.hpp"
 #include "core/model/fixation.hpp"
-#include "core/model/mesh/mesh_size.hpp"
+#include "core/model/mesh/tetgen_mesher.hpp"
 namespace tapstudy::core {
 struct Meshing {
   MeshSize size;
@@ -30,7 +30,7 @@ struct Plate {
 // Equal text for equal plates.
 std::string content_key(const Plate& plate);
 
-struct Contacts;  // core/model/contacts/contacts.hpp
+struct Contacts;  // core/model/joints/joints.hpp
 
 // A plate of a given material, with the frequency band that its model must cover.
 struct PlateSpec : Plate {

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "core/error.hpp"
-#include "core/model/contacts/contacts.hpp"
+#include "core/model/joints/joints.hpp"
 #include "core/model/modes/damping.hpp"
 namespace tapstudy::core {
 namespace {

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "core/output_file.hpp"
-#include "core/print.hpp"
+#include "core/files/output_files.hpp"
+#include "core/text/print.hpp"
 namespace tapstudy::core {
 namespace {
 constexpr int vtk_tetra = 10;

@@ -1,12 +1,35 @@
 #pragma once
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <memory>
 #include <optional>
-
-#include "core/settings/device_response.hpp"
-#include "core/settings/recorded_taps.hpp"
+#include <vector>
 namespace tapstudy::core {
+// How much of a commanded vibration a device renders, as measured: force at the grip over force
+// commanded, in magnitude.
+struct DeviceResponse {
+  struct Point {
+    double frequency_hz{};  // ascending, > 0
+    double gain{};          // > 0; 1: as commanded
+  };
+  std::vector<Point> points;  // at least one; straight lines between them on logarithmic axes
+  double max_boost{4.0};      // no frequency is amplified by more
+};
+
+// The force on a finger after an impact, as it was measured: along the outward normal, from the
+// impact on.
+struct RecordedTap {
+  Eigen::Vector2d at_m{Eigen::Vector2d::Zero()};  // plate frame
+  double speed_m_s{};                             // of the impact; > 0
+  std::vector<double> force_n;
+};
+
+struct RecordedTaps {
+  double rate_hz{};  // of the samples; > 0
+  std::vector<RecordedTap> taps;
+};
+
 // How the modes are integrated in time: by the exact recurrence of a damped oscillator, or by
 // Newmark's method with beta = 1/4, gamma = 1/2 (paper section 4.2.1).
 enum class Integrator { exact, newmark };

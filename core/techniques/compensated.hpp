@@ -1,7 +1,7 @@
 #pragma once
 #include <vector>
 
-#include "core/settings/device_response.hpp"
+#include "core/settings/render_settings.hpp"
 namespace tapstudy::core {
 // Of a vibration that is commanded; as at its nearest point beyond the outer ones.
 double gain_at(double frequency_hz, const DeviceResponse& response);

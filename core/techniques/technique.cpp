@@ -1,6 +1,7 @@
 #include "core/techniques/technique.hpp"
 
 #include <algorithm>
+#include <utility>
 namespace tapstudy::core {
 const std::vector<Technique>& techniques() {
   static const std::vector<Technique> table{
@@ -61,5 +62,17 @@ const Technique& natural_vibration() {
   return *std::ranges::find_if(techniques(), [&](const Technique& technique) {
     return technique.parts == alone && technique.theory == Theory::solid;
   });
+}
+
+TapRenderer make_renderer(const Technique& technique, const RenderSettings& settings,
+                          TouchedShape shape, const VibratingPlate* plate) {
+  std::vector<std::unique_ptr<AddedForce>> added;
+  for (const ForcePart* const part : technique.parts) {
+    added.push_back(part->make(settings, plate));
+  }
+  if (plate != nullptr && plate->triangles) {
+    shape = plate->triangles;
+  }
+  return {settings, std::move(shape), std::move(added)};
 }
 }  // namespace tapstudy::core

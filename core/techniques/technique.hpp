@@ -1,11 +1,32 @@
 #pragma once
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "core/model/plate.hpp"
-#include "core/techniques/force_part.hpp"
+#include "core/settings/render_settings.hpp"
+#include "core/tick/added_force.hpp"
+#include "core/tick/tap_renderer.hpp"
+#include "core/tick/vibrating_plate.hpp"
 namespace tapstudy::core {
+// A force component that techniques add to the penalty force: requirements and factory (set-up).
+struct ForcePart {
+  bool needs_model{};  // a plate's modal model
+  // The missing setting, as protocol key and allowed values; empty if complete.
+  std::string_view (*missing)(const RenderSettings& settings){};
+  // plate is non-null if a model is needed; it must outlive the returned object.
+  std::unique_ptr<AddedForce> (*make)(const RenderSettings& settings,
+                                      const VibratingPlate* plate){};
+  // Of a slow press, beside the contact spring; null: it adds none.
+  double (*added_stiffness_n_per_m)(const RenderSettings& settings){};
+};
+
+extern const ForcePart plate_vibration;     // plate_vibration_part.cpp
+extern const ForcePart coupled_vibration;   // coupled_vibration_part.cpp
+extern const ForcePart decaying_sinusoid;   // decaying_sinusoid_part.cpp
+extern const ForcePart recorded_transient;  // recorded_transient_part.cpp
+
 // A rendering technique: the components added to the penalty force of the contact spring. The
 // components of a technique are distinct, and are added in order.
 struct Technique {
@@ -31,4 +52,9 @@ const Technique* find_technique(std::string_view name);
 std::vector<std::string> technique_names();
 // The one that vibrates as the body does, with nothing added.
 const Technique& natural_vibration();
+
+// Creates the renderer of a shape for a technique. plate may be nullptr if the technique needs no
+// model; it must outlive the renderer. A vibrating body is touched on its own model's triangles.
+TapRenderer make_renderer(const Technique& technique, const RenderSettings& settings,
+                          TouchedShape shape, const VibratingPlate* plate);
 }  // namespace tapstudy::core

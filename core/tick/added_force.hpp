@@ -1,5 +1,5 @@
 #pragma once
-#include "core/haptic_state.hpp"
+#include "core/haptics/haptic_state.hpp"
 #include "core/tick/contact.hpp"
 namespace tapstudy::core {
 // A part of the feedback force that a technique adds to the penalty force (paper eq. 18). The

@@ -2,7 +2,7 @@
 #include <array>
 
 #include "core/geometry/triangle_tree.hpp"
-#include "core/haptic_state.hpp"
+#include "core/haptics/haptic_state.hpp"
 namespace tapstudy::core {
 // The contact state in this tick, in the plate frame.
 struct Contact {

@@ -1,10 +1,10 @@
 #pragma once
 #include <Eigen/Core>
 
-#include "core/haptic_state.hpp"
+#include "core/haptics/haptic_state.hpp"
 #include "core/model/modal_model.hpp"
 #include "core/tick/state_transition.hpp"
-#include "core/tick/surface_point.hpp"
+#include "core/tick/vibrating_plate.hpp"
 namespace tapstudy::core {
 // The dynamic state of a plate: one displacement and one velocity per mode (paper eq. 11). The
 // model must outlive it. Only the constructor allocates.

@@ -1,4 +1,5 @@
 #include "core/tick/plate_vibration.hpp"
+
 namespace tapstudy::core {
 PlateVibration::PlateVibration(const VibratingPlate& plate, const RenderSettings& settings)
     : plate_{&plate},
@@ -17,5 +18,44 @@ void PlateVibration::impact(double speed_m_s) noexcept {
 void PlateVibration::add_to(ForceParts& parts) const noexcept {
   parts.vibration_n += gain_ * (finger_.stiffness_n_per_m * state_.displacement_m() +
                                 finger_.damping_n_s_per_m * state_.velocity_m_s());  // eq. 17
+}
+
+CoupledVibration::CoupledVibration(const VibratingPlate& plate, const RenderSettings& settings)
+    : plate_{&plate},
+      dt_s_{settings.dt_s},
+      state_{plate.model, settings.integrator, settings.dt_s},
+      finger_{settings.finger, settings.penalty_stiffness_n_per_m, settings.dt_s} {}
+
+void CoupledVibration::advance() noexcept {
+  was_touching_ = is_touching_;
+  is_touching_ = false;
+  state_.tick();
+}
+
+void CoupledVibration::touch(const Contact& contact) noexcept {
+  is_touching_ = true;
+  state_.touch(plate_->place_of(contact), contact.normal);
+  const double hand_m = -contact.penetration_m;
+  const SurfaceTick surface{state_.previous_displacement_m(), state_.displacement_m(),
+                            state_.compliance_m_per_n()};
+  if (!was_touching_) {
+    finger_.begin(hand_m - dt_s_ * contact.normal_velocity_m_s, contact.normal_velocity_m_s,
+                  surface.before_m);
+  }
+  state_.push(-finger_.tick(hand_m, surface));
+}
+
+void CoupledVibration::add_to(ForceParts& parts) const noexcept {
+  parts.vibration_n += finger_.force_on_hand_n();
+}
+
+void CoupledVibration::reset() noexcept {
+  state_.reset();
+  is_touching_ = false;
+  was_touching_ = false;
+}
+
+double CoupledVibration::coupled_energy_j() const noexcept {
+  return state_.energy_j() + (is_touching_ ? finger_.energy_j(state_.displacement_m()) : 0.0);
 }
 }  // namespace tapstudy::core

@@ -1,6 +1,7 @@
 #pragma once
 #include "core/settings/render_settings.hpp"
 #include "core/tick/added_force.hpp"
+#include "core/tick/coupled_finger.hpp"
 #include "core/tick/modal_state.hpp"
 #include "core/tick/vibrating_plate.hpp"
 namespace tapstudy::core {
@@ -25,5 +26,34 @@ class PlateVibration final : public AddedForce {
   Finger finger_;
   double gain_;
   ModalState state_;
+};
+
+// A finger that stays on the vibrating body during the tap: CoupledFinger on all modes at the
+// god-object. It is rendered beside the penalty force, which holds the hand at the body's rest
+// shape as in every technique and does not act on the modes. The finger exists while the hand
+// touches; before, it moves as the hand does. Free modes only: their vibration_gain is not used,
+// because a scaled reaction would not be passive.
+class CoupledVibration final : public AddedForce {
+ public:
+  // The plate must outlive it.
+  CoupledVibration(const VibratingPlate& plate, const RenderSettings& settings);
+  void advance() noexcept override;
+  void touch(const Contact& contact) noexcept override;
+  // The impact is the contact force itself.
+  void impact(double /*speed_m_s*/) noexcept override {}
+  void add_to(ForceParts& parts) const noexcept override;
+  void reset() noexcept override;
+  double energy_j() const noexcept override { return state_.energy_j(); }
+  // Modes, and while it touches the finger, its spring and the contact: what never grows by more
+  // than the work of the hand (CoupledFinger).
+  double coupled_energy_j() const noexcept;
+
+ private:
+  const VibratingPlate* plate_;
+  double dt_s_;
+  ModalState state_;
+  CoupledFinger finger_;
+  bool is_touching_{false};
+  bool was_touching_{false};  // one tick ago
 };
 }  // namespace tapstudy::core

@@ -3,11 +3,10 @@
 #include <variant>
 #include <vector>
 
-#include "core/haptic_state.hpp"
+#include "core/haptics/haptic_state.hpp"
 #include "core/settings/render_settings.hpp"
 #include "core/tick/added_force.hpp"
-#include "core/tick/plate_contact.hpp"
-#include "core/tick/surface_contact.hpp"
+#include "core/tick/god_object.hpp"
 namespace tapstudy::core {
 // The collision geometry: the upper face of a plate, or a whole triangulated surface.
 using TouchedShape = std::variant<PlateFace, std::shared_ptr<const TriangleTree>>;

@@ -2,7 +2,7 @@
 #include <memory>
 #include <string>
 
-#include "device/audio/pcm_sink.hpp"
+#include "device/audio/pcm.hpp"
 namespace tapstudy::device {
 struct AlsaSettings {
   std::string card;  // name of a PCM: "default", "hw:CARD=PCH,DEV=0", "plughw:1" …

@@ -1,10 +1,9 @@
 #pragma once
 #include <cstdint>
 
-#include "core/placement.hpp"
-#include "core/settings/hand_body.hpp"
-#include "device/hand/muscle_body.hpp"
-#include "device/hand/tap_path.hpp"
+#include "core/haptics/haptic_state.hpp"
+#include "core/settings/device_settings.hpp"
+#include "device/hand/hand_motion.hpp"
 namespace tapstudy::device {
 // One tap, made again and again.
 struct RepeatedTap {

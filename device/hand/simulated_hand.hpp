@@ -2,8 +2,7 @@
 #include <vector>
 
 #include "device/device.hpp"
-#include "device/hand/muscle_body.hpp"
-#include "device/hand/tap_path.hpp"
+#include "device/hand/hand_motion.hpp"
 namespace tapstudy::device {
 // What the hand perceives in one tick: position and applied force. Nothing about the plate.
 struct FeltTick {

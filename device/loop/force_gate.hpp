@@ -1,7 +1,7 @@
 #pragma once
 #include <optional>
 
-#include "core/settings/gate_settings.hpp"
+#include "core/settings/device_settings.hpp"
 namespace tapstudy::device {
 struct PassedForce {
   core::Vec3 force_n;

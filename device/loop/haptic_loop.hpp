@@ -4,13 +4,12 @@
 #include <span>
 #include <stop_token>
 
-#include "core/placement.hpp"
+#include "core/haptics/haptic_state.hpp"
 #include "core/tick/spsc_ring.hpp"
 #include "core/tick/tap_renderer.hpp"
 #include "device/device.hpp"
 #include "device/hand/scripted_hand.hpp"
 #include "device/loop/force_gate.hpp"
-#include "device/loop/lateness.hpp"
 #include "device/loop/tick_clock.hpp"
 namespace tapstudy::device {
 struct LoopReport {

@@ -3,8 +3,8 @@
 #include <memory>
 #include <string>
 
-#include "device/loop/lateness.hpp"
 #include "device/loop/realtime.hpp"
+#include "device/loop/tick_clock.hpp"
 namespace tapstudy::device {
 struct ProbedLoop {
   std::string realtime;  // what the machine granted

@@ -5,11 +5,11 @@
 #include <optional>
 #include <span>
 
-#include "core/haptic_state.hpp"
+#include "core/haptics/haptic_state.hpp"
 namespace tapstudy::device {
 // The protocol between tapstudy and a program that drives another device: UDP datagrams on the
 // loopback. Integers and doubles (IEEE 754) are little-endian; vectors are x, y, z in the device
-// frame (core/haptic_state.hpp), SI units.
+// frame (core/haptics/haptic_state.hpp), SI units.
 //
 //   to the device, 36 bytes                    from the device, 60 or 88 bytes
 //    0  "TAPS"                                  0  "TAPR"

@@ -1,59 +1,101 @@
 #include "device/remote/remote_hand.hpp"
 
-#include <arpa/inet.h>
 #include <fmt/format.h>
-#include <netinet/in.h>
-#include <poll.h>
-#include <sys/socket.h>
-#include <unistd.h>
 
-#include <bit>
-#include <cerrno>
+#include <algorithm>
+#include <cmath>
 #include <limits>
-#include <thread>
 #include <utility>
 
 #include "device/remote/packets.hpp"
 namespace tapstudy::device {
 using core::TickFault;
 namespace {
-using Clock = std::chrono::steady_clock;
+constexpr double peak_kept_a_tick = 0.9;  // a tenth is left after 22 ticks
+constexpr double max_ratio = 2.0;
+constexpr double margin_n = 1.0;
+constexpr int max_ticks_above = 2;
+constexpr int max_ticks_against = 5;
+constexpr double min_ratio = 0.05;
+constexpr int max_ticks_without = 30;
+}  // namespace
+
+TickFault ExertedForce::judge(const core::Vec3& commanded_n,
+                              const core::Vec3& reported_n) noexcept {
+  const double commanded = commanded_n.norm();
+  const double reported = reported_n.norm();
+  recent_peak_n_ = std::max(commanded, peak_kept_a_tick * recent_peak_n_);
+  if (std::isnan(reported)) {
+    return TickFault::none;
+  }
+  const bool is_above = reported > max_ratio * recent_peak_n_ + margin_n;
+  const bool is_force = commanded >= noticeable_n;
+  const double along = is_force ? reported_n.dot(commanded_n) / commanded : 0.0;
+  const bool is_against = along <= -noticeable_n;
+  const bool is_without = is_force && along < min_ratio * commanded;
+  ticks_above_ = is_above ? ticks_above_ + 1 : 0;
+  ticks_against_ = is_against ? ticks_against_ + 1 : 0;
+  ticks_without_ = is_without ? ticks_without_ + 1 : 0;
+  return ticks_above_ > max_ticks_above || ticks_against_ > max_ticks_against ||
+                 ticks_without_ > max_ticks_without
+             ? TickFault::force_not_followed
+             : TickFault::none;
+}
+
+using core::TickFault;
+namespace {
+constexpr double window_length_s = 0.05;
+constexpr double noticeable_m = 0.002;
+constexpr double tolerance = 0.5;
+constexpr int max_disagreements = 20;
+}  // namespace
+
+TickFault VelocityCheck::judge(const core::HandState& hand, double elapsed_s) noexcept {
+  if (has_begun_) {
+    integrated_m_ += elapsed_s * hand.velocity_m_s;
+    window_s_ += elapsed_s;
+    if (window_s_ < window_length_s) {
+      return TickFault::none;
+    }
+    const core::Vec3 moved_m = hand.position_m - began_at_m_;
+    const double larger_m = std::max(moved_m.norm(), integrated_m_.norm());
+    if (larger_m >= noticeable_m) {
+      const bool agrees = (moved_m - integrated_m_).norm() <= tolerance * larger_m;
+      disagreements_ = std::max(disagreements_ + (agrees ? -1 : 1), 0);
+    }
+  }
+  has_begun_ = true;
+  began_at_m_ = hand.position_m;
+  integrated_m_.setZero();
+  window_s_ = 0.0;
+  return disagreements_ > max_disagreements ? TickFault::velocity_wrong : TickFault::none;
+}
+
+using core::TickFault;
+namespace {
 constexpr double untold = std::numeric_limits<double>::quiet_NaN();
 constexpr int max_zero_force_requests = 30;  // a device may measure its force late
 constexpr int attempts = 40;
 constexpr int max_released_replies = 30;  // after a silence, until the other program holds again
 constexpr std::chrono::milliseconds patience{50};  // timeout per attempt
-
-int connected_socket(std::uint16_t port) noexcept {
-  const int descriptor = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_port = htons(port);
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  const auto generic = std::bit_cast<sockaddr>(address);
-  if (descriptor >= 0 && connect(descriptor, &generic, sizeof generic) != 0) {
-    close(descriptor);
-    return -1;
-  }
-  return descriptor;
-}
 }  // namespace
 
 RemoteHand::RemoteHand(std::uint16_t port, std::chrono::microseconds max_reply)
-    : port_{port}, max_reply_{patience}, socket_{connected_socket(port)} {
+    : RemoteHand{port, max_reply, open_udp_pipe(port)} {}
+
+RemoteHand::RemoteHand(std::uint16_t port, std::chrono::microseconds max_reply,
+                       std::unique_ptr<DatagramPipe> pipe)
+    : port_{port}, max_reply_{patience}, pipe_{std::move(pipe)} {
   core::HandState ignored;
   bool is_misunderstood = false;
-  for (int i = 0; socket_ >= 0 && i < attempts; ++i) {
+  for (int i = 0; i < attempts; ++i) {
     const TickFault fault = ask(ignored);
     if (fault == TickFault::none) {
       max_reply_ = max_reply;
       return;
     }
     is_misunderstood = is_misunderstood || fault == TickFault::bad_reply;
-    usleep(static_cast<useconds_t>(std::chrono::microseconds{patience}.count()));
-  }
-  if (socket_ >= 0) {
-    close(socket_);
+    sleep_for(patience);
   }
   throw DeviceError{
       is_misunderstood
@@ -68,7 +110,6 @@ RemoteHand::RemoteHand(std::uint16_t port, std::chrono::microseconds max_reply)
 
 RemoteHand::~RemoteHand() {
   static_cast<void>(RemoteHand::zero_force());
-  close(socket_);
 }
 
 std::string RemoteHand::description() const {
@@ -78,36 +119,33 @@ std::string RemoteHand::description() const {
 TickFault RemoteHand::send(bool wants_reply) noexcept {
   const auto bytes =
       encoded({wants_reply ? RequestKind::reply : RequestKind::no_reply, ++number_, force_n_});
-  const ssize_t sent = ::send(socket_, bytes.data(), bytes.size(), 0);
-  if (sent == static_cast<ssize_t>(bytes.size())) {
-    return TickFault::none;
+  switch (pipe_->send(bytes)) {
+    case DatagramOutcome::ok:
+      return TickFault::none;
+    case DatagramOutcome::gone:
+      return TickFault::device_gone;
+    case DatagramOutcome::timed_out:
+    case DatagramOutcome::failed:
+      break;
   }
-  return errno == ECONNREFUSED ? TickFault::device_gone : TickFault::bad_reply;
+  return TickFault::bad_reply;
 }
 
-bool RemoteHand::wait_until(Clock::time_point end) const noexcept {
-  const auto left = std::chrono::duration_cast<std::chrono::nanoseconds>(end - Clock::now());
-  if (left.count() <= 0) {
-    return false;
-  }
-  pollfd waiting{socket_, POLLIN, 0};
-  const timespec patience_left{0, left.count()};
-  return ppoll(&waiting, 1, &patience_left, nullptr) > 0;
+void RemoteHand::sleep_for(std::chrono::nanoseconds duration) noexcept {
+  pipe_->wait_until(pipe_->now() + duration.count());
 }
 
 // Late replies to earlier requests are ignored.
 TickFault RemoteHand::receive(core::HandState& hand) noexcept {
-  const Clock::time_point end = Clock::now() + max_reply_;
-  while (wait_until(end)) {
+  const Nanoseconds deadline = pipe_->now() + max_reply_.count();
+  while (true) {
     std::array<std::uint8_t, reply_bytes_of_version_2 + 1> bytes{};
-    const ssize_t count = recv(socket_, bytes.data(), bytes.size(), 0);
-    if (count < 0) {
-      if (errno == ECONNREFUSED) {
-        return TickFault::device_gone;
-      }
-      continue;
+    const ReceivedDatagram received = pipe_->receive(bytes, deadline);
+    if (received.outcome != DatagramOutcome::ok) {
+      return received.outcome == DatagramOutcome::gone ? TickFault::device_gone
+                                                       : TickFault::no_reply;
     }
-    const auto reply = decoded_reply(std::span{bytes}.first(static_cast<std::size_t>(count)));
+    const auto reply = decoded_reply(std::span{bytes}.first(received.bytes));
     if (!reply) {
       return TickFault::bad_reply;
     }
@@ -122,7 +160,6 @@ TickFault RemoteHand::receive(core::HandState& hand) noexcept {
       return TickFault::none;
     }
   }
-  return TickFault::no_reply;
 }
 
 TickFault RemoteHand::ask(core::HandState& hand) noexcept {
@@ -202,7 +239,7 @@ RemoteHand::Release RemoteHand::release_after(std::chrono::milliseconds silence)
   if (*before) {
     return Release::always_reported;
   }
-  std::this_thread::sleep_for(silence);
+  sleep_for(silence);
   const std::optional<bool> after = reported();
   return !after ? Release::not_reported : *after ? Release::released : Release::held;
 }
@@ -216,7 +253,7 @@ StopOutcome RemoteHand::zero_force() noexcept {
   for (int i = 0;
        i < zero_force_packets || (has_replied && is_exerted && i < max_zero_force_requests); ++i) {
     if (i >= zero_force_packets) {
-      std::this_thread::sleep_for(std::chrono::milliseconds{1});
+      sleep_for(std::chrono::milliseconds{1});
     }
     core::HandState ignored;
     has_replied = ask(ignored) == TickFault::none;

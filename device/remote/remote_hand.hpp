@@ -1,12 +1,52 @@
 #pragma once
 #include <chrono>
 #include <cstdint>
+#include <memory>
 #include <optional>
 
+#include "core/haptics/haptic_state.hpp"
 #include "device/device.hpp"
-#include "device/remote/exerted_force.hpp"
-#include "device/remote/velocity_check.hpp"
+#include "device/remote/datagram_pipe.hpp"
 namespace tapstudy::device {
+// Of a measured force: less may be an offset, noise, or lost in friction.
+inline constexpr double noticeable_n = 0.5;
+
+// Compares the force that a device reports with the force that it was sent. Faults are a report far
+// above, in three ticks running; one against the commanded force, in six; and one of almost nothing
+// along it for 30 ticks of force. Margins are wide, since devices measure late and coarsely. One
+// that reports nothing (NaN) is not judged.
+class ExertedForce {
+ public:
+  void forget() noexcept { *this = {}; }
+  // Once a tick: what was commanded when the device reported.
+  [[nodiscard]] core::TickFault judge(const core::Vec3& commanded_n,
+                                      const core::Vec3& reported_n) noexcept;
+
+ private:
+  double recent_peak_n_{0.0};  // of the commands, decaying
+  int ticks_above_{0};
+  int ticks_against_{0};
+  int ticks_without_{0};
+};
+
+// Compares the velocity that a device reports with the change of its position, since the strength
+// of an impact rests on the velocity: one in other units, of another frame or always 0 is a fault
+// after about a second of movement. Judged in windows of 50 ms in which the hand moves noticeably;
+// a velocity that lags behind by some 30 ms disagrees only where the hand turns back.
+class VelocityCheck {
+ public:
+  void forget() noexcept { *this = {}; }
+  // Once a reply, with the time since the last one.
+  [[nodiscard]] core::TickFault judge(const core::HandState& hand, double elapsed_s) noexcept;
+
+ private:
+  bool has_begun_{false};
+  core::Vec3 began_at_m_{core::Vec3::Zero()};
+  core::Vec3 integrated_m_{core::Vec3::Zero()};
+  double window_s_{0.0};
+  int disagreements_{0};  // less the agreements, from 0
+};
+
 // A device driven by another program on this machine, over UDP on the loopback (packets.hpp): each
 // tick requests the position and waits for it, then sends the force, which is applied immediately.
 class RemoteHand final : public Device {
@@ -14,6 +54,8 @@ class RemoteHand final : public Device {
   // Asks forty times, for two to four seconds: the other program may still wait for an earlier one.
   // Throws DeviceError if nobody answers.
   RemoteHand(std::uint16_t port, std::chrono::microseconds max_reply);
+  RemoteHand(std::uint16_t port, std::chrono::microseconds max_reply,
+             std::unique_ptr<DatagramPipe> pipe);
   ~RemoteHand() override;
   RemoteHand(const RemoteHand& other) = delete;
   RemoteHand& operator=(const RemoteHand& other) = delete;
@@ -41,11 +83,11 @@ class RemoteHand final : public Device {
   core::TickFault ask(core::HandState& hand) noexcept;
   core::TickFault receive(core::HandState& hand) noexcept;
   core::TickFault fault_of_report() noexcept;
-  bool wait_until(std::chrono::steady_clock::time_point end) const noexcept;
+  void sleep_for(std::chrono::nanoseconds duration) noexcept;
 
   std::uint16_t port_;
-  std::chrono::microseconds max_reply_;
-  int socket_;
+  std::chrono::nanoseconds max_reply_;
+  std::unique_ptr<DatagramPipe> pipe_;
   std::uint32_t number_{0};
   core::Vec3 force_n_{core::Vec3::Zero()};
   HeldHand held_;

@@ -1,10 +1,10 @@
 #pragma once
 #include <optional>
 
-#include "core/tick_fault.hpp"
+#include "core/haptics/haptic_state.hpp"
 #include "device/device.hpp"
 #include "device/spidar/board.hpp"
-#include "device/usb/watchdog_channel.hpp"
+#include "device/usb/guardian.hpp"
 namespace tapstudy::device {
 // The exchanges with a board, one a tick, under the guardian's watch: what is sent, what comes
 // back, whether that is the answer to it, and whether force is known to be off.

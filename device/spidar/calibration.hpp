@@ -3,9 +3,9 @@
 #include <span>
 #include <string>
 
-#include "core/settings/spidar_calibration.hpp"
+#include "core/settings/device_settings.hpp"
 #include "device/spidar/board.hpp"
-#include "device/spidar/geometry.hpp"
+#include "device/spidar/kinematics.hpp"
 namespace tapstudy::device {
 // Which quantity of the strings of one frame differs by more than a factor of three, as motors of
 // one kind do not.

@@ -9,8 +9,8 @@
 #include <span>
 
 #include "device/device.hpp"
+#include "device/spidar/board.hpp"
 #include "device/spidar/calibration.hpp"
-#include "device/spidar/counters.hpp"
 namespace tapstudy::device {
 namespace {
 using core::StringCalibration;

@@ -1,10 +1,26 @@
 #pragma once
-#include "core/settings/spidar_calibration.hpp"
+#include <functional>
+#include <string>
+
+#include "core/settings/device_settings.hpp"
 #include "device/loop/tick_clock.hpp"
 #include "device/spidar/board.hpp"
-#include "device/spidar/calibration_operator.hpp"
-#include "device/usb/watchdog_channel.hpp"
+#include "device/usb/guardian.hpp"
 namespace tapstudy::device {
+// The operator's manual steps at the device.
+class CalibrationOperator {
+ public:
+  virtual ~CalibrationOperator() = default;
+  // Asks for a task; returns when it is done.
+  virtual void please(const std::string& task) = 0;
+  // Asks for a measured value: above zero, at most max. keep_waiting is called many times a second;
+  // where it throws, so does this.
+  virtual double how_much(const std::string& task, double max,
+                          const std::function<void()>& keep_waiting) = 0;
+  // Something that the operator must know at once.
+  virtual void warn(const std::string& /*what*/) noexcept {}
+};
+
 // Upper limit of the output until a string's force constant is known: 2 N at 0.365 V/N, 6 N at
 // 0.114 V/N, the two values published for the same frame.
 inline constexpr std::uint16_t calibration_dac_counts = 300;

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "device/loop/lateness.hpp"
-#include "device/relay/dead_man_relay.hpp"
+#include "device/loop/tick_clock.hpp"
+#include "device/relay/serial_port.hpp"
 #include "device/spidar/board.hpp"
 #include "device/usb/guardian.hpp"
 #include "device/usb/libusb_pipe.hpp"

@@ -5,7 +5,7 @@
 #include "device/spidar/board_link.hpp"
 #include "device/spidar/calibration.hpp"
 #include "device/spidar/tensions.hpp"
-#include "device/usb/watchdog_channel.hpp"
+#include "device/usb/guardian.hpp"
 namespace tapstudy::device {
 struct SpidarLimits {
   double max_residual_m{2e-4};       // beyond it a string is slack, slipped or miscounted

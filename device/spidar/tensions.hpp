@@ -1,6 +1,6 @@
 #pragma once
 #include "device/spidar/box_qp.hpp"
-#include "device/spidar/pose.hpp"
+#include "device/spidar/kinematics.hpp"
 namespace tapstudy::device {
 // Force and torque about the grip centre.
 struct Wrench {

@@ -6,6 +6,8 @@
 #include <sched.h>
 #include <sys/ioctl.h>
 #include <sys/mman.h>
+#include <sys/socket.h>
+#include <sys/un.h>
 #include <sys/wait.h>
 #include <termios.h>
 #include <unistd.h>
@@ -15,12 +17,51 @@
 #include <cerrno>
 #include <chrono>
 #include <csignal>
+#include <cstddef>
 #include <cstring>
+#include <ctime>
 #include <memory>
 
 #include "device/device.hpp"
-#include "device/usb/inherited_sockets.hpp"
 namespace tapstudy::device {
+bool is_guardian_alive(const WatchdogChannel& channel) noexcept {
+  constexpr timespec pause{0, 2'000'000};
+  constexpr int max_pauses = 50;
+  const std::uint64_t rounds = channel.rounds();
+  for (int i = 0; i < max_pauses && channel.rounds() == rounds; ++i) {
+    nanosleep(&pause, nullptr);
+  }
+  return channel.rounds() != rounds;
+}
+
+namespace {
+constexpr int max_descriptors = 1024;
+
+bool is_named(int descriptor) noexcept {
+  sockaddr_storage address{};
+  socklen_t size = sizeof address;
+  // NOLINTNEXTLINE(cppcoreguidelines-pro-type-reinterpret-cast): the C library's
+  if (getsockname(descriptor, reinterpret_cast<sockaddr*>(&address), &size) != 0) {
+    return false;  // not a socket
+  }
+  if (address.ss_family == AF_UNIX) {
+    return size > offsetof(sockaddr_un, sun_path);
+  }
+  int is_listening = 0;
+  socklen_t flag_size = sizeof is_listening;
+  return getsockopt(descriptor, SOL_SOCKET, SO_ACCEPTCONN, &is_listening, &flag_size) == 0 &&
+         is_listening != 0;
+}
+}  // namespace
+
+void close_named_sockets() noexcept {
+  for (int descriptor = STDERR_FILENO + 1; descriptor < max_descriptors; ++descriptor) {
+    if (is_named(descriptor)) {
+      close(descriptor);
+    }
+  }
+}
+
 namespace {
 constexpr unsigned packet_time_out_ms = 20;
 constexpr int round_ms = 5;

@@ -1,13 +1,79 @@
 #pragma once
 #include <sys/types.h>
 
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <vector>
 
 #include "device/usb/usb_node.hpp"
-#include "device/usb/watchdog_channel.hpp"
 namespace tapstudy::device {
+// Shared memory between the program that renders force and its guardian. Lock-free.
+//
+// Who may send is a claim: the program claims the output for each exchange and releases it after.
+// The guardian takes the output over for good, so a program that stalled between its check and its
+// packet learns of it when it releases, and sends zero force in the same tick.
+class WatchdogChannel {
+ public:
+  // Used by the program: between begin and end force may be on, with one heartbeat per tick.
+  void begin() noexcept { is_on_.store(true); }
+  // Only after zero force was confirmed.
+  void end() noexcept {
+    must_repeat_.store(false);
+    is_on_.store(false);
+  }
+  // Zero force has been confirmed since the device was opened: a relay may close.
+  void allow_power() noexcept { is_power_allowed_.store(true); }
+  void beat() noexcept { beats_.fetch_add(1); }
+  std::uint64_t rounds() const noexcept { return rounds_.load(); }
+  // False: the guardian has taken the output over; nothing but zero force may be sent.
+  bool claim_output() noexcept { return hand_over(Output::free, Output::claimed); }
+  bool release_output() noexcept { return hand_over(Output::claimed, Output::free); }
+  // Zero force could not be confirmed: the guardian shall repeat it until end().
+  void repeat_zero_force() noexcept {
+    is_zero_taken_.store(false);
+    must_repeat_.store(true);
+  }
+  // The kernel has accepted the guardian's zero force since the request to repeat it.
+  bool is_zero_taken() const noexcept { return is_zero_taken_.load(); }
+  // The guardian has zeroed the force because the program stalled.
+  bool has_acted() const noexcept { return output_.load() == Output::taken_over; }
+
+  // Used by the guardian, once per polling cycle.
+  bool is_on() const noexcept { return is_on_.load(); }
+  bool must_repeat() const noexcept { return must_repeat_.load(); }
+  bool may_close_relay() const noexcept {
+    return is_power_allowed_.load() && !must_repeat() && !has_acted();
+  }
+  std::uint64_t beats() const noexcept { return beats_.load(); }
+  void complete_round() noexcept { rounds_.fetch_add(1); }
+  void take_output_over() noexcept { output_.store(Output::taken_over); }
+  void note_zero_taken() noexcept { is_zero_taken_.store(true); }
+
+ private:
+  enum class Output : std::uint32_t { free, claimed, taken_over };
+  bool hand_over(Output from, Output to) noexcept {
+    return output_.compare_exchange_strong(from, to);
+  }
+
+  std::atomic<bool> is_on_{false};
+  std::atomic<bool> is_power_allowed_{false};
+  std::atomic<bool> must_repeat_{false};
+  std::atomic<bool> is_zero_taken_{false};
+  std::atomic<Output> output_{Output::free};
+  std::atomic<std::uint64_t> beats_{0};
+  std::atomic<std::uint64_t> rounds_{0};
+  static_assert(std::atomic<std::uint64_t>::is_always_lock_free);
+};
+
+// Waits for a fresh round of the guardian, up to 0.1 s.
+bool is_guardian_alive(const WatchdogChannel& channel) noexcept;
+
+// Closes the sockets that listen or are bound to a name of their own. A forked child without exec
+// inherits them: the name of a session's lock and the port of its pages would stay taken for as
+// long as the child lives. Only async-signal-safe functions are used.
+void close_named_sockets() noexcept;
+
 struct GuardianSettings {
   std::uint8_t out_endpoint{};
   std::uint8_t in_endpoint{};

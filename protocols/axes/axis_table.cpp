@@ -5,7 +5,6 @@
 #include <memory>
 #include <utility>
 
-#include "protocols/allowed.hpp"
 #include "protocols/axes/axis.hpp"
 #include "protocols/axes/presented_stimulus.hpp"
 namespace tapstudy::protocols {

@@ -2,9 +2,8 @@
 
 #include <utility>
 
-#include "core/rng.hpp"
-#include "protocols/procedures/read_grid.hpp"
-#include "protocols/procedures/shipped_procedures.hpp"
+#include "core/random/rng.hpp"
+#include "protocols/procedures/procedure.hpp"
 namespace tapstudy::protocols {
 namespace {
 constexpr int max_repetitions = 1000;

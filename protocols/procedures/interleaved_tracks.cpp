@@ -1,7 +1,7 @@
 #include "protocols/procedures/interleaved_tracks.hpp"
 
 #include "core/error.hpp"
-#include "core/rng.hpp"
+#include "core/random/rng.hpp"
 namespace tapstudy::protocols {
 InterleavedTracks::InterleavedTracks(
     const std::vector<std::shared_ptr<const TrackSettings>>& settings, std::uint64_t seed)

@@ -4,6 +4,8 @@
 #include <span>
 #include <string>
 #include <vector>
+
+#include "core/psychometric_function.hpp"
 namespace tapstudy::protocols {
 // A parameter's grid. A nuisance is estimated, but stimuli are not chosen to learn about it (Prins
 // 2013).
@@ -71,4 +73,13 @@ class LikelihoodTable {
   std::vector<double> prior_;
   std::vector<double> entries_;
 };
+
+// Two outcomes, 1 with the probability psi of a psychometric function of the first axis, whose
+// threshold the further axes x2, x3, ... move (Watson 2017 so models contrast sensitivity):
+//   on a linear axis of the shape  threshold + effect2 (x2 - o2) + effect3 (x3 - o3) + ...
+//   on its log10 axis              threshold 10^(effect2 (x2 - o2) + effect3 (x3 - o3) + ...)
+// where o2, o3, ... are origins, one for each further axis.
+// Parameters in this order: threshold, slope, guess, lapse, then an effect for each further axis.
+// The model throws InvalidInput where the psychometric function does.
+OutcomeModel psychometric_model(core::PsychometricShape shape, std::vector<double> origins);
 }  // namespace tapstudy::protocols

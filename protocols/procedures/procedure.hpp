@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/psychometric_function.hpp"
+#include "protocols/yaml/yaml_reader.hpp"
 namespace tapstudy::protocols {
 class MapReader;
 
@@ -121,4 +122,22 @@ const std::vector<const Procedure*>& procedures();
 
 // A mapping with one key, the procedure's name, to the procedure's own keys. nullptr as above.
 std::shared_ptr<const TrackSettings> read_procedure(MapReader& reader);
+
+// Method of constant stimuli: listed values in random order.
+const Procedure& constant_stimuli();
+// Up-down staircases: transformed (Levitt 1971) and weighted (Kaernbach 1991).
+const Procedure& staircase();
+// QUEST+ (Watson 2017): the stimulus of least expected entropy of the parameters.
+const Procedure& quest_plus();
+// The psi method (Kontsevich & Tyler 1999): QUEST+ of one stimulus axis with guess and lapse rate
+// fixed.
+const Procedure& psi();
+
+// Values of a stimulus or a parameter, in its own unit.
+inline constexpr double largest_value = 1e9;
+inline constexpr int max_grid_values = 10'000;
+
+// The keys of a grid: `values`, listed in increasing order; or `min`, `max`, `count` and `spacing`,
+// linear or log. At least one value, strictly increasing. nullopt: a problem was noted.
+std::optional<std::vector<double>> read_grid(MapReader& reader);
 }  // namespace tapstudy::protocols

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "core/haptic_state.hpp"
+#include "core/haptics/haptic_state.hpp"
 namespace tapstudy::protocols {
 // A face of any number of corners as triangles that have no other corners, wound as the face is:
 // the constrained Delaunay triangulation of its outline (Chew 1989), seen along the axis that its

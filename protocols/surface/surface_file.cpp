@@ -17,10 +17,9 @@
 #include <utility>
 #include <vector>
 
-#include "core/bounded_child.hpp"
 #include "core/error.hpp"
-#include "core/packed_bytes.hpp"
-#include "core/sha256.hpp"
+#include "core/files/sha256.hpp"
+#include "core/process/bounded_child.hpp"
 #include "protocols/surface/cut_polygon.hpp"
 namespace tapstudy::protocols {
 namespace {

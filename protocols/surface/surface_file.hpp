@@ -1,9 +1,21 @@
 #pragma once
+#include <cstddef>
+#include <functional>
 #include <string>
 
 #include "core/geometry/triangle_surface.hpp"
-#include "protocols/surface/surface_source.hpp"
 namespace tapstudy::protocols {
+// The complete contents of a surface file: stored with the study that uses it.
+struct SurfaceSource {
+  std::string file;  // as the protocol names it
+  std::string bytes;
+  std::string sha256;  // of the bytes
+};
+
+// The bytes of a file that a protocol names. Throws InvalidInput if there is none.
+using ReadFile = std::function<std::string(const std::string& file)>;
+inline constexpr std::size_t max_surface_bytes = 200'000'000;
+
 SurfaceSource surface_source(std::string file, std::string bytes);
 
 // Reads the triangles of an STL (ASCII or binary), PLY, OFF or OBJ file, chosen by file extension;

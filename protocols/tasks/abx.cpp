@@ -1,5 +1,5 @@
 #include "protocols/tasks/sample_task.hpp"
-#include "protocols/tasks/shipped_tasks.hpp"
+#include "protocols/tasks/task.hpp"
 namespace tapstudy::protocols {
 namespace {
 // A and B differ; X is one of them again: which? (Munson & Gardner 1950)

@@ -4,12 +4,12 @@
 #include <cmath>
 
 #include "core/error.hpp"
+#include "protocols/axes/axis_range.hpp"
 #include "protocols/axes/presented_stimulus.hpp"
-#include "protocols/axes/read_spaced.hpp"
-#include "protocols/read_sections.hpp"
-#include "protocols/tasks/preference_task.hpp"
+#include "protocols/reader/read_sections.hpp"
 #include "protocols/tasks/read_axis_values.hpp"
-#include "protocols/tasks/shipped_tasks.hpp"
+#include "protocols/tasks/task.hpp"
+#include "protocols/tasks/task_parts.hpp"
 #include "protocols/yaml/yaml_reader.hpp"
 namespace tapstudy::protocols {
 namespace {

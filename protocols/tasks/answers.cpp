@@ -6,8 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/number_in.hpp"
-#include "core/plain_text.hpp"
+#include "core/text/plain_text.hpp"
 namespace tapstudy::protocols {
 namespace {
 constexpr std::size_t max_characters = 20;  // of a number

@@ -1,7 +1,202 @@
 #include "protocols/tasks/discrimination_task.hpp"
 
-#include "protocols/read_sections.hpp"
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.hpp"
+#include "protocols/axes/presented_stimulus.hpp"
+#include "protocols/reader/read_sections.hpp"
+#include "protocols/tasks/read_axis_values.hpp"
 namespace tapstudy::protocols {
+namespace {
+constexpr double any = 1e15;
+
+const Stimulus* family_of(const Protocol& protocol, const Block& block) {
+  const auto found =
+      block.stimuli.size() == 1
+          ? std::ranges::find(protocol.stimuli, block.stimuli.front(), &Stimulus::name)
+          : protocol.stimuli.end();
+  return found == protocol.stimuli.end() || found->vary.empty() ? nullptr : &*found;
+}
+
+// Whether it can be presented.
+bool check_value(MapReader& reader, const std::string& key, const Protocol& protocol,
+                 const Stimulus& family, const std::string& axis, double value) {
+  try {
+    presented_values(protocol, family, {{axis, value}});
+    return true;
+  } catch (const core::InvalidInput& error) {
+    reader.reject(key, error.what());
+    return false;
+  }
+}
+
+// Whether the standard is presented as it is given. A table's nearest value in its place would be
+// another standard: levels, what is right, and thresholds would be those of a plate that nobody
+// felt.
+bool check_standard(MapReader& reader, const Protocol& protocol, const Stimulus& family,
+                    const Comparison& comparison) {
+  const double standard = comparison.standard;
+  if (!check_value(reader, "standard", protocol, family, comparison.axis, standard)) {
+    return false;
+  }
+  const double presented =
+      presented_values(protocol, family, {{comparison.axis, standard}}).at(comparison.axis);
+  const bool is_built = std::abs(presented - standard) <= 1e-9 * std::abs(standard);
+  if (!is_built) {
+    reader.reject("standard", fmt::format("{:.6g} is not among the values of {} that are built "
+                                          "(the nearest is {:.6g})",
+                                          standard, comparison.axis, presented));
+  }
+  return is_built;
+}
+
+void check_further_axes(MapReader& reader, const Protocol& protocol, const Stimulus& family,
+                        const Comparison& comparison, const TrackSettings& track) {
+  const auto ranges = track.ranges();
+  for (std::size_t i = 0; i < comparison.further_axes.size(); ++i) {
+    const auto [low, high] = ranges[i + 1];
+    for (const double value : {low, high}) {
+      check_value(reader, fmt::format("further_axes[{}]", i), protocol, family,
+                  comparison.further_axes[i], value);
+    }
+  }
+}
+
+void check_track(MapReader& reader, const Protocol& protocol, const Stimulus& family,
+                 const Comparison& comparison, const TrackSettings& track) {
+  const std::size_t axes = 1 + comparison.further_axes.size();
+  if (track.axes() != axes || track.outcomes() != 2) {
+    reader.reject(
+        fmt::format("varies {} axes and has {} outcomes; the block has {} (`axis` and "
+                    "`further_axes`) and 2, right and wrong",
+                    track.axes(), track.outcomes(), axes));
+    return;
+  }
+  check_further_axes(reader, protocol, family, comparison, track);
+  const auto [low, high] = track.ranges().front();
+  if (low < 0.0 && comparison.side != Side::either) {
+    reader.reject(fmt::format(
+        "may ask for the level {}: levels are at least 0 (or comparison: either)", low));
+    return;
+  }
+  if (comparison.side != Side::either && !track.is_harder_below()) {
+    reader.reject("after_correct", "must be decrease: greater levels are easier");
+    return;
+  }
+  for (const double level : {low, high}) {
+    const double value = comparison.value_at(level);
+    try {
+      const double presented =
+          presented_values(protocol, family, {{comparison.axis, value}}).at(comparison.axis);
+      if (level != 0.0 && presented == comparison.standard) {
+        reader.reject(fmt::format(
+            "may ask for the level {}, which is {} = {:.6g}: of the values that are built the "
+            "standard itself is nearest",
+            level, comparison.axis, value));
+        return;
+      }
+    } catch (const core::InvalidInput& error) {
+      reader.reject(fmt::format("may ask for the level {}, which is {} = {:.6g}: {}", level,
+                                comparison.axis, value, error.what()));
+      return;
+    }
+  }
+}
+
+std::vector<std::string> read_further_axes(MapReader& reader, const std::vector<std::string>& axes,
+                                           const std::string& axis) {
+  if (!reader.has("further_axes")) {
+    return {};
+  }
+  std::vector<std::string> others = axes;
+  std::erase(others, axis);
+  return reader.words("further_axes", "further axis", others);
+}
+
+// Where the standard cannot be presented, which is said already, procedures are only read.
+void read_tracks(MapReader& reader, const Protocol& protocol, const Stimulus* usable_family,
+                 Comparison& comparison) {
+  reader.list("procedures", MapReader::Presence::at_least_one, [&](MapReader& inner) {
+    const auto track = read_procedure(inner);
+    if (track == nullptr) {
+      return;
+    }
+    if (usable_family != nullptr) {
+      check_track(inner, protocol, *usable_family, comparison, *track);
+    }
+    comparison.tracks.push_back(track);
+  });
+}
+// Unset: what the procedures assume, where it fits the side.
+void read_function(MapReader& reader, Comparison& comparison) {
+  const bool is_on_either_side = comparison.side == Side::either;
+  // A point of equality is where F is 0.5.
+  const auto fits = [&](core::PsychometricShape shape) {
+    return !is_on_either_side ||
+           (!core::row_of(shape).is_logarithmic && core::shape_value(shape, 0.0, 0.0, 1.0) == 0.5);
+  };
+  core::PsychometricShape assumed = is_on_either_side ? core::PsychometricShape::cumulative_gaussian
+                                                      : core::PsychometricShape::weibull;
+  for (const auto& track : comparison.tracks) {
+    if (const auto shape = track->shape(); shape && fits(*shape)) {
+      assumed = *shape;
+      break;
+    }
+  }
+  const auto* const row = core::find_psychometric_shape(
+      reader.word("function", "psychometric function", core::psychometric_shape_names(),
+                  std::string{core::row_of(assumed).name}));
+  if (row == nullptr) {
+    return;  // noted
+  }
+  if (!fits(row->shape)) {
+    reader.reject("function",
+                  fmt::format("'{}' has no point of equality: with levels on either side "
+                              "it is logistic or cumulative_gaussian",
+                              row->name));
+  }
+  comparison.shape = row->shape;
+}
+}  // namespace
+
+std::optional<Comparison> read_comparison(MapReader& reader, const Protocol& protocol,
+                                          const Block& block, Sides sides) {
+  Comparison comparison;
+  const Stimulus* const family = family_of(protocol, block);
+  const std::vector<std::string> axes =
+      family == nullptr ? std::vector<std::string>{} : axes_of(protocol, family->name);
+  if (family != nullptr) {
+    comparison.axis = read_axis(reader, protocol, block, axes);
+    comparison.further_axes = read_further_axes(reader, axes, comparison.axis);
+  }
+  const bool is_known =
+      std::ranges::find(axes, comparison.axis) != axes.end() && family->is_complete();
+  const double own = is_known ? presented_values(protocol, *family, {}).at(comparison.axis) : 0.0;
+  comparison.standard = reader.number("standard", {-any, any}, own);
+  comparison.is_fraction =
+      reader.one_of<bool>("level", {{"fraction", true}, {"difference", false}}, "fraction");
+  comparison.side = reader.one_of<Side>(
+      "comparison", {{"above", Side::above}, {"below", Side::below}, {"either", Side::either}},
+      "above");
+  if (comparison.side == Side::either && sides == Sides::one) {
+    reader.reject("comparison", "lies on one side of the standard: above or below");
+  }
+  bool is_usable = is_known && check_standard(reader, protocol, *family, comparison);
+  if (is_usable && comparison.is_fraction && comparison.standard <= 0.0) {
+    reader.reject("level", "fractions are of a standard above 0");
+    is_usable = false;
+  }
+  read_tracks(reader, protocol, is_usable ? family : nullptr, comparison);
+  read_function(reader, comparison);
+  if (family == nullptr && !is_vary_refused(protocol, block)) {
+    reader.reject("stimuli", "procedures vary one stimulus, which must have `vary`");
+  }
+  return comparison.tracks.empty() ? std::nullopt : std::optional{comparison};
+}
+
 namespace {
 // Of each way to present a trial, in a run of trials that is shuffled as a whole.
 constexpr std::size_t times_in_run = 4;

@@ -1,7 +1,16 @@
 #pragma once
-#include "protocols/tasks/read_comparison.hpp"
+#include <optional>
+
+#include "protocols/protocol.hpp"
 #include "protocols/tasks/task_parts.hpp"
+#include "protocols/yaml/yaml_reader.hpp"
 namespace tapstudy::protocols {
+// Of the standard a task's comparisons may lie on.
+enum class Sides { one, one_or_both };
+// The block's comparison and its procedures; problems go to the reader. nullopt: there can be none.
+std::optional<Comparison> read_comparison(MapReader& reader, const Protocol& protocol,
+                                          const Block& block, Sides sides);
+
 // Alternatives under blind labels, each the standard or a comparison: the members of a family at
 // the standard's value and at one that procedures choose, or two different stimuli of the block.
 class DiscriminationTask : public Task {

@@ -4,11 +4,11 @@
 #include <map>
 #include <ranges>
 
-#include "protocols/catch_trials.hpp"
-#include "protocols/ordering.hpp"
 #include "protocols/protocol.hpp"
-#include "protocols/read_sections.hpp"
-#include "protocols/tasks/shipped_tasks.hpp"
+#include "protocols/reader/read_sections.hpp"
+#include "protocols/schedule/catch_trials.hpp"
+#include "protocols/schedule/ordering.hpp"
+#include "protocols/tasks/task.hpp"
 #include "protocols/tasks/task_parts.hpp"
 namespace tapstudy::protocols {
 namespace {

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "protocols/ordering.hpp"
-#include "protocols/read_sections.hpp"
-#include "protocols/tasks/preference_task.hpp"
+#include "protocols/reader/read_sections.hpp"
+#include "protocols/schedule/ordering.hpp"
 #include "protocols/tasks/read_axis_values.hpp"
-#include "protocols/tasks/shipped_tasks.hpp"
+#include "protocols/tasks/task.hpp"
+#include "protocols/tasks/task_parts.hpp"
 #include "protocols/yaml/yaml_reader.hpp"
 namespace tapstudy::protocols {
 namespace {

@@ -1,7 +1,7 @@
 #include <algorithm>
 
-#include "protocols/tasks/preference_task.hpp"
-#include "protocols/tasks/shipped_tasks.hpp"
+#include "protocols/tasks/task.hpp"
+#include "protocols/tasks/task_parts.hpp"
 #include "protocols/yaml/yaml_reader.hpp"
 namespace tapstudy::protocols {
 namespace {

@@ -5,7 +5,7 @@
 #include <iterator>
 #include <utility>
 
-#include "protocols/tasks/shipped_tasks.hpp"
+#include "protocols/tasks/task.hpp"
 #include "protocols/tasks/whole_set_task.hpp"
 #include "protocols/yaml/yaml_reader.hpp"
 namespace tapstudy::protocols {

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "protocols/ordering.hpp"
-#include "protocols/tasks/preference_task.hpp"
-#include "protocols/tasks/shipped_tasks.hpp"
+#include "protocols/schedule/ordering.hpp"
+#include "protocols/tasks/task.hpp"
+#include "protocols/tasks/task_parts.hpp"
 #include "protocols/yaml/yaml_reader.hpp"
 namespace tapstudy::protocols {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 #include <functional>
 
-#include "core/rng.hpp"
+#include "core/random/rng.hpp"
 #include "protocols/protocol.hpp"
 // What several tasks share.
 namespace tapstudy::protocols {
@@ -26,4 +26,21 @@ std::vector<PlannedTrial> shuffled_repetitions(
 
 // Of `count` things taken two at a time, each with a smaller and a greater place.
 std::vector<std::pair<std::size_t, std::size_t>> pairs_of(std::size_t count);
+
+// No answer is right: participants say what they prefer, or how much. Simulated ones compare with
+// the stimulus that the protocol takes for reality.
+class PreferenceTask : public Task {
+ public:
+  bool needs_reference() const override { return true; }
+  bool has_correct_answer() const override { return false; }
+  int counted_answers(const Block& /*block*/) const override { return 1; }  // a vote
+  std::optional<bool> is_correct(const PlannedTrial& /*trial*/, const Block& /*block*/,
+                                 const std::string& /*response*/) const override {
+    return std::nullopt;
+  }
+  std::vector<Remembered> remembered(const Block& /*block*/,
+                                     const Simulation& simulation) const override {
+    return {{simulation.observer.reference, simulation.observer.reference}};
+  }
+};
 }  // namespace tapstudy::protocols

@@ -1,5 +1,5 @@
 #pragma once
-#include "protocols/tasks/preference_task.hpp"
+#include "protocols/tasks/task_parts.hpp"
 namespace tapstudy::protocols {
 // All of the block's stimuli are the alternatives of each trial, under blind labels: one trial a
 // repetition. Which of them has which label is drawn anew for each: a label has no history.

@@ -2,7 +2,15 @@
 #include <set>
 #include <string>
 #include <vector>
+namespace YAML {  // NOLINT(readability-identifier-naming): the library's own name
+class Node;
+}
 namespace tapstudy::protocols {
+// Text from a file made safe to quote in a message: short, without terminal control characters.
+std::string printable(const std::string& text);
+// A value as described in messages: 'text', a list, a mapping, nothing.
+std::string kind_of(const YAML::Node& node);
+
 // Collects all problems of one file, so that they are reported together; and every key that was
 // looked up, so that the schema can be checked against the reader.
 class Problems {

@@ -5,8 +5,8 @@
 
 #include <algorithm>
 
+#include "protocols/yaml/problems.hpp"
 #include "protocols/yaml/yaml_reader.hpp"
-#include "protocols/yaml/yaml_words.hpp"
 namespace tapstudy::protocols {
 void MapReader::read_inner(const YAML::Node& node, const std::string& path,
                            const std::string& pattern, const ReadMap& read) {

@@ -3,17 +3,69 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <utf8cpp/utf8.h>
+#include <yaml-cpp/anchor.h>
+#include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <sstream>
+#include <string>
 
 #include "core/error.hpp"
-#include "protocols/yaml/documents.hpp"
-#include "protocols/yaml/likely_cause.hpp"
-#include "protocols/yaml/yaml_words.hpp"
+#include "protocols/yaml/problems.hpp"
 namespace tapstudy::protocols {
+// Throws YAML::Exception if the text is not YAML.
+bool holds_two_documents(const std::string& text);
+
+// What an error of the YAML parser, which notices it late, is likely to come from. error_line: from
+// 0.
+std::string likely_cause(const std::string& text, int error_line);
+
+namespace {
+// Sees a document go by and keeps nothing of it.
+class Passing final : public YAML::EventHandler {
+ public:
+  void OnDocumentStart(const YAML::Mark& /*mark*/) override {}
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark& /*mark*/, YAML::anchor_t /*anchor*/) override {}
+  void OnAlias(const YAML::Mark& /*mark*/, YAML::anchor_t /*anchor*/) override {}
+  void OnScalar(const YAML::Mark& /*mark*/, const std::string& /*tag*/, YAML::anchor_t /*anchor*/,
+                const std::string& /*value*/) override {}
+  void OnSequenceStart(const YAML::Mark& /*mark*/, const std::string& /*tag*/,
+                       YAML::anchor_t /*anchor*/, YAML::EmitterStyle::value /*style*/) override {}
+  void OnSequenceEnd() override {}
+  void OnMapStart(const YAML::Mark& /*mark*/, const std::string& /*tag*/, YAML::anchor_t /*anchor*/,
+                  YAML::EmitterStyle::value /*style*/) override {}
+  void OnMapEnd() override {}
+};
+
+}  // namespace
+
+// Not by YAML::LoadAll: a comma where no document can begin is an endless number of them to it.
+bool holds_two_documents(const std::string& text) {
+  std::istringstream stream{text};
+  YAML::Parser parser{stream};
+  Passing passing;
+  return parser.HandleNextDocument(passing) && parser.HandleNextDocument(passing);
+}
+
+std::string likely_cause(const std::string& text, int error_line) {
+  std::istringstream lines{text};
+  std::string line;
+  for (int number = 1; number <= error_line + 1 && std::getline(lines, line); ++number) {
+    const auto indentation = line.find_first_not_of(" \t");
+    if (line.substr(0, std::min(indentation, line.size())).find('\t') != std::string::npos) {
+      return fmt::format("line {} is indented with a tab: use spaces", number);
+    }
+    if (line.find_first_of("#'") == std::string::npos && std::ranges::count(line, '"') % 2 == 1) {
+      return fmt::format("is the quote in line {} closed?", number);
+    }
+  }
+  return "is this line indented like its neighbours? A text with any of ? : , # [ { goes in quotes";
+}
+
 bool is_name(const std::string& text) {
   const auto is_inner = [](unsigned char c) {
     return c < 128 && (std::isalnum(c) != 0 || c == '_' || c == '-' || c == '+' || c == '.');

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
-#include "core/plain_text.hpp"
+#include "core/text/plain_text.hpp"
+#include "protocols/yaml/problems.hpp"
 #include "protocols/yaml/yaml_reader.hpp"
-#include "protocols/yaml/yaml_words.hpp"
 namespace tapstudy::protocols {
 bool is_language(const std::string& text) {
   const auto is_small_letter = [](char c) { return c >= 'a' && c <= 'z'; };

@@ -7,17 +7,12 @@
 #include <tuple>
 
 #include "core/error.hpp"
-#include "core/output_directory.hpp"
-#include "core/output_file.hpp"
-#include "results/export/bids_events.hpp"
-#include "results/export/bids_labels.hpp"
-#include "results/export/bids_phenotype.hpp"
-#include "results/export/bids_sidecars.hpp"
-#include "results/export/columns.hpp"
+#include "core/files/output_files.hpp"
+#include "results/export/bids_files.hpp"
+#include "results/export/csv_file.hpp"
 #include "results/export/gzip_file.hpp"
 #include "results/export/study_export.hpp"
-#include "results/export/study_tables.hpp"
-#include "results/export/tsv.hpp"
+#include "results/export/table.hpp"
 namespace tapstudy::results {
 namespace {
 namespace fs = std::filesystem;

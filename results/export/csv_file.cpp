@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <iterator>
 namespace tapstudy::results {
@@ -75,5 +76,31 @@ void write_csv(std::ostream& out, const Table& table) {
   }
   write_line(out, line, header);
   table.each_row([&](const Row& row) { write_line(out, line, row); });
+}
+
+namespace {
+struct TextOf {
+  std::string operator()(std::monostate /*missing*/) const { return missing_in_tsv; }
+  std::string operator()(std::int64_t number) const { return fmt::format("{}", number); }
+  std::string operator()(double number) const {
+    return std::isnan(number) ? missing_in_tsv : fmt::format("{}", number);
+  }
+  std::string operator()(std::string text) const {
+    std::ranges::replace_if(
+        text, [](char c) { return c == '\t' || c == '\n' || c == '\r'; }, ' ');
+    return text.empty() ? missing_in_tsv : text;
+  }
+};
+}  // namespace
+
+std::string tsv_line(const Row& row) {
+  std::string line;
+  for (const Cell& cell : row) {
+    if (!line.empty()) {
+      line += '\t';
+    }
+    line += std::visit(TextOf{}, cell);
+  }
+  return line + '\n';
 }
 }  // namespace tapstudy::results

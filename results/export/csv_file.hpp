@@ -1,5 +1,6 @@
 #pragma once
 #include <ostream>
+#include <string>
 
 #include "results/export/table.hpp"
 namespace tapstudy::results {
@@ -10,4 +11,10 @@ inline constexpr const char* missing_in_csv = "NA";
 // literal: quoted where it holds a comma, a quote, a line end or a tab, begins or ends with a
 // space, or is empty; never changed. Reals have the fewest digits that give the same double again.
 void write_csv(std::ostream& out, const Table& table);
+
+// What stands for a missing value in tab-separated files of the Brain Imaging Data Structure.
+inline constexpr const char* missing_in_tsv = "n/a";
+// A line with its end. Tabs and line ends in texts become spaces, since the format cannot hold
+// them; an empty text is missing. Reals have the fewest digits that give the same double again.
+std::string tsv_line(const Row& row);
 }  // namespace tapstudy::results

@@ -1,13 +1,34 @@
 #pragma once
 #include <cstdint>
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "results/export/csvw.hpp"
 #include "results/export/table.hpp"
-#include "results/store.hpp"
+#include "results/store/store.hpp"
 namespace tapstudy::results {
+struct Provenance {
+  std::string title;            // of the study
+  std::string protocol_sha256;  // of the protocol's text
+  std::string program;          // name, version and revision of what wrote the export
+};
+
+// A file of an export and what is in it.
+struct DescribedFile {
+  std::string url;          // relative to the metadata
+  std::string description;  // of the table
+  std::string schema_url;   // of a file with the columns; empty: they are here
+  std::vector<Column> columns;
+};
+
+// The data dictionary as metadata of the W3C's "CSV on the Web" (Metadata Vocabulary for Tabular
+// Data, 2015): datatype, description (dc:description) and unit (schema:unitText) of each column,
+// and what stands for a missing value.
+std::string csvw_metadata(const Provenance& provenance, const std::vector<DescribedFile>& files);
+// The schema alone, for files that share it.
+std::string csvw_schema(const std::vector<Column>& columns);
+
 // What an answer or a stimulus is called in the data, and what it means.
 using Level = std::pair<std::string, std::string>;
 // What a block of the protocol tells participants.
@@ -62,4 +83,19 @@ void write_hdf5_file(const std::string& name, Store& store, const StudyExport& s
 // trial's trace, JSON beside them. Names that are no labels do not appear (bids_labels.hpp), nor do
 // notes, reasons and free text. Errors as above.
 void write_bids_dataset(const std::string& directory, Store& store, const StudyExport& study);
+
+// The tables of a study that its store alone yields: sessions, trials, answers, alternatives,
+// visits, events, session_events, questionnaires, operator_actions. All participants of all modes
+// are in them, excluded ones and practice too; columns say which. Alternatives have a column for
+// each axis that was varied, with the unit given here. Their rows are read from the store when they
+// are asked for, and it must live as long. Throws StoreError, also when rows are read.
+std::vector<Table> study_tables(Store& store, const std::map<std::string, std::string>& axis_units);
+
+// A row of a SELECT of these columns.
+Row row_from(Statement& statement, const std::vector<Column>& columns);
+// Trials of which ticks are stored; of a real plate there are none.
+std::vector<std::int64_t> trials_with_traces(Store& store);
+// Every tick of a trial; columns as in trace_format.md. A NaN is where a device reports nothing.
+std::vector<Column> trace_columns();
+Table trace_table(Store& store, std::int64_t trial_id);
 }  // namespace tapstudy::results

@@ -1,11 +1,10 @@
-#include "results/export/study_tables.hpp"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <array>
 
-#include "results/export/columns.hpp"
+#include "results/export/study_export.hpp"
+#include "results/export/table.hpp"
 namespace tapstudy::results {
 namespace {
 struct Source {

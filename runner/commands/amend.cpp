@@ -8,13 +8,12 @@
 #include <memory>
 
 #include "core/error.hpp"
-#include "results/recorder.hpp"
-#include "results/store.hpp"
-#include "runner/commands/commands.hpp"
-#include "runner/experiments/stored_protocol.hpp"
-#include "runner/experiments/stored_trial.hpp"
-#include "runner/operators/operator_desk.hpp"
-#include "runner/session/participant_lock.hpp"
+#include "results/store/recorder.hpp"
+#include "results/store/store.hpp"
+#include "runner/commands/command_line.hpp"
+#include "runner/session/operators/operator_desk.hpp"
+#include "runner/studies/stored_study.hpp"
+#include "runner/terminal/session_lock.hpp"
 namespace tapstudy::runner {
 namespace {
 struct AmendOptions {

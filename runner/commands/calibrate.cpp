@@ -4,14 +4,14 @@
 #include <memory>
 #include <sstream>
 
-#include "core/output_file.hpp"
+#include "core/files/output_files.hpp"
 #include "device/spidar/calibration_procedure.hpp"
 #include "device/spidar/find_spidars.hpp"
-#include "protocols/spidar_calibration.hpp"
-#include "runner/commands/commands.hpp"
-#include "runner/terminal/operator_at_terminal.hpp"
-#include "runner/terminal/say.hpp"
-#include "runner/terminal/stop_signal.hpp"
+#include "protocols/reader/read_rig.hpp"
+#include "runner/commands/command_line.hpp"
+#include "runner/terminal/operator_dialogue.hpp"
+#include "runner/terminal/process_exit.hpp"
+#include "runner/terminal/terminal_output.hpp"
 namespace tapstudy::runner {
 namespace {
 struct CalibrateOptions {

@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
-#include "runner/commands/commands.hpp"
-#include "runner/devices/device_kind.hpp"
+#include "runner/commands/command_line.hpp"
+#include "runner/session/devices/device_kind.hpp"
 namespace tapstudy::runner {
 namespace {
 void run_devices() {

@@ -3,13 +3,13 @@
 #include <functional>
 #include <memory>
 
-#include "analysis/figures/figure.hpp"
+#include "analysis/report/figures/figure.hpp"
 #include "device/device.hpp"
 #include "device/loop/sleep_inhibitor.hpp"
-#include "runner/commands/commands.hpp"
-#include "runner/devices/device_kind.hpp"
-#include "runner/devices/diagnosis.hpp"
-#include "runner/devices/rigs.hpp"
+#include "runner/commands/command_line.hpp"
+#include "runner/session/devices/device_kind.hpp"
+#include "runner/session/devices/diagnosis.hpp"
+#include "runner/session/devices/rigs.hpp"
 namespace tapstudy::runner {
 namespace {
 struct DoctorOptions {

@@ -6,19 +6,16 @@
 #include <memory>
 
 #include "core/error.hpp"
-#include "core/output_directory.hpp"
-#include "core/output_file.hpp"
+#include "core/files/output_files.hpp"
 #include "protocols/axes/axis.hpp"
 #include "results/export/study_export.hpp"
-#include "results/export/study_tables.hpp"
-#include "results/stored_answers.hpp"
-#include "runner/build_info.hpp"
-#include "runner/commands/commands.hpp"
-#include "runner/experiments/response_meanings.hpp"
-#include "runner/experiments/stimulus_tables.hpp"
-#include "runner/experiments/stored_protocol.hpp"
-#include "runner/experiments/track_results.hpp"
-#include "runner/stimuli/model_library.hpp"
+#include "results/store/study_queries.hpp"
+#include "runner/build_info/build_info.hpp"
+#include "runner/commands/command_line.hpp"
+#include "runner/session/stimuli/model_library.hpp"
+#include "runner/studies/protocol_tables.hpp"
+#include "runner/studies/stored_results.hpp"
+#include "runner/studies/stored_study.hpp"
 #include "runner/terminal/logging.hpp"
 namespace tapstudy::runner {
 namespace {

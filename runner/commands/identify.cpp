@@ -6,10 +6,10 @@
 #include <memory>
 
 #include "core/error.hpp"
-#include "core/number_in.hpp"
-#include "runner/commands/commands.hpp"
-#include "runner/recordings/writers.hpp"
-#include "runner/terminal/progress.hpp"
+#include "core/text/plain_text.hpp"
+#include "runner/commands/command_line.hpp"
+#include "runner/laboratory/identify/modal_report.hpp"
+#include "runner/terminal/logging.hpp"
 namespace tapstudy::runner {
 namespace {
 struct IdentifyOptions {

@@ -5,16 +5,15 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "analysis/figures/face_views.hpp"
+#include "analysis/report/figures/colour_map.hpp"
 #include "core/error.hpp"
+#include "core/files/output_files.hpp"
 #include "core/model/vtu_file.hpp"
-#include "core/output_file.hpp"
-#include "protocols/read_protocol.hpp"
-#include "runner/commands/axis_settings.hpp"
-#include "runner/commands/commands.hpp"
-#include "runner/stimuli/at_its_line.hpp"
-#include "runner/stimuli/model_library.hpp"
-#include "runner/terminal/progress.hpp"
+#include "protocols/reader/read_protocol.hpp"
+#include "runner/commands/command_line.hpp"
+#include "runner/commands/shared_options.hpp"
+#include "runner/session/stimuli/model_library.hpp"
+#include "runner/terminal/logging.hpp"
 namespace tapstudy::runner {
 namespace {
 struct ModesOptions {

@@ -3,12 +3,11 @@
 #include <memory>
 #include <set>
 
-#include "core/output_directory.hpp"
-#include "core/output_file.hpp"
-#include "results/redacted_copy.hpp"
-#include "results/store.hpp"
-#include "runner/commands/commands.hpp"
-#include "runner/experiments/stored_protocol.hpp"
+#include "core/files/output_files.hpp"
+#include "results/store/redacted_copy.hpp"
+#include "results/store/store.hpp"
+#include "runner/commands/command_line.hpp"
+#include "runner/studies/stored_study.hpp"
 namespace tapstudy::runner {
 namespace {
 struct RedactOptions {

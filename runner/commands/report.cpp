@@ -8,19 +8,17 @@
 #include <sstream>
 #include <utility>
 
-#include "analysis/figures/svg_formats.hpp"
+#include "analysis/report/answer_tables/counts_csv.hpp"
 #include "analysis/report/comparison.hpp"
-#include "analysis/report/figure_files.hpp"
-#include "analysis/report/selection.hpp"
-#include "analysis/report/table_files.hpp"
+#include "analysis/report/figures/image_formats.hpp"
+#include "analysis/report/summary.hpp"
 #include "analysis/report/writers.hpp"
-#include "analysis/statistics/counts_csv.hpp"
 #include "core/error.hpp"
-#include "core/output_file.hpp"
-#include "results/store.hpp"
-#include "runner/commands/commands.hpp"
-#include "runner/experiments/study_summary.hpp"
-#include "runner/experiments/table_summary.hpp"
+#include "core/files/output_files.hpp"
+#include "results/store/store.hpp"
+#include "runner/commands/command_line.hpp"
+#include "runner/studies/study_summary.hpp"
+#include "runner/studies/table_summary.hpp"
 #include "runner/terminal/logging.hpp"
 namespace tapstudy::runner {
 namespace {

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "runner/commands/commands.hpp"
-#include "runner/commands/seed.hpp"
-#include "runner/reproduction/writers.hpp"
-#include "runner/terminal/stop_signal.hpp"
+#include "runner/commands/command_line.hpp"
+#include "runner/commands/shared_options.hpp"
+#include "runner/laboratory/reproduce/reproduction_report.hpp"
+#include "runner/terminal/process_exit.hpp"
 namespace tapstudy::runner {
 namespace {
 struct ReproduceOptions {

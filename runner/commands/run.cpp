@@ -4,15 +4,15 @@
 #include <memory>
 
 #include "core/error.hpp"
-#include "protocols/read_protocol.hpp"
-#include "results/store.hpp"
-#include "runner/commands/commands.hpp"
-#include "runner/commands/seed.hpp"
-#include "runner/console/pages.hpp"
-#include "runner/devices/rigs.hpp"
-#include "runner/session/live_session.hpp"
+#include "protocols/reader/read_protocol.hpp"
+#include "results/store/store.hpp"
+#include "runner/commands/command_line.hpp"
+#include "runner/commands/shared_options.hpp"
+#include "runner/console/console_api.hpp"
+#include "runner/live_session/live_session.hpp"
+#include "runner/session/devices/rigs.hpp"
 #include "runner/terminal/logging.hpp"
-#include "runner/terminal/whole_number.hpp"
+#include "runner/terminal/typed_input.hpp"
 namespace tapstudy::runner {
 namespace {
 struct RunOptions {

@@ -3,13 +3,12 @@
 #include <memory>
 
 #include "core/error.hpp"
-#include "protocols/read_protocol.hpp"
-#include "runner/commands/commands.hpp"
-#include "runner/commands/planned_participants.hpp"
-#include "runner/commands/seed.hpp"
-#include "runner/experiments/simulated_study.hpp"
-#include "runner/session/session_row.hpp"
-#include "runner/terminal/stop_signal.hpp"
+#include "protocols/reader/read_protocol.hpp"
+#include "runner/commands/command_line.hpp"
+#include "runner/commands/shared_options.hpp"
+#include "runner/session/engine/session_row.hpp"
+#include "runner/studies/simulated_study.hpp"
+#include "runner/terminal/process_exit.hpp"
 namespace tapstudy::runner {
 namespace {
 void run_simulate(SimulatedStudy study, const std::string& participants) {

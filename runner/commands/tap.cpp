@@ -7,20 +7,19 @@
 #include <iostream>
 #include <memory>
 
-#include "analysis/figures/face_views.hpp"
-#include "analysis/figures/figure.hpp"
+#include "analysis/report/figures/colour_map.hpp"
+#include "analysis/report/figures/figure.hpp"
 #include "core/error.hpp"
-#include "core/output_directory.hpp"
-#include "core/output_file.hpp"
-#include "core/placement.hpp"
-#include "core/print.hpp"
-#include "protocols/read_protocol.hpp"
-#include "protocols/tap_script.hpp"
+#include "core/files/output_files.hpp"
+#include "core/haptics/haptic_state.hpp"
+#include "core/text/print.hpp"
+#include "protocols/reader/read_protocol.hpp"
+#include "protocols/reader/tap_script.hpp"
 #include "protocols/yaml/text_file.hpp"
-#include "runner/commands/axis_settings.hpp"
-#include "runner/commands/commands.hpp"
-#include "runner/devices/rigs.hpp"
-#include "runner/experiments/scripted_tap.hpp"
+#include "runner/commands/command_line.hpp"
+#include "runner/commands/shared_options.hpp"
+#include "runner/session/devices/rigs.hpp"
+#include "runner/studies/scripted_tap.hpp"
 namespace tapstudy::runner {
 namespace {
 using core::TraceSample;

@@ -4,11 +4,11 @@
 #include <memory>
 
 #include "core/error.hpp"
-#include "protocols/read_protocol.hpp"
-#include "runner/accuracy/writers.hpp"
-#include "runner/commands/commands.hpp"
-#include "runner/stimuli/at_its_line.hpp"
-#include "runner/terminal/progress.hpp"
+#include "protocols/reader/read_protocol.hpp"
+#include "runner/commands/command_line.hpp"
+#include "runner/laboratory/trade/trade_report.hpp"
+#include "runner/session/stimuli/model_library.hpp"
+#include "runner/terminal/logging.hpp"
 namespace tapstudy::runner {
 namespace {
 struct TradeOptions {

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "results/store_error.hpp"
-#include "runner/terminal/stop_signal.hpp"
+#include "runner/terminal/process_exit.hpp"
 namespace tapstudy::runner {
 namespace {
 constexpr std::chrono::milliseconds poll_interval{10};

@@ -3,8 +3,8 @@
 #include <functional>
 #include <optional>
 
-#include "runner/console/screen_exchange.hpp"
-#include "runner/participants/participant.hpp"
+#include "runner/console/screen.hpp"
+#include "runner/session/participants/participant.hpp"
 namespace tapstudy::runner {
 // A person at the participant's page.
 class BrowserParticipant final : public Participant {

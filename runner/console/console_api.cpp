@@ -3,13 +3,54 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "core/error.hpp"
 #include "results/store_error.hpp"
-#include "runner/console/operator_text.hpp"
-#include "runner/console/pages.hpp"
-#include "runner/terminal/whole_number.hpp"
+#include "runner/console/operator_view.hpp"
+#include "runner/terminal/typed_input.hpp"
 namespace tapstudy::runner {
+namespace {
+struct Embedded {
+  const char* name;
+  const char* begin;
+  const char* end;
+};
+#include "embedded_pages.inc"
+
+std::string_view media_type(std::string_view name) {
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 5> types{
+      {{".html", "text/html; charset=utf-8"},
+       {".css", "text/css; charset=utf-8"},
+       {".js", "text/javascript; charset=utf-8"},
+       {".json", "application/json"},
+       {".svg", "image/svg+xml"}}};
+  const auto found =
+      std::ranges::find_if(types, [&](const auto& type) { return name.ends_with(type.first); });
+  return found == types.end() ? "application/octet-stream" : found->second;
+}
+}  // namespace
+
+const Page* find_page(std::string_view name) {
+  static const std::vector<Page> pages = [] {
+    std::vector<Page> all;
+    for (const Embedded& file : embedded) {
+      all.push_back({file.name, {file.begin, file.end}, media_type(file.name)});
+    }
+    return all;
+  }();
+  const auto found = std::ranges::find(pages, name, &Page::name);
+  return found == pages.end() ? nullptr : &*found;
+}
+
+bool pages_speak(std::string_view language) {
+  const std::string_view words = find_page("messages.json")->content;
+  return words.find("\"" + std::string{language} + "\": {") != std::string_view::npos;
+}
+
 namespace {
 Reply not_found() {
   return {404, "text/plain; charset=utf-8", "There is nothing here.\n"};

@@ -7,12 +7,22 @@
 #include <string>
 #include <string_view>
 
-#include "runner/console/live_view.hpp"
-#include "runner/console/operator_json.hpp"
+#include "runner/console/operator_view.hpp"
 #include "runner/console/scenes.hpp"
-#include "runner/console/screen_exchange.hpp"
-#include "runner/operators/operator_desk.hpp"
+#include "runner/console/screen.hpp"
+#include "runner/session/operators/operator_desk.hpp"
 namespace tapstudy::runner {
+// A file of the pages, as it is in this program.
+struct Page {
+  std::string_view name;
+  std::string_view content;
+  std::string_view media_type;
+};
+// nullptr if there is none of that name.
+const Page* find_page(std::string_view name);
+// Whether the pages' own words are given in it (two letters).
+bool pages_speak(std::string_view language);
+
 enum class Role { participant, operator_of_session };
 inline constexpr std::array roles{Role::participant, Role::operator_of_session};
 

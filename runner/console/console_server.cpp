@@ -5,6 +5,7 @@
 #include <sys/random.h>
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstring>
 #include <future>
@@ -13,6 +14,21 @@
 
 #include "core/error.hpp"
 namespace tapstudy::runner {
+namespace {
+RateLimit::Duration seconds(double s) {
+  return std::chrono::duration_cast<RateLimit::Duration>(std::chrono::duration<double>{s});
+}
+}  // namespace
+
+RateLimit::RateLimit(double per_second, double burst)
+    : per_second_{per_second}, burst_{seconds(burst / per_second)} {}
+
+RateLimit::Duration RateLimit::delay_of(double cost, Time now) {
+  const std::lock_guard lock{mutex_};
+  paid_until_ = std::max(paid_until_, now) + seconds(cost / per_second_);
+  return std::max(Duration::zero(), paid_until_ - burst_ - now);
+}
+
 namespace {
 constexpr int max_streams = 8;                 // of each role
 constexpr const char* threads = "64";          // one for each open stream, the rest for requests

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/placement.hpp"
+#include "core/haptics/haptic_state.hpp"
 #include "protocols/protocol.hpp"
 namespace tapstudy::runner {
 // What is drawn of the plates: neutral shapes, the same for every material and technique. Numbered,

@@ -6,9 +6,7 @@
 #include <utility>
 
 #include "core/error.hpp"
-#include "runner/console/answers_json.hpp"
-#include "runner/console/parse_json.hpp"
-#include "runner/console/screen_names.hpp"
+#include "runner/console/page_json.hpp"
 namespace tapstudy::runner {
 namespace {
 using Json = nlohmann::ordered_json;
@@ -204,5 +202,193 @@ std::string to_json(const Screen& screen, const ScreenContext& context) {
                   {"form", or_null(screen.form)},
                   {"scene", or_null(screen.scene)}};
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+const char* name(ScreenKind value) {
+  using enum ScreenKind;
+  switch (value) {
+    case wait:
+      return "wait";
+    case instructions:
+      return "instructions";
+    case rest:
+      return "rest";
+    case trial:
+      return "trial";
+    case confidence:
+      return "confidence";
+    case feedback:
+      return "feedback";
+    case message:
+      return "message";
+    case form:
+      return "form";
+    case paused:
+      return "paused";
+    case ended:
+      return "ended";
+  }
+  return "";
+}
+
+const char* name(Message value) {
+  using enum Message;
+  switch (value) {
+    case none:
+      return "";
+    case practice_is_over:
+      return "practice_is_over";
+    case presented_again:
+      return "presented_again";
+    case skipped:
+      return "skipped";
+    case time_is_over:
+      return "time_is_over";
+    case comes_again:
+      return "comes_again";
+    case operator_is_needed:
+      return "operator_is_needed";
+    case plate_is_mounted:
+      return "plate_is_mounted";
+  }
+  return "";
+}
+
+const char* name(TooEarly::Reason value) {
+  using enum TooEarly::Reason;
+  switch (value) {
+    case intervals:
+      return "intervals";
+    case plate_untouched:
+      return "plate_untouched";
+    case alternatives_untouched:
+      return "alternatives_untouched";
+    case plate_unfelt:
+      return "plate_unfelt";
+    case alternatives_unfelt:
+      return "alternatives_unfelt";
+    case time:
+      return "time";
+  }
+  return "";
+}
+
+const char* name(IntervalState::Phase value) {
+  using enum IntervalState::Phase;
+  switch (value) {
+    case gap:
+      return "gap";
+    case leaving:
+      return "leaving";
+    case open:
+      return "open";
+    case over:
+      return "over";
+  }
+  return "";
+}
+
+const char* name(CorrectionState value) {
+  using enum CorrectionState;
+  switch (value) {
+    case none:
+      return "";
+    case stored:
+      return "stored";
+    case failed:
+      return "failed";
+  }
+  return "";
+}
+
+std::int64_t ScreenExchange::show(const Screen& screen) {
+  const std::lock_guard lock{mutex_};
+  screen_ = screen;
+  input_.reset();
+  is_taken_ = false;
+  is_closed_ = false;
+  return ++number_;
+}
+
+std::optional<ScreenInput> ScreenExchange::take(std::int64_t number) {
+  const std::lock_guard lock{mutex_};
+  if (number != number_ || !input_ || is_taken_) {
+    return std::nullopt;
+  }
+  is_taken_ = true;
+  return input_;
+}
+
+std::optional<std::string> ScreenExchange::take_entered() {
+  const std::lock_guard lock{mutex_};
+  return std::exchange(entered_, {});
+}
+
+std::optional<ScreenInput> ScreenExchange::close() {
+  const std::lock_guard lock{mutex_};
+  is_closed_ = true;
+  const bool is_pending = input_ && !is_taken_;
+  is_taken_ = true;
+  return is_pending ? input_ : std::nullopt;
+}
+
+ScreenExchange::Shown ScreenExchange::shown() const {
+  const std::lock_guard lock{mutex_};
+  return {number_, to_json(screen_, {number_, language_, title_}), screen_.scene};
+}
+
+std::int64_t ScreenExchange::number() const {
+  const std::lock_guard lock{mutex_};
+  return number_;
+}
+
+std::string ScreenExchange::post(std::int64_t number, const ScreenInput& input) {
+  const std::lock_guard lock{mutex_};
+  if (number != number_ || (is_closed_ && !input_)) {
+    return "the screen has changed";
+  }
+  if (!accepts(screen_, input)) {
+    return "this screen has no such answer";
+  }
+  if (input.action == ScreenAction::enter && !input_) {
+    entered_ = input.text;
+    return "";
+  }
+  if (input_) {
+    return *input_ == input ? "" : "this screen is answered already";
+  }
+  input_ = input;
+  return "";
+}
+
+void ScreenExchange::page_is_alive(std::chrono::steady_clock::time_point now) {
+  const std::lock_guard lock{mutex_};
+  alive_at_ = now;
+}
+
+void ScreenExchange::page_opened(std::chrono::steady_clock::time_point now) {
+  const std::lock_guard lock{mutex_};
+  ++open_pages_;
+  if (alive_at_) {
+    alive_at_ = now;
+  }
+}
+
+void ScreenExchange::page_closed(std::chrono::steady_clock::time_point now) {
+  const std::lock_guard lock{mutex_};
+  --open_pages_;
+  closed_at_ = now;
+}
+
+std::chrono::steady_clock::time_point ScreenExchange::last_seen(
+    std::chrono::steady_clock::time_point now) const {
+  const std::lock_guard lock{mutex_};
+  const auto sign = alive_at_.value_or(now);
+  return open_pages_ > 0 ? sign : std::min(sign, closed_at_);
+}
+
+int ScreenExchange::open_pages() const {
+  const std::lock_guard lock{mutex_};
+  return open_pages_;
 }
 }  // namespace tapstudy::runner

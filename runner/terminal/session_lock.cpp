@@ -9,9 +9,10 @@
 #include <cerrno>
 #include <cstddef>
 #include <cstring>
+#include <filesystem>
 
 #include "core/error.hpp"
-#include "core/sha256.hpp"
+#include "core/files/sha256.hpp"
 namespace tapstudy::runner {
 // An abstract socket name is not a file, so it cannot be left behind.
 SessionLock::SessionLock(const std::string& what, const std::string& refusal)
@@ -34,5 +35,22 @@ SessionLock::SessionLock(const std::string& what, const std::string& refusal)
 
 SessionLock::~SessionLock() {
   close(socket_);
+}
+
+// A link and what it leads to are one study.
+ParticipantLock::ParticipantLock(const std::string& directory, const std::string& participant_id)
+    : lock_{std::filesystem::weakly_canonical(std::filesystem::absolute(directory)).string() + " " +
+                participant_id,
+            fmt::format("participant '{}' is in a session of this study right now, or what was "
+                        "done in one is being amended",
+                        participant_id)} {}
+
+bool is_in_session(const std::string& directory, const std::string& participant_id) {
+  try {
+    const ParticipantLock lock{directory, participant_id};
+    return false;
+  } catch (const core::InvalidInput&) {
+    return true;
+  }
 }
 }  // namespace tapstudy::runner

@@ -6,7 +6,7 @@
 #include <thread>
 #include <vector>
 
-#include "core/techniques/make_renderer.hpp"
+#include "core/techniques/technique.hpp"
 #include "device/loop/haptic_loop.hpp"
 #include "device/loop/realtime.hpp"
 using namespace tapstudy;

@@ -11,9 +11,8 @@
 #include <cstdlib>
 #include <map>
 
-#include "analysis/psychometric/inference.hpp"
+#include "analysis/statistics/psychometric/inference.hpp"
 #include "analysis/statistics/quantiles.hpp"
-#include "support/known_observer.hpp"
 #include "support/procedures.hpp"
 using namespace tapstudy;
 

@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "core/model/stopwatch.hpp"
-#include "core/rng.hpp"
-#include "core/techniques/make_renderer.hpp"
+#include "core/model/progress.hpp"
+#include "core/random/rng.hpp"
+#include "core/techniques/technique.hpp"
 #include "core/tick/modal_state.hpp"
 #include "support/surfaces.hpp"
 

@@ -8,8 +8,8 @@
 
 #include "support/built_paths.hpp"
 #include "support/catch.hpp"
+#include "support/no_alloc.hpp"
 #include "support/processes.hpp"
-#include "support/sanitized.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;
 using testing::replaced;

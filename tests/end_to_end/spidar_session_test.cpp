@@ -9,9 +9,9 @@
 
 #include "support/built_paths.hpp"
 #include "support/catch.hpp"
-#include "support/patient_spidar_study.hpp"
+#include "support/no_alloc.hpp"
 #include "support/processes.hpp"
-#include "support/sanitized.hpp"
+#include "support/study_files.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;
 

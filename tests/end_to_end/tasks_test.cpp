@@ -8,7 +8,7 @@
 #include <map>
 #include <sstream>
 
-#include "protocols/read_protocol.hpp"
+#include "protocols/reader/read_protocol.hpp"
 #include "support/catch.hpp"
 #include "support/processes.hpp"
 #include "support/texts.hpp"

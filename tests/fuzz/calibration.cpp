@@ -1,5 +1,5 @@
 #include "fuzz/input.hpp"
-#include "protocols/spidar_calibration.hpp"
+#include "protocols/reader/read_rig.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   return tapstudy::fuzz::try_reading(data, size, [](const std::string& text) {

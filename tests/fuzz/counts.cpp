@@ -1,9 +1,9 @@
 #include <sstream>
 
-#include "analysis/answer_tables/answer_table.hpp"
+#include "analysis/report/answer_tables/answer_table.hpp"
+#include "analysis/report/answer_tables/counts_csv.hpp"
 #include "analysis/report/summary.hpp"
 #include "analysis/report/writers.hpp"
-#include "analysis/statistics/counts_csv.hpp"
 #include "fuzz/input.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

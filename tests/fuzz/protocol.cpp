@@ -1,6 +1,6 @@
 #include "fuzz/input.hpp"
-#include "protocols/read_protocol.hpp"
-#include "protocols/schedule.hpp"
+#include "protocols/reader/read_protocol.hpp"
+#include "protocols/schedule/schedule.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   return tapstudy::fuzz::try_reading(data, size, [](const std::string& text) {

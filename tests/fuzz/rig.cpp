@@ -1,5 +1,5 @@
 #include "fuzz/input.hpp"
-#include "runner/devices/rigs.hpp"
+#include "runner/session/devices/rigs.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   return tapstudy::fuzz::try_reading(

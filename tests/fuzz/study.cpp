@@ -2,8 +2,8 @@
 #include <fstream>
 
 #include "fuzz/input.hpp"
-#include "results/store.hpp"
-#include "results/stored_answers.hpp"
+#include "results/store/store.hpp"
+#include "results/store/study_queries.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   return tapstudy::fuzz::try_reading(data, size, [](const std::string& text) {

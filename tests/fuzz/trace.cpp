@@ -1,7 +1,7 @@
 #include <span>
 
 #include "fuzz/input.hpp"
-#include "results/trace_codec.hpp"
+#include "results/traces/trace_codec.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   return tapstudy::fuzz::try_reading(data, size, [](const std::string& text) {

@@ -1,6 +1,7 @@
 """Every task with every procedure that it takes, answered at the terminal, at the page, and by a simulated participant.
 
 The same answers to the same seed make the same session at the terminal and at the page: the same order, levels, responses. Prints one table.
+A class of tasks by its name.
 """
 import json
 import shutil
@@ -136,9 +137,9 @@ class EveryWay(unittest.TestCase):
         finally:
             database.close()
 
-    def test_every_task_and_procedure_at_the_terminal_at_the_page_and_simulated(self):
+    def go(self, chosen):
         print(f"\n{'task':<18}{'procedure':<12}{'trials':>6}  {'terminal':<10}{'page':<10}simulated")
-        for number, (task, procedure, block) in enumerate(ways()):
+        for task, procedure, block in chosen:
             with self.subTest(task=task, procedure=procedure):
                 self.directory = Path(tempfile.mkdtemp(prefix="tapstudy_ways_"))
                 self.addCleanup(shutil.rmtree, self.directory)
@@ -160,6 +161,30 @@ class EveryWay(unittest.TestCase):
             ran = subprocess.run([PROGRAM, *command], text=True, capture_output=True)
             self.assertEqual(ran.returncode, 0, ran.stderr + ran.stdout)
         self.assertGreaterEqual(len(self.stored("simulated")), trials)
+
+
+def varied(*tasks):
+    return [way for way in ways() if way[1] != "fixed" and way[0].split(",")[0] in tasks]
+
+
+class OfFixedStimuli(EveryWay):
+    def test_at_the_terminal_at_the_page_and_simulated(self):
+        self.go([way for way in ways() if way[1] == "fixed"])
+
+
+class Comparison(EveryWay):
+    def test_at_the_terminal_at_the_page_and_simulated(self):
+        self.go(varied("comparison"))
+
+
+class OddOneOut(EveryWay):
+    def test_at_the_terminal_at_the_page_and_simulated(self):
+        self.go(varied("odd_one_out"))
+
+
+class OtherTasks(EveryWay):
+    def test_at_the_terminal_at_the_page_and_simulated(self):
+        self.go(varied(*{task.split(",")[0] for task in VARIED} - {"comparison", "odd_one_out"}))
 
 
 def screens(url, session):

@@ -1,4 +1,4 @@
-"""The paper's three studies, each a whole session in a browser, by a participant and an operator."""
+"""Whole sessions in a browser, by a participant and an operator; a class of them by its name."""
 import os
 import re
 import shutil
@@ -34,6 +34,11 @@ class WholeSession(unittest.TestCase):
     def shoot(self, name, driver=None):
         if SHOTS:
             browser.screenshot(driver or self.driver, Path(SHOTS) / f"{name}.png")
+
+    def check_screen(self, name):
+        browser.check_no_sideways_scrolling(self.driver)
+        browser.check_axe(self.driver, ("serious", "critical"))
+        self.shoot(name)
 
     def contacts(self):
         found = re.search(r"\d+", browser.find(self.operator, "#contacts").text)
@@ -89,6 +94,8 @@ class WholeSession(unittest.TestCase):
         browser.wait_for_screen(self.driver, "ended", patience_s=30)
         self.assertEqual(self.session.wait(), 0, self.session.said())
 
+
+class Discrimination(WholeSession):
     def test_discrimination_by_mouse(self):
         self.identify_all(by_keyboard=False)
 
@@ -119,6 +126,8 @@ class WholeSession(unittest.TestCase):
         # 409: what was sent for a screen that the operator has just replaced
         browser.check_browser_log_is_empty(self.driver, but_for=("events", "ERR_", "409"))
 
+
+class Reality(WholeSession):
     def choose(self, by_keyboard):
         feel = browser.feel_by_keyboard if by_keyboard else browser.feel_by_mouse
         answer = browser.answer_by_keyboard if by_keyboard else browser.answer_by_mouse
@@ -168,181 +177,8 @@ class WholeSession(unittest.TestCase):
         self.assertEqual(browser.wait_for_view(self.driver), "svg")
         self.finish_choices(by_keyboard=False)
 
-    def test_every_screen_in_its_order(self):
-        self.start("tests/data/every_screen.yaml", is_dark=True)
-        browser.wait_for_screen(self.driver, "instructions")
-        self.check_screen("instructions")
-        browser.go_on_by_mouse(self.driver)
-        browser.wait_for_screen(self.driver, "form")
-        browser.fill_in_by_mouse(self.driver, "hand", "right")
-        browser.fill_in_by_mouse(self.driver, "age", "29,5")  # as where numbers have decimal commas
-        self.check_screen("form")
-        browser.send_form_by_mouse(self.driver)
-        for index, is_right in ((0, True), (0, False)):
-            browser.wait_for_screen(self.driver, "trial")
-            self.answer_until_accepted(browser.answer_by_mouse, index)
-            feedback = browser.wait_for_screen(self.driver, "feedback")
-            self.assertEqual("with vibration" in feedback["text"], not is_right)
-            browser.go_on_by_mouse(self.driver)
-        browser.wait_for_screen(self.driver, "instructions")
-        browser.go_on_by_mouse(self.driver)
-        for trial in range(2):
-            if trial == 1:
-                browser.wait_for_screen(self.driver, "rest")
-                browser.go_on_by_mouse(self.driver)
-            browser.wait_for_screen(self.driver, "trial")
-            self.answer_until_accepted(browser.answer_by_mouse, trial)
-            browser.wait_for_screen(self.driver, "confidence")
-            browser.answer_by_mouse(self.driver, 2)
-        browser.wait_for_screen(self.driver, "form")
-        browser.fill_in_by_mouse(self.driver, "real", 4)
-        browser.fill_in_by_mouse(self.driver, "clear", 0.75)
-        self.driver.execute_script(
-            "document.querySelector('.item[data-name=remarks] textarea').value = 'ü'.repeat(5001)")
-        browser.send_form_by_mouse(self.driver)
-        error = browser.wait_until(self.driver, "what is wrong with the text", lambda: browser.find(
-            self.driver, '.item[data-name="remarks"] .error').text, 10)
-        self.assertIn("5000", error)
-        self.assertEqual(browser.current_screen(self.driver)["kind"], "form")
-        browser.fill_in_by_mouse(self.driver, "remarks", "ü")
-        browser.send_form_by_mouse(self.driver)
-        self.finish()
-        self.assertEqual(self.session.responses(), ["bare", "bare", "bare", "ringing"])
-        self.assertEqual(self.session.rows(
-            "SELECT confidence FROM response WHERE confidence IS NOT NULL"), [(3,), (3,)])
-        answers = dict(self.session.rows("SELECT item, answer FROM form_answer"))
-        self.assertAlmostEqual(float(answers.pop("clear")), 0.75, delta=0.02)
-        self.assertEqual(answers, {"age": "29.5", "hand": "right", "real": "4", "remarks": "ü"})
 
-    def check_screen(self, name):
-        browser.check_no_sideways_scrolling(self.driver)
-        browser.check_axe(self.driver, ("serious", "critical"))
-        self.shoot(name)
-
-    def test_the_operator_pauses_corrects_and_ends(self):
-        self.start("protocols/paper/discrimination.yaml")
-        self.watch()
-        browser.wait_for_state(self.operator, "exploring")
-        browser.check_axe(self.operator, ("serious", "critical"))
-        self.next_trial(1)
-        self.wait_for_touch()
-        self.assertRegex(browser.plot_in_words(self.operator, "interval"), r"now \d+\.\d\d ms, last 5 s: \d")
-        self.shoot("operator", self.operator)
-        self.answer_until_accepted(browser.answer_by_mouse, 0)
-        self.next_trial(2)
-        browser.correct_to(self.operator, 3)
-        browser.wait_until(self.operator, "the correction",
-                           lambda: self.session.responses() == [DISCRIMINATION[3]])
-        browser.write_note(self.operator, "the participant coughed")
-        browser.command(self.operator, "pause")
-        browser.wait_for_screen(self.driver, "paused")
-        browser.wait_for_state(self.operator, "paused")
-        self.assertEqual(browser.operator_state(self.operator)["force"], "off")
-        self.session.type("resume")
-        self.next_trial(2)
-        self.session.type("skip")
-        browser.wait_for_screen(self.driver, "message")
-        browser.go_on_by_mouse(self.driver)
-        self.next_trial(3)
-        browser.command_with_reason(self.operator, "end", "feels sick")
-        browser.wait_for_screen(self.driver, "ended")
-        self.assertEqual(self.session.wait(), 130)
-        actions = [row[0] for row in self.session.rows(
-            "SELECT action || ' ' || detail FROM operator_action ORDER BY action_id")]
-        self.assertEqual(actions, ["correct mdf_three", "note the participant coughed", "pause ",
-                                   "resume ", "skip ", "end feels sick"])
-        self.assertEqual(self.session.rows("SELECT detail FROM session_event WHERE state = 'stopped'"),
-                         [("feels sick",)])
-
-    def test_numbers_are_taken_as_people_write_them_but_no_thousand_as_a_fraction(self):
-        typed = ["2,5", "2.5", "１２", "0,125", "1.000", "1,000", "1e3", ""]
-        taken = {"en": ["2.5", "2.5", "12", "0.125", "1.000", None, None, None],
-                 "de": ["2.5", "2.5", "12", "0.125", None, "1.000", None, None]}
-        for language, expected in taken.items():
-            with self.subTest(language):
-                self.start("protocols/paper/discrimination.yaml", "--language", language)
-                browser.wait_for_screen(self.driver, "trial")
-                found = self.driver.execute_async_script("""
-                    const [typed, done] = arguments;
-                    import(new URL("typed_number.js", document.baseURI))
-                      .then(({ typedNumber }) => done(typed.map((text) => typedNumber(text))));""", typed)
-                self.assertEqual([number["text"] for number in found], expected)
-                refused = found[expected.index(None)]["problem"]
-                self.assertIn("1000", refused)
-
-    def test_an_answer_is_changed_until_it_is_confirmed(self):
-        self.start("protocols/paper/discrimination.yaml")
-        self.watch()
-        browser.wait_for_state(self.operator, "exploring")
-        self.next_trial(1)
-        self.wait_for_touch()
-        browser.pick_by_mouse(self.driver, 2)
-        browser.wait_for_state(self.operator, "answering")
-        time.sleep(0.3)
-        browser.pick_by_mouse(self.driver, 0)
-        time.sleep(0.3)
-        self.driver.refresh()  # nothing is picked any more
-        browser.wait_for_screen(self.driver, "trial")
-        time.sleep(0.5)
-        self.answer_until_accepted(browser.answer_by_mouse, 1)
-        self.next_trial(2)
-        self.assertEqual(self.session.rows(
-            "SELECT state, detail FROM session_event WHERE number = 1 AND state NOT IN ('ready', 'saved') "
-            "ORDER BY t_s"),
-            [("exploring", ""), ("answering", DISCRIMINATION[2]), ("answering", DISCRIMINATION[0]),
-             ("answering", ""), ("answering", DISCRIMINATION[1]), ("confirmed", "")])
-        self.session.type("end seen enough")
-        browser.wait_for_screen(self.driver, "ended")
-
-    def test_the_operator_sees_the_noise_that_is_played(self):
-        directory = Path(tempfile.mkdtemp(prefix="tapstudy_masked_"))
-        self.addCleanup(shutil.rmtree, directory)
-        source = Path(__file__).resolve().parents[2]
-        study, rig = directory / "study.yaml", directory / "rig.yaml"
-        study.write_text((source / "protocols/paper/discrimination.yaml").read_text() +
-                         "\nmasking: {kind: pink, level_db_fs: -30, ramp_s: 0.1}\n")
-        rig.write_text((source / "protocols/rigs/simulated_hand.yaml").read_text() +
-                       '\naudio: {card: "null", gain_db: -5}\n')
-        self.start(study, "--rig", str(rig))
-        self.watch()
-        browser.wait_for_state(self.operator, "exploring")
-        machine = lambda: browser.operator_state(self.operator)["machine"]
-        browser.wait_until(self.operator, "the noise", lambda: "playing, -35 dB FS" in machine())
-        self.assertNotIn("not playing", machine())
-        browser.command(self.operator, "pause")
-        browser.wait_until(self.operator, "silence", lambda: "not playing, -35 dB FS" in machine())
-
-    def test_real_plates_are_mounted_and_the_last_answer_is_corrected(self):
-        self.start("tests/data/material_study.yaml", "--language", "de", width=375, height=800)
-        for index in (0, 1):
-            self.next_trial(index + 1)
-            self.answer_until_accepted(browser.answer_by_mouse, index)
-        browser.wait_for_screen(self.driver, "message")
-        self.assertIn("Die Übung ist vorbei", browser.text_of_page(self.driver))
-        browser.go_on_by_mouse(self.driver)
-        for index in (0, 1):
-            browser.wait_for_screen(self.driver, "message")
-            browser.wait_until(self.driver, "the plate is asked for",
-                               lambda: self.session.said().count("mount the real plate") == index + 1)
-            self.session.type("resume")
-            self.next_trial(1 + index)  # of those that count: practice is over
-            self.assertTrue(browser.find(self.driver, "#view").get_attribute("hidden"))
-            browser.answer_by_mouse(self.driver, index)
-        self.next_trial(3)
-        self.assertFalse(browser.find_all(self.driver, ".previous"))  # of a block that allows none
-        self.answer_until_accepted(browser.answer_by_mouse, 0)
-        self.next_trial(4)
-        browser.find(self.driver, ".previous summary").click()
-        self.check_screen("correction")
-        browser.find_all(self.driver, ".previous button")[1].click()
-        browser.wait_for_status(self.driver, "Ihre letzte Antwort ist berichtigt")
-        self.assertEqual(self.session.responses(),
-                         ["soft_small", "hard_small", "soft_small", "hard_small", "acrylic"])
-        for number in range(4, 8):
-            self.next_trial(number)
-            self.answer_until_accepted(browser.answer_by_mouse, 0)
-        self.finish()
-
+class EveryTask(WholeSession):
     def give_number(self, number, by_keys):
         """After what is none; the answer of the trial before is corrected where that may be."""
         for nonsense in ("0", "1.2.3", "1" * 30):
@@ -466,6 +302,125 @@ class WholeSession(unittest.TestCase):
                    for name in response.split()] for trial, response in ranked]
         self.assertEqual(sorted(labels), sorted(wanted))
 
+
+class EveryScreen(WholeSession):
+    def test_every_screen_in_its_order(self):
+        self.start("tests/data/every_screen.yaml", is_dark=True)
+        browser.wait_for_screen(self.driver, "instructions")
+        self.check_screen("instructions")
+        browser.go_on_by_mouse(self.driver)
+        browser.wait_for_screen(self.driver, "form")
+        browser.fill_in_by_mouse(self.driver, "hand", "right")
+        browser.fill_in_by_mouse(self.driver, "age", "29,5")  # as where numbers have decimal commas
+        self.check_screen("form")
+        browser.send_form_by_mouse(self.driver)
+        for index, is_right in ((0, True), (0, False)):
+            browser.wait_for_screen(self.driver, "trial")
+            self.answer_until_accepted(browser.answer_by_mouse, index)
+            feedback = browser.wait_for_screen(self.driver, "feedback")
+            self.assertEqual("with vibration" in feedback["text"], not is_right)
+            browser.go_on_by_mouse(self.driver)
+        browser.wait_for_screen(self.driver, "instructions")
+        browser.go_on_by_mouse(self.driver)
+        for trial in range(2):
+            if trial == 1:
+                browser.wait_for_screen(self.driver, "rest")
+                browser.go_on_by_mouse(self.driver)
+            browser.wait_for_screen(self.driver, "trial")
+            self.answer_until_accepted(browser.answer_by_mouse, trial)
+            browser.wait_for_screen(self.driver, "confidence")
+            browser.answer_by_mouse(self.driver, 2)
+        browser.wait_for_screen(self.driver, "form")
+        browser.fill_in_by_mouse(self.driver, "real", 4)
+        browser.fill_in_by_mouse(self.driver, "clear", 0.75)
+        self.driver.execute_script(
+            "document.querySelector('.item[data-name=remarks] textarea').value = 'ü'.repeat(5001)")
+        browser.send_form_by_mouse(self.driver)
+        error = browser.wait_until(self.driver, "what is wrong with the text", lambda: browser.find(
+            self.driver, '.item[data-name="remarks"] .error').text, 10)
+        self.assertIn("5000", error)
+        self.assertEqual(browser.current_screen(self.driver)["kind"], "form")
+        browser.fill_in_by_mouse(self.driver, "remarks", "ü")
+        browser.send_form_by_mouse(self.driver)
+        self.finish()
+        self.assertEqual(self.session.responses(), ["bare", "bare", "bare", "ringing"])
+        self.assertEqual(self.session.rows(
+            "SELECT confidence FROM response WHERE confidence IS NOT NULL"), [(3,), (3,)])
+        answers = dict(self.session.rows("SELECT item, answer FROM form_answer"))
+        self.assertAlmostEqual(float(answers.pop("clear")), 0.75, delta=0.02)
+        self.assertEqual(answers, {"age": "29.5", "hand": "right", "real": "4", "remarks": "ü"})
+
+    def test_numbers_are_taken_as_people_write_them_but_no_thousand_as_a_fraction(self):
+        typed = ["2,5", "2.5", "１２", "0,125", "1.000", "1,000", "1e3", ""]
+        taken = {"en": ["2.5", "2.5", "12", "0.125", "1.000", None, None, None],
+                 "de": ["2.5", "2.5", "12", "0.125", None, "1.000", None, None]}
+        for language, expected in taken.items():
+            with self.subTest(language):
+                self.start("protocols/paper/discrimination.yaml", "--language", language)
+                browser.wait_for_screen(self.driver, "trial")
+                found = self.driver.execute_async_script("""
+                    const [typed, done] = arguments;
+                    import(new URL("typed_number.js", document.baseURI))
+                      .then(({ typedNumber }) => done(typed.map((text) => typedNumber(text))));""", typed)
+                self.assertEqual([number["text"] for number in found], expected)
+                refused = found[expected.index(None)]["problem"]
+                self.assertIn("1000", refused)
+
+    def test_an_answer_is_changed_until_it_is_confirmed(self):
+        self.start("protocols/paper/discrimination.yaml")
+        self.watch()
+        browser.wait_for_state(self.operator, "exploring")
+        self.next_trial(1)
+        self.wait_for_touch()
+        browser.pick_by_mouse(self.driver, 2)
+        browser.wait_for_state(self.operator, "answering")
+        time.sleep(0.3)
+        browser.pick_by_mouse(self.driver, 0)
+        time.sleep(0.3)
+        self.driver.refresh()  # nothing is picked any more
+        browser.wait_for_screen(self.driver, "trial")
+        time.sleep(0.5)
+        self.answer_until_accepted(browser.answer_by_mouse, 1)
+        self.next_trial(2)
+        self.assertEqual(self.session.rows(
+            "SELECT state, detail FROM session_event WHERE number = 1 AND state NOT IN ('ready', 'saved') "
+            "ORDER BY t_s"),
+            [("exploring", ""), ("answering", DISCRIMINATION[2]), ("answering", DISCRIMINATION[0]),
+             ("answering", ""), ("answering", DISCRIMINATION[1]), ("confirmed", "")])
+        self.session.type("end seen enough")
+        browser.wait_for_screen(self.driver, "ended")
+
+    def test_real_plates_are_mounted_and_the_last_answer_is_corrected(self):
+        self.start("tests/data/material_study.yaml", "--language", "de", width=375, height=800)
+        for index in (0, 1):
+            self.next_trial(index + 1)
+            self.answer_until_accepted(browser.answer_by_mouse, index)
+        browser.wait_for_screen(self.driver, "message")
+        self.assertIn("Die Übung ist vorbei", browser.text_of_page(self.driver))
+        browser.go_on_by_mouse(self.driver)
+        for index in (0, 1):
+            browser.wait_for_screen(self.driver, "message")
+            browser.wait_until(self.driver, "the plate is asked for",
+                               lambda: self.session.said().count("mount the real plate") == index + 1)
+            self.session.type("resume")
+            self.next_trial(1 + index)  # of those that count: practice is over
+            self.assertTrue(browser.find(self.driver, "#view").get_attribute("hidden"))
+            browser.answer_by_mouse(self.driver, index)
+        self.next_trial(3)
+        self.assertFalse(browser.find_all(self.driver, ".previous"))  # of a block that allows none
+        self.answer_until_accepted(browser.answer_by_mouse, 0)
+        self.next_trial(4)
+        browser.find(self.driver, ".previous summary").click()
+        self.check_screen("correction")
+        browser.find_all(self.driver, ".previous button")[1].click()
+        browser.wait_for_status(self.driver, "Ihre letzte Antwort ist berichtigt")
+        self.assertEqual(self.session.responses(),
+                         ["soft_small", "hard_small", "soft_small", "hard_small", "acrylic"])
+        for number in range(4, 8):
+            self.next_trial(number)
+            self.answer_until_accepted(browser.answer_by_mouse, 0)
+        self.finish()
+
     def test_alternatives_come_by_themselves_and_once_more(self):
         study = Path(tempfile.mkdtemp(prefix="tapstudy_intervals_"))
         self.addCleanup(shutil.rmtree, study)
@@ -504,6 +459,71 @@ class WholeSession(unittest.TestCase):
         told = self.session.rows("SELECT kind, count(*) FROM event WHERE kind IN ('interval', 'interval_end', 'interval_replay') GROUP BY kind")
         self.assertEqual(dict(told), {"interval": 21, "interval_end": 21, "interval_replay": 1})
 
+    def test_fixations_of_every_kind_are_drawn_if_the_protocol_shows_them(self):
+        self.start("tests/data/adaptive_tracks.yaml", has_webgl=False)
+        self.next_trial(1)
+        self.assertEqual(browser.wait_for_view(self.driver), "svg")
+        drawn = [mark.tag_name for mark in browser.find_all(self.driver, "#view .fixation")]
+        self.assertEqual(drawn, ["circle", "circle", "rect", "rect"])  # disc, ball, side, box
+        side = browser.find(self.driver, "#view rect.fixation")
+        self.assertAlmostEqual(float(side.get_attribute("height")), 300, delta=1)  # mm, the whole side
+        self.shoot("fixations")
+
+
+class Interruption(WholeSession):
+    def test_the_operator_pauses_corrects_and_ends(self):
+        self.start("protocols/paper/discrimination.yaml")
+        self.watch()
+        browser.wait_for_state(self.operator, "exploring")
+        browser.check_axe(self.operator, ("serious", "critical"))
+        self.next_trial(1)
+        self.wait_for_touch()
+        self.assertRegex(browser.plot_in_words(self.operator, "interval"), r"now \d+\.\d\d ms, last 5 s: \d")
+        self.shoot("operator", self.operator)
+        self.answer_until_accepted(browser.answer_by_mouse, 0)
+        self.next_trial(2)
+        browser.correct_to(self.operator, 3)
+        browser.wait_until(self.operator, "the correction",
+                           lambda: self.session.responses() == [DISCRIMINATION[3]])
+        browser.write_note(self.operator, "the participant coughed")
+        browser.command(self.operator, "pause")
+        browser.wait_for_screen(self.driver, "paused")
+        browser.wait_for_state(self.operator, "paused")
+        self.assertEqual(browser.operator_state(self.operator)["force"], "off")
+        self.session.type("resume")
+        self.next_trial(2)
+        self.session.type("skip")
+        browser.wait_for_screen(self.driver, "message")
+        browser.go_on_by_mouse(self.driver)
+        self.next_trial(3)
+        browser.command_with_reason(self.operator, "end", "feels sick")
+        browser.wait_for_screen(self.driver, "ended")
+        self.assertEqual(self.session.wait(), 130)
+        actions = [row[0] for row in self.session.rows(
+            "SELECT action || ' ' || detail FROM operator_action ORDER BY action_id")]
+        self.assertEqual(actions, ["correct mdf_three", "note the participant coughed", "pause ",
+                                   "resume ", "skip ", "end feels sick"])
+        self.assertEqual(self.session.rows("SELECT detail FROM session_event WHERE state = 'stopped'"),
+                         [("feels sick",)])
+
+    def test_the_operator_sees_the_noise_that_is_played(self):
+        directory = Path(tempfile.mkdtemp(prefix="tapstudy_masked_"))
+        self.addCleanup(shutil.rmtree, directory)
+        source = Path(__file__).resolve().parents[2]
+        study, rig = directory / "study.yaml", directory / "rig.yaml"
+        study.write_text((source / "protocols/paper/discrimination.yaml").read_text() +
+                         "\nmasking: {kind: pink, level_db_fs: -30, ramp_s: 0.1}\n")
+        rig.write_text((source / "protocols/rigs/simulated_hand.yaml").read_text() +
+                       '\naudio: {card: "null", gain_db: -5}\n')
+        self.start(study, "--rig", str(rig))
+        self.watch()
+        browser.wait_for_state(self.operator, "exploring")
+        machine = lambda: browser.operator_state(self.operator)["machine"]
+        browser.wait_until(self.operator, "the noise", lambda: "playing, -35 dB FS" in machine())
+        self.assertNotIn("not playing", machine())
+        browser.command(self.operator, "pause")
+        browser.wait_until(self.operator, "silence", lambda: "not playing, -35 dB FS" in machine())
+
     def test_a_page_that_vanishes_comes_back_to_the_same_question(self):
         self.start("protocols/paper/discrimination.yaml")
         self.next_trial(1)
@@ -519,16 +539,6 @@ class WholeSession(unittest.TestCase):
         browser.open_participant(self.driver, self.session.participant)
         self.next_trial(2)
         self.assertEqual(self.session.responses(), [DISCRIMINATION[1]])
-
-    def test_fixations_of_every_kind_are_drawn_if_the_protocol_shows_them(self):
-        self.start("tests/data/adaptive_tracks.yaml", has_webgl=False)
-        self.next_trial(1)
-        self.assertEqual(browser.wait_for_view(self.driver), "svg")
-        drawn = [mark.tag_name for mark in browser.find_all(self.driver, "#view .fixation")]
-        self.assertEqual(drawn, ["circle", "circle", "rect", "rect"])  # disc, ball, side, box
-        side = browser.find(self.driver, "#view rect.fixation")
-        self.assertAlmostEqual(float(side.get_attribute("height")), 300, delta=1)  # mm, the whole side
-        self.shoot("fixations")
 
     def test_adaptive_tracks_at_the_page_are_those_of_the_terminal_and_outlive_the_program(self):
         study = "tests/data/adaptive_tracks.yaml"

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "core/error.hpp"
-#include "protocols/read_protocol.hpp"
-#include "protocols/spidar_calibration.hpp"
-#include "runner/devices/rigs.hpp"
+#include "protocols/reader/read_protocol.hpp"
+#include "protocols/reader/read_rig.hpp"
+#include "runner/session/devices/rigs.hpp"
 #include "support/catch.hpp"
 #include "support/processes.hpp"
 #include "support/schema_keys.hpp"
@@ -416,4 +416,12 @@ TEST_CASE("schema and reader accept the same calibrations", "[protocols][rig][sc
     INFO(changes[i].from << " → " << changes[i].to);
     CHECK(verdict(reader_accepts_rig(shipped_rig("spidar_g6"), texts[i])) == verdicts[i]);
   }
+}
+
+// protocols/README.md against the JSON schemas from which it is generated.
+TEST_CASE("the reference of the keys says what the schemas say", "[protocols][schema]") {
+  const auto result = testing::run_program(
+      {"/usr/bin/python3", testing::shipped("schema/write_readme.py").string(), "--check"});
+  INFO(result.standard_output << result.standard_error);
+  CHECK(result.exit_code == 0);
 }

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "analysis/statistics/count_table.hpp"
-#include "core/rng.hpp"
+#include "analysis/statistics/confusion_matrix.hpp"
+#include "core/random/rng.hpp"
 namespace tapstudy::testing {
 using analysis::CountTable;
 

@@ -5,7 +5,7 @@
 #include <sstream>
 #include <string>
 
-#include "analysis/blocks/block_summary.hpp"
+#include "analysis/report/document/block_summary.hpp"
 #include "analysis/report/statistic.hpp"
 #include "support/catch.hpp"
 namespace tapstudy::testing {

@@ -4,7 +4,6 @@
 #include <memory>
 
 #include "support/catch.hpp"
-#include "support/sanitized.hpp"
 using namespace tapstudy::testing;
 
 #if !TAPSTUDY_SANITIZED

@@ -1,7 +1,7 @@
 #pragma once
 #include <stdexcept>
 
-#include "runner/trial_loop/real_plates.hpp"
+#include "runner/session/trial_loop/real_plates.hpp"
 namespace tapstudy::testing {
 // For studies that present none.
 class NoRealPlates final : public runner::RealPlates {

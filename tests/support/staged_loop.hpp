@@ -5,9 +5,21 @@
 #include <stop_token>
 #include <vector>
 
-#include "core/techniques/make_renderer.hpp"
+#include "core/haptics/haptic_state.hpp"
+#include "core/techniques/technique.hpp"
+#include "core/tick/spsc_ring.hpp"
 #include "device/loop/haptic_loop.hpp"
 namespace tapstudy::testing {
+// What a loop has traced since the last call.
+inline std::vector<core::TraceSample> samples_of(core::SpscRing<core::TraceSample>& trace) {
+  std::vector<core::TraceSample> all;
+  core::TraceSample sample{};
+  while (trace.try_pop(sample)) {
+    all.push_back(sample);
+  }
+  return all;
+}
+
 // Time that passes as told, late from now on if so told.
 class SteadyClock final : public device::TickClock {
  public:

@@ -4,9 +4,9 @@
 #include <numbers>
 #include <vector>
 
-#include "analysis/modal_identification/free_decay.hpp"
-#include "analysis/recordings/recording.hpp"
-#include "core/rng.hpp"
+#include "analysis/modal/decay/free_decay.hpp"
+#include "analysis/modal/recording/recording.hpp"
+#include "core/random/rng.hpp"
 // Sums of damped oscillations with planted parameters, in noise.
 namespace tapstudy::testing {
 struct PlantedMode {

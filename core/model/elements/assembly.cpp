@@ -7,13 +7,137 @@
 #include <array>
 #include <iterator>
 #include <utility>
+#include <vector>
 
 #include "core/algebra/lapack.hpp"
 #include "core/error.hpp"
-#include "core/model/elements/node_graph.hpp"
-#include "core/model/elements/rigid_motions.hpp"
 #include "core/model/elements/tet_element.hpp"
+#include "core/model/mesh/tet_mesh.hpp"
 namespace tapstudy::core {
+// Which nodes share an element: for each node, itself and its higher-numbered neighbours,
+// ascending. The sparsity pattern of the lower triangles of K and M.
+struct NodeGraph {
+  std::vector<int> first;       // node j's list is neighbours[first[j]] … [first[j + 1])
+  std::vector<int> neighbours;  // starts with j itself where j is in an element
+  int place_of(int node, int neighbour) const;
+};
+NodeGraph node_graph(const TetMesh& mesh);
+
+namespace {
+struct ElementsOfNodes {
+  std::vector<int> first;
+  std::vector<int> elements;
+};
+
+ElementsOfNodes elements_of_nodes(const TetMesh& mesh) {
+  ElementsOfNodes result;
+  result.first.assign(static_cast<std::size_t>(mesh.nodes_m.rows()) + 1, 0);
+  for (const int node : mesh.tets.reshaped()) {
+    ++result.first[static_cast<std::size_t>(node) + 1];
+  }
+  for (std::size_t i = 1; i < result.first.size(); ++i) {
+    result.first[i] += result.first[i - 1];
+  }
+  std::vector<int> next{result.first.begin(), result.first.end() - 1};
+  result.elements.resize(static_cast<std::size_t>(mesh.tets.size()));
+  for (Eigen::Index tet = 0; tet < mesh.tets.rows(); ++tet) {
+    for (const int node : mesh.tets.row(tet)) {
+      const int place = next[static_cast<std::size_t>(node)]++;
+      result.elements[static_cast<std::size_t>(place)] = static_cast<int>(tet);
+    }
+  }
+  return result;
+}
+}  // namespace
+
+NodeGraph node_graph(const TetMesh& mesh) {
+  const ElementsOfNodes around = elements_of_nodes(mesh);
+  NodeGraph graph;
+  graph.first.push_back(0);
+  std::vector<int> seen_from(static_cast<std::size_t>(mesh.nodes_m.rows()), -1);
+  for (int node = 0; node < mesh.nodes_m.rows(); ++node) {
+    const auto start = static_cast<std::ptrdiff_t>(graph.neighbours.size());
+    const auto own = static_cast<std::size_t>(node);
+    for (int k = around.first[own]; k < around.first[own + 1]; ++k) {
+      for (const int other : mesh.tets.row(around.elements[static_cast<std::size_t>(k)])) {
+        int& seen = seen_from[static_cast<std::size_t>(other)];
+        if (other >= node && seen != node) {
+          seen = node;
+          graph.neighbours.push_back(other);
+        }
+      }
+    }
+    std::sort(graph.neighbours.begin() + start, graph.neighbours.end());
+    graph.first.push_back(static_cast<int>(graph.neighbours.size()));
+  }
+  return graph;
+}
+
+int NodeGraph::place_of(int node, int neighbour) const {
+  const auto own = static_cast<std::size_t>(node);
+  const auto begin = neighbours.begin() + first[own];
+  const auto end = neighbours.begin() + first[own + 1];
+  return static_cast<int>(std::lower_bound(begin, end, neighbour) - neighbours.begin());
+}
+
+namespace {
+// Threshold for the squared participation of constrained nodes in a rigid-body motion, relative to
+// that of all motions: far above rounding, far below a screw head on a plate.
+constexpr double nothing_holds = 1e-14;
+
+// One flag a degree of freedom: constrained, or on a spring.
+std::vector<bool> resisted_dofs(const FreeDofs& dofs, const std::vector<SpringSupport>& springs) {
+  std::vector<bool> resisted(dofs.position.size(), false);
+  for (std::size_t i = 0; i < resisted.size(); ++i) {
+    resisted[i] = dofs.position[i] < 0;
+  }
+  for (const SpringSupport& support : springs) {
+    for (const Eigen::Index node : support.region.nodes) {
+      for (Eigen::Index axis = 0; axis < 3; ++axis) {
+        if (support.stiffness_n_per_m[axis] > 0.0) {
+          resisted[static_cast<std::size_t>(3 * node + axis)] = true;
+        }
+      }
+    }
+  }
+  return resisted;
+}
+}  // namespace
+
+RigidMotions::RigidMotions(const TetMesh& mesh)
+    : mesh_{mesh},
+      middle_m_{mesh.nodes_m.colwise().mean().transpose()},
+      size_m_{(mesh.nodes_m.rowwise() - middle_m_.transpose()).rowwise().norm().maxCoeff()} {}
+
+Eigen::Matrix<double, 6, 1> RigidMotions::displacement(const Eigen::Vector3d& place_m,
+                                                       Eigen::Index axis) const {
+  const Eigen::Vector3d arm = (place_m - middle_m_) / size_m_;
+  Eigen::Matrix<double, 6, 1> motion;
+  motion << Eigen::Vector3d::Unit(axis), arm.cross(Eigen::Vector3d::Unit(axis));
+  return motion;
+}
+
+Eigen::Matrix<double, 6, 6> RigidMotions::resisted(
+    const FreeDofs& dofs, const std::vector<SpringSupport>& springs) const {
+  const std::vector<bool> is_resisted = resisted_dofs(dofs, springs);
+  Eigen::Matrix<double, 6, 6> sum = Eigen::Matrix<double, 6, 6>::Zero();
+  for (Eigen::Index node = 0; node < mesh_.nodes_m.rows(); ++node) {
+    for (Eigen::Index axis = 0; axis < 3; ++axis) {
+      if (is_resisted[static_cast<std::size_t>(3 * node + axis)]) {
+        const auto motion = displacement(mesh_.nodes_m.row(node).transpose(), axis);
+        sum += motion * motion.transpose();
+      }
+    }
+  }
+  return sum;
+}
+
+int unresisted(const Eigen::MatrixXd& resisted_motions) {
+  const double threshold = nothing_holds * std::max(1.0, resisted_motions.trace());
+  return static_cast<int>(
+      (symmetric_eigenpairs(resisted_motions).values.array() < threshold).count());
+}
+
 namespace {
 using Axes = std::array<int, 3>;
 

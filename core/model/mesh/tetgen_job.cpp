@@ -7,9 +7,8 @@
 #include <new>
 #include <span>
 
-#include "core/bounded_child.hpp"
 #include "core/error.hpp"
-#include "core/packed_bytes.hpp"
+#include "core/process/bounded_child.hpp"
 
 #define TETLIBRARY
 #include <tetgen.h>

@@ -7,10 +7,10 @@
 #include <cmath>
 #include <memory>
 
-#include "core/algebra/blas_products.hpp"
+#include "core/algebra/blas.hpp"
 #include "core/algebra/lapack.hpp"
 #include "core/error.hpp"
-#include "core/rng.hpp"
+#include "core/random/rng.hpp"
 namespace tapstudy::core {
 namespace {
 using Eigen::Index;

@@ -4,7 +4,7 @@
 
 #include "core/model/elements/assembly.hpp"
 #include "core/model/modes/shifted_factor.hpp"
-#include "core/model/progress_hook.hpp"
+#include "core/model/progress.hpp"
 namespace tapstudy::core {
 // One vector per column, neither normalised nor ordered.
 struct RitzVectors {

@@ -12,7 +12,7 @@
 #include "core/error.hpp"
 #include "core/model/modes/block_lanczos.hpp"
 #include "core/model/modes/shifted_factor.hpp"
-#include "core/model/stopwatch.hpp"
+#include "core/model/progress.hpp"
 namespace tapstudy::core {
 namespace {
 // Aimed at, and accepted where many modes crowd below the shift so that refinement gains little.

@@ -2,7 +2,7 @@
 #include <Eigen/Core>
 
 #include "core/model/elements/assembly.hpp"
-#include "core/model/progress_hook.hpp"
+#include "core/model/progress.hpp"
 namespace tapstudy::core {
 // The natural modes of (K, M) from above zero up to a band limit: the solutions X of
 // (-w² M + K) X = 0 (paper eq. 7). A vibration x = X e^(wt) with Rayleigh damping has the same

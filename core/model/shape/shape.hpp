@@ -1,11 +1,20 @@
 #pragma once
 #include <memory>
+#include <optional>
 #include <string>
 #include <variant>
 
 #include "core/geometry/triangle_tree.hpp"
-#include "core/model/shape/box.hpp"
+#include "core/haptics/haptic_state.hpp"
 namespace tapstudy::core {
+// A rectangular plate, in the plate frame: x in ±size.x/2, y in ±size.y/2, and z from -size.z up to
+// 0, the tapped face.
+struct Box {
+  Vec3 size_m;  // each > 0
+  Vec3 low_m() const { return {-0.5 * size_m.x(), -0.5 * size_m.y(), -size_m.z()}; }
+  Vec3 high_m() const { return {0.5 * size_m.x(), 0.5 * size_m.y(), 0.0}; }
+};
+
 // A solid bounded by a closed surface (see check_surface), with its collision tree. Copies share
 // the data.
 class Solid {
@@ -39,4 +48,19 @@ double volume_m3(const Shape& shape);
 
 // Identical text for bitwise identical shapes.
 std::string content_key(const Shape& shape);
+
+// Where a finger descending along -z first touches a body.
+class TopHeight {
+ public:
+  explicit TopHeight(const Shape& shape);
+  // z in the plate frame; nullopt where the vertical line misses the body.
+  std::optional<double> at_m(const Eigen::Vector2d& sideways_m) const;
+  // What may be touched from above, for messages: a plate's extent, or the place on a body nearest
+  // to a point that misses it.
+  std::string outline_words(const Eigen::Vector2d& sideways_m) const;
+
+ private:
+  Bounds bounds_;
+  std::shared_ptr<const TriangleTree> triangles_;  // none of a box
+};
 }  // namespace tapstudy::core

@@ -4,7 +4,7 @@ import { byId, setText } from "./dom.js";
 import { word } from "./words.js";
 
 const patienceMs = 2000;
-// Above what the program waits for its database (results/sqlite.cpp).
+// Above what the program waits for its database (results/store/sqlite.cpp).
 const requestTimeoutMs = 8000;
 
 // Calls handlers[event](data) for each event. A lost connection is shown after a while, and whenLost

@@ -3,17 +3,14 @@
 #include <cmath>
 #include <functional>
 
-#include "analysis/agreement/independence.hpp"
-#include "analysis/agreement/symmetry.hpp"
-#include "analysis/discrimination/discrimination_results.hpp"
-#include "analysis/participants/mean_proportion.hpp"
-#include "analysis/participants/paired_contrast.hpp"
-#include "analysis/psychometric/inference.hpp"
-#include "analysis/rank_tests/signed_rank.hpp"
-#include "analysis/similarity/similarity_choice.hpp"
-#include "analysis/statistics/independent_difference.hpp"
-#include "analysis/statistics/sign_test.hpp"
-#include "core/rng.hpp"
+#include "analysis/report/blocks/discrimination.hpp"
+#include "analysis/statistics/contingency/agreement.hpp"
+#include "analysis/statistics/contingency/similarity.hpp"
+#include "analysis/statistics/population/means.hpp"
+#include "analysis/statistics/proportion.hpp"
+#include "analysis/statistics/psychometric/inference.hpp"
+#include "analysis/statistics/rank_tests.hpp"
+#include "core/random/rng.hpp"
 #include "support/catch.hpp"
 using namespace tapstudy;
 using namespace tapstudy::analysis;

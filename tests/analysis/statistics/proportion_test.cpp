@@ -1,10 +1,14 @@
 #include "analysis/statistics/proportion.hpp"
 
-#include "analysis/blocks/wording.hpp"
-#include "analysis/statistics/permutation_test.hpp"
-#include "core/rng.hpp"
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "analysis/report/document/wording.hpp"
+#include "analysis/statistics/resampling/null_tables.hpp"
+#include "core/error.hpp"
+#include "core/random/rng.hpp"
 #include "support/catch.hpp"
-#include "support/r_program.hpp"
+#include "support/reference_programs.hpp"
 using namespace tapstudy;
 using namespace tapstudy::analysis;
 using testing::r_numbers;
@@ -86,4 +90,111 @@ TEST_CASE("p values are said as they are printed in papers", "[analysis][report]
   CHECK(p_value(0.00001) == "p < .001");
   CHECK(p_value(1.0) == "p = 1.000");
   CHECK(p_value(0.99996) == "p = 1.000");
+}
+
+TEST_CASE("simultaneous intervals of choices are Goodman's, as statsmodels has them",
+          "[analysis][choice]") {
+  const std::vector<std::vector<int>> choices{{7, 2, 1}, {10, 0, 0}, {1, 0}, {30, 40, 50, 3}};
+  std::string script =
+      "from statsmodels.stats.proportion import multinomial_proportions_confint as ci\n";
+  for (const auto& counts : choices) {
+    script += fmt::format("out(ci(np.array({}), method='goodman'))\n", counts);
+  }
+  const auto expected = testing::python_numbers(script);
+  std::size_t at = 0;
+  for (const auto& counts : choices) {
+    for (const Interval& interval : simultaneous_intervals(counts)) {
+      CHECK(interval.low == Approx(expected[at]).margin(1e-12));
+      CHECK(interval.high == Approx(expected[at + 1]).epsilon(1e-9));
+      at += 2;
+    }
+  }
+  CHECK_THROWS_AS(simultaneous_intervals({5}), core::InvalidInput);
+  CHECK_THROWS_AS(simultaneous_intervals({0, 0}), core::InvalidInput);
+  CHECK_THROWS_AS(simultaneous_intervals({3, -1}), core::InvalidInput);
+}
+
+TEST_CASE("Sison and Glaz's intervals of choices are those of statsmodels", "[analysis][choice]") {
+  const std::vector<std::vector<int>> choices{{7, 2, 1},        {10, 9, 8, 3},
+                                              {30, 40, 50, 3},  {6, 4},
+                                              {12, 0, 3},       {56, 72, 73, 59, 62, 87, 58},
+                                              {101, 250, 3, 17}};
+  for (const auto& counts : choices) {
+    const auto expected = testing::python_numbers(fmt::format(
+        "from statsmodels.stats.proportion import multinomial_proportions_confint as confint\n"
+        "out(confint([{}], method='sison-glaz'))\n",
+        fmt::join(counts, ",")));
+    const std::vector<analysis::Interval> found = analysis::sison_glaz_intervals(counts);
+    REQUIRE(expected.size() == 2 * found.size());
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      INFO(fmt::format("{} of [{}]", i, fmt::join(counts, ",")));
+      CHECK(found[i].low == Approx(expected[2 * i]).margin(1e-9));
+      CHECK(found[i].high == Approx(expected[2 * i + 1]).epsilon(1e-9));
+    }
+  }
+}
+
+TEST_CASE("Sison and Glaz's intervals of few and one-sided counts stay within 0 and 1",
+          "[analysis][choice]") {
+  for (const std::vector<int>& counts : {std::vector{1, 0}, {1, 1}, {0, 0, 3}, {5, 0}, {2, 1, 0}}) {
+    const std::vector<analysis::Interval> found = analysis::sison_glaz_intervals(counts);
+    double all = 0.0;
+    for (const int count : counts) {
+      all += count;
+    }
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      INFO(fmt::format("{} of [{}]", i, fmt::join(counts, ",")));
+      CHECK(found[i].low >= 0.0);
+      CHECK(found[i].low <= counts[i] / all);
+      CHECK(found[i].high >= counts[i] / all);
+      CHECK(found[i].high <= 1.0);
+    }
+  }
+  CHECK_THROWS_AS(analysis::sison_glaz_intervals({3}), core::InvalidInput);
+  CHECK_THROWS_AS(analysis::sison_glaz_intervals({0, 0}), core::InvalidInput);
+}
+
+// Newcombe 1998 (Statistics in Medicine 17, 873-890), Table II, method 10: 56/70 less 48/80, of the
+// score intervals that R's prop.test gives.
+TEST_CASE("differences of proportions have Newcombe's interval", "[analysis][proportion]") {
+  const auto r = testing::r_numbers(
+      "a <- prop.test(48, 80, correct = FALSE)$conf.int; b <- prop.test(56, 70, correct = FALSE)"
+      "$conf.int; p <- 48 / 80; q <- 56 / 70; out(a, b, q - p - sqrt((q - b[1])^2 + "
+      "(a[2] - p)^2), q - p + sqrt((b[2] - q)^2 + (p - a[1])^2))");
+  const auto estimate = [](const Proportion& proportion) {
+    return IntervalEstimate{proportion.value(), wilson_interval(proportion)};
+  };
+  const IntervalEstimate difference =
+      independent_difference(estimate({48, 80}), estimate({56, 70}));
+  CHECK(difference.value == Approx(0.2).epsilon(1e-9));
+  CHECK(difference.interval.low == Approx(0.0524).margin(0.00005));  // as printed
+  CHECK(difference.interval.high == Approx(0.3339).margin(0.00005));
+  CHECK(wilson_interval({48, 80}).low == Approx(r[0]).epsilon(1e-9));
+  CHECK(wilson_interval({48, 80}).high == Approx(r[1]).epsilon(1e-9));
+  CHECK(wilson_interval({56, 70}).low == Approx(r[2]).epsilon(1e-9));
+  CHECK(wilson_interval({56, 70}).high == Approx(r[3]).epsilon(1e-9));
+  CHECK(difference.interval.low == Approx(r[4]).epsilon(1e-9));
+  CHECK(difference.interval.high == Approx(r[5]).epsilon(1e-9));
+}
+
+TEST_CASE("a difference the other way round is its negative", "[analysis][proportion]") {
+  const IntervalEstimate a{1.0, {0.2, 1.3}};
+  const IntervalEstimate b{4.0, {3.1, 6.0}};
+  const IntervalEstimate forth = independent_difference(a, b);
+  const IntervalEstimate back = independent_difference(b, a);
+  CHECK(forth.value == -back.value);
+  CHECK(forth.interval.low == Approx(-back.interval.high).epsilon(1e-9));
+  CHECK(forth.interval.high == Approx(-back.interval.low).epsilon(1e-9));
+}
+
+TEST_CASE("a ratio and its interval are the other way round the reciprocals",
+          "[analysis][statistics]") {
+  const IntervalEstimate a{0.2, {0.1, 0.5}};
+  const IntervalEstimate b{0.6, {0.5, 0.9}};
+  const IntervalEstimate forth = independent_ratio(a, b);
+  const IntervalEstimate back = independent_ratio(b, a);
+  CHECK(forth.value == Approx(3.0));
+  CHECK(back.value == Approx(1.0 / 3.0));
+  CHECK(back.interval.low == Approx(1.0 / forth.interval.high));
+  CHECK(back.interval.high == Approx(1.0 / forth.interval.low));
 }

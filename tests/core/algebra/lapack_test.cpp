@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <complex>
 
-#include "core/rng.hpp"
+#include "core/random/rng.hpp"
 #include "support/catch.hpp"
 using namespace tapstudy;
 

@@ -1,8 +1,20 @@
 #include "core/model/plate_model.hpp"
 
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
 #include "core/error.hpp"
+#include "core/model/elements/assembly.hpp"
+#include "core/model/model_cache.hpp"
+#include "core/model/vtu_file.hpp"
 #include "support/catch.hpp"
 #include "support/plates.hpp"
+#include "support/processes.hpp"
+#include "support/texts.hpp"
 using namespace tapstudy;
 using core::build_plate_model;
 
@@ -51,4 +63,135 @@ TEST_CASE("a body that was solved up to a lower band is refused, not used with m
   softer.youngs_modulus_pa *= 0.25;  // every frequency at half
   CHECK_THROWS_AS(core::model_of(body, softer, 100.0), core::ModelError);
   CHECK_NOTHROW(core::model_of(body, softer, 50.0));
+}
+
+using core::ModelCache;
+
+namespace {
+core::BodyModes some_modes() {
+  return core::solve_body(core::body_of(testing::paper_plate(2, testing::mdf()))).modes;
+}
+std::string only_file_in(const std::string& directory) {
+  std::vector<std::string> files;
+  for (const auto& entry : std::filesystem::directory_iterator{directory}) {
+    files.push_back(entry.path().string());
+  }
+  REQUIRE(files.size() == 1);
+  return files.front();
+}
+}  // namespace
+
+TEST_CASE("what was kept is found to the last bit, under its own key only", "[core][cache]") {
+  const testing::TempDirectory directory;
+  const ModelCache cache{directory / "models", "1"};
+  const core::BodyModes modes = some_modes();
+  CHECK_FALSE(cache.find("a plate"));
+  CHECK(cache.keep("a plate", modes));
+  const auto found = cache.find("a plate");
+  REQUIRE(found);
+  CHECK((found->kappa_rad_per_m == modes.kappa_rad_per_m).all());
+  CHECK(found->band_limit_rad_per_m == modes.band_limit_rad_per_m);
+  CHECK(found->shape == modes.shape);
+  CHECK(found->touch_surface == modes.touch_surface);
+  CHECK(found->touch_nodes_m == modes.touch_nodes_m);
+  CHECK(found->report.dofs == modes.report.dofs);
+  CHECK_FALSE(cache.find("another plate"));
+  CHECK_FALSE(ModelCache{directory / "models", "2"}.find("a plate"));  // of another program
+}
+
+TEST_CASE("a torn or altered file counts as absent and is replaced", "[core][cache]") {
+  const testing::TempDirectory directory;
+  const ModelCache cache{directory / "models", "1"};
+  CHECK(cache.keep("a plate", some_modes()));
+  const std::string file = only_file_in(directory / "models");
+  const std::string whole = testing::contents(file);
+  for (const std::size_t length : {std::size_t{0}, whole.size() / 2, whole.size() - 1}) {
+    std::ofstream{file, std::ios::binary} << whole.substr(0, length);
+    CHECK_FALSE(cache.find("a plate"));
+  }
+  std::string altered = whole;
+  altered[whole.size() / 2] ^= 1;
+  std::ofstream{file, std::ios::binary} << altered;
+  CHECK_FALSE(cache.find("a plate"));
+  CHECK(cache.keep("a plate", some_modes()));
+  CHECK(cache.find("a plate"));
+  only_file_in(directory / "models");
+}
+
+TEST_CASE("processes that keep and find at once find all or nothing", "[core][cache]") {
+  const testing::TempDirectory directory;
+  const ModelCache cache{directory / "models", "1"};
+  const core::BodyModes modes = some_modes();
+  const std::string kept = core::encoded(modes);
+  std::vector<pid_t> children;
+  for (int child = 0; child < 3; ++child) {
+    children.push_back(fork());
+    if (children.back() == 0) {
+      bool is_whole = true;
+      for (int turn = 0; turn < 200; ++turn) {
+        const bool is_kept = cache.keep("a plate", modes);
+        const auto found = cache.find("a plate");
+        is_whole = is_whole && is_kept && found && core::encoded(*found) == kept;
+      }
+      _exit(is_whole ? 0 : 1);
+    }
+  }
+  for (const pid_t child : children) {
+    int status = -1;
+    REQUIRE(waitpid(child, &status, 0) == child);
+    CHECK(status == 0);
+  }
+  only_file_in(directory / "models");
+}
+
+TEST_CASE("a cache without a place keeps nothing, and says so", "[core][cache]") {
+  const ModelCache nowhere{"/proc/no/such/place", "1"};
+  CHECK_FALSE(nowhere.keep("a plate", some_modes()));
+  CHECK_FALSE(nowhere.find("a plate"));
+}
+
+namespace {
+// What meshio, which shares no code with us, reads.
+constexpr const char* reader = R"(
+import json, sys, meshio
+mesh = meshio.read(sys.argv[1])
+cells = mesh.cells[0]
+print(json.dumps({"type": cells.type, "points": mesh.points.tolist(), "cells": cells.data.tolist(),
+                  "modes": {name: data.tolist() for name, data in mesh.point_data.items()}}))
+)";
+}  // namespace
+
+TEST_CASE("a .vtu holds the mesh and its modes as another program reads them", "[core][vtu]") {
+  const int order = GENERATE(1, 2);
+  core::PlateSpec plate = testing::paper_plate(2, testing::mdf());
+  plate.mesh.order = order;
+  const core::PlateModel built = core::build_plate_model(plate);
+  const double density = plate.material.density_kg_per_m3;
+  const testing::TempDirectory directory;
+  core::write_vtu(built.body, built.modal, density, directory / "body.vtu");
+  const auto run = testing::run_program({"/usr/bin/python3", "-c", reader, directory / "body.vtu"});
+  INFO(run.standard_error);
+  REQUIRE(run.exit_code == 0);
+  const auto read = nlohmann::json::parse(run.standard_output);
+  CHECK(read["type"] == (order == 2 ? "tetra10" : "tetra"));
+  const core::TetMesh& mesh = built.body.mesh;
+  REQUIRE(static_cast<Eigen::Index>(read["points"].size()) == mesh.nodes_m.rows());
+  REQUIRE(static_cast<Eigen::Index>(read["cells"].size()) == mesh.tets.rows());
+  REQUIRE(static_cast<Eigen::Index>(read["modes"].size()) == built.modal.frequency_hz.size());
+  CHECK(read["points"][7][1] == mesh.nodes_m(7, 1));
+  CHECK(read["cells"][3][2] == mesh.tets(3, 2));
+  // mass-normalised: phi' M phi = 1 with the consistent mass matrix of the mesh
+  const core::StiffnessAndMass matrices = core::assemble(
+      mesh, plate.material,
+      core::free_dofs(std::vector<bool>(static_cast<std::size_t>(mesh.nodes_m.size()), false)));
+  Eigen::VectorXd shape{mesh.nodes_m.size()};
+  for (Eigen::Index node = 0; node < mesh.nodes_m.rows(); ++node) {
+    for (Eigen::Index axis = 0; axis < 3; ++axis) {
+      shape[3 * node + axis] =
+          read["modes"]["mode_1"][static_cast<std::size_t>(node)][static_cast<std::size_t>(axis)];
+    }
+  }
+  CHECK(shape.dot(matrices.mass() * shape) == Approx(1.0));
+  CHECK_THROWS_AS(core::write_vtu(built.body, built.modal, density, directory / "body.vtu"),
+                  core::InvalidInput);
 }

@@ -11,14 +11,14 @@
 #include <sstream>
 #include <vector>
 
-#include "core/rng.hpp"
-#include "core/techniques/make_renderer.hpp"
-#include "core/tick/coupled_vibration.hpp"
-#include "core/tick/plate_contact.hpp"
+#include "core/random/rng.hpp"
+#include "core/techniques/technique.hpp"
+#include "core/tick/god_object.hpp"
+#include "core/tick/plate_vibration.hpp"
 #include "support/catch.hpp"
 #include "support/no_alloc.hpp"
+#include "support/plates.hpp"
 #include "support/processes.hpp"
-#include "support/uniform_plate.hpp"
 using namespace tapstudy::core;
 namespace testing = tapstudy::testing;
 

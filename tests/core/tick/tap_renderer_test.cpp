@@ -1,10 +1,12 @@
 #include "core/tick/tap_renderer.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <vector>
 
 #include "core/model/plate_model.hpp"
-#include "core/techniques/make_renderer.hpp"
+#include "core/techniques/technique.hpp"
+#include "core/tick/force_limiter.hpp"
 #include "support/catch.hpp"
 #include "support/no_alloc.hpp"
 #include "support/plates.hpp"
@@ -137,4 +139,33 @@ TEST_CASE("rendering allocates nothing", "[core][technique][realtime]") {
     renderer.tick({{0.0001 * (tick % 1000), 0.0, 0.002 * std::sin(0.05 * tick)}, {}});
   }
   CHECK(allocations.count() == 0);
+}
+
+using tapstudy::core::ForceLimits;
+using tapstudy::core::limit_force;
+using tapstudy::core::Vec3;
+TEST_CASE("a force over the limit is shortened and keeps its direction", "[core][force_limiter]") {
+  const ForceLimits limits{.max_force_n = 5.0, .max_force_rate_n_per_s = 1e9};
+  const auto limited = limit_force(Vec3{30.0, 40.0, 0.0}, Vec3::Zero(), limits, 1e-3);
+  CHECK(limited.force_n.isApprox(Vec3{3.0, 4.0, 0.0}));
+}
+TEST_CASE("a force that is not a number becomes zero force", "[core][force_limiter]") {
+  const ForceLimits limits{.max_force_n = 5.0, .max_force_rate_n_per_s = 1e9};
+  const auto limited = limit_force(Vec3{std::numeric_limits<double>::quiet_NaN(), 0, 0},
+                                   Vec3{1, 1, 1}, limits, 1e-3);
+  CHECK(limited.force_n == Vec3::Zero());
+  CHECK(limited.was_changed);
+}
+TEST_CASE("a force within the limits is left to the last bit", "[core][force_limiter]") {
+  const ForceLimits limits{.max_force_n = 5.0, .max_force_rate_n_per_s = 1e3};
+  const Vec3 wanted{0.1, 0.7, -0.3};
+  const auto limited = limit_force(wanted, Vec3{0.3, 0.1, 0.0}, limits, 1e-3);
+  CHECK(limited.force_n == wanted);
+  CHECK_FALSE(limited.was_changed);
+}
+TEST_CASE("a force never changes faster than its limit", "[core][force_limiter]") {
+  const ForceLimits limits{.max_force_n = 5.0, .max_force_rate_n_per_s = 1e3};
+  const auto limited = limit_force(Vec3{0, 4, 0}, Vec3{0, 1, 0}, limits, 1e-3);
+  CHECK(limited.force_n.isApprox(Vec3{0, 2, 0}));
+  CHECK(limited.was_changed);
 }

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/rng.hpp"
+#include "core/random/rng.hpp"
 #include "device/spidar/string_support.hpp"
 #include "support/catch.hpp"
 using namespace tapstudy;

@@ -1,12 +1,15 @@
 #include "device/loop/haptic_loop.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
 
+#include "core/random/rng.hpp"
+#include "device/loop/tick_clock.hpp"
 #include "support/catch.hpp"
 #include "support/no_alloc.hpp"
-#include "support/trace_samples.hpp"
+#include "support/staged_loop.hpp"
 using namespace tapstudy;
 using core::Vec3;
 
@@ -479,4 +482,31 @@ TEST_CASE("a soft stop never ends in a step, though the rate limit be slower tha
     CHECK(samples[i - 1].force_n[1] - samples[i].force_n[1] < 0.1 + 1e-9);
   }
   CHECK(samples.back().force_n[1] == 0.0);
+}
+
+TEST_CASE("a share of the ticks is told to 19 %, from above", "[device][loop]") {
+  core::Rng rng{1};
+  device::LatenessCount count;
+  std::vector<device::Nanoseconds> all;
+  for (int i = 0; i < 20000; ++i) {
+    all.push_back(static_cast<device::Nanoseconds>(std::exp(10.0 + 2.0 * rng.normal())));
+    count.add(all.back());
+  }
+  std::ranges::sort(all);
+  for (const double share : {0.5, 0.99, 0.999, 1.0}) {
+    const auto place = static_cast<std::size_t>(std::ceil(share * 20000.0)) - 1;
+    const auto truth = static_cast<double>(all[place]);
+    CAPTURE(share, truth);
+    CHECK(static_cast<double>(count.quantile(share)) >= truth);
+    CHECK(static_cast<double>(count.quantile(share)) <= 1.19 * truth + 1.0);
+  }
+  CHECK(count.worst() == all.back());
+}
+
+TEST_CASE("nothing late is told as nothing", "[device][loop]") {
+  device::LatenessCount count;
+  CHECK(count.quantile(0.999) == 0);
+  count.add(0);
+  count.add(-5);
+  CHECK(count.quantile(0.999) == 0);
 }

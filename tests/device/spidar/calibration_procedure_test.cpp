@@ -8,7 +8,7 @@
 #include "core/error.hpp"
 #include "device/device.hpp"
 #include "device/spidar/calibration.hpp"
-#include "protocols/spidar_calibration.hpp"
+#include "protocols/reader/read_rig.hpp"
 #include "support/catch.hpp"
 #include "support/texts.hpp"
 #include "support/usb/spidar_on_bus.hpp"

@@ -1,6 +1,6 @@
 #pragma once
-#include "core/rng.hpp"
-#include "device/spidar/pose.hpp"
+#include "core/random/rng.hpp"
+#include "device/spidar/kinematics.hpp"
 namespace tapstudy::testing {
 // Uniform in a cube of this half width.
 inline core::Vec3 random_vector(core::Rng& rng, double half_width) {

@@ -7,7 +7,7 @@
 
 #include "core/error.hpp"
 #include "support/catch.hpp"
-#include "support/varied_study.hpp"
+#include "support/study_files.hpp"
 using namespace tapstudy;
 using protocols::AxisValues;
 

@@ -6,7 +6,6 @@
 
 #include "protocols/procedures/procedure.hpp"
 #include "support/catch.hpp"
-#include "support/known_observer.hpp"
 #include "support/procedures.hpp"
 using namespace tapstudy;
 using protocols::Track;

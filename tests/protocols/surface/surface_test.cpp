@@ -4,8 +4,8 @@
 
 #include "core/error.hpp"
 #include "core/model/body_modes.hpp"
-#include "core/model/shape/top_height.hpp"
-#include "protocols/read_protocol.hpp"
+#include "core/model/shape/shape.hpp"
+#include "protocols/reader/read_protocol.hpp"
 #include "protocols/surface/check_surface.hpp"
 #include "protocols/surface/surface_file.hpp"
 #include "protocols/yaml/text_file.hpp"

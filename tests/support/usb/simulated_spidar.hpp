@@ -4,8 +4,8 @@
 #include <span>
 
 #include "device/spidar/calibration.hpp"
-#include "device/spidar/pose.hpp"
-#include "support/usb/descriptors.hpp"
+#include "device/spidar/kinematics.hpp"
+#include "support/usb/fake_usbfs.hpp"
 namespace tapstudy::testing {
 // A SPIDAR-G6 X3R as it would be: a grip with mass, held by a hand's spring and by eight motors
 // whose currents follow the board's outputs, and encoders that count. Time passes with every

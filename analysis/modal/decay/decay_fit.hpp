@@ -1,0 +1,72 @@
+#pragma once
+#include <optional>
+#include <vector>
+
+#include "analysis/modal/decay/decay_model.hpp"
+#include "analysis/modal/decay/free_decay.hpp"
+namespace tapstudy::analysis {
+// One of several decays whose first poles are the same.
+struct WeightedDecay {
+  DecayModel model;
+  DecayModel::State state;
+  double weight{1.0};  // of its squares: 1 over the variance of a value of its spectrum
+};
+
+// Variable projection (Golub & Pereyra 1973, Kaufman's approximation) with Levenberg-Marquardt
+// steps on the poles until the weighted sum of squares settles; true if it did. The first
+// `shared` poles of all decays are the same and remain so; what each decay has of its own is
+// eliminated from the normal equations decay by decay (Schur complement).
+bool descend(std::vector<WeightedDecay>& decays, Eigen::Index shared);
+
+// The Fisher information of the shared poles' Re s and Im s [1/s], everything else unknown, too.
+Eigen::MatrixXd information_on_shared(const std::vector<WeightedDecay>& decays,
+                                      Eigen::Index shared);
+
+// One damped oscillation as fitted: Re(c z^n) = amplitude e^(-decay t) cos(w t + phase).
+struct FittedMode {
+  Pole pole;
+  double amplitude{};  // at the first sample
+  double phase_rad{};
+  // Standard errors, of white noise in the band
+  double frequency_error_hz{};
+  double ratio_error{};
+  double decay_error_per_s{};
+  double amplitude_error{};
+  double phase_error_rad{};
+  double significance{};  // chi-squared of the amplitude's two parts, 2 degrees of freedom
+};
+
+struct DecayFit {
+  std::vector<FittedMode> modes;  // as many as poles were given, in their order
+  double noise{};                 // standard deviation of a sample, from the residual in the band
+  double explained{};             // share of the band's energy
+  double sum_of_squares{};        // of the residual in the band, over the real values
+  double degrees_of_freedom{};
+  bool has_converged{};
+  Eigen::VectorXcd fitted;  // the spectrum's values by the modes and the nuisance terms
+};
+
+// Maximum likelihood in white noise from these poles on (decay_model.hpp, decay_descent.hpp).
+// Standard errors are those of the Cramer-Rao bound, with the noise of the residual. Steady lines
+// of these frequencies, such as hum, take part with amplitudes alone. Throws InvalidInput for more
+// unknowns than values.
+DecayFit fit_decay(const BandSpectrum& spectrum, const std::vector<Pole>& start,
+                   const std::vector<double>& lines_hz = {});
+
+// One of several decays that some modes are common to.
+struct SharingDecay {
+  const BandSpectrum* spectrum{};
+  std::vector<Pole> own;  // of its other modes, which need not be those of other decays
+  std::vector<double> lines_hz;
+  double noise{1.0};  // standard deviation of a sample
+};
+struct SharedFit {
+  // The shared modes first, with the errors of all together, and the significance of their
+  // amplitudes where the poles are known.
+  std::vector<DecayFit> decays;
+  double degrees_of_freedom{};
+};
+// Likewise of all decays together, at least one: what differs from one to the next are amplitudes.
+SharedFit fit_shared_poles(const std::vector<SharingDecay>& decays,
+                           const std::vector<Pole>& shared);
+}  // namespace tapstudy::analysis

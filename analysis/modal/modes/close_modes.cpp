@@ -1,0 +1,363 @@
+#include "analysis/modal/modes/close_modes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+#include <utility>
+
+#include "analysis/statistics/quantiles.hpp"
+namespace tapstudy::analysis {
+namespace {
+constexpr double max_ratio_factor = 5.0;
+
+double median_of(const std::vector<std::vector<Pole>>& sets, std::size_t k, double Pole::*part) {
+  std::vector<double> values;
+  for (const std::vector<Pole>& poles : sets) {
+    values.push_back(poles[k].*part);
+  }
+  return quantile(values, 0.5);
+}
+}  // namespace
+
+bool Neighbours::may_hold(const Pole& pole) const {
+  return range.holds(pole.frequency_hz) && pole.damping_ratio > least_ratio / max_ratio_factor &&
+         pole.damping_ratio < greatest_ratio * max_ratio_factor;
+}
+
+std::vector<Neighbours> neighbours_among(const std::vector<RepeatedMode>& modes) {
+  std::vector<Neighbours> all;
+  for (const RepeatedMode& mode : modes) {
+    const double ratio = mode.damping_ratio.value;
+    if (mode.standing == Standing::line || ratio <= 0.0) {
+      continue;
+    }
+    const std::size_t agreed = mode.standing == Standing::agreed ? 1 : 0;
+    const double frequency_hz = mode.frequency_hz.value;
+    const double bandwidth_hz = 2.0 * ratio * frequency_hz;
+    const Band range{frequency_hz - bandwidth_hz, frequency_hz + bandwidth_hz};
+    if (all.empty() || all.back().range.high_hz < range.low_hz) {
+      all.push_back({range, agreed, ratio, ratio});
+      continue;
+    }
+    Neighbours& last = all.back();
+    last.agreed += agreed;
+    last.range.high_hz = std::max(last.range.high_hz, range.high_hz);
+    last.least_ratio = std::min(last.least_ratio, ratio);
+    last.greatest_ratio = std::max(last.greatest_ratio, ratio);
+  }
+  return all;
+}
+
+std::vector<Pole> poles_by_all(const MatrixPencil& pencil, const Neighbours& neighbours) {
+  std::map<std::size_t, std::vector<std::vector<Pole>>> by_count;
+  for (const PolesOfOrder& order : pencil.orders) {
+    std::vector<Pole> poles;
+    std::ranges::copy_if(order.poles, std::back_inserter(poles),
+                         [&](const Pole& pole) { return neighbours.may_hold(pole); });
+    if (poles.size() >= std::max<std::size_t>(2, neighbours.agreed)) {
+      by_count[poles.size()].push_back(std::move(poles));
+    }
+  }
+  const auto most =
+      std::ranges::max_element(by_count, {}, [](const auto& sets) { return sets.second.size(); });
+  std::vector<Pole> medians;
+  if (most != by_count.end() && std::ssize(most->second) >= min_stable_orders) {
+    for (std::size_t k = 0; k < most->first; ++k) {
+      medians.push_back({median_of(most->second, k, &Pole::frequency_hz),
+                         median_of(most->second, k, &Pole::damping_ratio)});
+    }
+  }
+  return medians;
+}
+
+bool may_be_one_nonlinear_mode(const std::vector<Pole>& poles) {
+  for (std::size_t i = 0; i < poles.size(); ++i) {
+    for (std::size_t k = i + 1; k < poles.size(); ++k) {
+      const auto [less, more] = std::minmax(poles[i].damping_ratio, poles[k].damping_ratio);
+      const double apart_hz = std::abs(poles[i].frequency_hz - poles[k].frequency_hz);
+      if (more > 2.0 * less && apart_hz < 0.2 * less * poles[i].frequency_hz) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+namespace {
+constexpr double line_tolerance = 1e-3;
+constexpr std::size_t max_groups = 12;
+const char* const by_all_taps = "told from its neighbour by all taps together";
+
+double frequency_of(const FittedMode& mode) {
+  return mode.pole.frequency_hz;
+}
+
+bool is_line(const TapModes& tap, const FittedMode& fitted) {
+  return std::ranges::any_of(tap.modes, [&](const TapMode& mode) {
+    return mode.standing == Standing::line &&
+           std::abs(frequency_of(mode.fitted) / frequency_of(fitted) - 1.0) < line_tolerance;
+  });
+}
+
+// Whether it is one of the neighbours, as the tap alone shows them.
+bool is_among(const Neighbours& neighbours, const TapModes& tap, const FittedMode& fitted) {
+  return neighbours.range.holds(frequency_of(fitted)) && !is_line(tap, fitted);
+}
+
+// What one tap shows beside the neighbours. Empty: a tap too short for so many modes.
+std::vector<SharingDecay> sharing(const std::vector<TapModes>& taps, const Neighbours& neighbours,
+                                  std::size_t shared) {
+  std::vector<SharingDecay> decays;
+  for (const TapModes& tap : taps) {
+    SharingDecay decay{&tap.spectrum, {}, tap.lines_hz, std::max(tap.fit.noise, 1e-150)};
+    for (const FittedMode& fitted : tap.fit.modes) {
+      if (!is_among(neighbours, tap, fitted)) {
+        decay.own.push_back(fitted.pole);
+      }
+    }
+    if (decay.own.size() + shared > most_modes(tap.spectrum, tap.lines_hz)) {
+      return {};
+    }
+    decays.push_back(std::move(decay));
+  }
+  return decays;
+}
+
+// Schwarz's criterion, -2 ln likelihood + unknowns ln values, of white noise of unknown variance in
+// each decay.
+struct Criterion {
+  double deviance{};
+  double unknowns{};  // of the neighbours alone
+  double values{};
+
+  void add(const DecayFit& fit, std::size_t modes) {
+    const double of_fit = 2.0 * static_cast<double>(fit.fitted.size());  // two a bin
+    deviance += of_fit * std::log(std::max(fit.sum_of_squares, 1e-300) / of_fit);
+    unknowns += 2.0 * static_cast<double>(modes);
+    values += of_fit;
+  }
+  void add(const Criterion& other) {
+    deviance += other.deviance;
+    unknowns += other.unknowns;
+    values += other.values;
+  }
+  double value() const { return deviance + unknowns * std::log(values); }
+};
+
+Criterion criterion_of(const SharedFit& fit, std::size_t shared) {
+  Criterion criterion{0.0, 2.0 * static_cast<double>(shared), 0.0};
+  for (const DecayFit& decay : fit.decays) {
+    criterion.add(decay, shared);
+  }
+  return criterion;
+}
+
+std::vector<Pole> own_poles(const TapModes& tap, const Neighbours& neighbours) {
+  std::vector<Pole> poles;
+  for (const FittedMode& fitted : tap.fit.modes) {
+    if (is_among(neighbours, tap, fitted)) {
+      poles.push_back(fitted.pole);
+    }
+  }
+  return poles;
+}
+
+// With poles of each impact's own, those that one of its channels shows; its channels share them.
+Criterion criterion_of_impacts(const std::vector<TapModes>& taps, const std::vector<int>& impacts,
+                               const Neighbours& neighbours) {
+  std::map<int, std::vector<TapModes>> by_impact;
+  for (std::size_t i = 0; i < taps.size(); ++i) {
+    by_impact[impacts[i]].push_back(taps[i]);
+  }
+  Criterion all;
+  for (const auto& [impact, channels] : by_impact) {
+    std::vector<std::vector<Pole>> poles;
+    for (const TapModes& channel : channels) {
+      poles.push_back(own_poles(channel, neighbours));
+    }
+    const std::vector<Pole>& most = *std::ranges::max_element(poles, {}, &std::vector<Pole>::size);
+    const std::vector<SharingDecay> decays = sharing(channels, neighbours, most.size());
+    if (decays.empty()) {  // a channel too short for what another one shows
+      for (std::size_t i = 0; i < channels.size(); ++i) {
+        all.unknowns += 2.0 * static_cast<double>(poles[i].size());
+        all.add(channels[i].fit, poles[i].size());
+      }
+      continue;
+    }
+    all.add(criterion_of(fit_shared_poles(decays, most), most.size()));
+  }
+  return all;
+}
+
+std::vector<Pole> shared_poles(const SharedFit& fit, std::size_t shared) {
+  std::vector<Pole> poles;
+  for (std::size_t k = 0; k < shared; ++k) {
+    poles.push_back(fit.decays.front().modes[k].pole);
+  }
+  return poles;
+}
+
+// The shared poles without each group of impacts in turn, at most max_groups groups; empty if one
+// of them is not what was found with all.
+std::vector<std::vector<Pole>> poles_without(const std::vector<SharingDecay>& decays,
+                                             const std::vector<int>& impacts,
+                                             const std::vector<Pole>& of_all,
+                                             const Neighbours& neighbours) {
+  const std::set<int> different{impacts.begin(), impacts.end()};
+  const std::vector<int> numbers{different.begin(), different.end()};
+  const std::size_t groups = std::min(numbers.size(), max_groups);
+  std::vector<std::vector<Pole>> all;
+  for (std::size_t group = 0; group < groups && groups > 1; ++group) {
+    std::vector<SharingDecay> others;
+    for (std::size_t i = 0; i < decays.size(); ++i) {
+      const auto place = std::ranges::lower_bound(numbers, impacts[i]) - numbers.begin();
+      if (static_cast<std::size_t>(place) % groups != group) {
+        others.push_back(decays[i]);
+      }
+    }
+    all.push_back(shared_poles(fit_shared_poles(others, of_all), of_all.size()));
+    if (!std::ranges::all_of(all.back(),
+                             [&](const Pole& pole) { return neighbours.may_hold(pole); })) {
+      return {};
+    }
+  }
+  return all;
+}
+
+// The jackknife's error over groups of impacts (Tukey 1958), with Student's interval that is not
+// narrower than what the noise alone gives: where few of the impacts tell the modes apart, the
+// jackknife's error is of few degrees of freedom.
+Estimate estimate(double of_all, const std::vector<double>& without, double of_noise,
+                  double degrees_of_freedom) {
+  const Estimate by_noise = t_estimate(of_all, of_noise, degrees_of_freedom);
+  if (without.size() < 2) {
+    return by_noise;
+  }
+  const auto groups = static_cast<double>(without.size());
+  const double error =
+      mean_and_spread(without).standard_deviation * (groups - 1.0) / std::sqrt(groups);
+  Estimate over_groups = t_estimate(of_all, error, groups - 1.0);
+  over_groups.standard_error = std::max(error, of_noise);
+  const bool is_wider = over_groups.interval.high > by_noise.interval.high;
+  over_groups.interval = is_wider ? over_groups.interval : by_noise.interval;
+  return over_groups;
+}
+
+RepeatedMode repeated(const std::vector<std::vector<Pole>>& without, std::size_t k,
+                      const SharedFit& together) {
+  const FittedMode& fitted = together.decays.front().modes[k];
+  std::vector<double> frequencies_hz;
+  std::vector<double> ratios;
+  for (const std::vector<Pole>& poles : without) {
+    frequencies_hz.push_back(poles[k].frequency_hz);
+    ratios.push_back(poles[k].damping_ratio);
+  }
+  const double freedom = together.degrees_of_freedom;
+  RepeatedMode mode;
+  mode.frequency_hz =
+      estimate(fitted.pole.frequency_hz, frequencies_hz, fitted.frequency_error_hz, freedom);
+  mode.damping_ratio = estimate(fitted.pole.damping_ratio, ratios, fitted.ratio_error, freedom);
+  mode.degrees_of_freedom =
+      without.size() > 1 ? static_cast<double>(without.size()) - 1.0 : freedom;
+  mode.standing = Standing::agreed;
+  mode.why = by_all_taps;
+  mode.taps = static_cast<int>(std::ranges::count_if(together.decays, [&](const DecayFit& decay) {
+    return decay.modes[k].significance >= min_significance;
+  }));
+  mode.agreed = mode.taps;
+  return mode;
+}
+
+void replace_in_tap(const Neighbours& neighbours, const DecayFit& fit, std::size_t shared,
+                    TapModes& tap) {
+  std::erase_if(tap.modes, [&](const TapMode& mode) {
+    return mode.standing != Standing::line && neighbours.range.holds(frequency_of(mode.fitted));
+  });
+  for (std::size_t k = 0; k < shared; ++k) {
+    const bool is_seen = fit.modes[k].significance >= min_significance;
+    tap.modes.push_back({fit.modes[k], is_seen ? Standing::agreed : Standing::doubtful,
+                         is_seen ? by_all_taps : "not significant in this tap", std::nullopt,
+                         min_stable_orders});
+  }
+  std::ranges::sort(tap.modes, {}, [](const TapMode& mode) { return frequency_of(mode.fitted); });
+  tap.fit = fit;
+}
+
+// Nothing is changed unless they are told apart.
+void tell_apart(const Neighbours& neighbours, const std::vector<Pole>& poles,
+                const std::vector<int>& impacts, ModesOfTaps& found) {
+  const std::vector<SharingDecay> decays = sharing(found.taps, neighbours, poles.size());
+  if (decays.empty()) {
+    return;
+  }
+  const SharedFit together = fit_shared_poles(decays, poles);
+  const std::vector<Pole> fitted = shared_poles(together, poles.size());
+  const bool are_inside =
+      together.decays.front().has_converged &&
+      std::ranges::all_of(fitted, [&](const Pole& pole) { return neighbours.may_hold(pole); });
+  if (!are_inside || may_be_one_nonlinear_mode(fitted) ||
+      criterion_of(together, poles.size()).value() >=
+          criterion_of_impacts(found.taps, impacts, neighbours).value()) {
+    return;
+  }
+  const std::vector<std::vector<Pole>> without = poles_without(decays, impacts, fitted, neighbours);
+  if (without.empty() && std::ranges::count(impacts, impacts.front()) != std::ssize(impacts)) {
+    return;
+  }
+  std::erase_if(found.modes, [&](const RepeatedMode& mode) {
+    return mode.standing != Standing::line && neighbours.range.holds(mode.frequency_hz.value);
+  });
+  for (std::size_t k = 0; k < poles.size(); ++k) {
+    found.modes.push_back(repeated(without, k, together));
+  }
+  for (std::size_t i = 0; i < found.taps.size(); ++i) {
+    replace_in_tap(neighbours, together.decays[i], poles.size(), found.taps[i]);
+  }
+}
+
+double noise_of(const TapModes& tap, const FreeDecay& decay) {
+  constexpr double least = 1e-9;  // of the decay: synthetic ones may have none
+  const double rms = decay.samples.norm() / std::sqrt(static_cast<double>(decay.samples.size()));
+  return std::max({tap.fit.noise, least * rms, 1e-150});
+}
+
+// Of the most decays that share a rate to a thousandth.
+MatrixPencil pencil_of(const std::vector<FreeDecay>& decays, const std::vector<TapModes>& taps,
+                       const Band& band) {
+  const auto is_of = [](double rate_hz) {
+    return [rate_hz](const FreeDecay& decay) {
+      return std::abs(decay.rate_hz / rate_hz - 1.0) < 1e-3;
+    };
+  };
+  const FreeDecay& commonest = *std::ranges::max_element(decays, {}, [&](const FreeDecay& one) {
+    return std::ranges::count_if(decays, is_of(one.rate_hz));
+  });
+  std::vector<FreeDecay> some;
+  std::vector<double> noise;
+  for (std::size_t i = 0; i < decays.size(); ++i) {
+    if (is_of(commonest.rate_hz)(decays[i])) {
+      some.push_back(decays[i]);
+      noise.push_back(noise_of(taps[i], decays[i]));
+    }
+  }
+  return matrix_pencil(some, noise, band, max_model_order);
+}
+}  // namespace
+
+ModesOfTaps tell_close_modes_apart(const std::vector<FreeDecay>& decays,
+                                   const std::vector<int>& impacts, const Band& band,
+                                   const ModesOfTaps& found) {
+  ModesOfTaps result = found;
+  const MatrixPencil pencil = pencil_of(decays, found.taps, band);
+  for (const Neighbours& neighbours : neighbours_among(found.modes)) {
+    const std::vector<Pole> poles = poles_by_all(pencil, neighbours);
+    if (!poles.empty()) {
+      tell_apart(neighbours, poles, impacts, result);
+    }
+  }
+  std::ranges::sort(result.modes, {},
+                    [](const RepeatedMode& mode) { return mode.frequency_hz.value; });
+  return result;
+}
+}  // namespace tapstudy::analysis

@@ -1,0 +1,199 @@
+#include "analysis/modal/modes/repeated_modes.hpp"
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <map>
+#include <numeric>
+
+#include "analysis/modal/modes/assignment.hpp"
+#include "analysis/statistics/distributions.hpp"
+namespace tapstudy::analysis {
+namespace {
+constexpr double same_frequency = 0.02;
+
+struct Sighting {
+  std::size_t tap{};
+  const TapMode* mode{};
+  double degrees_of_freedom{};
+};
+using Sightings = std::vector<Sighting>;
+
+double frequency_of(const Sighting& one) {
+  return one.mode->fitted.pole.frequency_hz;
+}
+
+Sightings sightings_in(const TapModes& tap, std::size_t number) {
+  Sightings all;
+  for (const TapMode& mode : tap.modes) {
+    all.push_back({number, &mode, tap.fit.degrees_of_freedom});
+  }
+  return all;
+}
+
+const FittedMode& most_significant(const Sightings& group) {
+  return std::ranges::max_element(group, {},
+                                  [](const Sighting& one) { return one.mode->fitted.significance; })
+      ->mode->fitted;
+}
+
+// Of their frequencies, over what may lie between those of one mode: up to 1 for the same.
+double distance(const Sightings& group, const Sighting& one) {
+  const FittedMode& known = most_significant(group);
+  const double tolerance = frequency_tolerance_hz(
+      known.pole, same_frequency,
+      std::hypot(known.frequency_error_hz, one.mode->fitted.frequency_error_hz));
+  return std::abs(frequency_of(one) - known.pole.frequency_hz) / tolerance;
+}
+
+double norm_of(const std::vector<double>& errors) {
+  double squares = 0.0;
+  for (const double error : errors) {
+    squares += error * error;
+  }
+  return std::sqrt(squares);
+}
+
+// Each of one tap's modes is of another group, or of a new one: together so that they are nearest.
+void add_to_groups(const Sightings& of_tap, std::vector<Sightings>& groups) {
+  constexpr double never = 1e3;
+  const auto rows = static_cast<Eigen::Index>(of_tap.size());
+  const auto known = static_cast<Eigen::Index>(groups.size());
+  Eigen::MatrixXd cost = Eigen::MatrixXd::Constant(rows, known + rows, never);
+  for (Eigen::Index i = 0; i < rows; ++i) {
+    for (Eigen::Index j = 0; j < known; ++j) {
+      const double far =
+          distance(groups[static_cast<std::size_t>(j)], of_tap[static_cast<std::size_t>(i)]);
+      cost(i, j) = far <= 1.0 ? far : never;
+    }
+    cost(i, known + i) = 1.0;
+  }
+  const std::vector<std::size_t> chosen = least_cost_assignment(cost);
+  for (std::size_t i = 0; i < of_tap.size(); ++i) {
+    if (chosen[i] < static_cast<std::size_t>(known)) {
+      groups[chosen[i]].push_back(of_tap[i]);
+    } else {
+      groups.push_back({of_tap[i]});
+    }
+  }
+}
+
+// Taps that show most modes come first: they tell close ones apart.
+std::vector<Sightings> groups_of(const std::vector<TapModes>& taps) {
+  std::vector<Sightings> of_taps;
+  for (std::size_t i = 0; i < taps.size(); ++i) {
+    of_taps.push_back(sightings_in(taps[i], i));
+  }
+  std::ranges::stable_sort(of_taps, std::ranges::greater{}, &Sightings::size);
+  std::vector<Sightings> groups;
+  for (const Sightings& of_tap : of_taps) {
+    add_to_groups(of_tap, groups);
+  }
+  return groups;
+}
+
+Sightings of_standing(const Sightings& group, Standing standing) {
+  Sightings some;
+  std::ranges::copy_if(group, std::back_inserter(some),
+                       [&](const Sighting& one) { return one.mode->standing == standing; });
+  return some;
+}
+
+// What the channels of one impact say, averaged.
+struct Shown {
+  std::vector<double> frequencies_hz;
+  std::vector<double> ratios;
+  std::vector<double> frequency_errors_hz;
+  std::vector<double> ratio_errors;
+};
+Shown shown_by(const Sightings& group, const std::vector<int>& impacts) {
+  std::map<int, Sightings> by_impact;
+  for (const Sighting& one : group) {
+    by_impact[impacts.empty() ? static_cast<int>(one.tap) : impacts[one.tap]].push_back(one);
+  }
+  Shown shown;
+  for (const auto& [impact, channels] : by_impact) {
+    const auto count = static_cast<double>(channels.size());
+    const auto of = [&, &channels = channels](auto value_of) {
+      std::vector<double> values;
+      std::ranges::transform(channels, std::back_inserter(values),
+                             [&](const Sighting& one) { return value_of(one.mode->fitted); });
+      return values;
+    };
+    const auto mean = [&](const std::vector<double>& values) {
+      return std::accumulate(values.begin(), values.end(), 0.0) / count;
+    };
+    shown.frequencies_hz.push_back(
+        mean(of([](const FittedMode& fitted) { return fitted.pole.frequency_hz; })));
+    shown.ratios.push_back(
+        mean(of([](const FittedMode& fitted) { return fitted.pole.damping_ratio; })));
+    shown.frequency_errors_hz.push_back(
+        norm_of(of([](const FittedMode& fitted) { return fitted.frequency_error_hz; })) / count);
+    shown.ratio_errors.push_back(
+        norm_of(of([](const FittedMode& fitted) { return fitted.ratio_error; })) / count);
+  }
+  return shown;
+}
+
+std::optional<double> scatter_p_of(const std::vector<double>& values,
+                                   const std::vector<double>& errors) {
+  const bool are_known = std::ranges::all_of(errors, [](double error) { return error > 0.0; });
+  if (values.size() < 3 || !are_known) {
+    return std::nullopt;
+  }
+  double weights = 0.0;
+  double mean = 0.0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    weights += 1.0 / (errors[i] * errors[i]);
+    mean += values[i] / (errors[i] * errors[i]);
+  }
+  mean /= weights;
+  double chi_squared = 0.0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const double deviation = (values[i] - mean) / errors[i];
+    chi_squared += deviation * deviation;
+  }
+  return chi_squared_p(chi_squared, static_cast<double>(values.size()) - 1.0);
+}
+
+RepeatedMode summary_of(const Sightings& group, std::size_t taps, const std::vector<int>& impacts) {
+  const Sightings agreed = of_standing(group, Standing::agreed);
+  const Sightings lines = of_standing(group, Standing::line);
+  RepeatedMode mode;
+  mode.taps = static_cast<int>(group.size());
+  mode.agreed = static_cast<int>(agreed.size());
+  const Sightings* shown = &group;
+  if (2 * lines.size() > group.size()) {
+    mode.standing = Standing::line;
+    mode.why = lines.front().mode->why;
+    shown = &lines;
+  } else if (2 * agreed.size() >= group.size() && agreed.size() >= std::min<std::size_t>(2, taps)) {
+    mode.standing = Standing::agreed;
+    shown = &agreed;
+  } else {
+    const Sightings doubtful = of_standing(group, Standing::doubtful);
+    mode.why = doubtful.empty() ? "in one tap only" : doubtful.front().mode->why;
+  }
+  const Shown of_impacts = shown_by(*shown, impacts);
+  const double freedom = shown->front().degrees_of_freedom;
+  mode.frequency_hz =
+      estimate_over_taps(of_impacts.frequencies_hz, of_impacts.frequency_errors_hz, freedom);
+  mode.scatter_p = scatter_p_of(of_impacts.frequencies_hz, of_impacts.frequency_errors_hz);
+  mode.damping_ratio = estimate_over_taps(of_impacts.ratios, of_impacts.ratio_errors, freedom);
+  mode.degrees_of_freedom =
+      of_impacts.ratios.size() > 1 ? static_cast<double>(of_impacts.ratios.size()) - 1.0 : freedom;
+  return mode;
+}
+}  // namespace
+
+std::vector<RepeatedMode> modes_over_taps(const std::vector<TapModes>& taps,
+                                          const std::vector<int>& impacts) {
+  std::vector<RepeatedMode> modes;
+  for (const Sightings& group : groups_of(taps)) {
+    modes.push_back(summary_of(group, taps.size(), impacts));
+  }
+  std::ranges::sort(modes, {}, [](const RepeatedMode& mode) { return mode.frequency_hz.value; });
+  return modes;
+}
+}  // namespace tapstudy::analysis

@@ -1,0 +1,30 @@
+#pragma once
+#include <optional>
+
+#include "analysis/modal/decay/estimate.hpp"
+#include "analysis/modal/modes/tap_modes.hpp"
+namespace tapstudy::analysis {
+// One mode, as several taps show it.
+struct RepeatedMode {
+  Estimate frequency_hz;
+  Estimate damping_ratio;
+  double degrees_of_freedom{};  // of their standard errors
+  // Of the frequencies' scatter over three taps or more: the probability that their own errors
+  // explain as much (chi-squared). Two modes that are too close to be told apart make it small.
+  std::optional<double> scatter_p{};
+  Standing standing{Standing::doubtful};
+  std::string why;
+  int taps{};    // that show it
+  int agreed{};  // of these, with both methods
+};
+
+// Modes of different taps are one if their frequencies differ by 2 % at most (a sixth of the
+// half-power bandwidth or four standard errors if that is more); each tap shows one at most, and of
+// several close ones each the nearest, all together. A mode is agreed if at least half of the taps
+// that show it say so, and, of several taps, two do; its estimates are of these taps alone.
+// Ascending frequency. impacts: of each tap the number of its impact, where several channels show
+// the same one: what they say is averaged, since they vary together. Empty: each tap is an impact
+// of its own.
+std::vector<RepeatedMode> modes_over_taps(const std::vector<TapModes>& taps,
+                                          const std::vector<int>& impacts = {});
+}  // namespace tapstudy::analysis

@@ -1,0 +1,263 @@
+#include "analysis/modal/modes/tap_modes.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "analysis/modal/decay/pole_estimation.hpp"
+#include "core/error.hpp"
+namespace tapstudy::analysis {
+namespace {
+constexpr double max_ratio = 0.7;
+// How far a tone falls within the tap, in nepers. Below the first it is steady, or drifts; what
+// falls by less than the second must do so for certain, and not be where the mains hum.
+constexpr double steady_fall = 0.15;
+constexpr double plain_fall = 0.5;
+constexpr double min_decay_z = 2.0;
+constexpr double min_slow_decay_z = 4.0;
+constexpr double neighbourhood = 0.1;  // of the frequency
+constexpr double same_line = 0.01;
+constexpr int further_pairs = 4;
+constexpr double mains_tolerance = 0.004;
+
+struct Candidate {
+  Pole pole;
+  int stable_orders{};
+  std::optional<Pole> by_rational_fit;
+};
+
+bool agree(const FittedMode& fitted, const Pole& other) {
+  const Pole& pole = fitted.pole;
+  return std::abs(other.frequency_hz - pole.frequency_hz) <=
+             frequency_tolerance_hz(pole, 0.01, fitted.frequency_error_hz) &&
+         std::abs(other.damping_ratio - pole.damping_ratio) <=
+             std::max({0.25 * std::abs(pole.damping_ratio), 0.003, 4.0 * fitted.ratio_error});
+}
+
+// The modes that drop out: those that are not significant or left the band. Of neighbours only the
+// weakest: two poles on one mode make each other insignificant.
+std::vector<std::size_t> insignificant(const std::vector<FittedMode>& modes, const Band& band) {
+  std::vector<std::pair<double, std::size_t>> weak;
+  for (std::size_t i = 0; i < modes.size(); ++i) {
+    const FittedMode& mode = modes[i];
+    const bool is_possible = band.holds(mode.pole.frequency_hz) &&
+                             std::abs(mode.pole.damping_ratio) < max_ratio &&
+                             std::isfinite(mode.significance);
+    if (!is_possible || mode.significance < min_significance) {
+      weak.emplace_back(is_possible ? mode.significance : 0.0, i);
+    }
+  }
+  std::ranges::sort(weak);
+  std::vector<std::size_t> dropped;
+  for (const auto& [significance, i] : weak) {
+    const double frequency_hz = modes[i].pole.frequency_hz;
+    if (std::ranges::none_of(dropped, [&, frequency_hz](std::size_t other) {
+          return std::abs(modes[other].pole.frequency_hz / frequency_hz - 1.0) < neighbourhood;
+        })) {
+      dropped.push_back(i);
+    }
+  }
+  return dropped;
+}
+
+bool is_near(double frequency_hz, double line_hz) {
+  return std::abs(frequency_hz / line_hz - 1.0) < same_line;
+}
+
+// A pole on a line that is in the fit already.
+bool is_at_line(const Pole& pole, const std::vector<double>& lines_hz) {
+  return std::abs(pole.damping_ratio) < same_line &&
+         std::ranges::any_of(lines_hz,
+                             [&](double line_hz) { return is_near(pole.frequency_hz, line_hz); });
+}
+
+std::vector<Pole> poles_of(const std::vector<Candidate>& candidates) {
+  std::vector<Pole> poles;
+  for (const Candidate& one : candidates) {
+    poles.push_back(one.pole);
+  }
+  return poles;
+}
+
+// Fits, drops what is weak, and again, until all are significant.
+DecayFit fit_significant(const BandSpectrum& spectrum, const Band& band,
+                         const std::vector<double>& lines_hz, std::vector<Candidate>& candidates) {
+  for (;;) {
+    DecayFit fit = fit_decay(spectrum, poles_of(candidates), lines_hz);
+    const std::vector<std::size_t> drop = insignificant(fit.modes, band);
+    if (drop.empty()) {
+      return fit;
+    }
+    std::vector<Candidate> kept;
+    for (std::size_t i = 0; i < candidates.size(); ++i) {
+      if (std::ranges::find(drop, i) == drop.end()) {
+        kept.push_back(candidates[i]);
+        const Pole& moved = fit.modes[i].pole;
+        if (band.holds(moved.frequency_hz) && std::abs(moved.damping_ratio) < max_ratio) {
+          kept.back().pole = moved;  // one that went astray starts again where it was found
+        }
+      }
+    }
+    candidates = std::move(kept);
+  }
+}
+
+// Each pole of the rational fit goes to the nearest mode with which it agrees, one to each.
+void match_rational_fit(const DecayFit& fit, const std::vector<Pole>& rational,
+                        const std::vector<double>& lines_hz, std::vector<Candidate>& candidates,
+                        std::vector<Pole>& unmatched) {
+  for (const Pole& pole : rational) {
+    std::size_t best = candidates.size();
+    double least = 0.0;
+    for (std::size_t i = 0; i < candidates.size(); ++i) {
+      const double distance = std::abs(fit.modes[i].pole.frequency_hz - pole.frequency_hz);
+      if (!candidates[i].by_rational_fit && agree(fit.modes[i], pole) &&
+          (best == candidates.size() || distance < least)) {
+        best = i;
+        least = distance;
+      }
+    }
+    if (best < candidates.size()) {
+      candidates[best].by_rational_fit = pole;
+    } else if (pole.damping_ratio < max_ratio && !is_at_line(pole, lines_hz)) {
+      unmatched.push_back(pole);
+    }
+  }
+}
+
+// "50 Hz hum, harmonic 3", or empty. In grids of 50 and 60 Hz.
+std::string hum_at(const FittedMode& mode) {
+  for (const double mains_hz : std::array{50.0, 60.0}) {
+    const double harmonic = std::round(mode.pole.frequency_hz / mains_hz);
+    const double distance = std::abs(mode.pole.frequency_hz - harmonic * mains_hz);
+    if (harmonic >= 1.0 && distance <= std::max(mains_tolerance * mode.pole.frequency_hz,
+                                                4.0 * mode.frequency_error_hz)) {
+      return harmonic == 1.0
+                 ? fmt::format("{:.0f} Hz hum of the mains", mains_hz)
+                 : fmt::format("hum of the mains, {:.0f} times {:.0f} Hz", harmonic, mains_hz);
+    }
+  }
+  return {};
+}
+
+double decay_per_s(const FittedMode& mode) {
+  return mode.pole.damping_ratio * 2.0 * std::numbers::pi * mode.pole.frequency_hz;
+}
+
+bool is_line(const FittedMode& mode, double duration_s) {
+  const double fall = decay_per_s(mode) * duration_s;
+  const double z = decay_per_s(mode) / mode.decay_error_per_s;
+  if (fall >= plain_fall) {
+    return z < min_decay_z;
+  }
+  return fall < steady_fall || z < min_slow_decay_z || !hum_at(mode).empty();
+}
+
+bool grows(const FittedMode& mode, double duration_s) {
+  return decay_per_s(mode) * duration_s <= -plain_fall &&
+         decay_per_s(mode) < -min_slow_decay_z * mode.decay_error_per_s;
+}
+
+TapMode judged(const FittedMode& fitted, const Candidate& candidate, double duration_s) {
+  TapMode mode{fitted, Standing::agreed, {}, candidate.by_rational_fit, candidate.stable_orders};
+  if (grows(fitted, duration_s)) {
+    mode.standing = Standing::doubtful;
+    mode.why = "grows: no free decay";
+  } else if (is_line(fitted, duration_s)) {
+    mode.standing = Standing::line;
+    mode.why = hum_at(fitted);
+    if (mode.why.empty()) {
+      mode.why = "hardly decays within the tap: a steady tone, or a mode that takes --longest";
+    }
+  } else if (candidate.stable_orders == 0) {
+    mode.standing = Standing::doubtful;
+    mode.why = "not stable over the orders of the matrix pencil";
+  } else if (!candidate.by_rational_fit) {
+    mode.standing = Standing::doubtful;
+    mode.why = "not found by the rational fit";
+  }
+  return mode;
+}
+}  // namespace
+
+const char* name(Standing standing) {
+  switch (standing) {
+    case Standing::agreed:
+      return "agreed";
+    case Standing::doubtful:
+      return "doubtful";
+    case Standing::line:
+      return "line";
+  }
+  return "";
+}
+
+// A mode has four unknowns, a line two; each value of the spectrum gives two numbers.
+std::size_t most_modes(const BandSpectrum& spectrum, const std::vector<double>& lines_hz) {
+  const Eigen::Index values = spectrum.values.size();
+  const auto beside_lines = (2 * values - 5 - 2 * std::ssize(lines_hz)) / 4;
+  return static_cast<std::size_t>(std::clamp<Eigen::Index>(beside_lines, 0, (values - 4) / 3));
+}
+
+TapModes identify_modes(const FreeDecay& decay, const ModeFinding& finding) {
+  const Band wide{0.8 * finding.band.low_hz,
+                  std::min(1.25 * finding.band.high_hz, 0.47 * decay.rate_hz)};
+  TapModes result;
+  result.lines_hz = finding.lines_hz;
+  result.pencil = matrix_pencil(decay, wide, max_model_order);
+  result.spectrum = band_spectrum(decay, wide);
+  const std::size_t room = most_modes(result.spectrum, finding.lines_hz);
+  std::vector<StablePole> stable = stable_poles(result.pencil.orders);
+  std::ranges::stable_sort(stable, std::ranges::greater{}, &StablePole::orders);
+  stable.resize(std::min(stable.size(), room));
+  std::vector<Candidate> candidates;
+  for (const StablePole& one : stable) {
+    if (!is_at_line(one.pole, finding.lines_hz)) {
+      candidates.push_back({one.pole, one.orders, std::nullopt});
+    }
+  }
+  result.fit = fit_significant(result.spectrum, wide, finding.lines_hz, candidates);
+  const int pairs =
+      std::min(static_cast<int>(candidates.size()) + further_pairs, static_cast<int>(room));
+  std::vector<Pole> unmatched;
+  match_rational_fit(result.fit, vector_fitting(result.spectrum, pairs), finding.lines_hz,
+                     candidates, unmatched);
+  if (!unmatched.empty() && candidates.size() + unmatched.size() <= room) {
+    std::vector<Candidate> with_others = candidates;
+    for (const Pole& pole : unmatched) {
+      with_others.push_back({pole, 0, pole});
+    }
+    result.fit = fit_significant(result.spectrum, wide, finding.lines_hz, with_others);
+    candidates = std::move(with_others);
+  }
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    const FittedMode& fitted = result.fit.modes[i];
+    if (finding.band.holds(fitted.pole.frequency_hz)) {
+      result.modes.push_back(judged(fitted, candidates[i], decay.duration_s()));
+    }
+  }
+  std::ranges::sort(result.modes, {},
+                    [](const TapMode& mode) { return mode.fitted.pole.frequency_hz; });
+  return result;
+}
+
+std::vector<double> lines_missed(const TapModes& tap, const std::vector<TapModes>& taps) {
+  std::vector<double> missed;
+  const auto frequency_of = [](const TapMode& mode) { return mode.fitted.pole.frequency_hz; };
+  for (const TapModes& other : taps) {
+    for (const TapMode& mode : other.modes) {
+      const double line_hz = frequency_of(mode);
+      const auto is_it = [&](double frequency_hz) { return is_near(frequency_hz, line_hz); };
+      if (mode.standing == Standing::line && std::ranges::none_of(missed, is_it) &&
+          std::ranges::none_of(tap.modes, is_it, frequency_of)) {
+        missed.push_back(line_hz);
+      }
+    }
+  }
+  return missed;
+}
+}  // namespace tapstudy::analysis

@@ -1,0 +1,53 @@
+#pragma once
+#include <optional>
+#include <string>
+
+#include "analysis/modal/decay/decay_fit.hpp"
+#include "analysis/modal/decay/pole_estimation.hpp"
+namespace tapstudy::analysis {
+// Chi-squared of the two parts of an amplitude, below which a mode is not there.
+inline constexpr double min_significance = 25.0;
+
+// agreed: both methods find it, and it is stable over orders; line: it does not decay, and is no
+// mode but hum or another steady tone.
+enum class Standing { agreed, doubtful, line };
+const char* name(Standing standing);
+
+struct TapMode {
+  FittedMode fitted;
+  Standing standing{Standing::doubtful};
+  std::string why;  // why doubtful, which line, or that it took all taps to tell it from another
+  std::optional<Pole> by_rational_fit;  // unset: not found so
+  int stable_orders{};                  // 0: not found by the matrix pencil
+};
+
+struct TapModes {
+  std::vector<TapMode> modes;    // inside the band, ascending frequency
+  MatrixPencil pencil;           // whose stabilisation diagram can be drawn
+  BandSpectrum spectrum;         // of a band somewhat wider than asked for
+  DecayFit fit;                  // of all modes in it
+  std::vector<double> lines_hz;  // steady tones that took part in the fit
+};
+
+struct ModeFinding {
+  Band band;
+  std::vector<double> lines_hz{};  // steady tones known to be there, from other taps
+};
+
+// Modes of one tap. Poles that are stable by the matrix pencil and those by vector fitting are
+// fitted together (fit_decay), in a band up to a quarter wider, so that a mode just outside is not
+// felt inside; poles whose amplitude is not significant (chi-squared below 25) are dropped, the
+// weakest first. What remains is agreed if both methods found it: frequencies within 1 % (a sixth
+// of the half-power bandwidth or four standard errors if that is more), damping ratios within a
+// quarter (or 0.003, or four standard errors). What falls by less than 14 % over the tap, or not
+// significantly, is a line; by less than 40 %, also where a harmonic of the mains is. Throws
+// InvalidInput for decays that are too short.
+TapModes identify_modes(const FreeDecay& decay, const ModeFinding& finding);
+
+// How many modes can be fitted to a spectrum beside lines.
+std::size_t most_modes(const BandSpectrum& spectrum, const std::vector<double>& lines_hz);
+
+// Lines that some taps show and this one does not, within 1 % of any mode of its own: beside a mode
+// of nearly the same frequency hum may go unnoticed, and falsify its damping. Each once.
+std::vector<double> lines_missed(const TapModes& tap, const std::vector<TapModes>& taps);
+}  // namespace tapstudy::analysis

@@ -1,0 +1,65 @@
+#pragma once
+#include <istream>
+#include <map>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "analysis/report/answer_tables/answer_columns.hpp"
+#include "analysis/statistics/confusion_matrix.hpp"
+#include "analysis/statistics/csv_rows.hpp"
+#include "results/rows.hpp"
+namespace tapstudy::analysis {
+// The values of one column. Neighbours are mostly equal.
+std::set<std::string> distinct(const std::vector<results::AnswerRow>& answers,
+                               std::string results::AnswerRow::*column);
+
+// Throws InvalidInput, with the file, where two stimuli, responses or participants differ only in
+// case or spaces, and where no answer names a stimulus.
+void check_names(const std::vector<results::AnswerRow>& answers, const std::string& file,
+                 const std::set<std::string>& stimuli, const std::set<std::string>& responses);
+
+struct AnswerReading {
+  AnswerColumns columns{};
+  std::vector<RowCondition> conditions{};  // rows that fail one are other trials
+  // What answers stand for, "1" for acrylic; an answer for itself is one that is no stimulus.
+  std::map<std::string, std::string> responses{};
+};
+
+// One answer a row, of one question with one right answer: the stimulus's own name.
+struct AnswerTable {
+  std::vector<results::AnswerRow> answers;  // response_time_s is NaN where it is not known
+  std::vector<Item> stimuli;                // by name
+  std::vector<Item> responses;              // by name
+  std::set<std::string> modes;              // of them, but for real; at most one
+  bool are_participants_known{};
+  std::size_t rows{};         // that meet the conditions
+  std::size_t unanswered{};   // of these: left out, for the answer is empty, NA, None or null
+  std::size_t not_counted{};  // likewise: tapstudy's own practice, catch trials, excluded people …
+  // Likewise: where some are of real sessions, those of others; else, if some are pilots,
+  // simulated.
+  std::size_t of_other_modes{};
+  bool has_times{};
+  std::string possible_time{};  // a column that was not read, but may hold times; empty: none
+};
+
+struct NamedCsv {
+  std::string file;  // also the participant's name, if no column has it and there are several files
+  CsvText text;
+};
+// Participants' answers follow one another as rows and files do. Throws InvalidInput with file:line
+// for an answer that is neither a stimulus nor one of `responses`, a time that is no number from 0,
+// an answer without a stimulus, several blocks of one of tapstudy's own exports, a row with more or
+// fewer cells than the header, more than 200 different answers, or no answers at all.
+AnswerTable read_answers(const std::vector<NamedCsv>& files, const AnswerReading& reading);
+
+// Whether the text begins as a list does in JSON. Reads nothing else of it.
+bool is_json_list(std::string_view text);
+
+// A list of objects, as jsPsych saves its data, as the table that it would be in CSV: a column for
+// each key that any has, a row for each object, numbered as its line. What is null or missing is
+// empty; lists and objects within are JSON. Throws InvalidInput with the file for what is no such
+// list and beyond 64 MB.
+CsvText read_json_rows(std::istream& text, const std::string& file);
+}  // namespace tapstudy::analysis

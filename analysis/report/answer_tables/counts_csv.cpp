@@ -1,0 +1,203 @@
+#include "analysis/report/answer_tables/counts_csv.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <iterator>
+#include <numeric>
+#include <span>
+#include <sstream>
+
+#include "analysis/statistics/csv_rows.hpp"
+#include "core/error.hpp"
+#include "core/text/plain_text.hpp"
+namespace tapstudy::analysis {
+namespace {
+constexpr std::int64_t max_answers = 1'000'000;
+
+[[noreturn]] void refuse(const std::string& file, int line, const std::string& what) {
+  throw core::InvalidInput{fmt::format("{}:{}: {}", file, line, what)};
+}
+
+bool has_name(const std::vector<Item>& items, const std::string& name) {
+  return std::ranges::find(items, name, &Item::name) != items.end();
+}
+
+const std::vector<CsvRow>& checked_rows(const std::vector<CsvRow>& rows, const std::string& file) {
+  for (const CsvRow& row : rows) {
+    if (row.cells.size() != rows.front().cells.size()) {
+      refuse(file, row.line,
+             fmt::format("has {} cells, the header has {}", row.cells.size(),
+                         rows.front().cells.size()));
+    }
+  }
+  if (rows.size() < 2 || rows.front().cells.front() != "stimulus") {
+    refuse(file, rows.empty() ? 1 : rows.front().line,
+           fmt::format(
+               "is neither a matrix (its header starts with 'stimulus', and there is a row "
+               "for each) nor a table of answers (a row each; --stimulus-column and "
+               "--response-column name the columns, here: {})",
+               fmt::join(rows.empty() ? std::vector<std::string>{} : rows.front().cells, ", ")));
+  }
+  return rows;
+}
+
+std::int64_t count_in(const std::string& cell, const std::string& file, int line) {
+  const auto value = core::number_in<std::int64_t>(cell);
+  if (!value || *value < 0 || *value > max_answers) {
+    refuse(file, line,
+           fmt::format("'{}' is not a count (from 0 to {}; a factor's column is headed {}NAME)",
+                       cell, max_answers, factor_mark));
+  }
+  return *value;
+}
+
+std::vector<Item> stimuli_of(const std::vector<CsvRow>& lines, const std::string& file) {
+  std::vector<Item> stimuli;
+  for (std::size_t i = 1; i < lines.size(); ++i) {
+    const std::string& name = lines[i].cells[0];
+    if (has_name(stimuli, name)) {
+      refuse(file, lines[i].line, fmt::format("stimulus '{}' is there twice", name));
+    }
+    stimuli.push_back({name, name, {}});
+  }
+  return stimuli;
+}
+
+// Columns of factors come first.
+std::size_t first_response(const CsvRow& header, const std::string& file) {
+  const auto is_factor = [](const std::string& name) { return name.starts_with(factor_mark); };
+  const auto found = std::find_if_not(header.cells.begin() + 1, header.cells.end(), is_factor);
+  if (std::any_of(found, header.cells.end(), is_factor)) {
+    refuse(file, header.line, "has a factor after the first response");
+  }
+  return static_cast<std::size_t>(found - header.cells.begin());
+}
+
+std::vector<Item> responses_of(const CsvRow& header, std::size_t first,
+                               const std::vector<Item>& stimuli, const std::string& file) {
+  std::vector<Item> responses;
+  for (std::size_t column = first; column < header.cells.size(); ++column) {
+    const std::string& name = header.cells[column];
+    if (has_name(responses, name)) {
+      refuse(file, header.line, fmt::format("response '{}' is there twice", name));
+    }
+    const auto stimulus = std::ranges::find(stimuli, name, &Item::name);
+    responses.push_back(stimulus != stimuli.end()
+                            ? *stimulus
+                            : Item{.name = name, .label = name, .is_alternative = false});
+  }
+  if (responses.size() < 2) {
+    refuse(file, header.line, "has fewer than two responses");
+  }
+  return responses;
+}
+
+// Otherwise a misspelt name would be a stimulus that is never recognised.
+void check_is_named(const std::vector<Item>& stimuli, const std::vector<Item>& responses,
+                    const std::vector<CsvRow>& lines, const std::string& file) {
+  std::vector<std::string> names;
+  std::ranges::transform(responses, std::back_inserter(names), &Item::name);
+  for (std::size_t i = 0; i < stimuli.size(); ++i) {
+    if (!has_name(responses, stimuli[i].name)) {
+      refuse(file, lines[i + 1].line,
+             fmt::format("no response is called '{}' (these are: {}; one that was never given is a "
+                         "column of zeros)",
+                         stimuli[i].name, fmt::join(names, ", ")));
+    }
+  }
+  if (stimuli.size() < 2) {
+    refuse(file, lines.back().line, "is the only stimulus: there is nothing to tell apart");
+  }
+}
+
+// Whether in each line what stands at `place` is the sum of all else. Not of two alone, which may
+// be equal.
+bool is_margin(const std::vector<std::vector<std::int64_t>>& lines, std::size_t place) {
+  std::int64_t whole = 0;
+  for (const auto& line : lines) {
+    const std::int64_t all = std::accumulate(line.begin(), line.end(), std::int64_t{0});
+    if (2 * line[place] != all) {
+      return false;
+    }
+    whole += all;
+  }
+  return whole > 0 && lines.front().size() > 2;
+}
+
+// They would count every answer twice.
+void check_has_no_margins(const ConfusionMatrix& matrix, const std::vector<CsvRow>& lines,
+                          const std::string& file) {
+  std::vector<std::vector<std::int64_t>> columns(matrix.responses.size(),
+                                                 std::vector<std::int64_t>(matrix.stimuli.size()));
+  for (std::size_t i = 0; i < matrix.stimuli.size(); ++i) {
+    for (std::size_t j = 0; j < matrix.responses.size(); ++j) {
+      columns[j][i] = matrix.counts[i][j];
+    }
+  }
+  for (std::size_t j = 0; j < columns.size(); ++j) {
+    if (is_margin(matrix.counts, j)) {
+      refuse(file, lines.front().line,
+             fmt::format("column '{}' is the sum of the others: leave it out",
+                         matrix.responses[j].name));
+    }
+  }
+  for (std::size_t i = 0; i < matrix.stimuli.size(); ++i) {
+    if (is_margin(columns, i)) {
+      refuse(
+          file, lines[i + 1].line,
+          fmt::format("row '{}' is the sum of the others: leave it out", matrix.stimuli[i].name));
+    }
+  }
+}
+
+ConfusionMatrix from_matrix(const std::vector<CsvRow>& lines, const std::string& file) {
+  const std::vector<std::string>& header = lines.front().cells;
+  if (std::max(lines.size(), header.size()) > max_classes) {
+    refuse(file, lines.front().line,
+           fmt::format("has more than {} stimuli or responses", max_classes));
+  }
+  std::vector<Item> stimuli = stimuli_of(lines, file);
+  const std::size_t first = first_response(lines.front(), file);
+  for (std::size_t i = 0; i < stimuli.size(); ++i) {
+    for (std::size_t column = 1; column < first; ++column) {
+      stimuli[i].factors[header[column].substr(std::string_view{factor_mark}.size())] =
+          lines[i + 1].cells[column];
+    }
+  }
+  ConfusionMatrix matrix{stimuli, responses_of(lines.front(), first, stimuli, file)};
+  check_is_named(stimuli, matrix.responses, lines, file);
+  for (const CsvRow& line : std::span{lines}.subspan(1)) {
+    for (std::size_t column = first; column < header.size(); ++column) {
+      matrix.add(line.cells[0], header[column], count_in(line.cells[column], file, line.line));
+    }
+  }
+  check_has_no_margins(matrix, lines, file);
+  return matrix;
+}
+}  // namespace
+
+ConfusionMatrix read_counts(const CsvText& csv, const std::string& file) {
+  const std::vector<CsvRow>& lines = checked_rows(csv.rows, file);
+  ConfusionMatrix matrix = from_matrix(lines, file);
+  if (matrix.total() == 0) {
+    refuse(file, lines.front().line, "holds no answers");
+  }
+  return matrix;
+}
+
+std::set<std::string> modes_in(const CsvText& csv) {
+  std::set<std::string> modes;
+  for (const std::string& comment : csv.comments) {
+    if (!comment.starts_with(mode_mark)) {
+      continue;
+    }
+    std::istringstream words{comment.substr(std::string_view{mode_mark}.size())};
+    for (std::string word; std::getline(words, word, ',');) {
+      modes.insert(core::trimmed(word));
+    }
+  }
+  return modes;
+}
+}  // namespace tapstudy::analysis

@@ -1,0 +1,18 @@
+#pragma once
+#include <cstddef>
+#include <set>
+#include <string>
+
+#include "analysis/statistics/confusion_matrix.hpp"
+#include "analysis/statistics/csv_rows.hpp"
+namespace tapstudy::analysis {
+// A confusion matrix from a table of counts, one row per stimulus, counts below the responses:
+//   stimulus[,factor:NAME…],RESPONSE,RESPONSE,…
+// Factors are marked, with their levels below. Throws InvalidInput with file:line.
+ConfusionMatrix read_counts(const CsvText& csv, const std::string& file);
+// Of the participants whose answers a table holds, where a comment says it: "# mode: pilot, real".
+std::set<std::string> modes_in(const CsvText& csv);
+inline constexpr std::size_t max_classes = 200;  // stimuli or responses
+inline constexpr const char* factor_mark = "factor:";
+inline constexpr const char* mode_mark = "# mode: ";
+}  // namespace tapstudy::analysis

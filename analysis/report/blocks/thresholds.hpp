@@ -1,0 +1,84 @@
+#pragma once
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "analysis/report/blocks/psychometric_levels.hpp"
+#include "analysis/report/document/block_summary.hpp"
+#include "analysis/report/document/cells.hpp"
+#include "analysis/report/document/chart.hpp"
+#include "analysis/statistics/population/means.hpp"
+#include "analysis/statistics/psychometric/inference.hpp"
+namespace tapstudy::analysis {
+// What the answers of a block say of each participant's threshold.
+
+struct ThresholdEstimate {
+  PsychometricCurve curve;
+  PsychometricIntervals intervals;        // 95 %, by profile likelihood
+  bool is_step{};                         // the slope has no upper limit, and is not estimated
+  double proportion_at_threshold{};       // correct
+  std::optional<GoodnessOfFit> goodness;  // unset where it would take too long
+};
+
+struct ParticipantThreshold {
+  std::string participant_id;
+  std::vector<TrackPoint> track;
+  std::vector<Level> levels;  // from low to high
+  Proportion correct;         // of trials with a comparison beside a standard
+  Proportion false_alarms;    // wrong answers in the others
+  std::optional<ThresholdEstimate> estimate;
+  std::string no_threshold;                     // why there is none; empty: there is
+  std::optional<PosteriorEstimates> posterior;  // unset also where it would take too long
+  std::string no_posterior;                     // why there is none; empty: there is, or not sought
+};
+
+// Over participants: each one's threshold counts the same. Standard errors of fits to adaptive
+// tracks are too small to weight them by, or to test by them whether participants differ.
+struct MeanLogThreshold {
+  double mean{};                // of log10 thresholds
+  double standard_deviation{};  // of the same: of participants and of their estimates' errors
+  Interval interval;            // 95 %, by t with participants - 1 degrees of freedom
+  int participants{};           // with a threshold
+};
+
+// Of the posteriors' log10 thresholds: each participant weighs as well as he is known.
+struct PopulationThreshold {
+  RandomEffects log10;
+  int participants{};
+};
+
+struct ThresholdResults {
+  std::vector<ParticipantThreshold> participants;  // by name
+  int draws{};                                     // of the tests of fit; 0: not made
+  bool has_posteriors{};                           // they were computed
+  std::optional<MeanLogThreshold> mean_log;        // of two thresholds or more
+  std::optional<PopulationThreshold> population;   // of three posteriors or more
+};
+
+// The block's psychometric function with its guess rate, or a free one, and a lapse rate of up to
+// 0.1.
+PsychometricModel model_of(const BlockDesign& design);
+
+// Levels are those of comparison_level. Where the guess rate is the participant's own, answers that
+// there is a difference where there is none are those at the level 0. Tests of fit and posteriors
+// are left out of very large blocks, so that a report takes seconds. Throws InvalidInput where the
+// block has no axis, a comparison has no value on it, or an answer is neither right nor wrong.
+ThresholdResults participant_thresholds(const BlockDesign& design,
+                                        const std::vector<results::AnswerRow>& answers);
+
+// Results as tables, figures and sentences.
+std::vector<ReportTable> threshold_tables(const BlockDesign& design,
+                                          const ThresholdResults& results);
+std::vector<Chart> threshold_charts(const BlockDesign& design, const ThresholdResults& results);
+std::vector<std::string> threshold_remarks(const BlockDesign& design,
+                                           const ThresholdResults& results);
+// What levels are of, with the axis.
+std::string level_words(const VariedAxis& axis);
+
+// A comparison differs from a standard along design.axis, by a level that a procedure chose: each
+// participant's psychometric function and threshold, and their mean. Throws InvalidInput as
+// participant_thresholds does.
+std::shared_ptr<BlockSummary> summarise_thresholds(const BlockDesign& design,
+                                                   const BlockRows& rows);
+}  // namespace tapstudy::analysis

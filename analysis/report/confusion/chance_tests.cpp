@@ -1,0 +1,147 @@
+#include "analysis/report/confusion/chance_tests.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "analysis/statistics/resampling/replicates.hpp"
+namespace tapstudy::analysis {
+namespace {
+constexpr int max_draws = 9999;
+constexpr int min_draws = 999;  // p can then fall to .001
+constexpr std::size_t most_redrawn = 20'000;
+
+RightAnswers same_level(const ConfusionMatrix& matrix, const std::string& factor) {
+  RightAnswers right;
+  for (const Item& stimulus : matrix.stimuli) {
+    right.emplace_back();
+    for (const Item& response : matrix.responses) {
+      const auto level = response.factors.find(factor);
+      right.back().push_back(level != response.factors.end() &&
+                             level->second == stimulus.factors.at(factor));
+    }
+  }
+  return right;
+}
+
+NullTables by_own_orders(const BlockDesign& design, const IdentificationData& data) {
+  std::vector<Answers> answers;
+  for (const IdentifyingParticipant& person : data.participants) {
+    answers.emplace_back();
+    for (const IdentifiedTrial& trial : person.trials) {
+      answers.back().stimuli.push_back(static_cast<int>(trial.stimulus));
+      answers.back().responses.push_back(static_cast<int>(trial.response));
+    }
+  }
+  const Redraw redraw = [participants = data.participants, order_of = design.redraw](
+                            std::size_t person, std::uint64_t draw) {
+    const std::vector<int> order = order_of(participants[person].place, draw);
+    std::vector<int> stimuli;
+    for (const IdentifiedTrial& trial : participants[person].trials) {
+      stimuli.push_back(order.at(trial.place));
+    }
+    return stimuli;
+  };
+  NullTables tables =
+      redrawn_tables(std::move(answers), redraw, data.stimuli.size(), data.responses.size());
+  tables.work *= design.redraw_cost;
+  return tables;
+}
+
+NullTables by_shuffles(const IdentificationData& data) {
+  std::vector<CountTable> tables;
+  for (const IdentifyingParticipant& person : data.participants) {
+    tables.push_back(counts_of(data, person));
+  }
+  return shuffled_tables(tables);
+}
+}  // namespace
+
+Randomisation randomisation_of(const BlockDesign& design, const IdentificationData& data) {
+  std::size_t answers = 0;
+  for (const IdentifyingParticipant& person : data.participants) {
+    answers += person.trials.size();
+  }
+  if (answers == 0) {
+    return {{}, "there are no answers"};
+  }
+  if (!design.redraw && design.is_order_known) {
+    return {{},
+            "the order was listed, not drawn, so that no randomisation says what chance would "
+            "give"};
+  }
+  if (design.redraw && answers <= most_redrawn) {
+    return {by_own_orders(design, data), "draws of the study's own orders"};
+  }
+  return {by_shuffles(data),
+          design.is_order_known
+              ? "shuffles of each participant's answers, too many to draw the study's orders"
+              : "shuffles of each participant's answers, which holds where each of them had the "
+                "stimuli in one random order, not in one for each repetition"};
+}
+
+Randomisation randomisation_of(const CountTable& counts) {
+  if (totals_of(counts).all == 0) {
+    return {{}, "there are no answers"};
+  }
+  return {shuffled_tables({counts}),
+          "shuffles of all answers, which holds where answers are independent"};
+}
+
+int Draws::of(const NullTables& tables) const {
+  return draws > 0 ? draws : affordable_replicates(tables.work, min_draws, max_draws);
+}
+
+RightAnswers right_answers(const ConfusionMatrix& matrix) {
+  RightAnswers right;
+  for (const Item& stimulus : matrix.stimuli) {
+    right.emplace_back();
+    for (const Item& response : matrix.responses) {
+      right.back().push_back(stimulus.is_answered_by(response.name));
+    }
+  }
+  return right;
+}
+
+std::optional<double> share_of_constant_answer(const ConfusionMatrix& matrix) {
+  const auto right = by_right_response(matrix.stimuli, matrix.responses, matrix.counts);
+  if (!right) {
+    return std::nullopt;
+  }
+  const TableTotals totals = totals_of(*right);
+  std::vector<std::int64_t> presented = totals.rows;
+  std::erase(presented, 0);
+  const auto [least, most] = std::ranges::minmax(presented);
+  return least == most ? std::nullopt
+                       : std::optional{static_cast<double>(most) / static_cast<double>(totals.all)};
+}
+
+double chance_p_of(const ConfusionMatrix& of_participant) {
+  if (!share_of_constant_answer(of_participant)) {
+    return binomial_p_at_least(overall_accuracy(of_participant), of_participant.chance());
+  }
+  return permutation_tests(shuffled_tables({of_participant.counts}),
+                           {right_answers(of_participant)}, max_draws, Draws{}.seed)
+      .front()
+      .p;
+}
+
+ChanceTests chance_tests(const Randomisation& randomisation, const ConfusionMatrix& matrix,
+                         const std::vector<std::string>& factors, const Draws& wanted) {
+  if (!randomisation.tables) {
+    return {randomisation.words, {}, {}};
+  }
+  std::vector<RightAnswers> notions{right_answers(matrix)};
+  for (const std::string& factor : factors) {
+    notions.push_back(same_level(matrix, factor));
+  }
+  const auto results = permutation_tests(*randomisation.tables, notions,
+                                         wanted.of(*randomisation.tables), wanted.seed);
+  ChanceTests tests;
+  tests.accuracy = results.front();
+  tests.test = fmt::format("randomisation test by {} {}, one-sided", tests.accuracy->draws,
+                           randomisation.words);
+  tests.factors.assign(results.begin() + 1, results.end());
+  return tests;
+}
+}  // namespace tapstudy::analysis

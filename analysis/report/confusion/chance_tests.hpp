@@ -1,0 +1,47 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "analysis/report/confusion/confusion_data.hpp"
+#include "analysis/statistics/resampling/null_tables.hpp"
+namespace tapstudy::analysis {
+// What answers are compared with that depend on no stimulus.
+struct Randomisation {
+  std::optional<NullTables> tables;  // unset: nothing was randomised, or answered
+  std::string words;                 // how, or why not
+};
+// By the study's own orders, drawn again; beyond 20 000 answers, and where nobody knows the order,
+// by shuffling each participant's answers over the trials.
+Randomisation randomisation_of(const BlockDesign& design, const IdentificationData& data);
+// Of counts whose participants are not known: all answers shuffled over the trials.
+Randomisation randomisation_of(const CountTable& counts);
+
+// So many draws; 0: as many as a report can afford, which it says.
+struct Draws {
+  int draws{};
+  std::uint64_t seed{1};
+  int of(const NullTables& tables) const;
+};
+
+// Which responses are right for each stimulus.
+RightAnswers right_answers(const ConfusionMatrix& matrix);
+
+// The share of right answers of somebody who always gives the one that is right most often; unset
+// where that is no more than each other one, or a stimulus has no right answer.
+std::optional<double> share_of_constant_answer(const ConfusionMatrix& matrix);
+
+// One participant's right answers against chance, one-sided: exactly binomial where each answer is
+// right as often, else by shuffling the answers over the trials, since preferring what is right
+// most often is no sign of feeling anything.
+double chance_p_of(const ConfusionMatrix& of_participant);
+
+// Accuracy, and agreement in each factor, against chance by randomisation within participants.
+struct ChanceTests {
+  std::string test;  // how, or why not
+  std::optional<PermutationResult> accuracy;
+  std::vector<PermutationResult> factors;  // in the order given; empty where not tested
+};
+ChanceTests chance_tests(const Randomisation& randomisation, const ConfusionMatrix& matrix,
+                         const std::vector<std::string>& factors, const Draws& wanted = {});
+}  // namespace tapstudy::analysis

@@ -1,0 +1,81 @@
+#include "analysis/report/document/block_summary.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <iterator>
+#include <map>
+#include <unordered_set>
+
+#include "core/error.hpp"
+namespace tapstudy::analysis {
+std::vector<VisitOrder> orders_of(const std::vector<VisitOrder>& all,
+                                  const std::vector<results::AnswerRow>& answers) {
+  std::unordered_set<std::int64_t> trials;
+  for (const results::AnswerRow& answer : answers) {
+    trials.insert(answer.trial_id);
+  }
+  std::vector<VisitOrder> own;
+  std::ranges::copy_if(all, std::back_inserter(own),
+                       [&](const VisitOrder& order) { return trials.contains(order.trial_id); });
+  return own;
+}
+
+namespace {
+using results::AnswerRow;
+
+// Nine digits, because values of one stimulus differ in their last ones where they are products.
+std::string digits(double value) {
+  return fmt::format("{:.9g}", value);
+}
+
+// All alternatives of a trial have the same ones.
+std::vector<double> further_values(const BlockDesign& design, const AnswerRow& answer) {
+  std::vector<double> values;
+  for (const AxisName& axis : design.further_axes) {
+    const auto& presented = answer.alternatives.front().axis_values;
+    const auto value = presented.find(axis.key);
+    if (value == presented.end()) {
+      throw core::InvalidInput{fmt::format("block '{}': trial {} of {} has no value of '{}'",
+                                           design.name, answer.number, answer.participant_id,
+                                           axis.key)};
+    }
+    values.push_back(std::stod(digits(value->second)));
+  }
+  return values;
+}
+
+BlockDesign at(const BlockDesign& whole, const std::vector<double>& values) {
+  BlockDesign part = whole;
+  part.part_of = whole.name;
+  std::vector<std::string> words;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const AxisName& axis = whole.further_axes[i];
+    part.name += fmt::format("_at_{}_{}", axis.key, digits(values[i]));
+    words.push_back(fmt::format("{} {}{}{}", axis.quantity, digits(values[i]),
+                                axis.unit.empty() ? "" : " ", axis.unit));
+  }
+  part.question += fmt::format(" ({})", fmt::join(words, ", "));
+  return part;
+}
+}  // namespace
+
+std::vector<BlockPart> parts_at_further_values(const BlockDesign& design, const BlockRows& rows) {
+  if (design.further_axes.empty() || rows.answers.empty()) {
+    return {{design, rows}};
+  }
+  std::map<std::vector<double>, BlockRows> at_values;
+  for (const AnswerRow& answer : rows.answers) {
+    at_values[further_values(design, answer)].answers.push_back(answer);
+  }
+  std::vector<BlockPart> parts;
+  for (auto& [values, part] : at_values) {
+    part.visits = rows.visits;
+    part.orders = orders_of(rows.orders, part.answers);
+    part.missing_replies = rows.missing_replies;
+    parts.push_back({at(design, values), std::move(part)});
+  }
+  return parts;
+}
+}  // namespace tapstudy::analysis

@@ -1,0 +1,56 @@
+#pragma once
+#include <cstddef>
+#include <nlohmann/json_fwd.hpp>
+#include <ostream>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "analysis/report/document/block_summary.hpp"
+#include "analysis/report/document/cells.hpp"
+namespace tapstudy::analysis {
+// Text elements shared by the block summaries.
+inline constexpr std::size_t terminal_columns = 100;
+// In characters of UTF-8, each as wide as any other.
+std::size_t text_width(const std::string& text);
+// The words in lines of at most terminal_columns behind so many spaces, the second and further
+// lines two more; each ends with a line end. A longer word has a line of its own.
+std::string wrapped(const std::string& text, std::size_t indent);
+void write_hypotheses_text(std::ostream& out, const std::vector<HypothesisResult>& hypotheses);
+
+// HTML elements shared by the block summaries.
+std::string escaped(const std::string& text);
+// The same, where a number is not parted from its sign or its unit: with minus signs, and spaces
+// that do not break.
+std::string escaped_numbers(const std::string& text);
+// A dot with its interval on a scale from 0 to 100 %, chance as a line; `alternative` says the
+// same.
+std::string dot_plot(double share, const Interval& interval, double chance,
+                     const std::string& alternative);
+// The same with the score interval of the proportion; empty without trials.
+std::string dot_plot(const Proportion& proportion, double chance);
+void write_accuracy_row(std::ostream& out, const std::string& title, const Proportion& proportion,
+                        double chance);
+void write_dot_row(std::ostream& out, const std::string& title, const std::string& words,
+                   const std::string& dots);
+void write_hypotheses_html(std::ostream& out, const std::vector<HypothesisResult>& hypotheses);
+
+// JSON elements shared by the block summaries.
+nlohmann::ordered_json as_json(const Proportion& proportion);
+nlohmann::ordered_json as_json(const std::vector<HypothesisResult>& hypotheses);
+
+// One table in each format.
+void write_table_text(std::ostream& out, const ReportTable& table);  // in 100 columns
+// A wide table scrolls within its own frame, which the keyboard reaches.
+void write_table_html(std::ostream& out, const ReportTable& table);
+void write_table_csv(std::ostream& out, const ReportTable& table);  // a header of keys
+// A float with rules of the package booktabs; `label` without special characters.
+void write_table_latex(std::ostream& out, const ReportTable& table, const std::string& label);
+// The columns that people see: those with a heading and, where there are rows, something in one.
+std::vector<std::size_t> shown_columns(const ReportTable& table);
+// Names and words, which are read from the left.
+bool is_text_column(const ReportTable& table, std::size_t column);
+// Text as LaTeX shows it.
+std::string latex_text(std::string_view text);
+nlohmann::ordered_json table_json(const ReportTable& table);  // [{key: value}]
+}  // namespace tapstudy::analysis

@@ -1,0 +1,279 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <sstream>
+#include <string_view>
+#include <utility>
+
+#include "analysis/report/document/formats.hpp"
+#include "analysis/report/document/sections.hpp"
+#include "analysis/report/document/wording.hpp"
+#include "analysis/statistics/csv_rows.hpp"
+#include "core/text/print.hpp"
+namespace tapstudy::analysis {
+namespace {
+bool is_nothing(const Cell& cell) {
+  return cell.text.empty() || cell.text == "–";
+}
+
+bool is_word(const Cell& cell) {
+  return cell.values.size() == 1 && std::holds_alternative<std::string>(cell.values.front());
+}
+}  // namespace
+
+std::vector<std::size_t> shown_columns(const ReportTable& table) {
+  std::vector<std::size_t> shown;
+  for (std::size_t i = 0; i < table.columns.size(); ++i) {
+    const bool is_empty =
+        !table.rows.empty() &&
+        std::ranges::all_of(table.rows, [&](const auto& row) { return is_nothing(row[i]); });
+    if (!table.columns[i].heading.empty() && !is_empty) {
+      shown.push_back(i);
+    }
+  }
+  return shown;
+}
+
+bool is_text_column(const ReportTable& table, std::size_t column) {
+  return !table.rows.empty() && std::ranges::all_of(table.rows, [&](const auto& row) {
+    return is_nothing(row[column]) || is_word(row[column]);
+  });
+}
+
+std::size_t text_width(const std::string& text) {
+  constexpr int marks = 0xC0;  // the bytes of a character after its first are 10xxxxxx
+  constexpr int continued = 0x80;
+  return static_cast<std::size_t>(
+      std::ranges::count_if(text, [](char byte) { return (byte & marks) != continued; }));
+}
+
+std::string wrapped(const std::string& text, std::size_t indent) {
+  std::istringstream words{text};
+  std::string lines;
+  std::string line(indent, ' ');
+  bool is_empty = true;
+  for (std::string word; words >> word;) {
+    if (!is_empty && text_width(line) + 1 + text_width(word) > terminal_columns) {
+      lines += line + '\n';
+      line = std::string(indent + 2, ' ');
+      is_empty = true;
+    }
+    line += (is_empty ? "" : " ") + word;
+    is_empty = false;
+  }
+  return lines + line + '\n';
+}
+
+void write_hypotheses_text(std::ostream& out, const std::vector<HypothesisResult>& hypotheses) {
+  for (const HypothesisResult& result : hypotheses) {
+    const std::string adjusted =
+        result.p_holm ? fmt::format(", {} after Holm 1979", p_value(*result.p_holm)) : "";
+    out << wrapped(result.planned.statement, 2)
+        << wrapped(result.p ? fmt::format("{} against {:.0f} % by chance: {} ({}){}",
+                                          fraction(result.observed), 100.0 * result.chance,
+                                          p_value(result), result.test, adjusted)
+                            : "not tested: " + result.test,
+                   4);
+  }
+}
+
+namespace {
+// What people see of a table.
+struct Grid {
+  std::vector<std::string> headings;
+  std::vector<std::vector<std::string>> rows;
+};
+
+Grid grid_of(const ReportTable& table) {
+  Grid grid;
+  grid.rows.resize(table.rows.size());
+  for (const std::size_t i : shown_columns(table)) {
+    grid.headings.push_back(table.columns[i].heading);
+    for (std::size_t row = 0; row < table.rows.size(); ++row) {
+      grid.rows[row].push_back(table.rows[row][i].text);
+    }
+  }
+  return grid;
+}
+
+std::vector<std::size_t> widths_of(const Grid& grid) {
+  std::vector<std::size_t> widths;
+  for (std::size_t i = 0; i < grid.headings.size(); ++i) {
+    std::size_t widest = text_width(grid.headings[i]);
+    for (const auto& row : grid.rows) {
+      widest = std::max(widest, text_width(row[i]));
+    }
+    widths.push_back(widest);
+  }
+  return widths;
+}
+
+void write_line(std::ostream& out, const std::vector<std::string>& cells,
+                const std::vector<std::size_t>& widths) {
+  std::string line;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const std::string space(widths[i] - text_width(cells[i]), ' ');
+    line += i == 0 ? "  " + cells[i] + space : "  " + space + cells[i];
+  }
+  core::print(out, "{}\n", line.substr(0, line.find_last_not_of(' ') + 1));
+}
+
+// A table that is too wide: one entry below another.
+void write_entries(std::ostream& out, const Grid& grid) {
+  for (const auto& row : grid.rows) {
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      const std::string entry = fmt::format("{}: {}", grid.headings[i], row[i]);
+      out << wrapped(entry, i == 0 ? 2 : 4);
+    }
+  }
+}
+
+}  // namespace
+
+void write_table_text(std::ostream& out, const ReportTable& table) {
+  const Grid grid = grid_of(table);
+  const std::vector<std::size_t> widths = widths_of(grid);
+  std::size_t total = 0;
+  for (const std::size_t width : widths) {
+    total += width + 2;
+  }
+  out << wrapped(table.title, 2);
+  if (total > terminal_columns) {
+    write_entries(out, grid);
+  } else {
+    write_line(out, grid.headings, widths);
+    for (const auto& row : grid.rows) {
+      write_line(out, row, widths);
+    }
+  }
+  out << '\n';
+}
+
+void TabularSummary::write_text(std::ostream& out) const {
+  for (const ReportTable& table : parts) {
+    if (!table.is_for_programs && !table.rows.empty()) {
+      write_table_text(out, table);
+    }
+  }
+  for (const std::string& remark : remarks) {
+    out << wrapped(remark, 2);
+  }
+  write_hypotheses_text(out, hypotheses);
+}
+
+namespace {
+struct ToCsv {
+  std::string operator()(std::monostate) const { return ""; }
+  std::string operator()(bool is_so) const { return is_so ? "true" : "false"; }
+  std::string operator()(double value) const {
+    return std::isnan(value) ? "" : fmt::format("{}", value);
+  }
+  std::string operator()(std::int64_t value) const { return fmt::format("{}", value); }
+  std::string operator()(const std::string& text) const { return csv_cell(text); }
+};
+
+}  // namespace
+
+void write_table_csv(std::ostream& out, const ReportTable& table) {
+  const char* separator = "";
+  for (const Column& column : table.columns) {
+    for (const std::string& key : column.keys) {
+      out << separator << csv_cell(key);
+      separator = ",";
+    }
+  }
+  out << '\n';
+  for (const auto& row : table.rows) {
+    separator = "";
+    for (const Cell& cell : row) {
+      for (const Value& value : cell.values) {
+        out << separator << std::visit(ToCsv{}, value);
+        separator = ",";
+      }
+    }
+    out << '\n';
+  }
+}
+
+std::vector<CsvTable> TabularSummary::tables() const {
+  std::vector<CsvTable> written;
+  for (const ReportTable& table : parts) {
+    written.push_back(
+        {table.name + ".csv", [&table](std::ostream& out) { write_table_csv(out, table); }});
+  }
+  return written;
+}
+
+namespace {
+// What LaTeX reads as commands, and what its text fonts lack.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 22> replacements{
+    {{"\\", "\\textbackslash{}"},
+     {"^", "\\textasciicircum{}"},
+     {"~", "\\textasciitilde{}"},
+     {"#", "\\#"},
+     {"$", "\\$"},
+     {"%", "\\%"},
+     {"&", "\\&"},
+     {"_", "\\_"},
+     {"{", "\\{"},
+     {"}", "\\}"},
+     {"–", "--"},
+     {"²", "\\textsuperscript{2}"},
+     {"±", "$\\pm$"},
+     {"×", "$\\times$"},
+     {"∞", "$\\infty$"},
+     {"η", "$\\eta$"},
+     {"χ", "$\\chi$"},
+     {"κ", "$\\kappa$"},
+     {"<", "$<$"},
+     {">", "$>$"},
+     {"≤", "$\\leq$"},
+     {"\n", " "}}};
+
+}  // namespace
+
+std::string latex_text(std::string_view text) {
+  std::string safe;
+  while (!text.empty()) {
+    if (is_minus(safe.empty() ? ' ' : safe.back(), text)) {
+      safe += "$-$";
+      text.remove_prefix(1);
+    }
+    const auto found = std::ranges::find_if(
+        replacements, [&](const auto& each) { return text.starts_with(each.first); });
+    const bool is_known = found != replacements.end();
+    safe += is_known ? found->second : text.substr(0, 1);
+    text.remove_prefix(is_known ? found->first.size() : 1);
+  }
+  return safe;
+}
+
+void write_table_latex(std::ostream& out, const ReportTable& table, const std::string& label) {
+  const std::vector<std::size_t> shown = shown_columns(table);
+  std::string alignment;
+  for (const std::size_t column : shown) {
+    alignment += column == shown.front() || is_text_column(table, column) ? 'l' : 'r';
+  }
+  core::print(out,
+              "\\begin{{table}}[htbp]\n\\centering\n\\caption{{{}}}\n\\label{{tab:{}}}\n"
+              "\\begin{{tabular}}{{{}}}\n\\toprule\n",
+              latex_text(table.title), label, alignment);
+  const auto write_row = [&](const auto& text_of) {
+    const std::string& first = text_of(shown.front());
+    out << (first.starts_with('[') || first.starts_with('*') ? "{}" : "");  // no option of the line
+    for (const std::size_t column : shown) {
+      core::print(out, "{}{}", column == shown.front() ? "" : " & ", latex_text(text_of(column)));
+    }
+    out << " \\\\\n";
+  };
+  write_row(
+      [&](std::size_t column) -> const std::string& { return table.columns[column].heading; });
+  out << "\\midrule\n";
+  for (const std::vector<Cell>& row : table.rows) {
+    write_row([&](std::size_t column) -> const std::string& { return row[column].text; });
+  }
+  out << "\\bottomrule\n\\end{tabular}\n\\end{table}\n";
+}
+}  // namespace tapstudy::analysis

@@ -1,0 +1,92 @@
+#include "analysis/report/document/wording.hpp"
+
+#include <fmt/format.h>
+namespace tapstudy::analysis {
+namespace {
+// As many digits of percent as the ends of an interval take to differ.
+int digits_of(const Interval& interval) {
+  constexpr int max_digits = 3;
+  int digits = 0;
+  const auto in_percent = [&](double share) {
+    return fmt::format("{:.{}f}", 100.0 * share, digits);
+  };
+  while (digits < max_digits && in_percent(interval.low) == in_percent(interval.high)) {
+    ++digits;
+  }
+  return digits;
+}
+}  // namespace
+
+std::string fraction(const Proportion& proportion) {
+  return fmt::format("{}/{}", proportion.successes, proportion.trials);
+}
+
+std::string percent(const Proportion& proportion) {
+  return proportion.trials == 0 ? "–" : percent(proportion.value());
+}
+
+std::string percent(double share) {
+  return fmt::format("{:.0f} %", 100.0 * share);
+}
+
+std::string fraction_and_percent(const Proportion& proportion) {
+  return fmt::format("{} = {}", fraction(proportion), percent(proportion));
+}
+
+std::string with_interval(const Proportion& proportion) {
+  if (proportion.trials == 0) {
+    return "no answers";
+  }
+  const Interval interval = wilson_interval(proportion);
+  return fmt::format("{} = {:.{}f} % (95 % CI {})", fraction(proportion),
+                     100.0 * proportion.value(), digits_of(interval), percent_range(interval));
+}
+
+std::string percent_range(const Interval& shares) {
+  const int digits = digits_of(shares);
+  return fmt::format("{:.{}f}–{:.{}f} %", 100.0 * shares.low, digits, 100.0 * shares.high, digits);
+}
+
+std::string p_value(const HypothesisResult& result) {
+  if (!result.p) {
+    return "not tested";
+  }
+  return result.p_floor > 0.0 ? fmt::format("p ≤ 1/{:.0f}", 1.0 / result.p_floor)
+                              : p_value(*result.p);
+}
+
+std::string p_value(double p) {
+  if (p < 0.001) {
+    return "p < .001";
+  }
+  const std::string digits = fmt::format("{:.3f}", p);
+  return "p = " + (digits.front() == '0' ? digits.substr(1) : digits);
+}
+
+std::string over_participants(const Proportion& all, const BetaBinomialMean& over) {
+  const std::string mean = percent(over.mean);
+  return mean == percent(all.value())
+             ? fmt::format("(95 % CI over {} participants {})", over.participants,
+                           percent_range(over.interval))
+             : fmt::format("({} estimated over {} participants, 95 % CI {})", mean,
+                           over.participants, percent_range(over.interval));
+}
+
+Cell pooled_proportion(const std::vector<Proportion>& participants) {
+  if (participants.size() == 1) {
+    return proportion(participants.front());
+  }
+  const Proportion all = sum(participants);
+  if (all.trials == 0) {
+    return proportion(all);
+  }
+  Cell cell = counted(all);
+  if (const auto over = beta_binomial_mean(participants)) {
+    cell.text += " " + over_participants(all, *over);
+    cell.values.insert(cell.values.end(), {over->interval.low, over->interval.high});
+  } else {
+    cell.values.resize(cell.values.size() + 2);
+  }
+  return cell;
+}
+}  // namespace tapstudy::analysis

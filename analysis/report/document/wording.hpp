@@ -1,0 +1,39 @@
+#pragma once
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "analysis/report/document/block_summary.hpp"
+#include "analysis/report/document/cells.hpp"
+#include "analysis/statistics/population/means.hpp"
+#include "analysis/statistics/proportion.hpp"
+namespace tapstudy::analysis {
+// Number formatting common to all reports.
+std::string fraction(const Proportion& proportion);       // "43/80"
+std::string percent(const Proportion& proportion);        // "54 %", or "–" without trials
+std::string percent(double share);                        // likewise
+std::string with_interval(const Proportion& proportion);  // "43/80 = 54 % (95 % CI 43–64 %)"
+std::string fraction_and_percent(const Proportion& proportion);  // "43/80 = 54 %"
+// "43–64 %", with as many digits as its ends take to differ
+std::string percent_range(const Interval& shares);
+std::string p_value(double p);  // "p = .020", "p < .001"
+// The same, "p ≤ 1/10000" where only a bound is known, or "not tested".
+std::string p_value(const HypothesisResult& result);
+
+// "(95 % CI over 4 participants 14–92 %)", of beta_binomial_mean; where its mean is not the share
+// of all answers together, "(61 % estimated over 4 participants, 95 % CI 14–92 %)".
+std::string over_participants(const Proportion& all, const BetaBinomialMean& over);
+
+// What all participants answered, for a proportion_column: the counts together, with an interval
+// over participants (beta_binomial_mean), because the answers of one are not independent of one
+// another. Of a single participant the score interval; without one where it takes more participants
+// with answers.
+Cell pooled_proportion(const std::vector<Proportion>& participants);
+
+// Whether the text begins with a minus sign, written as a hyphen, and not with one that joins words
+// or numbers. before: the character before it; a space at the beginning.
+inline bool is_minus(char before, std::string_view text) {
+  return text.size() > 1 && text[0] == '-' && text[1] >= '0' && text[1] <= '9' &&
+         (before == ' ' || before == '(');
+}
+}  // namespace tapstudy::analysis

@@ -1,0 +1,356 @@
+#include "analysis/statistics/population/means.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "analysis/statistics/distributions.hpp"
+#include "analysis/statistics/numerics.hpp"
+#include "analysis/statistics/psychometric/likelihood.hpp"
+#include "analysis/statistics/quantiles.hpp"
+#include "analysis/statistics/resampling/replicates.hpp"
+#include "core/error.hpp"
+#include "core/random/rng.hpp"
+namespace tapstudy::analysis {
+namespace {
+struct Slopes {
+  Eigen::Vector2d score{Eigen::Vector2d::Zero()};  // by a = nu mean and b = nu (1 - mean)
+  Eigen::Matrix2d curvature{Eigen::Matrix2d::Zero()};
+};
+
+// Of sum ln B(k + a, n - k + b) - ln B(a, b).
+Slopes slopes_at(const std::vector<Proportion>& people, double a, double b) {
+  Slopes sum;
+  for (const Proportion& of : people) {
+    const auto k = static_cast<double>(of.successes);
+    const auto n = static_cast<double>(of.trials);
+    const double both = digamma(a + b) - digamma(n + a + b);
+    sum.score +=
+        Eigen::Vector2d{digamma(k + a) - digamma(a) + both, digamma(n - k + b) - digamma(b) + both};
+    const double both_again = trigamma(a + b) - trigamma(n + a + b);
+    sum.curvature.array() += both_again;
+    sum.curvature(0, 0) += trigamma(k + a) - trigamma(a);
+    sum.curvature(1, 1) += trigamma(n - k + b) - trigamma(b);
+  }
+  return sum;
+}
+}  // namespace
+
+BetaBinomialParameters refined(const std::vector<Proportion>& people,
+                               const BetaBinomialParameters& near) {
+  constexpr int steps = 6;
+  constexpr double farthest = 1e-2;  // of either, in proportion
+  const Eigen::Array2d start{near.nu * near.mean, near.nu * (1.0 - near.mean)};
+  Eigen::Array2d at = start;
+  for (int i = 0; i < steps; ++i) {
+    const Slopes slopes = slopes_at(people, at[0], at[1]);
+    at -= slopes.curvature.fullPivLu().solve(slopes.score).array();
+    if (!((at / start - 1.0).abs() < farthest).all()) {
+      return near;
+    }
+  }
+  return {at[0] / at.sum(), at.sum()};
+}
+
+namespace {
+constexpr int bootstrap_draws = 4999;
+constexpr std::uint64_t bootstrap_seed = 2;
+constexpr double largest_eta = 0.999;  // square root of the intra-class correlation
+constexpr double smallest_share = 1e-9;
+constexpr double indistinguishable = 1e-5;  // log likelihoods, by rounding where eta is small
+
+double log_likelihood(const std::vector<Proportion>& participants, double mean, double eta) {
+  double sum = 0.0;
+  for (const Proportion& of : participants) {
+    sum += beta_binomial_log_likelihood(of, mean, eta);
+  }
+  return sum;
+}
+
+struct Profile {
+  double eta{};
+  double log_likelihood{};
+};
+
+Profile profile_at(const std::vector<Proportion>& participants, double mean) {
+  const Minimum inside = minimum(
+      [&](double eta) { return -log_likelihood(participants, mean, eta); }, 0.0, largest_eta);
+  const double without = log_likelihood(participants, mean, 0.0);
+  return without >= -inside.value - indistinguishable ? Profile{0.0, without}
+                                                      : Profile{inside.at, -inside.value};
+}
+
+Interval profile_interval(const std::vector<Proportion>& participants, double mean,
+                          double most_likely) {
+  const double t = t_quantile(0.975, static_cast<double>(participants.size()) - 1.0);
+  const auto excess = [&](double at) {
+    return 2.0 * (most_likely - profile_at(participants, at).log_likelihood) - t * t;
+  };
+  constexpr double low = smallest_share;
+  constexpr double high = 1.0 - smallest_share;
+  const double from = std::clamp(mean, low, high);
+  return {excess(low) <= 0.0 ? 0.0 : root(excess, low, from),
+          excess(high) <= 0.0 ? 1.0 : root(excess, from, high)};
+}
+
+std::vector<Proportion> answered(const std::vector<Proportion>& participants) {
+  std::vector<Proportion> found;
+  for (const Proportion& of : participants) {
+    if (of.successes < 0 || of.successes > of.trials) {
+      throw core::InvalidInput{"right answers are between 0 and all answers"};
+    }
+    if (of.trials > 0) {
+      found.push_back(of);
+    }
+  }
+  return found;
+}
+
+// Of all answers, with its negative log likelihood.
+Minimum pooled_share(const std::vector<Proportion>& people) {
+  const Proportion all = sum(people);
+  return {all.value(), -profile_at(people, all.value()).log_likelihood};
+}
+
+bool are_equal(const std::vector<double>& values) {
+  return std::ranges::all_of(values, [&](double value) { return value == values.front(); });
+}
+
+double mean_of(const std::vector<double>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+// Skewness of the jackknife values of the mean.
+double acceleration(const std::vector<double>& values) {
+  const double mean = mean_of(values);
+  double cubes = 0.0;
+  double squares = 0.0;
+  for (const double value : values) {
+    const double difference = value - mean;  // that of jackknife means is in proportion
+    cubes += difference * difference * difference;
+    squares += difference * difference;
+  }
+  return cubes / (6.0 * std::pow(squares, 1.5));
+}
+
+void check_values(const std::vector<double>& values) {
+  if (values.size() < 2 ||
+      !std::ranges::all_of(values, [](double value) { return std::isfinite(value); })) {
+    throw core::InvalidInput{"an interval of a mean takes two finite values or more"};
+  }
+}
+
+Interval within_shares(const Interval& interval) {
+  return {std::max(0.0, interval.low), std::min(1.0, interval.high)};
+}
+}  // namespace
+
+Interval t_interval(const std::vector<double>& values) {
+  check_values(values);
+  const MeanAndSpread spread = mean_and_spread(values);
+  const auto n = static_cast<double>(values.size());
+  const double reach = t_quantile(0.975, n - 1.0) * spread.standard_deviation / std::sqrt(n);
+  return {spread.mean - reach, spread.mean + reach};
+}
+
+std::optional<Interval> bca_interval(const std::vector<double>& values, int draws,
+                                     std::uint64_t seed, double tail) {
+  check_values(values);
+  if (are_equal(values)) {
+    return std::nullopt;
+  }
+  const double observed = mean_of(values);
+  std::vector<double> means = replicates(
+      draws,
+      [&](std::uint64_t own_seed) {
+        core::Rng rng{own_seed};
+        double sum = 0.0;
+        for (std::size_t i = 0; i < values.size(); ++i) {
+          sum += values[rng.below(static_cast<std::uint32_t>(values.size()))];
+        }
+        return sum / static_cast<double>(values.size());
+      },
+      seed);
+  const double rounding = 1e-12 * std::max(1.0, std::abs(observed));
+  double below = 0.0;
+  for (const double mean : means) {
+    below += mean < observed - rounding ? 1.0 : mean <= observed + rounding ? 0.5 : 0.0;
+  }
+  const double bias = normal_quantile(below / static_cast<double>(draws));
+  const double a = acceleration(values);
+  const auto level = [&](double z) {
+    const double shrunk = 1.0 - a * (bias + z);
+    return shrunk > 0.0 ? normal_cdf(bias + (bias + z) / shrunk) : z > 0.0 ? 1.0 : 0.0;
+  };
+  const double z = -normal_quantile(tail);
+  return Interval{quantile(means, level(-z)), quantile(means, level(z))};
+}
+
+std::optional<Interval> bootstrap_interval(const std::vector<double>& values, int draws,
+                                           std::uint64_t seed) {
+  check_values(values);
+  const auto n = static_cast<double>(values.size());
+  const double expanded_tail = normal_cdf(-std::sqrt(n / (n - 1.0)) * t_quantile(0.975, n - 1.0));
+  return bca_interval(values, draws, seed, expanded_tail);
+}
+
+std::optional<BetaBinomialMean> beta_binomial_mean(const std::vector<Proportion>& participants) {
+  const std::vector<Proportion> people = answered(participants);
+  if (people.size() < 2) {
+    return std::nullopt;
+  }
+  Minimum best =
+      minimum([&](double mean) { return -profile_at(people, mean).log_likelihood; }, 0.0, 1.0);
+  // without correlation it is the share of all answers
+  const Minimum pooled = pooled_share(people);
+  best = pooled.value <= best.value + indistinguishable ? pooled : best;
+  const double eta = profile_at(people, best.at).eta;
+  BetaBinomialMean result{static_cast<int>(people.size()), best.at, eta * eta,
+                          profile_interval(people, best.at, -best.value)};
+  if (eta > 0.0 && eta < largest_eta && best.at > 0.0 && best.at < 1.0) {
+    const auto [mean, nu] = refined(people, {best.at, 1.0 / (eta * eta) - 1.0});
+    result.mean = mean;
+    result.intraclass_correlation = 1.0 / (1.0 + nu);
+  }
+  return result;
+}
+
+std::optional<MeanProportion> mean_proportion(const std::vector<Proportion>& participants) {
+  const auto model = beta_binomial_mean(participants);
+  if (!model) {
+    return std::nullopt;
+  }
+  std::vector<double> shares;
+  std::ranges::transform(answered(participants), std::back_inserter(shares), &Proportion::value);
+  MeanProportion result{*model, mean_of(shares), {}, {}};
+  if (!are_equal(shares)) {
+    result.t = within_shares(t_interval(shares));
+    if (const auto bootstrap = bootstrap_interval(shares, bootstrap_draws, bootstrap_seed)) {
+      result.bootstrap = within_shares(*bootstrap);
+    }
+  }
+  return result;
+}
+
+namespace {
+constexpr std::size_t most_enumerated = 16;
+constexpr int sign_flips = 9999;
+
+double exact_p(const std::vector<double>& sizes, double limit) {
+  const std::size_t patterns = std::size_t{1} << sizes.size();
+  std::size_t as_far = 0;
+  for (std::size_t pattern = 0; pattern < patterns; ++pattern) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < sizes.size(); ++i) {
+      sum += ((pattern >> i) & 1U) != 0 ? sizes[i] : -sizes[i];
+    }
+    as_far += std::abs(sum) >= limit ? 1 : 0;
+  }
+  return static_cast<double>(as_far) / static_cast<double>(patterns);
+}
+}  // namespace
+
+SignFlipTest sign_flip_test(const std::vector<double>& differences, std::uint64_t seed) {
+  if (differences.empty() ||
+      !std::ranges::all_of(differences, [](double value) { return std::isfinite(value); })) {
+    throw core::InvalidInput{"a paired contrast takes one finite difference or more"};
+  }
+  std::vector<double> sizes;
+  for (const double difference : differences) {
+    if (difference != 0.0) {
+      sizes.push_back(std::abs(difference));
+    }
+  }
+  const double observed = std::abs(std::accumulate(differences.begin(), differences.end(), 0.0));
+  const double all = std::accumulate(sizes.begin(), sizes.end(), 0.0);
+  const double rounding = 1e-12 * all;
+  if (sizes.size() <= most_enumerated) {
+    return {exact_p(sizes, observed - rounding), true};
+  }
+  const auto sums = replicates(
+      sign_flips,
+      [&](std::uint64_t own_seed) {
+        core::Rng rng{own_seed};
+        double sum = 0.0;
+        for (const double size : sizes) {
+          sum += rng.below(2) == 0 ? size : -size;
+        }
+        return std::abs(sum);
+      },
+      seed);
+  return {monte_carlo_p(sums, observed - rounding), false};
+}
+
+PairedContrast paired_contrast(const std::vector<double>& differences, std::uint64_t seed) {
+  const SignFlipTest test = sign_flip_test(differences, seed);
+  PairedContrast result;
+  result.participants = static_cast<int>(differences.size());
+  result.mean = std::accumulate(differences.begin(), differences.end(), 0.0) /
+                static_cast<double>(differences.size());
+  result.p = test.p;
+  result.is_exact = test.is_exact;
+  const bool are_equal =
+      std::ranges::all_of(differences, [&](double value) { return value == differences.front(); });
+  if (differences.size() > 1 && !are_equal) {
+    result.interval = t_interval(differences);
+  }
+  return result;
+}
+
+namespace {
+struct Weighted {
+  double mean{};
+  double weights{};  // their sum
+  double squares{};  // of the weighted residuals
+};
+
+Weighted weighted(const std::vector<double>& values, const std::vector<double>& errors,
+                  double between_variance) {
+  const auto weight = [&](std::size_t i) {
+    return 1.0 / (errors[i] * errors[i] + between_variance);
+  };
+  Weighted of;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    of.weights += weight(i);
+    of.mean += weight(i) * values[i];
+  }
+  of.mean /= of.weights;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    of.squares += weight(i) * (values[i] - of.mean) * (values[i] - of.mean);
+  }
+  return of;
+}
+
+// The weighted squares fall as the variance between people grows: by bisection.
+double between_variance(const std::vector<double>& values, const std::vector<double>& errors) {
+  constexpr int halvings = 200;
+  const double expected = static_cast<double>(values.size()) - 1.0;
+  const auto [least, most] = std::ranges::minmax(values);
+  double low = 0.0;
+  double high =
+      (most - least) * (most - least);  // weights of at most 1 / high: squares below n / 4
+  if (weighted(values, errors, low).squares <= expected) {
+    return 0.0;
+  }
+  for (int i = 0; i < halvings; ++i) {
+    const double middle = 0.5 * (low + high);
+    (weighted(values, errors, middle).squares > expected ? low : high) = middle;
+  }
+  return low;
+}
+}  // namespace
+
+RandomEffects random_effects(const std::vector<double>& values, const std::vector<double>& errors) {
+  const auto is_error = [](double error) { return error > 0.0 && std::isfinite(error); };
+  if (values.size() < 2 || errors.size() != values.size() ||
+      !std::ranges::all_of(errors, is_error)) {
+    throw core::InvalidInput{"random effects take two values or more, each with its error"};
+  }
+  const double between = between_variance(values, errors);
+  const Weighted of = weighted(values, errors, between);
+  const double freedom = static_cast<double>(values.size()) - 1.0;
+  const double half = t_quantile(0.975, freedom) / std::sqrt(of.weights);
+  return {of.mean, std::sqrt(between), {of.mean - half, of.mean + half}};
+}
+}  // namespace tapstudy::analysis

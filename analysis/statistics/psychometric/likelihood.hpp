@@ -1,0 +1,85 @@
+#pragma once
+#include <Eigen/Core>
+#include <vector>
+
+#include "analysis/statistics/proportion.hpp"
+#include "core/psychometric_function.hpp"
+namespace tapstudy::analysis {
+// The answers at one value of the stimulus: k of one kind ("correct", "stronger") in n.
+struct Level {
+  double value{};
+  Proportion answers;
+};
+
+// Sorted by value, equal values put together, those without trials left out. Throws InvalidInput
+// for counts that are not possible (0 <= k <= n), values that the shape does not allow (below 0 on
+// a logarithmic axis), and fewer than two different values (above 0 on a logarithmic axis).
+std::vector<Level> checked_levels(const std::vector<Level>& levels, core::PsychometricShape shape);
+
+// The value on the shape's axis: itself or its logarithm to base 10, and back.
+double on_axis(core::PsychometricShape shape, double value);
+double from_axis(core::PsychometricShape shape, double position);
+
+// Where the levels lie on the axis: the two outermost and the smallest distance between two, but
+// for what may be rounding.
+// levels as checked; a value of 0 on a logarithmic axis is left out.
+struct AxisRange {
+  double low{};
+  double high{};
+  double smallest_gap{};
+  double length() const { return high - low; }
+};
+AxisRange axis_range(const std::vector<Level>& levels, core::PsychometricShape shape);
+
+// The parameters of a psychometric function as they are fitted.
+using PsychometricVector = Eigen::Vector4d;
+enum PsychometricPlace : Eigen::Index { threshold_at, log_slope_at, guess_at, lapse_at };
+
+// equal: guesses are lapses at the other end, so that the guess rate follows the lapse rate and
+// does not count as a parameter.
+enum class Rates { separate, equal };
+
+// The log-likelihood of binomial answers (Wichmann & Hill 2001a, eq. 2, without the binomial
+// coefficients), its score and expected information, as functions of the threshold on the shape's
+// axis, ln slope, guess and lapse rate.
+class BinomialLikelihood {
+ public:
+  // levels as checked_levels gives them
+  BinomialLikelihood(core::PsychometricShape shape, std::vector<Level> levels,
+                     Rates rates = Rates::separate);
+
+  struct Slopes {
+    PsychometricVector score;
+    Eigen::Matrix4d information;
+  };
+  double value(const PsychometricVector& at) const;
+  Slopes slopes(const PsychometricVector& at) const;
+  // F and psi at each level.
+  std::vector<double> shape_values(const PsychometricVector& at) const;
+  std::vector<double> proportions(const PsychometricVector& at) const;
+  // 2 (log-likelihood of the observed proportions - value(at)) (Wichmann & Hill 2001a, eq. 5).
+  double deviance(const PsychometricVector& at) const;
+
+  double guess(const PsychometricVector& at) const {
+    return rates_ == Rates::equal ? at[lapse_at] : at[guess_at];
+  }
+
+  const std::vector<Level>& levels() const { return levels_; }
+  core::PsychometricShape shape() const { return shape_; }
+
+ private:
+  double shape_value(double x, double threshold, double log_slope) const;
+  core::PsychometricShape shape_;
+  std::vector<Level> levels_;
+  Rates rates_;
+};
+
+// k ln p + (n - k) ln(1 - p), with 0 ln 0 = 0.
+double binomial_log_likelihood(const Proportion& answers, double p);
+
+// The logarithm of the probability of k successes in n without the binomial coefficient, where the
+// proportion itself varies from level to level by a beta distribution of mean p (Schütt et al.
+// 2016, eq. 4 to 6): with nu = 1 / eta^2 - 1, B(k + nu p, n - k + nu (1 - p)) / B(nu p, nu (1 -
+// p)). eta in [0, 1): 0 is binomial; the variance of the proportion is eta^2 p (1 - p).
+double beta_binomial_log_likelihood(const Proportion& answers, double p, double eta);
+}  // namespace tapstudy::analysis

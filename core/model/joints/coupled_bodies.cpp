@@ -1,0 +1,287 @@
+#include "core/model/joints/coupled_bodies.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <numbers>
+#include <optional>
+#include <utility>
+
+#include "core/error.hpp"
+#include "core/model/elements/assembly.hpp"
+#include "core/model/elements/spring_support.hpp"
+#include "core/model/joints/joints.hpp"
+#include "core/model/modes/modal_solver.hpp"
+namespace tapstudy::core {
+namespace {
+using Entries = std::vector<Eigen::Triplet<double>>;
+
+void add_block(const SparseMatrix& block, int first, Entries& entries) {
+  for (Eigen::Index column = 0; column < block.outerSize(); ++column) {
+    for (SparseMatrix::InnerIterator entry{block, column}; entry; ++entry) {
+      entries.emplace_back(first + static_cast<int>(entry.row()), first + static_cast<int>(column),
+                           entry.value());
+    }
+  }
+}
+
+class Elongations {
+ public:
+  Elongations(const Plate& plate, const Contacts& contacts, const CoupledBodies& system)
+      : plate_{plate}, contacts_{contacts}, system_{system} {}
+
+  std::vector<Elongation> all() const {
+    std::vector<Elongation> elongations;
+    for (std::size_t i = 0; i < contacts_.springs.size(); ++i) {
+      for (Eigen::Index axis = 0; axis < 3; ++axis) {
+        if (contacts_.springs[i].stiffness_n_per_m[axis] > 0.0) {
+          elongations.push_back(along(axis, i));
+        }
+      }
+    }
+    return elongations;
+  }
+
+  // Axes are parallel, so that shifts of the bodies must bring all contacts together at once: else
+  // the springs would hold free bodies against turning.
+  void check_can_touch() const {
+    const std::vector<Vec3> shifts_m = shifts_of_bodies();
+    for (std::size_t i = 0; i < contacts_.springs.size(); ++i) {
+      const auto& joins = contacts_.springs[i];
+      const double apart_m =
+          (shifts_m[joins.to.body] - shifts_m[joins.from.body] + shift_m(i)).norm();
+      if (apart_m > max_misplacement * larger_diagonal_m(joins)) {
+        throw ModelError{fmt::format(
+            "contact spring {} joins places that cannot lie on one another while those of the "
+            "springs before it do: {:.3g} mm apart",
+            i + 1, 1e3 * apart_m)};
+      }
+    }
+  }
+
+ private:
+  struct NamedEnd {
+    const ContactSpring::End& end;
+    std::size_t spring;
+    const char* name;  // as in a protocol
+  };
+  static constexpr double max_misplacement = 0.02;  // of a body: discs are meshed coarsely
+
+  Elongation along(Eigen::Index axis, std::size_t spring) const {
+    const ContactSpring& joins = contacts_.springs[spring];
+    const auto motions = 6 * static_cast<Eigen::Index>(system_.bodies.size());
+    Elongation elongation{
+        spring, joins.stiffness_n_per_m[axis], {}, Eigen::VectorXd::Zero(motions)};
+    add({joins.from, spring, "from"}, axis, 1.0, elongation);
+    add({joins.to, spring, "to"}, axis, -1.0, elongation);
+    return elongation;
+  }
+  double larger_diagonal_m(const ContactSpring& spring) const {
+    return std::max(bounds(shape_of(spring.from.body)).size_m().norm(),
+                    bounds(shape_of(spring.to.body)).size_m().norm());
+  }
+  // By which each body comes to lie where the first springs that reach it join it.
+  std::vector<Vec3> shifts_of_bodies() const {
+    std::vector<std::optional<Vec3>> shifts_m(system_.bodies.size());
+    for (std::optional<Vec3>& first : shifts_m) {
+      if (first) {
+        continue;
+      }
+      first = Vec3::Zero();
+      while (reach_another(shifts_m)) {
+      }
+    }
+    std::vector<Vec3> all_m;
+    std::ranges::transform(shifts_m, std::back_inserter(all_m),
+                           [](const std::optional<Vec3>& shift) { return *shift; });
+    return all_m;
+  }
+  bool reach_another(std::vector<std::optional<Vec3>>& shifts_m) const {
+    for (std::size_t i = 0; i < contacts_.springs.size(); ++i) {
+      std::optional<Vec3>& of_from = shifts_m[contacts_.springs[i].from.body];
+      std::optional<Vec3>& of_to = shifts_m[contacts_.springs[i].to.body];
+      if (of_from.has_value() != of_to.has_value()) {
+        (of_from ? of_to : of_from) = of_from ? Vec3{*of_from - shift_m(i)} : *of_to + shift_m(i);
+        return true;
+      }
+    }
+    return false;
+  }
+  // From one end of a spring to the other.
+  Vec3 shift_m(std::size_t spring) const {
+    const ContactSpring& joins = contacts_.springs[spring];
+    return mean_place_m({joins.to, spring, "to"}) - mean_place_m({joins.from, spring, "from"});
+  }
+  const Shape& shape_of(std::size_t body) const {
+    return body == 0 ? plate_.shape : contacts_.bodies.at(body - 1).shape;
+  }
+  std::vector<Eigen::Index> nodes_at(const NamedEnd& named) const {
+    const ContactSpring::End& end = named.end;
+    return nodes_of(end.region, system_.bodies.at(end.body).mesh, shape_of(end.body),
+                    fmt::format("contact spring {}, {}", named.spring + 1, named.name));
+  }
+  Vec3 mean_place_m(const NamedEnd& named) const {
+    const TetMesh& mesh = system_.bodies.at(named.end.body).mesh;
+    Vec3 place_m = Vec3::Zero();
+    for (const NodeWeight& one : mean_weights(mesh, nodes_at(named))) {
+      place_m += one.weight * mesh.nodes_m.row(one.node).transpose();
+    }
+    return place_m;
+  }
+  void add(const NamedEnd& named, Eigen::Index axis, double sign, Elongation& elongation) const {
+    const ContactSpring::End& end = named.end;
+    const DiscreteBody& body = system_.bodies.at(end.body);
+    const RigidMotions motions{body.mesh};
+    for (const NodeWeight& one : mean_weights(body.mesh, nodes_at(named))) {
+      const int dof = body.dofs.position[static_cast<std::size_t>(3 * one.node + axis)];
+      if (dof >= 0) {
+        elongation.weights.emplace_back(system_.first_dof[end.body] + dof, sign * one.weight);
+      }
+      elongation.motions.segment<6>(6 * static_cast<Eigen::Index>(end.body)) +=
+          sign * one.weight *
+          motions.displacement(body.mesh.nodes_m.row(one.node).transpose(), axis);
+    }
+  }
+
+  const Plate& plate_;
+  const Contacts& contacts_;
+  const CoupledBodies& system_;
+};
+
+// k g g', of which the lower triangle.
+void add_spring(const Elongation& elongation, Entries& entries) {
+  for (const auto& [row, a] : elongation.weights) {
+    for (const auto& [column, b] : elongation.weights) {
+      if (row >= column) {
+        entries.emplace_back(row, column, elongation.stiffness_n_per_m * a * b);
+      }
+    }
+  }
+}
+
+SparseMatrix from_entries(const Entries& entries, int size) {
+  SparseMatrix matrix(size, size);
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  return matrix;
+}
+
+void place_after_one_another(CoupledBodies& system) {
+  system.first_dof = {0};
+  for (const DiscreteBody& body : system.bodies) {
+    const int first = system.first_dof.back();
+    const std::vector<int>& nodes = body.matrices.first_of_node;
+    for (std::size_t i = 0; i + 1 < nodes.size(); ++i) {
+      system.matrices.first_of_node.push_back(first + nodes[i]);
+    }
+    system.first_dof.push_back(first + body.dofs.count);
+  }
+  system.matrices.first_of_node.push_back(system.first_dof.back());
+}
+}  // namespace
+
+CoupledBodies coupled(const Plate& plate, std::vector<DiscreteBody> bodies,
+                      const Contacts& contacts) {
+  CoupledBodies system;
+  system.bodies = std::move(bodies);
+  place_after_one_another(system);
+  Entries stiffness;
+  Entries mass;
+  const auto motions = 6 * static_cast<Eigen::Index>(system.bodies.size());
+  Eigen::MatrixXd& resisted = system.matrices.resisted_motions;
+  resisted.setZero(motions, motions);
+  for (std::size_t i = 0; i < system.bodies.size(); ++i) {
+    const DiscreteBody& body = system.bodies[i];
+    add_block(body.matrices.K, system.first_dof[i], stiffness);
+    add_block(body.matrices.M, system.first_dof[i], mass);
+    resisted.block<6, 6>(6 * static_cast<Eigen::Index>(i), 6 * static_cast<Eigen::Index>(i)) =
+        body.matrices.resisted_motions;
+  }
+  const Elongations elongations{plate, contacts, system};
+  elongations.check_can_touch();
+  system.elongations = elongations.all();
+  for (const Elongation& elongation : system.elongations) {
+    add_spring(elongation, stiffness);
+    resisted += elongation.motions * elongation.motions.transpose();
+  }
+  system.matrices.K = from_entries(stiffness, system.first_dof.back());
+  system.matrices.M = from_entries(mass, system.first_dof.back());
+  system.matrices.rigid_body_modes = unresisted(resisted);
+  return system;
+}
+
+namespace {
+std::vector<Fixation> regions_of(std::size_t body, const Contacts& contacts) {
+  std::vector<Fixation> regions;
+  for (const ContactSpring& spring : contacts.springs) {
+    for (const ContactSpring::End* const end : {&spring.from, &spring.to}) {
+      if (end->body == body) {
+        regions.push_back(end->region);
+      }
+    }
+  }
+  return regions;
+}
+
+std::vector<DiscreteBody> all_discretised(const BodySpec& body, const ProgressHook& progress) {
+  const Contacts& contacts = *body.contacts;
+  const Material unit{1.0, 1.0, body.poissons_ratio, {}};
+  std::vector<DiscreteBody> all{
+      discretised(body, unit, body.mesh.size, regions_of(0, contacts), progress)};
+  for (const BodyInContact& other : contacts.bodies) {
+    all.push_back(discretised(other, other.material, other.mesh.size,
+                              regions_of(all.size(), contacts), progress));
+  }
+  return all;
+}
+
+// Of each mode.
+Eigen::ArrayXd squares(const Elongation& elongation, const Eigen::MatrixXd& shapes) {
+  Eigen::ArrayXd displacement = Eigen::ArrayXd::Zero(shapes.cols());
+  for (const auto& [dof, weight] : elongation.weights) {
+    displacement += weight * shapes.row(dof).transpose().array();
+  }
+  return displacement.square();
+}
+
+void set_energy_shares(const CoupledBodies& system, std::size_t springs, const Modes& modes,
+                       BodyModes& found) {
+  const auto bodies = static_cast<Eigen::Index>(system.bodies.size());
+  const Eigen::ArrayXd eigenvalues = modes.omega_rad_s.square();
+  found.kinetic_share.resize(bodies, modes.shapes.cols());
+  found.strain_share.setZero(bodies + static_cast<Eigen::Index>(springs), modes.shapes.cols());
+  for (Eigen::Index i = 0; i < bodies; ++i) {
+    const auto body = static_cast<std::size_t>(i);
+    const StiffnessAndMass& matrices = system.bodies[body].matrices;
+    const Eigen::MatrixXd shapes =
+        modes.shapes.middleRows(system.first_dof[body], system.bodies[body].dofs.count);
+    found.kinetic_share.row(i) = shapes.cwiseProduct(matrices.mass() * shapes).colwise().sum();
+    found.strain_share.row(i) =
+        shapes.cwiseProduct(matrices.stiffness() * shapes).colwise().sum().array() /
+        eigenvalues.transpose();
+  }
+  found.strain_share = found.strain_share.cwiseMax(0.0);  // rounding, where a body hardly bends
+  for (const Elongation& elongation : system.elongations) {
+    const Eigen::Index row = bodies + static_cast<Eigen::Index>(elongation.spring);
+    found.strain_share.row(row).array() +=
+        (elongation.stiffness_n_per_m * squares(elongation, modes.shapes) / eigenvalues)
+            .transpose();
+  }
+}
+}  // namespace
+
+SolvedBody solve_in_contact(const BodySpec& body, const ProgressHook& progress) {
+  CoupledBodies system = coupled(body, all_discretised(body, progress), *body.contacts);
+  const double turn = 2.0 * std::numbers::pi;
+  const Modes modes = solve_modes(system.matrices, body.band_limit_rad_per_m / turn, progress);
+  SolvedBody solved;
+  solved.modes.kappa_rad_per_m = modes.omega_rad_s;
+  solved.modes.band_limit_rad_per_m = body.band_limit_rad_per_m;
+  set_energy_shares(system, body.contacts->springs.size(), modes, solved.modes);
+  solved.modes.report = report_on(system.bodies, modes);
+  DiscreteBody& tapped = system.bodies.front();
+  solved.displacement = with_constrained_rows(modes.shapes.topRows(tapped.dofs.count), tapped.dofs);
+  solved.mesh = std::move(tapped.mesh);
+  return solved;
+}
+}  // namespace tapstudy::core

@@ -1,0 +1,61 @@
+#include "core/techniques/compensated.hpp"
+#include "core/techniques/resampled.hpp"
+#include "core/techniques/technique.hpp"
+#include "core/tick/impact_transients.hpp"
+#include "core/tick/plate_vibration.hpp"
+namespace tapstudy::core {
+const ForcePart plate_vibration{
+    true, [](const RenderSettings& /*settings*/) { return std::string_view{}; },
+    [](const RenderSettings& settings, const VibratingPlate* plate) -> std::unique_ptr<AddedForce> {
+      return std::make_unique<PlateVibration>(*plate, settings);
+    },
+    nullptr};
+
+const ForcePart coupled_vibration{
+    true,
+    [](const RenderSettings& settings) -> std::string_view {
+      if (settings.finger.mass_kg <= 0.0) {
+        return "finger.mass_kg above 0";
+      }
+      return settings.finger.stiffness_n_per_m > 0.0 ? "" : "finger.stiffness_n_per_m above 0";
+    },
+    [](const RenderSettings& settings, const VibratingPlate* plate) -> std::unique_ptr<AddedForce> {
+      return std::make_unique<CoupledVibration>(*plate, settings);
+    },
+    // the pad, as stiff as the contact spring, in series with the finger's spring
+    [](const RenderSettings& settings) {
+      const double pad = settings.penalty_stiffness_n_per_m;
+      const double finger = settings.finger.stiffness_n_per_m;
+      return pad * finger / (pad + finger);
+    }};
+
+const ForcePart decaying_sinusoid{
+    false,
+    [](const RenderSettings& settings) -> std::string_view {
+      return settings.sinusoid.amplitude_n_s_per_m > 0.0
+                 ? ""
+                 : "rendering.sinusoid with an amplitude above 0";
+    },
+    [](const RenderSettings& settings, const VibratingPlate* /*plate*/)
+        -> std::unique_ptr<AddedForce> { return std::make_unique<DecayingSinusoid>(settings); },
+    nullptr};
+
+const ForcePart recorded_transient{
+    false,
+    [](const RenderSettings& settings) -> std::string_view {
+      return settings.recorded_taps ? "" : "a recording of the stimulus";
+    },
+    [](const RenderSettings& settings,
+       const VibratingPlate* /*plate*/) -> std::unique_ptr<AddedForce> {
+      std::vector<RecordedTap> taps = settings.recorded_taps->taps;
+      const double rate_hz = 1.0 / settings.dt_s;
+      for (RecordedTap& tap : taps) {
+        tap.force_n = resampled(tap.force_n, settings.recorded_taps->rate_hz, rate_hz);
+        if (settings.device_response) {
+          tap.force_n = compensated(tap.force_n, *settings.device_response, rate_hz);
+        }
+      }
+      return std::make_unique<RecordedTransient>(std::move(taps), settings.vibration_gain);
+    },
+    nullptr};
+}  // namespace tapstudy::core

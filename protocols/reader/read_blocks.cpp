@@ -1,0 +1,289 @@
+// Blocks: the parts of a session.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <tuple>
+
+#include "core/error.hpp"
+#include "protocols/reader/read_sections.hpp"
+#include "protocols/schedule/ordering.hpp"
+#include "protocols/schedule/schedule.hpp"
+namespace tapstudy::protocols {
+namespace {
+// Blanks collapsed, as a page does, and Latin capitals small.
+std::string as_it_reads(const std::string& label) {
+  std::string read;
+  for (const char letter : label) {
+    if (letter != ' ') {
+      read += letter >= 'A' && letter <= 'Z' ? static_cast<char>(letter - 'A' + 'a') : letter;
+    } else if (!read.empty() && read.back() != ' ') {
+      read += letter;
+    }
+  }
+  return read.ends_with(' ') ? read.substr(0, read.size() - 1) : read;
+}
+}  // namespace
+
+void check_labels_differ(MapReader& block_reader, const Protocol& protocol, const Block& block) {
+  std::map<std::string, std::string> name_of_label;
+  for (const Option& option : block.task->answers(block, protocol).options) {
+    const auto [known, is_new] = name_of_label.emplace(as_it_reads(option.label), option.name);
+    if (!is_new) {
+      block_reader.reject(fmt::format("the answers '{}' and '{}' have the same label, '{}'",
+                                      known->second, option.name, option.label));
+    }
+  }
+}
+
+void check_targets(MapReader& block_reader, const Protocol& protocol, const Block& block) {
+  if (!block.comparison || block.comparison->side == Side::either ||
+      block.task->has_own_guess_rate()) {
+    return;
+  }
+  constexpr double least_above = 0.02;
+  const double by_guessing = block.task->guess_rate(block, protocol);
+  for (const auto& track : block.comparison->tracks) {
+    const auto target = track->settles_at();
+    if (target && *target < by_guessing + least_above) {
+      block_reader.reject("procedures",
+                          fmt::format("one settles at {:.3g} correct, which guessing reaches "
+                                      "({:.3g}): its value would wander",
+                                      *target, by_guessing));
+    }
+  }
+}
+
+namespace {
+using Presence = MapReader::Presence;
+constexpr double same_place_m = 1e-3;  // on the device
+
+void check_places(MapReader& top, const Protocol& protocol) {
+  for (const auto& [name, plate] : protocol.plates) {
+    for (const auto& [point, at_m] : plate->tapping_points_m) {
+      const double apart_m =
+          protocol.placement.lateral_scale *
+          (plate->lateral_ratio * at_m - protocol.tapping_points_m.at(point)).norm();
+      if (apart_m > same_place_m) {
+        top.reject("plates",
+                   fmt::format("{}.tapping_points_m.{}: lies {:.4g} m from the study's {} on the "
+                               "device (plates must not be distinguishable by where they are "
+                               "tapped; within {} m)",
+                               name, point, apart_m, point, same_place_m));
+      }
+    }
+  }
+}
+
+std::vector<std::string> task_names() {
+  std::vector<std::string> names;
+  for (const Task* const task : tasks()) {
+    names.emplace_back(task->name());
+  }
+  return names;
+}
+
+OrderConstraints read_constraints(MapReader& block) {
+  OrderConstraints constraints;
+  block.map("constraints", Presence::optional, [&](MapReader& reader) {
+    if (reader.has("max_run")) {
+      constraints.max_run = reader.integer("max_run", 1, 1000);
+    }
+    constraints.min_distance = reader.integer("min_distance", 1, 1000, 1);
+  });
+  return constraints;
+}
+
+bool has_catch_trials_of_its_own_stimuli(const Block& block) {
+  return block.catch_trials &&
+         std::ranges::any_of(block.catch_trials->expected, [&](const auto& expected) {
+           return std::ranges::find(block.stimuli, expected.first) != block.stimuli.end();
+         });
+}
+
+void check_constraints(MapReader& reader, const Block& block) {
+  if (block.order == Order::williams && has_catch_trials_of_its_own_stimuli(block)) {
+    reader.reject("catch_trials",
+                  "of the block's own stimuli would break first-order balance (order: williams; "
+                  "catch_trials of another stimulus keep it)");
+    return;
+  }
+  if (!block.constraints.are_any()) {
+    return;
+  }
+  if (block.order == Order::listed || block.order == Order::williams) {
+    reader.reject("constraints", "are for random orders: this one is given");
+    return;
+  }
+  if (has_catch_trials_of_its_own_stimuli(block)) {
+    reader.reject("constraints",
+                  "would be broken by catch trials of the block's own stimuli (catch_trials of "
+                  "another stimulus keep them)");
+    return;
+  }
+  try {
+    core::Rng rng{1};
+    ordered_conditions(block, rng, {});
+  } catch (const core::InvalidInput& error) {
+    reader.reject("constraints", error.what());
+  }
+}
+
+void read_practice(MapReader& reader, Block& block) {
+  block.is_practice = reader.yes_or_no("practice", false);
+  reader.map("criterion", Presence::optional, [&](MapReader& inner) {
+    PracticeCriterion criterion;
+    criterion.of_last = inner.integer("of_last", 1, 1000);
+    criterion.correct = inner.integer("correct", 1, 1000);
+    criterion.must_be_met =
+        inner.one_of<bool>("otherwise", {{"go_on", false}, {"end", true}}, "go_on");
+    if (criterion.correct > criterion.of_last) {
+      inner.reject("correct", fmt::format("of {} answers no {} can be right", criterion.of_last,
+                                          criterion.correct));
+    }
+    block.criterion = criterion;
+  });
+  if (block.criterion && !block.is_practice) {
+    reader.reject("criterion", "is for practice: it ends a block by how well it is answered");
+  }
+}
+
+void check_criterion(MapReader& reader, const Block& block) {
+  if (!block.criterion) {
+    return;
+  }
+  if (!block.task->has_correct_answer()) {
+    reader.reject("criterion", fmt::format("the task {} has no right answer", block.task->name()));
+  }
+  if (block.comparison) {
+    reader.reject("criterion",
+                  "is for trials that are planned: procedures may end before it is met");
+  } else if (planned_trials(block) < block.criterion->of_last) {
+    reader.reject("criterion", fmt::format("the block has {} trials, fewer than of_last",
+                                           planned_trials(block)));
+  }
+}
+
+// A body can be mounted only as it is.
+void check_presented(MapReader& reader, const Protocol& protocol, const Block& block) {
+  if (block.presented == Presented::virtual_plates) {
+    return;
+  }
+  if (block.task != nullptr && !block.task->can_present_real_plates()) {
+    reader.reject("presented", fmt::format("the task {} has several alternatives at hand; real "
+                                           "plates are mounted one at a time",
+                                           block.task->name()));
+  }
+  std::map<std::tuple<const Plate*, const Material*, const Contacts*>, std::string> stimulus_of;
+  for (const std::string& name : all_presented(block)) {
+    const auto stimulus = std::ranges::find(protocol.stimuli, name, &Stimulus::name);
+    if (stimulus == protocol.stimuli.end()) {
+      continue;  // rejected already
+    }
+    const auto [known, is_new] = stimulus_of.emplace(
+        std::tuple{stimulus->plate.get(), stimulus->material.get(), stimulus->contacts.get()},
+        name);
+    if (!is_new) {
+      reader.reject("stimuli",
+                    fmt::format("'{}' and '{}' are the same real plate", known->second, name));
+    }
+  }
+}
+
+// The keys that blocks of every task have; the task reads its own.
+Block read_block(MapReader& reader, const Protocol& protocol) {
+  Block block;
+  block.name = reader.name("name");
+  block.task = find_task(reader.word("task", "task", task_names()));
+  block.question = reader.translated("question");
+  block.stimuli = reader.words("stimuli", "stimulus", stimulus_names(protocol));
+  block.repetitions = reader.integer("repetitions", 1, 1000, 1);
+  block.order =
+      reader.one_of<Order>("order",
+                           {{"shuffle", Order::shuffle},
+                            {"listed", Order::listed},
+                            {"shuffle_within_repetition", Order::shuffle_within_repetition},
+                            {"williams", Order::williams}},
+                           "shuffle");
+  read_practice(reader, block);
+  if (block.task != nullptr && block.task->uses_order()) {
+    block.constraints = read_constraints(reader);
+  }
+  block.presented = reader.one_of<Presented>(
+      "presented", {{"virtual", Presented::virtual_plates}, {"real", Presented::real_plates}},
+      "virtual");
+  block.explore = read_explore(reader, protocol, block.presented);
+  read_between_trials(reader, block);
+  block.allows_correction = reader.yes_or_no("correction", false);
+  block.forms_after = read_form_names(reader, "forms_after", protocol);
+  block.max_late_impact_repeats = reader.integer("max_late_impact_repeats", 0, 10, 0);
+  if (block.task != nullptr) {
+    block.task->read(reader, protocol, block);
+    check_presented(reader, protocol, block);
+    if (block.gives_feedback && block.allows_correction) {
+      reader.reject("correction", "cannot be combined with feedback");
+    }
+    if (block.gives_feedback && !block.task->has_correct_answer()) {
+      reader.reject("feedback", fmt::format("the task {} has no right answer", block.task->name()));
+    }
+    if (!block.task->uses_order() && reader.has("order")) {
+      reader.reject("order", "a task that draws alternatives anew in each trial takes no order");
+    }
+  }
+  return block;
+}
+
+void check_block(MapReader& reader, const Block& block, const Protocol& protocol) {
+  if (block.order == Order::williams && conditions(block) < 2) {
+    reader.reject("order", "a Williams order needs at least two stimuli");
+  } else if (block.task != nullptr && !block.stimuli.empty()) {
+    check_constraints(reader, block);
+    check_labels_differ(reader, protocol, block);
+    check_targets(reader, protocol, block);
+    check_criterion(reader, block);
+  }
+  if (std::ranges::find(protocol.blocks, block.name, &Block::name) != protocol.blocks.end()) {
+    reader.reject("name", fmt::format("'{}' is the name of an earlier block", block.name));
+  }
+  if (block.stimuli.size() > 26) {
+    reader.reject("stimuli", "a block has at most 26 stimuli");
+  }
+}
+}  // namespace
+
+void read_blocks(MapReader& top, Protocol& protocol) {
+  constexpr int max_seed = 1'000'000'000;
+  protocol.counterbalancing_seed =
+      static_cast<std::uint64_t>(top.integer("counterbalancing_seed", 0, max_seed, 1));
+  top.list("blocks", Presence::optional, [&](MapReader& reader) {
+    const std::size_t earlier_problems = reader.problems_in_file();
+    const Block block = read_block(reader, protocol);
+    check_block(reader, block, protocol);
+    if (reader.problems_in_file() == earlier_problems) {  // only such a block can be drawn
+      check_intervals(reader, block);
+    }
+    protocol.blocks.push_back(block);
+  });
+  if (!protocol.blocks.empty()) {
+    check_places(top, protocol);
+  }
+}
+
+void read_block_order(MapReader& top, Protocol& protocol) {
+  std::vector<std::string> movable;
+  for (const Block& block : protocol.blocks) {
+    if (!block.is_practice) {
+      movable.push_back(block.name);
+    }
+  }
+  top.map("block_order", Presence::optional, [&](MapReader& reader) {
+    BlockOrder& chosen = protocol.block_order;
+    chosen.order =
+        reader.one_of<Order>("order", {{"shuffle", Order::shuffle}, {"williams", Order::williams}});
+    chosen.blocks = reader.words("blocks", "block without practice", movable, movable);
+    if (chosen.blocks.size() < 2) {
+      reader.reject("takes two blocks or more, without counting practice");
+    }
+  });
+}
+}  // namespace tapstudy::protocols

@@ -1,0 +1,362 @@
+// Plates: shape, mesh and fixations.
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <variant>
+
+#include "core/error.hpp"
+#include "protocols/axes/axis.hpp"
+#include "protocols/reader/read_sections.hpp"
+#include "protocols/surface/check_surface.hpp"
+#include "protocols/surface/surface_file.hpp"
+namespace tapstudy::protocols {
+namespace {
+using Presence = MapReader::Presence;
+constexpr Range coordinate_m{-10.0, 10.0};
+
+std::array<bool, 3> read_axes(MapReader& fixation) {
+  const std::string axes = fixation.word(
+      "axes", "set of axes", {"xyz", "xy", "xz", "yz", "x", "y", "z"}, std::string{"xyz"});
+  const auto has = [&](char axis) { return axes.find(axis) != std::string::npos; };
+  return {has('x'), has('y'), has('z')};
+}
+
+// A region is constrained along some axes, or on springs.
+void read_hold(MapReader& reader, core::Fixation& fixation) {
+  if (!reader.has("springs_n_per_m")) {
+    fixation.constrained_axes = read_axes(reader);
+    return;
+  }
+  if (reader.has("axes")) {
+    reader.reject("axes", "not beside springs_n_per_m, whose axes of stiffness 0 are free");
+  }
+  const core::Vec3 springs_n_per_m = reader.numbers("springs_n_per_m", 3, allowed::spring_n_per_m);
+  if (springs_n_per_m.isZero(0.0)) {
+    reader.reject("springs_n_per_m", "holds nothing: every stiffness is 0");
+  }
+  fixation.springs_n_per_m = springs_n_per_m;
+}
+
+void read_place(MapReader& reader, bool is_box, core::Fixation& fixation) {
+  if (!is_box) {
+    fixation.at_m = reader.numbers("at_m", 3, coordinate_m);
+    return;
+  }
+  fixation.at_m.head<2>() = reader.numbers("at_m", 2, coordinate_m);
+  fixation.face = reader.one_of<core::Face>("face", core::face_names, "both");
+}
+
+core::Fixation read_region(MapReader& reader, bool is_box) {
+  using core::RegionShape;
+  core::Fixation fixation;
+  fixation.shape = reader.one_of<RegionShape>("region", core::region_names);
+  switch (fixation.shape) {
+    case RegionShape::disc:
+      if (!is_box) {
+        reader.reject("region", "a disc lies on a plate; on a surface from a file use a ball");
+      }
+      [[fallthrough]];
+    case RegionShape::vertex:
+      read_place(reader, is_box, fixation);
+      break;
+    case RegionShape::ball:
+      fixation.at_m = reader.numbers("at_m", 3, coordinate_m);
+      break;
+    case RegionShape::box:
+      fixation.low_m = reader.numbers("low_m", 3, coordinate_m);
+      fixation.high_m = reader.numbers("high_m", 3, coordinate_m);
+      if ((fixation.low_m.array() > fixation.high_m.array()).any()) {
+        reader.reject("low_m", "is not below high_m along every axis");
+      }
+      break;
+    case RegionShape::side:
+      fixation.side = reader.one_of<core::Side>("side", core::side_names);
+      break;
+  }
+  if (fixation.shape == RegionShape::disc || fixation.shape == RegionShape::ball) {
+    fixation.radius_m = reader.number("radius_m", Range::positive(10.0));
+  }
+  return fixation;
+}
+
+core::Fixation read_fixation(MapReader& reader, bool is_box) {
+  core::Fixation fixation = read_region(reader, is_box);
+  read_hold(reader, fixation);
+  return fixation;
+}
+
+core::Meshing read_mesh(MapReader& mesh) {
+  core::Meshing meshing;
+  meshing.order = mesh.integer("order", 1, 2, 1);
+  if (mesh.has("max_tet_volume_m3")) {
+    meshing.size.max_tet_volume_m3 = mesh.number("max_tet_volume_m3", Range::positive(1e6));
+  }
+  meshing.size.radius_edge_ratio = mesh.number("radius_edge_ratio", {1.1, 10.0}, 1.414);
+  meshing.size.flattening = mesh.number("flattening", {1.0, core::max_flattening}, 1.0);
+  if (mesh.has("accuracy")) {
+    meshing.accuracy = mesh.number("accuracy", {1e-5, 1.0, true, false});
+  }
+  return meshing;
+}
+
+// Read once, however many plates have it: what is modelled is what is stored.
+const SurfaceSource& surface_of(const std::string& file, const ReadFile& read_file,
+                                Protocol& protocol) {
+  const auto known = std::ranges::find(protocol.surfaces, file, &SurfaceSource::file);
+  if (known != protocol.surfaces.end()) {
+    return *known;
+  }
+  return protocol.surfaces.emplace_back(surface_source(file, read_file(file)));
+}
+
+// Of the file's coordinates in the plate frame: turned first, by the length of a vector about its
+// direction, then moved.
+Eigen::Isometry3d read_pose(MapReader& reader) {
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  if (reader.has("offset_m")) {
+    pose.translation() = reader.numbers("offset_m", 3, coordinate_m);
+  }
+  if (reader.has("rotation_rad")) {
+    const Eigen::Vector3d turn = reader.numbers("rotation_rad", 3, {-6.3, 6.3});
+    if (turn.norm() > 0.0) {
+      pose.linear() = Eigen::AngleAxisd{turn.norm(), turn.normalized()}.toRotationMatrix();
+    }
+  }
+  return pose;
+}
+
+// Problems of the surface itself are reported at its key; reading then continues.
+core::Shape read_surface_shape(MapReader& plate, const ReadFile& read_file, Protocol& protocol) {
+  core::Shape shape = core::Box{core::Vec3::Constant(10.0)};  // placeholder until read
+  plate.map("surface", Presence::required, [&](MapReader& reader) {
+    const std::string file = reader.text("file");
+    const std::size_t earlier_problems = reader.problems_in_file();
+    const double metres_per_unit = reader.number("metres_per_unit", Range::positive(1000.0));
+    const bool is_scaled = reader.problems_in_file() == earlier_problems;
+    const Eigen::Isometry3d pose = read_pose(reader);
+    if (!is_scaled) {
+      return;  // its size would be wrong
+    }
+    try {
+      const SurfaceSource& source = surface_of(file, read_file, protocol);
+      core::TriangleSurface surface = read_surface(source, metres_per_unit);
+      for (auto point : surface.points_m.rowwise()) {
+        point = (pose * point.transpose()).transpose().eval();
+      }
+      check_surface(surface);
+      shape = core::Solid{std::move(surface)};
+    } catch (const core::InvalidInput& error) {
+      reader.reject("file", error.what());
+    }
+  });
+  return shape;
+}
+void read_lateral_scale(MapReader& reader, bool is_box, const core::Placement& placement,
+                        Plate& plate) {
+  const double scale =
+      reader.number("lateral_scale", Range::positive(1000.0), placement.lateral_scale);
+  if (placement.lateral_scale > 0.0) {  // or it was rejected
+    plate.lateral_ratio = scale / placement.lateral_scale;
+  }
+  if (!is_box && scale != 1.0) {
+    reader.reject(
+        reader.has("lateral_scale") ? "lateral_scale" : "surface",
+        "needs a lateral_scale of 1, here or in placement (only a flat plate can be scaled "
+        "sideways)");
+  }
+}
+
+// The protocol's points lie at the same places of the device on every plate, unless a plate has its
+// own.
+void read_own_points(MapReader& reader, const Protocol& protocol, Plate& plate) {
+  for (const auto& [name, at_m] : protocol.tapping_points_m) {
+    plate.tapping_points_m[name] = at_m / plate.lateral_ratio;
+  }
+  reader.each_point("tapping_points_m", Presence::optional,
+                    [&](const std::string& name, const Eigen::Vector2d& at_m) {
+                      if (!plate.tapping_points_m.contains(name)) {
+                        reader.reject(
+                            "tapping_points_m",
+                            fmt::format("'{}' is not among the study's tapping points{}", name,
+                                        did_you_mean(name, keys_of(protocol.tapping_points_m))));
+                        return;
+                      }
+                      plate.tapping_points_m[name] = at_m;
+                    });
+}
+}  // namespace
+
+void read_plates(MapReader& top, Protocol& protocol, const ReadFile& read_file) {
+  top.each("plates", Presence::required, [&](const std::string& name, MapReader& reader) {
+    Plate plate;
+    plate.stated_at = reader.stated_at();
+    const bool is_box = !reader.has("surface");
+    plate.shape = is_box ? core::Shape{core::Box{reader.numbers("size_m", 3, allowed::edge_m)}}
+                         : read_surface_shape(reader, read_file, protocol);
+    reader.map("mesh", Presence::optional, [&](MapReader& mesh) { plate.mesh = read_mesh(mesh); });
+    reader.list("fixations", Presence::required, [&](MapReader& fixation) {
+      plate.fixations.push_back(read_fixation(fixation, is_box));
+    });
+    reader.each("contact_points", Presence::optional,
+                [&](const std::string& point, MapReader& region) {
+                  plate.contact_points[point] = read_region(region, is_box);
+                });
+    read_lateral_scale(reader, is_box, protocol.placement, plate);
+    read_own_points(reader, protocol, plate);
+    protocol.plates[name] = std::make_shared<const Plate>(std::move(plate));
+  });
+}
+
+// Bodies that a tapped plate touches, and the springs between them.
+namespace {
+using Presence = MapReader::Presence;
+using EndsByName = std::map<std::string, core::ContactSpring::End>;  // by "body.point"
+
+// Refinement follows one body's frequencies, and they have them together.
+void check_mesh(MapReader& reader, const std::string& key, const Plate& plate) {
+  if (plate.mesh.accuracy) {
+    reader.reject(key,
+                  "its mesh has an accuracy, to which bodies in contact are not refined (give "
+                  "max_tet_volume_m3)");
+  }
+}
+
+void add_points(const std::string& body, const std::shared_ptr<const Plate>& plate,
+                Contacts& contacts, EndsByName& ends) {
+  if (plate) {
+    for (const auto& [name, region] : plate->contact_points) {
+      ends.emplace(fmt::format("{}.{}", body, name),
+                   core::ContactSpring::End{contacts.plates.size(), region});
+    }
+  }
+  contacts.plates.push_back(plate);
+}
+
+void read_body(const std::string& name, MapReader& reader, const Protocol& protocol,
+               Contacts& contacts, EndsByName& ends) {
+  const auto plate =
+      named(protocol.plates, reader.word("plate", "plate", keys_of(protocol.plates)));
+  const auto material =
+      named(protocol.materials, reader.word("material", "material", keys_of(protocol.materials)));
+  if (plate) {
+    check_mesh(reader, "plate", *plate);
+  }
+  if (material && std::holds_alternative<core::ModalDamping>(material->damping)) {
+    reader.reject("material", modal_ratios_in_contact);
+  }
+  core::BodyInContact body;
+  if (plate) {
+    static_cast<core::Plate&>(body) = *plate;
+  }
+  if (material) {
+    body.material = *material;
+  }
+  contacts.bodies.push_back(std::move(body));
+  add_points(name, plate, contacts, ends);
+}
+
+// nullopt for a name that was rejected.
+std::optional<core::ContactSpring::End> read_end(MapReader& reader, const std::string& key,
+                                                 const EndsByName& ends) {
+  const auto found = ends.find(reader.word(key, "contact point", keys_of(ends)));
+  return found == ends.end() ? std::nullopt : std::optional{found->second};
+}
+
+// nullopt where an end was rejected.
+std::optional<core::ContactSpring> read_spring(MapReader& reader, const EndsByName& ends) {
+  core::ContactSpring spring;
+  const auto from = read_end(reader, "from", ends);
+  const auto to = read_end(reader, "to", ends);
+  if (from && to && from->body == to->body) {
+    reader.reject("to", "is a point of the same body as from");
+  }
+  spring.stiffness_n_per_m = reader.numbers("springs_n_per_m", 3, allowed::spring_n_per_m);
+  if (spring.stiffness_n_per_m.isZero(0.0)) {
+    reader.reject("springs_n_per_m", "joins nothing: every stiffness is 0");
+  }
+  spring.loss_factor = reader.number("loss_factor", {0.0, 2.0}, 0.0);
+  if (!from || !to) {
+    return std::nullopt;
+  }
+  spring.from = *from;
+  spring.to = *to;
+  return spring;
+}
+
+// A body that no springs lead to would ring unfelt.
+void check_are_joined(MapReader& reader, const Contacts& contacts,
+                      const std::vector<std::string>& bodies) {
+  std::vector<bool> is_joined(bodies.size() + 1, false);
+  is_joined[0] = true;
+  for (std::size_t round = 0; round < bodies.size(); ++round) {
+    for (const core::ContactSpring& spring : contacts.springs) {
+      const bool is_either = is_joined[spring.from.body] || is_joined[spring.to.body];
+      is_joined[spring.from.body] = is_either;
+      is_joined[spring.to.body] = is_either;
+    }
+  }
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    if (!is_joined[i + 1]) {
+      reader.reject("bodies", fmt::format("no springs lead from '{}' to the plate that is tapped",
+                                          bodies[i]));
+    }
+  }
+}
+
+Contacts read_set(MapReader& reader, const Protocol& protocol) {
+  Contacts contacts;
+  EndsByName ends;
+  const std::string tapped = reader.word("tapped", "plate", keys_of(protocol.plates));
+  add_points(tapped, named(protocol.plates, tapped), contacts, ends);
+  if (contacts.plates.front()) {
+    check_mesh(reader, "tapped", *contacts.plates.front());
+  }
+  std::vector<std::string> bodies;
+  bool are_ends_known = true;
+  reader.each("bodies", Presence::required, [&](const std::string& name, MapReader& body) {
+    bodies.push_back(name);
+    if (name == tapped) {
+      body.reject("has the name of the plate that is tapped");
+    }
+    read_body(name, body, protocol, contacts, ends);
+  });
+  reader.list("springs", Presence::at_least_one, [&](MapReader& inner) {
+    const auto spring = read_spring(inner, ends);
+    are_ends_known = are_ends_known && spring;
+    contacts.springs.push_back(spring.value_or(core::ContactSpring{}));
+  });
+  if (are_ends_known && !contacts.springs.empty()) {
+    check_are_joined(reader, contacts, bodies);
+  }
+  return contacts;
+}
+}  // namespace
+
+void read_contacts(MapReader& top, Protocol& protocol) {
+  top.each("contacts", Presence::optional, [&](const std::string& name, MapReader& reader) {
+    protocol.contacts[name] = std::make_shared<const Contacts>(read_set(reader, protocol));
+  });
+}
+
+void check_contacts(MapReader& reader, const Stimulus& stimulus, const Protocol& protocol) {
+  if (!stimulus.contacts) {
+    return;
+  }
+  const auto& tapped = stimulus.contacts->plates.front();
+  if (stimulus.plate && tapped && stimulus.plate != tapped) {
+    const auto name = std::ranges::find_if(
+        protocol.plates, [&](const auto& known) { return known.second == tapped; });
+    reader.reject("contacts", fmt::format("are those of plate '{}'", name->first));
+  }
+  if (stimulus.material && std::holds_alternative<core::ModalDamping>(stimulus.material->damping)) {
+    reader.reject("material", modal_ratios_in_contact);
+  }
+  if (stimulus.technique != nullptr && stimulus.technique->needs_beam()) {
+    reader.reject("contacts", fmt::format("technique '{}' computes a plate that touches no other",
+                                          stimulus.technique->name));
+  }
+}
+}  // namespace tapstudy::protocols

@@ -1,0 +1,76 @@
+#include "protocols/reader/read_protocol.hpp"
+
+#include <filesystem>
+
+#include "core/error.hpp"
+#include "protocols/reader/read_sections.hpp"
+#include "protocols/yaml/text_file.hpp"
+namespace tapstudy::protocols {
+namespace {
+// File names are relative to the study's own file.
+ReadFile beside(const std::string& file) {
+  return [directory = std::filesystem::path{file}.parent_path()](const std::string& name) {
+    const std::filesystem::path path = directory / name;
+    std::error_code error;
+    if (std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error)) {
+      throw core::InvalidInput{path.string() + ": cannot be read (not a file)"};
+    }
+    return contents_of(path.string(), max_surface_bytes);
+  };
+}
+
+Protocol parse(const StudyText& study, const ReadFile& read_file, Problems& problems) {
+  Protocol protocol;
+  protocol.text = study.text;
+  protocol.translations.language = study.language;
+  MapReader top = MapReader::whole_file(study.text, study.file, problems, &protocol.translations);
+  top.word("format", "format", {"tapstudy/1"});
+  protocol.title = top.translated("title");
+  protocol.notes = top.paragraphs("notes", "");
+  const int planned = top.integer("participants", 1, max_participants, 1);
+  if (top.has("participants")) {
+    protocol.participants = planned;
+  }
+  protocol.instructions = top.translated_paragraphs("instructions", "");
+  read_rendering(top, protocol);
+  read_placement(top, MapReader::Presence::required,
+                 [&](const core::Placement& placement) { protocol.placement = placement; });
+  read_materials(top, protocol);
+  read_points(top, protocol);
+  read_plates(top, protocol, read_file);
+  read_recordings(top, protocol);
+  read_contacts(top, protocol);
+  read_stimuli(top, protocol);
+  read_forms(top, protocol);
+  read_display(top, protocol);
+  read_blocks(top, protocol);
+  read_block_order(top, protocol);
+  read_hypotheses(top, protocol);
+  read_masking(top, protocol);
+  read_simulation(top, protocol);
+  top.finish();
+  return protocol;
+}
+}  // namespace
+
+Protocol parse_protocol(const std::string& text, const std::string& file) {
+  return parse_protocol({text, file}, beside(file));
+}
+
+Protocol parse_protocol(const StudyText& study, const ReadFile& read_file) {
+  Problems problems{study.file};
+  Protocol protocol = parse(study, read_file, problems);
+  problems.throw_if_any();
+  return protocol;
+}
+
+Protocol read_protocol(const std::string& file, const std::string& language) {
+  return parse_protocol({contents_of(file), file, language}, beside(file));
+}
+
+std::set<std::string> keys_asked_for(const std::string& text, const std::string& file) {
+  Problems problems{file};
+  parse({text, file}, beside(file), problems);
+  return problems.asked();
+}
+}  // namespace tapstudy::protocols

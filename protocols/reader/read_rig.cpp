@@ -1,0 +1,260 @@
+#include "protocols/reader/read_rig.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "core/text/print.hpp"
+#include "protocols/reader/read_sections.hpp"
+#include "protocols/yaml/yaml_reader.hpp"
+namespace tapstudy::protocols {
+namespace {
+using Presence = MapReader::Presence;
+
+// A person's hand is on hardware; a simulated one may wait for any time (0).
+constexpr int max_late_ticks_of_hardware = 20;
+constexpr double max_stall_of_hardware_s = 0.01;
+
+void read_loop(MapReader& top, Rig& rig) {
+  rig.max_late_ticks_in_a_row = rig.has_hardware ? max_late_ticks_of_hardware : 0;
+  rig.max_stall_s = rig.has_hardware ? max_stall_of_hardware_s : 0.0;
+  top.map("loop", Presence::optional, [&](MapReader& reader) {
+    core::RealtimeRequest& realtime = rig.realtime;
+    realtime.fifo_priority = reader.integer("fifo_priority", 0, 99, realtime.fifo_priority);
+    realtime.lock_memory = reader.yes_or_no("lock_memory", realtime.lock_memory);
+    if (reader.has("cpu")) {
+      realtime.cpu = reader.integer("cpu", 0, 1023);
+    }
+    rig.max_late_ticks_in_a_row =
+        reader.integer("max_late_ticks_in_a_row", rig.has_hardware ? 1 : 0, 1'000'000,
+                       rig.max_late_ticks_in_a_row);
+    rig.max_stall_s =
+        reader.number("max_stall_s", {0.0, 0.1, !rig.has_hardware, true}, rig.max_stall_s);
+  });
+}
+
+void check_reply_time(MapReader& top, const Rig& rig) {
+  if (rig.section && rig.max_stall_s > 0.0 &&
+      2.0 * rig.section->max_reply_time_s() > rig.max_stall_s) {
+    top.reject("loop", fmt::format("max_stall_s: {} s is below twice the device's max_reply_s, {} "
+                                   "s: a single missing reply would be a stall",
+                                   rig.max_stall_s, rig.section->max_reply_time_s()));
+  }
+}
+
+// Motion limits are mandatory for hardware; simulated and recorded hands cannot be hurt.
+void read_limits_of_motion(MapReader& top, core::GateSettings& gate) {
+  gate.max_hand_speed_m_s = top.number("max_hand_speed_m_s", Range::positive(10.0));
+  gate.workspace_radius_m = top.number("workspace_radius_m", Range::positive(1.0));
+  gate.force_rise_s = top.number("force_rise_s", {0.1, 10.0}, 0.5);
+  gate.force_fall_s = top.number("force_fall_s", {0.01, 1.0}, 0.1);
+}
+
+std::vector<std::string> names_of(RigDevices devices) {
+  std::vector<std::string> names;
+  for (const RigDevice* const device : devices) {
+    names.emplace_back(device->name());
+  }
+  return names;
+}
+
+void read_device(MapReader& top, const std::string& file, RigDevices devices, Rig& rig) {
+  rig.device = top.word("device", "device", names_of(devices));
+  const auto device = std::ranges::find(devices, std::string_view{rig.device}, &RigDevice::name);
+  if (device == devices.end()) {
+    return;
+  }
+  rig.has_hardware = (*device)->has_hardware();
+  rig.section =
+      (*device)->read_section(top, {std::filesystem::path{file}.parent_path().string(), &rig.text});
+}
+
+// A slower limit would hold the force on after the finger has left the plate.
+constexpr double max_time_to_full_force_s = 0.1;
+
+void read_limits(MapReader& top, core::ForceLimits& limits) {
+  limits.max_force_n = top.number("max_force_n", {0.01, 100.0});
+  limits.max_force_rate_n_per_s = top.number("max_force_rate_n_per_s", Range::positive(1e6));
+  const double least_n_per_s = limits.max_force_n / max_time_to_full_force_s;
+  if (top.has("max_force_rate_n_per_s") && limits.max_force_rate_n_per_s < least_n_per_s) {
+    top.reject("max_force_rate_n_per_s",
+               fmt::format("is too slow to reach, and to release, max_force_n within {} s (at "
+                           "least {:.6g})",
+                           max_time_to_full_force_s, least_n_per_s));
+  }
+}
+
+void read_audio(MapReader& top, Rig& rig) {
+  top.map("audio", Presence::optional, [&](MapReader& reader) {
+    core::AudioOutput& audio = rig.audio.emplace();
+    audio.card = reader.text("card", audio.card);
+    if (audio.card.find('|') !=
+        std::string::npos) {  // ALSA's plug-in `file` would run what follows
+      reader.reject("card", "names a command to run ('|')");
+    }
+    audio.rate_hz = reader.integer("rate_hz", 8000, 192'000, audio.rate_hz);
+    audio.gain_db = reader.number("gain_db", {-60.0, 60.0}, audio.gain_db);
+  });
+}
+
+void read_response(MapReader& top, Rig& rig) {
+  top.map("vibration_response", Presence::optional, [&](MapReader& reader) {
+    core::DeviceResponse response;
+    reader.list("points", Presence::at_least_one, [&](MapReader& point) {
+      const double frequency_hz = point.number("frequency_hz", Range::positive(1e5));
+      if (!response.points.empty() && frequency_hz <= response.points.back().frequency_hz) {
+        point.reject("frequency_hz", "is not above that of the point before");
+      }
+      response.points.push_back({frequency_hz, point.number("gain", {1e-3, 1e3})});
+    });
+    response.max_boost = reader.number("max_boost", {1.0, 100.0}, response.max_boost);
+    rig.vibration_response = std::make_shared<const core::DeviceResponse>(std::move(response));
+  });
+}
+
+// A file is looked for beside the rig.
+void read_markers(MapReader& top, const std::string& file, Rig& rig) {
+  top.map("markers", Presence::optional, [&](MapReader& reader) {
+    reader.map("osc", Presence::optional, [&](MapReader& osc) {
+      OscTarget& target = rig.markers.osc.emplace();
+      target.host = osc.text("host", target.host);
+      target.port = osc.integer("port", 1, 65'535);
+    });
+    if (reader.has("lines")) {
+      rig.markers.lines =
+          (std::filesystem::path{file}.parent_path() / reader.text("lines")).string();
+    }
+  });
+}
+
+Rig parse(const std::string& text, const std::string& file, RigDevices devices,
+          Problems& problems) {
+  MapReader top = MapReader::whole_file(text, file, problems);
+  Rig rig;
+  rig.text = text;
+  top.word("format", "format", {"tapstudy-rig/1"});
+  read_device(top, file, devices, rig);
+  read_limits(top, rig.gate.limits);
+  if (rig.has_hardware) {
+    read_limits_of_motion(top, rig.gate);
+  }
+  if (top.has("vibration_band_hz")) {
+    rig.vibration_band_hz = top.number("vibration_band_hz", Range::positive(1e5));
+  }
+  read_response(top, rig);
+  read_loop(top, rig);
+  check_reply_time(top, rig);
+  read_placement(top, Presence::optional,
+                 [&](const core::Placement& placement) { rig.placement = placement; });
+  read_audio(top, rig);
+  read_markers(top, file, rig);
+  top.finish();
+  return rig;
+}
+}  // namespace
+
+Rig parse_rig(const std::string& text, const std::string& file, RigDevices devices) {
+  Problems problems{file};
+  Rig rig = parse(text, file, devices, problems);
+  problems.throw_if_any();
+  return rig;
+}
+
+std::optional<core::Placement> placement_in_stored_rig(const std::string& rig_text) {
+  if (rig_text.empty()) {
+    return std::nullopt;
+  }
+  const std::string file = "stored rig";
+  Problems problems{file};
+  MapReader top = MapReader::first_document(rig_text, file, problems);  // a calibration follows
+  std::optional<core::Placement> placement;
+  read_placement(top, Presence::optional, [&](const core::Placement& own) { placement = own; });
+  problems.throw_if_any();
+  return placement;
+}
+
+std::set<std::string> rig_keys_asked_for(const std::string& text, const std::string& file,
+                                         RigDevices devices) {
+  Problems problems{file};
+  parse(text, file, devices, problems);
+  return problems.asked();
+}
+
+namespace {
+using Presence = MapReader::Presence;
+constexpr const char* format = "tapstudy-calibration/1";
+constexpr const char* device = "spidar-g6";
+
+core::StringCalibration read_string(MapReader& reader) {
+  core::StringCalibration string;
+  string.metres_per_count = reader.number("metres_per_count", {-1e-3, 1e-3});
+  string.volts_per_newton = reader.number("volts_per_newton", Range::positive(100.0));
+  string.dac_counts_per_volt = reader.number("dac_counts_per_volt", Range::positive(1e5));
+  if (string.metres_per_count == 0.0) {
+    reader.reject("metres_per_count", "is zero (measure it: pull 0.1 m of string)");
+  }
+  return string;
+}
+
+core::SpidarCalibration parse(const std::string& text, const std::string& file,
+                              const std::string& type, Problems& problems) {
+  MapReader top = MapReader::whole_file(text, file, problems);
+  top.word("format", "format", {format});
+  top.word("device", "device", {device});
+  top.word("type", "type of this rig", {type});
+  core::SpidarCalibration calibration;
+  calibration.min_tension_n = top.number("min_tension_n", Range::positive(5.0));
+  calibration.max_tension_n = top.number("max_tension_n", Range::positive(20.0));
+  if (calibration.min_tension_n >= calibration.max_tension_n) {
+    top.reject("max_tension_n", "is not above min_tension_n");
+  }
+  std::size_t count = 0;
+  top.list("strings", Presence::required, [&](MapReader& reader) {
+    const core::StringCalibration string = read_string(reader);
+    if (count < calibration.strings.size()) {
+      calibration.strings.at(count) = string;
+    }
+    ++count;
+  });
+  if (count != calibration.strings.size()) {
+    top.reject("strings", "must be eight, one for each string, in the order of the motors");
+  }
+  top.finish();
+  return calibration;
+}
+}  // namespace
+
+core::SpidarCalibration parse_calibration(const std::string& text, const std::string& file,
+                                          const std::string& type) {
+  Problems problems{file};
+  const core::SpidarCalibration calibration = parse(text, file, type, problems);
+  problems.throw_if_any();
+  return calibration;
+}
+
+void write_calibration(std::ostream& out, const std::string& type,
+                       const core::SpidarCalibration& calibration) {
+  core::print(out,
+              "# Measured on one device, string by string; good for no other.\n"
+              "format: {}\n"
+              "device: {}\n"
+              "type: {}\n"
+              "min_tension_n: {}\n"
+              "max_tension_n: {}\n"
+              "strings:\n",
+              format, device, type, calibration.min_tension_n, calibration.max_tension_n);
+  for (const core::StringCalibration& string : calibration.strings) {
+    core::print(
+        out,
+        "  - {{metres_per_count: {:.6g}, volts_per_newton: {:.6g}, dac_counts_per_volt: {}}}\n",
+        string.metres_per_count, string.volts_per_newton, string.dac_counts_per_volt);
+  }
+}
+
+std::set<std::string> calibration_keys_asked_for(const std::string& text, const std::string& file) {
+  Problems problems{file};
+  parse(text, file, "X3R", problems);
+  return problems.asked();
+}
+}  // namespace tapstudy::protocols

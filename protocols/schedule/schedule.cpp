@@ -1,0 +1,149 @@
+#include "protocols/schedule/schedule.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "protocols/schedule/ordering.hpp"
+namespace tapstudy::protocols {
+namespace {
+// A block with the practice before it, as places in the protocol's list; the last one may be
+// practice alone.
+using Unit = std::vector<std::size_t>;
+
+std::vector<Unit> units_of(const Protocol& protocol) {
+  std::vector<Unit> units;
+  bool is_new = true;
+  for (std::size_t i = 0; i < protocol.blocks.size(); ++i) {
+    if (is_new) {
+      units.emplace_back();
+    }
+    units.back().push_back(i);
+    is_new = !protocol.blocks[i].is_practice;
+  }
+  return units;
+}
+
+// Those that exchange their places.
+std::vector<std::size_t> moving(const Protocol& protocol, const std::vector<Unit>& units) {
+  std::vector<std::size_t> found;
+  for (std::size_t i = 0; i < units.size(); ++i) {
+    const Block& block = protocol.blocks[units[i].back()];
+    const std::vector<std::string>& named = protocol.block_order.blocks;
+    if (!block.is_practice &&
+        (named.empty() || std::ranges::find(named, block.name) != named.end())) {
+      found.push_back(i);
+    }
+  }
+  return found;
+}
+
+void reorder(const Protocol& protocol, std::uint64_t participant_seed, int order_index,
+             std::vector<std::size_t>& places) {
+  if (protocol.block_order.order == Order::shuffle) {
+    core::Rng rng{core::derived_seed(participant_seed, core::Purpose::block_order)};
+    rng.shuffle(places);
+    return;
+  }
+  const int n = static_cast<int>(places.size());
+  const std::uint64_t seed =
+      core::derived_seed(protocol.counterbalancing_seed, core::Purpose::block_order);
+  const std::vector<std::size_t> listed = places;
+  const std::vector<int> row =
+      williams_row(n, balanced_sequence(williams_rows(n), {order_index, seed}));
+  std::ranges::transform(row, places.begin(),
+                         [&](int i) { return listed[static_cast<std::size_t>(i)]; });
+}
+}  // namespace
+
+std::vector<std::size_t> block_sequence(const Protocol& protocol, std::uint64_t participant_seed,
+                                        int order_index) {
+  const std::vector<Unit> units = units_of(protocol);
+  std::vector<const Unit*> ordered;
+  std::ranges::transform(units, std::back_inserter(ordered),
+                         [](const Unit& unit) { return &unit; });
+  if (protocol.block_order.order != Order::listed) {
+    const std::vector<std::size_t> places = moving(protocol, units);
+    std::vector<std::size_t> drawn = places;
+    reorder(protocol, participant_seed, order_index, drawn);
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      ordered[places[i]] = &units[drawn[i]];
+    }
+  }
+  std::vector<std::size_t> sequence;
+  for (const Unit* unit : ordered) {
+    sequence.insert(sequence.end(), unit->begin(), unit->end());
+  }
+  return sequence;
+}
+
+std::map<std::string, int> first_trials(const Protocol& protocol, std::uint64_t participant_seed,
+                                        int order_index) {
+  std::map<std::string, int> first;
+  int next = 1;
+  for (const std::size_t i : block_sequence(protocol, participant_seed, order_index)) {
+    const Block& block = protocol.blocks[i];
+    first[block.name] = next;
+    next += planned_trials(block);
+  }
+  return first;
+}
+
+int balanced_block_orders(const Protocol& protocol) {
+  return protocol.block_order.order == Order::williams
+             ? williams_rows(static_cast<int>(moving(protocol, units_of(protocol)).size()))
+             : 1;
+}
+
+int planned_trials(const Block& block) {
+  return block.repetitions * static_cast<int>(block.task->trials_per_repetition(block)) +
+         (block.catch_trials ? block.catch_trials->count : 0);
+}
+
+Draw draw_of(std::uint64_t counterbalancing_seed, std::size_t block_index,
+             std::uint64_t participant_seed, int order_index) {
+  return {participant_seed, order_index, block_index, counterbalancing_seed,
+          core::derived_seed(counterbalancing_seed, core::Purpose::catch_trials,
+                             static_cast<std::uint64_t>(order_index))};
+}
+
+Schedule make_schedule(const Protocol& protocol, std::uint64_t participant_seed, int order_index) {
+  Schedule schedule;
+  for (const std::size_t i : block_sequence(protocol, participant_seed, order_index)) {
+    const Block& block = protocol.blocks[i];
+    const Draw draw = draw_of(protocol.counterbalancing_seed, i, participant_seed, order_index);
+    for (PlannedTrial& trial : block.task->trials(block, draw)) {
+      trial.number = static_cast<int>(schedule.size()) + 1;
+      schedule.push_back(std::move(trial));
+    }
+  }
+  return schedule;
+}
+
+namespace {
+// "family at E = 2, family *": what a procedure will choose has a star.
+std::vector<std::string> described(const std::vector<Alternative>& alternatives) {
+  std::vector<std::string> words;
+  for (const Alternative& alternative : alternatives) {
+    words.push_back(alternative.stimulus);
+    if (!alternative.values.empty()) {
+      words.back() += " at " + protocols::described(alternative.values);
+    } else if (alternative.is_comparison) {
+      words.back() += " *";
+    }
+  }
+  return words;
+}
+}  // namespace
+
+std::string described(const Schedule& schedule) {
+  std::string lines;
+  for (const PlannedTrial& trial : schedule) {
+    lines += fmt::format("{} {} {} {}{}{}\n", trial.number, trial.block, trial.repetition,
+                         fmt::join(described(trial.alternatives), ","),
+                         trial.is_practice ? " practice" : "", trial.is_catch ? " catch" : "");
+  }
+  return lines;
+}
+}  // namespace tapstudy::protocols

@@ -1,0 +1,37 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "protocols/protocol.hpp"
+namespace tapstudy::protocols {
+using Schedule = std::vector<PlannedTrial>;
+
+// The complete trial order of one participant. The seed is the participant's own; counterbalancing
+// uses the participant index, from 0. The result does not depend on the compiler.
+Schedule make_schedule(const Protocol& protocol, std::uint64_t participant_seed, int order_index);
+
+// How many trials a participant has of it.
+int planned_trials(const Block& block);
+
+// The draw of a block's order. Catch trials lie where the study's own seed puts them.
+Draw draw_of(std::uint64_t counterbalancing_seed, std::size_t block_index,
+             std::uint64_t participant_seed, int order_index);
+
+// One line a trial, for the store and for people.
+std::string described(const Schedule& schedule);
+
+// The order in which one participant does the protocol's blocks: their places in its list. Seed and
+// index as for make_schedule.
+std::vector<std::size_t> block_sequence(const Protocol& protocol, std::uint64_t participant_seed,
+                                        int order_index);
+
+// The number of each block's first trial, by the block's name.
+std::map<std::string, int> first_trials(const Protocol& protocol, std::uint64_t participant_seed,
+                                        int order_index);
+
+// How many participants it takes to balance the order of the blocks; 1 where it is not balanced.
+int balanced_block_orders(const Protocol& protocol);
+}  // namespace tapstudy::protocols

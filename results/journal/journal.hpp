@@ -1,0 +1,88 @@
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "results/rows.hpp"
+namespace tapstudy::results {
+// An answered trial without its traces and events.
+struct JournalledAnswer {
+  TrialRow trial;
+  std::vector<AlternativeRow> alternatives;
+  ResponseRow response;
+};
+
+// What a journal holds of the trials. Each of these is a line.
+struct JournalEntries {
+  std::vector<JournalledAnswer> answers{};  // as first given
+  std::vector<CorrectionRow> corrections{};
+  std::vector<OperatorActionRow> actions{};
+  std::vector<FormAnswerRow> form_answers{};
+};
+
+std::string journal_file(const std::string& directory);
+
+// DIR/answers.journal: a second record of what was answered and of what the operator did, in plain
+// text, in case the database is lost. Only ever appended to, each line flushed to the disk: one
+// JSON object a line, the study first (with its protocol and surfaces), each session before its
+// answers. Each line ends with
+//   "chain":"SHA-256 of the previous line's chain and of this line up to here"
+// so that a line that was changed, removed or inserted is noticed. Several programs may append at
+// once. A half line at the end, left by a power failure, was never confirmed and is cut off.
+class Journal {
+ public:
+  explicit Journal(const std::string& directory) : file_{journal_file(directory)} {}
+  enum class Flush { each_time, when_asked };
+  void set_flush(Flush flush) { flush_ = flush; }
+  // Throws StoreError if it cannot be written.
+  void flush();
+  // Appends what it does not hold yet; the study is asked for if it is new. Throws StoreError if it
+  // cannot be written; its end is then as it was before. False: nothing was appended, since lines
+  // that it once held are gone, with its file or its end; the next call begins with what is left.
+  bool complete(const std::function<StudyRow()>& study, const std::vector<SessionRow>& sessions,
+                const JournalEntries& entries);
+
+ private:
+  bool read_on(int descriptor);  // false: it is another file now
+  std::string chained(const std::string& body);
+  std::string file_;
+  Flush flush_{Flush::each_time};
+  std::set<std::string> known_;  // lines without their chain
+  std::string chain_;            // of the last line known
+  std::int64_t read_bytes_{0};
+};
+
+// What the journal of a study holds. Throws StoreError with file and line where it does not hold
+// together.
+struct JournalContent {
+  StudyRow study;
+  std::vector<SessionRow> sessions;
+  JournalEntries entries;
+};
+JournalContent read_journal(const std::string& directory);
+
+// One text per entry, equal if and only if the entries are, kind by kind.
+std::vector<std::string> to_lines(const JournalEntries& entries);
+
+// A line of a journal: a JSON object without its chain, and the chain.
+struct JournalLine {
+  std::string body;
+  std::string chain;  // empty where the line has none
+};
+JournalLine split_line(const std::string& line);
+std::string join_line(const JournalLine& line);
+std::string chain_of(const std::string& chain_before, const std::string& body);
+
+// Bodies.
+std::string to_line(const StudyRow& study);
+std::string to_line(const SessionRow& session);
+
+// What a database holds of its study and its sessions (the protocol and its hash, modes, seeds,
+// orders, devices …) otherwise than the journal does, a line each; answers apart.
+std::vector<std::string> differing_study_and_sessions(const StudyRow& study,
+                                                      const std::vector<SessionRow>& sessions,
+                                                      const JournalContent& journal);
+}  // namespace tapstudy::results

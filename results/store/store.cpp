@@ -1,0 +1,315 @@
+#include "results/store/store.hpp"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <ctime>
+#include <filesystem>
+#include <map>
+#include <set>
+#include <span>
+#include <string>
+#include <thread>
+
+#include "core/text/plain_text.hpp"
+#include "results/compression.hpp"
+#include "results/store/schema.hpp"
+#include "results/store_error.hpp"
+namespace tapstudy::results {
+namespace {
+namespace fs = std::filesystem;
+
+std::string database_file(const std::string& directory) {
+  return (fs::path{directory} / "study.db").string();
+}
+bool exists(const std::string& file) {
+  std::error_code error;
+  return fs::exists(file, error);
+}
+
+void make_directory(const std::string& directory) {
+  std::error_code error;
+  fs::create_directories(directory, error);
+  if (error) {
+    throw StoreError{fmt::format("{}: cannot be created: {}", directory, error.message())};
+  }
+}
+
+// Left by a program that died while it closed the file, or whose disk failed then. Whoever only
+// reads may not roll back.
+void roll_back_unfinished(const std::string& directory) {
+  const std::string file = database_file(directory);
+  if (exists(file + "-journal")) {
+    Database writable{file, Database::Access::write};
+    writable.pragma("schema_version");
+  }
+}
+
+// Changing the journal mode briefly needs exclusive access, and SQLite does not wait for it.
+void use_write_ahead_log(Database& database) {
+  constexpr int attempts = 50;
+  for (int attempt = 1;; ++attempt) {
+    try {
+      database.run(
+          "PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; "
+          "PRAGMA foreign_keys = ON");
+      return;
+    } catch (const StoreError&) {
+      if (attempt == attempts) {
+        throw;
+      }
+      std::this_thread::sleep_for(std::chrono::milliseconds{100});
+    }
+  }
+}
+
+}  // namespace
+
+Store Store::open_or_create(const std::string& directory, const StudyRow& study) {
+  make_directory(directory);
+  if (!has_database(directory) && has_journal(directory)) {
+    throw StoreError{fmt::format(
+        "{}: is missing, though {} holds answers (`tapstudy report` reads them; put study.db back, "
+        "or choose another --out)",
+        database_file(directory), journal_file(directory))};
+  }
+  Store store{Database{database_file(directory), Database::Access::write}, Journal{directory}};
+  if (!store.is_empty()) {
+    store.check_is_sound();  // before anything in it is changed
+  }
+  use_write_ahead_log(store.database_);
+  store.create_or_check(study);
+  // a program killed between the two leaves the journal an answer behind
+  store.journal_->complete([&] { return store.study(); }, store.sessions(),
+                           store.entries_for_journal());
+  return store;
+}
+
+Store Store::open_existing(const std::string& directory) {
+  if (!has_database(directory)) {
+    throw core::InvalidInput{fmt::format("{}: there is no study here (no study.db)", directory)};
+  }
+  roll_back_unfinished(directory);
+  Store store{Database{database_file(directory), Database::Access::read}, std::nullopt};
+  store.check_is_sound();
+  return store;
+}
+
+std::string Store::directory() const {
+  return fs::path{database_.file()}.parent_path().string();
+}
+
+bool Store::has_database(const std::string& directory) {
+  return exists(database_file(directory));
+}
+bool Store::has_journal(const std::string& directory) {
+  return exists(journal_file(directory));
+}
+
+Store Store::from_journal(const std::string& directory) {
+  const JournalContent content = read_journal(directory);
+  Store store{Database::in_memory(journal_file(directory)), std::nullopt};
+  store.create(content.study);
+  std::map<std::int64_t, std::int64_t> new_ids;  // sessions without an answer are not in it
+  for (SessionRow session : content.sessions) {
+    const std::int64_t id = session.id;
+    session.resumes.reset();
+    store.add_session(session);
+    new_ids[id] = session.id;
+  }
+  for (const JournalledAnswer& answer : content.entries.answers) {
+    TrialRecord record{answer.trial, answer.alternatives, answer.response, {}, {}, {}, {}};
+    record.trial.session_id = new_ids[answer.trial.session_id];
+    store.add_trial(record);
+  }
+  for (CorrectionRow correction : content.entries.corrections) {
+    correction.session_id = new_ids[correction.session_id];
+    store.insert_correction(correction);
+  }
+  for (OperatorActionRow action : content.entries.actions) {
+    action.session_id = new_ids[action.session_id];
+    store.insert_action(action);
+  }
+  for (FormAnswerRow answer : content.entries.form_answers) {
+    answer.session_id = new_ids[answer.session_id];
+    store.insert_form_answer(answer);
+  }
+  return store;
+}
+
+Store::~Store() {
+  if (!database_.is_open() || !database_.can_write()) {
+    return;
+  }
+  try {
+    // extra: of this change, too, a power failure leaves nothing to roll back
+    database_.run("PRAGMA synchronous = EXTRA; PRAGMA journal_mode = DELETE");
+  } catch (const StoreError&) {  // NOLINT(bugprone-empty-catch): another process has it open
+  }
+}
+
+namespace {
+// The line, from 1, from which two texts differ.
+std::ptrdiff_t first_difference(const std::string& one, const std::string& other) {
+  const auto [end, ignored] = std::ranges::mismatch(one, other);
+  return 1 + std::count(one.begin(), end, '\n');
+}
+}  // namespace
+
+// In one transaction: of two programs started concurrently one creates, the other finds it.
+void Store::create_or_check(const StudyRow& study) {
+  Transaction all{database_};
+  if (!is_empty()) {
+    check_version();
+    const StudyRow stored = study_without_surfaces();
+    if (stored.protocol_sha256 != study.protocol_sha256) {
+      throw core::InvalidInput{
+          fmt::format("{}: holds the study of another protocol, '{}', whose text differs from line "
+                      "{} on (choose another --out; to change a running study, start a new one)",
+                      database_.file(), stored.title,
+                      first_difference(stored.protocol_text, study.protocol_text))};
+    }
+    check_surfaces(study);
+    return;
+  }
+  create(study);
+  all.commit();
+}
+
+void Store::create(const StudyRow& study) {
+  database_.run(schema_sql);
+  database_.run(fmt::format("PRAGMA application_id = {}; PRAGMA user_version = {}", application_id,
+                            schema_version));
+  Statement{database_,
+            "INSERT INTO study (id, title, protocol_file, protocol_text, protocol_sha256, "
+            "created_utc) VALUES (1, ?, ?, ?, ?, ?)"}
+      .bind(study.title)
+      .bind(study.protocol_file)
+      .bind(study.protocol_text)
+      .bind(study.protocol_sha256)
+      .bind(fmt::format("{:%FT%TZ}", fmt::gmtime(std::time(nullptr))))
+      .finish();
+  add_surfaces(study);
+}
+
+void Store::add_surfaces(const StudyRow& study) {
+  for (const SurfaceRow& surface : study.surfaces) {
+    const auto packed = compressed(std::as_bytes(std::span{surface.bytes}));
+    Statement{database_, "INSERT INTO surface (file, sha256, size, zstd) VALUES (?, ?, ?, ?)"}
+        .bind(surface.file)
+        .bind(surface.sha256)
+        .bind(static_cast<std::int64_t>(surface.bytes.size()))
+        .bind(std::span<const std::byte>{packed})
+        .finish();
+  }
+}
+
+// A session must not go on with another body.
+void Store::check_surfaces(const StudyRow& study) {
+  for (const SurfaceRow& surface : study.surfaces) {
+    Statement stored{database_, "SELECT sha256 FROM surface WHERE file = ?"};
+    stored.bind(surface.file);
+    if (!stored.step() || stored.text(0) != surface.sha256) {
+      throw core::InvalidInput{fmt::format(
+          "{}: '{}' is not the surface that the study began with (put that one back, or "
+          "start a new study)",
+          database_.file(), surface.file)};
+    }
+  }
+}
+
+StudyRow Store::study_without_surfaces() {
+  Statement row{database_,
+                "SELECT title, protocol_file, protocol_text, protocol_sha256 FROM study"};
+  if (!row.step()) {
+    throw StoreError{database_.file() + ": the study's own row is missing"};
+  }
+  return {row.text(0), row.text(1), row.text(2), row.text(3), {}};
+}
+
+StudyRow Store::study() {
+  StudyRow study = study_without_surfaces();
+  study.surfaces = surfaces();
+  return study;
+}
+
+void Store::each_row(const std::string& select, const std::function<void(Statement&)>& show) {
+  Statement row{database_, select};
+  while (row.step()) {
+    show(row);
+  }
+}
+
+void Store::at_one_moment(const std::function<void()>& read) {
+  database_.run("BEGIN");
+  try {
+    read();
+  } catch (...) {
+    database_.run("ROLLBACK");
+    throw;
+  }
+  database_.run("COMMIT");
+}
+
+// What a study's database is refused for.
+bool Store::is_empty() {
+  Statement tables{database_, "SELECT count(*) FROM sqlite_master"};
+  tables.step();
+  return tables.integer(0) == 0;
+}
+
+void Store::check_is_sound() {
+  constexpr std::chrono::seconds limit{10};
+  check_version();
+  database_.limit_time(limit);
+  check_schema();
+  database_.lift_limit();  // the rest takes as long as the file is large
+  Statement check{database_, "PRAGMA quick_check(1)"};
+  if (!check.step() || check.text(0) != "ok") {
+    throw StoreError{
+        fmt::format("{}: is damaged: {} (keep a copy; the answers are in "
+                    "answers.journal beside it, too)",
+                    database_.file(), check.text(0))};
+  }
+}
+
+// Triggers and views act in the name of whoever opens the database.
+void Store::check_schema() {
+  const auto objects_of = [](Database& database) {
+    Statement row{database,
+                  "SELECT type || ' ' || name || ' ' || tbl_name || ' ' || coalesce(sql, '') "
+                  "FROM sqlite_schema ORDER BY 1"};
+    std::set<std::string> objects;
+    while (row.step()) {
+      objects.insert(row.text(0));
+    }
+    return objects;
+  };
+  Database reference = Database::in_memory("the schema");
+  reference.run(schema_sql);
+  const std::set<std::string> known = objects_of(reference);
+  const std::set<std::string> found = objects_of(database_);
+  for (const std::string& object : found) {
+    if (!known.contains(object)) {
+      throw StoreError{fmt::format("{}: contains a schema object that is not tapstudy's: {}",
+                                   database_.file(), core::cut_to(object, 80))};
+    }
+  }
+  if (found.size() != known.size()) {
+    throw StoreError{database_.file() + ": lacks some of tapstudy's tables"};
+  }
+}
+
+void Store::check_version() {
+  if (database_.pragma("application_id") != application_id) {
+    throw StoreError{database_.file() + ": is not a tapstudy database"};
+  }
+  const std::int64_t version = database_.pragma("user_version");
+  if (version != schema_version) {
+    throw StoreError{fmt::format("{}: has schema {}, this program reads {}", database_.file(),
+                                 version, schema_version)};
+  }
+}
+}  // namespace tapstudy::results

@@ -1,0 +1,167 @@
+#pragma once
+#include <array>
+#include <functional>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/haptics/haptic_state.hpp"
+#include "results/journal/journal.hpp"
+#include "results/rows.hpp"
+#include "results/store/sqlite.hpp"
+namespace tapstudy::results {
+// Whether study.db alone holds all that was stored. Where another connection keeps it open, the
+// latest is in study.db-wal beside it.
+enum class SaveOutcome { in_one_file, partly_in_log };
+
+// The database of one study directory, DIR/study.db: write-ahead log, synchronous FULL, so that
+// committed data survive a killed process and a power failure. Rows are added, never changed.
+// Answers are recorded a second time in DIR/answers.journal (journal.hpp). Not thread-safe. All
+// functions throw StoreError.
+class Store {
+ public:
+  // Opens the study of this protocol in the directory, or creates both; checks the database's
+  // integrity and that it holds tapstudy's tables and nothing else.
+  // Throws InvalidInput if the directory holds the study of another protocol, or of other surfaces.
+  static Store open_or_create(const std::string& directory, const StudyRow& study);
+  // For reading, checked likewise. Throws InvalidInput if there is no study.
+  static Store open_existing(const std::string& directory);
+  // In memory, from the journal alone: what was answered, without traces, events, statistics of
+  // ticks and trials that timed out. Throws StoreError if the journal does not hold together.
+  static Store from_journal(const std::string& directory);
+  static bool has_database(const std::string& directory);
+  static bool has_journal(const std::string& directory);
+  // From here on, until confirm_all(), nothing waits for the disk and nothing is read back. A power
+  // cut may damage the file: only for new studies of simulated
+  // participants, whom their seed makes again.
+  void write_unconfirmed();
+  void confirm_all();
+  // Leaves a writer's database as a single file, without the WAL files.
+  ~Store();
+  Store(Store&& other) noexcept = default;
+  Store& operator=(Store&& other) noexcept = delete;
+  Store(const Store& other) = delete;
+  Store& operator=(const Store& other) = delete;
+
+  std::string directory() const;
+  // Includes its surfaces, decompressed.
+  StudyRow study();
+  struct Place {
+    int participant_index;
+    int order_index;
+  };
+  // What the store does not know of other participants.
+  struct Others {
+    std::function<bool(const std::string& participant_id)> is_in_session;
+    std::function<bool(const std::string& participant_id)> has_trials_left;
+  };
+  // Of an existing participant, or the next free one of the mode. The order is the first that no
+  // other participant of the mode has: those who were excluded, whose session the operator ended
+  // with trials left, or who are no longer in a session and answered nothing that counts, use none
+  // up.
+  // Throws InvalidInput if the participant is there already in another mode.
+  Place place_of(const std::string& participant_id, Mode mode, const Others& others);
+  bool has_sessions(const std::string& participant_id);
+  // No other program adds anything while `act` runs; all that it adds is kept, or nothing.
+  void in_one_transaction(const std::function<void()>& act);
+  // Adds the participant if new; fills in the row's id.
+  void add_session(SessionRow& session);
+  // Returns once the trial is on the disk, in the file of that name, and its answer in the journal.
+  // After a StoreError the same record may be added again: what was done of it is not repeated.
+  // Throws StoreError also if the participant has answered this trial already, in any session, and
+  // if study.db was deleted or moved; deleted, all that it held has been written to a new one.
+  SaveOutcome add_trial(const TrialRecord& record);
+
+  void add_session_events(const std::vector<SessionEventRow>& events);
+  void add_form(const std::vector<FormAnswerRow>& answers);
+  void add_operator_action(const OperatorActionRow& action);
+  // Supersedes the participant's answer to that trial. Throws StoreError if there is none.
+  void add_correction(const CorrectionRow& correction, const OperatorActionRow& action);
+
+  // The participant's latest session, to resume it.
+  std::optional<SessionRow> latest_session(const std::string& participant_id);
+  // Whose name is this but for capital letters.
+  std::optional<std::string> participant_like(const std::string& participant_id);
+  // The session in which a trial of that number was presented to the participant last.
+  std::optional<std::int64_t> session_of_trial(const std::string& participant_id, int number);
+  // Numbers of the trials that the participant has answered, in any session.
+  std::vector<int> answered_trials(const std::string& participant_id);
+  // How often each trial was presented, by its number.
+  std::map<int, int> presentations(const std::string& participant_id);
+  // Those that were presented, timed out or skipped, and not answered later; in the order in which
+  // that was last.
+  std::vector<UnansweredTrial> unanswered_trials(const std::string& participant_id);
+  // Form and where it was asked, of all that the participant has answered.
+  std::set<std::pair<std::string, std::string>> filled_forms(const std::string& participant_id);
+  // By id: why.
+  std::map<std::string, std::string> excluded_participants();
+  // The participant's, without corrections, in the order given.
+  std::vector<JournalledAnswer> answers_as_given(const std::string& participant_id);
+  AlternativesOfTrials alternatives();
+  std::vector<SessionRow> sessions();
+  JournalEntries entries_for_journal();
+  // A SELECT; what reports need is in stored_answers.hpp and participant_courses.hpp.
+  Statement query(const std::string& select) { return Statement{database_, select}; }
+  // Its rows, each shown as it comes.
+  void each_row(const std::string& select, const std::function<void(Statement&)>& show);
+  // All that `read` reads is of one moment, whatever a session adds meanwhile.
+  void at_one_moment(const std::function<void()>& read);
+  std::vector<std::int64_t> trials();  // the ids of all, whatever became of them
+  // Every tick of a trial, in order; empty if there is no such trial.
+  std::vector<core::TraceSample> trace(std::int64_t trial_id);
+
+ private:
+  Store(Database database, std::optional<Journal> journal)
+      : database_{std::move(database)}, journal_{std::move(journal)} {}
+  void check_is_sound();
+  void check_version();
+  void check_schema();
+  void create(const StudyRow& study);
+  void insert_trial(const TrialRecord& record);
+  void write_anew();
+  void check_is_in_place(const TrialRow& trial);
+  void add_to_journal(const TrialRecord& record);
+  void journal(const JournalEntries& entries, std::int64_t session_id);
+  void insert_action(const OperatorActionRow& action);
+  int insert_correction(const CorrectionRow& correction);  // which of the trial's, from 1
+  void add_and_journal(JournalEntries entries, std::int64_t session_id,
+                       const std::function<void(JournalEntries&)>& insert);
+  void check_has_not_moved();
+  int next_participant_index(Mode mode);
+  int free_order_index(Mode mode, const Others& others);
+  std::vector<AlternativeRow> alternatives_of(std::int64_t trial_id);
+  AlternativesOfTrials alternatives_where(const char* condition,
+                                          std::optional<std::int64_t> trial_id);
+  std::vector<JournalledAnswer> answers_for_journal();
+  std::vector<JournalledAnswer> journalled_answers(Statement& row);
+  std::vector<CorrectionRow> corrections_for_journal();
+  std::vector<FormAnswerRow> forms_for_journal();
+  void insert_form_answer(const FormAnswerRow& answer);
+  std::vector<OperatorActionRow> actions_for_journal();
+  SessionRow session_of(std::int64_t session_id);
+  StudyRow study_without_surfaces();
+  std::vector<SurfaceRow> surfaces();
+  void add_surfaces(const StudyRow& study);
+  void check_surfaces(const StudyRow& study);  // by their hashes
+  bool is_empty();
+  void create_or_check(const StudyRow& study);
+  void check_not_answered(const TrialRow& trial);
+  void add_alternatives(std::int64_t trial_id, const std::vector<AlternativeRow>& alternatives);
+  void add_details(std::int64_t trial_id, const TrialRecord& record);
+  Database database_;
+  std::optional<Journal> journal_;
+  bool confirms_{true};
+  std::optional<std::array<std::int64_t, 3>> unconfirmed_;  // a trial that is committed, no more
+  // Committed by a call that then failed.
+  struct FailedCall {
+    std::vector<std::string> lines;  // as given
+    JournalEntries entries;          // as inserted
+    std::int64_t session_id{};
+    bool is_journalled{false};
+  };
+  std::vector<FailedCall> failed_calls_;
+};
+}  // namespace tapstudy::results

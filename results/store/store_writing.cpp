@@ -1,0 +1,439 @@
+// What adds rows to a study.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <set>
+
+#include "results/store/store.hpp"
+#include "results/store_error.hpp"
+#include "results/traces/trace_codec.hpp"
+namespace tapstudy::results {
+namespace fs = std::filesystem;
+using namespace std::string_literals;
+namespace {
+// Whose last session the operator ended.
+constexpr const char* ended_by_operator =
+    "SELECT participant_id FROM session AS last WHERE session_id = "
+    "  (SELECT max(session_id) FROM session WHERE participant_id = last.participant_id) "
+    " AND EXISTS (SELECT 1 FROM operator_action WHERE session_id = last.session_id "
+    "             AND action = 'end')";
+}  // namespace
+
+Store::Place Store::place_of(const std::string& participant_id, Mode mode, const Others& others) {
+  Statement row{
+      database_,
+      "SELECT participant_index, order_index, mode FROM participant WHERE participant_id = ?"};
+  row.bind(participant_id);
+  if (!row.step()) {
+    return {next_participant_index(mode), free_order_index(mode, others)};
+  }
+  if (row.text(2) != to_text(mode)) {
+    throw core::InvalidInput{
+        fmt::format("participant '{}' is in this study already, in {} sessions (choose another id)",
+                    participant_id, row.text(2))};
+  }
+  return {row.small_integer(0), row.small_integer(1)};
+}
+
+int Store::next_participant_index(Mode mode) {
+  Statement next{database_,
+                 "SELECT coalesce(max(participant_index) + 1, 0) FROM participant WHERE mode = ?"};
+  next.bind(to_text(mode)).step();
+  return static_cast<int>(next.integer(0));
+}
+
+// Used by who has answered what counts, unless the operator ended their last session before its
+// end.
+int Store::free_order_index(Mode mode, const Others& others) {
+  const std::map<std::string, std::string> excluded = excluded_participants();
+  Statement row{database_,
+                "SELECT participant_id, order_index, participant_id IN "
+                "  (SELECT participant_id FROM trial JOIN session USING (session_id) "
+                "   WHERE status = 'answered' AND NOT is_practice), participant_id IN ("s +
+                    ended_by_operator + ") FROM participant WHERE mode = ?"};
+  row.bind(to_text(mode));
+  std::set<int> used;
+  while (row.step()) {
+    const std::string participant_id = row.text(0);
+    const bool has_answered = row.flag(2);
+    const bool was_ended = row.flag(3);
+    const bool keeps_order =
+        (has_answered && !(was_ended && others.has_trials_left(participant_id))) ||
+        others.is_in_session(participant_id);
+    if (keeps_order && !excluded.contains(participant_id)) {
+      used.insert(row.small_integer(1));
+    }
+  }
+  int free = 0;
+  while (used.contains(free)) {
+    ++free;
+  }
+  return free;
+}
+
+bool Store::has_sessions(const std::string& participant_id) {
+  return latest_session(participant_id).has_value();
+}
+
+void Store::in_one_transaction(const std::function<void()>& act) {
+  Transaction all{database_};
+  act();
+  all.commit();
+}
+
+void Store::add_session(SessionRow& session) {
+  Transaction all{database_};
+  Statement{database_,
+            "INSERT INTO participant (participant_id, mode, participant_index, order_index) "
+            "VALUES (?, ?, ?, ?) "
+            "ON CONFLICT (participant_id) DO NOTHING"}
+      .bind(session.participant_id)
+      .bind(to_text(session.mode))
+      .bind(session.participant_index)
+      .bind(session.order_index)
+      .finish();
+  Statement{
+      database_,
+      "INSERT INTO session (participant_id, seed, planned_order, language, resumes, rate_hz, "
+      "rig_text, device, scheduler, doctor, program_version, git_hash, compiler, started_utc) "
+      "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)"}
+      .bind(session.participant_id)
+      .bind(std::to_string(session.seed))
+      .bind(session.planned_order)
+      .bind(session.language)
+      .bind(session.resumes)
+      .bind(session.rate_hz)
+      .bind(session.rig_text)
+      .bind(session.device)
+      .bind(session.scheduler)
+      .bind(session.doctor)
+      .bind(session.program_version)
+      .bind(session.git_hash)
+      .bind(session.compiler)
+      .bind(session.started_utc)
+      .finish();
+  session.id = database_.last_row_id();
+  all.commit();
+}
+
+SaveOutcome Store::add_trial(const TrialRecord& record) {
+  const TrialRow& trial = record.trial;
+  const std::array<std::int64_t, 3> key{trial.session_id, trial.number, trial.attempt};
+  if (unconfirmed_ != key) {
+    insert_trial(record);
+    unconfirmed_ = key;
+  }
+  bool is_in_one_file = true;
+  if (journal_ && confirms_) {
+    is_in_one_file = database_.checkpoint();
+    check_is_in_place(trial);
+  }
+  add_to_journal(record);
+  unconfirmed_.reset();
+  return is_in_one_file ? SaveOutcome::in_one_file : SaveOutcome::partly_in_log;
+}
+
+void Store::add_to_journal(const TrialRecord& record) {
+  if (record.response && record.trial.status == TrialStatus::answered) {
+    journal({.answers = {{record.trial, record.alternatives, *record.response}}},
+            record.trial.session_id);
+  }
+}
+
+void Store::insert_trial(const TrialRecord& record) {
+  Transaction whole_trial{database_};
+  const TrialRow& trial = record.trial;
+  if (record.response) {
+    check_not_answered(trial);
+  }
+  Statement{database_,
+            "INSERT INTO trial (session_id, number, attempt, block, task, is_practice, "
+            "is_catch, presented, repetition, status, duration_s) "
+            "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)"}
+      .bind(trial.session_id)
+      .bind(trial.number)
+      .bind(trial.attempt)
+      .bind(trial.block)
+      .bind(trial.task)
+      .bind(trial.is_practice)
+      .bind(trial.is_catch)
+      .bind(std::string{trial.is_of_real_plate ? "real" : "virtual"})
+      .bind(trial.repetition)
+      .bind(to_text(trial.status))
+      .bind(trial.duration_s)
+      .finish();
+  add_details(database_.last_row_id(), record);
+  add_session_events(record.session_events);
+  whole_trial.commit();
+}
+
+void Store::add_session_events(const std::vector<SessionEventRow>& events) {
+  Transaction all{database_};
+  for (const SessionEventRow& event : events) {
+    Statement{database_, "INSERT INTO session_event VALUES (?, ?, ?, ?, ?)"}
+        .bind(event.session_id)
+        .bind(event.t_s)
+        .bind(event.state)
+        .bind(event.number)
+        .bind(event.detail)
+        .finish();
+  }
+  all.commit();
+}
+
+void Store::check_not_answered(const TrialRow& trial) {
+  Statement row{database_,
+                "SELECT participant_id FROM trial JOIN session USING (session_id) "
+                "WHERE number = ? AND status = 'answered' AND participant_id = "
+                "(SELECT participant_id FROM session WHERE session_id = ?)"};
+  row.bind(trial.number).bind(trial.session_id);
+  if (row.step()) {
+    throw StoreError{
+        fmt::format("{}: participant '{}' has answered trial {} already (is another "
+                    "session of the same participant running?)",
+                    database_.file(), row.text(0), trial.number)};
+  }
+}
+
+void Store::add_alternatives(std::int64_t trial_id,
+                             const std::vector<AlternativeRow>& alternatives) {
+  for (const AlternativeRow& alternative : alternatives) {
+    Statement{database_, "INSERT INTO alternative VALUES (?, ?, ?, ?, ?)"}
+        .bind(trial_id)
+        .bind(alternative.position)
+        .bind(alternative.label)
+        .bind(alternative.stimulus)
+        .bind(alternative.is_comparison)
+        .finish();
+    for (const auto& [axis, value] : alternative.axis_values) {
+      Statement{database_, "INSERT INTO axis_value VALUES (?, ?, ?, ?)"}
+          .bind(trial_id)
+          .bind(alternative.position)
+          .bind(axis)
+          .bind(value)
+          .finish();
+    }
+  }
+}
+
+void Store::add_details(std::int64_t trial_id, const TrialRecord& record) {
+  add_alternatives(trial_id, record.alternatives);
+  if (record.response) {
+    Statement{database_,
+              "INSERT INTO response (trial_id, response, is_correct, response_time_s, "
+              "time_from_first_contact_s, confidence, given_by) "
+              "VALUES (?, ?, ?, ?, ?, ?, 'participant')"}
+        .bind(trial_id)
+        .bind(record.response->response)
+        .bind(record.response->is_correct)
+        .bind(record.response->response_time_s)
+        .bind(record.response->time_from_first_contact_s)
+        .bind(record.response->confidence)
+        .finish();
+  }
+  for (const EventRow& event : record.events) {
+    Statement{database_, "INSERT INTO event VALUES (?, ?, ?, ?)"}
+        .bind(trial_id)
+        .bind(event.t_s)
+        .bind(event.kind)
+        .bind(event.value)
+        .finish();
+  }
+  for (const TraceChunk& chunk : record.trace) {
+    Statement{database_, "INSERT INTO trace_chunk VALUES (?, ?, ?, ?, ?)"}
+        .bind(trial_id)
+        .bind(chunk.first_tick)
+        .bind(chunk.ticks)
+        .bind(std::string{trace_codec})
+        .bind(std::span<const std::byte>{chunk.bytes})
+        .finish();
+  }
+  const TickStatisticsRow& statistics = record.statistics;
+  Statement{database_, "INSERT INTO tick_statistics VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)"}
+      .bind(trial_id)
+      .bind(statistics.ticks)
+      .bind(statistics.late)
+      .bind(statistics.skipped)
+      .bind(statistics.saturated)
+      .bind(statistics.dropped_samples)
+      .bind(statistics.lateness_p999_s)
+      .bind(statistics.worst_lateness_s)
+      .bind(statistics.fault)
+      .finish();
+}
+
+// Answers to questionnaires.
+void Store::insert_form_answer(const FormAnswerRow& answer) {
+  Statement{database_, "INSERT INTO form_answer VALUES (?, ?, ?, ?, ?, ?)"}
+      .bind(answer.session_id)
+      .bind(answer.t_s)
+      .bind(answer.form)
+      .bind(answer.asked)
+      .bind(answer.item)
+      .bind(answer.answer)
+      .finish();
+}
+
+void Store::add_form(const std::vector<FormAnswerRow>& answers) {
+  if (answers.empty()) {
+    return;
+  }
+  add_and_journal({.form_answers = answers}, answers.front().session_id,
+                  [&](JournalEntries& /*entries*/) {
+                    for (const FormAnswerRow& answer : answers) {
+                      insert_form_answer(answer);
+                    }
+                  });
+}
+
+std::set<std::pair<std::string, std::string>> Store::filled_forms(
+    const std::string& participant_id) {
+  Statement row{database_,
+                "SELECT DISTINCT form, asked FROM form_answer JOIN session USING (session_id) "
+                "WHERE participant_id = ?"};
+  row.bind(participant_id);
+  std::set<std::pair<std::string, std::string>> filled;
+  while (row.step()) {
+    filled.emplace(row.text(0), row.text(1));
+  }
+  return filled;
+}
+
+std::vector<FormAnswerRow> Store::forms_for_journal() {
+  Statement row{
+      database_,
+      "SELECT session_id, t_s, form, asked, item, answer FROM form_answer ORDER BY rowid"};
+  std::vector<FormAnswerRow> answers;
+  while (row.step()) {
+    answers.push_back(
+        {row.integer(0), row.real(1), row.text(2), row.text(3), row.text(4), row.optional_text(5)});
+  }
+  return answers;
+}
+
+// What the operator adds to a study, and what follows from it.
+void Store::journal(const JournalEntries& entries, std::int64_t session_id) {
+  if (!journal_) {
+    return;
+  }
+  const auto of_study = [this] { return study(); };
+  if (!journal_->complete(of_study, {session_of(session_id)}, entries)) {
+    journal_->complete(of_study, sessions(), entries_for_journal());
+  }
+}
+
+void Store::insert_action(const OperatorActionRow& action) {
+  Statement{database_,
+            "INSERT INTO operator_action (session_id, t_s, action, number, detail) "
+            "VALUES (?, ?, ?, ?, ?)"}
+      .bind(action.session_id)
+      .bind(action.t_s)
+      .bind(action.action)
+      .bind(action.number)
+      .bind(action.detail)
+      .finish();
+}
+
+// Rows that are in the database, but whose journalling failed, are journalled by the next call of
+// any kind; the call that is made again for them finds them here and inserts nothing.
+void Store::add_and_journal(JournalEntries entries, std::int64_t session_id,
+                            const std::function<void(JournalEntries&)>& insert) {
+  const std::vector<std::string> what = to_lines(entries);
+  if (std::ranges::find(failed_calls_, what, &FailedCall::lines) == failed_calls_.end()) {
+    Transaction all{database_};
+    insert(entries);
+    all.commit();
+    failed_calls_.push_back({what, std::move(entries), session_id});
+  }
+  if (journal_) {
+    check_has_not_moved();
+  }
+  for (FailedCall& one : failed_calls_) {
+    if (!one.is_journalled) {
+      journal(one.entries, one.session_id);
+      one.is_journalled = true;
+    }
+  }
+  std::erase_if(failed_calls_, [&](const FailedCall& one) { return one.lines == what; });
+}
+
+void Store::add_operator_action(const OperatorActionRow& action) {
+  add_and_journal({.actions = {action}}, action.session_id,
+                  [&](JournalEntries& /*entries*/) { insert_action(action); });
+}
+
+// The times are those of the answer that the participant gave.
+int Store::insert_correction(const CorrectionRow& correction) {
+  Statement{database_,
+            "INSERT INTO response (trial_id, response, is_correct, response_time_s, "
+            "time_from_first_contact_s, confidence, supersedes, given_by) "
+            "SELECT trial_id, ?, ?, response_time_s, time_from_first_contact_s, confidence, "
+            "response_id, ? FROM current_response JOIN trial USING (trial_id) "
+            "WHERE session_id = ? AND number = ? AND status = 'answered'"}
+      .bind(correction.response)
+      .bind(correction.is_correct)
+      .bind(to_text(correction.given_by))
+      .bind(correction.session_id)
+      .bind(correction.number)
+      .finish();
+  Statement changes{database_, "SELECT changes()"};
+  changes.step();
+  if (changes.integer(0) != 1) {
+    throw StoreError{fmt::format("{}: trial {} has no answer that could be corrected",
+                                 database_.file(), correction.number)};
+  }
+  Statement count{database_,
+                  "SELECT count(supersedes) FROM response JOIN trial USING (trial_id) "
+                  "WHERE session_id = ? AND number = ?"};
+  count.bind(correction.session_id).bind(correction.number).step();
+  return static_cast<int>(count.integer(0));
+}
+
+void Store::add_correction(const CorrectionRow& correction, const OperatorActionRow& action) {
+  add_and_journal({.corrections = {correction}, .actions = {action}}, correction.session_id,
+                  [&](JournalEntries& entries) {
+                    entries.corrections.front().ordinal = insert_correction(correction);
+                    insert_action(action);
+                  });
+}
+
+std::map<std::string, std::string> Store::excluded_participants() {
+  Statement row{database_, "SELECT participant_id, exclusion_reason FROM excluded_participant"};
+  std::map<std::string, std::string> excluded;
+  while (row.step()) {
+    excluded[row.text(0)] = row.text(1);
+  }
+  return excluded;
+}
+
+JournalEntries Store::entries_for_journal() {
+  return {answers_for_journal(), corrections_for_journal(), actions_for_journal(),
+          forms_for_journal()};
+}
+
+std::vector<CorrectionRow> Store::corrections_for_journal() {
+  Statement row{database_,
+                "SELECT session_id, number, response, is_correct, given_by, "
+                "row_number() OVER (PARTITION BY trial_id ORDER BY response_id) FROM response "
+                "JOIN trial USING (trial_id) WHERE supersedes IS NOT NULL ORDER BY response_id"};
+  std::vector<CorrectionRow> corrections;
+  while (row.step()) {
+    corrections.push_back({row.integer(0), row.small_integer(1), row.text(2), row.optional_flag(3),
+                           given_by_from(row.text(4)), row.small_integer(5)});
+  }
+  return corrections;
+}
+
+std::vector<OperatorActionRow> Store::actions_for_journal() {
+  Statement row{database_,
+                "SELECT session_id, t_s, action, number, detail FROM operator_action "
+                "ORDER BY action_id"};
+  std::vector<OperatorActionRow> actions;
+  while (row.step()) {
+    actions.push_back({row.integer(0), row.real(1), row.text(2), row.optional_int(3), row.text(4)});
+  }
+  return actions;
+}
+}  // namespace tapstudy::results

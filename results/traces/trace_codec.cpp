@@ -1,0 +1,104 @@
+#include "results/traces/trace_codec.hpp"
+
+#include <Eigen/Core>
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <cstring>
+
+#include "results/compression.hpp"
+namespace tapstudy::results {
+namespace {
+using core::TraceSample;
+static_assert(std::endian::native == std::endian::little, "records are copied byte for byte");
+constexpr std::size_t words = 20;  // time and nineteen numbers
+constexpr std::size_t flags = 7;
+constexpr std::size_t record_bytes = 168;
+static_assert(words * sizeof(double) + flags <= record_bytes);
+
+using Record = std::array<std::byte, record_bytes>;
+using Bytes = Eigen::Matrix<std::uint8_t, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+Record packed(const TraceSample& s) {
+  const std::array<double, words - 1> numbers{
+      s.position_m[0],   s.position_m[1],   s.position_m[2],  s.velocity_m_s[0], s.velocity_m_s[1],
+      s.velocity_m_s[2], s.penetration_m,   s.penalty_n,      s.vibration_n,     s.sinusoid_n,
+      s.force_n[0],      s.force_n[1],      s.force_n[2],     s.achieved_n[0],   s.achieved_n[1],
+      s.achieved_n[2],   s.pose_residual_m, s.closure_margin, s.motor_voltage_v};
+  const std::array<std::uint8_t, flags> flag{s.alternative,
+                                             static_cast<std::uint8_t>(s.touching),
+                                             static_cast<std::uint8_t>(s.impact),
+                                             static_cast<std::uint8_t>(s.saturated),
+                                             static_cast<std::uint8_t>(s.fault),
+                                             s.missed_replies,
+                                             static_cast<std::uint8_t>(s.late)};
+  Record record{};
+  std::memcpy(record.data(), &s.t_ns, sizeof s.t_ns);
+  std::memcpy(record.data() + sizeof s.t_ns, numbers.data(), sizeof numbers);
+  std::memcpy(record.data() + sizeof s.t_ns + sizeof numbers, flag.data(), sizeof flag);
+  return record;
+}
+
+TraceSample unpacked(const Record& record) {
+  std::int64_t t_ns{};
+  std::array<double, words - 1> n{};
+  std::array<std::uint8_t, flags> flag{};
+  std::memcpy(&t_ns, record.data(), sizeof t_ns);
+  std::memcpy(n.data(), record.data() + sizeof t_ns, sizeof n);
+  std::memcpy(flag.data(), record.data() + sizeof t_ns + sizeof n, sizeof flag);
+  return {t_ns,
+          {n[0], n[1], n[2]},
+          {n[3], n[4], n[5]},
+          n[6],
+          n[7],
+          n[8],
+          n[9],
+          {n[10], n[11], n[12]},
+          {n[13], n[14], n[15]},
+          n[16],
+          n[17],
+          n[18],
+          flag[0],
+          flag[1] != 0,
+          flag[2] != 0,
+          flag[3] != 0,
+          static_cast<core::TickFault>(flag[4]),
+          flag[5],
+          flag[6] != 0};
+}
+
+// The matrix of bytes with rows and columns exchanged.
+template <class From, class To>
+void transpose(const std::vector<From>& from, Eigen::Index rows, Eigen::Index columns,
+               std::vector<To>& to) {
+  const void* const source = from.data();
+  void* const goal = to.data();
+  const Eigen::Map<const Bytes> matrix{static_cast<const std::uint8_t*>(source), rows, columns};
+  Eigen::Map<Bytes>{static_cast<std::uint8_t*>(goal), columns, rows} = matrix.transpose();
+}
+}  // namespace
+
+std::vector<std::byte> encode_trace(std::span<const TraceSample> samples) {
+  std::vector<Record> records;
+  records.reserve(samples.size());
+  for (const TraceSample& sample : samples) {
+    records.push_back(packed(sample));
+  }
+  std::vector<std::byte> rows(samples.size() * record_bytes);
+  transpose(records, static_cast<Eigen::Index>(samples.size()), record_bytes, rows);
+  return compressed(rows);
+}
+
+std::vector<TraceSample> decode_trace(std::span<const std::byte> bytes, std::size_t ticks,
+                                      const std::string& what) {
+  const std::vector<std::byte> rows = decompressed(bytes, ticks * record_bytes, what);
+  std::vector<Record> records(ticks);
+  transpose(rows, record_bytes, static_cast<Eigen::Index>(ticks), records);
+  std::vector<TraceSample> samples;
+  samples.reserve(ticks);
+  for (const Record& record : records) {
+    samples.push_back(unpacked(record));
+  }
+  return samples;
+}
+}  // namespace tapstudy::results

@@ -1,0 +1,234 @@
+#include "runner/commands/check_models.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/model/progress.hpp"
+#include "core/techniques/compensated.hpp"
+#include "core/techniques/technique.hpp"
+#include "runner/session/stimuli/stimulus_family.hpp"
+#include "runner/studies/counted.hpp"
+namespace tapstudy::runner {
+namespace {
+double megabytes(const core::BodyModes& body) {
+  const auto bytes = [](const auto& matrix) {
+    return 1e-6 * static_cast<double>(sizeof(*matrix.data())) * static_cast<double>(matrix.size());
+  };
+  return bytes(body.shape) + bytes(body.touch_nodes_m) + bytes(body.touch_surface);
+}
+
+void print_crossings(const protocols::Protocol& protocol, const protocols::Stimulus& stimulus,
+                     const core::BodyModes& body) {
+  for (const protocols::AxisRange& range : stimulus.vary) {
+    const auto crossings = band_crossings(protocol, stimulus, range, body);
+    if (!crossings.empty()) {
+      fmt::print(
+          "    note: a mode crosses the band limit at {} {:.3g}{}: a difference across such a "
+          "value "
+          "is told by the mode\n",
+          range.axis->name, fmt::join(crossings, ", "),
+          range.axis->unit.empty() ? "" : fmt::format(" {}", range.axis->unit));
+    }
+  }
+}
+
+void print_cost(const protocols::Protocol& protocol, const protocols::Stimulus& stimulus,
+                ModelLibrary& models) {
+  const BandEnds ends = band_ends(protocol, stimulus);
+  double solved_s = 0.0;
+  double held_mb = 0.0;
+  const auto bodies = models.bodies_of(protocol, stimulus);
+  for (const ModelLibrary::Body& body : bodies) {
+    solved_s += body->report.cost.total_s();
+    held_mb += megabytes(*body);
+  }
+  core::Stopwatch watch;
+  const auto most = models.plate_of(protocol, stimulus_with(protocol, stimulus, ends.most));
+  const double member_s = watch.elapsed_s();
+  const auto fewest = models.plate_of(protocol, stimulus_with(protocol, stimulus, ends.fewest));
+  fmt::print("    {}, solved in {:.3f} s, {:.1f} MB; a member takes {:.1f} ms more\n",
+             counted(bodies.size(), "model"), solved_s, held_mb, 1e3 * member_s);
+  const auto least = static_cast<std::size_t>(fewest->model.frequency_hz.size());
+  const auto greatest = static_cast<std::size_t>(most->model.frequency_hz.size());
+  fmt::print("    {}{} below {} Hz at its own values of table axes\n",
+             least == greatest ? "" : fmt::format("{} to ", least), counted(greatest, "mode"),
+             protocol.band_limit_hz);
+  print_crossings(protocol, stimulus, *models.body_of(protocol, stimulus_with(protocol, stimulus)));
+}
+}  // namespace
+
+void print_families(const protocols::Protocol& protocol, ModelLibrary& models) {
+  models.build_all(protocol);
+  bool is_first = true;
+  for (const protocols::Stimulus& stimulus : protocol.stimuli) {
+    if (stimulus.vary.empty()) {
+      continue;
+    }
+    fmt::print("{}", is_first ? "\nfamilies\n" : "");
+    is_first = false;
+    std::vector<std::string> axes;
+    std::ranges::transform(stimulus.vary, std::back_inserter(axes),
+                           &protocols::AxisRange::described);
+    fmt::print("  {}: {}\n", stimulus.name, fmt::join(axes, "; "));
+    if (stimulus.technique->needs_model()) {
+      print_cost(protocol, stimulus, models);
+    } else {
+      fmt::print("    no model: settings alone\n");
+    }
+  }
+}
+
+double largest_contact_stiffness_n_per_m(const protocols::Protocol& protocol) {
+  double largest = protocol.rendering.penalty_stiffness_n_per_m;
+  const auto consider = [&](const protocols::Stimulus& stimulus,
+                            const core::RenderSettings& settings) {
+    largest = std::max(largest, settings.penalty_stiffness_n_per_m +
+                                    stimulus.technique->added_stiffness_n_per_m(settings));
+  };
+  for (const protocols::Stimulus& stimulus : protocol.stimuli) {
+    consider(stimulus, stimulus_with(protocol, stimulus).rendering);
+    for (const protocols::AxisRange& range : stimulus.vary) {
+      const auto member =
+          stimulus_with(protocol, stimulus, {{std::string{range.axis->name}, range.to}});
+      consider(stimulus, member.rendering);
+    }
+  }
+  return largest;
+}
+
+namespace {
+core::Contact contact_from_above(const core::VibratingPlate& plate, const Eigen::Vector2d& at_m) {
+  constexpr double far_m = 100.0;
+  core::Contact contact;
+  contact.god_object_m << at_m, 0.0;
+  if (plate.triangles) {
+    const core::Vec3 above{at_m.x(), at_m.y(), far_m};
+    const core::Vec3 below{at_m.x(), at_m.y(), -far_m};
+    const auto entry = plate.triangles->first_entered(above, below, 0.0);
+    contact.triangle = entry.triangle;
+    if (entry.triangle != core::TriangleTree::none) {
+      contact.god_object_m = above + entry.along * (below - above);
+      contact.normal = plate.triangles->normal(entry.triangle);
+      contact.barycentric = plate.triangles->barycentric(entry.triangle, contact.god_object_m);
+    }
+  }
+  return contact;
+}
+
+struct Strike {
+  std::string point;
+  double energy_share{};
+};
+Strike strongest(const core::VibratingPlate& plate, const protocols::PresentedStimulus& stimulus) {
+  Strike most;
+  for (const auto& [name, at_m] : stimulus.plate->tapping_points_m) {
+    const double share = impact_energy_share(plate, at_m, stimulus.rendering.finger.mass_kg);
+    most = share > most.energy_share ? Strike{name, share} : most;
+  }
+  return most;
+}
+}  // namespace
+
+double impact_energy_share(const core::VibratingPlate& plate, const Eigen::Vector2d& at_m,
+                           double finger_kg) {
+  const core::Contact contact = contact_from_above(plate, at_m);
+  if (plate.triangles && contact.triangle == core::TriangleTree::none) {
+    return 0.0;
+  }
+  const core::SurfacePoint place = plate.place_of(contact);
+  Eigen::RowVectorXd along = Eigen::RowVectorXd::Zero(plate.model.shape.cols());
+  for (std::size_t i = 0; i < place.count; ++i) {
+    const auto rows = plate.model.shape.middleRows<3>(3 * Eigen::Index{place.nodes[i]});
+    along += place.weights[i] * (contact.normal.transpose() * rows);
+  }
+  return finger_kg * along.squaredNorm();
+}
+
+void warn_of_light_plates(const protocols::Protocol& protocol, ModelLibrary& models) {
+  for (const protocols::Stimulus& stimulus : protocol.stimuli) {
+    if (!stimulus.technique->needs_model()) {
+      continue;
+    }
+    const protocols::PresentedStimulus own = stimulus_with(protocol, stimulus);
+    const int rigid = models.body_of(protocol, own)->report.rigid_body_modes;
+    if (rigid > 0) {
+      fmt::print(
+          "  warning: {} can move as a rigid body in {}, which are left out: there it is felt as "
+          "held (fix it, or put it on springs)\n",
+          stimulus.name, counted(static_cast<std::size_t>(rigid), "way"));
+    }
+    const Strike strike = strongest(*models.plate_of(protocol, own), own);
+    if (stimulus.technique->has(core::plate_vibration) && strike.energy_share > 1.0) {
+      fmt::print(
+          "  warning: {} is too light for the finger: struck at {} it takes {:.3g} times the "
+          "finger's energy (a smaller mass_kg; fem-coupled takes from the finger what it gives)\n",
+          stimulus.name, strike.point, strike.energy_share);
+    }
+  }
+}
+
+namespace {
+constexpr double usual_band_hz = 300.0;
+constexpr double least_gain = 0.5;
+
+struct Band {
+  double highest_hz{};
+  const core::DeviceResponse* response{};  // nullptr: not measured
+  std::string words;
+  bool holds(double frequency_hz) const {
+    return frequency_hz <= highest_hz &&
+           (response == nullptr || core::gain_at(frequency_hz, *response) >= least_gain);
+  }
+};
+
+std::optional<Band> band_of(const protocols::Rig& rig) {
+  const core::DeviceResponse* const response = rig.vibration_response.get();
+  if (!rig.vibration_band_hz && response == nullptr && !rig.has_hardware) {
+    return std::nullopt;
+  }
+  Band band{std::numeric_limits<double>::infinity(), response, {}};
+  if (rig.vibration_band_hz || response == nullptr) {
+    band.highest_hz = rig.vibration_band_hz.value_or(usual_band_hz);
+    band.words = fmt::format("up to {} Hz{}", band.highest_hz,
+                             rig.vibration_band_hz ? "" : ", as the rig states none");
+  }
+  if (response != nullptr) {
+    band.words += fmt::format("{}where its response is at least {}", band.words.empty() ? "" : ", ",
+                              least_gain);
+  }
+  return band;
+}
+}  // namespace
+
+void print_lost_modes(const protocols::Protocol& protocol, ModelLibrary& models,
+                      const protocols::Rig& rig) {
+  const auto band = band_of(rig);
+  if (!band) {
+    return;
+  }
+  fmt::print("\nvibration band of the device: {}\n", band->words);
+  for (const protocols::Stimulus& stimulus : protocol.stimuli) {
+    if (!stimulus.technique->needs_model()) {
+      continue;
+    }
+    const auto plate = models.plate_of(protocol, stimulus_with(protocol, stimulus));
+    const Eigen::ArrayXd frequencies_hz = plate->model.frequency_hz;
+    std::vector<std::string> lost;
+    for (const double frequency_hz : frequencies_hz) {
+      if (!band->holds(frequency_hz)) {
+        lost.push_back(fmt::format("{:.0f}", frequency_hz));
+      }
+    }
+    fmt::print("  {}: {}\n", stimulus.name,
+               lost.empty() ? fmt::format("all {} modes", frequencies_hz.size())
+                            : fmt::format("{} of {} modes are lost, at {} Hz", lost.size(),
+                                          frequencies_hz.size(), fmt::join(lost, ", ")));
+  }
+}
+}  // namespace tapstudy::runner

@@ -1,0 +1,27 @@
+#pragma once
+#include "protocols/protocol.hpp"
+#include "protocols/rig.hpp"
+#include "runner/session/stimuli/model_library.hpp"
+namespace tapstudy::runner {
+// Prints the stimuli that vary: along what, how many models that takes, what these cost to solve
+// and to hold, and how many modes the members have. Builds all models. Throws as build_all does.
+void print_families(const protocols::Protocol& protocol, ModelLibrary& models);
+
+// The stiffest contact of all members of all stimuli: its spring and what techniques add to it.
+double largest_contact_stiffness_n_per_m(const protocols::Protocol& protocol);
+
+// The energy that a strike leaves in a plate at rest, over the kinetic energy of the finger, whose
+// momentum goes to the modes (paper eq. 14 to 16): m sum over modes of (phi . n)^2. Above 1 the
+// finger gives more than it has. at_m: on the plate from above, plate frame.
+double impact_energy_share(const core::VibratingPlate& plate, const Eigen::Vector2d& at_m,
+                           double finger_kg);
+// Prints a warning for each stimulus with a tapping point where it is above 1, and one for each
+// that can move as a rigid body, which no technique renders.
+void warn_of_light_plates(const protocols::Protocol& protocol, ModelLibrary& models);
+
+// Names the modes of each stimulus that the rig's device does not render: above its vibration band,
+// which is 300 Hz where a device of hardware states none (the paper, section 4), and where its
+// response to a vibration is below a half. Nothing of a rig that has neither.
+void print_lost_modes(const protocols::Protocol& protocol, ModelLibrary& models,
+                      const protocols::Rig& rig);
+}  // namespace tapstudy::runner

@@ -1,0 +1,37 @@
+#include "runner/console/page_json.hpp"
+
+#include <nlohmann/json.hpp>
+namespace tapstudy::runner {
+namespace {
+const char* name(protocols::AnswerKind value) {
+  using enum protocols::AnswerKind;
+  switch (value) {
+    case option:
+      return "option";
+    case number:
+      return "number";
+    case setting:
+      return "setting";
+    case order:
+      return "order";
+    case line:
+      return "line";
+  }
+  return "";
+}
+}  // namespace
+
+nlohmann::ordered_json answers_json(const protocols::Answers& answers) {
+  using Json = nlohmann::ordered_json;
+  Json labels = Json::array();
+  for (const protocols::Option& option : answers.options) {
+    labels.push_back(option.label);
+  }
+  return {{"kind", name(answers.kind)},
+          {"options", labels},
+          {"settings", answers.settings},
+          {"low", answers.ends.low},
+          {"high", answers.ends.high},
+          {"modulus", answers.modulus ? Json(*answers.modulus) : Json{}}};
+}
+}  // namespace tapstudy::runner

@@ -1,0 +1,280 @@
+#include "runner/laboratory/identify/fits_over_taps.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <map>
+#include <numbers>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "analysis/modal/modes/close_modes.hpp"
+#include "core/error.hpp"
+namespace tapstudy::runner {
+namespace {
+constexpr double default_low_hz = 10.0;
+constexpr double default_high_hz = 1000.0;
+constexpr double usable_rate_share = 0.4;  // of the rate; sensors' own filters begin above
+constexpr double max_rate_share = 0.47;
+}  // namespace
+
+analysis::Band sought_band(const TapQuestion& question, double rate_hz,
+                           std::optional<double> band_limit_hz) {
+  if (!question.band) {
+    return {default_low_hz,
+            std::min(usable_rate_share * rate_hz, band_limit_hz.value_or(default_high_hz))};
+  }
+  if (question.band->high_hz > max_rate_share * rate_hz) {
+    throw core::InvalidInput{fmt::format("--band: ends at {:g} Hz, above {} of the rate of {:g} Hz",
+                                         question.band->high_hz, max_rate_share, rate_hz)};
+  }
+  return *question.band;
+}
+
+analysis::Band band_of_sinusoid(const analysis::Band& sought, double rate_hz) {
+  return {sought.low_hz,
+          std::max(sought.high_hz, std::min(default_high_hz, usable_rate_share * rate_hz))};
+}
+
+namespace {
+std::vector<analysis::TapModes> modes_of(const std::vector<IdentifiedTap>& taps) {
+  std::vector<analysis::TapModes> modes;
+  for (const IdentifiedTap& tap : taps) {
+    modes.push_back(tap.modes);
+  }
+  return modes;
+}
+
+void identify_beside_lines(const analysis::ModeFinding& finding, IdentifiedTap& tap,
+                           std::vector<std::string>& remarks) {
+  try {
+    tap.modes = analysis::identify_modes(tap.decay, finding);
+  } catch (const core::InvalidInput& error) {
+    remarks.push_back(
+        fmt::format("{}: the tap at {:.3f} s rings too short for the {} steady tones that other "
+                    "taps show: they may falsify its damping ({})",
+                    tap.file, tap.time_s, finding.lines_hz.size(), error.what()));
+  }
+}
+
+void share_lines(const analysis::Band& band, std::vector<IdentifiedTap>& taps,
+                 std::vector<std::string>& remarks) {
+  const std::vector<analysis::TapModes> alone = modes_of(taps);
+  for (IdentifiedTap& tap : taps) {
+    analysis::ModeFinding finding{band};
+    finding.lines_hz = analysis::lines_missed(tap.modes, alone);
+    if (!finding.lines_hz.empty()) {
+      identify_beside_lines(finding, tap, remarks);
+    }
+  }
+}
+}  // namespace
+
+std::vector<analysis::RepeatedMode> modes_over_all(const analysis::Band& band,
+                                                   std::vector<IdentifiedTap>& taps,
+                                                   std::vector<std::string>& remarks) {
+  share_lines(band, taps, remarks);
+  std::vector<analysis::FreeDecay> decays;
+  std::vector<int> impacts;
+  for (const IdentifiedTap& tap : taps) {
+    decays.push_back(tap.decay);
+    impacts.push_back(tap.impact);
+  }
+  const std::vector<analysis::TapModes> alone = modes_of(taps);
+  analysis::ModesOfTaps found = analysis::tell_close_modes_apart(
+      decays, impacts, band, {alone, analysis::modes_over_taps(alone, impacts)});
+  for (std::size_t i = 0; i < taps.size(); ++i) {
+    taps[i].modes = std::move(found.taps[i]);
+  }
+  return std::move(found.modes);
+}
+
+namespace {
+// The surface's motion is felt through the finger's spring and damper (paper eq. 17), whatever of
+// it was measured: at s = -decay + i omega displacement is velocity / s and acceleration / s^2.
+double newtons_per_unit(const SinusoidLaw& law, analysis::Quantity quantity,
+                        const core::Finger& finger) {
+  const std::complex<double> s{-law.decay_per_s.value,
+                               2.0 * std::numbers::pi * law.frequency_hz.value};
+  const double per_metre = std::abs(finger.stiffness_n_per_m + finger.damping_n_s_per_m * s);
+  switch (quantity) {
+    case analysis::Quantity::acceleration:
+      return per_metre / std::norm(s);
+    case analysis::Quantity::velocity:
+      return per_metre / std::abs(s);
+    case analysis::Quantity::displacement:
+      break;
+  }
+  return per_metre;
+}
+
+using Fits = std::vector<const IdentifiedTap*>;
+
+// By impact: its channels vary together.
+std::map<int, Fits> fits_of(const TapIdentification& found) {
+  std::map<int, Fits> fits;
+  for (const IdentifiedTap& tap : found.taps) {
+    if (tap.sinusoid && tap.sinusoid->explained >= min_explained_by_sinusoid) {
+      fits[tap.impact].push_back(&tap);
+    }
+  }
+  return fits;
+}
+
+double mean_of(const Fits& channels, double analysis::FittedSinusoid::*value) {
+  double sum = 0.0;
+  for (const IdentifiedTap* const tap : channels) {
+    sum += (*tap->sinusoid).*value;
+  }
+  return sum / static_cast<double>(channels.size());
+}
+
+analysis::Estimate over_impacts(const std::map<int, Fits>& fits,
+                                double analysis::FittedSinusoid::*value,
+                                double analysis::FittedSinusoid::*error) {
+  constexpr double many = 1e6;  // degrees of freedom of one tap's samples
+  std::vector<double> values;
+  std::vector<double> errors;
+  for (const auto& [impact, channels] : fits) {
+    values.push_back(mean_of(channels, value));
+    errors.push_back(mean_of(channels, error));
+  }
+  return analysis::estimate_over_taps(values, errors, many);
+}
+
+bool is_of_one_sensor(const std::map<int, Fits>& fits) {
+  const std::string& first = fits.begin()->second.front()->channel;
+  return std::ranges::all_of(fits, [&](const auto& of_impact) {
+    return std::ranges::all_of(of_impact.second,
+                               [&](const IdentifiedTap* tap) { return tap->channel == first; });
+  });
+}
+
+// Amplitudes by the speeds of impact, SI; none where speeds are not known.
+void add_amplitudes(const TapIdentification& found, const std::map<int, Fits>& fits,
+                    SinusoidLaw& law) {
+  std::vector<double> speeds;
+  std::vector<double> amplitudes;
+  for (const auto& [impact, channels] : fits) {
+    if (channels.front()->speed_m_s) {
+      speeds.push_back(*channels.front()->speed_m_s);
+      amplitudes.push_back(channels.front()->sinusoid->amplitude * found.question.si_per_unit);
+    }
+  }
+  if (!speeds.empty()) {
+    law.amplitude_per_speed = analysis::amplitude_per_speed(speeds, amplitudes);
+    law.line = analysis::amplitude_line(speeds, amplitudes);
+  }
+}
+}  // namespace
+
+std::optional<SinusoidLaw> sinusoid_law(const TapIdentification& found,
+                                        const std::optional<core::Finger>& finger) {
+  const std::map<int, Fits> fits = fits_of(found);
+  if (fits.empty()) {
+    return std::nullopt;
+  }
+  SinusoidLaw law;
+  int taps = 0;
+  for (const auto& [impact, channels] : fits) {
+    for (const IdentifiedTap* const tap : channels) {
+      law.explained += tap->sinusoid->explained;
+      ++taps;
+    }
+  }
+  law.explained /= taps;
+  law.decay_per_s = over_impacts(fits, &analysis::FittedSinusoid::decay_per_s,
+                                 &analysis::FittedSinusoid::decay_error_per_s);
+  law.frequency_hz = over_impacts(fits, &analysis::FittedSinusoid::frequency_hz,
+                                  &analysis::FittedSinusoid::frequency_error_hz);
+  law.is_of_one_sensor = is_of_one_sensor(fits);
+  if (law.is_of_one_sensor) {
+    add_amplitudes(found, fits, law);
+  }
+  if (finger && law.amplitude_per_speed) {
+    law.amplitude_n_s_per_m =
+        law.amplitude_per_speed->value * newtons_per_unit(law, found.question.quantity, *finger);
+  }
+  return law;
+}
+
+namespace {
+constexpr double min_explained = 0.998;
+constexpr double max_over_noise = 4.0;
+constexpr double min_assurance = 0.5;
+constexpr Eigen::Index few_values = 500;
+constexpr Eigen::Index few_share = 4;  // samples to a value
+}  // namespace
+
+std::vector<std::string> remarks_on_residuals(const std::vector<IdentifiedTap>& taps) {
+  std::vector<std::string> remarks;
+  for (const IdentifiedTap& tap : taps) {
+    const analysis::DecayFit& fit = tap.modes.fit;
+    if (!fit.has_converged) {
+      remarks.push_back(
+          fmt::format("{}: the fit of the tap at {:.3f} s did not converge", tap.file, tap.time_s));
+    }
+    const double over_noise = fit.noise / std::max(tap.noise_rms, 1e-300);
+    if (fit.explained < min_explained && over_noise > max_over_noise) {
+      remarks.push_back(fmt::format(
+          "{}: of the tap at {:.3f} s the modes explain only {:.1f} % of the energy, and what is "
+          "left is {:.0f} times the recording's noise (struck twice, limited by the amplifier, or "
+          "not linear?): do not rely on its modes",
+          tap.file, tap.time_s, 100.0 * fit.explained, over_noise));
+    }
+  }
+  return remarks;
+}
+
+std::vector<std::string> remarks_on_scatter(const std::vector<analysis::RepeatedMode>& modes) {
+  constexpr double improbable = 1e-3;
+  std::vector<std::string> remarks;
+  for (const analysis::RepeatedMode& mode : modes) {
+    if (mode.standing == analysis::Standing::agreed && mode.scatter_p.value_or(1.0) < improbable) {
+      remarks.push_back(fmt::format(
+          "the mode at {:.6g} Hz scatters more over the taps than their noise explains (p = "
+          "{:.1g}): "
+          "two modes too close to be told apart, or a plate that is not linear; its intervals may "
+          "hold neither",
+          mode.frequency_hz.value, *mode.scatter_p));
+    }
+  }
+  return remarks;
+}
+
+std::vector<std::string> remarks_on_resolution(const std::vector<IdentifiedTap>& taps) {
+  std::vector<std::string> remarks;
+  std::set<std::string> told;
+  for (const IdentifiedTap& tap : taps) {
+    const Eigen::VectorXd& samples = tap.decay.samples;
+    const std::set<double> values{samples.begin(), samples.end()};
+    const auto different = static_cast<Eigen::Index>(values.size());
+    if (different < few_values && few_share * different < samples.size() &&
+        told.insert(tap.file + tap.channel).second) {
+      remarks.push_back(fmt::format(
+          "{}: samples have only some {} different values: the intervals of damping ratios may be "
+          "too narrow, above all of modes that ring for long (use more of the converter's range)",
+          tap.file, different));
+    }
+  }
+  return remarks;
+}
+
+std::vector<std::string> remarks_on_shapes(const analysis::ModelUpdate& update,
+                                           const TapIdentification& identified) {
+  std::vector<std::string> remarks;
+  for (const analysis::MatchedMode& one : update.matched) {
+    if (one.assurance && *one.assurance < min_assurance) {
+      remarks.push_back(fmt::format(
+          "the mode at {:.6g} Hz does not have the shape of the model's (MAC {:.2g}): are places, "
+          "force or speeds right?",
+          identified.modes[identified.agreed[one.measured]].frequency_hz.value, *one.assurance));
+    }
+  }
+  return remarks;
+}
+}  // namespace tapstudy::runner

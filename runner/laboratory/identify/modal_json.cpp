@@ -1,0 +1,178 @@
+#include <nlohmann/json.hpp>
+
+#include "runner/laboratory/identify/modal_report.hpp"
+namespace tapstudy::runner {
+namespace {
+using Json = nlohmann::ordered_json;
+
+Json json_of(const analysis::Interval& interval) {
+  return Json{interval.low, interval.high};
+}
+
+Json json_of(const analysis::Estimate& estimate) {
+  Json json{{"value", estimate.value},
+            {"standard_error", estimate.standard_error},
+            {"interval_95", json_of(estimate.interval)}};
+  if (estimate.bootstrap) {
+    json["bootstrap_95"] = json_of(*estimate.bootstrap);
+  }
+  return json;
+}
+
+Json json_of(const analysis::Pole& pole) {
+  return {{"frequency_hz", pole.frequency_hz}, {"damping_ratio", pole.damping_ratio}};
+}
+
+Json json_of(const analysis::TapMode& mode) {
+  const analysis::FittedMode& fitted = mode.fitted;
+  Json json{{"frequency_hz", fitted.pole.frequency_hz},
+            {"frequency_error_hz", fitted.frequency_error_hz},
+            {"damping_ratio", fitted.pole.damping_ratio},
+            {"ratio_error", fitted.ratio_error},
+            {"amplitude", fitted.amplitude},
+            {"phase_rad", fitted.phase_rad},
+            {"standing", name(mode.standing)},
+            {"why", mode.why},
+            {"stable_orders", mode.stable_orders},
+            {"rational_fit", nullptr}};
+  if (mode.by_rational_fit) {
+    json["rational_fit"] = json_of(*mode.by_rational_fit);
+  }
+  return json;
+}
+
+Json json_of(const IdentifiedTap& tap) {
+  Json json{{"recording", tap.file},
+            {"channel", tap.channel},
+            {"impact", tap.impact},
+            {"time_s", tap.time_s},
+            {"begin", tap.tap.begin},
+            {"end", tap.tap.end},
+            {"noise", tap.modes.fit.noise},
+            {"explained", tap.modes.fit.explained},
+            {"has_converged", tap.modes.fit.has_converged},
+            {"significant_order", tap.modes.pencil.significant_order},
+            {"modes", Json::array()},
+            {"sinusoid", nullptr}};
+  for (const analysis::TapMode& mode : tap.modes.modes) {
+    json["modes"].push_back(json_of(mode));
+  }
+  if (tap.sinusoid) {
+    json["sinusoid"] = {{"amplitude", tap.sinusoid->amplitude},
+                        {"decay_per_s", tap.sinusoid->decay_per_s},
+                        {"frequency_hz", tap.sinusoid->frequency_hz},
+                        {"start_s", tap.sinusoid->start_s},
+                        {"explained", tap.sinusoid->explained}};
+  }
+  if (tap.speed_m_s) {
+    json["speed_m_s"] = *tap.speed_m_s;
+  }
+  if (tap.force) {
+    json["impulse_n_s"] = tap.force->impulse_n_s;
+  }
+  return json;
+}
+
+Json json_of(const analysis::RepeatedMode& mode) {
+  return {{"frequency_hz", json_of(mode.frequency_hz)},
+          {"damping_ratio", json_of(mode.damping_ratio)},
+          {"standing", name(mode.standing)},
+          {"why", mode.why},
+          {"taps", mode.taps},
+          {"agreed", mode.agreed}};
+}
+
+Json json_of(const analysis::RayleighFit& fit) {
+  Json json{{"alpha_per_s", json_of(fit.alpha_per_s)},
+            {"beta_s", json_of(fit.beta_s)},
+            {"fitted_ratios", fit.fitted_ratios},
+            {"chi_squared", fit.chi_squared},
+            {"degrees_of_freedom", fit.degrees_of_freedom},
+            {"p", nullptr},
+            {"largest_misfit", fit.largest_misfit},
+            {"at_hz", fit.at_hz},
+            {"is_bounded", fit.is_bounded},
+            {"fits", fit.fits()}};
+  if (fit.p) {
+    json["p"] = *fit.p;
+  }
+  return json;
+}
+
+Json json_of(const SinusoidLaw& law) {
+  Json json{{"decay_per_s", json_of(law.decay_per_s)},
+            {"frequency_hz", json_of(law.frequency_hz)},
+            {"explained", law.explained},
+            {"amplitude_per_speed", nullptr},
+            {"amplitude_line", nullptr},
+            {"amplitude_n_s_per_m", nullptr}};
+  if (law.line) {
+    json["amplitude_line"] = {{"offset", json_of(law.line->offset)},
+                              {"slope", json_of(law.line->slope)},
+                              {"is_proportional", law.line->is_proportional()}};
+  }
+  if (law.amplitude_per_speed) {
+    json["amplitude_per_speed"] = json_of(*law.amplitude_per_speed);
+  }
+  if (law.amplitude_n_s_per_m) {
+    json["amplitude_n_s_per_m"] = *law.amplitude_n_s_per_m;
+  }
+  return json;
+}
+
+Json json_of(const ModelComparison& model) {
+  Json json{{"material", model.material_name}, {"frequencies_hz", model.frequencies_hz},
+            {"youngs_modulus_pa", nullptr},    {"matched", Json::array()},
+            {"unmatched", Json::array()},      {"rival_pa", nullptr},
+            {"spring_factor", nullptr}};
+  if (!model.update) {
+    return json;
+  }
+  json["youngs_modulus_pa"] = json_of(model.update->youngs_modulus_pa);
+  json["rms_misfit"] = model.update->rms_misfit;
+  for (const analysis::MatchedMode& one : model.update->matched) {
+    json["matched"].push_back({{"agreed_mode", one.measured},
+                               {"model_mode", one.model},
+                               {"misfit", one.misfit},
+                               {"mac", one.assurance ? Json(*one.assurance) : Json{}}});
+  }
+  json["unmatched"] = model.update->unmatched;
+  if (model.springs) {
+    json["spring_factor"] = json_of(model.springs->factor);
+  }
+  if (model.update->rival_pa) {
+    json["rival_pa"] = *model.update->rival_pa;
+  }
+  return json;
+}
+}  // namespace
+
+std::string json_of(const TapIdentification& found) {
+  Json json{{"schema_version", 1},
+            {"quantity", name(found.question.quantity)},
+            {"band_hz", {found.band.low_hz, found.band.high_hz}},
+            {"rate_error", found.question.rate_error},
+            {"taps", Json::array()},
+            {"modes", Json::array()},
+            {"rayleigh", nullptr},
+            {"sinusoid", nullptr},
+            {"model", nullptr},
+            {"remarks", found.remarks}};
+  for (const IdentifiedTap& tap : found.taps) {
+    json["taps"].push_back(json_of(tap));
+  }
+  for (const analysis::RepeatedMode& mode : found.modes) {
+    json["modes"].push_back(json_of(mode));
+  }
+  if (found.rayleigh) {
+    json["rayleigh"] = json_of(*found.rayleigh);
+  }
+  if (found.sinusoid) {
+    json["sinusoid"] = json_of(*found.sinusoid);
+  }
+  if (found.model) {
+    json["model"] = json_of(*found.model);
+  }
+  return json.dump(2);
+}
+}  // namespace tapstudy::runner

@@ -1,0 +1,40 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "analysis/report/figures/figure.hpp"
+#include "runner/laboratory/identify/tap_identification.hpp"
+namespace tapstudy::runner {
+// To stdout: taps, modes, damping, sinusoid, the model beside it, and remarks.
+void print(const TapIdentification& found);
+
+// What a protocol takes, with intervals as comments: of a protocol's stimulus its material, whole,
+// under `materials`, else `damping` alone; under `rendering` the sinusoid where its force is known.
+// Damping is Rayleigh's where it fits, else a ratio a mode: of the model's modes inside the band,
+// those that were not measured get a ratio by linear interpolation over frequency. Where springs
+// were found, the plate's `fixations`, whole, under `plates`.
+std::string yaml_of(const TapIdentification& found);
+
+// One of a protocol's fixations, as it is read: {region: ...}. is_of_box: of a plate, not a
+// surface.
+std::string fixation_yaml(const core::Fixation& fixation, bool is_of_box);
+
+std::string json_of(const TapIdentification& found);
+
+// The taps as `recordings` of a protocol, of accelerations of a fingertip or stylus that tapped at
+// one place, with their speeds: the forces that give `finger_kg` these accelerations
+// (acceleration matching, Kuchenbecker, Fiene & Niemeyer 2006).
+std::string playback_of(const TapIdentification& found, double finger_kg);
+
+struct NamedFigure {
+  std::string name;  // of its file
+  analysis::Figure figure;
+};
+// time.svg and spectrum.svg: measured and fitted, of the first taps; stabilisation.svg of the
+// first.
+std::vector<NamedFigure> figures_of(const TapIdentification& found);
+
+// identified.yaml, identified.json, recordings.yaml where a place was given, and the figures, into
+// a new directory. Throws InvalidInput if it exists already or cannot be written.
+void write_files(const std::string& directory, const TapIdentification& found);
+}  // namespace tapstudy::runner

@@ -1,0 +1,255 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "runner/laboratory/identify/modal_report.hpp"
+namespace tapstudy::runner {
+namespace {
+std::string numbers(const core::Vec3& v) {
+  return fmt::format("[{:.9g}, {:.9g}, {:.9g}]", v.x(), v.y(), v.z());
+}
+
+std::string place(const core::Fixation& fixation, bool is_of_box) {
+  return is_of_box ? fmt::format("at_m: [{:.9g}, {:.9g}], face: {}", fixation.at_m.x(),
+                                 fixation.at_m.y(), name_in(core::face_names, fixation.face))
+                   : "at_m: " + numbers(fixation.at_m);
+}
+
+std::string where(const core::Fixation& fixation, bool is_of_box) {
+  switch (fixation.shape) {
+    case core::RegionShape::vertex:
+      return place(fixation, is_of_box);
+    case core::RegionShape::disc:
+      return fmt::format("{}, radius_m: {:.9g}", place(fixation, is_of_box), fixation.radius_m);
+    case core::RegionShape::ball:
+      return fmt::format("at_m: {}, radius_m: {:.9g}", numbers(fixation.at_m), fixation.radius_m);
+    case core::RegionShape::box:
+      return fmt::format("low_m: {}, high_m: {}", numbers(fixation.low_m),
+                         numbers(fixation.high_m));
+    case core::RegionShape::side:
+      break;
+  }
+  return fmt::format("side: {}", name_in(core::side_names, fixation.side));
+}
+
+std::string hold(const core::Fixation& fixation) {
+  if (const auto& springs = fixation.springs_n_per_m) {
+    return fmt::format("springs_n_per_m: [{:.5g}, {:.5g}, {:.5g}]", springs->x(), springs->y(),
+                       springs->z());
+  }
+  std::string axes;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    axes += fixation.constrained_axes.at(axis) ? std::string(1, "xyz"[axis]) : "";
+  }
+  return "axes: " + axes;
+}
+}  // namespace
+
+std::string fixation_yaml(const core::Fixation& fixation, bool is_of_box) {
+  return fmt::format("{{region: {}, {}, {}}}", name_in(core::region_names, fixation.shape),
+                     where(fixation, is_of_box), hold(fixation));
+}
+
+namespace {
+using analysis::Estimate;
+
+std::string comment(const Estimate& estimate) {
+  return fmt::format("# 95 %: {:.5g} to {:.5g}", estimate.interval.low, estimate.interval.high);
+}
+
+struct RatioAt {
+  double frequency_hz{};
+  double ratio{};
+};
+
+double interpolated(const std::vector<RatioAt>& known, double frequency_hz) {
+  const auto above = std::ranges::lower_bound(known, frequency_hz, {}, &RatioAt::frequency_hz);
+  if (above == known.begin()) {
+    return known.front().ratio;
+  }
+  if (above == known.end()) {
+    return known.back().ratio;
+  }
+  const RatioAt& below = *(above - 1);
+  const double share =
+      (frequency_hz - below.frequency_hz) / (above->frequency_hz - below.frequency_hz);
+  return below.ratio + share * (above->ratio - below.ratio);
+}
+
+// Lines do not decay; neither may a ratio that noise made negative feed energy into a mode.
+double usable(double ratio) {
+  return std::max(ratio, 0.0);
+}
+
+std::vector<double> ratios_of_measured(const TapIdentification& found) {
+  std::vector<double> ratios;
+  for (const std::size_t i : found.agreed) {
+    ratios.push_back(usable(found.modes[i].damping_ratio.value));
+  }
+  return ratios;
+}
+
+// One for each of the model's modes inside the band.
+std::vector<double> ratios_of_model(const TapIdentification& found, const ModelComparison& model) {
+  const double factor =
+      std::sqrt(model.update->youngs_modulus_pa.value / model.material->youngs_modulus_pa);
+  std::vector<RatioAt> known;
+  for (const analysis::MatchedMode& one : model.update->matched) {
+    known.push_back({factor * model.frequencies_hz[one.model],
+                     usable(found.modes[found.agreed[one.measured]].damping_ratio.value)});
+  }
+  std::ranges::sort(known, {}, &RatioAt::frequency_hz);  // shapes may match modes crosswise
+  std::vector<double> ratios;
+  for (const double frequency_hz : model.frequencies_hz) {
+    if (factor * frequency_hz <= model.band_limit_hz) {
+      ratios.push_back(interpolated(known, factor * frequency_hz));
+    }
+  }
+  return ratios;
+}
+
+std::string listed(const std::vector<double>& ratios) {
+  std::string list;
+  for (const double ratio : ratios) {
+    list += fmt::format("{}{:.5g}", list.empty() ? "" : ", ", ratio);
+  }
+  return fmt::format("{{modal_ratios: [{}], further_ratio: {:.5g}}}", list, ratios.back());
+}
+
+std::string modal(const TapIdentification& found) {
+  const bool has_model = found.model && found.model->update;
+  const std::vector<double> of_model =
+      has_model ? ratios_of_model(found, *found.model) : std::vector<double>{};
+  return listed(of_model.empty() ? ratios_of_measured(found) : of_model);
+}
+
+// At least one mode is agreed.
+std::string damping_of(const TapIdentification& found, const std::string& indent) {
+  const auto& rayleigh = found.rayleigh;
+  if (!rayleigh) {
+    const Estimate& only = found.modes[found.agreed.front()].damping_ratio;
+    return fmt::format("{0}{1}\n{0}damping: {{ratio: {2:.5g}}}\n", indent, comment(only),
+                       usable(only.value));
+  }
+  const std::string by_rayleigh = fmt::format("{{alpha_per_s: {:.5g}, beta_s: {:.5g}}}",
+                                              rayleigh->alpha_per_s.value, rayleigh->beta_s.value);
+  const std::string by_mode = modal(found);
+  const auto& first = rayleigh->fits() ? by_rayleigh : by_mode;
+  const auto& second = rayleigh->fits() ? by_mode : by_rayleigh;
+  return fmt::format(
+      "{0}# alpha_per_s {1}\n{0}# beta_s {2}\n{0}# Rayleigh's misfit of a ratio: {3:.1f} % at "
+      "most\n"
+      "{0}damping: {4}\n{0}# or damping: {5}\n",
+      indent, comment(rayleigh->alpha_per_s).substr(2), comment(rayleigh->beta_s).substr(2),
+      100.0 * rayleigh->largest_misfit, first, second);
+}
+std::string springs_of(const IdentifiedSprings& springs, const core::Shape& shape) {
+  std::string text = fmt::format(
+      "plates:\n  {}:\n    # springs: {:.4g} times the protocol's, {}\n    fixations:\n",
+      springs.plate_name, springs.factor.value, comment(springs.factor).substr(2));
+  for (const core::Fixation& fixation : springs.fixations) {
+    text += "      - " + fixation_yaml(fixation, std::holds_alternative<core::Box>(shape)) + "\n";
+  }
+  return text;
+}
+
+std::string sinusoid_of(const SinusoidLaw& law, std::optional<double> loop_rate_hz) {
+  if (loop_rate_hz && law.frequency_hz.value >= 0.5 * *loop_rate_hz) {
+    return fmt::format("# the sinusoid of {:.5g} Hz is not below half of the protocol's rate_hz\n",
+                       law.frequency_hz.value);
+  }
+  if (!law.amplitude_n_s_per_m) {
+    return fmt::format(
+        "# sinusoid: {{amplitude_n_s_per_m: unknown, decay_per_s: {:.5g}, frequency_hz: {:.5g}}}\n",
+        law.decay_per_s.value, law.frequency_hz.value);
+  }
+  return fmt::format(
+      "rendering:\n  sinusoid:\n    amplitude_n_s_per_m: {:.5g}\n    decay_per_s: {:.5g}  {}\n"
+      "    frequency_hz: {:.5g}  {}\n",
+      *law.amplitude_n_s_per_m, law.decay_per_s.value, comment(law.decay_per_s),
+      law.frequency_hz.value, comment(law.frequency_hz));
+}
+
+std::string cautions_of(const analysis::ModelUpdate& update, std::size_t found) {
+  std::string text;
+  if (update.matched.size() < found) {
+    text += fmt::format(
+        "# CAUTION: only {} of the {} modes found match the model; Young's modulus rests on these, "
+        "and\n# modal_ratios of other modes are those of their neighbours. Is the plate as the "
+        "protocol says?\n",
+        update.matched.size(), found);
+  }
+  if (update.rival_pa) {
+    text += fmt::format("# CAUTION: {:.4g} Pa fits nearly as well, with other modes matched\n",
+                        *update.rival_pa);
+  }
+  return text;
+}
+
+std::string modulus_of(const ModelComparison& model) {
+  if (model.update) {
+    return fmt::format("{:.5g}  {}", model.update->youngs_modulus_pa.value,
+                       comment(model.update->youngs_modulus_pa));
+  }
+  const bool are_springs_kept = model.is_on_springs && !model.springs;
+  return fmt::format("{:.5g}  # the protocol's: {}", model.material->youngs_modulus_pa,
+                     are_springs_kept ? "not told apart from its springs" : "no mode matched");
+}
+}  // namespace
+
+std::string yaml_of(const TapIdentification& found) {
+  std::string text = fmt::format(
+      "# tapstudy identify: {} taps, {}, {:g} to {:g} Hz. To be pasted over the keys of the same "
+      "name.\n",
+      found.taps.size(), name(found.question.quantity), found.band.low_hz, found.band.high_hz);
+  if (found.sinusoid) {
+    text += sinusoid_of(*found.sinusoid, found.loop_rate_hz);
+  }
+  if (found.agreed.empty()) {
+    return text + "# no mode was found by both methods\n";
+  }
+  if (!found.model) {
+    return text + damping_of(found, "");
+  }
+  const ModelComparison& model = *found.model;
+  if (model.springs) {
+    text += springs_of(*model.springs, model.shape);
+  }
+  if (model.update) {
+    text += cautions_of(*model.update, found.agreed.size());
+  }
+  return text + fmt::format(
+                    "materials:\n  {}:\n    youngs_modulus_pa: {}\n    density_kg_per_m3: {:.9g}\n"
+                    "    poissons_ratio: {:.9g}\n{}",
+                    model.material_name, modulus_of(model), model.material->density_kg_per_m3,
+                    model.material->poissons_ratio, damping_of(found, "    "));
+}
+
+namespace {
+std::string samples_of(const Eigen::VectorXd& samples, double newtons_per_unit) {
+  std::string text;
+  for (const double sample : samples) {
+    text += fmt::format("{}{:.5g}", text.empty() ? "" : ", ", newtons_per_unit * sample);
+  }
+  return text;
+}
+}  // namespace
+
+std::string playback_of(const TapIdentification& found, double finger_kg) {
+  const double newtons_per_unit = finger_kg * found.question.si_per_unit;
+  std::string text = fmt::format(
+      "# tapstudy identify: {} taps as the forces that give the protocol's finger the recorded\n"
+      "# accelerations, those of a fingertip or stylus; of a sensor on the plate they are too "
+      "large.\n# To be pasted over the key of the same name.\n"
+      "recordings:\n  {}:\n    rate_hz: {:.9g}\n    taps:\n",
+      found.taps.size(), found.question.stimulus, found.taps.front().whole.rate_hz);
+  for (const IdentifiedTap& tap : found.taps) {
+    text += fmt::format(
+        "      - at_m: [{:g}, {:g}]\n        speed_m_s: {:.6g}\n        force_n: [{}]\n",
+        found.question.at_m->x(), found.question.at_m->y(), *tap.speed_m_s,
+        samples_of(tap.whole.samples, newtons_per_unit));
+  }
+  return text;
+}
+}  // namespace tapstudy::runner

@@ -1,0 +1,63 @@
+#pragma once
+#include <Eigen/Core>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "analysis/modal/modes/model_matching.hpp"
+#include "core/model/modal_model.hpp"
+#include "core/model/progress.hpp"
+#include "core/model/shape/shape.hpp"
+#include "protocols/axes/presented_stimulus.hpp"
+namespace tapstudy::runner {
+// Shapes of measured modes at the places that were tapped.
+struct MeasuredShapes {
+  std::vector<Eigen::Vector2d> places_m;  // plate frame, each once
+  Eigen::MatrixXd shapes;                 // at the places, a column for each measured mode
+};
+inline constexpr std::size_t fewest_places = 3;
+
+// Of each impact's place the number of the place, in the order in which places come.
+struct NumberedPlaces {
+  std::vector<Eigen::Vector2d> places_m;
+  std::vector<std::size_t> of_impacts;
+};
+NumberedPlaces numbered(const std::vector<Eigen::Vector2d>& of_impacts_m);
+
+// modal_assurance of each measured mode (rows) and each of the model's (columns), whose shapes are
+// displacements of its upper surface along z. Throws InvalidInput for a place beside the body.
+Eigen::MatrixXd assurance_of(const MeasuredShapes& measured, const core::ModalModel& model,
+                             const core::Shape& body);
+
+// Of a plate on springs: all of them by one factor.
+struct IdentifiedSprings {
+  analysis::Estimate factor;  // on the protocol's
+  std::string plate_name;
+  std::vector<core::Fixation> fixations;  // all of the plate's, with updated springs
+};
+
+// The model of the protocol's stimulus beside what was measured.
+struct ModelComparison {
+  std::shared_ptr<const protocols::Material> material;
+  std::string material_name;
+  core::Shape shape;
+  std::vector<double> frequencies_hz;  // at the protocol's Young's modulus
+  double band_limit_hz{};
+  std::optional<analysis::ModelUpdate> update;  // unset: no mode has a partner
+  bool is_on_springs{false};
+  bool is_held_rigidly{false};               // at some fixation, and on no springs
+  std::optional<IdentifiedSprings> springs;  // unset: rigid, or the modes do not tell
+};
+
+struct MeasuredModes {
+  std::vector<analysis::Estimate> frequencies_hz;
+  std::optional<MeasuredShapes> shapes;  // of the same modes; unset: not known
+};
+
+// Up to the protocol's band limit or high_hz. Throws ModelError if the model cannot be built,
+// InvalidInput as assurance_of does.
+ModelComparison compare_with_model(const protocols::Protocol& protocol, const std::string& stimulus,
+                                   const MeasuredModes& measured, double high_hz,
+                                   const core::ProgressHook& progress);
+}  // namespace tapstudy::runner

@@ -1,0 +1,305 @@
+#include "runner/laboratory/identify/tap_identification.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "analysis/modal/modes/mode_shapes.hpp"
+#include "core/error.hpp"
+#include "protocols/reader/read_protocol.hpp"
+#include "runner/laboratory/identify/fits_over_taps.hpp"
+#include "runner/laboratory/identify/measurement_files.hpp"
+namespace tapstudy::runner {
+namespace {
+void widen(double factor, analysis::Interval& interval) {
+  interval.low *= interval.low > 0.0 ? 1.0 / factor : factor;
+  interval.high *= interval.high > 0.0 ? factor : 1.0 / factor;
+}
+
+void widen(double factor, analysis::Estimate& estimate) {
+  widen(factor, estimate.interval);
+  if (estimate.bootstrap) {
+    widen(factor, *estimate.bootstrap);
+  }
+}
+}  // namespace
+
+void include_rate_error(double share, TapIdentification& identified) {
+  const double factor = 1.0 + share;
+  for (analysis::RepeatedMode& mode : identified.modes) {
+    widen(factor, mode.frequency_hz);
+  }
+  if (identified.rayleigh) {
+    widen(factor, identified.rayleigh->alpha_per_s);
+    widen(factor, identified.rayleigh->beta_s);
+  }
+  if (identified.sinusoid) {
+    widen(factor, identified.sinusoid->decay_per_s);
+    widen(factor, identified.sinusoid->frequency_hz);
+  }
+  if (identified.model && identified.model->update) {
+    widen(factor * factor, identified.model->update->youngs_modulus_pa);
+  }
+  if (identified.model && identified.model->springs) {
+    widen(factor * factor, identified.model->springs->factor);
+  }
+}
+
+namespace {
+analysis::FreeDecay between(const analysis::Recording& recording, std::size_t begin,
+                            std::size_t end) {
+  const auto first = static_cast<Eigen::Index>(begin);
+  const auto count = static_cast<Eigen::Index>(end - begin);
+  const Eigen::Map<const Eigen::VectorXd> all{recording.samples.data(),
+                                              static_cast<Eigen::Index>(recording.samples.size())};
+  return {recording.rate_hz, all.segment(first, count)};
+}
+
+// A sensor that is off or disconnected.
+bool is_dead(const Eigen::VectorXd& samples) {
+  const double most = samples.cwiseAbs().maxCoeff();
+  return samples.maxCoeff() - samples.minCoeff() <= 1e-12 * most;
+}
+
+class Identifier {
+ public:
+  Identifier(const TapQuestion& question, Progress& progress) : hook_{progress.hook()} {
+    result_.question = question;
+    if (!question.protocol.empty()) {
+      protocol_ = protocols::read_protocol(question.protocol);
+      result_.loop_rate_hz = protocol_->rate_hz;
+      static_cast<void>(protocol_->stimulus(question.stimulus));  // must be there
+      result_.finger_kg = protocol_->rendering.finger.mass_kg;
+    }
+  }
+
+  TapIdentification identify() {
+    std::vector<MeasuredFile> files;
+    for (const std::string& file : result_.question.recordings) {
+      files.push_back(read_measured_file(file, result_.question));
+    }
+    const double slowest_hz = rate_of(*std::ranges::min_element(files, {}, rate_of));
+    check_playback_rate(files);
+    result_.band = sought_band(result_.question, slowest_hz,
+                               protocol_ ? std::optional{protocol_->band_limit_hz} : std::nullopt);
+    int impacts = 0;
+    for (const MeasuredFile& file : files) {
+      impacts += add(file, impacts);
+    }
+    if (result_.taps.empty()) {
+      throw core::InvalidInput{fmt::format("{}", fmt::join(result_.remarks, "\n"))};
+    }
+    give_speeds(impacts);
+    give_places(impacts);
+    sum_up();
+    include_rate_error(result_.question.rate_error, result_);
+    return std::move(result_);
+  }
+
+ private:
+  static double rate_of(const MeasuredFile& file) { return file.channels.front().rate_hz; }
+
+  void check_playback_rate(const std::vector<MeasuredFile>& files) const {
+    for (const MeasuredFile& file : files) {
+      if (result_.question.at_m && rate_of(file) != rate_of(files.front())) {
+        throw core::InvalidInput{
+            fmt::format("--at: {} has {:g} samples a second, {} {:g}: all of one rate",
+                        file.channels.front().file, rate_of(file),
+                        files.front().channels.front().file, rate_of(files.front()))};
+      }
+    }
+  }
+  // How many impacts it has; `before` are those of earlier recordings.
+  int add(const MeasuredFile& file, int before) {
+    const analysis::FoundTaps found = find_taps(file, result_.question.finding);
+    for (const std::string& remark : found.remarks) {
+      result_.remarks.push_back(file.channels.front().file + ": " + remark);
+    }
+    std::vector<analysis::Resting> resting;  // of each channel
+    std::ranges::transform(file.channels, std::back_inserter(resting), analysis::resting);
+    for (const analysis::Tap& tap : found.taps) {
+      hook_(fmt::format("tap {} of {}", tap.impact, file.channels.front().file));
+      const auto force = file.force ? std::optional{impact_force(file, tap)} : std::nullopt;
+      if (force && force->is_clipped) {
+        result_.remarks.push_back(fmt::format("{}: the force of the tap at {:.3f} s is clipped",
+                                              file.force->file, force->centre_s));
+      }
+      for (std::size_t i = 0; i < file.channels.size(); ++i) {
+        if (add(file.channels[i], resting[i], tap)) {
+          result_.taps.back().impact = before + tap.impact;
+          result_.taps.back().force = force;
+        }
+      }
+    }
+    return found.impacts;
+  }
+
+  // A tap that is too short for the band is left out with a remark.
+  bool add(const analysis::Recording& recording, const analysis::Resting& resting,
+           const analysis::Tap& tap) {
+    IdentifiedTap one;
+    one.file = recording.file;
+    one.channel = recording.channel;
+    one.tap = tap;
+    one.time_s = static_cast<double>(tap.onset) / recording.rate_hz;
+    one.noise_rms = resting.noise_rms;
+    one.decay = between(recording, tap.begin, tap.end);
+    if (is_dead(one.decay.samples)) {
+      result_.remarks.push_back(fmt::format("{}, {}: does not change in the tap at {:.3f} s",
+                                            recording.file, recording.channel, one.time_s));
+      return false;
+    }
+    one.decay.samples.array() -= one.decay.samples.mean();
+    try {
+      one.modes = analysis::identify_modes(one.decay, {result_.band});
+    } catch (const core::InvalidInput& error) {
+      result_.remarks.push_back(fmt::format("{}: the tap at {:.3f} s is left out: {}",
+                                            recording.file, one.time_s, error.what()));
+      return false;
+    }
+    // not by its mean: what stopped has been accelerated
+    one.whole = between(recording, tap.onset, tap.end);
+    one.whole.samples.array() -= resting.value;
+    one.sinusoid = analysis::fit_decaying_sinusoid(
+        one.whole, band_of_sinusoid(result_.band, recording.rate_hz));
+    result_.taps.push_back(std::move(one));
+    return true;
+  }
+
+  static void check_rows(const std::string& file, const char* what, std::size_t rows, int impacts) {
+    if (rows != static_cast<std::size_t>(impacts)) {
+      throw core::InvalidInput{
+          fmt::format("{}: has {} {}, the recordings {} impacts (one row for each, in their order, "
+                      "also for those left out)",
+                      file, rows, what, impacts)};
+    }
+  }
+  std::size_t impact_of(std::size_t tap) const {
+    return static_cast<std::size_t>(result_.taps[tap].impact - 1);
+  }
+
+  void give_speeds(int impacts) {
+    if (result_.question.speeds.empty()) {
+      return;
+    }
+    const std::vector<double> speeds = read_speeds(result_.question.speeds);
+    check_rows(result_.question.speeds, "speeds", speeds.size(), impacts);
+    for (std::size_t i = 0; i < result_.taps.size(); ++i) {
+      result_.taps[i].speed_m_s = speeds[impact_of(i)];
+    }
+  }
+
+  void give_places(int impacts) {
+    if (result_.question.places.empty()) {
+      return;
+    }
+    const NumberedPlaces places = numbered(read_places(result_.question.places));
+    check_rows(result_.question.places, "places", places.of_impacts.size(), impacts);
+    result_.places_m = places.places_m;
+    for (std::size_t i = 0; i < result_.taps.size(); ++i) {
+      result_.taps[i].place = places.of_impacts[impact_of(i)];
+    }
+  }
+
+  // Of the agreed modes.
+  std::optional<MeasuredShapes> measured_shapes() {
+    if (result_.places_m.empty()) {
+      return std::nullopt;
+    }
+    if (result_.places_m.size() < fewest_places) {
+      result_.remarks.push_back(
+          fmt::format("shapes are not compared: of {} tapped, fewer than {} tell none apart",
+                      result_.places_m.size() == 1 ? "one place" : "two places", fewest_places));
+      return std::nullopt;
+    }
+    std::vector<std::string> sensors;
+    std::vector<analysis::PlacedTap> taps;
+    for (const IdentifiedTap& tap : result_.taps) {
+      const auto known = std::ranges::find(sensors, tap.channel);
+      const auto sensor = static_cast<std::size_t>(known - sensors.begin());
+      if (known == sensors.end()) {
+        sensors.push_back(tap.channel);
+      }
+      taps.push_back({*tap.place, sensor, tap.impact,
+                      tap.force ? tap.force->impulse_n_s : *tap.speed_m_s,
+                      static_cast<double>(tap.tap.begin) / tap.decay.rate_hz -
+                          (tap.force ? tap.force->centre_s : tap.time_s),
+                      tap.decay});
+    }
+    std::vector<analysis::Pole> poles;
+    for (const std::size_t i : result_.agreed) {
+      poles.push_back({result_.modes[i].frequency_hz.value, result_.modes[i].damping_ratio.value});
+    }
+    const MeasuredShapes shapes{result_.places_m,
+                                analysis::tapped_shapes(poles, taps, result_.places_m.size())};
+    return shapes;
+  }
+
+  void sum_up() {
+    hook_("all taps together");
+    result_.modes = modes_over_all(result_.band, result_.taps, result_.remarks);
+    add_remarks(remarks_on_residuals(result_.taps));
+    add_remarks(remarks_on_resolution(result_.taps));
+    add_remarks(remarks_on_scatter(result_.modes));
+    std::vector<analysis::MeasuredRatio> ratios;
+    for (std::size_t i = 0; i < result_.modes.size(); ++i) {
+      const analysis::RepeatedMode& mode = result_.modes[i];
+      if (mode.standing == analysis::Standing::agreed) {
+        result_.agreed.push_back(i);
+        ratios.push_back({mode.frequency_hz.value, mode.damping_ratio.value,
+                          std::max(mode.damping_ratio.standard_error, 1e-12),
+                          mode.degrees_of_freedom});
+      }
+    }
+    result_.rayleigh = analysis::fit_rayleigh(ratios);
+    if (result_.agreed.empty()) {
+      result_.remarks.emplace_back("no mode was found by both methods");
+    }
+    result_.sinusoid = sinusoid_law(
+        result_, protocol_ ? std::optional{protocol_->rendering.finger} : std::nullopt);
+    if (!result_.sinusoid) {
+      result_.remarks.push_back(
+          fmt::format("no tap is mostly one decaying sinusoid (it would have to explain {:.0f} % "
+                      "of its energy)",
+                      100.0 * min_explained_by_sinusoid));
+    }
+    if (protocol_) {
+      result_.model = compared_with_model();
+    }
+  }
+
+  void add_remarks(const std::vector<std::string>& remarks) {
+    result_.remarks.insert(result_.remarks.end(), remarks.begin(), remarks.end());
+  }
+
+  ModelComparison compared_with_model() {
+    MeasuredModes measured{{}, measured_shapes()};
+    for (const std::size_t i : result_.agreed) {
+      measured.frequencies_hz.push_back(result_.modes[i].frequency_hz);
+    }
+    ModelComparison model = compare_with_model(*protocol_, result_.question.stimulus, measured,
+                                               result_.band.high_hz, hook_);
+    if (model.is_on_springs && !model.springs) {
+      result_.remarks.emplace_back(
+          "Young's modulus and the stiffness of the springs cannot be told apart by these modes: "
+          "the "
+          "protocol's were kept (measure more modes, some of which bend the plate)");
+    }
+    if (model.update) {
+      add_remarks(remarks_on_shapes(*model.update, result_));
+    }
+    return model;
+  }
+
+  TapIdentification result_;
+  std::optional<protocols::Protocol> protocol_;
+  core::ProgressHook hook_;
+};
+}  // namespace
+
+TapIdentification identify_taps(const TapQuestion& question, Progress& progress) {
+  return Identifier{question, progress}.identify();
+}
+}  // namespace tapstudy::runner

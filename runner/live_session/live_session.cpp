@@ -1,0 +1,222 @@
+#include "runner/live_session/live_session.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <optional>
+#include <random>
+#include <utility>
+
+#include "core/error.hpp"
+#include "device/loop/sleep_inhibitor.hpp"
+#include "runner/session/devices/device_kind.hpp"
+#include "runner/session/devices/masking_card.hpp"
+#include "runner/session/devices/rigs.hpp"
+#include "runner/session/engine/remaining_trials.hpp"
+#include "runner/session/engine/session_row.hpp"
+#include "runner/live_session/live_trials.hpp"
+#include "runner/session/markers/markers.hpp"
+#include "runner/terminal/logging.hpp"
+#include "runner/terminal/operator_dialogue.hpp"
+#include "runner/terminal/process_exit.hpp"
+#include "runner/terminal/session_lock.hpp"
+#include "runner/terminal/terminal_output.hpp"
+namespace tapstudy::runner {
+namespace {
+constexpr double measured_s = 0.5;
+}
+
+PreflightReport run_preflight(const protocols::Rig& rig, SessionDevice& device,
+                              device::Nanoseconds period, const std::string& sleep) {
+  PreflightReport report{device.description(),
+                         diagnose(rig.realtime, period, measured_s, Under::no_load)};
+  report.diagnosis.round_trip = device.round_trip();
+  report.diagnosis.sleep = sleep;
+  const Verdict verdict = verdict_of(report.diagnosis);
+  if (!verdict.holds) {
+    warn(verdict.words + " (recorded with the session; for details run `tapstudy doctor`)");
+  }
+  return report;
+}
+
+namespace {
+std::uint64_t drawn_seed() {
+  std::random_device source;
+  return (static_cast<std::uint64_t>(source()) << 32U) | source();
+}
+
+std::optional<results::SessionRow> earlier_session(const SessionRequest& request,
+                                                   results::Store& store) {
+  auto earlier = store.latest_session(request.participant_id);
+  if (earlier && request.resume == Resume::no) {
+    throw core::InvalidInput{
+        fmt::format("participant '{}' is in this study already (go on with "
+                    "--resume, or choose another id)",
+                    request.participant_id)};
+  }
+  const auto alike = earlier ? std::nullopt : store.participant_like(request.participant_id);
+  if (!earlier && request.resume == Resume::yes) {
+    throw core::InvalidInput{fmt::format("participant '{}' has no session to resume{}",
+                                         request.participant_id,
+                                         alike ? fmt::format(" ('{}' has)", *alike) : "")};
+  }
+  if (alike) {
+    throw core::InvalidInput{fmt::format(
+        "participant '{}': this study has a '{}' (ids must differ by more than letter case)",
+        request.participant_id, *alike)};
+  }
+  return earlier;
+}
+
+// The order of a participant who resumes is the stored one.
+void check_keeps_order(const SessionRequest& request, const results::SessionRow& earlier) {
+  if (request.order_index) {
+    throw core::InvalidInput{"--row: cannot be combined with --resume, which keeps the order"};
+  }
+  if (request.seed && *request.seed != earlier.seed) {
+    throw core::InvalidInput{fmt::format(
+        "--seed: this participant's order was drawn with seed {}, and --resume keeps it",
+        earlier.seed)};
+  }
+}
+
+void resume(const results::SessionRow& earlier, const protocols::Protocol& protocol,
+            results::Store& store, BegunSession& session) {
+  if (earlier.planned_order != session.row.planned_order) {
+    throw core::InvalidInput{
+        "--resume: this program would plan another order than the stored "
+        "one; resume with the version that began the session"};
+  }
+  session.row.resumes = earlier.id;
+  session.resumed_since_utc = earlier.started_utc;
+  const auto as_given = store.answers_as_given(earlier.participant_id);
+  session.earlier = {store.filled_forms(earlier.participant_id),
+                     PracticeRecord{as_given},
+                     as_given,
+                     store.presentations(earlier.participant_id),
+                     {}};
+  for (const results::UnansweredTrial& trial : store.unanswered_trials(earlier.participant_id)) {
+    session.earlier.requeued.push_back(trial.number);
+  }
+  const std::vector<int> answered = store.answered_trials(earlier.participant_id);
+  session.done = {answered.begin(), answered.end()};
+  for (const auto& trials : {given_up_trials(protocol, earlier.participant_id, store),
+                             unneeded_trials(protocol, earlier.participant_id, store)}) {
+    session.done.insert(trials.begin(), trials.end());
+  }
+}
+}  // namespace
+
+BegunSession begin_session(const SessionRequest& request, const protocols::Protocol& protocol,
+                           const protocols::Rig& rig, const PreflightReport& preflight,
+                           results::Store& store) {
+  SessionPlan plan;
+  plan.participant_id = request.participant_id;
+  plan.mode = request.mode;
+  plan.device = preflight.device;
+  plan.scheduler = preflight.diagnosis.idle.total.realtime;
+  plan.doctor = to_json(preflight.diagnosis);
+  BegunSession session;
+  // sessions begun at the same time must not get the same index
+  store.in_one_transaction([&] {
+    const auto earlier = earlier_session(request, store);
+    if (earlier) {
+      check_keeps_order(request, *earlier);
+    }
+    const auto place = store.place_of(
+        plan.participant_id, plan.mode,
+        {[&](const std::string& id) { return is_in_session(store.directory(), id); },
+         [&](const std::string& id) { return !trials_done(protocol, id, store).are_all(); }});
+    plan.participant_index = place.participant_index;
+    plan.order_index =
+        earlier ? place.order_index : request.order_index.value_or(place.order_index);
+    plan.language = request.language;
+    plan.seed = earlier ? earlier->seed : request.seed ? *request.seed : drawn_seed();
+    session.schedule = make_schedule(protocol, plan.seed, plan.order_index);
+    session.row = session_row(plan, protocol, rig, session.schedule);
+    if (earlier) {
+      resume(*earlier, protocol, store, session);
+    }
+    store.add_session(session.row);
+  });
+  return session;
+}
+
+namespace {
+// All checks possible before the device and the store are opened.
+void check(const LiveSession& live) {
+  check_has_blocks(live.protocol);
+  check_participant_id(live.request.participant_id);
+  check_fits(live.protocol, live.rig);
+  if (live.console) {
+    check_can_listen(live.console->address);
+  }
+  if (live.request.resume == Resume::yes) {
+    results::Store::open_existing(live.directory);  // or there is nothing to resume
+  }
+}
+
+// A hand that is not a participant's makes the session a rehearsal.
+SessionRequest request_of(const LiveSession& live) {
+  SessionRequest request = live.request;
+  if (!kind_of(live.rig).has_participant() && request.mode == results::Mode::real) {
+    request.mode = results::Mode::pilot;
+    warn(
+        "this session is a rehearsal and stored as a pilot: the hand is simulated or replayed "
+        "(--rig names a participant's device)");
+  }
+  return request;
+}
+
+void say_what_was_found(const BegunSession& session) {
+  if (session.resumed_since_utc.empty()) {
+    return;
+  }
+  const std::size_t done = session.done.size();
+  say("participant {} goes on with the session begun {}: {} of {} trials are done, {} left\n",
+      session.row.participant_id, session.resumed_since_utc, done, session.schedule.size(),
+      session.schedule.size() - done);
+}
+}  // namespace
+
+LiveOutcome run_live_session(const LiveSession& live) {
+  const device::LoopSettings settings = loop_settings(live.protocol, live.rig);
+  check(live);
+  ModelLibrary models;
+  models.build_all(live.protocol);
+  const ParticipantLock lock{live.directory, live.request.participant_id};
+  listen_for_stop();
+  const NoFlowControl no_flow_control{STDIN_FILENO};
+  LineInput input{STDIN_FILENO};
+  std::optional<device::SleepInhibitor> inhibitor;
+  if (live.rig.has_hardware) {
+    inhibitor.emplace();
+  }
+  TypedCommands commands;
+  AskOperator ask_operator = [&](const std::string& task) {
+    return asked_and_done(input, commands, task);
+  };
+  const DeviceRequest device_request{live.protocol, live.rig,
+                                     [&](const std::string& task) { return ask_operator(task); }};
+  std::unique_ptr<SessionDevice> device = kind_of(live.rig).open(device_request);
+  Markers markers{live.rig.markers};
+  std::unique_ptr<device::PcmSink> card = open_masking_card(live.protocol, live.rig);
+  results::Store store =
+      results::Store::open_or_create(live.directory, study_row(live.protocol, live.protocol_file));
+  BegunSession session = begin_session(
+      request_of(live), live.protocol, live.rig,
+      run_preflight(live.rig, *device, settings.period, inhibitor ? inhibitor->outcome() : ""),
+      store);
+  say_what_was_found(session);
+  device->begin_session(session.row.seed);
+  const auto masking = masking_player(std::move(card), live.protocol, live.rig, session.row.seed);
+  LiveTrials{{live, settings, models, device_request, input, commands, ask_operator, masking.get(),
+              markers, store, session},
+             std::move(device)}
+      .run();
+  const std::string& id = session.row.participant_id;
+  const std::size_t given_up = given_up_trials(live.protocol, id, store).size();
+  const std::size_t unneeded = unneeded_trials(live.protocol, id, store).size();
+  return {session.schedule.size() - given_up - unneeded, given_up};
+}
+}  // namespace tapstudy::runner

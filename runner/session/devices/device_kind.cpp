@@ -1,0 +1,49 @@
+#include "runner/session/devices/device_kind.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/error.hpp"
+namespace tapstudy::runner {
+const std::vector<const DeviceKind*>& device_kinds() {
+  static const std::vector<const DeviceKind*> table{&simulated_hand(), &spidar_g6(),
+                                                    &remote_device(), &replayed_hand()};
+  return table;
+}
+
+const DeviceKind& kind_of(const protocols::Rig& rig) {
+  const auto found =
+      std::ranges::find(device_kinds(), std::string_view{rig.device}, &DeviceKind::name);
+  if (found == device_kinds().end()) {
+    throw core::InvalidInput{"rig: device: '" + rig.device + "' is not a known device"};
+  }
+  return **found;
+}
+
+std::unique_ptr<SessionDevice> reconnect(const std::string& what_happened,
+                                         const DeviceRequest& request,
+                                         std::unique_ptr<SessionDevice> broken) {
+  const device::DeviceError gives_up{what_happened + " (go on with --resume)"};
+  if (!request.rig.has_hardware) {
+    throw gives_up;
+  }
+  const DeviceKind& kind = kind_of(request.rig);
+  std::string task = fmt::format(
+      "\n{}.\nType quit to stop here; or check the device, its power and cable, and to continue,",
+      what_happened);
+  while (request.ask_operator(task)) {
+    task = "It is not there yet. To try again,";
+    if (!kind.is_there()) {
+      continue;
+    }
+    broken.reset();  // only one can hold the device, and its guardian may have repeated zero force
+    try {
+      return kind.open(request);
+    } catch (const device::DeviceError& error) {  // enumerated, but not ready, or still held
+      task = fmt::format("{}. To try again,", error.what());
+    }
+  }
+  throw gives_up;
+}
+}  // namespace tapstudy::runner

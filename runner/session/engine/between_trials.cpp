@@ -1,0 +1,96 @@
+#include "runner/session/engine/between_trials.hpp"
+
+namespace tapstudy::runner {
+bool is_end_of_practice_said(const protocols::Block& before, const protocols::Block& block) {
+  return before.is_practice && !block.is_practice && block.instructions.empty();
+}
+
+void BetweenTrials::begin(bool has_trials) {
+  if (!has_begun_) {
+    has_begun_ = true;
+    read(has_trials ? parts_.protocol.instructions : "", "study");
+    ask(parts_.protocol.forms_before, asked_at_begin);
+  }
+}
+
+// Also those of a block that an earlier session finished, but for its questionnaires.
+void BetweenTrials::ask_after_blocks(const protocols::Schedule& schedule,
+                                     const std::optional<std::string>& up_to) {
+  for (const protocols::PlannedTrial& trial : schedule) {
+    if (trial.block == up_to) {
+      return;
+    }
+    ask(parts_.protocol.block(trial.block).forms_after, trial.block);
+  }
+}
+
+void BetweenTrials::before(const protocols::PlannedTrial& trial,
+                           const protocols::Schedule& schedule) {
+  begin(true);
+  const protocols::Block& block = parts_.protocol.block(trial.block);
+  if (block_ != trial.block) {
+    ask_after_blocks(schedule, trial.block);
+    introduce(block);
+    block_ = trial.block;
+    trials_since_rest_ = 0;
+    rested_at_s_ = parts_.states.now_s();
+  }
+  rest_if_due(block);
+  ++trials_since_rest_;
+}
+
+void BetweenTrials::introduce(const protocols::Block& block) {
+  read(block.instructions, block.name);
+  if (block_ && is_end_of_practice_said(parts_.protocol.block(*block_), block)) {
+    parts_.wait_while_paused();
+    parts_.states.enter(SessionState::instructions, {}, block.name);
+    parts_.participant.practice_is_over();
+  }
+}
+
+void BetweenTrials::rest_if_due(const protocols::Block& block) {
+  if (block.breaks &&
+      block.breaks->are_due(trials_since_rest_, parts_.states.now_s() - rested_at_s_)) {
+    parts_.wait_while_paused();
+    parts_.states.enter(SessionState::resting);
+    parts_.participant.rest(*block.breaks);
+    trials_since_rest_ = 0;
+    rested_at_s_ = parts_.states.now_s();
+  }
+}
+
+// A session that was interrupted just before its last questionnaires has no trial left.
+void BetweenTrials::after_last_trial(const protocols::Schedule& schedule) {
+  begin(false);
+  ask_after_blocks(schedule, std::nullopt);
+  ask(parts_.protocol.forms_after, asked_at_end);
+}
+
+void BetweenTrials::read(const std::string& text, const std::string& whose) {
+  if (!text.empty()) {
+    parts_.wait_while_paused();
+    parts_.states.enter(SessionState::instructions, {}, whose);
+    parts_.participant.read(text);
+  }
+}
+
+void BetweenTrials::ask(const std::vector<std::string>& forms, const std::string& asked) {
+  for (const std::string& name : forms) {
+    if (!parts_.participant.fills_in_forms() || filled_.contains({name, asked})) {
+      continue;
+    }
+    const protocols::Form& form = parts_.protocol.forms.at(name);
+    parts_.wait_while_paused();
+    parts_.states.enter(SessionState::form, {}, name);
+    const Participant::FormAnswers answers = parts_.participant.fill_in(form);
+    std::vector<results::FormAnswerRow> rows;
+    for (const protocols::FormItem& item : form.items) {
+      const auto answer = answers.find(item.name);
+      rows.push_back({0, 0.0, name, asked, item.name,
+                      answer == answers.end() ? std::nullopt : std::optional{answer->second}});
+    }
+    parts_.save_form(std::move(rows));
+    filled_.emplace(name, asked);
+  }
+}
+}  // namespace tapstudy::runner

@@ -1,0 +1,44 @@
+#pragma once
+#include <cstdint>
+#include <exception>
+#include <functional>
+#include <optional>
+
+#include "protocols/schedule/schedule.hpp"
+#include "runner/session/engine/session_states.hpp"
+#include "runner/session/engine/trial_record.hpp"
+#include "runner/session/operators/operator.hpp"
+#include "runner/session/participants/participant.hpp"
+#include "runner/session/stimuli/model_library.hpp"
+#include "runner/session/trial_loop/real_plates.hpp"
+#include "runner/session/trial_loop/trial_loop.hpp"
+namespace tapstudy::runner {
+// What came of presenting a trial once.
+struct Presentation {
+  TrialResult result{};
+  std::optional<Answer> answer{};
+  bool is_answered_in_a_stall{};
+  bool is_timed_out{};
+  std::optional<TrialRequest> request{};  // of the operator, that ended it
+  bool is_paused{};                       // likewise
+  std::exception_ptr failure{};           // thrown again once the trial is stored
+};
+
+// What a session is made of: who takes part, and what they work with.
+struct SessionParts {
+  const protocols::Protocol& protocol;
+  ModelLibrary& models;
+  TrialLoop& trial_loop;
+  RealPlates& real_plates;
+  Participant& participant;
+  Operator& by;
+  SessionStates& states;
+  std::uint64_t seed{};  // of the session
+  // Told of what happens in a trial beside its trace, as it does; may be empty.
+  std::function<void(const results::EventRow& event, int trial)> tell{};
+};
+
+// Builds the trial's stimuli and renders them until the participant has given an answer that
+// counts, time is up, the operator or a fault ends it, or the participant stops.
+Presentation present(const TrialInView& trial, const SessionParts& parts);
+}  // namespace tapstudy::runner

@@ -1,0 +1,47 @@
+#pragma once
+#include <cstddef>
+#include <deque>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "protocols/protocol.hpp"
+#include "protocols/schedule/schedule.hpp"
+#include "results/store/store.hpp"
+#include "runner/session/participants/participant.hpp"
+namespace tapstudy::runner {
+// The trials that ended without an answer and do not come again: skipped by the operator, but for
+// those of procedures, or timed out (at_limit: give_up).
+std::vector<int> given_up_trials(const protocols::Protocol& protocol,
+                                 const std::string& participant_id, results::Store& store);
+// Those that were never presented, because their block's criterion was met before, or its
+// procedures were finished.
+std::vector<int> unneeded_trials(const protocols::Protocol& protocol,
+                                 const std::string& participant_id, results::Store& store);
+
+// Of the trials planned for a participant's latest session, those that need not be presented any
+// more: answered, given up or unneeded.
+struct TrialsDone {
+  std::ptrdiff_t done{};
+  std::ptrdiff_t planned{};
+  bool are_all() const { return done >= planned; }
+};
+TrialsDone trials_done(const protocols::Protocol& protocol, const std::string& participant_id,
+                       results::Store& store);
+
+// After the last waiting trial of its block.
+void put_at_end_of_block(const protocols::PlannedTrial& trial,
+                         std::deque<protocols::PlannedTrial>& waiting);
+
+// Of the schedule those that are not done, in its order, but for those that were requeued: these
+// come at the end of their blocks in the order of their numbers here, as they would have had the
+// session gone on.
+std::deque<protocols::PlannedTrial> waiting_trials(const protocols::Schedule& schedule,
+                                                   const std::set<int>& done,
+                                                   const std::vector<int>& requeued);
+
+// Before this trial: counted among the practice, or among the trials that count, that it is one of.
+// `done` are the numbers of those that need not come again.
+TrialProgress progress_at(const protocols::PlannedTrial& trial, const protocols::Schedule& schedule,
+                          const std::set<int>& done, const protocols::Protocol& protocol);
+}  // namespace tapstudy::runner

@@ -1,0 +1,97 @@
+#include "runner/session/engine/session_row.hpp"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <ctime>
+
+#include "core/error.hpp"
+#include "core/files/sha256.hpp"
+#include "results/export/csv_file.hpp"
+#include "runner/build_info/build_info.hpp"
+#include "runner/session/participants/planned_taps.hpp"
+namespace tapstudy::runner {
+namespace {
+constexpr double max_trial_ticks = 4e6;
+}  // namespace
+
+results::StudyRow study_row(const protocols::Protocol& protocol, const std::string& file) {
+  results::StudyRow study{protocol.title, file, protocol.text, core::sha256(protocol.text), {}};
+  for (const protocols::SurfaceSource& surface : protocol.surfaces) {
+    study.surfaces.push_back({surface.file, surface.sha256, surface.bytes});
+  }
+  return study;
+}
+
+results::SessionRow session_row(const SessionPlan& plan, const protocols::Protocol& protocol,
+                                const protocols::Rig& rig, const protocols::Schedule& schedule) {
+  results::SessionRow session;
+  session.participant_id = plan.participant_id;
+  session.participant_index = plan.participant_index;
+  session.order_index = plan.order_index;
+  session.mode = plan.mode;
+  session.seed = plan.seed;
+  session.planned_order = protocols::described(schedule);
+  session.language = plan.language;
+  session.rate_hz = protocol.rate_hz;
+  session.rig_text = rig.text;
+  session.device = plan.device;
+  session.scheduler = plan.scheduler;
+  session.doctor = plan.doctor;
+  session.program_version = program_version();
+  session.git_hash = git_hash();
+  session.compiler = compiler();
+  session.started_utc = fmt::format("{:%FT%TZ}", fmt::gmtime(std::time(nullptr)));
+  return session;
+}
+
+void check_participant_id(const std::string& id) {
+  const auto is_allowed = [](unsigned char c) {
+    return std::isalnum(c) != 0 || c == '-' || c == '_' || c == '.';
+  };
+  if (id == results::missing_in_csv) {
+    throw core::InvalidInput{
+        fmt::format("--participant: '{}' means a missing value in tables", id)};
+  }
+  if (id.empty() || id.size() > 64 || !std::ranges::all_of(id, is_allowed)) {
+    throw core::InvalidInput{fmt::format(
+        "--participant: '{}' is not allowed (1 to 64 letters, digits, '-', '_' or '.')", id)};
+  }
+}
+
+double simulated_trial_s(const protocols::Protocol& protocol, const protocols::Block& block) {
+  const protocols::SimulatedTapSettings& taps = protocol.simulation.taps;
+  const double run_up_m = 0.5 * taps.hover_m;  // at half the speed on average
+  const auto scripted = scripted_tap(protocol, block.explore.scripted_taps);
+  const double tap_s = scripted ? scripted->duration_s()
+                                : (taps.hover_m + run_up_m + taps.press_m) / taps.speed_m_s +
+                                      taps.dwell_s + taps.pause_s;
+  const double taps_s = tap_s * taps.taps_per_visit * block.task->visits(block, taps);
+  if (const auto& intervals = block.explore.intervals) {
+    const int visits = block.task->visits(block, taps);
+    return visits * intervals->gap_seconds + std::max(taps_s, visits * intervals->seconds);
+  }
+  return taps_s;
+}
+
+void check_trial_length(const protocols::Protocol& protocol) {
+  for (const protocols::Block& block : protocol.blocks) {
+    const double ticks = simulated_trial_s(protocol, block) * protocol.rate_hz;
+    if (ticks > max_trial_ticks) {
+      throw core::InvalidInput{fmt::format(
+          "block '{}': a simulated trial would take {:.2g} ticks (at most {:.0g}: lower "
+          "simulation.taps.taps_per_visit, visits, dwell_s or pause_s, or raise speed_m_s)",
+          block.name, ticks, max_trial_ticks)};
+    }
+  }
+}
+
+void check_has_blocks(const protocols::Protocol& protocol) {
+  if (protocol.blocks.empty()) {
+    throw core::InvalidInput{
+        fmt::format("'{}' has no blocks, so there is nothing to run", protocol.title)};
+  }
+}
+}  // namespace tapstudy::runner

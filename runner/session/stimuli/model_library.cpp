@@ -1,0 +1,228 @@
+#include "runner/session/stimuli/model_library.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+
+#include "core/error.hpp"
+#include "core/model/plate_model.hpp"
+#include "core/techniques/technique.hpp"
+#include "protocols/axes/presented_stimulus.hpp"
+#include "runner/build_info/build_info.hpp"
+#include "runner/session/stimuli/stimulus_family.hpp"
+#include "runner/terminal/logging.hpp"
+namespace tapstudy::runner {
+namespace {
+std::string cache_directory() {
+  const auto variable = [](const char* name) {
+    const char* const value = std::getenv(name);  // NOLINT(concurrency-mt-unsafe): set-up only
+    return value == nullptr ? std::string{} : std::string{value};
+  };
+  if (!variable("TAPSTUDY_CACHE").empty()) {
+    return variable("TAPSTUDY_CACHE");
+  }
+  if (!variable("XDG_CACHE_HOME").empty()) {
+    return variable("XDG_CACHE_HOME") + "/tapstudy";
+  }
+  return variable("HOME").empty() ? std::string{} : variable("HOME") + "/.cache/tapstudy";
+}
+
+// Sought in ever wider bands.
+std::string first_frequency(core::PlateSpec spec) {
+  constexpr int max_doublings = 8;
+  for (int i = 0; i < max_doublings; ++i) {
+    spec.band_limit_hz *= 2.0;
+    const core::ModalModel model =
+        core::model_of(core::solve_body(core::body_of(spec), {}).modes, spec);
+    if (model.frequency_hz.size() > 0) {
+      return fmt::format("{:.4g} Hz", model.frequency_hz[0]);
+    }
+  }
+  return fmt::format("more than {:.4g} Hz (is youngs_modulus_pa right?)", spec.band_limit_hz);
+}
+// Of all that damps: the bodies' materials, and the contacts between them.
+std::string damping_key(const protocols::PresentedStimulus& stimulus) {
+  std::string key = core::content_key(*stimulus.material);
+  if (stimulus.contacts) {
+    for (const core::BodyInContact& body : stimulus.contacts->bodies) {
+      key += " " + core::content_key(body.material);
+    }
+    for (const core::ContactSpring& spring : stimulus.contacts->springs) {
+      key += fmt::format(" {:a}", spring.loss_factor);
+    }
+  }
+  return key;
+}
+}  // namespace
+
+void check_has_mode(Eigen::Index modes_in_band, const core::PlateSpec& spec) {
+  if (modes_in_band > 0) {
+    return;
+  }
+  throw core::ModelError{fmt::format(
+      "no mode lies below band_limit_hz ({} Hz), so that it would not vibrate: its first is at "
+      "{}",
+      spec.band_limit_hz, first_frequency(spec))};
+}
+
+core::ModelCache models_of_this_user() {
+  return {cache_directory(), fmt::format("{} {}", program_version(), git_hash())};
+}
+
+core::PlateSpec plate_spec(const protocols::Protocol& protocol,
+                           const protocols::PresentedStimulus& stimulus) {
+  core::PlateSpec spec{*stimulus.plate, *stimulus.material, protocol.band_limit_hz};
+  spec.theory = stimulus.technique->theory;
+  spec.contacts = stimulus.contacts;
+  return spec;
+}
+
+core::BodySpec body_spec(const protocols::Protocol& protocol,
+                         const protocols::PresentedStimulus& stimulus) {
+  core::BodySpec body = core::body_of(plate_spec(protocol, stimulus));
+  const core::Material& own = *stimulus.material;
+  const auto may_share = [&](const protocols::Stimulus& other) {
+    return other.technique->needs_model() && other.technique->theory == body.theory &&
+           other.plate == stimulus.own_plate && other.contacts == stimulus.contacts &&
+           (!core::is_on_springs(body.fixations) ||
+            other.material->youngs_modulus_pa == own.youngs_modulus_pa) &&
+           (!stimulus.contacts || (other.material->youngs_modulus_pa == own.youngs_modulus_pa &&
+                                   other.material->density_kg_per_m3 == own.density_kg_per_m3)) &&
+           std::ranges::count(poissons_ratios(protocol, other), body.poissons_ratio) > 0;
+  };
+  for (const protocols::Stimulus& other : protocol.stimuli) {
+    if (may_share(other)) {
+      body.band_limit_rad_per_m =
+          std::max(body.band_limit_rad_per_m, largest_kappa_rad_per_m(protocol, other));
+    }
+  }
+  return body;
+}
+
+core::VibratingPlate vibrating_plate(const core::Shape& shape, core::ModalModel model) {
+  return std::holds_alternative<core::Box>(shape)
+             ? core::VibratingPlate{std::move(model)}
+             : core::VibratingPlate::touched_all_over(std::move(model));
+}
+
+ModelLibrary::Body ModelLibrary::body(const protocols::Protocol& protocol,
+                                      const protocols::PresentedStimulus& stimulus) {
+  core::check_material(*stimulus.material);
+  const core::BodySpec spec = body_spec(protocol, stimulus);
+  const std::string key = core::content_key(spec);
+  Body& body = bodies_[key];
+  if (body) {
+    return body;
+  }
+  if (auto kept = cache_.find(key)) {
+    body = std::make_shared<const core::BodyModes>(std::move(*kept));
+    return body;
+  }
+  Progress progress{fmt::format("building the model of '{}'", stimulus.name)};
+  body = std::make_shared<const core::BodyModes>(core::solve_body(spec, progress.hook()).modes);
+  ++solved_;
+  if (!cache_.keep(key, *body)) {
+    warn(fmt::format("{}: models cannot be cached here and will be rebuilt", cache_.directory()));
+  }
+  return body;
+}
+
+ModelLibrary::Body ModelLibrary::body_of(const protocols::Protocol& protocol,
+                                         const protocols::PresentedStimulus& stimulus) {
+  const std::lock_guard lock{mutex_};
+  return at_its_line(stimulus, [&] { return body(protocol, stimulus); });
+}
+
+ModelLibrary::Plate ModelLibrary::make_plate(const protocols::Protocol& protocol,
+                                             const protocols::PresentedStimulus& stimulus) {
+  return at_its_line(stimulus, [&] {
+    const core::PlateSpec spec = plate_spec(protocol, stimulus);
+    core::ModalModel model = core::model_of(*body(protocol, stimulus), spec);
+    check_has_mode(model.frequency_hz.size(), spec);
+    return std::make_shared<const core::VibratingPlate>(
+        vibrating_plate(spec.shape, std::move(model)));
+  });
+}
+
+ModelLibrary::Plate ModelLibrary::plate_of(const protocols::Protocol& protocol,
+                                           const protocols::PresentedStimulus& stimulus) {
+  const std::lock_guard lock{mutex_};
+  if (!stimulus.changed.empty()) {
+    return make_plate(protocol, stimulus);
+  }
+  Plate& plate = plates_[fmt::format("{} {} {:a}", core::content_key(body_spec(protocol, stimulus)),
+                                     damping_key(stimulus), protocol.band_limit_hz)];
+  if (!plate) {
+    plate = make_plate(protocol, stimulus);
+  }
+  return plate;
+}
+
+std::vector<ModelLibrary::Body> ModelLibrary::bodies_of(const protocols::Protocol& protocol,
+                                                        const protocols::Stimulus& stimulus) {
+  std::vector<Body> bodies;
+  const protocols::AxisValues softest = band_ends(protocol, stimulus).most;
+  for (protocols::AxisValues values : protocols::table_of_models(protocol, stimulus)) {
+    values.insert(softest.begin(), softest.end());  // what is solved for, should it fail
+    bodies.push_back(body_of(protocol, stimulus_with(protocol, stimulus, values)));
+  }
+  return bodies;
+}
+
+core::TouchedShape touched_shape(const core::Shape& shape) {
+  if (const auto* box = std::get_if<core::Box>(&shape)) {
+    return core::PlateFace{box->high_m().x(), box->high_m().y()};
+  }
+  return std::get<core::Solid>(shape).triangles();
+}
+
+void ModelLibrary::build_all(const protocols::Protocol& protocol) {
+  for (const protocols::Stimulus& stimulus : protocol.stimuli) {
+    if (!stimulus.technique->needs_model()) {
+      continue;
+    }
+    const auto tables = protocols::table_of_models(protocol, stimulus);
+    const std::vector<Body> bodies = bodies_of(protocol, stimulus);
+    for (std::size_t i = 0; i < tables.size(); ++i) {
+      check_members(protocol, stimulus, tables[i], *bodies[i]);
+    }
+    plate_of(protocol, stimulus_with(protocol, stimulus));
+  }
+}
+
+TrialStimuli build_trial_stimuli(const protocols::Protocol& protocol,
+                                 const std::vector<protocols::PresentedStimulus>& stimuli,
+                                 ModelLibrary& models) {
+  TrialStimuli built;
+  for (const protocols::PresentedStimulus& stimulus : stimuli) {
+    const ModelLibrary::Plate plate =
+        stimulus.technique->needs_model() ? models.plate_of(protocol, stimulus) : nullptr;
+    built.plates.push_back(plate);
+    built.alternatives.push_back(core::make_renderer(*stimulus.technique, stimulus.rendering,
+                                                     touched_shape(stimulus.plate->shape),
+                                                     plate.get()));
+  }
+  return built;
+}
+
+TrialStimuli build_trial_stimuli(const protocols::Protocol& protocol,
+                                 const std::vector<std::string>& stimuli, ModelLibrary& models) {
+  std::vector<protocols::PresentedStimulus> presented;
+  for (const std::string& name : stimuli) {
+    presented.push_back(stimulus_with(protocol, protocol.stimulus(name)));
+  }
+  return build_trial_stimuli(protocol, presented, models);
+}
+
+std::optional<CachedModel> cached_model(const protocols::Protocol& protocol,
+                                        const protocols::Stimulus& stimulus,
+                                        const core::ModelCache& cache) {
+  const protocols::PresentedStimulus presented = protocols::stimulus_with(protocol, stimulus);
+  const auto body = cache.find(core::content_key(body_spec(protocol, presented)));
+  if (!body) {
+    return std::nullopt;
+  }
+  return CachedModel{core::model_of(*body, plate_spec(protocol, presented)), body->report};
+}
+}  // namespace tapstudy::runner

@@ -1,0 +1,74 @@
+#pragma once
+#include <optional>
+#include <span>
+#include <utility>
+
+#include "core/tick/tap_renderer.hpp"
+#include "device/hand/scripted_hand.hpp"
+#include "device/loop/haptic_loop.hpp"
+#include "results/traces/trace_collector.hpp"
+#include "runner/session/trial_loop/exploration.hpp"
+namespace tapstudy::runner {
+// The results of one trial's haptic loop.
+struct TrialResult {
+  results::TraceCollector::Collected trace;
+  device::LoopReport loop;
+  std::int64_t dropped_samples{};
+};
+
+// What a trial's haptic loop renders, and to whose taps: the hand's at the device or scripted ones.
+struct Rendered {
+  std::span<core::TapRenderer> alternatives;
+  std::optional<device::RepeatedTap> scripted{};
+};
+
+// Runs the haptic loop over some alternatives while somebody explores them.
+class TrialLoop {
+ public:
+  virtual ~TrialLoop() = default;
+  virtual TrialResult run(const Rendered& rendered, const Explore& explore) = 0;
+  // Whether the device is known to exert no force after the latest run.
+  virtual bool is_force_off() const { return true; }
+};
+
+// The hand that makes a trial's scripted taps, if they are.
+std::optional<device::ScriptedHand> scripted_hand(const Rendered& rendered,
+                                                  const device::LoopSettings& settings);
+
+// What an exploration asks of the haptic loop, whatever its clock.
+class LoopExploration : public Exploration {
+ public:
+  // The loop must outlive it.
+  explicit LoopExploration(device::HapticLoop& loop) : loop_{loop} {}
+  void switch_to(std::size_t alternative) override {
+    current_ = alternative;
+    loop_.request_alternative(alternative);
+  }
+  std::size_t current() const override { return current_; }
+  void silence(bool is_silent) override { loop_.request_silence(is_silent); }
+  bool is_as_asked() const override { return loop_.is_as_requested(); }
+  int contacts(std::size_t alternative) const override { return loop_.contacts(alternative); }
+
+ protected:
+  device::HapticLoop& loop() const { return loop_; }
+
+ private:
+  device::HapticLoop& loop_;
+  std::size_t current_{0};
+};
+
+enum class Keep { trace, events, nothing };
+
+// In virtual time: the loop advances only while the explorer lets time pass, on one thread.
+class VirtualTrialLoop final : public TrialLoop {
+ public:
+  VirtualTrialLoop(device::Device& device, device::LoopSettings settings, Keep keep = Keep::trace)
+      : device_{device}, settings_{std::move(settings)}, keep_{keep} {}
+  TrialResult run(const Rendered& rendered, const Explore& explore) override;
+
+ private:
+  device::Device& device_;
+  device::LoopSettings settings_;
+  Keep keep_;
+};
+}  // namespace tapstudy::runner

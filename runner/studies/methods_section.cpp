@@ -1,0 +1,340 @@
+#include "runner/studies/methods_section.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <iterator>
+#include <map>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "protocols/axes/axis.hpp"
+#include "protocols/protocol.hpp"
+#include "protocols/schedule/ordering.hpp"
+#include "protocols/schedule/schedule.hpp"
+#include "runner/session/devices/masking_card.hpp"
+#include "runner/studies/counted.hpp"
+#include "runner/studies/stored_study.hpp"
+namespace tapstudy::runner {
+// ", in random order": of a block's trials; "" where its task has an order of its own.
+std::string order_words(const protocols::Block& block, std::size_t participants);
+// "Each participant did 'a' (…), then 'b' (…). ", or how the blocks followed one another.
+// blocks: each in words.
+std::string sequence_words(const protocols::Protocol& protocol, const std::string& who,
+                           const std::vector<std::string>& blocks, std::size_t participants);
+
+using protocols::Block;
+using protocols::Protocol;
+namespace {
+// Balance holds for whole sets of orders.
+std::string williams_words(int of_orders, std::size_t participants) {
+  const auto orders = static_cast<std::size_t>(of_orders);
+  return participants % orders == 0
+             ? ", in orders balanced for immediate sequence over participants (Williams 1949)"
+             : fmt::format(
+                   ", in orders of a balanced design (Williams 1949) that {} do not "
+                   "complete, of {} orders",
+                   counted(participants, "participant"), orders);
+}
+
+// " with no stimulus twice in a row"; "" without constraints.
+std::string constraint_words(const protocols::OrderConstraints& constraints) {
+  std::vector<std::string> limits;
+  if (constraints.max_run > 0) {
+    limits.push_back(
+        constraints.max_run == 1
+            ? "no stimulus twice in a row"
+            : fmt::format("no stimulus more than {} times in a row", constraints.max_run));
+  }
+  if (constraints.min_distance > 1) {
+    limits.push_back(fmt::format("presentations of a stimulus at least {} trials apart",
+                                 constraints.min_distance));
+  }
+  return limits.empty() ? "" : fmt::format(" with {}", fmt::join(limits, " and "));
+}
+}  // namespace
+
+std::string order_words(const Block& block, std::size_t participants) {
+  if (!block.task->uses_order()) {
+    return "";
+  }
+  switch (block.order) {
+    case protocols::Order::listed:
+      return ", in one order for all";
+    case protocols::Order::shuffle:
+      return ", in random order" + constraint_words(block.constraints);
+    case protocols::Order::shuffle_within_repetition:
+      return ", in an order that was random within each repetition" +
+             constraint_words(block.constraints);
+    case protocols::Order::williams:
+      return williams_words(
+          protocols::williams_rows(static_cast<int>(protocols::conditions(block))), participants);
+  }
+  return "";
+}
+
+std::string sequence_words(const Protocol& protocol, const std::string& who,
+                           const std::vector<std::string>& blocks, std::size_t participants) {
+  const protocols::BlockOrder& order = protocol.block_order;
+  if (order.order == protocols::Order::listed) {
+    return fmt::format("{} did {}. ", who, fmt::join(blocks, ", then "));
+  }
+  return fmt::format(
+      "{} did {}, where '{}' exchanged their places among participants{}. ", who,
+      fmt::join(blocks, ", then "), fmt::join(order.blocks, "', '"),
+      order.order == protocols::Order::shuffle
+          ? ", in random order"
+          : williams_words(protocols::balanced_block_orders(protocol), participants));
+}
+
+namespace {
+using protocols::Block;
+using protocols::Protocol;
+
+std::string apparatus(const std::vector<results::SessionRow>& sessions) {
+  std::set<std::string> devices;
+  for (const results::SessionRow& session : sessions) {
+    devices.insert(fmt::format("{} at {} Hz", session.device, session.rate_hz));
+  }
+  return fmt::format("Apparatus: {}. ", fmt::join(devices, "; "));
+}
+
+// "" if the device rendered nothing.
+std::string rendering(const Protocol& protocol, const DoneBlocks& done) {
+  const std::set<std::string> rendered = rendered_stimuli(protocol, done);
+  std::set<std::string_view> techniques;
+  bool vibrates = false;
+  for (const protocols::Stimulus& stimulus : protocol.stimuli) {
+    if (rendered.contains(stimulus.name)) {
+      techniques.insert(stimulus.technique->name);
+      vibrates = vibrates || stimulus.technique->needs_model();
+    }
+  }
+  if (techniques.empty()) {
+    return "";
+  }
+  return fmt::format(
+      "Contact was rendered by a spring of {:g} N/m with {} {}{}. ",
+      protocol.rendering.penalty_stiffness_n_per_m,
+      techniques.size() == 1 ? "the technique" : "the techniques", fmt::join(techniques, ", "),
+      vibrates ? fmt::format("; modes of vibration up to {:g} Hz", protocol.band_limit_hz) : "");
+}
+
+std::string practice_words(const Block& block) {
+  if (!block.is_practice) {
+    return "";
+  }
+  return fmt::format(" as practice{}{}", block.gives_feedback ? " with feedback" : "",
+                     block.criterion
+                         ? fmt::format(" until {} of the last {} answers were right",
+                                       block.criterion->correct, block.criterion->of_last)
+                         : "");
+}
+
+// "levels by QUEST+ (Watson 2017)", alike procedures taken together.
+std::string level_words(const Block& block) {
+  if (!block.comparison) {
+    return "";
+  }
+  std::map<std::string, int> tracks;
+  for (const auto& track : block.comparison->tracks) {
+    ++tracks[track->words()];
+  }
+  std::vector<std::string> parts;
+  for (const auto& [words, count] : tracks) {
+    parts.push_back(count == 1 ? words : fmt::format("{} interleaved tracks of {}", count, words));
+  }
+  const auto quantity = [](const std::string& axis) {
+    return protocols::find_axis(axis)->quantity;
+  };
+  std::vector<std::string_view> further;
+  std::ranges::transform(block.comparison->further_axes, std::back_inserter(further), quantity);
+  return fmt::format(
+      ", levels of {}{} by {}", quantity(block.comparison->axis),
+      further.empty() ? "" : fmt::format(" and values of {}", fmt::join(further, ", ")),
+      fmt::join(parts, " and "));
+}
+
+std::string tap_words(const Block& block) {
+  const auto& taps = block.explore.scripted_taps;
+  return taps ? fmt::format(
+                    ", scripted taps at {} of {:g} m/s, {:g} s each and {:g} s apart, felt "
+                    "with the device held still",
+                    taps->point, taps->speed_m_s, taps->dwell_s, taps->pause_s)
+              : "";
+}
+
+// Where not all participants did all of it; where it may end early, nobody knows what all of it is.
+std::string completion_words(const Block& block, const results::BlockCourseRow& done,
+                             std::size_t participants) {
+  std::string words;
+  if (done.participants.size() < participants) {
+    words += fmt::format(", by {} of {} participants", done.participants.size(), participants);
+  }
+  const auto planned = static_cast<std::size_t>(protocols::planned_trials(block)) * participants;
+  if (!may_end_early(block) && static_cast<std::size_t>(done.answered) < planned) {
+    words += fmt::format(", {} of {} answers given", done.answered, planned);
+  }
+  return words;
+}
+
+std::string block_words(const Block& block, const results::BlockCourseRow& done,
+                        std::size_t participants) {
+  const auto trials = static_cast<std::size_t>(protocols::planned_trials(block));
+  return fmt::format(
+      "'{}' ({} of {}{}, {}{}{}{}{}{}{}{}{})", block.name, block.task->name(),
+      block.stimuli.size() == 1 ? "one stimulus" : fmt::format("{} stimuli", block.stimuli.size()),
+      block.presented == protocols::Presented::real_plates ? ", the real plates themselves" : "",
+      may_end_early(block) ? "at most " : "", counted(trials, "trial"),
+      block.catch_trials ? fmt::format(", {} of them catch trials", block.catch_trials->count) : "",
+      block.confidence ? fmt::format(", each with confidence in {} steps", block.confidence->steps)
+                       : "",
+      order_words(block, participants), level_words(block), tap_words(block), practice_words(block),
+      completion_words(block, done, participants));
+}
+
+// Letters that stand for something else in each trial, and are what is answered.
+bool has_blind_labels(const Block& block, const Protocol& protocol) {
+  const protocols::Answers answers = block.task->answers(block, protocol);
+  return !answers.options.empty() && answers.options.front().name == protocols::blind_label(0);
+}
+
+// What an answer to the block took, as a sentence without its subject; or "".
+std::string exploration(const Block& block) {
+  std::vector<std::string> limits;
+  if (block.presented == protocols::Presented::virtual_plates && block.explore.min_contacts > 0) {
+    const auto trials = block.task->trials(block, {});
+    const bool has_several = !block.task->alternative_labels(trials.front()).empty();
+    const bool is_each = has_several && block.explore.must_visit_all;
+    limits.push_back(fmt::format(
+        "at least {}{}", counted(static_cast<std::size_t>(block.explore.min_contacts), "contact"),
+        is_each ? " with each alternative" : ""));
+  }
+  if (block.explore.min_seconds > 0.0) {
+    limits.push_back(fmt::format("at least {:g} s", block.explore.min_seconds));
+  }
+  std::vector<std::string> sentence;
+  if (!limits.empty()) {
+    sentence.push_back(fmt::format("required {}", fmt::join(limits, " and ")));
+  }
+  if (block.explore.max_seconds) {
+    sentence.push_back(fmt::format("had to come within {:g} s", *block.explore.max_seconds));
+  }
+  return fmt::format("{}", fmt::join(sentence, " and "));
+}
+
+std::string explorations(const Protocol& protocol, const DoneBlocks& done) {
+  std::vector<std::pair<std::string, std::vector<std::string>>> blocks_of;  // by what it took
+  for (const Block& block : protocol.blocks) {
+    if (!done.contains(block.name)) {
+      continue;
+    }
+    const std::string took = exploration(block);
+    auto of = std::ranges::find(blocks_of, took, &decltype(blocks_of)::value_type::first);
+    if (of == blocks_of.end()) {
+      blocks_of.emplace_back(took, std::vector<std::string>{});
+      of = std::prev(blocks_of.end());
+    }
+    of->second.push_back("'" + block.name + "'");
+  }
+  std::string text;
+  for (const auto& [took, blocks] : blocks_of) {
+    const std::string where =
+        blocks_of.size() == 1 ? "" : fmt::format(" in {}", fmt::join(blocks, ", "));
+    text += took.empty() ? "" : fmt::format("An answer{} {}. ", where, took);
+  }
+  return text;
+}
+
+// Of people: a simulated participant sees nothing.
+std::string blinding(const Protocol& protocol, const DoneBlocks& done) {
+  const bool are_labels_blind = std::ranges::any_of(protocol.blocks, [&](const Block& block) {
+    return done.contains(block.name) && has_blind_labels(block, protocol);
+  });
+  return fmt::format(
+      "Blinding: what participants saw did not depend on what was rendered{}; the operator's "
+      "screen {} what was presented. ",
+      are_labels_blind
+          ? ", and alternatives had letters whose meaning was drawn anew for each trial"
+          : "",
+      protocol.display.is_operator_blind ? "did not show" : "showed");
+}
+
+// Of people: a simulated participant hears nothing.
+std::string masking(const Protocol& protocol, const DoneBlocks& done) {
+  if (!protocol.masking) {
+    return "";
+  }
+  int answered = 0;
+  int masked = 0;
+  for (const auto& [block, row] : done) {
+    answered += row.answered;
+    masked += row.masked;
+  }
+  const std::string noise = described(*protocol.masking);
+  if (masked == 0) {
+    return fmt::format("Masking: the protocol asks for {}; none was played. ", noise);
+  }
+  return fmt::format(
+      "Masking: {}, played in {}. ", noise,
+      masked == answered ? "every trial" : fmt::format("{} of {} trials", masked, answered));
+}
+
+// "Questionnaires: 'load' (asked: session end). " Not of blocks that nobody answered.
+std::string questionnaires(const Protocol& protocol, const DoneBlocks& done) {
+  std::vector<std::string> forms;
+  for (analysis::Questionnaire& form : questionnaires_of(protocol)) {
+    std::erase_if(form.asked, [&](const std::string& place) {
+      return std::ranges::find(protocol.blocks, place, &Block::name) != protocol.blocks.end() &&
+             !done.contains(place);
+    });
+    if (form.asked.empty()) {
+      continue;
+    }
+    forms.push_back(fmt::format("'{}'{} (asked: {})", form.name,
+                                form.is_mean_scored ? ", the raw NASA-TLX (Hart 2006)" : "",
+                                fmt::join(form.asked, ", ")));
+  }
+  return forms.empty() ? "" : fmt::format("Questionnaires: {}. ", fmt::join(forms, "; "));
+}
+
+// What nobody began.
+std::string left_undone(const Protocol& protocol, const DoneBlocks& done) {
+  std::vector<std::string> names;
+  for (const Block& block : protocol.blocks) {
+    if (!done.contains(block.name)) {
+      names.push_back("'" + block.name + "'");
+    }
+  }
+  return names.empty() ? "" : fmt::format("Without an answer: {}. ", fmt::join(names, ", "));
+}
+}  // namespace
+
+std::string procedure_words(const Protocol& protocol,
+                            const std::vector<results::SessionRow>& sessions,
+                            const std::set<std::string>& participants, const DoneBlocks& done) {
+  std::vector<std::string> blocks;
+  bool is_by_all = true;
+  for (const Block& block : protocol.blocks) {
+    const auto row = done.find(block.name);
+    if (row != done.end()) {
+      blocks.push_back(block_words(block, row->second, participants.size()));
+      is_by_all = is_by_all && row->second.participants.size() == participants.size();
+    }
+  }
+  const bool are_people = sessions.front().mode != results::Mode::simulated;
+  std::string text = apparatus(sessions) + rendering(protocol, done);
+  text += sequence_words(protocol, is_by_all ? "Each participant" : "Participants", blocks,
+                         participants.size());
+  text += left_undone(protocol, done);
+  text += explorations(protocol, done);
+  if (are_people) {
+    text += blinding(protocol, done) + masking(protocol, done) + questionnaires(protocol, done);
+  }
+  return text;
+}
+}  // namespace tapstudy::runner

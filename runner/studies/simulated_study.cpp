@@ -1,0 +1,265 @@
+#include "runner/studies/simulated_study.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <exception>
+#include <iterator>
+#include <mutex>
+#include <set>
+#include <system_error>
+#include <thread>
+#include <vector>
+
+#include "analysis/statistics/quantiles.hpp"
+#include "core/error.hpp"
+#include "core/random/rng.hpp"
+#include "device/device.hpp"
+#include "protocols/schedule/schedule.hpp"
+#include "results/store/recorder.hpp"
+#include "results/store/store.hpp"
+#include "runner/session/devices/rigs.hpp"
+#include "runner/session/engine/session_row.hpp"
+#include "runner/session/engine/trial_engine.hpp"
+#include "runner/session/participants/simulated_participant.hpp"
+#include "runner/session/trial_loop/real_plates.hpp"
+#include "runner/session/trial_loop/trial_loop.hpp"
+#include "runner/studies/study_summary.hpp"
+#include "runner/terminal/logging.hpp"
+#include "runner/terminal/process_exit.hpp"
+namespace tapstudy::runner {
+ScratchDirectory::ScratchDirectory(std::uint64_t seed)
+    : path_{std::filesystem::temp_directory_path() /
+            fmt::format("tapstudy-{}-{:x}", ::getpid(), seed)} {}
+
+ScratchDirectory::~ScratchDirectory() {
+  std::error_code ignored;
+  std::filesystem::remove_all(path_, ignored);
+}
+
+namespace {
+struct PlannedSession {
+  std::int64_t id{};
+  std::uint64_t seed{};
+  protocols::Schedule schedule;
+};
+
+std::vector<PlannedSession> add_sessions(const SimulatedStudy& study,
+                                         const protocols::Protocol& protocol,
+                                         const protocols::Rig& rig, results::Store& store) {
+  std::vector<PlannedSession> sessions;
+  for (int i = 0; i < study.participants; ++i) {
+    SessionPlan plan{
+        fmt::format("sim-{:02}", i + 1),
+        0,
+        0,
+        results::Mode::simulated,
+        core::derived_seed(study.seed, core::Purpose::participant, static_cast<std::uint64_t>(i)),
+        "simulated hand",
+        "virtual time",
+        ""};
+    const auto all_of_them = [](const std::string& /*id*/) { return true; };
+    const auto place = store.place_of(plan.participant_id, plan.mode, {all_of_them, all_of_them});
+    plan.participant_index = place.participant_index;
+    plan.order_index = place.order_index;
+    if (store.has_sessions(plan.participant_id)) {
+      throw core::InvalidInput{
+          fmt::format("{}: participant '{}' is in this study already (choose "
+                      "another --out)",
+                      study.directory, plan.participant_id)};
+    }
+    PlannedSession session{0, plan.seed, make_schedule(protocol, plan.seed, plan.order_index)};
+    results::SessionRow row = session_row(plan, protocol, rig, session.schedule);
+    store.add_session(row);
+    session.id = row.id;
+    sessions.push_back(std::move(session));
+  }
+  return sessions;
+}
+
+// Who does not get through practice leaves, as a person would.
+void take_part(TrialEngine& engine, const protocols::Schedule& schedule) {
+  std::set<int> done;
+  try {
+    if (const auto interruption = engine.run(schedule, done)) {
+      throw device::DeviceError{to_text(*interruption)};
+    }
+  } catch (const PracticeMissed& missed) {
+    warn(missed.what());
+  }
+}
+
+// Workers take the next session until none is left or one of them has failed.
+class Workers {
+ public:
+  using Work = std::function<void(const PlannedSession&)>;
+  static void share(const std::vector<PlannedSession>& sessions, const Work& work) {
+    Workers workers{sessions, work};
+    {
+      std::vector<std::jthread> threads;
+      // one more than there are processors: each waits while its trial is stored
+      for (unsigned int i = 0; i <= std::max(1U, std::thread::hardware_concurrency()); ++i) {
+        threads.emplace_back([&] { workers.run_worker(); });
+      }
+    }
+    if (workers.failure_) {
+      std::rethrow_exception(workers.failure_);
+    }
+  }
+
+ private:
+  Workers(const std::vector<PlannedSession>& sessions, const Work& work)
+      : sessions_{sessions}, work_{work} {}
+  void run_worker() {
+    for (std::size_t i = next_++; i < sessions_.size() && !has_failed_; i = next_++) {
+      try {
+        work_(sessions_[i]);
+      } catch (...) {  // the first failure is thrown again on the calling thread
+        const std::lock_guard lock{mutex_};
+        failure_ = has_failed_.exchange(true) ? failure_ : std::current_exception();
+      }
+    }
+  }
+  const std::vector<PlannedSession>& sessions_;
+  const Work& work_;
+  std::atomic<std::size_t> next_{0};
+  std::atomic<bool> has_failed_{false};
+  std::mutex mutex_;
+  std::exception_ptr failure_;
+};
+
+struct Tapped {
+  std::atomic<std::int64_t> ticks{0};
+  std::atomic<int> trials{0};
+};
+
+// What all sessions share.
+struct Laboratory {
+  const SimulatedStudy& study;
+  const protocols::Protocol& protocol;
+  const device::LoopSettings& settings;
+  ModelLibrary& models;
+};
+
+void run_session(const Laboratory& laboratory, const PlannedSession& session,
+                 results::Recorder& recorder, Tapped& tapped) {
+  const auto& [study, protocol, settings, models] = laboratory;
+  SimulatedParticipant participant{protocol, settings, models, session.seed};
+  VirtualTrialLoop trial_loop{participant.hand(), settings,
+                              study.keeps_traces ? Keep::trace : Keep::events};
+  SimulatedReality reality{protocol, models, participant.hand(), settings};
+  const TrialEngine* running = nullptr;
+  SessionStates states{session.id, [&running, rate_hz = protocol.rate_hz] {
+                         const std::int64_t ticks = running == nullptr ? 0 : running->ticks();
+                         return static_cast<double>(ticks) / rate_hz;
+                       }};
+  Operator nobody;
+  TrialEngine engine{
+      {protocol, models, trial_loop, reality, participant, nobody, states, session.seed}, recorder};
+  running = &engine;
+  take_part(engine, session.schedule);
+  tapped.ticks += engine.ticks();
+  tapped.trials += engine.trials();
+}
+
+void run_sessions(const Laboratory& laboratory, const std::vector<PlannedSession>& sessions,
+                  results::Store& store, Tapped& tapped) {
+  const Progress progress{fmt::format("{}simulating {} participants", laboratory.study.of_studies,
+                                      laboratory.study.participants)};
+  results::Recorder recorder{store};
+  Workers::share(sessions, [&](const PlannedSession& session) {
+    run_session(laboratory, session, recorder, tapped);
+  });
+}
+}  // namespace
+
+SimulatedTime simulate(const SimulatedStudy& study, const protocols::Protocol& protocol) {
+  const auto start = std::chrono::steady_clock::now();
+  const protocols::Rig rig = simulated_rig();
+  const device::LoopSettings settings = loop_settings(protocol, rig);
+  ModelLibrary models;
+  models.build_all(protocol);
+  const bool is_new = !results::Store::has_database(study.directory);
+  results::Store store =
+      results::Store::open_or_create(study.directory, study_row(protocol, study.protocol_file));
+  std::vector<PlannedSession> sessions;
+  store.in_one_transaction([&] { sessions = add_sessions(study, protocol, rig, store); });
+  if (is_new) {
+    store.write_unconfirmed();
+  }
+  Tapped tapped;
+  try {
+    run_sessions({study, protocol, settings, models}, sessions, store, tapped);
+  } catch (...) {
+    store.confirm_all();
+    throw;
+  }
+  store.confirm_all();
+  const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
+  return {tapped.trials, static_cast<double>(tapped.ticks) / protocol.rate_hz, wall.count()};
+}
+
+namespace {
+constexpr double alpha = 0.05;
+
+struct Found {
+  std::string block;
+  std::string name;
+  std::vector<analysis::MainResult> results;
+};
+
+ResultOfDesign result_of(const Found& found) {
+  std::vector<double> estimates;
+  std::vector<double> widths;
+  ResultOfDesign result{
+      .block = found.block, .name = found.name, .found = static_cast<int>(found.results.size())};
+  for (const analysis::MainResult& one : found.results) {
+    estimates.push_back(one.estimate);
+    widths.push_back(one.range.high - one.range.low);
+    result.tested += one.p ? 1 : 0;
+    result.significant += one.p && *one.p < alpha ? 1 : 0;
+  }
+  const analysis::MeanAndSpread estimated = analysis::mean_and_spread(estimates);
+  result.mean = estimated.mean;
+  result.spread = estimated.standard_deviation;
+  result.median_width = analysis::quantile(widths, 0.5);
+  return result;
+}
+
+analysis::Summary summary_of_one(const SimulatedDesign& design, int study,
+                                 const protocols::Protocol& protocol) {
+  const std::uint64_t seed =
+      core::derived_seed(design.seed, core::Purpose::study, static_cast<std::uint64_t>(study));
+  const ScratchDirectory directory{seed};
+  simulate({design.protocol_file, directory.path(), design.participants, seed, false,
+            fmt::format("study {} of {}: ", study + 1, design.studies)},
+           protocol);
+  results::Store store = results::Store::open_existing(directory.path());
+  return summary_of_study({{directory.path(), &store}}, results::Mode::simulated,
+                          Detail::main_results);
+}
+}  // namespace
+
+std::vector<ResultOfDesign> simulate_design(const SimulatedDesign& design,
+                                            const protocols::Protocol& protocol) {
+  std::vector<Found> all;
+  for (int i = 0; i < design.studies; ++i) {
+    stop_if_asked();
+    for (const auto& block : summary_of_one(design, i, protocol).blocks) {
+      for (const analysis::MainResult& result : block->main_results()) {
+        auto known = std::ranges::find_if(all, [&](const Found& found) {
+          return found.block == block->block && found.name == result.name;
+        });
+        known = known == all.end() ? all.insert(known, {block->block, result.name, {}}) : known;
+        known->results.push_back(result);
+      }
+    }
+  }
+  std::vector<ResultOfDesign> results;
+  std::ranges::transform(all, std::back_inserter(results), result_of);
+  return results;
+}
+}  // namespace tapstudy::runner

@@ -1,0 +1,67 @@
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "protocols/protocol.hpp"
+namespace tapstudy::runner {
+// For a simulated study of which only the results are kept. RAII: removed with all it holds.
+class ScratchDirectory {
+ public:
+  explicit ScratchDirectory(std::uint64_t seed);
+  ~ScratchDirectory();
+  ScratchDirectory(const ScratchDirectory&) = delete;
+  ScratchDirectory& operator=(const ScratchDirectory&) = delete;
+  ScratchDirectory(ScratchDirectory&&) = delete;
+  ScratchDirectory& operator=(ScratchDirectory&&) = delete;
+  std::string path() const { return path_.string(); }
+
+ private:
+  std::filesystem::path path_;
+};
+
+struct SimulatedStudy {
+  std::string protocol_file;
+  std::string directory;
+  int participants{};
+  std::uint64_t seed{};
+  bool keeps_traces{true};   // otherwise events and answers only
+  std::string of_studies{};  // which of how many, for progress; empty: the only one
+};
+struct SimulatedTime {
+  int trials{};
+  double tapped_s{};  // of virtual time
+  double wall_s{};    // real time
+};
+
+// Runs the whole study with participants sim-01, sim-02 …, on all cores, faster than real time. The
+// same seed gives the same data: bitwise identical with one build on one machine, elsewhere the
+// same answers and forces to within 1e-9. Throws as TrialEngine::run and Store do, and InvalidInput
+// if one of the participants is already in the study.
+SimulatedTime simulate(const SimulatedStudy& study, const protocols::Protocol& protocol);
+
+struct SimulatedDesign {
+  std::string protocol_file;
+  int participants{};
+  int studies{};
+  std::uint64_t seed{};
+};
+
+// How one of a block's main results came out in many simulated studies.
+struct ResultOfDesign {
+  std::string block;
+  std::string name;
+  int found{};            // in so many of the studies
+  double mean{};          // of the estimates
+  double spread{};        // their standard deviation; NaN of a single one
+  double median_width{};  // of the 95 % intervals over participants
+  int tested{};
+  int significant{};  // of these, p < .05
+};
+
+// Simulates whole studies, each with other participants, and makes the report of each. Nothing is
+// kept on disk. Throws as simulate() and summary_of_study() do.
+std::vector<ResultOfDesign> simulate_design(const SimulatedDesign& design,
+                                            const protocols::Protocol& protocol);
+}  // namespace tapstudy::runner

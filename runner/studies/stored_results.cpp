@@ -1,0 +1,334 @@
+#include "runner/studies/stored_results.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <map>
+#include <optional>
+#include <set>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "protocols/protocol.hpp"
+#include "protocols/schedule/schedule.hpp"
+#include "results/export/table.hpp"
+#include "results/rows.hpp"
+#include "results/store/study_queries.hpp"
+#include "runner/session/engine/adaptive_blocks.hpp"
+#include "runner/session/engine/remaining_trials.hpp"
+#include "runner/studies/stored_study.hpp"
+namespace tapstudy::runner {
+// Fills in each answer's place in its block, from the seed and index of its participant's session.
+void set_places(const protocols::Protocol& protocol,
+                const std::vector<results::SessionRow>& sessions,
+                std::vector<results::AnswerRow>& answers);
+
+void set_places(const protocols::Protocol& protocol,
+                const std::vector<results::SessionRow>& sessions,
+                std::vector<results::AnswerRow>& answers) {
+  // all sessions of a participant have one order
+  std::unordered_map<std::string, std::map<std::string, int>> first_trials_of;
+  for (const results::SessionRow& session : sessions) {
+    first_trials_of.try_emplace(
+        session.participant_id,
+        protocols::first_trials(protocol, session.seed, session.order_index));
+  }
+  for (results::AnswerRow& answer : answers) {
+    answer.place_in_block =
+        answer.number - first_trials_of.at(answer.participant_id).at(answer.block);
+  }
+}
+
+namespace {
+using analysis::TrackResult;
+using protocols::Block;
+using protocols::TrackSummary;
+
+bool has_results(const Block& block) {
+  return block.comparison && !block.is_practice;
+}
+
+double quantile(const protocols::ParameterPosterior& posterior, double probability) {
+  return std::ranges::find(posterior.quantiles, probability, &protocols::Quantile::probability)
+      ->value;
+}
+
+// One value was given: its deviation is rounding.
+bool is_fixed(const protocols::ParameterPosterior& posterior) {
+  constexpr double rounding = 1e-12;
+  return posterior.standard_deviation <= rounding * std::abs(posterior.mean);
+}
+
+TrackResult result_of(const protocols::Track& track, const protocols::TrackSettings& settings) {
+  const TrackSummary summary = track.summary();
+  TrackResult result;
+  result.procedure = settings.words();
+  result.trials = summary.trials;
+  result.is_finished = summary.is_finished;
+  result.estimate = summary.estimate;
+  result.settles_at = summary.target;
+  result.reversals = summary.reversals.size();
+  result.trials_at_limit = summary.trials_at_limit;
+  for (const protocols::ParameterPosterior& posterior : summary.parameters) {
+    if (is_fixed(posterior)) {
+      continue;
+    }
+    result.parameters.push_back({posterior.name,
+                                 posterior.mean,
+                                 {quantile(posterior, 0.025), quantile(posterior, 0.975)},
+                                 posterior.standard_deviation});
+  }
+  return result;
+}
+
+// Unset: the participant has no session.
+std::optional<AdaptiveBlocks> replayed(const protocols::Protocol& protocol,
+                                       const std::string& participant, results::Store& store) {
+  const auto session = store.latest_session(participant);
+  if (!session) {
+    return std::nullopt;
+  }
+  const protocols::Schedule schedule =
+      protocols::make_schedule(protocol, session->seed, session->order_index);
+  return AdaptiveBlocks{protocol, session->seed, schedule, store.answers_as_given(participant)};
+}
+
+void add_tracks(const protocols::Protocol& protocol, const std::string& participant,
+                results::Store& store, std::vector<TrackResult>& results) {
+  const auto adaptive = replayed(protocol, participant, store);
+  if (!adaptive) {
+    return;
+  }
+  for (const Block& block : protocol.blocks) {
+    for (std::size_t i = 0; has_results(block) && i < block.comparison->tracks.size(); ++i) {
+      TrackResult result =
+          result_of(adaptive->tracks_of(block.name).track(i), *block.comparison->tracks[i]);
+      result.participant_id = participant;
+      result.block = block.name;
+      result.is_signed = block.comparison->side == protocols::Side::either;
+      result.track = static_cast<int>(i) + 1;
+      results.push_back(std::move(result));
+    }
+  }
+}
+}  // namespace
+
+std::vector<TrackResult> track_results(const protocols::Protocol& protocol,
+                                       const std::vector<StudyStore>& stores, results::Mode mode) {
+  std::vector<TrackResult> results;
+  if (std::ranges::none_of(protocol.blocks, has_results)) {
+    return results;
+  }
+  for (const StudyStore& each : stores) {
+    const auto excluded = each.store->excluded_participants();
+    std::set<std::string> participants;
+    for (const results::SessionRow& session : each.store->sessions()) {
+      if (session.mode == mode && !excluded.contains(session.participant_id)) {
+        participants.insert(session.participant_id);
+      }
+    }
+    for (const std::string& participant : participants) {
+      add_tracks(protocol, participant, *each.store, results);
+    }
+  }
+  return results;
+}
+
+void set_tracks(const protocols::Protocol& protocol, results::Store& store,
+                std::vector<results::AnswerRow>& answers) {
+  if (std::ranges::none_of(protocol.blocks, has_results)) {
+    return;
+  }
+  std::map<std::string, std::optional<AdaptiveBlocks>> people;
+  for (results::AnswerRow& answer : answers) {
+    auto found = people.find(answer.participant_id);
+    if (found == people.end()) {
+      found =
+          people.emplace(answer.participant_id, replayed(protocol, answer.participant_id, store))
+              .first;
+    }
+    if (found->second) {
+      const auto track = found->second->track_of(answer.number);
+      answer.track = track ? std::optional{static_cast<int>(*track) + 1} : std::nullopt;
+    }
+  }
+}
+
+results::Table tracks_table(const protocols::Protocol& protocol, results::Store& store) {
+  std::vector<results::AnswerRow> answers = results::stored_answers(store);
+  set_tracks(protocol, store, answers);
+  std::vector<results::Row> rows;
+  for (const results::AnswerRow& answer : answers) {
+    if (answer.track) {
+      rows.push_back({answer.trial_id, answer.participant_id, answer.block,
+                      std::int64_t{answer.number}, std::int64_t{*answer.track}});
+    }
+  }
+  return results::table_of("tracks", "A row an answered trial whose level a procedure chose.",
+                           results::known_columns("trial_id participant_id block number track"),
+                           std::move(rows));
+}
+
+namespace {
+using results::Mode;
+using Excluded = std::map<std::string, std::string>;  // by id: why
+
+// Who was not excluded.
+std::set<std::string> participants_of(const std::vector<results::SessionRow>& sessions,
+                                      const Excluded& excluded, Mode mode) {
+  std::set<std::string> participants;
+  for (const results::SessionRow& session : sessions) {
+    if (session.mode == mode && !excluded.contains(session.participant_id)) {
+      participants.insert(session.participant_id);
+    }
+  }
+  return participants;
+}
+
+std::vector<std::string> unfinished(results::Store& store, const protocols::Protocol& protocol,
+                                    const std::set<std::string>& participants) {
+  std::vector<std::string> found;
+  for (const std::string& participant : participants) {
+    const TrialsDone trials = trials_done(protocol, participant, store);
+    if (!trials.are_all()) {
+      found.push_back(fmt::format("{}: {} of {} trials", participant, trials.done, trials.planned));
+    }
+  }
+  return found;
+}
+
+std::vector<std::string> excluded_of(const Excluded& excluded,
+                                     const std::vector<results::SessionRow>& sessions, Mode mode) {
+  std::vector<std::string> found;
+  for (const auto& [participant, reason] : excluded) {
+    const auto session =
+        std::ranges::find(sessions, participant, &results::SessionRow::participant_id);
+    if (session != sessions.end() && session->mode == mode) {
+      found.push_back(fmt::format("{}: {}", participant, reason));
+    }
+  }
+  return found;
+}
+
+// "P03: answers corrected: 2 (1 of them from wrong to right), trials skipped: 1"; empty: all went
+// as planned.
+std::string deviations_of(const results::ParticipantCourseRow& course) {
+  std::vector<std::string> parts;
+  if (course.corrected > 0) {
+    parts.push_back(fmt::format("answers corrected: {} ({} of them from wrong to right)",
+                                course.corrected, course.corrected_to_right));
+  }
+  if (course.skipped > 0) {
+    parts.push_back(fmt::format("trials skipped: {}", course.skipped));
+  }
+  if (course.timed_out > 0) {
+    parts.push_back(fmt::format("presentations that timed out: {}", course.timed_out));
+  }
+  if (course.catch_right < course.catch_trials) {
+    parts.push_back(fmt::format("catch trials missed: {} of {}",
+                                course.catch_trials - course.catch_right, course.catch_trials));
+  }
+  return parts.empty() ? "" : fmt::format("{}: {}", course.participant_id, fmt::join(parts, ", "));
+}
+
+std::vector<std::string> deviations_of(results::Store& store, Mode mode) {
+  std::vector<std::string> found;
+  for (const results::ParticipantCourseRow& course : results::participant_courses(store)) {
+    const std::string deviations = deviations_of(course);
+    if (course.mode == mode && !course.exclusion_reason && !deviations.empty()) {
+      found.push_back(deviations);
+    }
+  }
+  return found;
+}
+
+std::vector<analysis::VisitOrder> visit_orders(results::Store& store) {
+  std::vector<analysis::VisitOrder> orders;
+  for (const results::VisitedPosition& visit : results::visited_positions(store)) {
+    if (orders.empty() || orders.back().trial_id != visit.trial_id) {
+      orders.push_back({visit.trial_id, {}});
+    }
+    orders.back().positions.push_back(visit.position);
+  }
+  return orders;
+}
+
+std::map<std::string, int> missing_replies(results::Store& store,
+                                           const std::set<std::string>& participants) {
+  std::map<std::string, int> missing;
+  for (const std::string& participant : participants) {
+    for (const results::UnansweredTrial& trial : store.unanswered_trials(participant)) {
+      ++missing[trial.block];
+    }
+  }
+  return missing;
+}
+
+template <class Row>
+void append(std::vector<Row>& all, std::vector<Row> more) {
+  all.insert(all.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
+}
+}  // namespace
+
+StoredResults stored_results(results::Store& store, const protocols::Protocol& protocol, Mode mode,
+                             Detail detail) {
+  const Excluded excluded = store.excluded_participants();
+  StoredResults found;
+  found.sessions = store.sessions();
+  found.answers = counted_answers(store, mode);
+  set_places(protocol, found.sessions, found.answers);
+  if (detail == Detail::all) {  // which replays the procedures
+    set_tracks(protocol, store, found.answers);
+  }
+  std::set<std::string> answering;
+  for (const results::AnswerRow& answer : found.answers) {
+    answering.insert(answer.participant_id);
+  }
+  found.visits = results::stored_visits(store);
+  std::erase_if(found.visits, [&](const results::VisitRow& visit) {
+    return !answering.contains(visit.participant_id);
+  });
+  const std::set<std::string> participants = participants_of(found.sessions, excluded, mode);
+  found.unfinished = unfinished(store, protocol, participants);
+  found.excluded = excluded_of(excluded, found.sessions, mode);
+  found.deviations = deviations_of(store, mode);
+  found.presentations = {analysis::orders_of(visit_orders(store), found.answers),
+                         missing_replies(store, participants)};
+  std::erase_if(found.sessions, [&](const results::SessionRow& session) {
+    return session.mode != mode || excluded.contains(session.participant_id);
+  });
+  return found;
+}
+
+void append(StoredResults& all, StoredResults more) {
+  int next_index = 0;
+  for (const results::AnswerRow& answer : all.answers) {
+    next_index = std::max(next_index, answer.participant_index + 1);
+  }
+  std::int64_t last_trial_id = 0;  // ids of trials are those of their store
+  for (const results::AnswerRow& answer : all.answers) {
+    last_trial_id = std::max(last_trial_id, answer.trial_id);
+  }
+  for (results::AnswerRow& answer : more.answers) {
+    answer.participant_index += next_index;
+    answer.trial_id += last_trial_id;
+  }
+  for (analysis::VisitOrder& order : more.presentations.orders) {
+    order.trial_id += last_trial_id;
+  }
+  append(all.sessions, std::move(more.sessions));
+  append(all.answers, std::move(more.answers));
+  append(all.visits, std::move(more.visits));
+  append(all.unfinished, std::move(more.unfinished));
+  append(all.excluded, std::move(more.excluded));
+  append(all.deviations, std::move(more.deviations));
+  append(all.presentations.orders, std::move(more.presentations.orders));
+  for (const auto& [block, missing] : more.presentations.missing_replies) {
+    all.presentations.missing_replies[block] += missing;
+  }
+}
+}  // namespace tapstudy::runner

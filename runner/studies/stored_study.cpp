@@ -1,0 +1,163 @@
+#include "runner/studies/stored_study.hpp"
+
+#include <algorithm>
+#include <map>
+#include <string>
+#include <utility>
+
+#include "core/error.hpp"
+#include "protocols/form.hpp"
+#include "protocols/reader/read_protocol.hpp"
+#include "results/store/study_queries.hpp"
+#include "runner/session/engine/between_trials.hpp"
+namespace tapstudy::runner {
+protocols::Protocol stored_protocol(const results::StudyRow& study) {
+  return protocols::parse_protocol(
+      {study.protocol_text, study.protocol_file}, [&](const std::string& file) {
+        const auto found = std::ranges::find(study.surfaces, file, &results::SurfaceRow::file);
+        if (found == study.surfaces.end()) {
+          throw core::InvalidInput{file + ": is not stored with the study"};
+        }
+        return found->bytes;
+      });
+}
+
+protocols::PlannedTrial stored_trial(const results::TrialRow& row,
+                                     const std::vector<results::AlternativeRow>& alternatives,
+                                     const protocols::Block& block) {
+  protocols::PlannedTrial trial;
+  trial.number = row.number;
+  trial.block = row.block;
+  trial.task = block.task;
+  trial.is_practice = row.is_practice;
+  trial.repetition = row.repetition;
+  trial.is_catch = row.is_catch;
+  for (const results::AlternativeRow& alternative : alternatives) {
+    trial.alternatives.push_back(
+        {alternative.stimulus, alternative.axis_values, alternative.is_comparison});
+  }
+  return trial;
+}
+
+DoneBlocks done_blocks(const std::vector<StudyStore>& stores, results::Mode mode) {
+  DoneBlocks all;
+  for (const StudyStore& each : stores) {
+    for (const auto& [block, done] : results::block_courses(*each.store, mode)) {
+      results::BlockCourseRow& total = all[block];
+      total.participants.insert(done.participants.begin(), done.participants.end());
+      total.answered += done.answered;
+      total.masked += done.masked;
+    }
+  }
+  return all;
+}
+
+std::set<std::string> rendered_stimuli(const protocols::Protocol& protocol,
+                                       const DoneBlocks& done) {
+  std::set<std::string> names;
+  for (const protocols::Block& block : protocol.blocks) {
+    if (done.contains(block.name) && block.presented == protocols::Presented::virtual_plates) {
+      for (const std::string& name : all_presented(block)) {
+        names.insert(name);
+      }
+    }
+  }
+  return names;
+}
+
+std::vector<results::AnswerRow> counted_answers(results::Store& store, results::Mode mode) {
+  const std::map<std::string, std::string> excluded = store.excluded_participants();
+  std::vector<results::AnswerRow> answers = results::stored_answers(store);
+  std::erase_if(answers, [&](const results::AnswerRow& answer) {
+    return answer.mode != mode || answer.is_practice || answer.is_catch ||
+           excluded.contains(answer.participant_id);
+  });
+  // simulated participants take part at the same time: sums over them must not depend on who is
+  // first
+  std::ranges::stable_sort(answers, {}, &results::AnswerRow::participant_index);
+  results::AlternativesOfTrials alternatives = store.alternatives();
+  for (results::AnswerRow& answer : answers) {
+    answer.alternatives = std::move(alternatives[answer.trial_id]);
+  }
+  return answers;
+}
+
+namespace {
+analysis::QuestionnaireKind kind_of(protocols::ItemKind kind) {
+  switch (kind) {
+    case protocols::ItemKind::likert:
+      return analysis::QuestionnaireKind::steps;
+    case protocols::ItemKind::scale:
+    case protocols::ItemKind::number:
+      return analysis::QuestionnaireKind::number;
+    case protocols::ItemKind::single_choice:
+      return analysis::QuestionnaireKind::choice;
+    case protocols::ItemKind::text:
+      break;
+  }
+  return analysis::QuestionnaireKind::text;
+}
+
+analysis::QuestionnaireItem item_of(const protocols::FormItem& item) {
+  analysis::QuestionnaireItem made{item.name, kind_of(item.kind), item.question};
+  for (const protocols::Option& option : item.options) {
+    made.options.push_back(option.name);
+  }
+  for (int step = 1; item.kind == protocols::ItemKind::likert && step <= item.steps; ++step) {
+    made.options.push_back(std::to_string(step));
+  }
+  return made;
+}
+
+std::vector<std::string> places_of(const protocols::Protocol& protocol, const std::string& form) {
+  std::vector<std::string> places;
+  const auto add = [&](const std::vector<std::string>& forms, const std::string& place) {
+    if (std::ranges::find(forms, form) != forms.end()) {
+      places.push_back(place);
+    }
+  };
+  add(protocol.forms_before, asked_at_begin);
+  for (const protocols::Block& block : protocol.blocks) {
+    add(block.forms_after, block.name);
+  }
+  add(protocol.forms_after, asked_at_end);
+  return places;
+}
+}  // namespace
+
+std::vector<analysis::Questionnaire> questionnaires_of(const protocols::Protocol& protocol) {
+  std::vector<analysis::Questionnaire> all;
+  for (const auto& [name, form] : protocol.forms) {
+    analysis::Questionnaire made{name, {}, places_of(protocol, name), protocols::is_raw_tlx(form)};
+    for (const protocols::FormItem& item : form.items) {
+      made.items.push_back(item_of(item));
+    }
+    if (!made.asked.empty()) {
+      all.push_back(std::move(made));
+    }
+  }
+  return all;
+}
+
+std::vector<analysis::GivenAnswer> given_answers(const std::vector<StudyStore>& stores,
+                                                 results::Mode mode) {
+  std::vector<analysis::GivenAnswer> answers;
+  for (const StudyStore& each : stores) {
+    const auto excluded = each.store->excluded_participants();
+    std::map<std::int64_t, std::string> participants;  // by session
+    for (const results::SessionRow& session : each.store->sessions()) {
+      if (session.mode == mode && !excluded.contains(session.participant_id)) {
+        participants.emplace(session.id, session.participant_id);
+      }
+    }
+    for (results::FormAnswerRow& row : results::stored_form_answers(*each.store)) {
+      const auto participant = participants.find(row.session_id);
+      if (participant != participants.end()) {
+        answers.push_back({participant->second, std::move(row.form), std::move(row.asked),
+                           std::move(row.item), std::move(row.answer)});
+      }
+    }
+  }
+  return answers;
+}
+}  // namespace tapstudy::runner

@@ -1,0 +1,43 @@
+#pragma once
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "analysis/report/study/questionnaires.hpp"
+#include "protocols/protocol.hpp"
+#include "protocols/schedule/schedule.hpp"
+#include "results/rows.hpp"
+#include "results/store/store.hpp"
+namespace tapstudy::runner {
+// A store of a study: of one rig, where there were several.
+struct StudyStore {
+  std::string directory;  // in messages
+  results::Store* store;
+};
+
+// The protocol of a study, from its store alone: the files named by it may no longer exist. Throws
+// InvalidInput where it cannot be read.
+protocols::Protocol stored_protocol(const results::StudyRow& study);
+
+// A trial as it was presented, as its task sees it.
+protocols::PlannedTrial stored_trial(const results::TrialRow& row,
+                                     const std::vector<results::AlternativeRow>& alternatives,
+                                     const protocols::Block& block);
+
+// What was done of each block by participants of a mode, of all stores together.
+using DoneBlocks = std::map<std::string, results::BlockCourseRow>;
+DoneBlocks done_blocks(const std::vector<StudyStore>& stores, results::Mode mode);
+// Names of the stimuli that the device rendered in these blocks.
+std::set<std::string> rendered_stimuli(const protocols::Protocol& protocol, const DoneBlocks& done);
+
+// The answers that a report is of, with their alternatives: of one mode, without practice, catch
+// trials and excluded participants.
+std::vector<results::AnswerRow> counted_answers(results::Store& store, results::Mode mode);
+
+// The forms of a protocol that are asked somewhere, by name, with the places in a session's order.
+std::vector<analysis::Questionnaire> questionnaires_of(const protocols::Protocol& protocol);
+// What participants of the mode answered; not those who were excluded.
+std::vector<analysis::GivenAnswer> given_answers(const std::vector<StudyStore>& stores,
+                                                 results::Mode mode);
+}  // namespace tapstudy::runner

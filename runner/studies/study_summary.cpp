@@ -1,0 +1,379 @@
+#include "runner/studies/study_summary.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <iterator>
+#include <map>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "analysis/report/comparison.hpp"
+#include "analysis/report/study/confidence.hpp"
+#include "analysis/report/study/course.hpp"
+#include "analysis/report/study/rendered.hpp"
+#include "core/error.hpp"
+#include "core/random/rng.hpp"
+#include "protocols/axes/axis.hpp"
+#include "protocols/schedule/catch_trials.hpp"
+#include "protocols/schedule/ordering.hpp"
+#include "protocols/schedule/schedule.hpp"
+#include "results/store/study_queries.hpp"
+#include "runner/session/engine/practice.hpp"
+#include "runner/studies/methods_section.hpp"
+#include "runner/studies/rendered_study.hpp"
+#include "runner/studies/stored_results.hpp"
+#include "runner/studies/stored_study.hpp"
+namespace tapstudy::runner {
+namespace {
+// Participants may read one label for several stimuli; a reader of the report must not.
+std::vector<analysis::Item> told_apart(std::vector<analysis::Item> items) {
+  std::map<std::string, int> times;
+  for (const analysis::Item& item : items) {
+    ++times[item.label];
+  }
+  for (analysis::Item& item : items) {
+    if (times[item.label] > 1) {
+      item.label += " (" + item.name + ")";
+    }
+  }
+  return items;
+}
+
+std::vector<analysis::Item> presented_items(const protocols::Protocol& protocol,
+                                            const protocols::Block& block) {
+  std::vector<analysis::Item> items;
+  for (const std::string& name : block.stimuli) {
+    const protocols::Stimulus& stimulus = protocol.stimulus(name);
+    const auto right = block.right_response.find(name);
+    items.push_back({stimulus.name, stimulus.label, stimulus.factors,
+                     right == block.right_response.end() ? std::string{} : right->second,
+                     block.presented == protocols::Presented::real_plates
+                         ? std::string{}
+                         : std::string{stimulus.technique->name}});
+  }
+  return told_apart(std::move(items));
+}
+
+// An answer that names a level says nothing about other factors.
+std::vector<analysis::Item> answered_items(const protocols::Protocol& protocol,
+                                           const protocols::Block& block) {
+  std::vector<analysis::Item> items;
+  for (const std::string& name : block.responses) {
+    if (block.response_factor.empty()) {
+      const protocols::Stimulus& stimulus = protocol.stimulus(name);
+      items.push_back({stimulus.name, stimulus.label, stimulus.factors});
+    } else {
+      items.push_back({name, name, {{block.response_factor, name}}});
+    }
+  }
+  return told_apart(std::move(items));
+}
+
+constexpr int not_counted = -1;
+
+// All participants of one draw share its counterbalancing. Catch trials stay in their places.
+analysis::BlockDesign::Redraw redraw_of(const protocols::Protocol& protocol,
+                                        std::size_t block_index) {
+  const protocols::Block& block = protocol.blocks[block_index];
+  const std::uint64_t study_seed = protocol.counterbalancing_seed;
+  return [block, block_index, study_seed](const analysis::Place& place, std::uint64_t draw) {
+    const std::uint64_t seed = core::derived_seed(
+        draw, core::Purpose::participant, static_cast<std::uint64_t>(place.participant_index));
+    protocols::Draw redrawn = protocols::draw_of(study_seed, block_index, seed, place.order_index);
+    redrawn.counterbalancing_seed = draw;
+    std::vector<int> stimuli;
+    for (const auto& next : protocols::ordered_conditions(block, redrawn)) {
+      stimuli.push_back(static_cast<int>(protocols::stimulus_of(block, next.condition)));
+    }
+    for (const std::size_t at : protocols::catch_places(block, redrawn, stimuli.size())) {
+      stimuli.insert(stimuli.begin() + static_cast<std::ptrdiff_t>(at), not_counted);
+    }
+    return stimuli;
+  };
+}
+
+// Where the order is random.
+void add_redraw(const protocols::Protocol& protocol, std::size_t block_index,
+                analysis::BlockDesign& design) {
+  constexpr std::size_t constrained_cost = 20;
+  const protocols::Block& block = protocol.blocks[block_index];
+  if (block.task->uses_order() && block.order != protocols::Order::listed) {
+    design.redraw = redraw_of(protocol, block_index);
+    design.redraw_cost = block.constraints.are_any() ? constrained_cost : 1;
+  }
+}
+
+// Of one that the protocol's reader has accepted.
+analysis::AxisName name_of(const std::string& axis) {
+  const protocols::Axis& row = *protocols::find_axis(axis);
+  return {axis, std::string{row.quantity}, std::string{row.unit}};
+}
+
+void add_task_settings(const protocols::Block& block, const protocols::Protocol& protocol,
+                       analysis::BlockDesign& part) {
+  part.decision_model = block.task->decision_model(block);
+  part.guess_rate = block.task->guess_rate(block, protocol);
+  part.has_own_guess_rate = block.task->has_own_guess_rate();
+  part.alternatives = block.alternatives > 0 ? block.alternatives : 2;
+  part.steps =
+      block.rating && block.rating->kind == protocols::ScaleKind::likert ? block.rating->steps : 0;
+  part.has_ties = !block.tie.empty();
+  if (block.adjustment) {
+    const protocols::Adjustment& of = *block.adjustment;
+    part.adjusted = analysis::AdjustedAxis{name_of(of.axis), of.spacing == protocols::Spacing::log,
+                                           of.middle(), of.standard};
+  }
+  if (block.on_axis) {
+    part.axis = analysis::VariedAxis{name_of(block.on_axis->axis), 0.0, false, false};
+  }
+  if (block.comparison) {
+    const protocols::Comparison& comparison = *block.comparison;
+    part.axis = analysis::VariedAxis{
+        name_of(comparison.axis), comparison.standard, comparison.is_fraction,
+        comparison.side == protocols::Side::below, comparison.is_standard_right};
+    std::ranges::transform(comparison.further_axes, std::back_inserter(part.further_axes), name_of);
+    part.shape = comparison.shape;
+  }
+}
+
+std::string question_of(const protocols::Block& block) {
+  return block.presented == protocols::Presented::real_plates ? block.question + " (real plates)"
+                                                              : block.question;
+}
+
+analysis::Vote vote_of(const protocols::Block& block) {
+  return block.vote == protocols::Vote::first ? analysis::Vote::first : analysis::Vote::majority;
+}
+
+std::string premise_of(const protocols::Protocol& protocol) {
+  const protocols::SimulatedObserverSettings& observer = protocol.simulation.observer;
+  return fmt::format(
+      "simulated participants take the body of '{}', vibrating as by technique '{}', for the real "
+      "one; what they choose follows from that",
+      observer.reference, observer.reality->name);
+}
+}  // namespace
+
+analysis::StudyDesign design_of(const protocols::Protocol& protocol, results::Mode mode) {
+  analysis::StudyDesign design{protocol.title, protocol.notes, {}};
+  for (std::size_t i = 0; i < protocol.blocks.size(); ++i) {
+    const protocols::Block& block = protocol.blocks[i];
+    if (block.is_practice) {
+      continue;
+    }
+    analysis::BlockDesign part{block.name,
+                               std::string{block.task->name()},
+                               question_of(block),
+                               std::string{block.task->statistic(block)},
+                               presented_items(protocol, block),
+                               answered_items(protocol, block),
+                               {},
+                               {},
+                               {},
+                               vote_of(block)};
+    add_task_settings(block, protocol, part);
+    add_redraw(protocol, i, part);
+    if (mode == results::Mode::simulated && block.task->needs_reference()) {
+      part.premise = premise_of(protocol);
+    }
+    for (const protocols::Hypothesis& hypothesis : protocol.hypotheses) {
+      if (hypothesis.block == block.name) {
+        part.hypotheses.push_back({hypothesis.name, hypothesis.statement, hypothesis.stimulus});
+      }
+    }
+    design.blocks.push_back(part);
+  }
+  return design;
+}
+
+namespace {
+using results::ParticipantCourseRow;
+
+using Answers = std::vector<results::JournalledAnswer>;
+
+// Of one block; no trials if it was not practised, or has no right answers.
+analysis::Proportion right_in(const protocols::Block& block, const Answers& answers) {
+  analysis::Proportion right;
+  for (const results::JournalledAnswer& answer : answers) {
+    const auto& is_correct = answer.response.is_correct;
+    if (answer.trial.is_practice && answer.trial.block == block.name && is_correct) {
+      right.add(*is_correct);
+    }
+  }
+  return right;
+}
+
+bool is_practised(const protocols::Block& block, const Answers& answers) {
+  return std::ranges::any_of(answers, [&](const results::JournalledAnswer& answer) {
+    return answer.trial.is_practice && answer.trial.block == block.name;
+  });
+}
+
+void add_practice(const protocols::Protocol& protocol, const std::string& participant,
+                  results::Store& store, std::vector<analysis::PracticeResult>& practice) {
+  const Answers answers = store.answers_as_given(participant);
+  const PracticeRecord record{answers};
+  for (const protocols::Block& block : protocol.blocks) {
+    if (is_practised(block, answers)) {
+      analysis::PracticeResult result{participant, block.name, right_in(block, answers)};
+      if (block.criterion) {
+        result.is_criterion_met = record.is_met(block);
+      }
+      practice.push_back(result);
+    }
+  }
+}
+
+analysis::ReportSection course(const protocols::Protocol& protocol,
+                               const std::vector<StudyStore>& stores, results::Mode mode) {
+  std::vector<ParticipantCourseRow> participants;
+  std::vector<analysis::PracticeResult> practice;
+  for (const StudyStore& each : stores) {
+    for (const ParticipantCourseRow& row : results::participant_courses(*each.store)) {
+      if (row.mode == mode) {
+        participants.push_back(row);
+        add_practice(protocol, row.participant_id, *each.store, practice);
+      }
+    }
+  }
+  return analysis::course_section(participants, practice, protocol.masking.has_value());
+}
+
+std::vector<analysis::ConfidenceScale> confidence_scales(const protocols::Protocol& protocol) {
+  std::vector<analysis::ConfidenceScale> scales;
+  for (const protocols::Block& block : protocol.blocks) {
+    if (block.confidence) {
+      const protocols::Confidence& asked = *block.confidence;
+      scales.push_back({block.name, asked.steps, asked.low, asked.high});
+    }
+  }
+  return scales;
+}
+
+// Answers are read only where confidence was asked.
+analysis::ReportSection confidence(const protocols::Protocol& protocol,
+                                   const std::vector<StudyStore>& stores, results::Mode mode) {
+  const std::vector<analysis::ConfidenceScale> scales = confidence_scales(protocol);
+  std::vector<results::AnswerRow> answers;
+  for (std::size_t i = 0; i < stores.size() && !scales.empty(); ++i) {
+    std::ranges::move(counted_answers(*stores[i].store, mode), std::back_inserter(answers));
+  }
+  return analysis::confidence_section(scales, answers);
+}
+}  // namespace
+
+std::vector<analysis::ReportSection> study_sections(const protocols::Protocol& protocol,
+                                                    const std::vector<StudyStore>& stores,
+                                                    results::Mode mode, const DoneBlocks& done) {
+  return {
+      course(protocol, stores, mode), confidence(protocol, stores, mode),
+      analysis::procedures_section(track_results(protocol, stores, mode)),
+      analysis::questionnaires_section(questionnaires_of(protocol), given_answers(stores, mode)),
+      analysis::rendered_section(rendered_study(protocol, stores, mode, done))};
+}
+
+namespace {
+using analysis::Summary;
+using results::Mode;
+
+std::vector<std::pair<std::string, std::string>> provenance(
+    const results::StudyRow& study, const std::vector<results::SessionRow>& sessions) {
+  std::set<std::string> programs;
+  std::set<std::string> devices;
+  std::vector<std::string> seeds;
+  for (const results::SessionRow& session : sessions) {
+    programs.insert(
+        fmt::format("{} ({}, {})", session.program_version, session.git_hash, session.compiler));
+    devices.insert(
+        fmt::format("{}, {} Hz, {}", session.device, session.rate_hz, session.scheduler));
+    seeds.push_back(fmt::format("{} {}", session.participant_id, session.seed));
+  }
+  return {{"protocol", study.protocol_file},
+          {"protocol SHA-256", study.protocol_sha256},
+          {"tapstudy", fmt::format("{}", fmt::join(programs, "; "))},
+          {"device", fmt::format("{}", fmt::join(devices, "; "))},
+          {"seeds", fmt::format("{}", fmt::join(seeds, ", "))}};
+}
+
+void check_same_protocol(const std::vector<StudyStore>& stores) {
+  const results::StudyRow first = stores.front().store->study();
+  for (const StudyStore& other : stores) {
+    const results::StudyRow study = other.store->study();
+    if (study.protocol_sha256 != first.protocol_sha256 || study.surfaces != first.surfaces) {
+      throw core::InvalidInput{fmt::format(
+          "{} and {} hold different protocols: their answers cannot be put into one report",
+          stores.front().directory, other.directory)};
+    }
+  }
+}
+
+// Of whatever name: a redacted copy has the sessions of its study.
+void check_different_participants(const std::vector<StudyStore>& stores) {
+  std::map<std::string, std::string> directories;
+  std::map<std::pair<std::uint64_t, std::string>, std::string> begun;
+  for (const StudyStore& each : stores) {
+    std::set<std::string> here;
+    for (const results::SessionRow& session : each.store->sessions()) {
+      here.insert(session.participant_id);
+      const auto [other, is_new] =
+          begun.try_emplace({session.seed, session.started_utc}, each.directory);
+      if (!is_new && other->second != each.directory) {
+        throw core::InvalidInput{
+            fmt::format("{} and {} hold the same session, begun {} with the seed {}: is one a copy "
+                        "of the other?",
+                        other->second, each.directory, session.started_utc, session.seed)};
+      }
+    }
+    for (const std::string& participant : here) {
+      const auto [before, is_new] = directories.try_emplace(participant, each.directory);
+      if (!is_new) {
+        throw core::InvalidInput{fmt::format("participant {} is in {} and in {}", participant,
+                                             before->second, each.directory)};
+      }
+    }
+  }
+}
+}  // namespace
+
+Summary summary_of_study(const std::vector<StudyStore>& stores, Mode mode, Detail detail) {
+  check_same_protocol(stores);
+  check_different_participants(stores);
+  const results::StudyRow study = stores.front().store->study();
+  const protocols::Protocol protocol = stored_protocol(study);
+  StoredResults all;
+  std::vector<std::string> directories;
+  for (const StudyStore& each : stores) {
+    append(all, stored_results(*each.store, protocol, mode, detail));
+    directories.push_back(each.directory);
+  }
+  if (all.answers.empty()) {
+    throw core::InvalidInput{fmt::format(
+        "{}: no answers of {} participants to report{}", fmt::join(directories, ", "),
+        results::to_text(mode),
+        all.excluded.empty() ? "" : fmt::format(" ({} excluded)", all.excluded.size()))};
+  }
+  analysis::StudyDesign design = design_of(protocol, mode);
+  if (detail == Detail::main_results) {
+    for (analysis::BlockDesign& block : design.blocks) {
+      block.is_for_main_results = true;
+    }
+    return analysis::summarise(design, all.answers, all.visits, all.presentations);
+  }
+  Summary summary = analysis::summarise(design, all.answers, all.visits, all.presentations);
+  const DoneBlocks done = done_blocks(stores, mode);
+  summary.sections = study_sections(protocol, stores, mode, done);
+  const bool is_order_fixed = protocol.block_order.order == protocols::Order::listed;
+  if (auto contrasts = analysis::block_contrasts(summary.blocks, is_order_fixed)) {
+    summary.sections.insert(summary.sections.begin(), std::move(*contrasts));
+  }
+  summary.provenance = provenance(study, all.sessions);
+  summary.procedure = procedure_words(protocol, all.sessions, summary.participant_ids, done);
+  summary.unfinished = std::move(all.unfinished);
+  summary.excluded = std::move(all.excluded);
+  std::ranges::move(all.deviations, std::back_inserter(summary.deviations));
+  return summary;
+}
+}  // namespace tapstudy::runner

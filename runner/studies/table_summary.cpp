@@ -1,0 +1,136 @@
+#include "runner/studies/table_summary.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <set>
+#include <sstream>
+#include <utility>
+
+#include "analysis/report/answer_tables/answer_table.hpp"
+#include "analysis/report/answer_tables/counts_csv.hpp"
+#include "core/error.hpp"
+#include "protocols/tasks/task.hpp"
+namespace tapstudy::runner {
+namespace {
+using analysis::NamedCsv;
+using analysis::Summary;
+
+NamedCsv read_file(const std::string& file) {
+  std::ifstream text{file};
+  if (!text) {
+    throw core::InvalidInput{file + ": cannot be read"};
+  }
+  std::string bytes = analysis::table_text(text, file);
+  const bool is_json = analysis::is_json_list(bytes);
+  std::istringstream whole{std::move(bytes)};
+  return {file, is_json ? analysis::read_json_rows(whole, file) : analysis::read_csv(whole, file)};
+}
+
+std::pair<std::string, std::string> split(const std::string& text) {
+  const std::size_t equals = text.find('=');
+  return equals == std::string::npos ? std::pair{text, text}
+                                     : std::pair{text.substr(0, equals), text.substr(equals + 1)};
+}
+
+analysis::AnswerReading reading_of(const TableOptions& options) {
+  analysis::AnswerReading reading;
+  reading.columns = options.columns;
+  for (const std::string& condition : options.conditions) {
+    if (condition.find('=') == std::string::npos) {
+      throw core::InvalidInput{
+          fmt::format("--where: '{}' is not of the form COLUMN=VALUE", condition)};
+    }
+    const auto [column, value] = split(condition);
+    reading.conditions.push_back({column, value});
+  }
+  for (const std::string& response : options.responses) {
+    reading.responses.insert(split(response));
+  }
+  return reading;
+}
+
+// What their comments say besides.
+std::set<std::string> modes_of(const std::vector<NamedCsv>& tables,
+                               std::set<std::string> modes = {}) {
+  for (const NamedCsv& table : tables) {
+    modes.merge(analysis::modes_in(table.text));
+  }
+  return modes;
+}
+
+bool hold_answers(const std::vector<NamedCsv>& tables, const TableOptions& options) {
+  return tables.size() > 1 || options.columns.are_given() || !options.conditions.empty() ||
+         (!tables.front().text.rows.empty() &&
+          analysis::has_answers(tables.front().text.rows.front().cells));
+}
+
+void check_differ(const std::vector<NamedCsv>& tables) {
+  const auto is_same_row = [](const analysis::CsvRow& one, const analysis::CsvRow& other) {
+    return one.cells == other.cells;
+  };
+  for (auto one = tables.begin(); one != tables.end(); ++one) {
+    for (auto other = std::next(one); other != tables.end(); ++other) {
+      if (std::ranges::equal(one->text.rows, other->text.rows, is_same_row)) {
+        throw core::InvalidInput{
+            fmt::format("{}: holds the same rows as {}", other->file, one->file)};
+      }
+    }
+  }
+}
+
+Summary summary_of_answers(const std::vector<NamedCsv>& tables, const TableOptions& options,
+                           const std::string& title) {
+  const analysis::AnswerTable table = analysis::read_answers(tables, reading_of(options));
+  Summary summary = analysis::summarise(table, title, protocols::identification().name(),
+                                        modes_of(tables, table.modes));
+  if (table.unanswered > 0) {
+    summary.deviations.push_back(
+        fmt::format("{} of {} rows have no answer and are left out", table.unanswered, table.rows));
+  }
+  if (table.not_counted > 0) {
+    summary.deviations.push_back(
+        fmt::format("{} of {} rows are left out: practice, catch trials, answers that were "
+                    "corrected, trials without an answer, or participants who are excluded",
+                    table.not_counted, table.rows));
+  }
+  if (table.of_other_modes > 0) {
+    summary.deviations.push_back(
+        fmt::format("{} of {} rows are left out: of pilot or simulated sessions, which are no part "
+                    "of the study",
+                    table.of_other_modes, table.rows));
+  }
+  if (table.has_times && !table.are_participants_known) {
+    summary.deviations.emplace_back(
+        "times are not summarised: participants are not known (--participant-column)");
+  }
+  if (!table.possible_time.empty()) {
+    summary.deviations.push_back(fmt::format(
+        "column '{0}' is not read: if it holds response times, --time-column {0} and --time-unit "
+        "say so",
+        table.possible_time));
+  }
+  return summary;
+}
+}  // namespace
+
+Summary summary_of_tables(const std::vector<std::string>& files, const TableOptions& options) {
+  std::vector<NamedCsv> tables;
+  for (const std::string& file : files) {
+    tables.push_back(read_file(file));
+  }
+  check_differ(tables);
+  const std::string title = std::filesystem::path{files.front()}.stem().string();
+  Summary summary =
+      hold_answers(tables, options)
+          ? summary_of_answers(tables, options, title)
+          : analysis::summarise(analysis::read_counts(tables.front().text, files.front()), title,
+                                protocols::identification().name(), modes_of(tables));
+  summary.provenance = {{"counts", fmt::format("{}", fmt::join(files, ", "))}};
+  return summary;
+}
+}  // namespace tapstudy::runner

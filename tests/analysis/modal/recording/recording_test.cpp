@@ -1,0 +1,255 @@
+// Recordings of taps, read from tables and sound files, and the taps in them.
+#include "analysis/modal/recording/recording.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "analysis/modal/recording/taps.hpp"
+#include "core/error.hpp"
+#include "support/catch.hpp"
+#include "support/reference_programs.hpp"
+#include "support/synthetic_taps.hpp"
+#include "support/texts.hpp"
+using namespace tapstudy;
+using namespace tapstudy::analysis;
+
+namespace {
+constexpr int rows = 80;
+double value_at(int i) {
+  return std::round(1000.0 * std::sin(0.3 * i)) / 1000.0;
+}
+
+// Times every half millisecond in this unit, values, a second channel.
+std::string table(const std::string& header, char separator, double units_per_s,
+                  bool has_decimal_comma) {
+  std::string text = header + "\n";
+  for (int i = 0; i < rows; ++i) {
+    std::string row = fmt::format("{:.6g}{}{:.6g}{}{}", 0.0005 * i * units_per_s, separator,
+                                  value_at(i), separator, i);
+    if (has_decimal_comma) {
+      std::ranges::replace(row, '.', ',');
+    }
+    text += row + "\n";
+  }
+  return text;
+}
+
+Recording read(const std::string& text, const ReadingOptions& options) {
+  std::istringstream stream{text};
+  return read_csv_recording(stream, "taps.csv", options);
+}
+
+std::string column_of_values(int count) {
+  std::string text;
+  for (int i = 0; i < count; ++i) {
+    text += fmt::format("{}\n", value_at(i));
+  }
+  return text;
+}
+
+const std::vector<testing::PlantedMode> plate{{{80.0, 0.04}, 1.0}, {{210.0, 0.03}, 0.7}};
+}  // namespace
+
+TEST_CASE("a table is the same recording whatever its separator, header and unit of time",
+          "[analysis][recordings]") {
+  const Recording recording =
+      GENERATE(read(table("time,acc,other", ',', 1.0, false), {0.0, "acc"}),
+               read(table("Time (ms);acc;other", ';', 1e3, true), {0.0, "acc"}),
+               read(table("t_us\tacc\tother", '\t', 1e6, false), {2000.0, "acc"}),
+               read(table("Time (\u00b5s),acc,other", ',', 1e6, false), {2000.0, "acc"}),
+               read(table("time [\u03bcs],acc,other", ',', 1e6, false), {2000.0, "acc"}),
+               read(table("# a comment\n# another", ',', 1.0, false), {0.0, "2"}),
+               read(table("index,acc,other", ',', 1.0, false), {2000.0, "acc"}));
+  CHECK(recording.rate_hz == Approx(2000.0));
+  REQUIRE(recording.samples.size() == rows);
+  for (int i = 0; i < rows; ++i) {
+    CHECK(recording.samples[static_cast<std::size_t>(i)] == Approx(value_at(i)));
+  }
+}
+
+TEST_CASE("a table that cannot be a recording is refused where it cannot",
+          "[analysis][recordings]") {
+  const std::string good = table("time,acc,other", ',', 1.0, false);
+  const ReadingOptions acc{0.0, "acc"};
+  using Case = std::tuple<std::string, ReadingOptions, std::string>;
+  const auto [text, options, words] = GENERATE_COPY(values<Case>({
+      {good, {}, "taps.csv:1: has 2 channels"},
+      {good, {0.0, "force"}, "none of its columns (time, acc, other)"},
+      {good, {0.0, "time"}, "is the time"},
+      {good, {1000.0, "acc"}, "its times say 2000 samples a second, --rate 1000"},
+      {column_of_values(rows), {}, "no time column (give the rate by --rate HZ)"},
+      {column_of_values(40), {1000.0, ""}, "taps.csv:40: has 40 samples (at least 64)"},
+      {testing::replaced(good, "0.003,", "0.00312,"), acc, "taps.csv:8: times are up to 0.2"},
+      {"acc\n1\nnan\n" + column_of_values(rows), {1000.0, ""}, "taps.csv:3: 'nan'"},
+      {testing::replaced(good, "\n0.003,", "\n0.003,1\n0.003,"), acc, "taps.csv:8: has 2 cells"},
+      {"", {1000.0, ""}, "taps.csv:1: holds no values"},
+  }));
+  INFO(words);
+  CHECK_THROWS_WITH(read(text, options), Contains(words));
+  CHECK_THROWS_AS(read(text, options), core::InvalidInput);
+}
+
+TEST_CASE("a sample that is missing shows in the times, at its line", "[analysis][recordings]") {
+  std::string text = table("time,acc,other", ',', 1.0, false);
+  const std::size_t begin = text.find("\n0.02,") + 1;
+  text.erase(begin, text.find('\n', begin) + 1 - begin);
+  CHECK_THROWS_WITH(read(text, {0.0, "acc"}), Contains("taps.csv:42:") && Contains("missing"));
+}
+
+TEST_CASE("a channel of a sound file is what SciPy wrote into it", "[analysis][recordings]") {
+  const testing::TempDirectory directory;
+  const std::string file = directory / "taps.wav";
+  const auto written = testing::python_numbers(
+      "from scipy.io import wavfile\nrng = np.random.default_rng(1)\n"
+      "x = rng.integers(-32768, 32767, (500, 2)).astype(np.int16)\nwavfile.write('" +
+      file + "', 12345, x)\nout(x[:, 1] / 32768)\n");
+  const Recording recording = read_recording(file, {0.0, "2"});
+  CHECK(recording.rate_hz == 12345.0);
+  CHECK(recording.channel == "channel 2");
+  CHECK(recording.samples == written);
+  CHECK_THROWS_WITH(read_recording(file, {}), Contains("has 2 channels"));
+  CHECK_THROWS_WITH(read_recording(file, {0.0, "3"}), Contains("--column 1 ... 2"));
+  CHECK_THROWS_WITH(read_recording(file, {8000.0, "1"}), Contains("12345 samples a second"));
+  testing::write(directory / "no.wav", "this is no sound");
+  CHECK_THROWS_WITH(read_recording(directory / "no.wav", {}), Contains("cannot be read as sound"));
+  CHECK_THROWS_WITH(read_recording(directory / "none.csv", {}), Contains("cannot be read"));
+}
+
+TEST_CASE("every impact is found within a millisecond, and nothing else",
+          "[analysis][recordings]") {
+  const std::vector<double> times_s{0.3, 0.9, 1.02, 2.0};  // two of them close together
+  const Recording recording =
+      testing::planted_recording(plate, times_s, 4000.0, 3.0, GENERATE(0.001, 0.05), 3);
+  const FoundTaps found = find_taps(recording, {});
+  REQUIRE(found.taps.size() == times_s.size());
+  for (std::size_t i = 0; i < times_s.size(); ++i) {
+    CHECK(static_cast<double>(found.taps[i].onset) / 4000.0 == Approx(times_s[i]).margin(1e-3));
+    CHECK(found.taps[i].begin > found.taps[i].onset);
+  }
+  // the first of the two close ones ends before the second begins
+  CHECK(found.taps[1].end < found.taps[2].onset);
+}
+
+TEST_CASE("a tap in the ring of another is cut off from it, and that is said",
+          "[analysis][recordings]") {
+  const Recording recording =
+      testing::planted_recording({{{80.0, 0.01}, 1.0}}, {0.3, 0.45}, 4000.0, 2.0, 0.001, 3);
+  const FoundTaps found = find_taps(recording, {});
+  REQUIRE(found.taps.size() == 2);
+  REQUIRE(found.remarks.size() == 1);
+  CHECK_THAT(found.remarks.front(), Contains("0.300 s is cut at the next one"));
+}
+
+TEST_CASE("a second blow is found while the first still rings", "[analysis][recordings]") {
+  const double gap_s = GENERATE(0.045, 0.07);
+  const Recording recording = testing::planted_recording(
+      plate, {0.3, 0.3 + gap_s, 1.1, 1.1 + gap_s}, 8192.0, 2.5, 0.001, 3);
+  CAPTURE(gap_s);
+  CHECK(find_taps(recording, {}).impacts == 4);
+}
+
+TEST_CASE("what strikes twice within 30 ms is one impact, whose decay begins after the last blow",
+          "[analysis][recordings]") {
+  const double rate_hz = 8192.0;
+  const double second_s = GENERATE(0.012, 0.025, 0.04);
+  const std::vector<double> blows_s{0.3, 0.3 + second_s, 1.1};
+  Recording force = testing::planted_recording({}, {}, rate_hz, 2.5, 0.01, 5);
+  for (const double blow_s : blows_s) {
+    for (double t_s = 0.0; t_s < 0.001; t_s += 1.0 / rate_hz) {
+      force.samples[static_cast<std::size_t>(std::lround((blow_s + t_s) * rate_hz))] +=
+          10.0 * std::sin(std::numbers::pi * t_s / 0.001);
+    }
+  }
+  const std::vector<Impact> impacts = force_impacts(force);
+  CAPTURE(second_s);
+  REQUIRE(impacts.size() == (second_s < 0.03 ? 2U : 3U));
+  CHECK(static_cast<double>(impacts.front().onset) / rate_hz == Approx(0.3).margin(5e-4));
+  if (second_s < 0.03) {
+    CHECK(static_cast<double>(impacts.front().last_blow) / rate_hz ==
+          Approx(0.3 + second_s).margin(5e-4));
+    const FoundTaps found =
+        taps_at(impacts, testing::planted_recording(plate, blows_s, rate_hz, 2.5, 0.001, 6), {});
+    CHECK(found.taps.front().begin > impacts.front().last_blow);
+    CHECK_THAT(found.remarks.front(), Contains("struck again"));
+  }
+}
+
+TEST_CASE("modes that beat, and slow ones, ring on after their impacts and are no new ones",
+          "[analysis][recordings]") {
+  using Modes = std::vector<testing::PlantedMode>;
+  const auto modes = GENERATE(values<Modes>({{{{62.0, 0.01}, 1.0}, {{72.0, 0.01}, 1.0}},
+                                             {{{40.0, 0.01}, 1.0}, {{46.0, 0.01}, 0.9}},
+                                             {{{100.0, 0.005}, 1.0}, {{110.0, 0.005}, 1.0}},
+                                             {{{7.0, 0.02}, 1.0}, {{180.0, 0.02}, 0.5}},
+                                             {{{80.0, 0.002}, 1.0}}}));
+  const double rate_hz = GENERATE(2000.0, 8000.0);
+  const double noise = GENERATE(0.001, 0.03);
+  const Recording recording =
+      testing::planted_recording(modes, {1.3, 2.5, 3.7}, rate_hz, 5.0, noise, 3);
+  CAPTURE(modes.front().pole.frequency_hz, rate_hz, noise);
+  CHECK(find_taps(recording, {}).impacts == 3);
+}
+
+TEST_CASE("noise and hum hold no tap, in words", "[analysis][recordings]") {
+  Recording recording = testing::planted_recording(plate, {}, 4000.0, 3.0, 1.0, 6);
+  CHECK_THROWS_WITH(find_taps(recording, {}), Contains("planted.csv: holds no tap"));
+  for (std::size_t n = 0; n < recording.samples.size(); ++n) {
+    recording.samples[n] +=
+        10.0 * std::sin(2.0 * std::numbers::pi * 50.0 * static_cast<double>(n) / recording.rate_hz);
+  }
+  CHECK_THROWS_WITH(find_taps(recording, {}), Contains("holds no tap"));
+  recording.samples.assign(1000, 0.0);
+  CHECK_THROWS_WITH(find_taps(recording, {}), Contains("holds no tap"));
+}
+
+TEST_CASE("a decay begins after the last sample at the sensor's limit", "[analysis][recordings]") {
+  Recording recording = testing::planted_recording(plate, {0.5}, 4000.0, 2.0, 0.001, 4);
+  CHECK(rail_samples(recording.samples, 0.0).empty());
+  for (double& sample : recording.samples) {
+    sample = std::clamp(sample, -0.5, 0.5);
+  }
+  const auto rails = rail_samples(recording.samples, 0.0);
+  REQUIRE_FALSE(rails.empty());
+  const FoundTaps found = find_taps(recording, {});
+  REQUIRE(found.taps.size() == 1);
+  CHECK(found.taps.front().begin > rails.back());
+  REQUIRE(found.remarks.size() == 1);
+  CHECK_THAT(found.remarks.front(), Contains("is clipped"));
+}
+
+TEST_CASE("an amplifier's limit is found through the noise of the converter after it",
+          "[analysis][recordings]") {
+  Recording recording = testing::planted_recording(plate, {0.5}, 8000.0, 2.0, 0.0, 4);
+  core::Rng rng{8};
+  const double noise = 1e-4;
+  CHECK(rail_samples(recording.samples, noise).empty());
+  for (double& sample : recording.samples) {
+    sample = std::clamp(sample, -0.5, 0.5) + noise * rng.normal();
+  }
+  CHECK_FALSE(rail_samples(recording.samples, noise).empty());
+  CHECK(rail_samples(recording.samples, 0.0).empty());  // not two samples are equal
+}
+
+TEST_CASE("a recording of less than ten frames is too short, at any rate",
+          "[analysis][recordings]") {
+  for (const double rate_hz : {48'000.0, 1e6}) {
+    for (const std::size_t samples : {64U, 95U, 900U}) {
+      const Recording recording{"short.csv", "", rate_hz, std::vector<double>(samples, 1.0), {}};
+      CHECK_THROWS_WITH(find_taps(recording, {}), Contains("short.csv: has"));
+    }
+  }
+}
+
+TEST_CASE("a smooth crest that the converter's steps flatten is not clipped",
+          "[analysis][recordings]") {
+  std::vector<double> samples;
+  for (int n = 0; n < 4000; ++n) {
+    samples.push_back(std::round(500.0 * std::exp(-0.001 * n) * std::sin(0.01 * n)));
+  }
+  const double crest = *std::ranges::max_element(samples);
+  CHECK(std::ranges::count(samples, crest) > 3);
+  CHECK(rail_samples(samples, 0.0).empty());
+}

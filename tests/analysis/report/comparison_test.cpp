@@ -1,0 +1,90 @@
+#include "analysis/report/comparison.hpp"
+
+#include <cmath>
+
+#include "analysis/report/document/sections.hpp"
+#include "analysis/statistics/population/means.hpp"
+#include "support/catch.hpp"
+using namespace tapstudy;
+using analysis::PersonalValues;
+
+namespace {
+using Blocks = std::vector<std::shared_ptr<const analysis::BlockSummary>>;
+
+void add(Blocks& blocks, const std::string& name, const PersonalValues& values,
+         const std::string& part_of = "") {
+  analysis::BlockDesign design;
+  design.name = name;
+  design.part_of = part_of;
+  auto block = std::make_shared<analysis::TabularSummary>(design);
+  block->personal = values;
+  blocks.push_back(block);
+}
+
+std::vector<double> numbers(const analysis::Cell& cell) {
+  std::vector<double> found;
+  for (const analysis::Value& value : cell.values) {
+    found.push_back(std::get<double>(value));
+  }
+  return found;
+}
+}  // namespace
+
+TEST_CASE("blocks of one measure are compared by the differences of who did both",
+          "[analysis][report]") {
+  Blocks blocks;
+  add(blocks, "a", {"share", false, {{"P1", 0.5}, {"P2", 0.75}, {"P3", 1.0}, {"only a", 0.0}}});
+  add(blocks, "b", {"share", false, {{"P1", 0.25}, {"P2", 0.75}, {"P3", 0.5}, {"only b", 1.0}}});
+  add(blocks, "other", {"threshold", true, {{"P1", 0.5}, {"P2", 0.75}}});
+  const auto section = analysis::block_contrasts(blocks, true);
+  REQUIRE(section);
+  REQUIRE(section->tables[0].rows.size() == 1);
+  CHECK(section->tables[1].rows.empty());
+  const auto& row = section->tables[0].rows[0];
+  CHECK(row[1].text == "a");
+  CHECK(row[2].text == "b");
+  const auto expected = analysis::paired_contrast({0.25, 0.0, 0.5}, 1);
+  CHECK(numbers(row[3]) ==
+        std::vector{expected.mean, expected.interval->low, expected.interval->high});
+  CHECK(row[4].text == "3");
+  CHECK(section->remarks.size() == 2);
+  CHECK(analysis::block_contrasts(blocks, false)->remarks.size() == 1);
+}
+
+TEST_CASE("thresholds are compared by their geometric mean ratio, and all pairs are adjusted for",
+          "[analysis][report]") {
+  Blocks blocks;
+  std::map<std::string, double> doubled;
+  std::map<std::string, double> single;
+  for (int i = 0; i < 8; ++i) {
+    const std::string id = "P" + std::to_string(i);
+    single[id] = 0.1 * (i + 1);
+    doubled[id] = 2.0 * single[id] * (i % 2 == 0 ? 1.25 : 0.8);
+  }
+  add(blocks, "a", {"threshold", true, doubled});
+  add(blocks, "b", {"threshold", true, single});
+  add(blocks, "c", {"threshold", true, single});
+  const auto section = analysis::block_contrasts(blocks, false);
+  REQUIRE(section);
+  const auto& rows = section->tables[1].rows;
+  REQUIRE(rows.size() == 3);
+  CHECK(numbers(rows[0][3])[0] == Approx(2.0));  // 1.25 and 0.8 have the geometric mean 1
+  CHECK(std::get<double>(rows[0][5].values[0]) == Approx(2.0 / 256.0));  // all one sign, of 2^8
+  CHECK(std::get<double>(rows[0][6].values[0]) == Approx(3.0 * 2.0 / 256.0));
+  CHECK(std::get<double>(rows[2][5].values[0]) == 1.0);  // equal values
+}
+
+TEST_CASE("a part is compared with the other parts of its block, and nothing with nothing",
+          "[analysis][report]") {
+  Blocks blocks;
+  const PersonalValues values{"threshold", true, {{"P1", 0.1}, {"P2", 0.2}}};
+  add(blocks, "jnd", values);
+  add(blocks, "jnd at 1", values, "jnd");
+  CHECK_FALSE(analysis::block_contrasts(blocks, false));
+  add(blocks, "jnd at 2", values, "jnd");
+  CHECK(analysis::block_contrasts(blocks, false)->tables[1].rows.size() == 1);
+  blocks.clear();
+  add(blocks, "a", {"share", false, {{"P1", 0.5}}});
+  add(blocks, "b", {"share", false, {{"P2", 0.5}}});
+  CHECK_FALSE(analysis::block_contrasts(blocks, false));
+}

@@ -1,0 +1,317 @@
+#include <fmt/format.h>
+
+#include <boost/math/distributions/beta.hpp>
+#include <cmath>
+
+#include "analysis/statistics/population/means.hpp"
+#include "core/error.hpp"
+#include "core/random/rng.hpp"
+#include "support/catch.hpp"
+#include "support/reference_programs.hpp"
+using namespace tapstudy;
+using namespace tapstudy::analysis;
+using namespace tapstudy::testing;
+
+namespace {
+const std::vector<Proportion> people{{2, 8}, {5, 8}, {3, 8}, {7, 8}, {4, 7},
+                                     {1, 8}, {4, 8}, {6, 6}, {3, 8}, {5, 8}};
+
+// Right answers of participants whose shares are beta distributed.
+std::vector<Proportion> sample(double mean, double intraclass, core::Rng& rng) {
+  constexpr int participants = 10;
+  constexpr int answers = 8;
+  std::vector<Proportion> drawn;
+  for (int i = 0; i < participants; ++i) {
+    double share = mean;
+    if (intraclass > 0.0) {
+      const double nu = 1.0 / intraclass - 1.0;
+      share = boost::math::quantile(boost::math::beta_distribution<>{nu * mean, nu * (1.0 - mean)},
+                                    rng.uniform());
+    }
+    Proportion of{0, answers};
+    for (int k = 0; k < answers; ++k) {
+      of.successes += rng.uniform() < share ? 1 : 0;
+    }
+    drawn.push_back(of);
+  }
+  return drawn;
+}
+}  // namespace
+
+TEST_CASE("the mean over participants and its interval are those of R's beta-binomial likelihood",
+          "[analysis][participants]") {
+  const auto result = mean_proportion(people);
+  REQUIRE(result);
+  const std::string profile =
+      "k <- c(2,5,3,7,4,1,4,6,3,5); n <- c(8,8,8,8,7,8,8,6,8,8);"
+      "l <- function(m, r) { v <- 1 / r - 1; sum(lbeta(k + v * m, n - k + v * (1 - m)) - "
+      "lbeta(v * m, v * (1 - m))) };"
+      "f <- optim(c(0, -2), function(x) -l(plogis(x[1]), plogis(x[2])), control = list(reltol = "
+      "1e-15, maxit = 5000)); p <- function(m) optimize(function(r) l(m, r), c(1e-6, .999), "
+      "maximum = TRUE, tol = 1e-9)$objective;"
+      // values tell a maximum's place to seven digits, the score to all
+      "s <- function(a, b) c(sum(digamma(k + a) - digamma(a) + digamma(a + b) - digamma(n + a + "
+      "b)),"
+      "sum(digamma(n - k + b) - digamma(b) + digamma(a + b) - digamma(n + a + b)));"
+      "v <- 1 / plogis(f$par[2]) - 1; q <- v * c(plogis(f$par[1]), plogis(-f$par[1]));"
+      "for (i in 1:20) { h <- 1e-6 * q; J <- cbind((s(q[1] + h[1], q[2]) - s(q[1] - h[1], q[2])) / "
+      "(2 * h[1]), (s(q[1], q[2] + h[2]) - s(q[1], q[2] - h[2])) / (2 * h[2])); q <- q - "
+      "solve(J, s(q[1], q[2])) };";
+  const auto r = r_numbers(profile + "out(q[1] / sum(q), 1 / (1 + sum(q)))");
+  CHECK(result->mean == Approx(r[0]).epsilon(1e-9));
+  CHECK(result->intraclass_correlation == Approx(r[1]).epsilon(1e-9));
+  const auto ends = r_numbers(profile +
+                              "t <- qt(.975, 9)^2; e <- function(m) 2 * (-f$value - "
+                              "p(m)) - t; out(uniroot(e, c(.01, plogis(f$par[1])), "
+                              "tol = 1e-9)$root, uniroot(e, c(plogis(f$par[1]), .99), "
+                              "tol = 1e-9)$root)");
+  CHECK(result->interval.low == Approx(ends[0]).epsilon(1e-9));
+  CHECK(result->interval.high == Approx(ends[1]).epsilon(1e-9));
+}
+
+TEST_CASE("the mean over participants and their intra-class correlation are glmmTMB's",
+          "[analysis][participants]") {
+  std::vector<int> right;
+  std::vector<int> wrong;
+  for (const Proportion& of : people) {
+    right.push_back(static_cast<int>(of.successes));
+    wrong.push_back(static_cast<int>(of.trials - of.successes));
+  }
+  const auto r = r_numbers(
+      "suppressPackageStartupMessages(library(glmmTMB)); d <- data.frame(k = " + r_vector(right) +
+      ", m = " + r_vector(wrong) +
+      "); f <- glmmTMB(cbind(k, m) ~ 1, data = d, family = betabinomial(), control = "
+      "glmmTMBControl(optCtrl = list(iter.max = 1e4, eval.max = 1e4, rel.tol = 1e-15, x.tol = "
+      "1e-12)));"
+      "out(plogis(fixef(f)$cond), 1 / (1 + sigma(f)))");
+  const auto result = beta_binomial_mean(people);
+  REQUIRE(result);
+  CHECK(result->mean == Approx(r[0]).epsilon(1e-8));  // as far as its search goes
+  CHECK(result->intraclass_correlation == Approx(r[1]).epsilon(1e-8));
+}
+
+TEST_CASE("intervals of participants' mean share are R's by t and SciPy's by bootstrap",
+          "[analysis][participants]") {
+  const auto result = mean_proportion(people);
+  std::string shares;
+  for (const Proportion& of : people) {
+    shares += fmt::format("{}{:.17g}", shares.empty() ? "" : ",", of.value());
+  }
+  const auto r = r_numbers("out(t.test(c(" + shares + "))$conf.int)");
+  REQUIRE((result->t && result->bootstrap));
+  CHECK(result->t->low == Approx(r[0]).epsilon(1e-9));
+  CHECK(result->t->high == Approx(r[1]).epsilon(1e-9));
+  const auto scipy = python_numbers(
+      "from scipy.stats import bootstrap, norm, t\nx = np.array([" + shares +
+      "])\nn = len(x)\n"
+      "tail = norm.cdf(-np.sqrt(n / (n - 1)) * t.ppf(.975, n - 1))  # Hesterberg 2015\n"
+      "r = bootstrap((x,), np.mean, n_resamples=40000, method='BCa', random_state=1,\n"
+      "              confidence_level=1 - 2 * tail).confidence_interval\nout(r.low, r.high)\n");
+  CHECK(result->bootstrap->low == Approx(scipy[0]).margin(0.012));
+  CHECK(result->bootstrap->high == Approx(scipy[1]).margin(0.012));
+}
+
+TEST_CASE("a skewed sample moves the bootstrap interval as SciPy's does",
+          "[analysis][participants]") {
+  const std::vector<double> values{0.1, 0.2, 0.15, 0.1, 0.9, 0.25, 0.3};
+  const auto scipy = python_numbers(
+      "from scipy.stats import bootstrap\nr = bootstrap((np.array([.1,.2,.15,.1,.9,.25,.3]),), "
+      "np.mean, n_resamples=60000, method='BCa', random_state=1).confidence_interval\n"
+      "out(r.low, r.high)\n");
+  const auto interval = bca_interval(values, 60'000, 1, 0.025);
+  REQUIRE(interval);
+  CHECK(interval->low == Approx(scipy[0]).margin(0.005));
+  CHECK(interval->high == Approx(scipy[1]).margin(0.01));
+}
+
+TEST_CASE("of five values an expanded bootstrap interval holds the mean in 90 % of samples or more",
+          "[analysis][participants][slow]") {
+  constexpr int samples = 2000;
+  core::Rng rng{3};
+  int plain = 0;
+  int expanded = 0;
+  for (int sample = 0; sample < samples; ++sample) {
+    std::vector<double> values(5);
+    for (double& value : values) {
+      value = rng.normal();
+    }
+    const auto holds = [](const std::optional<Interval>& interval) {
+      return interval && interval->low <= 0.0 && 0.0 <= interval->high;
+    };
+    plain += holds(bca_interval(values, 999, 1, 0.025)) ? 1 : 0;
+    expanded += holds(bootstrap_interval(values, 999, 1)) ? 1 : 0;
+  }
+  fmt::print("  bootstrap of five: covered {}, expanded {} of {}\n", plain, expanded, samples);
+  CHECK(expanded > 0.9 * samples);
+  CHECK(plain < 0.88 * samples);
+}
+
+TEST_CASE("participants who do not differ, or are all right, have an interval too",
+          "[analysis][participants]") {
+  const auto equal = mean_proportion({{4, 8}, {4, 8}, {4, 8}});
+  REQUIRE(equal);
+  CHECK_FALSE(equal->t);
+  CHECK_FALSE(equal->bootstrap);
+  CHECK(equal->intraclass_correlation == 0.0);
+  CHECK((equal->interval.low < 0.4 && equal->interval.high > 0.6));
+  const auto perfect = mean_proportion({{8, 8}, {8, 8}, {8, 8}, {8, 8}, {0, 0}});
+  REQUIRE(perfect);
+  CHECK(perfect->participants == 4);
+  CHECK(perfect->interval.high == 1.0);
+  // all or none of a participant's answers are right with probability m: 4 ln m >= -t^2 / 2
+  const double t = r_numbers("out(qt(.975, 3))").front();
+  CHECK(perfect->interval.low == Approx(std::exp(-t * t / 8.0)).margin(0.01));
+  CHECK(mean_proportion({{0, 1}, {1, 1}})->interval.low < 0.05);
+  CHECK_FALSE(mean_proportion({{3, 8}}));
+  CHECK_THROWS_AS(mean_proportion({{9, 8}, {1, 8}}), core::InvalidInput);
+}
+
+TEST_CASE(
+    "the interval over participants holds the true share in 95 % of studies or more, however "
+    "they differ, where the pooled one does not",
+    "[analysis][participants][slow]") {
+  constexpr int studies = 1000;
+  constexpr double truth = 0.25;
+  const double error = std::sqrt(0.95 * 0.05 / studies);
+  for (const double intraclass : {0.0, 0.05, 0.1, 0.2}) {
+    core::Rng rng{17};
+    int ours = 0;
+    int by_t = 0;
+    int by_bootstrap = 0;
+    int pooled = 0;
+    for (int study = 0; study < studies; ++study) {
+      const auto drawn = sample(truth, intraclass, rng);
+      const auto holds = [&](const Interval& of) { return of.low <= truth && truth <= of.high; };
+      const auto result = mean_proportion(drawn);
+      Proportion all;
+      for (const Proportion& of : drawn) {
+        all.successes += of.successes;
+        all.trials += of.trials;
+      }
+      ours += holds(result->interval) ? 1 : 0;
+      by_t += result->t && holds(*result->t) ? 1 : 0;
+      by_bootstrap += result->bootstrap && holds(*result->bootstrap) ? 1 : 0;
+      pooled += holds(wilson_interval(all)) ? 1 : 0;
+    }
+    fmt::print(
+        "  intra-class correlation {}: covered {} (t {}, bootstrap {}, pooled Wilson {}) of {}\n",
+        intraclass, ours, by_t, by_bootstrap, pooled, studies);
+    CHECK(ours >= (0.95 - 3.0 * error) * studies);
+    CHECK(ours >= by_t - 3.0 * error * studies);
+    CHECK(by_bootstrap >= by_t - 3.0 * error * studies);
+    CHECK((intraclass < 0.1 || pooled < 0.9 * studies));
+  }
+}
+
+TEST_CASE("a paired contrast is tested by all patterns of signs", "[analysis][participants]") {
+  const std::vector<double> differences{0.25, -0.125, 0.5, 0.0, 0.375, 0.125, -0.25, 0.625};
+  const auto r = r_numbers("d <- " + r_vector(differences) +
+                           "; s <- as.matrix(expand.grid(rep(list(c(-1, 1)), length(d))));"
+                           "out(mean(abs(s %*% d) >= abs(sum(d)) - 1e-9), t.test(d)$conf.int)");
+  const PairedContrast contrast = paired_contrast(differences, 1);
+  CHECK(contrast.is_exact);
+  CHECK(contrast.p == Approx(r[0]).epsilon(1e-9));
+  CHECK(contrast.interval->low == Approx(r[1]).epsilon(1e-9));
+  CHECK(contrast.interval->high == Approx(r[2]).epsilon(1e-9));
+  CHECK(contrast.mean == Approx(0.1875).epsilon(1e-9));
+}
+
+TEST_CASE("a paired contrast's test is coin's exact test of symmetry", "[analysis][participants]") {
+  for (const std::vector<double>& differences :
+       {std::vector<double>{0.25, -0.125, 0.5, 0.0, 0.375, 0.125, -0.25, 0.625},
+        std::vector<double>{1, 2, 3, 4, 5, -6, 7, 8, 9, 10, -11, 12, 13, 14, -15, 16},
+        std::vector<double>{-0.5, -0.5, -0.5, 0.25}}) {
+    const auto coin = r_numbers("suppressPackageStartupMessages(library(coin)); d <- " +
+                                r_vector(differences) + R"(
+n <- length(d); both <- data.frame(y = c(d, 0 * d), condition = gl(2, n), person = gl(n, 1, 2 * n))
+out(pvalue(symmetry_test(y ~ condition | person, both, distribution = exact()))))");
+    const SignFlipTest ours = sign_flip_test(differences, 1);
+    CHECK(ours.is_exact);
+    CHECK(ours.p == Approx(coin.front()).epsilon(1e-9));
+  }
+}
+
+TEST_CASE("a contrast of many participants is drawn, near what all patterns give",
+          "[analysis][participants]") {
+  std::vector<double> differences;
+  for (int i = 1; i <= 20; ++i) {
+    differences.push_back(i % 3 == 0 ? -i : 0.7 * i);
+  }
+  for (double& difference : differences) {
+    difference = std::round(difference);
+  }
+  const auto r = r_numbers("d <- " + r_vector(differences) +
+                           "; p <- 1; for (x in abs(d)) { q <- numeric(length(p) + 2 * x); "
+                           "q[seq_along(p)] <- p / 2; i <- 2 * x + seq_along(p); q[i] <- q[i] + "
+                           "p / 2; p <- q }; v <- seq(-sum(abs(d)), sum(abs(d)));"
+                           "out(sum(p[abs(v) >= abs(sum(d))]))");
+  const SignFlipTest test = sign_flip_test(differences, 1);
+  CHECK_FALSE(test.is_exact);
+  CHECK(test.p == Approx(r[0]).margin(5.0 * std::sqrt(r[0] * (1.0 - r[0]) / 9999)));
+}
+
+TEST_CASE("one participant and no difference show nothing", "[analysis][participants]") {
+  CHECK(sign_flip_test({0.5}, 1).p == 1.0);
+  CHECK(sign_flip_test({0.0, 0.0, 0.0}, 1).p == 1.0);
+  CHECK_FALSE(paired_contrast({0.5}, 1).interval);
+  CHECK_THROWS_AS(sign_flip_test({}, 1), core::InvalidInput);
+  CHECK_THROWS_AS(sign_flip_test({std::nan("")}, 1), core::InvalidInput);
+}
+
+// The mean of people who differ, against statsmodels.
+using analysis::random_effects;
+using analysis::RandomEffects;
+
+TEST_CASE("the mean, its interval and the spread of people are those of statsmodels",
+          "[analysis][participants]") {
+  const std::vector<double> values{0.31, -0.12, 0.55, 0.02, 0.78, 0.21};
+  const std::vector<double> errors{0.08, 0.12, 0.20, 0.05, 0.30, 0.10};
+  const std::vector<double> expected = testing::python_numbers(R"py(
+import numpy as np
+from scipy import stats
+from statsmodels.stats.meta_analysis import combine_effects
+errors = np.array([0.08, 0.12, 0.20, 0.05, 0.30, 0.10])
+found = combine_effects(np.array([0.31, -0.12, 0.55, 0.02, 0.78, 0.21]), errors**2, method_re="iterated")
+half = stats.t.ppf(0.975, 5) * found.sd_eff_w_re_hksj
+out(found.mean_effect_re, np.sqrt(found.tau2), found.mean_effect_re - half, found.mean_effect_re + half)
+)py");
+  const RandomEffects found = random_effects(values, errors);
+  REQUIRE(expected.size() == 4);
+  CHECK(found.mean == Approx(expected[0]).epsilon(1e-4));  // which iterates to 1e-5
+  CHECK(found.between_sd == Approx(expected[1]).epsilon(1e-4));
+  CHECK(found.interval.low == Approx(expected[2]).epsilon(1e-3));
+  CHECK(found.interval.high == Approx(expected[3]).epsilon(1e-3));
+}
+
+TEST_CASE("people who differ no more than their errors are taken as alike",
+          "[analysis][participants]") {
+  const RandomEffects found = random_effects({1.0, 1.1, 0.9}, {0.5, 0.5, 0.5});
+  CHECK(found.between_sd == 0.0);
+  CHECK(found.mean == Approx(1.0));
+  // not narrower than three known errors allow: t of two degrees of freedom
+  CHECK(found.interval.high - found.mean == Approx(4.302652730 * 0.5 / std::sqrt(3.0)));
+}
+
+TEST_CASE("the interval holds the mean of people at its rate", "[analysis][participants]") {
+  core::Rng rng{5};
+  constexpr int studies = 2000;
+  int held = 0;
+  for (int study = 0; study < studies; ++study) {
+    std::vector<double> values;
+    std::vector<double> errors;
+    for (int person = 0; person < 8; ++person) {
+      errors.push_back(0.05 + 0.3 * rng.uniform());
+      values.push_back(2.0 + 0.2 * rng.normal() + errors.back() * rng.normal());
+    }
+    const RandomEffects found = random_effects(values, errors);
+    held += found.interval.low <= 2.0 && 2.0 <= found.interval.high ? 1 : 0;
+  }
+  CHECK(held / static_cast<double>(studies) == Approx(0.95).margin(0.02));
+}
+
+TEST_CASE("values without errors have no random effects", "[analysis][participants]") {
+  CHECK_THROWS_AS(random_effects({1.0}, {0.1}), core::InvalidInput);
+  CHECK_THROWS_AS(random_effects({1.0, 2.0}, {0.1}), core::InvalidInput);
+  CHECK_THROWS_AS(random_effects({1.0, 2.0}, {0.1, 0.0}), core::InvalidInput);
+  CHECK_THROWS_AS(random_effects({1.0, 2.0}, {0.1, std::nan("")}), core::InvalidInput);
+}

@@ -1,0 +1,72 @@
+#include "runner/commands/check_models.hpp"
+
+#include "core/tick/plate_vibration.hpp"
+#include "protocols/reader/read_protocol.hpp"
+#include "runner/laboratory/reproduce/paper_protocols.hpp"
+#include "support/built_paths.hpp"
+#include "support/catch.hpp"
+#include "support/processes.hpp"
+#include "support/texts.hpp"
+using namespace tapstudy;
+
+TEST_CASE("the share of a finger's energy that a strike takes is what the modes have after it",
+          "[runner][check]") {
+  const protocols::Protocol protocol = runner::shipped_protocol("protocols/paper/plate_model.yaml");
+  runner::ModelLibrary models;
+  const auto stimulus = stimulus_with(protocol, protocol.stimulus("aluminium"));
+  const auto plate = models.plate_of(protocol, stimulus);
+  const Eigen::Vector2d at_m{0.05, -0.1};
+  core::ModalState state{plate->model, core::Integrator::exact, 1e-3};
+  state.touch(plate->locator->locate(at_m.x(), at_m.y()), core::Vec3::UnitZ());
+  constexpr double finger_kg = 0.03;
+  constexpr double speed_m_s = 0.4;
+  state.strike(-finger_kg * speed_m_s);
+  const double of_finger_j = 0.5 * finger_kg * speed_m_s * speed_m_s;
+  CHECK(runner::impact_energy_share(*plate, at_m, finger_kg) ==
+        Approx(state.energy_j() / of_finger_j).epsilon(1e-9));
+}
+
+TEST_CASE("check warns of plates that take more energy than the finger has",
+          "[end_to_end][check]") {
+  const testing::TempDirectory directory;
+  const std::string file = directory / "study.yaml";
+  const std::string shipped = testing::contents(testing::source_directory() +
+                                                "/protocols/examples/cantilever_techniques.yaml");
+  testing::write(file, testing::replaced(shipped, "mass_kg: 0.02", "mass_kg: 0.2"));
+  const auto heavy = testing::tapstudy({"check", file});
+  CHECK_THAT(heavy.standard_output, Contains("beam is too light for the finger: struck at free"));
+  testing::write(file, shipped);
+  CHECK_THAT(testing::tapstudy({"check", file}).standard_output, !Contains("too light"));
+}
+
+TEST_CASE("check warns of a plate that nothing holds", "[end_to_end][check]") {
+  const testing::TempDirectory directory;
+  const std::string file = directory / "study.yaml";
+  testing::write(file, R"(format: tapstudy/1
+title: A loose plate
+finger: {mass_kg: 0.0058, stiffness_n_per_m: 300, damping_n_s_per_m: 3}
+rendering: {rate_hz: 4000, penalty_stiffness_n_per_m: 3000, band_limit_hz: 1500, integrator: exact}
+placement: {origin_m: [0, 0, 0], lateral_scale: 0.2}
+materials:
+  steel: {youngs_modulus_pa: 2.0e11, density_kg_per_m3: 7800, poissons_ratio: 0.3, damping: {ratio: 0.01}}
+plates:
+  held:
+    size_m: [0.2, 0.1, 0.01]
+    fixations: [{region: side, side: left}]
+    mesh: {order: 2}
+  loose:
+    size_m: [0.2, 0.1, 0.01]
+    fixations: []
+    mesh: {order: 2}
+tapping_points_m: {P1: [0.02, 0.01]}
+stimuli:
+  held: {plate: held, material: steel, technique: fem-coupled}
+  loose: {plate: loose, material: steel, technique: fem-coupled}
+blocks:
+  - {name: which, task: identification, question: Which, stimuli: [held, loose]}
+)");
+  const auto checked = testing::tapstudy({"check", file});
+  INFO(checked.standard_error);
+  CHECK_THAT(checked.standard_output, Contains("loose can move as a rigid body in 6 ways"));
+  CHECK_THAT(checked.standard_output, !Contains("held can move"));
+}

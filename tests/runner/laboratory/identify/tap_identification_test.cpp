@@ -1,0 +1,177 @@
+#include "runner/laboratory/identify/tap_identification.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "core/error.hpp"
+#include "runner/laboratory/identify/fits_over_taps.hpp"
+#include "support/catch.hpp"
+#include "support/processes.hpp"
+#include "support/synthetic_taps.hpp"
+#include "support/texts.hpp"
+using namespace tapstudy;
+
+namespace {
+// A sensor that works, another that shows 0.37 all the time.
+std::string two_sensors() {
+  const analysis::Recording recording = testing::planted_recording(
+      {{{62.0, 0.03}}, {{118.0, 0.02}}}, {0.4, 1.7, 3.0}, 3000.0, 4.3, 0.01, 5);
+  std::string text = "live,dead\n";
+  for (const double sample : recording.samples) {
+    text += fmt::format("{:.7g},0.37\n", sample);
+  }
+  return text;
+}
+
+runner::TapIdentification identified(const std::string& file, std::vector<std::string> columns) {
+  runner::TapQuestion question;
+  question.recordings = {file};
+  question.reading.rate_hz = 3000.0;
+  question.band = analysis::Band{20.0, 400.0};
+  question.columns = std::move(columns);
+  runner::Progress progress{"identifying"};
+  return runner::identify_taps(question, progress);
+}
+}  // namespace
+
+TEST_CASE("a sensor that shows nothing is left out with a remark, and the others count",
+          "[runner][identify]") {
+  const testing::TempDirectory directory;
+  const std::string file = directory / "taps.csv";
+  testing::write(file, two_sensors());
+  const runner::TapIdentification found = identified(file, {"dead", "live"});
+  CHECK(found.agreed.size() == 2);
+  CHECK(found.taps.size() == 3);
+  REQUIRE(found.remarks.size() == 3);
+  CHECK_THAT(found.remarks.front(), Contains("dead") && Contains("does not change"));
+}
+
+TEST_CASE("one channel named in two ways is refused", "[runner][identify]") {
+  const testing::TempDirectory directory;
+  const std::string file = directory / "taps.csv";
+  testing::write(file, two_sensors());
+  CHECK_THROWS_WITH(identified(file, {"live", "1"}), Contains("'live' is named twice"));
+}
+
+namespace {
+constexpr double stated_hz = 3000.0;
+constexpr double wrong_by = 0.0009;
+const std::vector<testing::PlantedMode> planted{{{62.0, 0.03}}, {{118.0, 0.02}}, {{260.0, 0.03}}};
+
+// Sampled somewhat faster than the times say.
+std::string recording_of(const std::vector<double>& times_s) {
+  const analysis::Recording recording = testing::planted_recording(
+      planted, times_s, stated_hz * (1.0 + wrong_by), times_s.back() + 1.3, 0.01, 3);
+  std::string text = "time_s,acceleration\n";
+  for (std::size_t n = 0; n < recording.samples.size(); ++n) {
+    text +=
+        fmt::format("{:.7f},{:.7g}\n", static_cast<double>(n) / stated_hz, recording.samples[n]);
+  }
+  return text;
+}
+
+runner::TapIdentification identified(const std::string& file, double rate_error) {
+  runner::TapQuestion question;
+  question.recordings = {file};
+  question.band = analysis::Band{20.0, 400.0};
+  question.rate_error = rate_error;
+  runner::Progress progress{"identifying"};
+  return runner::identify_taps(question, progress);
+}
+
+bool contains(const analysis::Estimate& estimate, double value) {
+  return estimate.interval.low <= value && value <= estimate.interval.high;
+}
+}  // namespace
+
+TEST_CASE("intervals hold what was planted although the rate is somewhat wrong",
+          "[runner][identify]") {
+  const testing::TempDirectory directory;
+  const std::string file = directory / "taps.csv";
+  testing::write(file, recording_of({0.4, 1.7, 3.0, 4.3}));
+  const runner::TapIdentification found = identified(file, 0.001);
+  const runner::TapIdentification trusting = identified(file, 0.0);
+  REQUIRE(found.modes.size() == planted.size());
+  for (std::size_t i = 0; i < planted.size(); ++i) {
+    INFO(planted[i].pole.frequency_hz << " Hz");
+    CHECK(contains(found.modes[i].frequency_hz, planted[i].pole.frequency_hz));
+    CHECK(contains(found.modes[i].damping_ratio, planted[i].pole.damping_ratio));
+    CHECK_FALSE(contains(trusting.modes[i].frequency_hz, planted[i].pole.frequency_hz));
+  }
+}
+
+TEST_CASE("an error of the rate is one of alpha, against beta, and twice one of Young's modulus",
+          "[runner][identify]") {
+  runner::TapIdentification found;
+  const analysis::Estimate sharp{100.0, 0.0, {100.0, 100.0}, {}};
+  found.rayleigh.emplace();
+  found.rayleigh->alpha_per_s = sharp;
+  found.rayleigh->beta_s = sharp;
+  found.model.emplace().update.emplace();
+  found.model->update->youngs_modulus_pa = sharp;
+  runner::include_rate_error(0.01, found);
+  // all from f and zeta alone: alpha ~ f, beta ~ 1 / f, E ~ f^2, f between 1 / 1.01 and 1.01
+  CHECK(found.rayleigh->alpha_per_s.interval.high == Approx(101.0));
+  CHECK(found.rayleigh->beta_s.interval.low == Approx(100.0 / 1.01));
+  CHECK(found.model->update->youngs_modulus_pa.interval.high == Approx(102.01));
+  CHECK(found.model->update->youngs_modulus_pa.interval.low == Approx(100.0 / 1.0201));
+}
+
+TEST_CASE("sensors of one impact are one tap, and each has an amplitude of its own",
+          "[runner][identify]") {
+  runner::TapIdentification found;
+  for (int impact = 1; impact <= 3; ++impact) {
+    for (const std::string channel : {"tip", "nail"}) {
+      runner::IdentifiedTap tap;
+      tap.impact = impact;
+      tap.channel = channel;
+      tap.speed_m_s = 0.1 * impact;
+      tap.sinusoid = analysis::FittedSinusoid{};
+      tap.sinusoid->amplitude = (channel == "tip" ? 50.0 : 10.0) * *tap.speed_m_s;
+      tap.sinusoid->decay_per_s = 118.0 + 2.0 * impact;
+      tap.sinusoid->frequency_hz = 180.0;
+      tap.sinusoid->explained = 1.0;
+      found.taps.push_back(tap);
+    }
+  }
+  const auto both = runner::sinusoid_law(found, {});
+  std::erase_if(found.taps, [](const auto& tap) { return tap.channel == "nail"; });
+  const auto tip = runner::sinusoid_law(found, {});
+  CHECK(both->decay_per_s.interval.high == Approx(tip->decay_per_s.interval.high));
+  CHECK_FALSE(both->amplitude_per_speed);
+  CHECK(tip->amplitude_per_speed->value == Approx(50.0));
+}
+
+TEST_CASE("one motion of a surface is one force on the finger, whichever sensor measured it",
+          "[runner][identify]") {
+  const core::Finger finger{0.058, 300.0, 3.0};
+  constexpr double decay_per_s = 20.0;
+  constexpr double frequency_hz = 100.0;
+  constexpr double metres_per_speed = 3e-4;
+  const double omega = std::hypot(decay_per_s, 2.0 * std::numbers::pi * frequency_hz);
+  const auto amplitude_n_s_per_m = [&](analysis::Quantity quantity, double per_metre) {
+    runner::TapIdentification found;
+    found.question.quantity = quantity;
+    for (const double speed_m_s : {0.2, 0.4}) {
+      runner::IdentifiedTap tap;
+      tap.speed_m_s = speed_m_s;
+      tap.sinusoid = analysis::FittedSinusoid{};
+      tap.sinusoid->amplitude = metres_per_speed * per_metre * speed_m_s;
+      tap.sinusoid->decay_per_s = decay_per_s;
+      tap.sinusoid->frequency_hz = frequency_hz;
+      tap.sinusoid->explained = 1.0;
+      found.taps.push_back(tap);
+    }
+    return *runner::sinusoid_law(found, finger)->amplitude_n_s_per_m;
+  };
+  // |k + s b| at s = -20 + 2 pi 100 i
+  const double expected =
+      metres_per_speed * std::hypot(300.0 - 3.0 * decay_per_s, 3.0 * 200.0 * std::numbers::pi);
+  CHECK(amplitude_n_s_per_m(analysis::Quantity::displacement, 1.0) ==
+        Approx(expected).epsilon(1e-9));
+  CHECK(amplitude_n_s_per_m(analysis::Quantity::velocity, omega) == Approx(expected).epsilon(1e-9));
+  CHECK(amplitude_n_s_per_m(analysis::Quantity::acceleration, omega * omega) ==
+        Approx(expected).epsilon(1e-9));
+}

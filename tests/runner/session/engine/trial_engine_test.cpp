@@ -1,0 +1,451 @@
+#include "runner/session/engine/trial_engine.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "protocols/reader/read_protocol.hpp"
+#include "results/store/store.hpp"
+#include "results/store/study_queries.hpp"
+#include "runner/session/engine/between_trials.hpp"
+#include "runner/session/engine/remaining_trials.hpp"
+#include "runner/session/engine/session_row.hpp"
+#include "runner/session/engine/session_states.hpp"
+#include "support/catch.hpp"
+#include "support/no_real_plates.hpp"
+#include "support/processes.hpp"
+#include "support/texts.hpp"
+using namespace tapstudy;
+
+namespace {
+// A loop whose first trials each have an impact just after a late tick, or stall when answered.
+struct Troubles {
+  int late_trials{0};
+  int stalled_trials{0};
+};
+class TroubledTrialLoop final : public runner::TrialLoop {
+ public:
+  explicit TroubledTrialLoop(Troubles troubles) : troubles_{troubles} {}
+  runner::TrialResult run(const runner::Rendered& /*rendered*/,
+                          const runner::Explore& explore) override {
+    struct Nothing final : runner::Exploration {
+      bool is_stalled{};
+      void switch_to(std::size_t /*alternative*/) override {}
+      void pass_time(double /*seconds*/) override {}
+      bool is_running() const override { return true; }
+      bool is_rendering() const override { return !is_stalled; }
+      double time_s() const override { return 1.0; }
+      int contacts(std::size_t /*alternative*/) const override { return 1; }
+    } exploration;
+    exploration.is_stalled = troubles_.stalled_trials-- > 0;
+    explore(exploration);
+    runner::TrialResult result;
+    result.trace.events = {{0.5, "impact", 0.3}};
+    if (troubles_.late_trials-- > 0) {
+      result.trace.events.push_back({0.5, "late_impact", 0.3});
+    }
+    return result;
+  }
+
+ private:
+  Troubles troubles_;
+};
+
+class FirstOption final : public runner::Participant {
+ public:
+  std::optional<std::string> perform(const runner::TrialPrompt& prompt,
+                                     runner::Exploration& /*exploration*/) override {
+    return prompt.answers.options.front().name;
+  }
+  void repeats(const runner::TrialPrompt& /*prompt*/) override { ++repeats_told; }
+  int repeats_told{0};
+};
+
+// A study of choices, and what is stored when its schedule is run on a troubled loop.
+struct Study {
+  explicit Study(int max_late_impact_repeats)
+      : protocol{protocols::parse_protocol(
+            testing::replaced(testing::contents(testing::shipped("paper/reality_finger.yaml")),
+                              "task: choice",
+                              fmt::format("task: choice\n    max_late_impact_repeats: {}",
+                                          max_late_impact_repeats)),
+            "study.yaml")} {
+    session.participant_id = "P01";
+    store.add_session(session);
+  }
+  void run(Troubles troubles) {
+    TroubledTrialLoop loop{troubles};
+    std::set<int> done;
+    results::Recorder recorder{store};
+    runner::SessionStates states{session.id, [] { return 0.0; }};
+    runner::Operator nobody;
+    testing::NoRealPlates no_plates;
+    runner::TrialEngine engine{{protocol, models, loop, no_plates, participant, nobody, states},
+                               recorder};
+    CHECK_FALSE(engine.run(schedule, done));
+    CHECK(done.size() == schedule.size());
+  }
+
+  testing::TempDirectory directory;
+  protocols::Protocol protocol;
+  results::Store store{
+      results::Store::open_or_create(directory / "out", runner::study_row(protocol, "study.yaml"))};
+  results::SessionRow session;
+  protocols::Schedule schedule{protocols::make_schedule(protocol, 1, 0)};
+  runner::ModelLibrary models;
+  FirstOption participant;
+};
+}  // namespace
+
+TEST_CASE(
+    "a trial with an impact just after a late tick is presented again where the block says so",
+    "[runner][session][threads]") {
+  const int allowed = GENERATE(0, 2);
+  const int late_trials = GENERATE(0, 1, 5);
+  CAPTURE(allowed, late_trials);
+  Study study{allowed};
+  study.run({.late_trials = late_trials});
+  CHECK(study.participant.repeats_told == std::min(allowed, late_trials));
+  const auto answers = results::stored_answers(study.store);
+  REQUIRE(answers.size() == study.schedule.size());  // the repeated ones do not count
+  CHECK(answers.front().impacts == 1);
+  CHECK(answers.front().late_impacts == (late_trials > allowed ? 1 : 0));
+}
+
+namespace {
+// A plate that is touched once in every second, in a time that passes with each answer.
+class PassingTime final : public runner::TrialLoop {
+ public:
+  explicit PassingTime(double touches_per_s) : touches_per_s_{touches_per_s} {}
+  runner::TrialResult run(const runner::Rendered& /*rendered*/,
+                          const runner::Explore& explore) override {
+    struct Passing final : runner::Exploration {
+      double now_s{0.0};
+      double touches_per_s{};
+      void switch_to(std::size_t /*alternative*/) override {}
+      void pass_time(double seconds) override { now_s += seconds; }
+      bool is_running() const override { return true; }
+      double time_s() const override { return now_s; }
+      int contacts(std::size_t alternative) const override {
+        return std::max(0, static_cast<int>(touches_per_s * now_s) - static_cast<int>(alternative));
+      }
+    } exploration;
+    exploration.touches_per_s = touches_per_s_;
+    explore(exploration);
+    return {};
+  }
+
+ private:
+  double touches_per_s_;
+};
+
+// Answers at once, and a second later again.
+class Hasty final : public runner::Participant {
+ public:
+  std::optional<std::string> perform(const runner::TrialPrompt& prompt,
+                                     runner::Exploration& exploration) override {
+    if (!exploration.is_running()) {
+      return std::nullopt;
+    }
+    exploration.pass_time(1.0);
+    return exploration.is_running() ? std::optional{prompt.answers.options.front().name}
+                                    : std::nullopt;
+  }
+  void refused(const runner::TrialPrompt& /*prompt*/, const runner::TooEarly& why) override {
+    reasons.push_back(to_text(why));
+  }
+  void timed_out(const runner::TrialPrompt& prompt, bool is_presented_again) override {
+    ended.emplace_back(prompt.number, is_presented_again);
+  }
+  std::vector<std::string> reasons;
+  std::vector<std::pair<int, bool>> ended;
+};
+
+struct HastySession {
+  HastySession(const std::string& explore, double touches_per_s) {
+    const protocols::Protocol protocol = protocols::parse_protocol(
+        testing::replaced(testing::contents(testing::shipped("paper/reality_finger.yaml")),
+                          "task: choice", "task: choice\n    repetitions: 2\n    " + explore),
+        "study.yaml");
+    results::Store store = results::Store::open_or_create(
+        directory / "out", runner::study_row(protocol, "study.yaml"));
+    results::SessionRow session;
+    session.participant_id = "P01";
+    store.add_session(session);
+    {
+      PassingTime loop{touches_per_s};
+      results::Recorder recorder{store};
+      runner::ModelLibrary models;
+      runner::SessionStates states{session.id, [] { return 0.0; }};
+      runner::Operator nobody;
+      testing::NoRealPlates no_plates;
+      runner::TrialEngine engine{{protocol, models, loop, no_plates, participant, nobody, states},
+                                 recorder};
+      CHECK_FALSE(engine.run(protocols::make_schedule(protocol, 1, 0), done));
+    }
+    answers = results::stored_answers(store);
+    for (const results::UnansweredTrial& trial : store.unanswered_trials("P01")) {
+      timed_out.push_back(trial.number);
+    }
+  }
+  testing::TempDirectory directory;
+  Hasty participant;
+  std::set<int> done;
+  std::vector<results::AnswerRow> answers;
+  std::vector<int> timed_out;
+};
+}  // namespace
+
+TEST_CASE("a choice is refused until every alternative was tapped, then taken",
+          "[runner][session][threads]") {
+  const HastySession hasty{"explore: {}", 1.0};
+  REQUIRE(hasty.answers.size() == 2);
+  // alternative i is tapped i + 1 seconds on
+  REQUIRE(hasty.participant.reasons.size() == 4);
+  CHECK(hasty.participant.reasons.at(0) == "please tap B, C first");
+  CHECK(hasty.participant.reasons.at(1) == "please tap C first");
+  CHECK(hasty.answers.front().response_time_s == 3.0);
+}
+
+TEST_CASE("nothing is asked of the hand where the block says so", "[runner][session][threads]") {
+  const HastySession hasty{"explore: {min_contacts: 0, min_seconds: 2}", 0.0};
+  CHECK(hasty.participant.reasons ==
+        std::vector<std::string>{"please take 2 s at least", "please take 2 s at least"});
+  CHECK(hasty.answers.size() == 2);
+}
+
+TEST_CASE("a trial whose time is over comes again, or is stored without an answer",
+          "[runner][session][threads]") {
+  const HastySession given_up{"explore: {max_seconds: 5, at_limit: give_up}", 0.0};
+  CHECK(given_up.participant.ended == std::vector<std::pair<int, bool>>{{1, false}, {2, false}});
+  CHECK(given_up.answers.empty());
+  CHECK(given_up.done.size() == 2);
+  CHECK(given_up.timed_out == std::vector<int>{1, 2});
+}
+
+TEST_CASE("an answer given while nothing is rendered is no answer: the trial is presented again",
+          "[runner][session][threads]") {
+  Study study{0};
+  study.run({.stalled_trials = 2});
+  CHECK(study.participant.repeats_told == 2);
+  CHECK(results::stored_answers(study.store).size() == study.schedule.size());
+}
+
+namespace {
+protocols::Schedule two_blocks() {
+  protocols::Schedule schedule;
+  for (int number = 1; number <= 6; ++number) {
+    protocols::PlannedTrial trial;
+    trial.number = number;
+    trial.block = number <= 4 ? "first" : "second";
+    schedule.push_back(trial);
+  }
+  return schedule;
+}
+std::vector<int> numbers_of(const std::deque<protocols::PlannedTrial>& trials) {
+  std::vector<int> numbers;
+  for (const protocols::PlannedTrial& trial : trials) {
+    numbers.push_back(trial.number);
+  }
+  return numbers;
+}
+}  // namespace
+
+TEST_CASE("a session that is resumed presents requeued trials where it would have gone on to",
+          "[runner][session]") {
+  const protocols::Schedule schedule = two_blocks();
+  auto waiting = runner::waiting_trials(schedule, {}, {});
+  for (const int number : {1, 2}) {
+    const protocols::PlannedTrial trial = waiting.front();
+    REQUIRE(trial.number == number);
+    waiting.pop_front();
+    runner::put_at_end_of_block(trial, waiting);
+  }
+  CHECK(numbers_of(waiting) == std::vector{3, 4, 1, 2, 5, 6});
+  CHECK(numbers_of(runner::waiting_trials(schedule, {}, {1, 2})) == numbers_of(waiting));
+  // requeued once more, in the other order; what is done is not presented
+  CHECK(numbers_of(runner::waiting_trials(schedule, {3, 4}, {2, 1})) == std::vector{2, 1, 5, 6});
+  CHECK(numbers_of(runner::waiting_trials(schedule, {1, 2, 3}, {2, 4})) == std::vector{4, 5, 6});
+  CHECK(numbers_of(runner::waiting_trials(schedule, {}, {6, 5})) == std::vector{1, 2, 3, 4, 6, 5});
+}
+
+namespace {
+class CountedRests final : public runner::Participant {
+ public:
+  explicit CountedRests(double& now_s) : now_s_{now_s} {}
+  std::optional<std::string> perform(const runner::TrialPrompt& /*prompt*/,
+                                     runner::Exploration& /*exploration*/) override {
+    return std::nullopt;
+  }
+  void rest(const protocols::Breaks& /*breaks*/) override {
+    rested_at_s.push_back(now_s_);
+    now_s_ += 60.0;  // a long one
+  }
+  std::vector<double> rested_at_s;
+
+ private:
+  double& now_s_;
+};
+
+// When rests come in a block of ten trials of 10 s each.
+std::vector<double> rests(const protocols::Breaks& breaks) {
+  protocols::Protocol protocol;
+  protocol.blocks.emplace_back();
+  protocol.blocks.front().name = "only";
+  protocol.blocks.front().breaks = breaks;
+  double now_s = 100.0;
+  CountedRests participant{now_s};
+  runner::SessionStates states{1, [&] { return now_s; }};
+  runner::BetweenTrials between{{protocol, participant, states, [](auto) {}, [] {}}, {}};
+  protocols::PlannedTrial trial;
+  trial.block = "only";
+  for (trial.number = 1; trial.number <= 10; ++trial.number) {
+    between.before(trial, {trial});
+    states.enter(runner::SessionState::ready, trial.number);
+    states.enter(runner::SessionState::exploring, trial.number);
+    states.enter(runner::SessionState::confirmed, trial.number);
+    states.enter(runner::SessionState::saved, trial.number);
+    now_s += 10.0;
+  }
+  return participant.rested_at_s;
+}
+}  // namespace
+
+TEST_CASE("the end of practice is said before trials that count, unless their instructions do",
+          "[runner][session]") {
+  struct Person final : runner::Participant {
+    std::optional<std::string> perform(const runner::TrialPrompt& /*prompt*/,
+                                       runner::Exploration& /*exploration*/) override {
+      return std::nullopt;
+    }
+    void practice_is_over() override { ++times_said; }
+    int times_said{0};
+  };
+  const auto times_said = [](std::vector<protocols::Block> blocks) {
+    protocols::Protocol protocol;
+    protocol.blocks = std::move(blocks);
+    Person person;
+    runner::SessionStates states{1, [] { return 0.0; }};
+    runner::BetweenTrials between{{protocol, person, states, [](auto) {}, [] {}}, {}};
+    protocols::Schedule schedule(protocol.blocks.size());
+    for (std::size_t trial = 0; trial < schedule.size(); ++trial) {
+      schedule[trial].block = protocol.blocks[trial].name;
+    }
+    for (const protocols::PlannedTrial& trial : schedule) {
+      between.before(trial, schedule);
+      between.before(trial, schedule);
+    }
+    return person.times_said;
+  };
+  const auto block = [](std::string name, bool is_practice, std::string instructions = "") {
+    protocols::Block made;
+    made.name = std::move(name);
+    made.is_practice = is_practice;
+    made.instructions = std::move(instructions);
+    return made;
+  };
+  CHECK(times_said({block("a", true), block("b", true), block("c", false), block("d", false)}) ==
+        1);
+  CHECK(times_said({block("a", true), block("b", false, "It counts.")}) == 0);
+  CHECK(times_said({block("a", false), block("b", true)}) == 0);
+}
+
+TEST_CASE("rests come after so many trials", "[runner][session]") {
+  CHECK(rests({.every_trials = 4}) == std::vector{140.0, 240.0});
+}
+
+TEST_CASE("rests come after so much time since the last one, between two trials",
+          "[runner][session]") {
+  CHECK(rests({.every_seconds = 35.0}) == std::vector{140.0, 240.0});
+  CHECK(rests({.every_seconds = 1000.0}).empty());
+}
+
+TEST_CASE("of trials and time whichever is first brings the rest", "[runner][session]") {
+  CHECK(rests({.every_trials = 2, .every_seconds = 35.0}) ==
+        std::vector{120.0, 200.0, 280.0, 360.0});
+  CHECK(rests({.every_trials = 9, .every_seconds = 35.0}) == std::vector{140.0, 240.0});
+}
+
+TEST_CASE("a block's questionnaire that an interruption left open is asked before the next block",
+          "[runner][session]") {
+  struct Person final : runner::Participant {
+    explicit Person(std::vector<std::string>& done) : done_{done} {}
+    std::optional<std::string> perform(const runner::TrialPrompt& /*prompt*/,
+                                       runner::Exploration& /*exploration*/) override {
+      return std::nullopt;
+    }
+    void read(const std::string& text) override { done_.push_back(text); }
+    bool fills_in_forms() const override { return true; }
+    FormAnswers fill_in(const protocols::Form& form) override {
+      done_.push_back(form.title);
+      return {};
+    }
+    std::vector<std::string>& done_;
+  };
+  protocols::Protocol protocol;
+  protocol.forms["load"].title = "form";
+  for (const char* const name : {"first", "second"}) {
+    protocols::Block& block = protocol.blocks.emplace_back();
+    block.name = name;
+    block.instructions = std::string{"read "} + name;
+    block.forms_after = {"load"};
+  }
+  std::vector<std::string> done;
+  Person person{done};
+  runner::SessionStates states{1, [] { return 0.0; }};
+  runner::BetweenTrials between{{protocol, person, states, [](auto) {}, [] {}}, {}};
+  protocols::Schedule schedule(2);
+  schedule[0].block = "first";
+  schedule[1].block = "second";
+  between.before(schedule[1], schedule);
+  between.before(schedule[1], schedule);
+  CHECK(done == std::vector<std::string>{"form", "read second"});
+}
+
+using namespace tapstudy::runner;
+
+TEST_CASE("a session's changes of state are kept in order with their times", "[runner][session]") {
+  double now_s = 0.0;
+  SessionStates states{7, [&] { return now_s; }};
+  now_s = 1.5;
+  states.enter(SessionState::ready, 3);
+  now_s = 2.0;
+  states.enter(SessionState::exploring, 3);
+  const auto events = states.take_events();
+  REQUIRE(events.size() == 3);
+  CHECK(events[0].state == "begun");
+  CHECK(events[1].state == "ready");
+  CHECK(events[1].number == 3);
+  CHECK(events[2].t_s == 2.0);
+  CHECK(events[2].session_id == 7);
+  CHECK(states.take_events().empty());
+}
+
+TEST_CASE("nothing is rendered before the participant is ready, nothing follows the end",
+          "[runner][session]") {
+  SessionStates states{1, [] { return 0.0; }};
+  CHECK_THROWS_AS(states.enter(SessionState::exploring), std::logic_error);
+  states.enter(SessionState::ended);
+  CHECK_THROWS_AS(states.enter(SessionState::ready), std::logic_error);
+}
+
+TEST_CASE("an answer is asked for its confidence before it is saved, and told right after",
+          "[runner][session]") {
+  CHECK(may_follow(SessionState::confidence, SessionState::saved));
+  CHECK_FALSE(may_follow(SessionState::saved, SessionState::confidence));
+  CHECK(may_follow(SessionState::saved, SessionState::feedback));
+  CHECK_FALSE(may_follow(SessionState::exploring, SessionState::feedback));
+}
+
+TEST_CASE("an answer may be changed until it is confirmed, and counts only once it is",
+          "[runner][session]") {
+  CHECK(may_follow(SessionState::exploring, SessionState::answering));
+  CHECK(may_follow(SessionState::answering, SessionState::answering));
+  CHECK(may_follow(SessionState::answering, SessionState::confirmed));
+  CHECK(may_follow(SessionState::answering, SessionState::timed_out));
+  CHECK_FALSE(may_follow(SessionState::exploring, SessionState::saved));
+  CHECK_FALSE(may_follow(SessionState::answering, SessionState::saved));
+  CHECK_FALSE(may_follow(SessionState::confirmed, SessionState::answering));
+  CHECK_FALSE(may_follow(SessionState::confirmed, SessionState::timed_out));
+}

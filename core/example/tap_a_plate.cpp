@@ -5,9 +5,9 @@
 //   c++ -std=c++20 tap_a_plate.cpp $(pkg-config --cflags --libs tapstudy-core)
 #include <cstdio>
 
-#include "core/bounded_child.hpp"
 #include "core/model/plate_model.hpp"
-#include "core/techniques/make_renderer.hpp"
+#include "core/process/bounded_child.hpp"
+#include "core/techniques/technique.hpp"
 
 using namespace tapstudy::core;
 

@@ -5,7 +5,7 @@
 
 #include <filesystem>
 
-#include "core/output_file.hpp"
+#include "core/files/output_files.hpp"
 namespace tapstudy::runner {
 namespace {
 std::string replaced(std::string text, char from, const std::string& to) {

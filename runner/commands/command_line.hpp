@@ -18,7 +18,7 @@ class Command {
  public:
   void argument(const std::string& name, std::string& value, const std::string& help,
                 Need need = Need::required);
-  // As many as there are.
+  // All remaining arguments.
   void arguments(const std::string& name, std::vector<std::string>& values,
                  const std::string& help);
   void option(const std::string& name, std::string& value, const std::string& help,

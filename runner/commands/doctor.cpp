@@ -92,7 +92,7 @@ void draw(const Diagnosis& diagnosis, const std::string& file) {
       file);
 }
 
-// With the rig's device; without a rig, with any that is plugged in and accessible.
+// Uses the rig's device; without a rig, any that is plugged in and accessible.
 std::function<void()> zero_force_exchange(const DoctorOptions& options, const protocols::Rig& rig) {
   if (!options.rig.empty()) {
     return kind_of(rig).zero_force_exchange(rig);

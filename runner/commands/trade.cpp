@@ -32,7 +32,7 @@ void run_trade(const TradeOptions& options) {
   const protocols::Stimulus& stimulus = protocol.stimulus(options.stimulus);
   check(options.tolerance);
   if (!options.out.empty()) {
-    make_room(options.out);
+    create_trade_directory(options.out);
   }
   Progress progress{fmt::format("measuring '{}'", options.stimulus)};
   const Trade trade = at_its_line(protocols::stimulus_with(protocol, stimulus), [&] {

@@ -193,6 +193,7 @@ void LiveTrials::run() {
     device_ = reconnect(to_text(*interruption), parts_.device_request, std::move(device_));
     device_->begin_session(parts_.session.row.seed);
     live_loop_.use(device_->device());
+    desk_.force_is(ForceState::off);  // it replied to zero force when it was opened
   }
 }
 }  // namespace tapstudy::runner

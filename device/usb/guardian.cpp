@@ -115,8 +115,8 @@ class Watchdog {
     const auto end = std::chrono::steady_clock::now() + max_final;
     int taken = 0;
     bool is_confirmed = !channel_.is_power_allowed();
-    for (int i = 0; (taken < zero_force_packets || !is_confirmed) &&
-                    std::chrono::steady_clock::now() < end;
+    for (int i = 0;
+         (taken < zero_force_packets || !is_confirmed) && std::chrono::steady_clock::now() < end;
          ++i) {
       if (i > zero_force_packets) {
         ::poll(nullptr, 0, round_ms);

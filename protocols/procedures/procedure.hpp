@@ -106,7 +106,7 @@ class TrackSettings {
 };
 
 // A psychophysical procedure: which stimulus value comes next. To add one: a file beside this with
-// its class, a row in procedure_table.cpp, a schema in protocols/schema/procedures/; nothing else
+// its class, a row in procedure.cpp, a schema in protocols/schema/procedures/; nothing else
 // refers to a procedure by name.
 class Procedure {
  public:

@@ -101,7 +101,7 @@ class Store {
   AlternativesOfTrials alternatives();
   std::vector<SessionRow> sessions();
   JournalEntries entries_for_journal();
-  // A SELECT; what reports need is in stored_answers.hpp and participant_courses.hpp.
+  // A SELECT; queries for reports are in study_queries.hpp.
   Statement query(const std::string& select) { return Statement{database_, select}; }
   // Its rows, each shown as it comes.
   void each_row(const std::string& select, const std::function<void(Statement&)>& show);

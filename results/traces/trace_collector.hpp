@@ -33,7 +33,7 @@ double time_s(const core::TraceSample& sample);
 enum class Traced { whole, events_only };
 
 // Collects one trial's samples from the haptic thread's ring for the store: encodes them in chunks
-// as they arrive and extracts the events (trace_events.hpp). Without chunks the first event is
+// as they arrive and extracts the events (TraceEvents). Without chunks the first event is
 // `untraced`.
 class TraceCollector {
  public:

@@ -78,7 +78,7 @@ std::vector<results::FormText> form_texts(const protocols::Protocol& protocol) {
 results::StudyExport study_export(results::Store& store, bool has_tables) {
   const results::StudyRow study = store.study();
   const protocols::Protocol protocol = stored_protocol(study);
-  StimulusTables stimuli = stimulus_tables(protocol, user_cache_directory());
+  StimulusTables stimuli = stimulus_tables(protocol, user_model_cache());
   if (has_tables && !stimuli.without_model.empty()) {
     warn(
         fmt::format("no modes are listed of {}: their models are not cached (`tapstudy check` "

@@ -281,7 +281,7 @@ class TapSorter {
 analysis::RenderedStudy rendered_study(const Protocol& protocol,
                                        const std::vector<StudyStore>& stores, results::Mode mode,
                                        const DoneBlocks& done) {
-  const core::ModelCache cache = models_of_this_user();
+  const core::ModelCache cache = user_model_cache();
   const analysis::TapWindow window{protocol.rate_hz};
   RenderedStudy study;
   const std::set<std::string> rendered = rendered_stimuli(protocol, done);

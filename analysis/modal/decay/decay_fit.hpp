@@ -46,7 +46,7 @@ struct DecayFit {
   Eigen::VectorXcd fitted;  // the spectrum's values by the modes and the nuisance terms
 };
 
-// Maximum likelihood in white noise from these poles on (decay_model.hpp, decay_descent.hpp).
+// Maximum likelihood in white noise from these poles on (descend, decay_model.hpp).
 // Standard errors are those of the Cramer-Rao bound, with the noise of the residual. Steady lines
 // of these frequencies, such as hum, take part with amplitudes alone. Throws InvalidInput for more
 // unknowns than values.

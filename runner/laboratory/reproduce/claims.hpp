@@ -102,7 +102,7 @@ struct Bench {
 inline constexpr std::string_view strike_animation_file = "figure_3.png";
 
 // Claims that are measured together. To add some: a file with a function, declared here, and a row
-// in claim_table.cpp.
+// in claims.cpp.
 struct ClaimGroup {
   std::string_view name;  // by which `reproduce --only` chooses it
   std::string_view title;

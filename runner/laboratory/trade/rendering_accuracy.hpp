@@ -44,7 +44,7 @@ double level_error_db(const Forces& reference, const Forces& found, double rate_
 
 // The difference in decay below the band limit [dB], maximum over the tapping points: by how much
 // the level after the first 40 ms, less the level before, differs from the reference's. Decays
-// beyond 20 dB count as equal.
+// beyond 20 dB count as 20 dB.
 double decay_error_db(const Forces& reference, const Forces& found, double rate_hz,
                       double band_limit_hz);
 

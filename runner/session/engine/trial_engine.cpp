@@ -263,8 +263,7 @@ TrialEngine::Outcome TrialEngine::run_trial(const PlannedTrial& planned, const C
       parts_.participant.interrupted();
       const bool is_force_off = parts_.trial_loop.is_force_off();  // it may be by now
       parts_.by.force_is(is_force_off ? ForceState::off : ForceState::unknown);
-      return {
-          .interruption = Interruption{trial.number, fault, answer.has_value(), is_force_off}};
+      return {.interruption = Interruption{trial.number, fault, answer.has_value(), is_force_off}};
     }
     case TrialEnding::timed_out: {
       const bool is_requeued = block.explore.at_limit == protocols::AtLimit::requeue;

@@ -66,7 +66,7 @@ void check_has_mode(Eigen::Index modes_in_band, const core::PlateSpec& spec) {
       spec.band_limit_hz, first_frequency(spec))};
 }
 
-core::ModelCache user_cache_directory() {
+core::ModelCache user_model_cache() {
   return {cache_directory(), fmt::format("{} {}", program_version(), git_hash())};
 }
 
@@ -122,7 +122,7 @@ ModelLibrary::Body ModelLibrary::body(const protocols::Protocol& protocol,
   Progress progress{fmt::format("building the model of '{}'", stimulus.name)};
   body = std::make_shared<const core::BodyModes>(core::solve_body(spec, progress.hook()).modes);
   ++solved_;
-  if (!cache_.keep(key, *body)) {
+  if (!cache_.store(key, *body)) {
     warn(fmt::format("{}: models cannot be cached here and will be rebuilt", cache_.directory()));
   }
   return body;

@@ -1,19 +1,23 @@
 #include "support/usb/fake_bus.hpp"
 
+#include <link.h>
 #include <linux/usbdevice_fs.h>
 #include <poll.h>
-#include <sys/eventfd.h>
 #include <pthread.h>
+#include <sys/eventfd.h>
 #include <sys/ioctl.h>
 #include <sys/socket.h>
 #include <sys/syscall.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cerrno>
 #include <cstdarg>
 #include <cstring>
+#include <ctime>
 #include <map>
+#include <string_view>
 #include <utility>
 namespace tapstudy::testing {
 namespace {
@@ -24,6 +28,37 @@ std::mutex buses_mutex;
 std::map<int, FakeBus*>& buses() {
   static std::map<int, FakeBus*> all;
   return all;
+}
+
+using std::chrono::nanoseconds;
+std::atomic<nanoseconds> bus_time{std::chrono::seconds{1000}};
+nanoseconds bus_now() {
+  return bus_time;
+}
+
+// Whether a function was called by libusb.
+bool is_in_libusb(const void* return_address) {
+  using Range = std::pair<ElfW(Addr), ElfW(Addr)>;
+  static const Range libusb = [] {
+    Range range{};
+    dl_iterate_phdr(
+        [](dl_phdr_info* object, std::size_t /*size*/, void* found) {
+          if (std::string_view{object->dlpi_name}.find("libusb-1.0") == std::string_view::npos) {
+            return 0;
+          }
+          ElfW(Addr) end = 0;
+          for (int i = 0; i < object->dlpi_phnum; ++i) {
+            const auto& part = object->dlpi_phdr[i];
+            end = part.p_type == PT_LOAD ? std::max(end, part.p_vaddr + part.p_memsz) : end;
+          }
+          *static_cast<Range*>(found) = {object->dlpi_addr, object->dlpi_addr + end};
+          return 1;
+        },
+        &range);
+    return range;
+  }();
+  const auto caller = reinterpret_cast<ElfW(Addr)>(return_address);
+  return libusb.first <= caller && caller < libusb.second;
 }
 
 int generation = 0;  // of processes, counted from the test program on
@@ -42,7 +77,7 @@ FakeBus::FakeBus(std::uint16_t vendor, std::uint16_t product, Answer answer)
     : descriptor_{eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)},
       descriptors_{descriptors_of(vendor, product)},
       answer_{std::move(answer)},
-      usbfs_{*this, address},
+      usbfs_{*this, address, bus_now},
       generation_{generation} {
   static const int is_counted = pthread_atfork(nullptr, nullptr, [] { ++generation; });
   static_cast<void>(is_counted);
@@ -195,21 +230,17 @@ std::int64_t FakeBus::read(void* to, std::size_t size) {
 
 // Wakes for replies that are due meanwhile, and tells of an unplugged device as the kernel does.
 int FakeBus::poll(pollfd* all, unsigned long count, int time_out_ms) {
-  const auto end = Clock::now() + std::chrono::milliseconds{time_out_ms < 0 ? 60'000 : time_out_ms};
+  const nanoseconds end =
+      bus_now() + std::chrono::milliseconds{time_out_ms < 0 ? 60'000 : time_out_ms};
+  const std::lock_guard lock{mutex_};
   while (true) {
-    const bool waits_for_late = [&] {
-      const std::lock_guard lock{mutex_};
-      usbfs_.deliver_what_is_due();
-      show_news();
-      return usbfs_.has_reply_under_way();
-    }();
-    const int slice_ms = Clock::now() < end ? 1 : 0;
-    const auto ready =
-        static_cast<int>(syscall(SYS_poll, all, count, waits_for_late ? slice_ms : time_out_ms));
-    if (ready == 0 && waits_for_late && slice_ms > 0) {
+    usbfs_.deliver_what_is_due();
+    show_news();
+    const auto ready = static_cast<int>(syscall(SYS_poll, all, count, 0));
+    if (ready == 0 && bus_now() < end) {
+      bus_time = usbfs_.has_reply_under_way() ? std::min(end, usbfs_.next_reply_due()) : end;
       continue;
     }
-    const std::lock_guard lock{mutex_};
     for (unsigned long i = 0; usbfs_.is_gone() && ready > 0 && i < count; ++i) {
       if (all[i].fd == descriptor_ && all[i].revents != 0) {
         all[i].revents = static_cast<short>(all[i].revents | POLLERR | POLLHUP);
@@ -244,5 +275,23 @@ int poll(struct pollfd* all, nfds_t count, int time_out_ms) {
     }
   }
   return static_cast<int>(syscall(SYS_poll, all, count, time_out_ms));
+}
+int clock_gettime(clockid_t clock, struct timespec* time) noexcept {
+  using namespace tapstudy::testing;
+  if (!is_in_libusb(__builtin_return_address(0))) {
+    return static_cast<int>(syscall(SYS_clock_gettime, clock, time));
+  }
+  const auto now = bus_now();
+  const auto whole = std::chrono::floor<std::chrono::seconds>(now);
+  *time = {whole.count(), (now - whole).count()};
+  return 0;
+}
+// Without it libusb computes its own time-outs by the clock above.
+int timerfd_create(int clock, int flags) noexcept {
+  if (!tapstudy::testing::is_in_libusb(__builtin_return_address(0))) {
+    return static_cast<int>(syscall(SYS_timerfd_create, clock, flags));
+  }
+  errno = ENOSYS;
+  return -1;
 }
 }

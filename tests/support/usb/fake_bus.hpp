@@ -14,6 +14,8 @@ struct pollfd;
 namespace tapstudy::testing {
 // A USB device of one request and one reply, behind the kernel's interface to user space. The test
 // program's own ioctl, read and poll answer for its descriptor; libusb above them is the real one.
+// Its clock is the bus's own, which passes only while libusb waits: time-outs take no time, and a
+// machine that is busy elsewhere causes none.
 // A process forked from this one has the same device: a thread here answers its plain bulk
 // transfers.
 class FakeBus : private UsbBoard {
@@ -51,7 +53,6 @@ class FakeBus : private UsbBoard {
   static FakeBus* of(int descriptor);
 
  private:
-  using Clock = std::chrono::steady_clock;
   Bytes answer(std::span<const std::uint8_t> request) override;
   void show_news();
   void answer_forked_processes();

@@ -58,7 +58,7 @@ void FakeUsbfs::send_back(Bytes reply, Trouble trouble) {
     case Trouble::missing:
       return;
     case Trouble::late:
-      planned.due = Clock::now() + delay_;
+      planned.due = now_() + delay_;
       break;
     case Trouble::short_reply:
       planned.bytes.resize(planned.bytes.size() / 2);
@@ -88,7 +88,7 @@ void FakeUsbfs::send_back(Bytes reply, Trouble trouble) {
 }
 
 void FakeUsbfs::deliver_what_is_due() {
-  while (has_reply_under_way() && replies_.front().due <= Clock::now()) {
+  while (has_reply_under_way() && replies_.front().due <= now_()) {
     usbdevfs_urb* const urb = waiting_.front();
     const Reply& reply = replies_.front();
     const auto length = std::min(static_cast<std::size_t>(urb->buffer_length), reply.bytes.size());

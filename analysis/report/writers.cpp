@@ -254,12 +254,12 @@ std::vector<FigureFile> figure_files(const Summary& summary) {
 }
 
 namespace {
-std::string text_of(const Summary& summary, const CsvTable& table) {
+std::string csv_text(const Summary& summary, const ReportTable& table) {
   std::ostringstream text;
   if (!banner(summary).empty()) {
     text << mode_mark << words_of_modes(summary) << '\n';
   }
-  table.write(text);
+  write_table_csv(text, table);
   return text.str();
 }
 }  // namespace
@@ -268,20 +268,20 @@ std::string text_of(const Summary& summary, const CsvTable& table) {
 std::vector<TableFile> table_files(const Summary& summary) {
   std::vector<TableFile> files;
   std::set<std::string> taken;
-  for (const CsvTable& table : csv_of(summary.sections)) {
-    taken.insert(table.name);
+  for (const ReportTable* const table : csv_tables(summary.sections)) {
+    taken.insert(table->name + ".csv");
   }
   for (const auto& block : summary.blocks) {
-    for (const CsvTable& table : block->tables()) {
-      std::string name = block->block.empty() ? table.name : block->block + "_" + table.name;
+    for (const ReportTable* const table : csv_tables(block->sections)) {
+      std::string name = (block->block.empty() ? "" : block->block + "_") + table->name + ".csv";
       while (!taken.insert(name).second) {
         name = "block_" + name;
       }
-      files.push_back({name, text_of(summary, table)});
+      files.push_back({name, csv_text(summary, *table)});
     }
   }
-  for (const CsvTable& table : csv_of(summary.sections)) {
-    files.push_back({table.name, text_of(summary, table)});
+  for (const ReportTable* const table : csv_tables(summary.sections)) {
+    files.push_back({table->name + ".csv", csv_text(summary, *table)});
   }
   return files;
 }

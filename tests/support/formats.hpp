@@ -39,10 +39,10 @@ inline Formats formats_of(const analysis::BlockSummary& summary) {
   formats.html = html.str();
   check_citations(formats.html, summary.sources());
   formats.json = summary.as_json();
-  for (const analysis::CsvTable& table : summary.tables()) {
+  for (const analysis::ReportTable* const table : csv_tables(summary.sections)) {
     std::ostringstream csv;
-    table.write(csv);
-    formats.csv[table.name] = csv.str();
+    write_table_csv(csv, *table);
+    formats.csv[table->name + ".csv"] = csv.str();
   }
   return formats;
 }

@@ -39,10 +39,6 @@ nlohmann::ordered_json BlockSummary::as_json() const {
   return json;
 }
 
-std::vector<CsvTable> BlockSummary::tables() const {
-  return csv_of(sections);
-}
-
 std::set<core::Source> BlockSummary::sources() const {
   std::set<core::Source> cited;
   for (const ReportSection& section : sections) {

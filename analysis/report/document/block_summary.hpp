@@ -89,7 +89,6 @@ class BlockSummary {
   // {"block", "task", what `values` holds, TABLE: [{key: value}], "remarks": [sentence],
   // "hypotheses"}
   nlohmann::ordered_json as_json() const;
-  std::vector<CsvTable> tables() const;  // TABLE.csv, a header of keys; the summary outlives them
   // The publications that the page cites here.
   std::set<core::Source> sources() const;
   // What the block was made to find out.

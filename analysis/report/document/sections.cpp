@@ -114,13 +114,12 @@ void add_sections(nlohmann::ordered_json& json, const std::vector<ReportSection>
   json["remarks"] = remarks;
 }
 
-std::vector<CsvTable> csv_of(const std::vector<ReportSection>& sections) {
-  std::vector<CsvTable> written;
+std::vector<const ReportTable*> csv_tables(const std::vector<ReportSection>& sections) {
+  std::vector<const ReportTable*> written;
   for (const ReportSection& section : sections) {
     for (const ReportTable& table : section.tables) {
       if (table.shown_in.csv) {
-        written.push_back(
-            {table.name + ".csv", [&table](std::ostream& out) { write_table_csv(out, table); }});
+        written.push_back(&table);
       }
     }
   }

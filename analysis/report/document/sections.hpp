@@ -1,5 +1,4 @@
 #pragma once
-#include <functional>
 #include <nlohmann/json_fwd.hpp>
 #include <ostream>
 #include <set>
@@ -22,12 +21,6 @@ struct ReportSection {
   std::vector<std::string> terminal_lines{};  // results in words; in text only
 };
 
-// A separate CSV table: its file name suffix and its writer.
-struct CsvTable {
-  std::string name;
-  std::function<void(std::ostream&)> write;
-};
-
 // The same without its title.
 void write_contents_text(std::ostream& out, const ReportSection& section);
 void write_contents_html(std::ostream& out, const ReportSection& section);
@@ -39,8 +32,8 @@ void write_sections_html(std::ostream& out, std::span<const ReportSection> secti
                          const std::string& anchor);
 // Every table under its name, and "remarks".
 void add_sections(nlohmann::ordered_json& json, const std::vector<ReportSection>& sections);
-// TABLE.csv of every table; the sections outlive what is returned.
-std::vector<CsvTable> csv_of(const std::vector<ReportSection>& sections);
+// Those that are written as files of their own, TABLE.csv.
+std::vector<const ReportTable*> csv_tables(const std::vector<ReportSection>& sections);
 // Every table that people see of a section in this format.
 std::vector<const ReportTable*> tables_shown(const ReportSection& section, bool ShownIn::*format);
 // Adds the publications that the page cites in the section.

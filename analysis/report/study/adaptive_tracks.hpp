@@ -18,7 +18,7 @@ struct ParameterEstimate {
 struct TrackResult {
   std::string participant_id;
   std::string block;
-  int track{};            // of the block, from 1
+  int track{};           // of the block, from 1
   CitingText procedure;  // with its source
   std::size_t trials{};
   bool is_finished{};

@@ -5,6 +5,10 @@ namespace tapstudy::runner {
 namespace {
 using Json = nlohmann::ordered_json;
 
+Json json_of(double number) {
+  return number;
+}
+
 Json json_of(const analysis::Interval& interval) {
   return Json{interval.low, interval.high};
 }
@@ -23,22 +27,38 @@ Json json_of(const analysis::Pole& pole) {
   return {{"frequency_hz", pole.frequency_hz}, {"damping_ratio", pole.damping_ratio}};
 }
 
+Json json_of(const analysis::FittedSinusoid& sinusoid) {
+  return {{"amplitude", sinusoid.amplitude},
+          {"decay_per_s", sinusoid.decay_per_s},
+          {"frequency_hz", sinusoid.frequency_hz},
+          {"start_s", sinusoid.start_s},
+          {"explained", sinusoid.explained}};
+}
+
+Json json_of(const analysis::AmplitudeLine& line) {
+  return {{"offset", json_of(line.offset)},
+          {"slope", json_of(line.slope)},
+          {"is_proportional", line.is_proportional()}};
+}
+
+// Of one of those above.
+template <class Value>
+Json json_or_null(const std::optional<Value>& value) {
+  return value ? json_of(*value) : Json(nullptr);
+}
+
 Json json_of(const analysis::TapMode& mode) {
   const analysis::FittedMode& fitted = mode.fitted;
-  Json json{{"frequency_hz", fitted.pole.frequency_hz},
-            {"frequency_error_hz", fitted.frequency_error_hz},
-            {"damping_ratio", fitted.pole.damping_ratio},
-            {"ratio_error", fitted.ratio_error},
-            {"amplitude", fitted.amplitude},
-            {"phase_rad", fitted.phase_rad},
-            {"standing", name(mode.standing)},
-            {"why", mode.why},
-            {"stable_orders", mode.stable_orders},
-            {"rational_fit", nullptr}};
-  if (mode.by_rational_fit) {
-    json["rational_fit"] = json_of(*mode.by_rational_fit);
-  }
-  return json;
+  return {{"frequency_hz", fitted.pole.frequency_hz},
+          {"frequency_error_hz", fitted.frequency_error_hz},
+          {"damping_ratio", fitted.pole.damping_ratio},
+          {"ratio_error", fitted.ratio_error},
+          {"amplitude", fitted.amplitude},
+          {"phase_rad", fitted.phase_rad},
+          {"standing", name(mode.standing)},
+          {"why", mode.why},
+          {"stable_orders", mode.stable_orders},
+          {"rational_fit", json_or_null(mode.by_rational_fit)}};
 }
 
 Json json_of(const IdentifiedTap& tap) {
@@ -53,16 +73,9 @@ Json json_of(const IdentifiedTap& tap) {
             {"has_converged", tap.modes.fit.has_converged},
             {"significant_order", tap.modes.pencil.significant_order},
             {"modes", Json::array()},
-            {"sinusoid", nullptr}};
+            {"sinusoid", json_or_null(tap.sinusoid)}};
   for (const analysis::TapMode& mode : tap.modes.modes) {
     json["modes"].push_back(json_of(mode));
-  }
-  if (tap.sinusoid) {
-    json["sinusoid"] = {{"amplitude", tap.sinusoid->amplitude},
-                        {"decay_per_s", tap.sinusoid->decay_per_s},
-                        {"frequency_hz", tap.sinusoid->frequency_hz},
-                        {"start_s", tap.sinusoid->start_s},
-                        {"explained", tap.sinusoid->explained}};
   }
   if (tap.speed_m_s) {
     json["speed_m_s"] = *tap.speed_m_s;
@@ -83,41 +96,25 @@ Json json_of(const analysis::RepeatedMode& mode) {
 }
 
 Json json_of(const analysis::RayleighFit& fit) {
-  Json json{{"alpha_per_s", json_of(fit.alpha_per_s)},
-            {"beta_s", json_of(fit.beta_s)},
-            {"fitted_ratios", fit.fitted_ratios},
-            {"chi_squared", fit.chi_squared},
-            {"degrees_of_freedom", fit.degrees_of_freedom},
-            {"p", nullptr},
-            {"largest_misfit", fit.largest_misfit},
-            {"at_hz", fit.at_hz},
-            {"is_bounded", fit.is_bounded},
-            {"fits", fit.fits()}};
-  if (fit.p) {
-    json["p"] = *fit.p;
-  }
-  return json;
+  return {{"alpha_per_s", json_of(fit.alpha_per_s)},
+          {"beta_s", json_of(fit.beta_s)},
+          {"fitted_ratios", fit.fitted_ratios},
+          {"chi_squared", fit.chi_squared},
+          {"degrees_of_freedom", fit.degrees_of_freedom},
+          {"p", json_or_null(fit.p)},
+          {"largest_misfit", fit.largest_misfit},
+          {"at_hz", fit.at_hz},
+          {"is_bounded", fit.is_bounded},
+          {"fits", fit.fits()}};
 }
 
 Json json_of(const SinusoidLaw& law) {
-  Json json{{"decay_per_s", json_of(law.decay_per_s)},
-            {"frequency_hz", json_of(law.frequency_hz)},
-            {"explained", law.explained},
-            {"amplitude_per_speed", nullptr},
-            {"amplitude_line", nullptr},
-            {"amplitude_n_s_per_m", nullptr}};
-  if (law.line) {
-    json["amplitude_line"] = {{"offset", json_of(law.line->offset)},
-                              {"slope", json_of(law.line->slope)},
-                              {"is_proportional", law.line->is_proportional()}};
-  }
-  if (law.amplitude_per_speed) {
-    json["amplitude_per_speed"] = json_of(*law.amplitude_per_speed);
-  }
-  if (law.amplitude_n_s_per_m) {
-    json["amplitude_n_s_per_m"] = *law.amplitude_n_s_per_m;
-  }
-  return json;
+  return {{"decay_per_s", json_of(law.decay_per_s)},
+          {"frequency_hz", json_of(law.frequency_hz)},
+          {"explained", law.explained},
+          {"amplitude_per_speed", json_or_null(law.amplitude_per_speed)},
+          {"amplitude_line", json_or_null(law.line)},
+          {"amplitude_n_s_per_m", json_or_null(law.amplitude_n_s_per_m)}};
 }
 
 Json json_of(const ModelComparison& model) {
@@ -134,15 +131,13 @@ Json json_of(const ModelComparison& model) {
     json["matched"].push_back({{"agreed_mode", one.measured},
                                {"model_mode", one.model},
                                {"misfit", one.misfit},
-                               {"mac", one.assurance ? Json(*one.assurance) : Json{}}});
+                               {"mac", json_or_null(one.assurance)}});
   }
   json["unmatched"] = model.update->unmatched;
   if (model.springs) {
     json["spring_factor"] = json_of(model.springs->factor);
   }
-  if (model.update->rival_pa) {
-    json["rival_pa"] = *model.update->rival_pa;
-  }
+  json["rival_pa"] = json_or_null(model.update->rival_pa);
   return json;
 }
 }  // namespace

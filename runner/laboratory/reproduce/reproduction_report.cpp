@@ -17,10 +17,8 @@
 #include "core/text/print.hpp"
 #include "runner/laboratory/reproduce/claims.hpp"
 namespace tapstudy::runner {
-// After that of reports (analysis/report/html_style.hpp), of which this changes some colours for
-// those who read on a dark screen.
+// After that of reports.
 inline constexpr const char* reproduction_style = R"css(
-:root{color-scheme:light dark}
 .verdict{display:inline-block;min-width:4.5rem;text-align:center;border-radius:.3rem;padding:0 .5rem;color:#fff;font-weight:600}
 .true{background:#1b6e3c}.false{background:#a32a2a}.depends{background:#7a5600}
 .claim{border-top:1px solid #cdd6df;margin-top:1.5rem;padding-top:.5rem}.claim h3{margin:.3rem 0;border:0}
@@ -32,14 +30,8 @@ inline constexpr const char* reproduction_style = R"css(
 .map{width:100%;height:auto}.map text{font-size:11px;fill:currentColor}
 details{margin:.5rem 0}.animation img{max-width:100%;image-rendering:pixelated}summary{cursor:pointer;color:#08519c}
 a{color:#08519c}
-@media (max-width:600px){body{margin:1rem auto}}
-@media (prefers-color-scheme:dark){
-body{background:#12181f;color:#dbe3ea}.simulated{background:#3a3010;border-color:#d39e00}
-.note,.provenance,caption,figcaption{color:#9fb0bf}a,summary,.contents a{color:#8cc0f5}
-.claim,section>h3{border-color:#3a4753}.data .missed{color:#f29a9a}
-.chart .frame{stroke:#7b8b9a}.chart .line{stroke:#b9c7d4}.chart .chance{stroke:#e08a87}
-.chart circle{fill:#8cc0f5;stroke:#8cc0f5}.chart circle.open{fill:#12181f}.force .line{stroke:#dbe3ea}.force .alone{stroke:#8cc0f5}
-}
+@media screen and (prefers-color-scheme:dark){a,summary{color:#8ab8e6}.claim{border-color:#3a4754}
+  .data .missed{color:#f29a9a}.force .line{stroke:#dde5ec}.force .alone{stroke:#8ab8e6}}
 )css";
 
 namespace {

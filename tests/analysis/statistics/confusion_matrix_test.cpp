@@ -7,6 +7,7 @@
 #include "analysis/report/answer_tables/counts_csv.hpp"
 #include "analysis/report/blocks/choices.hpp"
 #include "analysis/report/confusion/confusion_summary.hpp"
+#include "analysis/report/document/formats.hpp"
 #include "analysis/report/document/wording.hpp"
 #include "analysis/report/summary.hpp"
 #include "analysis/report/writers.hpp"
@@ -49,7 +50,7 @@ TEST_CASE("the paper's Table 2 says what the paper says", "[analysis][confusion]
 
 TEST_CASE("a matrix that is written is read back the same", "[analysis][confusion]") {
   std::ostringstream text;
-  IdentificationSummary{BlockDesign{}, table2()}.tables().front().write(text);
+  write_table_csv(text, IdentificationSummary{BlockDesign{}, table2()}.results().tables.front());
   CHECK(matrix_from(text.str()).counts == table2().counts);
   CHECK(factors_of(matrix_from(text.str())) == std::vector<std::string>{"material", "structure"});
 }
@@ -78,7 +79,7 @@ TEST_CASE("a cell in quotes may hold commas, quotes and line ends, and is writte
   CHECK(matrix.responses.at(1).name == "say \"b\"");
   CHECK(is(overall_accuracy(matrix), 5, 6));
   std::ostringstream text;
-  IdentificationSummary{BlockDesign{}, matrix}.tables().front().write(text);
+  write_table_csv(text, IdentificationSummary{BlockDesign{}, matrix}.results().tables.front());
   CHECK(matrix_from(text.str()).counts == matrix.counts);
   CHECK(matrix_from(text.str()).stimuli.at(1).name == "say \"b\"");
   CHECK_THAT(refusal("stimulus,a,b\na,1,2\nb,\"1,2\n"), Contains("counts.csv:3: a quote"));
@@ -282,14 +283,14 @@ TEST_CASE("a summary counts by participant, block and task", "[analysis][summary
   const Summary summary = summarise(design, answers, {{"P1", "pick", "a", 3, 4.5}});
   CHECK(summary.participants == 2);
   CHECK(summary.modes == std::set<std::string>{"simulated"});
-  const auto& tell = dynamic_cast<const IdentificationSummary&>(*summary.blocks.at(0));
+  const auto& tell = static_cast<const IdentificationSummary&>(*summary.blocks.at(0));
   CHECK(is(tell.accuracy, 2, 3));
   CHECK(is(tell.participants.at(0).accuracy, 1, 2));
   CHECK(is(tell.participants.at(1).accuracy, 1, 1));
   REQUIRE(tell.hypotheses.size() == 1);
   CHECK(tell.hypotheses.at(0).chance == Approx(tell.matrix.chance()).epsilon(1e-9));
   CHECK(tell.as_json()["task"] == "tell_apart");
-  const auto& pick = dynamic_cast<const ChoiceSummary&>(*summary.blocks.at(1));
+  const auto& pick = static_cast<const ChoiceSummary&>(*summary.blocks.at(1));
   CHECK(is(pick.alternatives.at(0).chosen, 1, 2));  // P2's first of two equals is b
   CHECK(pick.alternatives.at(0).visits == 3);
   CHECK(pick.has_repeated_choices);
@@ -300,7 +301,7 @@ TEST_CASE("a summary counts by participant, block and task", "[analysis][summary
   add("P3", "pick", "", "b");
   const auto chosen_a = [&](const StudyDesign& declared) {
     const Summary voted = summarise(declared, answers, {});
-    return dynamic_cast<const ChoiceSummary&>(*voted.blocks.at(1)).alternatives.at(0).chosen;
+    return static_cast<const ChoiceSummary&>(*voted.blocks.at(1)).alternatives.at(0).chosen;
   };
   CHECK(is(chosen_a(design), 1, 3));
   CHECK(is(chosen_a(first), 2, 3));

@@ -299,8 +299,8 @@ TEST_CASE("free text is in no format, and a mark that is no number is refused",
   std::ostringstream all;
   write_sections_text(all, sections);
   write_sections_html(all, sections, "study");
-  for (const CsvTable& table : csv_of(sections)) {
-    table.write(all);
+  for (const ReportTable* const table : csv_tables(sections)) {
+    write_table_csv(all, *table);
   }
   all << json_of(answers);
   CHECK(all.str().find("secret") == std::string::npos);

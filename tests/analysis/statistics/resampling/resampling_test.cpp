@@ -175,7 +175,7 @@ TEST_CASE("an order that was not drawn has no test of chance", "[analysis]") {
   const auto summary =
       analysis::summarise_identification(design.blocks.at(0), {guesses(protocol, 1), {}});
   const auto& hypothesis =
-      dynamic_cast<const analysis::IdentificationSummary&>(*summary).hypotheses.at(0);
+      static_cast<const analysis::IdentificationSummary&>(*summary).hypotheses.at(0);
   CHECK_FALSE(hypothesis.p);
   CHECK(hypothesis.test.find("listed") != std::string::npos);
 }

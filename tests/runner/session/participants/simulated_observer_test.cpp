@@ -83,7 +83,7 @@ analysis::Summary simulated(const std::string& text, int participants, std::uint
                              results::stored_answers(store), results::stored_visits(store));
 }
 const analysis::IdentificationSummary& identification(const analysis::Summary& summary) {
-  return dynamic_cast<const analysis::IdentificationSummary&>(*summary.blocks.at(0));
+  return static_cast<const analysis::IdentificationSummary&>(*summary.blocks.at(0));
 }
 // Within four standard errors of guessing.
 bool is_chance(const Proportion& accuracy, double chance) {
@@ -179,7 +179,7 @@ TEST_CASE("the observer chooses what feels like its reference", "[runner][observ
   const std::string text =
       with_noise("1", testing::contents(testing::shipped("paper/reality_vibration.yaml")));
   const auto chosen = [](const analysis::Summary& summary, const std::string& name) {
-    const auto& choice = dynamic_cast<const analysis::ChoiceSummary&>(*summary.blocks.at(0));
+    const auto& choice = static_cast<const analysis::ChoiceSummary&>(*summary.blocks.at(0));
     for (const auto& alternative : choice.alternatives) {
       if (alternative.item.name == name) {
         return alternative.chosen.value();

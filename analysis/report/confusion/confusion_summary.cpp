@@ -127,7 +127,6 @@ IdentificationSummary::IdentificationSummary(const BlockDesign& design, Confusio
       matrix{std::move(counted)},
       accuracy{overall_accuracy(matrix)},
       factors{factor_results(matrix)} {
-  are_only_counts_known = true;
   if (accuracy.trials > 0) {
     sections.push_back(independent_accuracy_section(*this));
   }

@@ -41,7 +41,6 @@ class IdentificationSummary final : public BlockSummary {
   std::vector<ParticipantAccuracy> participants;  // none when only counts are known
   std::string chance_test;         // how accuracy was tested against chance, or why not
   std::optional<double> chance_p;  // its probability
-  bool are_only_counts_known{};    // participants are not
   std::string information;         // a sentence on information transfer
 
  private:

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <sstream>
 
 #include "analysis/report/document/cells.hpp"
 #include "analysis/report/document/formats.hpp"
@@ -202,20 +201,6 @@ std::string drawn(const Chart& chart) {
     svg += mark(chart, point);
   }
   return svg;
-}
-
-// Broken between words.
-std::vector<std::string> lines_of(const std::string& text, std::size_t characters) {
-  std::istringstream words{text};
-  std::vector<std::string> lines;
-  for (std::string word; words >> word;) {
-    if (lines.empty() || text_width(lines.back()) + 1 + text_width(word) > characters) {
-      lines.push_back(word);
-    } else {
-      lines.back() += " " + word;
-    }
-  }
-  return lines;
 }
 }  // namespace
 

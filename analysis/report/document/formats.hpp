@@ -14,8 +14,12 @@ namespace tapstudy::analysis {
 inline constexpr std::size_t terminal_columns = 100;
 // In characters of UTF-8, each as wide as any other.
 std::size_t text_width(const std::string& text);
-// The words in lines of at most terminal_columns behind so many spaces, the second and further
-// lines two more; each ends with a line end. A longer word has a line of its own.
+// Broken between words into lines of at most so many characters, the second and further behind so
+// many spaces. A longer word has a line of its own.
+std::vector<std::string> lines_of(const std::string& text, std::size_t width,
+                                  std::size_t hanging = 0);
+// The same in lines of at most terminal_columns behind so many spaces, the second and further lines
+// two more; each ends with a line end.
 std::string wrapped(const std::string& text, std::size_t indent);
 void write_hypotheses_text(std::ostream& out, const std::vector<HypothesisResult>& hypotheses);
 

@@ -13,24 +13,12 @@
 #include "core/text/print.hpp"
 namespace tapstudy::analysis {
 std::string escaped(const std::string& text) {
+  constexpr std::string_view special = "&<>\"";
+  constexpr std::array<std::string_view, 4> entities{"&amp;", "&lt;", "&gt;", "&quot;"};
   std::string safe;
   for (const char c : text) {
-    switch (c) {
-      case '&':
-        safe += "&amp;";
-        break;
-      case '<':
-        safe += "&lt;";
-        break;
-      case '>':
-        safe += "&gt;";
-        break;
-      case '"':
-        safe += "&quot;";
-        break;
-      default:
-        safe += c;
-    }
+    const std::size_t place = special.find(c);
+    safe += place == std::string_view::npos ? std::string_view{&c, 1} : entities.at(place);
   }
   return safe;
 }

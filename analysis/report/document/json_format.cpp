@@ -35,8 +35,6 @@ nlohmann::ordered_json as_json(const std::vector<HypothesisResult>& hypotheses) 
 }
 
 namespace {
-using Json = nlohmann::ordered_json;
-
 // JSON has no infinite numbers.
 struct ToJson {
   Json operator()(std::monostate) const { return nullptr; }
@@ -71,5 +69,4 @@ nlohmann::ordered_json table_json(const ReportTable& table) {
   }
   return rows;
 }
-
 }  // namespace tapstudy::analysis

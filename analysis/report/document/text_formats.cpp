@@ -49,21 +49,27 @@ std::size_t text_width(const std::string& text) {
       std::ranges::count_if(text, [](char byte) { return (byte & marks) != continued; }));
 }
 
-std::string wrapped(const std::string& text, std::size_t indent) {
+std::vector<std::string> lines_of(const std::string& text, std::size_t width, std::size_t hanging) {
   std::istringstream words{text};
-  std::string lines;
-  std::string line(indent, ' ');
-  bool is_empty = true;
+  std::vector<std::string> lines;
   for (std::string word; words >> word;) {
-    if (!is_empty && text_width(line) + 1 + text_width(word) > terminal_columns) {
-      lines += line + '\n';
-      line = std::string(indent + 2, ' ');
-      is_empty = true;
+    if (lines.empty()) {
+      lines.push_back(word);
+    } else if (text_width(lines.back()) + 1 + text_width(word) > width) {
+      lines.push_back(std::string(hanging, ' ') + word);
+    } else {
+      lines.back() += ' ' + word;
     }
-    line += (is_empty ? "" : " ") + word;
-    is_empty = false;
   }
-  return lines + line + '\n';
+  return lines;
+}
+
+std::string wrapped(const std::string& text, std::size_t indent) {
+  std::string all;
+  for (const std::string& line : lines_of(text, terminal_columns - indent, 2)) {
+    all += std::string(indent, ' ') + line + '\n';
+  }
+  return all;
 }
 
 void write_hypotheses_text(std::ostream& out, const std::vector<HypothesisResult>& hypotheses) {

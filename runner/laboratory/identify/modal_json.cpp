@@ -41,6 +41,10 @@ Json json_of(const analysis::AmplitudeLine& line) {
           {"is_proportional", line.is_proportional()}};
 }
 
+Json json_of(const analysis::RayleighFit& fit);
+Json json_of(const SinusoidLaw& law);
+Json json_of(const ModelComparison& model);
+
 // Of one of those above.
 template <class Value>
 Json json_or_null(const std::optional<Value>& value) {
@@ -149,24 +153,15 @@ std::string json_of(const TapIdentification& found) {
             {"rate_error", found.question.rate_error},
             {"taps", Json::array()},
             {"modes", Json::array()},
-            {"rayleigh", nullptr},
-            {"sinusoid", nullptr},
-            {"model", nullptr},
+            {"rayleigh", json_or_null(found.rayleigh)},
+            {"sinusoid", json_or_null(found.sinusoid)},
+            {"model", json_or_null(found.model)},
             {"remarks", found.remarks}};
   for (const IdentifiedTap& tap : found.taps) {
     json["taps"].push_back(json_of(tap));
   }
   for (const analysis::RepeatedMode& mode : found.modes) {
     json["modes"].push_back(json_of(mode));
-  }
-  if (found.rayleigh) {
-    json["rayleigh"] = json_of(*found.rayleigh);
-  }
-  if (found.sinusoid) {
-    json["sinusoid"] = json_of(*found.sinusoid);
-  }
-  if (found.model) {
-    json["model"] = json_of(*found.model);
   }
   return json.dump(2);
 }

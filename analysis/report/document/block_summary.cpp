@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <iterator>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <span>
 #include <unordered_set>
 
@@ -27,16 +26,6 @@ void BlockSummary::write_html(std::ostream& out) const {
   write_contents_html(out, results());
   write_hypotheses_html(out, hypotheses);
   write_sections_html(out, std::span{sections}.subspan(1), block.empty() ? "counts" : block);
-}
-
-nlohmann::ordered_json BlockSummary::as_json() const {
-  nlohmann::ordered_json json{{"block", block}, {"task", task}};
-  if (values) {
-    json.update(*values);
-  }
-  add_sections(json, sections);
-  json["hypotheses"] = analysis::as_json(hypotheses);
-  return json;
 }
 
 std::set<core::Source> BlockSummary::sources() const {

@@ -69,4 +69,14 @@ nlohmann::ordered_json table_json(const ReportTable& table) {
   }
   return rows;
 }
+
+nlohmann::ordered_json BlockSummary::as_json() const {
+  Json json{{"block", block}, {"task", task}};
+  if (values) {
+    json.update(*values);
+  }
+  add_sections(json, sections);
+  json["hypotheses"] = analysis::as_json(hypotheses);
+  return json;
+}
 }  // namespace tapstudy::analysis

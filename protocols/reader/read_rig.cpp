@@ -15,10 +15,12 @@ using Presence = MapReader::Presence;
 // A person's hand is on hardware; a simulated one may wait for any time (0).
 constexpr int max_late_ticks_of_hardware = 20;
 constexpr double max_stall_of_hardware_s = 0.01;
+constexpr double max_missed_share_of_hardware = 0.01;
 
 void read_loop(MapReader& top, Rig& rig) {
   rig.max_late_ticks_in_a_row = rig.has_hardware ? max_late_ticks_of_hardware : 0;
   rig.max_stall_s = rig.has_hardware ? max_stall_of_hardware_s : 0.0;
+  rig.max_missed_share = rig.has_hardware ? max_missed_share_of_hardware : 1.0;
   top.map("loop", Presence::optional, [&](MapReader& reader) {
     core::RealtimeRequest& realtime = rig.realtime;
     realtime.fifo_priority = reader.integer("fifo_priority", 0, 99, realtime.fifo_priority);
@@ -31,6 +33,7 @@ void read_loop(MapReader& top, Rig& rig) {
                        rig.max_late_ticks_in_a_row);
     rig.max_stall_s =
         reader.number("max_stall_s", {0.0, 0.1, !rig.has_hardware, true}, rig.max_stall_s);
+    rig.max_missed_share = reader.number("max_missed_share", {0.001, 1.0}, rig.max_missed_share);
   });
 }
 

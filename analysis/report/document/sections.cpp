@@ -34,6 +34,10 @@ void write_charts(std::ostream& out, const std::vector<Chart>& charts) {
   }
   out << "</div>\n";
 }
+
+void add_to(std::set<core::Source>& sources, const CitingText& text) {
+  sources.insert(text.sources.begin(), text.sources.end());
+}
 }  // namespace
 
 void write_contents_html(std::ostream& out, const ReportSection& section) {
@@ -125,12 +129,6 @@ std::vector<const ReportTable*> csv_tables(const std::vector<ReportSection>& sec
   }
   return written;
 }
-
-namespace {
-void add_to(std::set<core::Source>& sources, const CitingText& text) {
-  sources.insert(text.sources.begin(), text.sources.end());
-}
-}  // namespace
 
 void add_sources(std::set<core::Source>& sources, const ReportSection& section) {
   for (const ReportTable* const table : tables_shown(section, &ShownIn::page)) {

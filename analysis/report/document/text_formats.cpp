@@ -141,7 +141,6 @@ void write_entries(std::ostream& out, const Grid& grid) {
     }
   }
 }
-
 }  // namespace
 
 void write_table_text(std::ostream& out, const ReportTable& table) {
@@ -221,7 +220,6 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 22> replacem
      {">", "$>$"},
      {"≤", "$\\leq$"},
      {"\n", " "}}};
-
 }  // namespace
 
 std::string latex_text(std::string_view text) {

@@ -77,8 +77,8 @@ std::string described(const AxisValues& values) {
 }
 
 Spacing read_spacing(MapReader& reader) {
-  return reader.one_of<Spacing>("spacing", {{"linear", Spacing::linear}, {"log", Spacing::log}},
-                                "linear");
+  return reader.one_of<Spacing>({"spacing", "equal differences or equal ratios between values"},
+                                {{"linear", Spacing::linear}, {"log", Spacing::log}}, "linear");
 }
 
 bool check_spacing(MapReader& reader, Spacing spacing, double lowest) {
@@ -99,7 +99,8 @@ std::optional<SpacedEnds> read_ends(MapReader& reader, const EndKeys& keys, cons
     return std::nullopt;
   }
   if (!(ends.low < ends.high)) {
-    reader.reject(keys.low, fmt::format("{} is not below {}, {}", ends.low, keys.high, ends.high));
+    reader.reject(keys.low.name,
+                  fmt::format("{} is not below {}, {}", ends.low, keys.high.name, ends.high));
     return std::nullopt;
   }
   return check_spacing(reader, ends.spacing, ends.low) ? std::optional{ends} : std::nullopt;
@@ -108,7 +109,7 @@ std::optional<SpacedEnds> read_ends(MapReader& reader, const EndKeys& keys, cons
 std::optional<SpacedValues> read_spaced(MapReader& reader, const EndKeys& keys,
                                         const Range& allowed, int max_count) {
   const std::size_t earlier_problems = reader.problems_in_file();
-  const int count = reader.integer("count", 2, max_count);
+  const int count = reader.integer({"count", "how many values, both ends included"}, 2, max_count);
   const std::optional<SpacedEnds> ends = read_ends(reader, keys, allowed);
   if (!ends || reader.problems_in_file() > earlier_problems) {
     return std::nullopt;
@@ -118,7 +119,7 @@ std::optional<SpacedValues> read_spaced(MapReader& reader, const EndKeys& keys,
   if (std::ranges::adjacent_find(values, std::greater_equal{}) != values.end()) {
     reader.reject("count", fmt::format("is too high: values between {} and {} are no longer "
                                        "distinct",
-                                       keys.low, keys.high));
+                                       keys.low.name, keys.high.name));
     return std::nullopt;
   }
   return spaced_values;

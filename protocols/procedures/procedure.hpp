@@ -11,7 +11,6 @@
 #include "core/psychometric_function.hpp"
 #include "protocols/yaml/yaml_reader.hpp"
 namespace tapstudy::protocols {
-class MapReader;
 
 // A change of direction of a staircase: at which trial (from 1) and at which value it turned.
 struct Reversal {
@@ -106,12 +105,12 @@ class TrackSettings {
 };
 
 // A psychophysical procedure: which stimulus value comes next. To add one: a file beside this with
-// its class, a row in procedure_table.cpp, a schema in protocols/schema/procedures/; nothing else
-// refers to a procedure by name.
+// its class, a row in procedure_table.cpp; nothing else refers to a procedure by name.
 class Procedure {
  public:
   virtual ~Procedure() = default;
   virtual std::string_view name() const = 0;
+  virtual std::string_view meaning() const = 0;  // in the reference of keys
   // Its own keys; problems go to the reader. nullptr: no track could be started with these, and the
   // problem was noted.
   virtual std::shared_ptr<const TrackSettings> read(MapReader& reader) const = 0;
@@ -138,6 +137,8 @@ inline constexpr double largest_value = 1e9;
 inline constexpr int max_grid_values = 10'000;
 
 // The keys of a grid: `values`, listed in increasing order; or `min`, `max`, `count` and `spacing`,
-// linear or log. At least one value, strictly increasing. nullopt: a problem was noted.
-std::optional<std::vector<double>> read_grid(MapReader& reader);
+// linear or log. At least one value, strictly increasing. nullopt: a problem was noted. What values
+// the schema allows is stated; the caller checks it.
+std::optional<std::vector<double>> read_grid(MapReader& reader,
+                                             const Range& stated = {-largest_value, largest_value});
 }  // namespace tapstudy::protocols

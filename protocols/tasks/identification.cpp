@@ -39,7 +39,11 @@ void read_stimuli_as_responses(MapReader& reader, const std::vector<std::string>
       known.push_back(level);
     }
   }
-  block.responses = reader.words("responses", "stimulus", known, block.stimuli);
+  block.responses = reader.words(
+      {"responses",
+       "identification only: allowed answers, at least 2: stimuli, those presented among them, or "
+       "levels of response_factor; unset: the stimuli, or their levels"},
+      "stimulus", known, block.stimuli);
   for (const std::string& response : block.responses) {
     if (std::ranges::find(stimuli, response) == stimuli.end()) {
       reader.reject("responses", fmt::format("'{0}' is a level of the factor '{1}': add "
@@ -59,18 +63,26 @@ void read_responses(MapReader& reader, const Protocol& protocol, Block& block) {
     read_stimuli_as_responses(reader, factors, protocol, block);
     return;
   }
-  block.response_factor = reader.word("response_factor", "factor", factors);
+  block.response_factor =
+      reader.word({"response_factor",
+                   "identification only: the factor that is asked for (which material?), whose "
+                   "levels are the answers; unset: the stimulus"},
+                  "factor", factors);
   block.responses = reader.words(
-      "responses", "level", levels_of(block.response_factor, protocol, stimulus_names(protocol)),
+      {"responses",
+       "identification only: allowed answers, at least 2: stimuli, those presented among them, or "
+       "levels of response_factor; unset: the stimuli, or their levels"},
+      "level", levels_of(block.response_factor, protocol, stimulus_names(protocol)),
       levels_of(block.response_factor, protocol, block.stimuli));
-  reader.each_translated("response_labels", MapReader::Presence::optional,
-                         [&](const std::string& level, const std::string& label) {
-                           if (std::ranges::find(block.responses, level) == block.responses.end()) {
-                             reader.reject("response_labels",
-                                           fmt::format("'{}' cannot be answered", level));
-                           }
-                           block.response_labels[level] = label;
-                         });
+  reader.each_translated(
+      {"response_labels",
+       "by level of response_factor, or of same and different; unset: the level itself"},
+      MapReader::Presence::optional, [&](const std::string& level, const std::string& label) {
+        if (std::ranges::find(block.responses, level) == block.responses.end()) {
+          reader.reject("response_labels", fmt::format("'{}' cannot be answered", level));
+        }
+        block.response_labels[level] = label;
+      });
 }
 
 // Of those that were not rejected already.
@@ -118,9 +130,8 @@ class Identification final : public Task {
   void read(MapReader& reader, const Protocol& protocol, Block& block) const override {
     read_responses(reader, protocol, block);
     block.right_response = right_responses(protocol, block);
-    if (block.responses.size() < 2) {
-      reader.reject("responses", "an identification needs at least two possible answers");
-    }
+    reader.check("responses", block.responses.size() >= 2, R"({"minItems": 2})",
+                 "an identification needs at least two possible answers");
     for (const auto& [stimulus, right] : block.right_response) {
       if (std::ranges::find(block.responses, right) == block.responses.end()) {
         reader.reject("responses", fmt::format("'{}' is presented, but '{}' cannot be answered",

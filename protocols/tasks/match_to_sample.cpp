@@ -40,12 +40,15 @@ class MatchToSample final : public SampleTask {
     return block.alternatives == 2 ? "abx_differencing" : "";
   }
   void read(MapReader& reader, const Protocol& /*protocol*/, Block& block) const override {
-    block.alternatives = reader.integer("alternatives", 2, 4, 3);
-    if (block.stimuli.size() < alternatives(block)) {
-      reader.reject("stimuli", fmt::format("a match to sample among {} alternatives needs at least "
-                                           "as many stimuli",
-                                           block.alternatives));
-    } else if (trials_per_repetition(block) > max_trials) {
+    block.alternatives = reader.integer(
+        {"alternatives",
+         "comparison: 2 to 8; odd_one_out: 3 or 4; match_to_sample: 2 to 4; unset: 2, or 3"},
+        2, 4, 3);
+    reader.check_count("stimuli", block.stimuli, alternatives(block), max_stimuli,
+                       fmt::format("a match to sample among {} alternatives needs at least as many "
+                                   "stimuli",
+                                   block.alternatives));
+    if (block.stimuli.size() >= alternatives(block) && trials_per_repetition(block) > max_trials) {
       reader.reject("stimuli",
                     fmt::format("{} stimuli give {} trials in each repetition; at most "
                                 "{} are allowed",

@@ -26,10 +26,19 @@ bool is_vary_refused(const Protocol& protocol, const Block& block) {
 std::string read_axis(MapReader& reader, const Protocol& protocol, const Block& block,
                       const std::vector<std::string>& axes) {
   if (reader.has("axis") && is_vary_refused(protocol, block)) {
-    return reader.text("axis");
+    return reader.text(
+        {"axis",
+         "with procedures: along which the comparison differs from its standard; magnitude: of the "
+         "values; adjustment: that is moved along; unset: the only one of the stimulus"});
   }
-  return reader.word("axis", "axis of the stimuli", axes,
-                     axes.size() == 1 ? std::optional{axes.front()} : std::nullopt);
+  return reader.word(
+      {"axis",
+       "with procedures: along which the comparison differs from its standard; magnitude: of the "
+       "values; adjustment: that is moved along; unset: the only one of the stimulus"},
+      "axis of the stimuli", axes,
+      reader.depends_on_others(axes.size() == 1)
+          ? std::optional{axes.empty() ? std::string{} : axes.front()}
+          : std::nullopt);
 }
 
 std::vector<double> presented_on_axis(MapReader& reader, const std::string& key,

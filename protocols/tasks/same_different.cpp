@@ -31,7 +31,7 @@ class SameDifferent final : public DiscriminationTask {
   }
   void read(MapReader& reader, const Protocol& protocol, Block& block) const override {
     DiscriminationTask::read(reader, protocol, block);
-    reader.each_translated("response_labels", MapReader::Presence::optional,
+    reader.each_translated({"response_labels", "by level of response_factor, or of same and different; unset: the level itself"}, MapReader::Presence::optional,
                            [&](const std::string& response, const std::string& label) {
                              if (response != same && response != different) {
                                reader.reject("response_labels",

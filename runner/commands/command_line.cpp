@@ -190,6 +190,7 @@ ExitCode run_command_line(int argc, const char* const* argv) {
   add_devices(line);
   add_doctor(line);
   add_calibrate(line);
+  add_schema(line);
   return line.parse(argc, argv);
 }
 }  // namespace tapstudy::runner

@@ -9,8 +9,8 @@
 #include "runner/commands/command_line.hpp"
 #include "runner/commands/shared_options.hpp"
 #include "runner/console/console_api.hpp"
-#include "runner/session/devices/rigs.hpp"
 #include "runner/live_session/live_session.hpp"
+#include "runner/session/devices/rigs.hpp"
 #include "runner/terminal/logging.hpp"
 #include "runner/terminal/typed_input.hpp"
 namespace tapstudy::runner {

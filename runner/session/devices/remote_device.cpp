@@ -40,11 +40,21 @@ class RemoteKind final : public DeviceKind {
   std::shared_ptr<const protocols::DeviceSection> read_section(
       protocols::MapReader& top, const protocols::RigText& /*rig*/) const override {
     auto section = std::make_shared<RemoteSection>();
-    top.map("remote", protocols::MapReader::Presence::required, [&](protocols::MapReader& reader) {
-      section->port = static_cast<std::uint16_t>(reader.integer("port", 1024, 65535));
-      section->max_reply_s = reader.number("max_reply_s", {0.001, 0.05}, section->max_reply_s);
-      section->delay_ticks = reader.integer("delay_ticks", 0, 10, section->delay_ticks);
-    });
+    top.map({"remote", "a device driven by another program on this machine"},
+            protocols::MapReader::Presence::required, [&](protocols::MapReader& reader) {
+              section->port = static_cast<std::uint16_t>(
+                  reader.integer({"port", "UDP port on the loopback interface"}, 1024, 65535));
+              section->max_reply_s = reader.number(
+                  {"max_reply_s",
+                   "a reply that takes longer is missing; more than three in a row, or a tenth of "
+                   "all in the long run, are a fault; at most half of loop.max_stall_s"},
+                  {0.001, 0.05}, section->max_reply_s);
+              section->delay_ticks =
+                  reader.integer({"delay_ticks",
+                                  "ticks between the request of a force and its action, for the "
+                                  "stability bound that `check` prints"},
+                                 0, 10, section->delay_ticks);
+            });
     return section;
   }
   int delay_ticks(const protocols::Rig& rig) const override {

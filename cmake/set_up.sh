@@ -2,18 +2,37 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
+is_installed() { dpkg-query -W -f='${Status}' "$1" 2>/dev/null | grep -q 'ok installed'; }
+is_available() { LC_ALL=C apt-cache policy "$1" 2>/dev/null | grep -q '^  Candidate: [^(]'; }
+
+# missing_lines LIST…: the lines none of whose alternatives is installed (packages.txt says how they
+# are written). packages_to_install LIST…: the first alternative of each that this release has.
+missing_lines() {
+  local line package
+  for line in $(grep -hv '^#' "$@"); do
+    for package in ${line//[|?]/ }; do is_installed "$package" && continue 2; done
+    echo "$line"
+  done
+}
+packages_to_install() {
+  local line package
+  for line in $(missing_lines "$@"); do
+    for package in ${line//[|?]/ }; do is_available "$package" && echo "$package" && continue 2; done
+    [[ $line == *\? ]] || echo "${line%%|*}"  # apt-get says that there is none
+  done
+}
+
 # install_packages LIST…: what the files name and this machine lacks.
 install_packages() {
-  local wanted missing=() sudo=""
-  wanted=$(cat "$@" | grep -v '^#')
-  for package in $wanted; do
-    dpkg-query -W -f='${Status}' "$package" 2>/dev/null | grep -q 'ok installed' || missing+=("$package")
-  done
-  [ ${#missing[@]} -eq 0 ] && return
+  local missing packages sudo=""
+  missing=$(missing_lines "$@")
+  [ -n "$missing" ] || return 0
   [ "$(id -u)" -eq 0 ] || sudo="sudo"
-  echo "tapstudy: installing ${missing[*]}" >&2
-  $sudo apt-get update -q >&2
-  $sudo env DEBIAN_FRONTEND=noninteractive apt-get install -y -q --no-install-recommends "${missing[@]}" >&2
+  if grep -qv '?$' <<<"$missing"; then $sudo apt-get update -q >&2; fi
+  packages=$(packages_to_install "$@")
+  [ -n "$packages" ] || return 0
+  echo "tapstudy: installing" $packages >&2
+  $sudo env DEBIAN_FRONTEND=noninteractive apt-get install -y -q --no-install-recommends $packages >&2
 }
 
 preset=${TAPSTUDY_PRESET:-release}  # of CMakePresets.json; checks build the same with another

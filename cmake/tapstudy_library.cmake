@@ -43,7 +43,7 @@ function(tapstudy_library name)
   unite_by_folder(${sources})
   optimise_cgal_lightly(${sources})
   add_library(tapstudy::${name} ALIAS tapstudy_${name})
-  target_include_directories(tapstudy_${name} PUBLIC ${PROJECT_SOURCE_DIR})
+  target_include_directories(tapstudy_${name} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>)
   target_link_libraries(tapstudy_${name} PUBLIC ${ARG_LINK}
     PRIVATE ${ARG_PRIVATE} $<BUILD_INTERFACE:tapstudy_flags>)
   # What nearly every source includes, compiled once and for all of them.

@@ -50,7 +50,7 @@ constexpr std::array rows{
     PsychometricShapeRow{log_gaussian, "log_gaussian", true,
                          "cumulative Gaussian of the value's logarithm to base 10"},
 };
-// In the order of the rows.
+// The standard forms, in the order of the rows.
 constexpr std::array forms{extreme_value_form, extreme_value_form, logistic_form,
                            logistic_form,      gaussian_form,      gaussian_form};
 static_assert(rows.size() == forms.size());

@@ -93,8 +93,8 @@ class Device {
   }
   // After a fault: sets all outputs to zero immediately, by all available means.
   virtual StopOutcome emergency_stop() noexcept { return zero_force(); }
-  // Asked after a stop that was not confirmed: whether zero force has been taken since, for example
-  // by a guardian that repeats it.
+  // Asked after a stop that was not confirmed: whether the device has confirmed zero force since,
+  // for example to a guardian that repeats it.
   virtual bool is_force_off() const noexcept { return false; }
   virtual DeviceDetail detail() const noexcept = 0;
   // Identification, for the session's record.

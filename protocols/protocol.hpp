@@ -72,7 +72,7 @@ struct Plate : core::Plate {
 };
 
 // What a plate touches. The first of the plates is the one that is tapped.
-struct Contacts : core::Contacts {
+struct Contacts : core::Joints {
   std::vector<std::shared_ptr<const Plate>> plates;
 };
 

@@ -61,7 +61,7 @@ struct AlternativeRow {
   AxisValues axis_values{};  // as presented; empty if it does not vary
   bool is_comparison{};      // not the standard that it is compared with
 };
-// By trial id; of each trial by position.
+// The alternatives of each trial by its id, in order of position.
 using AlternativesOfTrials = std::map<std::int64_t, std::vector<AlternativeRow>>;
 struct ResponseRow {
   std::string response;                             // as the task stores it: a stimulus's name
@@ -87,7 +87,7 @@ struct FormAnswerRow {
   std::string item;
   std::optional<std::string> answer;  // unset: left out
 };
-// What the operator did during a session.
+// An action of the operator during a session.
 struct OperatorActionRow {
   std::int64_t session_id{};
   double t_s{};  // as a SessionEventRow's
@@ -108,7 +108,7 @@ struct CorrectionRow {
   GivenBy given_by{GivenBy::operator_of_session};
   int ordinal{};  // of the trial's corrections, from 1; the store counts
 };
-// Of a trial whose trace was not kept, as was asked for.
+// The event of a trial whose trace was deliberately not kept.
 inline constexpr const char* untraced_event = "untraced";
 struct EventRow {
   double t_s{};  // from the first tick of the trial
@@ -138,8 +138,8 @@ struct TickStatisticsRow {
   double worst_lateness_s{};
   std::string fault;  // empty: none
 };
-// How a trial ended. interrupted: it comes again; repeated: likewise, its answer does not count;
-// timed_out: it had no answer in time; skipped by the operator.
+// The end of a trial. An interrupted trial comes again; so does a repeated one, whose answer does
+// not count; timed_out: no answer in time; skipped by the operator.
 enum class TrialStatus { answered, interrupted, repeated, timed_out, skipped };
 std::string to_text(TrialStatus status);
 TrialStatus trial_status_from(const std::string& text);
@@ -158,8 +158,8 @@ struct TrialRow {
   bool is_of_real_plate{};  // not rendered: a plate that was mounted
 };
 
-// How the sessions of one participant went. Trials are presentations, practice aside; the loop's
-// are of every stored trial.
+// The course of one participant's sessions. Trials are presentations, practice aside; values of the
+// loop are over every stored trial.
 struct ParticipantCourseRow {
   std::string participant_id;
   Mode mode{};
@@ -245,14 +245,14 @@ struct AnswerRow {
   int place_in_block{};        // as planned, from 0; follows from the order of the session's blocks
 };
 
-// What was done of a block, by all participants of a mode whose answers are reported.
+// The answers given in a block by all participants of a mode whose answers are reported.
 struct BlockCourseRow {
   std::set<std::string> participants{};  // who answered at least one of its trials
   int answered{};
   int masked{};  // of these; with masking noise
 };
 
-// How long and how often each alternative was felt, where there were several.
+// The time and number of visits to each alternative in trials with several.
 struct VisitRow {
   std::string participant_id;
   std::string block;

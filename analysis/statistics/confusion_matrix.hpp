@@ -21,7 +21,7 @@ struct TableTotals {
 // below 0.
 TableTotals totals_of(const CountTable& table);
 
-// Without the rows and columns whose total is 0.
+// The table without the rows and columns whose total is 0.
 CountTable without_empty_lines(const CountTable& table);
 
 // Cell by cell. Throws InvalidInput if their shapes differ or there is none.
@@ -37,7 +37,7 @@ struct Item {
   std::map<std::string, std::string> factors{};
   std::string right{};      // of a stimulus: the response that is right, if not its own name
   std::string technique{};  // by which a stimulus was rendered; empty: not known
-  // Of a response: false where it is right for no stimulus ("unsure").
+  // False for a response that is right for no stimulus ("unsure").
   bool is_alternative{true};
   bool is_answered_by(const std::string& response) const {
     return response == (right.empty() ? name : right);
@@ -60,7 +60,7 @@ struct ConfusionMatrix {
   std::int64_t row_total(std::size_t stimulus) const;
   std::int64_t total() const;
   std::int64_t alternatives() const { return alternatives_among(responses); }
-  // Of all answers, those that name an alternative; 1 if there are none.
+  // The share of all answers that name an alternative; 1 if there are none.
   double share_of_alternatives() const;
   // The share of right answers of somebody who guesses among the alternatives, and says as often as
   // these participants did what is none of them.
@@ -81,6 +81,6 @@ double factor_chance(const ConfusionMatrix& matrix, const std::string& factor,
 // The factors that every stimulus has a level of, and not all the same one. A response without a
 // level agrees with none.
 std::vector<std::string> factors_of(const ConfusionMatrix& matrix);
-// Those of which all stimuli have the same level.
+// The factors of which all stimuli have the same level.
 std::vector<std::string> factors_of_one_level(const ConfusionMatrix& matrix);
 }  // namespace tapstudy::analysis

@@ -11,7 +11,7 @@ double chi_squared_p(double x, double degrees_of_freedom);
 double chi_squared_quantile(double probability, double degrees_of_freedom);
 // P(F >= f) of Fisher's F
 double f_p(double f, double numerator_freedom, double denominator_freedom);
-// Of the gamma distribution with scale 1; probability in (0, 1), shape above 0
+// Quantile of the gamma distribution with scale 1; probability in (0, 1), shape above 0
 double gamma_quantile(double probability, double shape);
 // probability in [0, 1], both shapes above 0
 double beta_quantile(double probability, double first_shape, double second_shape);

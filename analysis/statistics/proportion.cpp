@@ -154,7 +154,7 @@ double poisson_within(int low, int high, double mean) {
   return sum;
 }
 
-// Of a Poisson variable of this mean, given that it lies from low to high.
+// Moments of a Poisson variable of this mean, given that it lies from low to high.
 struct Truncated {
   double mean{};
   double second{};  // central moments
@@ -163,7 +163,7 @@ struct Truncated {
   double within{};  // the probability that it does
 };
 
-// From factorial moments mean^r P(low - r <= X <= high - r) / P(low <= X <= high).
+// Computed from factorial moments mean^r P(low - r <= X <= high - r) / P(low <= X <= high).
 Truncated truncated(int low, int high, double mean) {
   Truncated made;
   made.within = poisson_within(low, high, mean);

@@ -102,7 +102,7 @@ void write_unfinished(const NewFile& file) {
 }
 
 // The folders that were not there before.
-class MadeFolders {
+class CreatedDirectories {
  public:
   void make_for(const std::string& file) {
     const fs::path folder = fs::absolute(file).lexically_normal().parent_path();
@@ -164,7 +164,7 @@ void write_new_file(const std::string& file, const std::string& text) {
 
 void write_all_or_none(const std::vector<NewFile>& files, Existing existing) {
   check_names_differ(files);
-  MadeFolders folders;
+  CreatedDirectories folders;
   try {
     std::ranges::for_each(files, [&](const NewFile& file) { folders.make_for(file.name); });
     std::ranges::for_each(files, existing == Existing::kept ? check_is_new : check_is_replaceable,

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 namespace tapstudy::core {
-// To a file or pipe; false where it fails, with errno.
+// Writes to a file or pipe; false on failure, with errno.
 bool write_all(int descriptor, std::string_view bytes);
 
 using Write = std::function<void(std::ostream&)>;
@@ -33,10 +33,9 @@ void write_all_or_none(const std::vector<NewFile>& files, Existing existing);
 // cannot be made or nothing can be written into it.
 void make_directories(const std::string& directory);
 // Makes a new directory all at once: `fill` writes into an unfinished one beside it, given its
-// name, which gets the final name when everything is in it. What remains of a killed program is
-// called NAME.unfinished-… and never read.
-// Throws InvalidInput, and leaves nothing, if there is something of that name already or it cannot
-// be made; and what `fill` throws.
+// name, which gets the final name when everything is in it. The remains of a killed program are
+// called NAME.unfinished-… and never read. Throws InvalidInput, and leaves nothing, if there is
+// something of that name already or it cannot be made; and what `fill` throws.
 void write_new_directory(const std::string& directory,
                          const std::function<void(const std::string& unfinished)>& fill);
 // The same for a single file, which `fill` creates under the name that it is given.

@@ -101,7 +101,7 @@ Point SmoothNormals::mean_around(const TriangleSurface& surface, const Points& f
   return sum.normalized();
 }
 
-int SmoothNormals::way_out(int triangle, const std::array<double, 3>& at) const noexcept {
+int SmoothNormals::exit_edge(int triangle, const std::array<double, 3>& at) const noexcept {
   int edge = none;
   for (int i = 0; i < 3; ++i) {
     const double here = at[static_cast<std::size_t>(i)];
@@ -150,7 +150,8 @@ std::optional<SmoothNormals::Foot> SmoothNormals::foot_on(
   return std::nullopt;
 }
 
-// To the nearest coordinates within the triangle, with the distance along the normal there.
+// Moves the foot to the nearest coordinates within the triangle, with the distance along the normal
+// there.
 void SmoothNormals::pull_to_edge(Foot& foot, const Point& inside_m,
                                  const TriangleSurface& surface) const noexcept {
   double sum = 0.0;
@@ -182,7 +183,7 @@ std::optional<SmoothNormals::Foot> SmoothNormals::foot_of(
     if (is_inside) {
       return foot;
     }
-    const int edge = way_out(triangle, foot->barycentric);
+    const int edge = exit_edge(triangle, foot->barycentric);
     if (edge == none) {
       pull_to_edge(*foot, inside_m, surface);
       return foot;

@@ -59,9 +59,9 @@ class SmoothNormals {
   int neighbour(int triangle, int edge) const noexcept {
     return neighbours_[static_cast<std::size_t>(3 * triangle + edge)];
   }
-  // Of the edges beyond which the barycentric coordinates lie, the one to cross; none if all are
+  // The edge to cross among those beyond which the barycentric coordinates lie; none if all are
   // sharp.
-  int way_out(int triangle, const std::array<double, 3>& at) const noexcept;
+  int exit_edge(int triangle, const std::array<double, 3>& at) const noexcept;
   std::optional<Foot> foot_on(int triangle, const Point& inside_m,
                               const TriangleSurface& surface) const noexcept;
   void pull_to_edge(Foot& foot, const Point& inside_m,

@@ -20,7 +20,7 @@ class TriangleTree {
     double along{1.0};  // 0 at the segment's start, 1 at its end
   };
 
-  // At least one triangle.
+  // The surface has at least one triangle.
   explicit TriangleTree(TriangleSurface surface);
 
   // The first triangle that the segment crosses from its outer to its inner side. An edge belongs
@@ -32,7 +32,7 @@ class TriangleTree {
 
   const TriangleSurface& surface() const noexcept { return surface_; }
   Point normal(int triangle) const noexcept { return normals_.row(triangle); }  // unit length
-  // Of the smooth surface that the triangles stand for.
+  // The next two refer to the smooth surface that the triangles stand for.
   bool is_flat(int triangle) const noexcept { return smooth_->is_flat(triangle); }
   std::optional<SmoothNormals::Foot> foot_of(const Point& inside, int nearby) const noexcept {
     return smooth_->foot_of(inside, nearby, surface_);

@@ -93,9 +93,9 @@ inline double along_normal(const std::array<double, 3>& device_vector) noexcept 
   return device_vector[static_cast<std::size_t>(normal_axis)];
 }
 
-// Where the plate lies in the device's workspace. Along the normal the scale is 1 : 1, so that
-// impact speed and penetration are physical; laterally one metre on the plate is `lateral_scale`
-// metres on the device, because a plate is wide and a workspace is a few centimetres.
+// The plate's place in the device's workspace. Along the normal the scale is 1 : 1, so that impact
+// speed and penetration are physical; laterally one metre on the plate is `lateral_scale` metres on
+// the device, because a plate is wide and a workspace is a few centimetres.
 //   plate x = device x / scale,  plate y = -device z / scale,  plate z = device y,
 // all relative to `origin_m`, the position of the plate frame's origin in the device frame.
 // Forces are rotated between the frames but not scaled.
@@ -103,7 +103,7 @@ struct Placement {
   Vec3 origin_m{Vec3::Zero()};
   double lateral_scale{1.0};  // > 0
 
-  // Of a plate with a lateral scale of its own, `ratio` times this.
+  // The placement of a plate with a lateral scale of its own, `ratio` times this.
   Placement scaled(double ratio) const noexcept { return {origin_m, ratio * lateral_scale}; }
   HandState to_plate(const HandState& hand) const noexcept {
     return {lengths_to_plate(hand.position_m - origin_m), lengths_to_plate(hand.velocity_m_s)};

@@ -134,7 +134,7 @@ std::optional<Beam> beam_of(const Plate& plate) {
 BodyModes beam_modes(const BodySpec& body) {
   const std::optional<Beam> beam = beam_of(body);
   if (!beam) {
-    throw ModelError{fmt::format("a beam is {}", what_a_beam_is)};
+    throw ModelError{fmt::format("a beam is {}", beam_requirements)};
   }
   const double radius_of_gyration_m = beam->thickness_m / std::sqrt(12.0);
   std::vector<double> roots;

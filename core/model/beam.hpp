@@ -19,8 +19,8 @@ struct Beam {
 // nullopt if the plate is none: not a box, held in another way, or less long than ten times its
 // thickness, where shear is no longer small, or three times its width, where it bends as a plate.
 std::optional<Beam> beam_of(const Plate& plate);
-// What beam_of asks for, in words.
-inline constexpr const char* what_a_beam_is =
+// The requirements of beam_of, as a noun phrase for error messages.
+inline constexpr const char* beam_requirements =
     "a plate with a side, or two opposite ones of left, right, front and back, held along x, y and "
     "z by constraints, at least ten times as long from there as thick and three "
     "times as wide";

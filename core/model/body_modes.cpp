@@ -92,9 +92,10 @@ SolvedBody solve_once(const BodySpec& body, const MeshSize& size, const Progress
   return solved;
 }
 
-// What is followed as the mesh is refined: the frequencies in the band or, where there are none,
-// the first above it, which a finer mesh may bring down into the band. Empty where it is far above.
-Eigen::ArrayXd followed(const BodySpec& body, const MeshSize& size, const SolvedBody& solved) {
+// The frequencies tracked under refinement: those in the band or, where there are none, the first
+// above it, which a finer mesh may bring down into the band. Empty where it is far above.
+Eigen::ArrayXd tracked_frequencies(const BodySpec& body, const MeshSize& size,
+                                   const SolvedBody& solved) {
   constexpr int max_doublings = 8;
   if (solved.modes.kappa_rad_per_m.size() > 0) {
     return solved.modes.kappa_rad_per_m;
@@ -108,26 +109,26 @@ Eigen::ArrayXd followed(const BodySpec& body, const MeshSize& size, const Solved
   return above.head(std::min<Eigen::Index>(above.size(), 1));
 }
 
-double largest_move(const Eigen::ArrayXd& before, const Eigen::ArrayXd& after) {
+double largest_change(const Eigen::ArrayXd& before, const Eigen::ArrayXd& after) {
   const Eigen::Index both = std::min(before.size(), after.size());
   return both == 0 ? 0.0 : (before.head(both) / after.head(both) - 1.0).abs().maxCoeff();
 }
 
-// What further refinement would still move: the moves shrink by a constant ratio as elements do
-// (Richardson 1911). Infinite where they do not shrink.
-double still_to_move(double moved_before, double moved) {
+// The change that further refinement would still cause: changes shrink by a constant ratio with the
+// element size (Richardson 1911). Infinite where they do not shrink.
+double remaining_change(double moved_before, double moved) {
   const double ratio = moved / moved_before;
   return ratio < 1.0 ? moved * ratio / (1.0 - ratio) : HUGE_VAL;
 }
 
 // One small move may be chance: two in a row, and little left.
-bool has_settled(const std::vector<RefinementRound>& rounds, double accuracy) {
+bool has_converged(const std::vector<RefinementRound>& rounds, double accuracy) {
   if (rounds.size() < 3) {
     return false;
   }
   const double before = rounds[rounds.size() - 2].moved;
   const double last = rounds.back().moved;
-  return std::max(before, last) <= accuracy && still_to_move(before, last) <= accuracy;
+  return std::max(before, last) <= accuracy && remaining_change(before, last) <= accuracy;
 }
 
 void check_can_settle(const std::vector<Fixation>& fixations) {
@@ -141,10 +142,10 @@ void check_can_settle(const std::vector<Fixation>& fixations) {
   }
 }
 
-// What each fixation holds must settle as well: a region that goes on catching nodes stiffens the
-// body while its elements soften.
-std::string unsettled_region(const std::vector<double>& before_m2,
-                             const std::vector<double>& after_m2) {
+// The area held by each fixation must settle as well: a region that keeps catching nodes stiffens
+// the body while its elements soften.
+std::string nonconverged_region(const std::vector<double>& before_m2,
+                                const std::vector<double>& after_m2) {
   constexpr double still = 0.1;
   for (std::size_t i = 0; i < after_m2.size(); ++i) {
     if (after_m2[i] == 0.0) {
@@ -159,8 +160,8 @@ std::string unsettled_region(const std::vector<double>& before_m2,
   return "";
 }
 
-[[noreturn]] void give_up(const std::vector<RefinementRound>& rounds, double accuracy,
-                          const std::string& unsettled) {
+[[noreturn]] void throw_not_converged(const std::vector<RefinementRound>& rounds, double accuracy,
+                                      const std::string& unsettled) {
   std::string history;
   for (const RefinementRound& round : rounds) {
     history += fmt::format("; {} tetrahedra: {} modes", round.tets, round.modes);
@@ -186,17 +187,17 @@ SolvedBody refine(const BodySpec& body, const ProgressHook& progress) {
   while (rounds.size() < max_rounds && (rounds.empty() || rounds.back().tets <= finer * max_tets)) {
     size.max_tet_volume_m3 = volume_m3;
     SolvedBody solved = solve_once(body, size, progress);
-    const Eigen::ArrayXd after = followed(body, size, solved);
+    const Eigen::ArrayXd after = tracked_frequencies(body, size, solved);
     add(solved.modes.report.cost, cost);
-    const double moved = rounds.empty() ? HUGE_VAL : largest_move(before, after);
+    const double moved = rounds.empty() ? HUGE_VAL : largest_change(before, after);
     rounds.push_back(
         {solved.modes.report.tets, static_cast<int>(solved.modes.kappa_rad_per_m.size()), moved});
     const auto held_m2 = held_areas_m2(solved.mesh, body.shape, body.fixations);
-    unsettled = unsettled_region(held_before_m2, held_m2);
+    unsettled = nonconverged_region(held_before_m2, held_m2);
     held_before_m2 = held_m2;
     const bool is_far_above = rounds.size() > 1 && before.size() == 0 && after.size() == 0;
     if (is_far_above ||
-        (before.size() == after.size() && has_settled(rounds, accuracy) && unsettled.empty())) {
+        (before.size() == after.size() && has_converged(rounds, accuracy) && unsettled.empty())) {
       solved.modes.report.refinement = rounds;
       solved.modes.report.cost = cost;
       return solved;
@@ -204,7 +205,7 @@ SolvedBody refine(const BodySpec& body, const ProgressHook& progress) {
     before = after;
     volume_m3 *= finer;
   }
-  give_up(rounds, accuracy, unsettled);
+  throw_not_converged(rounds, accuracy, unsettled);
 }
 }  // namespace
 
@@ -223,7 +224,7 @@ std::string content_key(const Plate& plate) {
 std::string content_key(const BodySpec& body) {
   return fmt::format("{} poisson({:a}) band({:a}) {}", content_key(static_cast<const Plate&>(body)),
                      body.poissons_ratio, body.band_limit_rad_per_m,
-                     body.contacts ? content_key(*body.contacts) : "");
+                     body.joints ? content_key(*body.joints) : "");
 }
 
 SolvedBody solve_body(const BodySpec& body, const ProgressHook& progress) {
@@ -231,8 +232,8 @@ SolvedBody solve_body(const BodySpec& body, const ProgressHook& progress) {
     return {{}, {}, beam_modes(body)};
   }
   try {
-    if (body.contacts) {
-      SolvedBody solved = solve_in_contact(body, progress);
+    if (body.joints) {
+      SolvedBody solved = solve_joined_bodies(body, progress);
       keep_touchable_part(body.shape, solved);
       return solved;
     }

@@ -17,8 +17,9 @@ struct BodyModes {
   ModalModel::Points touch_nodes_m;
   ModalModel::Triangles touch_surface;
   ModalModel::Rows shape;
-  // Of a body in contact with others, one column per mode: the shares of the mode's energy that are
-  // in it (row 0), in each of the others and, of strain, in each spring. Empty for a body alone.
+  // For a body in contact with others, one column per mode: the shares of the mode's energy that
+  // are in it (row 0), in each of the others and, for strain, in each spring. Empty for a body
+  // alone.
   Eigen::MatrixXd kinetic_share;
   Eigen::MatrixXd strain_share;
   ModelReport report;

@@ -22,9 +22,9 @@ struct DiscreteBody {
 DiscreteBody discretised(const Plate& plate, const Material& material, const MeshSize& size,
                          const std::vector<Fixation>& regions, const ProgressHook& progress);
 
-// What solving these bodies, at least one, as one system took and found.
+// The cost and outcome of solving these bodies, at least one, as one system.
 ModelReport report_on(const std::vector<DiscreteBody>& bodies, const Modes& modes);
 
-// With the rows of constrained degrees of freedom, which are 0.
+// The displacements with the rows of constrained degrees of freedom, which are 0.
 Eigen::MatrixXd with_constrained_rows(const Eigen::MatrixXd& free_rows, const FreeDofs& dofs);
 }  // namespace tapstudy::core

@@ -144,7 +144,7 @@ bool selects_node(const Fixation& fixation, const Vec3& node_m, const Bounds& bo
   return false;
 }
 
-// Among the corners of surface triangles: excludes interior and mid-side nodes.
+// Searches the corners of surface triangles only, not interior and mid-side nodes.
 int nearest_corner(const TetMesh& mesh, const Vec3& at_m) {
   const auto corners = mesh.surface.leftCols<3>().reshaped();
   return *std::ranges::min_element(corners, {}, [&](int node) {

@@ -57,11 +57,12 @@ struct Fixation {
 // lie on the plate. Surfaces from files keep their own points.
 std::vector<Vec3> points_to_mesh(const std::vector<Fixation>& fixations, const Shape& shape);
 
-// Those that the fixation holds. Throws ModelError if there are none, with whose region it is.
+// The nodes that the fixation holds. Throws ModelError, naming `whose` region it is, if there are
+// none.
 std::vector<Eigen::Index> nodes_of(const Fixation& fixation, const TetMesh& mesh,
                                    const Shape& shape, std::string_view whose = "fixation");
 
-// Likewise, with the part of the surface that it takes up.
+// The same nodes, with the part of the surface that the region takes up.
 SurfaceRegion region_of(const Fixation& fixation, const TetMesh& mesh, const Shape& shape);
 
 // The constraints that the fixations put on a mesh. One flag a degree of freedom (x0 y0 z0 x1 …):

@@ -168,7 +168,7 @@ std::optional<BodyModes> ModelCache::find(const std::string& key) const {
   return decoded(body);
 }
 
-bool ModelCache::keep(const std::string& key, const BodyModes& modes) const {
+bool ModelCache::store(const std::string& key, const BodyModes& modes) const {
   if (directory_.empty()) {
     return true;
   }

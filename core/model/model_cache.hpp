@@ -18,7 +18,7 @@ class ModelCache {
   const std::string& directory() const { return directory_; }
   std::optional<BodyModes> find(const std::string& key) const;
   // False, and nothing is stored, if the disk is full or permission is denied.
-  [[nodiscard]] bool keep(const std::string& key, const BodyModes& modes) const;
+  [[nodiscard]] bool store(const std::string& key, const BodyModes& modes) const;
 
  private:
   std::string full_key(const std::string& key) const;

@@ -15,8 +15,8 @@ struct Meshing {
   std::optional<double> accuracy{};
 };
 
-// By which a body's modes are found: elasticity, by finite elements; or that of Euler-Bernoulli
-// beams, in closed form (core/model/beam.hpp).
+// The theory by which a body's modes are found: elasticity, by finite elements; or that of
+// Euler-Bernoulli beams, in closed form (core/model/beam.hpp).
 enum class Theory { solid, beam };
 
 // A plate, or any other body, without its material: shape, mesh settings and boundary conditions.
@@ -30,13 +30,13 @@ struct Plate {
 // Equal text for equal plates.
 std::string content_key(const Plate& plate);
 
-struct Contacts;  // core/model/joints/joints.hpp
+struct Joints;  // core/model/joints/joints.hpp
 
 // A plate of a given material, with the frequency band that its model must cover.
 struct PlateSpec : Plate {
   Material material;
-  double band_limit_hz{};                      // > 0; modes above are left out
-  std::shared_ptr<const Contacts> contacts{};  // nullptr: it touches no other body
+  double band_limit_hz{};                  // > 0; modes above are left out
+  std::shared_ptr<const Joints> joints{};  // nullptr: it touches no other body
 };
 
 // A body of any shape, independent of Young's modulus E and density rho. Stiffness, mass and
@@ -46,7 +46,7 @@ struct PlateSpec : Plate {
 // springs are in N/m per Pa of it. A body in contact with others serves one density only, too.
 struct BodySpec : Plate {
   double poissons_ratio{};
-  double band_limit_rad_per_m{};               // of kappa; > 0
-  std::shared_ptr<const Contacts> contacts{};  // relative to this body's material
+  double band_limit_rad_per_m{};           // of kappa; > 0
+  std::shared_ptr<const Joints> joints{};  // relative to this body's material
 };
 }  // namespace tapstudy::core

@@ -24,9 +24,10 @@ void check_band(const BodyModes& body, const Material& material, double band_lim
                     band_limit_hz, solved_hz)};
   }
 }
-// Of each body its part, and of each spring half of its loss factor (Ungar & Kerwin 1962).
-DampedModes damped_in_contact(const BodyModes& body, const Material& material,
-                              const Contacts& contacts, const Eigen::ArrayXd& omega_rad_s) {
+// Damping ratios: each body contributes its part, and each spring half of its loss factor (Ungar &
+// Kerwin 1962).
+DampedModes damped_with_joints(const BodyModes& body, const Material& material,
+                               const Joints& joints, const Eigen::ArrayXd& omega_rad_s) {
   const Eigen::Index modes = omega_rad_s.size();
   const auto part = [&](const Material& one, Eigen::Index row) -> Eigen::ArrayXd {
     return damping_ratios_due_to(one.damping, omega_rad_s,
@@ -34,13 +35,13 @@ DampedModes damped_in_contact(const BodyModes& body, const Material& material,
                                  body.strain_share.row(row).head(modes).transpose());
   };
   DampedModes damped{std::nullopt, part(material, 0)};
-  for (std::size_t i = 0; i < contacts.bodies.size(); ++i) {
-    damped.ratios += part(contacts.bodies[i].material, static_cast<Eigen::Index>(i) + 1);
+  for (std::size_t i = 0; i < joints.bodies.size(); ++i) {
+    damped.ratios += part(joints.bodies[i].material, static_cast<Eigen::Index>(i) + 1);
   }
-  const auto first_spring = static_cast<Eigen::Index>(contacts.bodies.size()) + 1;
-  for (std::size_t i = 0; i < contacts.springs.size(); ++i) {
+  const auto first_spring = static_cast<Eigen::Index>(joints.bodies.size()) + 1;
+  for (std::size_t i = 0; i < joints.springs.size(); ++i) {
     const Eigen::Index row = first_spring + static_cast<Eigen::Index>(i);
-    damped.ratios += 0.5 * contacts.springs[i].loss_factor *
+    damped.ratios += 0.5 * joints.springs[i].loss_factor *
                      body.strain_share.row(row).head(modes).transpose().array();
   }
   return damped;
@@ -59,21 +60,21 @@ BodySpec body_of(const PlateSpec& plate) {
       *fixation.springs_n_per_m /= plate.material.youngs_modulus_pa;
     }
   }
-  std::shared_ptr<const Contacts> contacts;
-  if (plate.contacts) {
-    contacts = std::make_shared<const Contacts>(relative_to(
-        *plate.contacts, plate.material.youngs_modulus_pa, plate.material.density_kg_per_m3));
+  std::shared_ptr<const Joints> joints;
+  if (plate.joints) {
+    joints = std::make_shared<const Joints>(relative_to(
+        *plate.joints, plate.material.youngs_modulus_pa, plate.material.density_kg_per_m3));
   }
   return {std::move(of_unit_material), plate.material.poissons_ratio,
-          kappa_rad_per_m(plate.band_limit_hz, plate.material), std::move(contacts)};
+          kappa_rad_per_m(plate.band_limit_hz, plate.material), std::move(joints)};
 }
 
 ModalModel model_of(const BodyModes& body, const PlateSpec& plate) {
-  return model_of(body, plate.material, plate.band_limit_hz, plate.contacts.get());
+  return model_of(body, plate.material, plate.band_limit_hz, plate.joints.get());
 }
 
 ModalModel model_of(const BodyModes& body, const Material& material, double band_limit_hz,
-                    const Contacts* contacts) {
+                    const Joints* joints) {
   check_material(material);
   check_band(body, material, band_limit_hz);
   const Eigen::ArrayXd frequency_hz = body.kappa_rad_per_m / kappa_rad_per_m(1.0, material);
@@ -81,9 +82,9 @@ ModalModel model_of(const BodyModes& body, const Material& material, double band
   ModalModel model;
   model.frequency_hz = frequency_hz.head(modes);
   const Eigen::ArrayXd omega_rad_s = 2.0 * std::numbers::pi * model.frequency_hz;
-  const DampedModes damped = contacts == nullptr
+  const DampedModes damped = joints == nullptr
                                  ? damp(material.damping, omega_rad_s)
-                                 : damped_in_contact(body, material, *contacts, omega_rad_s);
+                                 : damped_with_joints(body, material, *joints, omega_rad_s);
   model.damping = damped.rayleigh;
   model.damping_ratio = damped.ratios;
   model.touch_nodes_m = body.touch_nodes_m;

@@ -9,11 +9,11 @@ double kappa_rad_per_m(double frequency_hz, const Material& material);
 BodySpec body_of(const PlateSpec& plate);
 
 // Scales the body to a material: frequencies and mode shapes scaled, damping applied, modes above
-// the band omitted. contacts: with which the body was solved; their damping counts, too. Throws
+// the band omitted. joints: with which the body was solved; their damping counts, too. Throws
 // InvalidInput for properties out of range, ModelError if the damping does not fit the modes or the
 // body was solved for a lower band limit.
 ModalModel model_of(const BodyModes& body, const Material& material, double band_limit_hz,
-                    const Contacts* contacts = nullptr);
+                    const Joints* joints = nullptr);
 ModalModel model_of(const BodyModes& body, const PlateSpec& plate);
 
 struct PlateModel {

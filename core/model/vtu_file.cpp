@@ -68,7 +68,7 @@ void write_modes(std::ostream& out, const Eigen::MatrixXd& shapes) {
   out << "</PointData>\n";
 }
 
-// Of each mode scaled so that it moves no node further than 1.
+// The modal mass of each mode scaled to a largest displacement of 1.
 Eigen::ArrayXd modal_mass_kg(const Eigen::MatrixXd& shapes) {
   Eigen::ArrayXd mass_kg{shapes.cols()};
   for (Eigen::Index mode = 0; mode < shapes.cols(); ++mode) {

@@ -27,7 +27,7 @@ constexpr const char* child_name = "tapstudy-child";
 const ChildJob* all_jobs = nullptr;
 bool is_served = false;
 
-// Of this process now; 0 if unknown.
+// Memory of this process now; 0 if unknown.
 std::size_t memory_in_use_bytes() {
   std::size_t pages = 0;
   if (FILE* const file = std::fopen("/proc/self/statm", "re")) {
@@ -80,8 +80,8 @@ std::string all_from(int descriptor) {
   }
 }
 
-// What libraries print on standard output must not become part of the result.
-int result_instead_of_output() {
+// Redirects standard output, so that what libraries print there does not become part of the result.
+int redirect_output() {
   const int result = dup(STDOUT_FILENO);
   const int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);  // NOLINT: variadic in C
   dup2(nowhere, STDOUT_FILENO);
@@ -206,7 +206,7 @@ void serve_if_child(int count, char** words) {
   if (job == nullptr) {
     _exit(1);
   }
-  const int result = result_instead_of_output();
+  const int result = redirect_output();
   restrict_this_process({std::atoi(words[2]), std::strtoull(words[3], nullptr, 10)});
   write_all(result, outcome_of(*job, all_from(STDIN_FILENO)));
   _exit(0);

@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 namespace tapstudy::core {
-// How much of a commanded vibration a device renders, as measured: force at the grip over force
-// commanded, in magnitude.
+// A device's measured response to a commanded vibration: force at the grip over force commanded, in
+// magnitude.
 struct DeviceResponse {
   struct Point {
     double frequency_hz{};  // ascending, > 0
@@ -30,13 +30,13 @@ struct RecordedTaps {
   std::vector<RecordedTap> taps;
 };
 
-// How the modes are integrated in time: by the exact recurrence of a damped oscillator, or by
-// Newmark's method with beta = 1/4, gamma = 1/2 (paper section 4.2.1).
+// Time integration of the modes: the exact recurrence of a damped oscillator, or Newmark's method
+// with beta = 1/4, gamma = 1/2 (paper section 4.2.1).
 enum class Integrator { exact, newmark };
 
 // The paper's finger model: the striking mass (eq. 14, grip included) and the spring and damper
-// through which vibration is felt (eq. 17). Of a coupled finger (core/tick/coupled_finger.hpp) the
-// mass that the spring and damper hold to the hand.
+// through which vibration is felt (eq. 17). For a coupled finger (core/tick/coupled_finger.hpp),
+// mass_kg is the mass that the spring and damper hold to the hand.
 struct Finger {
   double mass_kg{0.058};
   double stiffness_n_per_m{300.0};
@@ -56,7 +56,8 @@ struct SinusoidShape {
     std::array<double, 2> to_m{};    // another one
     double amplitude_factor{1.0};
     double frequency_factor{1.0};
-    // How far on the way, 0 to 1, the nearest place of the way is; beyond its ends they hold on.
+    // The position of the nearest point of the segment, from 0 at its start to 1 at its end;
+    // clamped beyond the ends.
     double share_at(double x_m, double y_m) const noexcept {
       const double along_x_m = to_m[0] - from_m[0];
       const double along_y_m = to_m[1] - from_m[1];

@@ -11,9 +11,9 @@ namespace tapstudy::core {
 namespace {
 using Spectrum = std::vector<std::complex<double>>;
 
-// So fine that the cepstrum of a measured response does not wrap around.
+// The transform is long enough that the cepstrum of a measured response does not wrap around.
 constexpr std::size_t least_length = 4096;
-// Of the inverse's impulse response, relative to its largest value.
+// Threshold of the inverse's impulse response, relative to its largest value.
 constexpr double silence = 1e-5;
 
 std::vector<double> inverse_transform(const Spectrum& spectrum) {
@@ -46,7 +46,7 @@ std::vector<double> minimum_phase(const std::vector<double>& log_magnitude) {
   return inverse_transform(spectrum);
 }
 
-// Without the silence at its end.
+// Removes the silence at the end of the filter.
 void trim(std::vector<double>& filter) {
   const auto magnitude = [](double x) { return std::abs(x); };
   const double largest = std::abs(*std::ranges::max_element(filter, {}, magnitude));

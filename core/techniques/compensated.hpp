@@ -3,14 +3,14 @@
 
 #include "core/settings/render_settings.hpp"
 namespace tapstudy::core {
-// Of a vibration that is commanded; as at its nearest point beyond the outer ones.
+// The gain of a commanded vibration; beyond the outer points that of the nearest one.
 double gain_at(double frequency_hz, const DeviceResponse& response);
 
-// What to command so that the device renders the signal: filtered by the inverse of the device's
+// The command that makes the device render the signal: filtered by the inverse of the device's
 // magnitude response, with the phase of a minimum-phase system (Oppenheim & Schafer 2010, ch. 13),
 // so that nothing is felt before the impact. Exact for a device that is itself of minimum phase; a
-// delay beyond that is not undone. The end may be longer by what the inverse rings on.
-// samples: at least one; the response's frequencies at or above half of the rate have no effect.
+// delay beyond that is not undone. The end may be longer by what the inverse rings on. samples: at
+// least one; the response's frequencies at or above half of the rate have no effect.
 std::vector<double> compensated(const std::vector<double>& samples, const DeviceResponse& response,
                                 double rate_hz);
 }  // namespace tapstudy::core

@@ -18,14 +18,15 @@ struct ForcePart {
   // plate is non-null if a model is needed; it must outlive the returned object.
   std::unique_ptr<AddedForce> (*make)(const RenderSettings& settings,
                                       const VibratingPlate* plate){};
-  // Of a slow press, beside the contact spring; null: it adds none.
+  // The stiffness that it adds to the contact spring in a slow press; null: none.
   double (*added_stiffness_n_per_m)(const RenderSettings& settings){};
 };
 
-extern const ForcePart plate_vibration;     // plate_vibration_part.cpp
-extern const ForcePart coupled_vibration;   // coupled_vibration_part.cpp
-extern const ForcePart decaying_sinusoid;   // decaying_sinusoid_part.cpp
-extern const ForcePart recorded_transient;  // recorded_transient_part.cpp
+// force_parts.cpp
+extern const ForcePart plate_vibration;
+extern const ForcePart coupled_vibration;
+extern const ForcePart decaying_sinusoid;
+extern const ForcePart recorded_transient;
 
 // A rendering technique: the components added to the penalty force of the contact spring. The
 // components of a technique are distinct, and are added in order.
@@ -37,7 +38,7 @@ struct Technique {
   bool needs_model() const;
   bool needs_beam() const { return needs_model() && theory == Theory::beam; }
   bool has(const ForcePart& part) const;
-  // Beside the contact spring's, of a slow press.
+  // The stiffness added to the contact spring in a slow press.
   double added_stiffness_n_per_m(const RenderSettings& settings) const;
   // The missing setting: see ForcePart.
   std::string_view missing(const RenderSettings& settings) const;

@@ -6,10 +6,10 @@
 #include <string_view>
 #include <utility>
 namespace tapstudy::core {
-// Whether it can be stored and shown as text: UTF-8 (RFC 3629), no control characters but line
-// breaks and tabs.
+// Whether the text can be stored and shown: UTF-8 (RFC 3629), no control characters but line breaks
+// and tabs.
 bool is_plain_text(std::string_view text);
-// Without spaces, tabs and line breaks at its ends.
+// The text without spaces, tabs and line breaks at its ends.
 std::string trimmed(std::string_view text);
 // Characters of plain text, each of one code point.
 std::size_t character_count(std::string_view text);

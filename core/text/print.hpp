@@ -4,7 +4,7 @@
 #include <ostream>
 #include <utility>
 namespace tapstudy::core {
-// As fmt::print to a stream, without instantiating the whole formatter in every source file.
+// Prints as fmt::print to a stream, without instantiating the whole formatter in every source file.
 template <class... Parts>
 void print(std::ostream& out, fmt::format_string<Parts...> format, Parts&&... parts) {
   out << fmt::format(format, std::forward<Parts>(parts)...);

@@ -13,7 +13,7 @@ struct Contact {
   double normal_velocity_m_s{0.0};  // of the tip while it touches, outwards positive
   Vec3 god_object_m{Vec3::Zero()};  // the haptic interaction point, constrained to the surface
   Vec3 normal{Vec3::UnitZ()};       // outward unit normal: direction of the penalty force
-  // On a surface of triangles: which one the god-object is on, and where on it.
+  // The triangle under the god-object, on a surface of triangles, and the place on it.
   int triangle{TriangleTree::none};
   std::array<double, 3> barycentric{};
 };

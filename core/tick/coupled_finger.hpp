@@ -68,7 +68,7 @@ class CoupledFinger {
   double tick(double hand_m, const SurfaceTick& surface) noexcept;
   // F: the mean force of the finger on the hand in the last tick [N, outwards positive].
   double force_on_hand_n() const noexcept { return force_on_hand_n_; }
-  // Of finger, finger's spring and contact.
+  // The energy of finger, finger's spring and contact.
   double energy_j(double surface_m) const noexcept;
 
  private:

@@ -149,8 +149,8 @@ std::optional<Vec3> SurfaceContact::nearest_on(const Planes& planes, unsigned ch
   return wanted_m + normals.transpose() * gram.ldlt().solve(missing);
 }
 
-// Such a force is not exactly the gradient of an energy: on a closed path it may do work, less than
-// 0.5 % of force times path where facets turn by 0.2 rad or less
+// The shaded force is not exactly the gradient of an energy: on a closed path it may do work, less
+// than 0.5 % of force times path where facets turn by 0.2 rad or less
 // (tests/core/tick/god_object_test.cpp).
 void SurfaceContact::shade(const Planes& planes, const Vec3& tip_m) noexcept {
   const bool is_flat =

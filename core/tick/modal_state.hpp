@@ -23,14 +23,14 @@ class ModalState {
   void push(double force_n) noexcept;
   void reset() noexcept;
 
-  // At the contact point, along the normal, outwards positive (paper eq. 16, 17).
+  // Motion at the contact point along the normal, outwards positive (paper eq. 16, 17).
   double displacement_m() const noexcept;
   double velocity_m_s() const noexcept;
   // The displacement there before the last tick.
   double previous_displacement_m() const noexcept;
-  // What displacement_m() becomes larger by, for each newton that is pushed.
+  // The increase of displacement_m() for each newton pushed.
   double compliance_m_per_n() const noexcept;
-  // Of the whole plate: kinetic plus elastic.
+  // Energy of the whole plate: kinetic plus elastic.
   double energy_j() const noexcept;
 
  private:

@@ -38,7 +38,8 @@ StateTransition exact_transition(double omega_rad_s, double damping_ratio, doubl
                              : overdamped_transition(omega_rad_s, damping_ratio, dt_s);
 }
 
-// With beta = 1/4 and gamma = 1/2 the method is the trapezoidal rule on (q, v), solved for q', v'.
+// Newmark's method with beta = 1/4 and gamma = 1/2 is the trapezoidal rule on (q, v), solved for
+// q', v'.
 StateTransition newmark_transition(double omega_rad_s, double damping_ratio, double dt_s) noexcept {
   const double damping = damping_ratio * omega_rad_s * dt_s;
   const double stiffness = 0.25 * omega_rad_s * omega_rad_s * dt_s * dt_s;

@@ -22,9 +22,9 @@ StateTransition newmark_transition(double omega_rad_s, double damping_ratio, dou
 StateTransition state_transition(Integrator integrator, double omega_rad_s, double damping_ratio,
                                  double dt_s) noexcept;
 
-// What a unit force held over the tick, q'' + 2 zeta omega q' + omega² q = 1, adds to (q, v): the
-// same transition about the equilibrium 1 / omega² instead of 0, so q = (1 - qq) / omega² and
-// v = -vq / omega² = qv. omega >= 0.
+// The contribution to (q, v) of a unit force held over the tick, q'' + 2 zeta omega q' + omega² q =
+// 1: the same transition about the equilibrium 1 / omega² instead of 0, so q = (1 - qq) / omega²
+// and v = -vq / omega² = qv. omega >= 0.
 //
 // Law. If the transition never gains energy E = (v² + omega² q²) / 2, as with both integrators,
 // then neither does the energy about the shifted equilibrium, which is to say that a held force f

@@ -20,7 +20,7 @@ namespace tapstudy::device {
 //                                              60  u32  status, below
 //                                              64  3 × f64  force exerted now [N]; all NaN: unknown
 //
-// The velocity must be the change of the position (velocity_check.hpp): the strength of an impact
+// The velocity must be the change of the position (remote_hand.hpp): the strength of an impact
 // rests on it.
 //
 // The other program holds the last force, and must release it after 20 ms without a request. From

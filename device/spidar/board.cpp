@@ -101,9 +101,9 @@ UsbOutcome Sh4Board::receive(UsbPipe& pipe, BoardReading& reading) noexcept {
   return outcome;
 }
 
-std::vector<std::uint8_t> Sh4Board::zero_force_packet() const {
+ZeroForcePacket Sh4Board::zero_force_packet() const {
   const Packet packet = request({});
-  return {packet.begin(), packet.end()};
+  return {{packet.begin(), packet.end()}, {}, packet_bytes, 2 * std::size_t{strings}};
 }
 
 namespace {
@@ -172,9 +172,10 @@ UsbOutcome SimpleBoard::receive(UsbPipe& pipe, BoardReading& reading) noexcept {
   return outcome;
 }
 
-std::vector<std::uint8_t> SimpleBoard::zero_force_packet() const {
+ZeroForcePacket SimpleBoard::zero_force_packet() const {
   const Packet packet = outputs({});
-  return {packet.begin(), packet.end()};
+  const Packet latched = command(latch);
+  return {{packet.begin(), packet.end()}, {latched.begin(), latched.end()}, packet_bytes, 0};
 }
 
 ZeroExchange exchange_zeros(SpidarBoard& board, UsbPipe& pipe) noexcept {

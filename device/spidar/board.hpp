@@ -3,9 +3,9 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
-#include <vector>
 
 #include "device/spidar/kinematics.hpp"
+#include "device/usb/guardian.hpp"
 #include "device/usb/usb_pipe.hpp"
 namespace tapstudy::device {
 using RawCounters = std::array<std::uint32_t, strings>;
@@ -55,8 +55,8 @@ class SpidarBoard {
                                             BoardReading& reading) noexcept = 0;
   // Reads one more reply, after one that was left over from an earlier exchange.
   [[nodiscard]] virtual UsbOutcome receive(UsbPipe& pipe, BoardReading& reading) noexcept = 0;
-  // The packet that sets all outputs to zero.
-  virtual std::vector<std::uint8_t> zero_force_packet() const = 0;
+  // For a guardian, which knows no board.
+  virtual ZeroForcePacket zero_force_packet() const = 0;
 };
 
 // One exchange with zero force. Confirmed by a reply that does not echo anything else; a halt is
@@ -87,7 +87,7 @@ class Sh4Board final : public SpidarBoard {
   const char* name() const noexcept override { return "SH4"; }
   int counter_bits() const noexcept override { return 16; }
   UsbOutcome begin(UsbPipe& pipe, BoardReading& reading) noexcept override;
-  std::vector<std::uint8_t> zero_force_packet() const override;
+  ZeroForcePacket zero_force_packet() const override;
   UsbOutcome exchange(UsbPipe& pipe, const DacCounts& dac_counts,
                       BoardReading& reading) noexcept override;
   UsbOutcome receive(UsbPipe& pipe, BoardReading& reading) noexcept override;
@@ -110,7 +110,7 @@ class SimpleBoard final : public SpidarBoard {
   const char* name() const noexcept override { return "Simple"; }
   int counter_bits() const noexcept override { return 24; }
   UsbOutcome begin(UsbPipe& pipe, BoardReading& reading) noexcept override;
-  std::vector<std::uint8_t> zero_force_packet() const override;
+  ZeroForcePacket zero_force_packet() const override;
   UsbOutcome exchange(UsbPipe& pipe, const DacCounts& dac_counts,
                       BoardReading& reading) noexcept override;
   UsbOutcome receive(UsbPipe& pipe, BoardReading& reading) noexcept override;

@@ -158,6 +158,6 @@ StopOutcome BoardLink::stop() noexcept {
 }
 
 bool BoardLink::is_force_off() const noexcept {
-  return is_force_off_ || (watchdog_ != nullptr && watchdog_->is_zero_taken());
+  return is_force_off_ || (watchdog_ != nullptr && watchdog_->is_zero_confirmed());
 }
 }  // namespace tapstudy::device

@@ -24,7 +24,7 @@ class BoardLink {
   bool can_miss_a_reply() const noexcept { return reading_.echo.has_value(); }
   const BoardReading& reading() const noexcept { return reading_; }
   // Sets all outputs to zero, three times; unconfirmed if no reply says so. The guardian then
-  // repeats it until the kernel takes it.
+  // repeats it until one does.
   StopOutcome stop() noexcept;
   bool is_force_off() const noexcept;
 

@@ -33,7 +33,7 @@ struct SpidarSettings {
 // The commanded torque is zero: a tap is a pure force at the finger. A few replies in a row may be
 // missing; any other error on the wire, in the counters or in the pose is a fault. emergency_stop()
 // then zeroes all outputs, strings may go slack, and the grip must be homed again. A stop that is
-// not confirmed by a reply leaves the guardian to repeat zero force until the kernel takes it.
+// not confirmed by a reply leaves the guardian to repeat zero force until one comes.
 class SpidarG6 final : public Device {
  public:
   // The pipe and the board must outlive it. Throws DeviceError if the board does not reply, or its

@@ -64,6 +64,8 @@ void close_named_sockets() noexcept {
 
 namespace {
 constexpr unsigned packet_time_out_ms = 20;
+constexpr unsigned reply_time_out_ms = 5;  // a later one comes in the next round
+constexpr int max_left_over_replies = 16;
 constexpr int round_ms = 5;
 constexpr int rounds_per_heartbeat = 2;
 constexpr std::chrono::seconds max_final{60};
@@ -106,18 +108,25 @@ class Watchdog {
   }
 
  private:
-  // Until the kernel has taken zero force three times: nobody else can say it now.
+  enum class Zero { refused, taken, confirmed };
+
+  // Nobody else can say it now. A board that was sent nothing but zeros need not reply.
   void send_final_zero_force() noexcept {
     const auto end = std::chrono::steady_clock::now() + max_final;
     int taken = 0;
-    for (int i = 0; taken < zero_force_packets && std::chrono::steady_clock::now() < end; ++i) {
-      taken += send_zero_force() ? 1 : 0;
-      if (taken == 0 && errno == ENODEV) {
-        return;
-      }
-      if (taken < zero_force_packets && i >= zero_force_packets) {
+    bool is_confirmed = !channel_.is_power_allowed();
+    for (int i = 0;
+         (taken < zero_force_packets || !is_confirmed) && std::chrono::steady_clock::now() < end;
+         ++i) {
+      if (i > zero_force_packets) {
         ::poll(nullptr, 0, round_ms);
       }
+      const Zero zero = zero_force();
+      if (zero == Zero::refused && errno == ENODEV) {
+        return;
+      }
+      taken += zero == Zero::refused ? 0 : 1;
+      is_confirmed = is_confirmed || zero == Zero::confirmed;
     }
   }
   // What is refused, is done without.
@@ -148,8 +157,10 @@ class Watchdog {
     if (settings_.relay >= 0 && (is_stalled || channel_.must_repeat())) {
       tcflush(settings_.relay, TCOFLUSH);  // bytes not yet sent would keep it closed
     }
-    if ((is_stalled || channel_.must_repeat()) && send_zero_force()) {
-      channel_.note_zero_taken();
+    if (!is_stalled && !channel_.must_repeat()) {
+      has_read_left_over_ = false;
+    } else if (zero_force() == Zero::confirmed) {
+      channel_.note_zero_confirmed();
     }
     if (++round_ % rounds_per_heartbeat == 0) {
       send_relay_heartbeat();
@@ -160,10 +171,37 @@ class Watchdog {
       static_cast<void>(!write(settings_.relay, "\x55", 1));
     }
   }
+  // What the board replies to the first packet may be left over from before, and confirms nothing.
+  Zero zero_force() noexcept {
+    if (!send_zero_force()) {
+      return Zero::refused;
+    }
+    if (!has_read_left_over_) {
+      has_read_left_over_ = true;
+      for (int i = 0; i < max_left_over_replies && read_reply() >= 0; ++i) {
+      }
+      return Zero::taken;
+    }
+    return is_confirmed() ? Zero::confirmed : Zero::taken;
+  }
+  bool is_confirmed() noexcept {
+    ZeroForcePacket& zero = settings_.zero_force_packet;
+    if (!zero.request.empty() && !send_packet(zero.request)) {
+      return false;
+    }
+    const auto echo_end = reply_.begin() + static_cast<std::ptrdiff_t>(zero.echo_bytes);
+    return read_reply() == static_cast<int>(zero.reply_bytes) &&
+           std::all_of(reply_.begin(), echo_end, [](std::uint8_t byte) { return byte == 0; });
+  }
+  // Its length; negative if none comes.
+  int read_reply() noexcept {
+    return transfer(settings_.in_endpoint, reply_.data(), settings_.zero_force_packet.reply_bytes,
+                    reply_time_out_ms);
+  }
   // A halted endpoint takes nothing until its halt is cleared. Only then: clearing waits for the
   // device's control endpoint, and holds up the program meanwhile.
   bool send_zero_force() noexcept {
-    if (send_packet()) {
+    if (send_packet(settings_.zero_force_packet.bytes)) {
       return true;
     }
     if (errno != EPIPE) {
@@ -174,14 +212,18 @@ class Watchdog {
       // NOLINTNEXTLINE(cppcoreguidelines-pro-type-vararg)
       ioctl(node_, USBDEVFS_CLEAR_HALT, &endpoint);
     }
-    return send_packet();
+    return send_packet(settings_.zero_force_packet.bytes);
   }
-  bool send_packet() noexcept {
-    const auto size = static_cast<unsigned>(settings_.zero_force_packet.size());
-    usbdevfs_bulktransfer packet{settings_.out_endpoint, size, packet_time_out_ms,
-                                 settings_.zero_force_packet.data()};
+  bool send_packet(std::vector<std::uint8_t>& bytes) const noexcept {
+    return transfer(settings_.out_endpoint, bytes.data(), bytes.size(), packet_time_out_ms) ==
+           static_cast<int>(bytes.size());
+  }
+  // How many bytes; negative if it fails.
+  int transfer(unsigned endpoint, void* bytes, std::size_t size,
+               unsigned time_out_ms) const noexcept {
+    usbdevfs_bulktransfer packet{endpoint, static_cast<unsigned>(size), time_out_ms, bytes};
     // NOLINTNEXTLINE(cppcoreguidelines-pro-type-vararg)
-    return ioctl(node_, USBDEVFS_BULK, &packet) == static_cast<int>(size);
+    return ioctl(node_, USBDEVFS_BULK, &packet);
   }
 
   int life_;
@@ -192,6 +234,8 @@ class Watchdog {
   std::uint64_t beats_{0};
   int still_rounds_{0};
   unsigned round_{0};
+  bool has_read_left_over_{false};
+  std::array<std::uint8_t, max_reply_bytes> reply_{};
 };
 
 }  // namespace

@@ -105,7 +105,7 @@ class TrackSettings {
 };
 
 // A psychophysical procedure: which stimulus value comes next. To add one: a file beside this with
-// its class, a row in procedure_table.cpp; nothing else refers to a procedure by name.
+// its class, a row in procedure.cpp; nothing else refers to a procedure by name.
 class Procedure {
  public:
   virtual ~Procedure() = default;

@@ -190,7 +190,7 @@ void check_points(MapReader& top, const Protocol& protocol) {
       const auto height_m = top_height.at_m(at_m);
       if (!height_m) {
         top.reject("tapping_points_m", fmt::format("{} is off plate '{}' ({})", point, name,
-                                                   top_height.outline_words(at_m)));
+                                                   top_height.describe_touchable(at_m)));
         continue;
       }
       const auto known = height_of_point_m.emplace(point, *height_m).first;
@@ -229,7 +229,7 @@ void check_technique(MapReader& reader, const Stimulus& stimulus, const Protocol
   }
   if (stimulus.technique->needs_beam() && stimulus.plate && !core::beam_of(*stimulus.plate)) {
     reader.reject("technique",
-                  fmt::format("'{}' is for {}", stimulus.technique->name, core::what_a_beam_is));
+                  fmt::format("'{}' is for {}", stimulus.technique->name, core::beam_requirements));
   }
 }
 

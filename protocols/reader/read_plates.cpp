@@ -265,7 +265,7 @@ void read_plates(MapReader& top, Protocol& protocol, const ReadFile& read_file) 
 // Bodies that a tapped plate touches, and the springs between them.
 namespace {
 using Presence = MapReader::Presence;
-using EndsByName = std::map<std::string, core::ContactSpring::End>;  // by "body.point"
+using EndsByName = std::map<std::string, core::JointSpring::End>;  // by "body.point"
 
 // Refinement follows one body's frequencies, and they have them together.
 void check_mesh(MapReader& reader, const std::string& key, const Plate& plate) {
@@ -281,7 +281,7 @@ void add_points(const std::string& body, const std::shared_ptr<const Plate>& pla
   if (plate) {
     for (const auto& [name, region] : plate->contact_points) {
       ends.emplace(fmt::format("{}.{}", body, name),
-                   core::ContactSpring::End{contacts.plates.size(), region});
+                   core::JointSpring::End{contacts.plates.size(), region});
     }
   }
   contacts.plates.push_back(plate);
@@ -300,7 +300,7 @@ void read_body(const std::string& name, MapReader& reader, const Protocol& proto
   if (material && std::holds_alternative<core::ModalDamping>(material->damping)) {
     reader.reject("material", modal_ratios_in_contact);
   }
-  core::BodyInContact body;
+  core::JoinedBody body;
   if (plate) {
     static_cast<core::Plate&>(body) = *plate;
   }
@@ -312,15 +312,15 @@ void read_body(const std::string& name, MapReader& reader, const Protocol& proto
 }
 
 // nullopt for a name that was rejected.
-std::optional<core::ContactSpring::End> read_end(MapReader& reader, const Key& key,
+std::optional<core::JointSpring::End> read_end(MapReader& reader, const Key& key,
                                                  const EndsByName& ends) {
   const auto found = ends.find(reader.word(key, "contact point", keys_of(ends)));
   return found == ends.end() ? std::nullopt : std::optional{found->second};
 }
 
 // nullopt where an end was rejected.
-std::optional<core::ContactSpring> read_spring(MapReader& reader, const EndsByName& ends) {
-  core::ContactSpring spring;
+std::optional<core::JointSpring> read_spring(MapReader& reader, const EndsByName& ends) {
+  core::JointSpring spring;
   const auto from = read_end(
       reader,
       {"from", "BODY.POINT: a contact point of a body's plate; the tapped plate has its own name"},
@@ -353,7 +353,7 @@ void check_are_joined(MapReader& reader, const Contacts& contacts,
   std::vector<bool> is_joined(bodies.size() + 1, false);
   is_joined[0] = true;
   for (std::size_t round = 0; round < bodies.size(); ++round) {
-    for (const core::ContactSpring& spring : contacts.springs) {
+    for (const core::JointSpring& spring : contacts.springs) {
       const bool is_either = is_joined[spring.from.body] || is_joined[spring.to.body];
       is_joined[spring.from.body] = is_either;
       is_joined[spring.to.body] = is_either;
@@ -394,7 +394,7 @@ Contacts read_set(MapReader& reader, const Protocol& protocol) {
               Presence::at_least_one, [&](MapReader& inner) {
                 const auto spring = read_spring(inner, ends);
                 are_ends_known = are_ends_known && spring;
-                contacts.springs.push_back(spring.value_or(core::ContactSpring{}));
+                contacts.springs.push_back(spring.value_or(core::JointSpring{}));
               });
   if (are_ends_known && !contacts.springs.empty()) {
     check_are_joined(reader, contacts, bodies);

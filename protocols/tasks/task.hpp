@@ -96,7 +96,7 @@ class SimulatedTouch {
 
 // A psychophysical task: what is presented, which answers are allowed, which is correct, what is
 // stored. Names the statistic (in analysis) that summarises its blocks. To add one: a file beside
-// this with its class, and a row in task_table.cpp; nothing else refers to a task by name.
+// this with its class, and a row in task_parts.cpp; nothing else refers to a task by name.
 class Task {
  public:
   virtual ~Task() = default;

@@ -63,9 +63,9 @@ struct StudyExport {
   std::vector<std::int64_t> trials;  // whose traces are written: each must have one
 };
 
-// Fills a directory: a file NAME.csv a table, csv-metadata.json (csvw.hpp), protocol.yaml, and of
-// each trial that has a trace traces/trial_000001.csv. Throws InvalidInput where it cannot be
-// written, StoreError where the study cannot be read.
+// Fills a directory: a file NAME.csv a table, csv-metadata.json (csv_export.cpp), protocol.yaml,
+// and of each trial that has a trace traces/trial_000001.csv. Throws InvalidInput where it cannot
+// be written, StoreError where the study cannot be read.
 void write_csv_files(const std::string& directory, Store& store, const StudyExport& study);
 
 // Writes one new HDF5 file. Errors as above.
@@ -80,7 +80,7 @@ void write_hdf5_file(const std::string& name, Store& store, const StudyExport& s
 // Fills a directory with a dataset of the Brain Imaging Data Structure (BIDS 1.8, behaviour):
 // participants.tsv, phenotype/*.tsv with a row a participant, sub-*/[ses-*/]beh/*_beh.tsv with a
 // row a trial, *_events.tsv with a row a change of the session's state, *_physio.tsv.gz with each
-// trial's trace, JSON beside them. Names that are no labels do not appear (bids_labels.hpp), nor do
+// trial's trace, JSON beside them. Names that are no labels do not appear (bids_files.hpp), nor do
 // notes, reasons and free text. Errors as above.
 void write_bids_dataset(const std::string& directory, Store& store, const StudyExport& study);
 

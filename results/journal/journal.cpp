@@ -61,8 +61,8 @@ void Journal::flush() {
   }
 }
 
-// What other programs have appended since, too. Half a line at the end is cut off.
-bool Journal::read_on(int descriptor) {
+// Reads the lines that other programs have appended since. Half a line at the end is cut off.
+bool Journal::read_appended(int descriptor) {
   struct stat status {};
   fstat(descriptor, &status);
   const bool is_the_same = status.st_size >= read_bytes_;
@@ -98,7 +98,7 @@ std::string Journal::chained(const std::string& body) {
 bool Journal::complete(const std::function<StudyRow()>& study,
                        const std::vector<SessionRow>& sessions, const JournalEntries& entries) {
   const LockedFile file{file_};
-  if (!read_on(file.descriptor())) {
+  if (!read_appended(file.descriptor())) {
     return false;
   }
   std::vector<std::string> bodies;

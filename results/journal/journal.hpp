@@ -15,7 +15,7 @@ struct JournalledAnswer {
   ResponseRow response;
 };
 
-// What a journal holds of the trials. Each of these is a line.
+// The entries of a journal that concern trials. Each of them is a line.
 struct JournalEntries {
   std::vector<JournalledAnswer> answers{};  // as first given
   std::vector<CorrectionRow> corrections{};
@@ -46,7 +46,7 @@ class Journal {
                 const JournalEntries& entries);
 
  private:
-  bool read_on(int descriptor);  // false: it is another file now
+  bool read_appended(int descriptor);  // false: it is another file now
   std::string chained(const std::string& body);
   std::string file_;
   Flush flush_{Flush::each_time};
@@ -55,8 +55,8 @@ class Journal {
   std::int64_t read_bytes_{0};
 };
 
-// What the journal of a study holds. Throws StoreError with file and line where it does not hold
-// together.
+// The content of a study's journal. Reading throws StoreError with file and line where the chain is
+// broken or a line is invalid.
 struct JournalContent {
   StudyRow study;
   std::vector<SessionRow> sessions;
@@ -80,8 +80,8 @@ std::string chain_of(const std::string& chain_before, const std::string& body);
 std::string to_line(const StudyRow& study);
 std::string to_line(const SessionRow& session);
 
-// What a database holds of its study and its sessions (the protocol and its hash, modes, seeds,
-// orders, devices …) otherwise than the journal does, a line each; answers apart.
+// The differences between database and journal in study and sessions (the protocol and its hash,
+// modes, seeds, orders, devices …), a line each; answers are not compared.
 std::vector<std::string> differing_study_and_sessions(const StudyRow& study,
                                                       const std::vector<SessionRow>& sessions,
                                                       const JournalContent& journal);

@@ -18,7 +18,7 @@ using Json = nlohmann::ordered_json;
 constexpr const char* format = "tapstudy-journal/4";
 constexpr std::string_view chain_key = ",\"chain\":\"";
 
-// What is no UTF-8 becomes a replacement character: the journal is text.
+// Bytes that are not UTF-8 become replacement characters: the journal is text.
 std::string dumped(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }

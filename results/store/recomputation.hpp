@@ -6,8 +6,8 @@
 
 #include "results/store/store.hpp"
 namespace tapstudy::results {
-// What the task's rule says of an answer: right, wrong, or (unset) neither. Not called of trials
-// whose block it does not know.
+// The rule of a task for an answer: right, wrong, or (unset) neither. Not called for trials whose
+// block it does not know.
 struct TaskRule {
   std::function<bool(const TrialRow& trial)> knows;
   std::function<std::optional<bool>(const TrialRow& trial,

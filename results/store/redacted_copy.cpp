@@ -10,9 +10,9 @@ namespace tapstudy::results {
 namespace {
 namespace fs = std::filesystem;
 
-// Of the tables of schema.hpp, those that refer to others last. Columns are named, so that a new
-// one is an error until somebody has decided about it; so are the states whose details the program
-// writes. Temporary tables stay in memory.
+// Copies the tables of schema.hpp, those that refer to others last. Columns are named, so that a
+// new one is an error until somebody has decided about it; so are the states whose details the
+// program writes. Temporary tables stay in memory.
 constexpr const char* copy_sql = R"sql(
 INSERT INTO study SELECT id, title, (SELECT file FROM temp.protocol_file), protocol_text,
   protocol_sha256, created_utc FROM original.study;

@@ -14,9 +14,9 @@ namespace tapstudy::results {
 class Database {
  public:
   enum class Access { read, write };
-  // The file name is a path, never a URI. What is no regular file is refused.
+  // The file name is a path, never a URI. Anything but a regular file is refused.
   Database(const std::string& file, Access access);
-  // Without a file; the name is for messages.
+  // A database without a file; the name is for messages.
   static Database in_memory(const std::string& name);
   void run(const std::string& sql);
   std::int64_t pragma(const std::string& name);  // what PRAGMA name answers, an integer

@@ -158,7 +158,8 @@ std::ptrdiff_t first_difference(const std::string& one, const std::string& other
 }
 }  // namespace
 
-// In one transaction: of two programs started concurrently one creates, the other finds it.
+// Runs in one transaction: of two programs started concurrently one creates the study, the other
+// finds it.
 void Store::create_or_check(const StudyRow& study) {
   Transaction all{database_};
   if (!is_empty()) {
@@ -242,7 +243,7 @@ void Store::each_row(const std::string& select, const std::function<void(Stateme
   }
 }
 
-void Store::at_one_moment(const std::function<void()>& read) {
+void Store::in_read_transaction(const std::function<void()>& read) {
   database_.run("BEGIN");
   try {
     read();
@@ -253,7 +254,7 @@ void Store::at_one_moment(const std::function<void()>& read) {
   database_.run("COMMIT");
 }
 
-// What a study's database is refused for.
+// Whether the database holds no table at all.
 bool Store::is_empty() {
   Statement tables{database_, "SELECT count(*) FROM sqlite_master"};
   tables.step();

@@ -27,18 +27,17 @@ class Store {
   // integrity and that it holds tapstudy's tables and nothing else.
   // Throws InvalidInput if the directory holds the study of another protocol, or of other surfaces.
   static Store open_or_create(const std::string& directory, const StudyRow& study);
-  // For reading, checked likewise. Throws InvalidInput if there is no study.
+  // Opens a study for reading, with the same checks. Throws InvalidInput if there is no study.
   static Store open_existing(const std::string& directory);
-  // In memory, from the journal alone: what was answered, without traces, events, statistics of
+  // A store in memory rebuilt from the journal alone: answers without traces, events, statistics of
   // ticks and trials that timed out. Throws StoreError if the journal does not hold together.
   static Store from_journal(const std::string& directory);
   static bool has_database(const std::string& directory);
   static bool has_journal(const std::string& directory);
-  // From here on, until confirm_all(), nothing waits for the disk and nothing is read back. A power
-  // cut may damage the file: only for new studies of simulated
-  // participants, whom their seed makes again.
-  void write_unconfirmed();
-  void confirm_all();
+  // Until resume_sync(), nothing waits for the disk and nothing is read back. A power cut may
+  // damage the file: only for new studies of simulated participants, which their seed reproduces.
+  void suspend_sync();
+  void resume_sync();
   // Leaves a writer's database as a single file, without the WAL files.
   ~Store();
   Store(Store&& other) noexcept = default;
@@ -53,17 +52,16 @@ class Store {
     int participant_index;
     int order_index;
   };
-  // What the store does not know of other participants.
-  struct Others {
+  // Facts about other participants that the store does not hold.
+  struct OtherParticipants {
     std::function<bool(const std::string& participant_id)> is_in_session;
     std::function<bool(const std::string& participant_id)> has_trials_left;
   };
-  // Of an existing participant, or the next free one of the mode. The order is the first that no
-  // other participant of the mode has: those who were excluded, whose session the operator ended
-  // with trials left, or who are no longer in a session and answered nothing that counts, use none
-  // up.
-  // Throws InvalidInput if the participant is there already in another mode.
-  Place place_of(const std::string& participant_id, Mode mode, const Others& others);
+  // The place of an existing participant, or the next free one of the mode. The order is the first
+  // that no other participant of the mode has: those who were excluded, whose session the operator
+  // ended with trials left, or who are no longer in a session and answered nothing that counts, use
+  // none up. Throws InvalidInput if the participant is there already in another mode.
+  Place place_of(const std::string& participant_id, Mode mode, const OtherParticipants& others);
   bool has_sessions(const std::string& participant_id);
   // No other program adds anything while `act` runs; all that it adds is kept, or nothing.
   void in_one_transaction(const std::function<void()>& act);
@@ -83,32 +81,32 @@ class Store {
 
   // The participant's latest session, to resume it.
   std::optional<SessionRow> latest_session(const std::string& participant_id);
-  // Whose name is this but for capital letters.
-  std::optional<std::string> participant_like(const std::string& participant_id);
+  // The participant whose name differs from this one in capital letters at most.
+  std::optional<std::string> participant_ignoring_case(const std::string& participant_id);
   // The session in which a trial of that number was presented to the participant last.
   std::optional<std::int64_t> session_of_trial(const std::string& participant_id, int number);
   // Numbers of the trials that the participant has answered, in any session.
   std::vector<int> answered_trials(const std::string& participant_id);
-  // How often each trial was presented, by its number.
+  // The number of presentations of each trial, by its number.
   std::map<int, int> presentations(const std::string& participant_id);
-  // Those that were presented, timed out or skipped, and not answered later; in the order in which
+  // Trials that were presented, timed out or skipped, and not answered later; in the order in which
   // that was last.
   std::vector<UnansweredTrial> unanswered_trials(const std::string& participant_id);
-  // Form and where it was asked, of all that the participant has answered.
+  // Forms that the participant has answered, each with the place where it was asked.
   std::set<std::pair<std::string, std::string>> filled_forms(const std::string& participant_id);
-  // By id: why.
+  // The reasons of exclusion by participant.
   std::map<std::string, std::string> excluded_participants();
   // The participant's, without corrections, in the order given.
   std::vector<JournalledAnswer> answers_as_given(const std::string& participant_id);
   AlternativesOfTrials alternatives();
   std::vector<SessionRow> sessions();
   JournalEntries entries_for_journal();
-  // A SELECT; what reports need is in stored_answers.hpp and participant_courses.hpp.
+  // A SELECT; queries for reports are in study_queries.hpp.
   Statement query(const std::string& select) { return Statement{database_, select}; }
   // Its rows, each shown as it comes.
   void each_row(const std::string& select, const std::function<void(Statement&)>& show);
   // All that `read` reads is of one moment, whatever a session adds meanwhile.
-  void at_one_moment(const std::function<void()>& read);
+  void in_read_transaction(const std::function<void()>& read);
   std::vector<std::int64_t> trials();  // the ids of all, whatever became of them
   // Every tick of a trial, in order; empty if there is no such trial.
   std::vector<core::TraceSample> trace(std::int64_t trial_id);
@@ -121,7 +119,7 @@ class Store {
   void check_schema();
   void create(const StudyRow& study);
   void insert_trial(const TrialRecord& record);
-  void write_anew();
+  void rewrite_database();
   void check_is_in_place(const TrialRow& trial);
   void add_to_journal(const TrialRecord& record);
   void journal(const JournalEntries& entries, std::int64_t session_id);
@@ -131,7 +129,7 @@ class Store {
                        const std::function<void(JournalEntries&)>& insert);
   void check_has_not_moved();
   int next_participant_index(Mode mode);
-  int free_order_index(Mode mode, const Others& others);
+  int free_order_index(Mode mode, const OtherParticipants& others);
   std::vector<AlternativeRow> alternatives_of(std::int64_t trial_id);
   AlternativesOfTrials alternatives_where(const char* condition,
                                           std::optional<std::int64_t> trial_id);

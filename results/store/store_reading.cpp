@@ -1,4 +1,4 @@
-// What reads a study's rows back.
+// Store: reading a study's rows back.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -160,7 +160,7 @@ std::optional<SessionRow> Store::latest_session(const std::string& participant_i
   return row.step() ? std::optional{session_from(row, database_.file())} : std::nullopt;
 }
 
-std::optional<std::string> Store::participant_like(const std::string& participant_id) {
+std::optional<std::string> Store::participant_ignoring_case(const std::string& participant_id) {
   Statement row{database_,
                 "SELECT participant_id FROM participant WHERE participant_id = ? COLLATE NOCASE "
                 "AND participant_id <> ?"};
@@ -260,17 +260,17 @@ std::vector<core::TraceSample> Store::trace(std::int64_t trial_id) {
   return samples;
 }
 
-// What makes sure that a trial is stored: on the disk, in the file of the study's name, whatever
-// became of that file meanwhile.
+// These functions make sure that a trial is stored: on the disk, in the file of the study's name,
+// whatever became of that file meanwhile.
 namespace fs = std::filesystem;
 
-void Store::write_unconfirmed() {
+void Store::suspend_sync() {
   confirms_ = false;
   database_.run("PRAGMA synchronous = OFF");
   journal_->set_flush(Journal::Flush::when_asked);
 }
 
-void Store::confirm_all() {
+void Store::resume_sync() {
   confirms_ = true;
   database_.run("PRAGMA synchronous = FULL");
   static_cast<void>(database_.checkpoint());
@@ -280,7 +280,7 @@ void Store::confirm_all() {
 }
 
 // The log of the deleted file must not be taken for the new one's.
-void Store::write_anew() {
+void Store::rewrite_database() {
   const std::string file = fs::absolute(database_.file()).string();
   const std::string unfinished = file + ".unfinished";
   std::error_code error;
@@ -300,7 +300,7 @@ void Store::check_has_not_moved() {
   std::error_code error;
   if (database_.has_moved()) {
     if (!fs::exists(file, error) && fs::is_directory(fs::absolute(file).parent_path(), error)) {
-      write_anew();
+      rewrite_database();
       throw StoreRewritten{
           fmt::format("{}: was deleted during the session; its contents are in a new file of that "
                       "name (go on with "

@@ -1,4 +1,4 @@
-// What adds rows to a study.
+// Store: adding rows to a study.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,7 +13,7 @@ namespace tapstudy::results {
 namespace fs = std::filesystem;
 using namespace std::string_literals;
 namespace {
-// Whose last session the operator ended.
+// Selects the participants whose last session the operator ended.
 constexpr const char* ended_by_operator =
     "SELECT participant_id FROM session AS last WHERE session_id = "
     "  (SELECT max(session_id) FROM session WHERE participant_id = last.participant_id) "
@@ -21,7 +21,8 @@ constexpr const char* ended_by_operator =
     "             AND action = 'end')";
 }  // namespace
 
-Store::Place Store::place_of(const std::string& participant_id, Mode mode, const Others& others) {
+Store::Place Store::place_of(const std::string& participant_id, Mode mode,
+                             const OtherParticipants& others) {
   Statement row{
       database_,
       "SELECT participant_index, order_index, mode FROM participant WHERE participant_id = ?"};
@@ -46,7 +47,7 @@ int Store::next_participant_index(Mode mode) {
 
 // Used by who has answered what counts, unless the operator ended their last session before its
 // end.
-int Store::free_order_index(Mode mode, const Others& others) {
+int Store::free_order_index(Mode mode, const OtherParticipants& others) {
   const std::map<std::string, std::string> excluded = excluded_participants();
   Statement row{database_,
                 "SELECT participant_id, order_index, participant_id IN "
@@ -313,7 +314,7 @@ std::vector<FormAnswerRow> Store::forms_for_journal() {
   return answers;
 }
 
-// What the operator adds to a study, and what follows from it.
+// Appends the entries of a session to the journal.
 void Store::journal(const JournalEntries& entries, std::int64_t session_id) {
   if (!journal_) {
     return;

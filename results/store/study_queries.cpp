@@ -259,7 +259,8 @@ std::vector<core::TraceSample> decoded_chunk(Statement& row, int column, const s
 
 void each_trace_chunk(Store& store, const TakeChunk& take) {
   store.each_row(
-      "SELECT trial_id, codec, ticks, bytes FROM trace_chunk ORDER BY trial_id, first_tick",
+      "SELECT trial_id, codec, ticks, bytes FROM trial CROSS JOIN trace_chunk USING (trial_id) "
+      "ORDER BY session_id, number, attempt, first_tick",
       [&](Statement& row) {
         const std::int64_t trial_id = row.integer(0);
         take(trial_id, decoded_chunk(row, 1, fmt::format("trace of trial {}", trial_id)));

@@ -8,8 +8,8 @@
 namespace tapstudy::results {
 inline constexpr const char* trace_codec = "tapstudy-trace/3";
 
-// Measured: the hand's position and velocity are noise in their last bits, and most of it. What a
-// tick of an idle device takes is far less.
+// Measured: the hand's position and velocity are noise in their last bits, which take most of the
+// bytes. A tick of an idle device takes far less.
 inline constexpr double usual_bytes_per_tick = 47.0;
 
 // Lossless encoding of samples, as documented in trace_format.md: the bytes of 168-byte records,

@@ -14,8 +14,8 @@ namespace tapstudy::results {
 // a longer time: the impact is noted once more as late_impact. A tick with a fault yields no event.
 class TraceEvents {
  public:
-  // In SQL, with what is noted where no tick was kept: a trial's other events do not follow from
-  // its ticks.
+  // These kinds as an SQL list, with the event of an untraced trial; a trial's other events do not
+  // follow from its ticks.
   static constexpr std::string_view kinds =
       "('switch', 'contact', 'impact', 'late_impact', 'release', 'untraced')";
 
@@ -33,7 +33,7 @@ double time_s(const core::TraceSample& sample);
 enum class Traced { whole, events_only };
 
 // Collects one trial's samples from the haptic thread's ring for the store: encodes them in chunks
-// as they arrive and extracts the events (trace_events.hpp). Without chunks the first event is
+// as they arrive and extracts the events (TraceEvents). Without chunks the first event is
 // `untraced`.
 class TraceCollector {
  public:

@@ -22,7 +22,7 @@ struct AmendOptions {
   std::string action;
 };
 
-// What an operator can still do once the session is over.
+// The actions that remain possible once the session is over.
 constexpr std::array amendments{OperatorAction::note, OperatorAction::correct,
                                 OperatorAction::exclude, OperatorAction::include};
 
@@ -46,7 +46,7 @@ OperatorCommand amendment_in(const std::string& line) {
   return command;
 }
 
-// By the wall clock: the session's own has ended with it.
+// Uses the wall clock, because the session's own ended with it.
 double seconds_since(const std::string& started_utc) {
   std::tm started{};
   if (strptime(started_utc.c_str(), "%Y-%m-%dT%H:%M:%SZ", &started) == nullptr) {

@@ -48,7 +48,7 @@ void warn_of_overdamped_modes(const protocols::Protocol& protocol, ModelLibrary&
 }
 
 // "2 modes below 300 Hz: 57.6, 248 Hz"
-std::string words_of(const Eigen::ArrayXd& frequencies_hz, double band_limit_hz) {
+std::string describe_frequencies(const Eigen::ArrayXd& frequencies_hz, double band_limit_hz) {
   constexpr Eigen::Index most = 6;
   std::vector<std::string> first;
   for (const double frequency_hz : frequencies_hz.head(std::min(most, frequencies_hz.size()))) {
@@ -91,7 +91,7 @@ void print_models(const protocols::Protocol& protocol, ModelLibrary& models) {
     const bool is_beam = stimulus.technique->needs_beam();
     are_linear = are_linear || (!is_beam && report.order == 1);
     fmt::print("  {}: {}, {}, {}\n", stimulus.name, kind_of_model(report, is_beam),
-               words_of(plate->model.frequency_hz, protocol.band_limit_hz), cost);
+               describe_frequencies(plate->model.frequency_hz, protocol.band_limit_hz), cost);
   }
   if (are_linear) {
     fmt::print(
@@ -184,7 +184,7 @@ void run_check(const CheckOptions& options) {
   ModelLibrary models;
   print_models(protocol, models);
   if (rig) {
-    print_lost_modes(protocol, models, *rig);
+    print_unrendered_modes(protocol, models, *rig);
   }
   print_families(protocol, models);
   print_contact(protocol, delay_ticks);
@@ -206,10 +206,10 @@ void run_check(const CheckOptions& options) {
 void add_check(CommandParser& line) {
   Command command = line.add("check", "Validate a study and show its design, models and schedule");
   const auto options = std::make_shared<CheckOptions>();
-  command.argument("protocol", options->protocol, "Study (YAML)");
+  command.shipped_file("protocol", options->protocol, "Study (YAML)");
   command.option("--participants", options->participants, participants_help);
   command.option_with_default("--seed", options->seed, "Seed of the schedule shown");
-  command.option(
+  command.shipped_file(
       "--rig", options->rig,
       "Check that this device reaches the tapping points; bound of its contact; modes that it "
       "does not render");

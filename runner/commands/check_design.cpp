@@ -22,15 +22,15 @@
 #include "runner/studies/counted.hpp"
 namespace tapstudy::runner {
 struct ScreenGroup {
-  std::string shown;  // in words
+  std::string shown;  // description
   int count{};
   double seconds{};  // that all of them take, roughly; of trials without the tapping
 };
-// What one participant sees, in this order: the most that there can be, if no trial is repeated.
+// The screens that one participant sees, in this order; an upper bound if no trial is repeated.
 std::vector<ScreenGroup> screens_of(const protocols::Protocol& protocol);
 
 namespace {
-// What a screen takes, roughly, from what one sees in laboratories: not measured.
+// Rough durations of screens, from experience in laboratories: not measured.
 constexpr double instructions_s = 30.0;
 constexpr double question_s = 8.0;
 constexpr double decision_s = 5.0;
@@ -74,7 +74,7 @@ std::vector<ScreenGroup> trial_screens(const protocols::Block& block) {
   return screens;
 }
 
-// In a block that takes so long without them, the last trial being followed by none.
+// The number of breaks in a block of this duration without them; none follows the last trial.
 int number_of(const protocols::Breaks& breaks, int trials, double block_s) {
   int number = breaks.every_trials ? (trials - 1) / *breaks.every_trials : 0;
   if (breaks.every_seconds) {
@@ -216,7 +216,7 @@ void warn_of_guess_rate(const protocols::TrackSettings& track, double of_task) {
   }
 }
 
-const char* words(protocols::Side side) {
+const char* describe_side(protocols::Side side) {
   switch (side) {
     case protocols::Side::above:
       return "above";
@@ -260,7 +260,7 @@ void print_procedures(const protocols::Stimulus& family, const protocols::Compar
     const auto [low, high] = track->ranges().front();
     fmt::print("    {}{} of {}: {} against {:.6g}, from {:.6g} to {:.6g}\n",
                track->may_end_early() ? "at most " : "", counted(track->max_trials(), "trial"),
-               comparison.axis, words(comparison.side), comparison.standard,
+               comparison.axis, describe_side(comparison.side), comparison.standard,
                comparison.value_at(low), comparison.value_at(high));
     for (std::size_t i = 0; i < comparison.further_axes.size(); ++i) {
       const auto [least, greatest] = track->ranges().at(i + 1);

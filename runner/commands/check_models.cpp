@@ -206,8 +206,8 @@ std::optional<Band> band_of(const protocols::Rig& rig) {
 }
 }  // namespace
 
-void print_lost_modes(const protocols::Protocol& protocol, ModelLibrary& models,
-                      const protocols::Rig& rig) {
+void print_unrendered_modes(const protocols::Protocol& protocol, ModelLibrary& models,
+                            const protocols::Rig& rig) {
   const auto band = band_of(rig);
   if (!band) {
     return;

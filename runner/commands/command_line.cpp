@@ -5,7 +5,9 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <filesystem>
 #include <string_view>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -37,6 +39,15 @@ CLI::Validator ends_in(const std::string& ending) {
           ""};
 }
 
+// The installed program stands in bin, what it ships in share/tapstudy beside it.
+std::string file_or_shipped(const std::string& name) {
+  namespace fs = std::filesystem;
+  std::error_code none;
+  const fs::path program = fs::read_symlink("/proc/self/exe", none);
+  const fs::path shipped = program.parent_path().parent_path() / "share/tapstudy" / name;
+  return !fs::exists(name, none) && fs::is_regular_file(shipped, none) ? shipped.string() : name;
+}
+
 // Also rejects NaN, which separate comparisons with each bound would accept.
 CLI::Validator within(double low, double high) {
   return {[low, high](const std::string& text) {
@@ -63,6 +74,10 @@ void Command::arguments(const std::string& name, std::vector<std::string>& value
 void Command::option(const std::string& name, std::string& value, const std::string& help,
                      Need need) {
   app_->add_option(name, value, help)->required(need == Need::required);
+}
+
+void Command::shipped_file(const std::string& name, std::string& value, const std::string& help) {
+  app_->add_option(name, value, help)->required(!name.starts_with('-'))->transform(file_or_shipped);
 }
 
 void Command::option_with_or_without_value(const std::string& name, std::string& value,
@@ -125,7 +140,7 @@ void Command::on_run(std::function<void()> run) {
 
 CommandParser::CommandParser(const std::string& description, const std::string& name,
                              const std::string& version)
-    : app_{std::make_unique<CLI::App>(description, name)} {
+    : app_{std::make_unique<CLI::App>(description, name)}, version_{version} {
   app_->require_subcommand(1);
   app_->set_version_flag("--version", version);
 }
@@ -154,6 +169,53 @@ void check_command(const CLI::App& app, int argc, const char* const* argv) {
   }
 }
 }  // namespace
+
+namespace {
+// CLI11 keeps the members of a set only as a part of the type's name: "TEXT:{csv,hdf5}".
+std::vector<std::string> choices_in(const std::string& type) {
+  const auto open = type.find('{');
+  const auto close = type.find('}');
+  if (open == std::string::npos || close == std::string::npos) {
+    return {};
+  }
+  return CLI::detail::split(type.substr(open + 1, close - open - 1), ',');
+}
+
+OptionDefinition definition_of(const CLI::Option& option) {
+  OptionDefinition definition;
+  for (const std::string& name : option.get_snames()) {
+    definition.names.push_back("-" + name);
+  }
+  for (const std::string& name : option.get_lnames()) {
+    definition.names.push_back("--" + name);
+  }
+  const std::string type = option.get_type_name();
+  if (option.get_positional()) {
+    definition.value = option.get_name(true);
+  } else if (option.get_items_expected_max() > 0) {
+    definition.value = type.substr(0, type.find(':'));
+  }
+  definition.choices = choices_in(type);
+  definition.help = option.get_description();
+  definition.default_value = option.get_default_str();
+  definition.is_required = option.get_required();
+  definition.is_repeatable = option.get_items_expected_max() > 1;
+  return definition;
+}
+}  // namespace
+
+ProgramDefinition CommandParser::definition() const {
+  ProgramDefinition program{app_->get_name(), app_->get_description(), version_, {}};
+  for (const CLI::App* const command :
+       std::as_const(*app_).get_subcommands([](const CLI::App*) { return true; })) {
+    CommandDefinition definition{command->get_name(), command->get_description(), {}};
+    for (const CLI::Option* const option : command->get_options()) {
+      definition.options.push_back(definition_of(*option));
+    }
+    program.commands.push_back(definition);
+  }
+  return program;
+}
 
 ExitCode CommandParser::parse(int argc, const char* const* argv) {
   refuse_empty_values(*app_);
@@ -191,6 +253,10 @@ ExitCode run_command_line(int argc, const char* const* argv) {
   add_doctor(line);
   add_calibrate(line);
   add_schema(line);
+  if (argc == 3 && std::string_view{argv[1]} == "--documents") {  // for the build: not in --help
+    write_command_documents(line.definition(), argv[2]);
+    return ExitCode::done;
+  }
   return line.parse(argc, argv);
 }
 }  // namespace tapstudy::runner

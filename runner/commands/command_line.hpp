@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "runner/commands/command_documents.hpp"
 #include "runner/terminal/process_exit.hpp"
 namespace CLI {  // NOLINT(readability-identifier-naming): as the library calls itself
 class App;
@@ -17,11 +18,14 @@ class Command {
  public:
   void argument(const std::string& name, std::string& value, const std::string& help,
                 Need need = Need::required);
-  // As many as there are.
+  // All remaining arguments.
   void arguments(const std::string& name, std::vector<std::string>& values,
                  const std::string& help);
   void option(const std::string& name, std::string& value, const std::string& help,
               Need need = Need::optional);
+  // A file, or where there is none of that name the one that is installed with the program.
+  // Required if it is positional.
+  void shipped_file(const std::string& name, std::string& value, const std::string& help);
   // "--name" alone sets `alone`, "--name VALUE" the value.
   void option_with_or_without_value(const std::string& name, std::string& value,
                                     const std::string& alone, const std::string& help);
@@ -65,9 +69,11 @@ class CommandParser {
   // Runs the command given. Throws InvalidInput for an invalid command line, and whatever the
   // command throws.
   ExitCode parse(int argc, const char* const* argv);
+  ProgramDefinition definition() const;
 
  private:
   std::unique_ptr<CLI::App> app_;
+  std::string version_;
 };
 
 // Each adds one command to the command line.

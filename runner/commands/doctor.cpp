@@ -92,7 +92,7 @@ void draw(const Diagnosis& diagnosis, const std::string& file) {
       file);
 }
 
-// With the rig's device; without a rig, with any that is plugged in and accessible.
+// Uses the rig's device; without a rig, any that is plugged in and accessible.
 std::function<void()> zero_force_exchange(const DoctorOptions& options, const protocols::Rig& rig) {
   if (!options.rig.empty()) {
     return kind_of(rig).zero_force_exchange(rig);
@@ -130,7 +130,7 @@ void run_doctor(const DoctorOptions& options) {
 void add_doctor(CommandParser& line) {
   Command command = line.add("doctor", "Measure whether this machine can sustain the haptic loop");
   const auto options = std::make_shared<DoctorOptions>();
-  command.option("--rig", options->rig, "Rig whose real-time settings to use (YAML)");
+  command.shipped_file("--rig", options->rig, "Rig whose real-time settings to use (YAML)");
   command.number_within("--rate-hz", options->rate_hz, 500.0, 10000.0, "Rate of the loop");
   command.number_within("--seconds", options->seconds, 0.1, 600.0,
                         "Duration of the measurements, idle and under load each");

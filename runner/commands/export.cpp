@@ -47,7 +47,7 @@ std::vector<results::BlockText> block_texts(const protocols::Protocol& protocol)
   return texts;
 }
 
-// What answers that are not their own text mean.
+// The meanings of answers that are not their own text.
 std::vector<results::Level> levels_of(const protocols::FormItem& item) {
   std::vector<results::Level> levels;
   for (const protocols::Option& option : item.options) {
@@ -78,7 +78,7 @@ std::vector<results::FormText> form_texts(const protocols::Protocol& protocol) {
 results::StudyExport study_export(results::Store& store, bool has_tables) {
   const results::StudyRow study = store.study();
   const protocols::Protocol protocol = stored_protocol(study);
-  StimulusTables stimuli = stimulus_tables(protocol, models_of_this_user());
+  StimulusTables stimuli = stimulus_tables(protocol, user_model_cache());
   if (has_tables && !stimuli.without_model.empty()) {
     warn(
         fmt::format("no modes are listed of {}: their models are not cached (`tapstudy check` "
@@ -134,7 +134,7 @@ std::vector<std::string> format_names() {
 void run_export(const ExportOptions& options) {
   core::check_is_new(options.out);
   results::Store store = results::Store::open_existing(options.directory);
-  store.at_one_moment([&] {
+  store.in_read_transaction([&] {
     if (results::stored_answers(store).empty()) {
       throw core::InvalidInput{options.directory + ": holds no answers yet to export"};
     }

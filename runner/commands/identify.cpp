@@ -82,8 +82,8 @@ TapQuestion question_of(const IdentifyOptions& options) {
   return question;
 }
 
-// Nothing that could be pasted: noise has onsets, too.
-void check_holds_something(const TapIdentification& found) {
+// Noise has onsets, too: without a mode or a sinusoid there is nothing to paste into a protocol.
+void require_identified_mode(const TapIdentification& found) {
   if (!found.agreed.empty() || found.sinusoid) {
     return;
   }
@@ -111,7 +111,7 @@ void run_identify(const IdentifyOptions& options) {
     return identify_taps(question, progress);
   }();
   write_files(options.out, found);  // its figures show why there is nothing in it
-  check_holds_something(found);
+  require_identified_mode(found);
   if (options.wants_json) {
     fmt::print("{}\n", json_of(found));
   } else {

@@ -195,7 +195,7 @@ void run_modes(const ModesOptions& options) {
 void add_modes(CommandParser& line) {
   Command command = line.add("modes", "Natural frequencies and damping of a stimulus's plate");
   const auto options = std::make_shared<ModesOptions>();
-  command.argument("protocol", options->protocol, "Study (YAML)");
+  command.shipped_file("protocol", options->protocol, "Study (YAML)");
   command.option("--stimulus", options->stimulus, "Which stimulus", Need::required);
   command.repeatable("--set", options->settings, set_help);
   command.flag("--json", options->wants_json, "Output as JSON");

@@ -80,8 +80,8 @@ Summary summary_of_directories(const ReportOptions& options,
   return summary_of_study(studies, mode_to_report(options, sessions));
 }
 
-// As a row of a table has them: a comma within an answer is in quotes.
-std::vector<std::string> listed(const std::string& words, const std::string& option) {
+// Splits the text as a row of a table: a comma within an answer is in quotes.
+std::vector<std::string> split_row(const std::string& words, const std::string& option) {
   std::istringstream stream{words};
   const analysis::CsvText csv = analysis::read_csv(stream, option);
   return csv.rows.empty() ? std::vector<std::string>{} : csv.rows.front().cells;
@@ -120,8 +120,8 @@ void write_files(const ReportOptions& options, const Summary& summary) {
                          : "");
 }
 
-// Before what takes long.
-void check_is_free(const ReportOptions& options) {
+// Called before the long computation.
+void check_output_is_new(const ReportOptions& options) {
   const std::string page = (fs::path{options.out} / "report.html").string();
   std::error_code error;
   if (!options.out.empty() && !options.replace && fs::exists(page, error)) {
@@ -137,7 +137,7 @@ bool reads_columns(const ReportOptions& options) {
 
 TableOptions table_options(const ReportOptions& options) {
   TableOptions table = options.table;
-  table.responses = listed(options.responses, "--responses");
+  table.responses = split_row(options.responses, "--responses");
   if (!options.time_unit.empty()) {
     table.columns.time_unit_s = options.time_unit == "ms" ? 1e-3 : 1.0;
   }
@@ -191,10 +191,10 @@ void run_report(ReportOptions options) {
   if (options.out.empty() && !options.directories.empty()) {
     options.out = options.directories.front();
   }
-  check_is_free(options);
+  check_output_is_new(options);
   Summary summary = summary_of(options);
   if (!options.only.empty()) {
-    analysis::keep_only(summary, listed(options.only, "--only"));
+    analysis::keep_only(summary, split_row(options.only, "--only"));
   }
   analysis::write_text(std::cout, summary);
   std::cout << std::endl;

@@ -23,7 +23,7 @@ void run_reproduce(const ReproduceOptions& options) {
   bench.effort = options.is_quick ? Effort::quick : Effort::full;
   bench.seed = seed_from(options.seed, "--seed");
   claim_groups_named(options.only);
-  make_room_for_reproduction(options.out);
+  create_reproduction_directory(options.out);
   listen_for_stop();
   const Reproduction reproduction = reproduce(bench, options.only);
   write_files(options.out, reproduction);

@@ -131,10 +131,10 @@ void run(RunOptions options) {
 void add_run(CommandParser& line) {
   Command command = line.add("run", "One participant's session, at the terminal or a page");
   const auto options = std::make_shared<RunOptions>();
-  command.argument("protocol", options->protocol, "Study (YAML)");
+  command.shipped_file("protocol", options->protocol, "Study (YAML)");
   command.option("--participant", options->participant, "Participant's id", Need::required);
   command.option("--out", options->directory, "Directory of the study", Need::required);
-  command.option("--rig", options->rig, "Device and limits (YAML); else a simulated hand");
+  command.shipped_file("--rig", options->rig, "Device and limits (YAML); else a simulated hand");
   command.option("--seed", options->seed, "Seed of the order; drawn and stored if not given");
   command.option("--row", options->row,
                  "Which of the balanced orders, from 1; default: the first unused one");

@@ -31,7 +31,7 @@ void add_simulate(CommandParser& line) {
   const auto study = std::make_shared<SimulatedStudy>();
   const auto seed = std::make_shared<std::string>("1");
   const auto participants = std::make_shared<std::string>();
-  command.argument("protocol", study->protocol_file, "Study (YAML)");
+  command.shipped_file("protocol", study->protocol_file, "Study (YAML)");
   command.option("--participants", *participants, participants_help);
   command.option_with_default("--seed", *seed, "Seed of all random streams");
   command.option("--out", study->directory, "Directory of the study", Need::required);

@@ -247,7 +247,7 @@ void run_tap(const TapOptions& options) {
 void add_tap(CommandParser& line) {
   Command command = line.add("tap", "Force trace of one scripted tap");
   const auto options = std::make_shared<TapOptions>();
-  command.argument("protocol", options->protocol, "Study (YAML)");
+  command.shipped_file("protocol", options->protocol, "Study (YAML)");
   command.option("--stimulus", options->stimulus, "Which stimulus to tap");
   command.option("--at", options->at, "X,Y on the plate in metres, or a tapping point");
   command.number("--speed", options->speed_m_s, "Speed of impact [m/s]");

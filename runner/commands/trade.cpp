@@ -32,7 +32,7 @@ void run_trade(const TradeOptions& options) {
   const protocols::Stimulus& stimulus = protocol.stimulus(options.stimulus);
   check(options.tolerance);
   if (!options.out.empty()) {
-    make_room(options.out);
+    create_trade_directory(options.out);
   }
   Progress progress{fmt::format("measuring '{}'", options.stimulus)};
   const Trade trade = at_its_line(protocols::stimulus_with(protocol, stimulus), [&] {
@@ -54,7 +54,7 @@ void run_trade(const TradeOptions& options) {
 void add_trade(CommandParser& line) {
   Command command = line.add("trade", "Speed against accuracy, and stability at extreme values");
   const auto options = std::make_shared<TradeOptions>();
-  command.argument("protocol", options->protocol, "Study (YAML)");
+  command.shipped_file("protocol", options->protocol, "Study (YAML)");
   command.option("--stimulus", options->stimulus, "Which stimulus", Need::required);
   command.number_within("--frequency-tolerance", options->tolerance.frequency, 1e-6, 10.0,
                         "Largest relative error of a natural frequency");

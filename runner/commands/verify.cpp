@@ -45,7 +45,7 @@ std::string shortened(const ordered_json& value) {
                          longest);
 }
 
-// What the first says that the second does not.
+// Collects the entries of the first that the second lacks or states otherwise.
 void compare(const ordered_json& published, const ordered_json& anew, const std::string& path,
              std::vector<std::string>& differences) {
   if (published.is_object() && anew.is_object()) {
@@ -86,7 +86,7 @@ void compare_reports(const ordered_json& published, const ordered_json& anew,
   }
 }
 
-// Not one of parts of the study (--only).
+// False for a report of parts of the study (--only).
 bool is_whole(const ordered_json& published, const ordered_json& anew) {
   const auto names_of = [](const ordered_json& report) {
     std::vector<std::string> names;
@@ -137,7 +137,7 @@ void compare_tables(const std::string& directory, const analysis::Summary& summa
   }
 }
 
-// What people read, and what in report.json is of the study as a whole.
+// Compares the page that people read, and the entries of report.json that concern the whole study.
 void compare_whole(const std::string& directory, const ordered_json& published,
                    const ordered_json& anew, const analysis::Summary& summary,
                    std::vector<std::string>& differences) {
@@ -216,7 +216,7 @@ std::set<std::string> lines_of(const results::JournalEntries& entries) {
   return {lines.begin(), lines.end()};
 }
 
-// How many of these lines the others lack; prints the first few.
+// Counts the lines that the others lack; prints the first few.
 int print_missing(const std::set<std::string>& lines, const std::set<std::string>& others,
                   const char* where) {
   constexpr int max_printed = 5;
@@ -229,7 +229,7 @@ int print_missing(const std::set<std::string>& lines, const std::set<std::string
   return missing;
 }
 
-// Of a protocol that is not one of this version, no block is known.
+// A protocol that this version cannot read yields a rule that knows no block.
 results::TaskRule rule_of(const results::StudyRow& study) {
   auto protocol = std::make_shared<protocols::Protocol>();
   try {
@@ -251,7 +251,7 @@ results::TaskRule rule_of(const results::StudyRow& study) {
           }};
 }
 
-// What is wrong, or empty.
+// Returns a description of the fault, or an empty text.
 std::string print_recomputed(const results::Recomputation& recomputed) {
   constexpr std::size_t max_printed = 20;
   const auto& differences = recomputed.differences;
@@ -268,8 +268,8 @@ std::string print_recomputed(const results::Recomputation& recomputed) {
                                            differences.size());
 }
 
-// What is wrong, or empty.
-std::string print_heads(const std::vector<std::string>& differences) {
+// Returns a description of the fault, or an empty text.
+std::string print_study_differences(const std::vector<std::string>& differences) {
   for (const std::string& difference : differences) {
     fmt::print("differs: {}\n", difference);
   }
@@ -278,7 +278,7 @@ std::string print_heads(const std::vector<std::string>& differences) {
                                            differences.size());
 }
 
-// The journal against the database: what is wrong, or empty.
+// Compares journal and database; returns a description of the fault, or an empty text.
 std::string print_compared(const results::JournalEntries& in_store,
                            const results::JournalEntries& in_journal) {
   fmt::print("answers.journal  {} answers: hash chain intact\n", in_journal.answers.size());
@@ -293,7 +293,7 @@ std::string print_compared(const results::JournalEntries& in_store,
   return "";
 }
 
-// What is wrong, or empty.
+// Returns a description of the fault, or an empty text.
 std::string print_published(const PublishedReport& report) {
   if (!report.is_there) {
     return "";
@@ -321,10 +321,10 @@ void verify(const VerifyOptions& options) {
   fmt::print("study.db         {} trials, {} answers, {} ticks: sound\n", store.trials().size(),
              in_store.answers.size(), recomputed.ticks);
   const results::JournalContent journal = results::read_journal(options.directory);
-  std::vector<std::string> wrong{
-      print_recomputed(recomputed),
-      print_heads(results::differing_study_and_sessions(store.study(), store.sessions(), journal)),
-      print_compared(in_store, journal.entries)};
+  std::vector<std::string> wrong{print_recomputed(recomputed),
+                                 print_study_differences(results::differing_study_and_sessions(
+                                     store.study(), store.sessions(), journal)),
+                                 print_compared(in_store, journal.entries)};
   std::erase(wrong, "");
   if (wrong.empty()) {  // else a report made anew would be wrong, too
     wrong.push_back(print_published(published_report(options.directory, store)));

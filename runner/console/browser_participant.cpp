@@ -6,13 +6,14 @@
 #include <utility>
 
 #include "results/store_error.hpp"
+#include "runner/session/participants/trial_control.hpp"
 #include "runner/terminal/process_exit.hpp"
 namespace tapstudy::runner {
 namespace {
 constexpr std::chrono::milliseconds poll_interval{10};
 
-std::optional<IntervalState> intervals(const Exploration& exploration) {
-  const IntervalState* const state = exploration.intervals();
+std::optional<IntervalState> intervals(const TrialControl& control) {
+  const IntervalState* const state = control.intervals();
   return state == nullptr ? std::nullopt : std::optional{*state};
 }
 }  // namespace
@@ -99,79 +100,78 @@ void BrowserParticipant::get_ready(const TrialPrompt& prompt) {
 }
 
 std::int64_t BrowserParticipant::show_trial(const TrialPrompt& prompt,
-                                            const Exploration& exploration) {
-  const std::size_t current = exploration.current();
-  return show(
-      {.kind = ScreenKind::trial,
-       .trial = TrialScreen{prompt, current, exploration.setting(), intervals(exploration), notice_,
-                            std::exchange(correction_state_, CorrectionState::none)},
-       .scene = context_.scene(current)});
+                                            const TrialControl& control) {
+  const std::size_t current = control.current();
+  return show({.kind = ScreenKind::trial,
+               .trial = TrialScreen{prompt, current, control.setting(), intervals(control), notice_,
+                                    std::exchange(correction_state_, CorrectionState::none)},
+               .scene = context_.scene(current)});
 }
 
 std::optional<std::string> BrowserParticipant::perform(const TrialPrompt& prompt,
-                                                       Exploration& exploration) {
+                                                       TrialControl& control) {
   constexpr double poll_s = 0.01;
-  std::size_t current = exploration.current();
-  auto in_turn = intervals(exploration);
-  std::int64_t number = show_trial(prompt, exploration);
+  std::size_t current = control.current();
+  auto in_turn = intervals(control);
+  std::int64_t number = show_trial(prompt, control);
   asked_at_ = std::chrono::steady_clock::now();
-  while (exploration.is_running() && !stop_was_asked()) {
+  while (control.poll() && !stop_was_asked()) {
     pause_if_page_silent();
-    tell_entered(prompt, exploration);
+    tell_entered(prompt, control);
     auto input = screens_.take(number);
     // by the operator, or as intervals begin and end
-    const bool is_switched = exploration.current() != current || intervals(exploration) != in_turn;
+    const bool is_switched = control.current() != current || intervals(control) != in_turn;
     if (!input && is_switched) {
       input = screens_.close();
     }
     if (input && input->action == ScreenAction::answer) {
       notice_.reset();
       const auto answer = answer_in(input->text, prompt.answers);
-      exploration.enter_answer(answer.value_or(""));  // had it not arrived yet
+      control.enter_answer(answer.value_or(""));  // had it not arrived yet
       return answer;
     }
     if (input) {
-      act_on(*input, prompt, exploration);
+      act_on(*input, prompt, control);
     }
     if (input || is_switched || follow_correction()) {
       notice_.reset();
-      current = exploration.current();
-      in_turn = intervals(exploration);
-      number = show_trial(prompt, exploration);
+      current = control.current();
+      in_turn = intervals(control);
+      number = show_trial(prompt, control);
     }
-    exploration.pass_time(poll_s);
+    control.pass_time(poll_s);
   }
-  return last_word(prompt, exploration);
+  return last_word(prompt, control);
 }
 
-void BrowserParticipant::tell_entered(const TrialPrompt& prompt, Exploration& exploration) {
+void BrowserParticipant::tell_entered(const TrialPrompt& prompt, TrialControl& control) {
   if (const auto entered = screens_.take_entered()) {
-    exploration.enter_answer(answer_in(*entered, prompt.answers).value_or(""));
+    control.enter_answer(answer_in(*entered, prompt.answers).value_or(""));
   }
 }
 
 void BrowserParticipant::act_on(const ScreenInput& input, const TrialPrompt& prompt,
-                                Exploration& exploration) {
+                                TrialControl& control) {
   if (input.action == ScreenAction::correct) {
     correction_ = prompt.previous->correct(input.text);
   } else if (input.action == ScreenAction::adjust) {
-    exploration.adjust(input.value);
+    control.adjust(input.value);
   } else if (input.action == ScreenAction::replay) {
-    exploration.replay();
+    control.replay();
   } else {
-    exploration.switch_to(input.value);
+    control.switch_to(input.value);
   }
 }
 
 // What the page was told to be accepted in the moment before the trial ended.
 std::optional<std::string> BrowserParticipant::last_word(const TrialPrompt& prompt,
-                                                         Exploration& exploration) {
+                                                         TrialControl& control) {
   const auto accepted = screens_.close();
   if (accepted && accepted->action == ScreenAction::answer) {
     return answer_in(accepted->text, prompt.answers);
   }
   if (accepted) {
-    act_on(*accepted, prompt, exploration);
+    act_on(*accepted, prompt, control);
   }
   return std::nullopt;
 }

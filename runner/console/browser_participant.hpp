@@ -27,7 +27,7 @@ class BrowserParticipant final : public Participant {
   void wait_while(const std::function<bool()>& is_paused) override;
   void arrive() override;
   void get_ready(const TrialPrompt& prompt) override;
-  std::optional<std::string> perform(const TrialPrompt& prompt, Exploration& exploration) override;
+  std::optional<std::string> perform(const TrialPrompt& prompt, TrialControl& control) override;
   std::optional<int> confidence(const protocols::Confidence& scale) override;
   void feedback(bool is_correct, const std::string& right_label) override;
   void refused(const TrialPrompt& prompt, const TooEarly& why) override;
@@ -41,16 +41,16 @@ class BrowserParticipant final : public Participant {
 
  private:
   std::int64_t show(Screen screen);
-  std::int64_t show_trial(const TrialPrompt& prompt, const Exploration& exploration);
+  std::int64_t show_trial(const TrialPrompt& prompt, const TrialControl& control);
   // Until it is answered; throws Stopped if the session is to stop.
   ScreenInput answer_to(Screen screen);
   // nullopt: it was not, until then.
   std::optional<ScreenInput> answer_before(std::chrono::steady_clock::time_point latest,
                                            Screen screen);
   void tell(Message message);
-  void tell_entered(const TrialPrompt& prompt, Exploration& exploration);
-  void act_on(const ScreenInput& input, const TrialPrompt& prompt, Exploration& exploration);
-  std::optional<std::string> last_word(const TrialPrompt& prompt, Exploration& exploration);
+  void tell_entered(const TrialPrompt& prompt, TrialControl& control);
+  void act_on(const ScreenInput& input, const TrialPrompt& prompt, TrialControl& control);
+  std::optional<std::string> last_word(const TrialPrompt& prompt, TrialControl& control);
   void pause_if_page_silent();
   // Whether there is something new to show of it.
   bool follow_correction();

@@ -81,8 +81,6 @@ LiveView::Steps LiveView::since(std::int64_t begin) const {
 }
 
 namespace {
-using Json = nlohmann::ordered_json;
-
 std::string dumped(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }

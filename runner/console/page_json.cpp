@@ -21,8 +21,7 @@ const char* name(protocols::AnswerKind value) {
 }
 }  // namespace
 
-nlohmann::ordered_json answers_json(const protocols::Answers& answers) {
-  using Json = nlohmann::ordered_json;
+Json answers_json(const protocols::Answers& answers) {
   Json labels = Json::array();
   for (const protocols::Option& option : answers.options) {
     labels.push_back(option.label);

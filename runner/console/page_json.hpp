@@ -1,16 +1,16 @@
 #pragma once
 #include <nlohmann/json.hpp>
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "core/error.hpp"
 #include "protocols/tasks/answers.hpp"
 namespace tapstudy::runner {
+using Json = nlohmann::ordered_json;
+
 // What a page sends is shallow. A value that is nested deeper would be copied and destroyed by
 // recursion, on a small stack. Throws InvalidInput if it is deeper, or no JSON.
-inline nlohmann::ordered_json parse_json(const std::string& text) {
+inline Json parse_json(const std::string& text) {
   constexpr int max_depth = 4;
-  using Json = nlohmann::ordered_json;
   try {
     return Json::parse(text, [](int depth, Json::parse_event_t /*event*/, Json& /*value*/) {
       if (depth > max_depth) {
@@ -24,5 +24,5 @@ inline nlohmann::ordered_json parse_json(const std::string& text) {
 }
 
 // {"kind", "options": [label], "settings", "modulus"}, for both pages.
-nlohmann::ordered_json answers_json(const protocols::Answers& answers);
+Json answers_json(const protocols::Answers& answers);
 }  // namespace tapstudy::runner

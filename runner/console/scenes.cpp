@@ -5,10 +5,9 @@
 #include <variant>
 
 #include "protocols/axes/presented_stimulus.hpp"
+#include "runner/console/page_json.hpp"
 namespace tapstudy::runner {
 namespace {
-using Json = nlohmann::ordered_json;
-
 Json json_of(const core::Vec3& v) {
   return {v.x(), v.y(), v.z()};
 }

@@ -9,8 +9,6 @@
 #include "runner/console/page_json.hpp"
 namespace tapstudy::runner {
 namespace {
-using Json = nlohmann::ordered_json;
-
 Json json_of(const TooEarly& notice) {
   return {{"reason", name(notice.reason)},
           {"contacts", notice.min_contacts},

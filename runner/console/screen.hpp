@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "runner/session/participants/participant.hpp"
+#include "runner/session/participants/trial_rules.hpp"
 namespace tapstudy::runner {
 enum class ScreenKind {
   wait,

@@ -9,12 +9,12 @@
 
 #include "core/error.hpp"
 #include "device/loop/sleep_inhibitor.hpp"
+#include "runner/live_session/live_trials.hpp"
 #include "runner/session/devices/device_kind.hpp"
 #include "runner/session/devices/masking_card.hpp"
 #include "runner/session/devices/rigs.hpp"
 #include "runner/session/engine/remaining_trials.hpp"
 #include "runner/session/engine/session_row.hpp"
-#include "runner/live_session/live_trials.hpp"
 #include "runner/session/markers/markers.hpp"
 #include "runner/terminal/logging.hpp"
 #include "runner/terminal/operator_dialogue.hpp"
@@ -54,7 +54,8 @@ std::optional<results::SessionRow> earlier_session(const SessionRequest& request
                     "--resume, or choose another id)",
                     request.participant_id)};
   }
-  const auto alike = earlier ? std::nullopt : store.participant_like(request.participant_id);
+  const auto alike =
+      earlier ? std::nullopt : store.participant_ignoring_case(request.participant_id);
   if (!earlier && request.resume == Resume::yes) {
     throw core::InvalidInput{fmt::format("participant '{}' has no session to resume{}",
                                          request.participant_id,

@@ -193,6 +193,8 @@ void LiveTrials::run() {
     device_ = reconnect(to_text(*interruption), parts_.device_request, std::move(device_));
     device_->begin_session(parts_.session.row.seed);
     live_loop_.use(device_->device());
+    const bool is_off = device_->device().zero_force() == device::StopOutcome::confirmed;
+    desk_.force_is(is_off ? ForceState::off : ForceState::unknown);
   }
 }
 }  // namespace tapstudy::runner

@@ -21,17 +21,17 @@
 #include "runner/studies/stored_study.hpp"
 namespace tapstudy::runner {
 // ", in random order": of a block's trials; "" where its task has an order of its own.
-std::string order_words(const protocols::Block& block, std::size_t participants);
+std::string describe_order(const protocols::Block& block, std::size_t participants);
 // "Each participant did 'a' (…), then 'b' (…). ", or how the blocks followed one another.
 // blocks: each in words.
-std::string sequence_words(const protocols::Protocol& protocol, const std::string& who,
-                           const std::vector<std::string>& blocks, std::size_t participants);
+std::string describe_sequence(const protocols::Protocol& protocol, const std::string& who,
+                              const std::vector<std::string>& blocks, std::size_t participants);
 
 using protocols::Block;
 using protocols::Protocol;
 namespace {
 // Balance holds for whole sets of orders.
-std::string williams_words(int of_orders, std::size_t participants) {
+std::string describe_williams_orders(int of_orders, std::size_t participants) {
   const auto orders = static_cast<std::size_t>(of_orders);
   return participants % orders == 0
              ? ", in orders balanced for immediate sequence over participants (Williams 1949)"
@@ -42,7 +42,7 @@ std::string williams_words(int of_orders, std::size_t participants) {
 }
 
 // " with no stimulus twice in a row"; "" without constraints.
-std::string constraint_words(const protocols::OrderConstraints& constraints) {
+std::string describe_constraints(const protocols::OrderConstraints& constraints) {
   std::vector<std::string> limits;
   if (constraints.max_run > 0) {
     limits.push_back(
@@ -58,7 +58,7 @@ std::string constraint_words(const protocols::OrderConstraints& constraints) {
 }
 }  // namespace
 
-std::string order_words(const Block& block, std::size_t participants) {
+std::string describe_order(const Block& block, std::size_t participants) {
   if (!block.task->uses_order()) {
     return "";
   }
@@ -66,19 +66,19 @@ std::string order_words(const Block& block, std::size_t participants) {
     case protocols::Order::listed:
       return ", in one order for all";
     case protocols::Order::shuffle:
-      return ", in random order" + constraint_words(block.constraints);
+      return ", in random order" + describe_constraints(block.constraints);
     case protocols::Order::shuffle_within_repetition:
       return ", in an order that was random within each repetition" +
-             constraint_words(block.constraints);
+             describe_constraints(block.constraints);
     case protocols::Order::williams:
-      return williams_words(
+      return describe_williams_orders(
           protocols::williams_rows(static_cast<int>(protocols::conditions(block))), participants);
   }
   return "";
 }
 
-std::string sequence_words(const Protocol& protocol, const std::string& who,
-                           const std::vector<std::string>& blocks, std::size_t participants) {
+std::string describe_sequence(const Protocol& protocol, const std::string& who,
+                              const std::vector<std::string>& blocks, std::size_t participants) {
   const protocols::BlockOrder& order = protocol.block_order;
   if (order.order == protocols::Order::listed) {
     return fmt::format("{} did {}. ", who, fmt::join(blocks, ", then "));
@@ -88,7 +88,7 @@ std::string sequence_words(const Protocol& protocol, const std::string& who,
       fmt::join(blocks, ", then "), fmt::join(order.blocks, "', '"),
       order.order == protocols::Order::shuffle
           ? ", in random order"
-          : williams_words(protocols::balanced_block_orders(protocol), participants));
+          : describe_williams_orders(protocols::balanced_block_orders(protocol), participants));
 }
 
 namespace {
@@ -124,7 +124,7 @@ std::string rendering(const Protocol& protocol, const DoneBlocks& done) {
       vibrates ? fmt::format("; modes of vibration up to {:g} Hz", protocol.band_limit_hz) : "");
 }
 
-std::string practice_words(const Block& block) {
+std::string describe_practice(const Block& block) {
   if (!block.is_practice) {
     return "";
   }
@@ -136,7 +136,7 @@ std::string practice_words(const Block& block) {
 }
 
 // "levels by QUEST+ (Watson 2017)", alike procedures taken together.
-std::string level_words(const Block& block) {
+std::string describe_levels(const Block& block) {
   if (!block.comparison) {
     return "";
   }
@@ -159,7 +159,7 @@ std::string level_words(const Block& block) {
       fmt::join(parts, " and "));
 }
 
-std::string tap_words(const Block& block) {
+std::string describe_taps(const Block& block) {
   const auto& taps = block.explore.scripted_taps;
   return taps ? fmt::format(
                     ", scripted taps at {} of {:g} m/s, {:g} s each and {:g} s apart, felt "
@@ -168,9 +168,10 @@ std::string tap_words(const Block& block) {
               : "";
 }
 
-// Where not all participants did all of it; where it may end early, nobody knows what all of it is.
-std::string completion_words(const Block& block, const results::BlockCourseRow& done,
-                             std::size_t participants) {
+// The completed share of the block, if not all participants did all of it; the total is unknown
+// where a block may end early.
+std::string describe_completion(const Block& block, const results::BlockCourseRow& done,
+                                std::size_t participants) {
   std::string words;
   if (done.participants.size() < participants) {
     words += fmt::format(", by {} of {} participants", done.participants.size(), participants);
@@ -182,8 +183,8 @@ std::string completion_words(const Block& block, const results::BlockCourseRow& 
   return words;
 }
 
-std::string block_words(const Block& block, const results::BlockCourseRow& done,
-                        std::size_t participants) {
+std::string describe_block(const Block& block, const results::BlockCourseRow& done,
+                           std::size_t participants) {
   const auto trials = static_cast<std::size_t>(protocols::planned_trials(block));
   return fmt::format(
       "'{}' ({} of {}{}, {}{}{}{}{}{}{}{}{})", block.name, block.task->name(),
@@ -193,8 +194,8 @@ std::string block_words(const Block& block, const results::BlockCourseRow& done,
       block.catch_trials ? fmt::format(", {} of them catch trials", block.catch_trials->count) : "",
       block.confidence ? fmt::format(", each with confidence in {} steps", block.confidence->steps)
                        : "",
-      order_words(block, participants), level_words(block), tap_words(block), practice_words(block),
-      completion_words(block, done, participants));
+      describe_order(block, participants), describe_levels(block), describe_taps(block),
+      describe_practice(block), describe_completion(block, done, participants));
 }
 
 // Letters that stand for something else in each trial, and are what is answered.
@@ -203,7 +204,7 @@ bool has_blind_labels(const Block& block, const Protocol& protocol) {
   return !answers.options.empty() && answers.options.front().name == protocols::blind_label(0);
 }
 
-// What an answer to the block took, as a sentence without its subject; or "".
+// The requirements of an answer in the block, as a sentence without its subject; or "".
 std::string exploration(const Block& block) {
   std::vector<std::string> limits;
   if (block.presented == protocols::Presented::virtual_plates && block.explore.min_contacts > 0) {
@@ -250,7 +251,7 @@ std::string explorations(const Protocol& protocol, const DoneBlocks& done) {
   return text;
 }
 
-// Of people: a simulated participant sees nothing.
+// Only for human participants: a simulated one sees nothing.
 std::string blinding(const Protocol& protocol, const DoneBlocks& done) {
   const bool are_labels_blind = std::ranges::any_of(protocol.blocks, [&](const Block& block) {
     return done.contains(block.name) && has_blind_labels(block, protocol);
@@ -264,7 +265,7 @@ std::string blinding(const Protocol& protocol, const DoneBlocks& done) {
       protocol.display.is_operator_blind ? "did not show" : "showed");
 }
 
-// Of people: a simulated participant hears nothing.
+// Only for human participants: a simulated one hears nothing.
 std::string masking(const Protocol& protocol, const DoneBlocks& done) {
   if (!protocol.masking) {
     return "";
@@ -302,8 +303,8 @@ std::string questionnaires(const Protocol& protocol, const DoneBlocks& done) {
   return forms.empty() ? "" : fmt::format("Questionnaires: {}. ", fmt::join(forms, "; "));
 }
 
-// What nobody began.
-std::string left_undone(const Protocol& protocol, const DoneBlocks& done) {
+// Blocks that no participant started.
+std::string unstarted_blocks(const Protocol& protocol, const DoneBlocks& done) {
   std::vector<std::string> names;
   for (const Block& block : protocol.blocks) {
     if (!done.contains(block.name)) {
@@ -314,23 +315,23 @@ std::string left_undone(const Protocol& protocol, const DoneBlocks& done) {
 }
 }  // namespace
 
-std::string procedure_words(const Protocol& protocol,
-                            const std::vector<results::SessionRow>& sessions,
-                            const std::set<std::string>& participants, const DoneBlocks& done) {
+std::string describe_procedure(const Protocol& protocol,
+                               const std::vector<results::SessionRow>& sessions,
+                               const std::set<std::string>& participants, const DoneBlocks& done) {
   std::vector<std::string> blocks;
   bool is_by_all = true;
   for (const Block& block : protocol.blocks) {
     const auto row = done.find(block.name);
     if (row != done.end()) {
-      blocks.push_back(block_words(block, row->second, participants.size()));
+      blocks.push_back(describe_block(block, row->second, participants.size()));
       is_by_all = is_by_all && row->second.participants.size() == participants.size();
     }
   }
   const bool are_people = sessions.front().mode != results::Mode::simulated;
   std::string text = apparatus(sessions) + rendering(protocol, done);
-  text += sequence_words(protocol, is_by_all ? "Each participant" : "Participants", blocks,
-                         participants.size());
-  text += left_undone(protocol, done);
+  text += describe_sequence(protocol, is_by_all ? "Each participant" : "Participants", blocks,
+                            participants.size());
+  text += unstarted_blocks(protocol, done);
   text += explorations(protocol, done);
   if (are_people) {
     text += blinding(protocol, done) + masking(protocol, done) + questionnaires(protocol, done);

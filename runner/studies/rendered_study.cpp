@@ -19,18 +19,19 @@
 #include "runner/studies/stored_study.hpp"
 namespace tapstudy::runner {
 // "600 × 600 × 50 mm", or "surface within ..." of any other shape.
-std::string size_words(const core::Shape& shape);
+std::string describe_size(const core::Shape& shape);
 // "2 × vertex on both faces", fixations that are alike taken together; "free" without any.
-std::string fixation_words(const std::vector<core::Fixation>& fixations);
+std::string describe_fixations(const std::vector<core::Fixation>& fixations);
 // "; touches table of 2.5e+09 Pa, 610 kg/m³ by 4 springs"; empty if it touches nothing.
-std::string contact_words(const protocols::Protocol& protocol, const protocols::Stimulus& stimulus);
+std::string describe_joints(const protocols::Protocol& protocol,
+                            const protocols::Stimulus& stimulus);
 
 namespace {
 std::string millimetres(double length_m) {
   return fmt::format("{:.4g}", 1e3 * length_m);
 }
 
-const char* face_words(core::Face face) {
+const char* describe_face(core::Face face) {
   switch (face) {
     case core::Face::top:
       return "on the tapped face";
@@ -44,7 +45,7 @@ const char* face_words(core::Face face) {
   return "";
 }
 
-const char* side_words(core::Side side) {
+const char* describe_side(core::Side side) {
   switch (side) {
     case core::Side::left:
       return "left side";
@@ -62,13 +63,13 @@ const char* side_words(core::Side side) {
   return "";
 }
 
-std::string region_words(const core::Fixation& fixation) {
+std::string describe_region(const core::Fixation& fixation) {
   switch (fixation.shape) {
     case core::RegionShape::vertex:
-      return fmt::format("vertex {}", face_words(fixation.face));
+      return fmt::format("vertex {}", describe_face(fixation.face));
     case core::RegionShape::disc:
       return fmt::format("disc of radius {} mm {}", millimetres(fixation.radius_m),
-                         face_words(fixation.face));
+                         describe_face(fixation.face));
     case core::RegionShape::ball:
       return fmt::format("ball of radius {} mm", millimetres(fixation.radius_m));
     case core::RegionShape::box: {
@@ -77,13 +78,13 @@ std::string region_words(const core::Fixation& fixation) {
                          millimetres(size_m.z()));
     }
     case core::RegionShape::side:
-      return side_words(fixation.side);
+      return describe_side(fixation.side);
   }
   return "";
 }
 
-// Nothing of what is held along all axes.
-std::string hold_words(const core::Fixation& fixation) {
+// Empty for a fixation along all axes.
+std::string describe_axes(const core::Fixation& fixation) {
   if (fixation.springs_n_per_m) {
     const core::Vec3& springs = *fixation.springs_n_per_m;
     return fmt::format(", on springs of {:.3g}, {:.3g}, {:.3g} N/m", springs.x(), springs.y(),
@@ -97,17 +98,17 @@ std::string hold_words(const core::Fixation& fixation) {
 }
 }  // namespace
 
-std::string size_words(const core::Shape& shape) {
+std::string describe_size(const core::Shape& shape) {
   const core::Vec3 size_m = core::bounds(shape).size_m();
   return fmt::format("{}{} × {} × {} mm",
                      std::holds_alternative<core::Box>(shape) ? "" : "surface within ",
                      millimetres(size_m.x()), millimetres(size_m.y()), millimetres(size_m.z()));
 }
 
-std::string fixation_words(const std::vector<core::Fixation>& fixations) {
+std::string describe_fixations(const std::vector<core::Fixation>& fixations) {
   std::vector<std::pair<std::string, int>> alike;
   for (const core::Fixation& fixation : fixations) {
-    const std::string words = region_words(fixation) + hold_words(fixation);
+    const std::string words = describe_region(fixation) + describe_axes(fixation);
     const auto found = std::ranges::find(alike, words, &std::pair<std::string, int>::first);
     if (found == alike.end()) {
       alike.emplace_back(words, 1);
@@ -122,8 +123,8 @@ std::string fixation_words(const std::vector<core::Fixation>& fixations) {
   return parts.empty() ? "free" : fmt::format("{}", fmt::join(parts, "; "));
 }
 
-std::string contact_words(const protocols::Protocol& protocol,
-                          const protocols::Stimulus& stimulus) {
+std::string describe_joints(const protocols::Protocol& protocol,
+                            const protocols::Stimulus& stimulus) {
   if (!stimulus.contacts) {
     return "";
   }
@@ -167,16 +168,16 @@ std::optional<RenderedModel> model_of(const Protocol& protocol, const Stimulus& 
                        found->report.worst_residual};
 }
 
-RenderedStimulus in_words(const Protocol& protocol, const Stimulus& stimulus,
-                          const core::ModelCache& cache) {
+RenderedStimulus describe_stimulus(const Protocol& protocol, const Stimulus& stimulus,
+                                   const core::ModelCache& cache) {
   return {stimulus.name,
           stimulus.label,
           name_in(protocol.plates, stimulus.plate),
-          size_words(stimulus.plate->shape),
+          describe_size(stimulus.plate->shape),
           name_in(protocol.materials, stimulus.material),
           stimulus.material->youngs_modulus_pa,
           stimulus.material->density_kg_per_m3,
-          fixation_words(stimulus.plate->fixations) + contact_words(protocol, stimulus),
+          describe_fixations(stimulus.plate->fixations) + describe_joints(protocol, stimulus),
           std::string{stimulus.technique->name},
           stimulus.technique->needs_model(),
           !stimulus.vary.empty(),
@@ -280,7 +281,7 @@ class TapSorter {
 analysis::RenderedStudy rendered_study(const Protocol& protocol,
                                        const std::vector<StudyStore>& stores, results::Mode mode,
                                        const DoneBlocks& done) {
-  const core::ModelCache cache = models_of_this_user();
+  const core::ModelCache cache = user_model_cache();
   const analysis::TapWindow window{protocol.rate_hz};
   RenderedStudy study;
   const std::set<std::string> rendered = rendered_stimuli(protocol, done);
@@ -288,7 +289,7 @@ analysis::RenderedStudy rendered_study(const Protocol& protocol,
     if (!rendered.contains(stimulus.name)) {
       continue;
     }
-    study.stimuli.push_back(in_words(protocol, stimulus, cache));
+    study.stimuli.push_back(describe_stimulus(protocol, stimulus, cache));
     analysis::StimulusTaps taps{analysis::TapStatistics{window}, {}};
     for (const auto& [point, at_m] : protocol.tapping_points_m) {
       taps.points.push_back({point, analysis::TapStatistics{window}, {}});

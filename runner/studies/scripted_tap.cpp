@@ -118,7 +118,7 @@ double height_m(const ScriptedTap& tap, const core::Shape& shape) {
   const auto height_m = top.at_m(tap.at_m);
   if (!height_m) {
     throw core::InvalidInput{fmt::format("--at: ({}, {}) is off the plate ({})", tap.at_m.x(),
-                                         tap.at_m.y(), top.outline_words(tap.at_m))};
+                                         tap.at_m.y(), top.describe_touchable(tap.at_m))};
   }
   return *height_m;
 }
@@ -134,7 +134,7 @@ void check(const ScriptedTap& tap) {
   }
 }
 
-// In virtual time, every tick kept as it is.
+// Runs the loop in virtual time and keeps every tick.
 std::vector<core::TraceSample> samples_of(device::Device& hand,
                                           std::span<core::TapRenderer> alternatives,
                                           const device::LoopSettings& settings, double seconds) {
@@ -152,7 +152,7 @@ std::vector<core::TraceSample> samples_of(device::Device& hand,
   return samples;
 }
 
-// Where the muscle aims in each tick, in the device frame.
+// The aim of the muscle in each tick, in the device frame.
 std::vector<core::Vec3> aims_of(const ScriptPath& path, const core::Shape& shape,
                                 const core::Placement& placement, double dt_s) {
   const core::TopHeight top{shape};
@@ -166,7 +166,7 @@ std::vector<core::Vec3> aims_of(const ScriptPath& path, const core::Shape& shape
       throw core::InvalidInput{
           fmt::format("--script: the finger leaves the plate after {:.4g} s at "
                       "({:.4g}, {:.4g}) ({})",
-                      t_s, sideways_m.x(), sideways_m.y(), top.outline_words(sideways_m))};
+                      t_s, sideways_m.x(), sideways_m.y(), top.describe_touchable(sideways_m))};
     }
     aim_m.z() += *height_m;
     aims_m.push_back(placement.point_to_device(aim_m));

@@ -10,7 +10,7 @@
 #include "protocols/rig.hpp"
 #include "runner/session/stimuli/model_library.hpp"
 namespace tapstudy::runner {
-// Where the muscle of a scripted finger aims. Plate frame, with the height above the surface for z.
+// The aim of the muscle of a scripted finger. Plate frame, with the height above the surface for z.
 //
 // A strike gets above its place in 0.3 s (unless it is the first) and comes down in 0.25 s, so that
 // the hand has the speed when it hits. Then the aim goes on below the surface until the force is
@@ -43,8 +43,8 @@ class ScriptPath {
   double duration_s_{0.0};
 };
 
-// How far below the surface a muscle aims for this force of the contact spring at rest: spring and
-// muscle in a row.
+// The depth below the surface at which a muscle aims for this force of the contact spring at rest:
+// spring and muscle in series.
 double aim_below_m(double force_n, const core::HandBody& hand, double contact_stiffness_n_per_m);
 
 // One tap by the simulated hand with exactly this impact speed, and its trace.

@@ -80,8 +80,8 @@ std::vector<PlannedSession> add_sessions(const SimulatedStudy& study,
   return sessions;
 }
 
-// Who does not get through practice leaves, as a person would.
-void take_part(TrialEngine& engine, const protocols::Schedule& schedule) {
+// A participant who does not get through practice leaves, as a person would.
+void run_participant(TrialEngine& engine, const protocols::Schedule& schedule) {
   std::set<int> done;
   try {
     if (const auto interruption = engine.run(schedule, done)) {
@@ -136,17 +136,17 @@ struct Tapped {
   std::atomic<int> trials{0};
 };
 
-// What all sessions share.
-struct Laboratory {
+// The parts shared by all sessions.
+struct SharedParts {
   const SimulatedStudy& study;
   const protocols::Protocol& protocol;
   const device::LoopSettings& settings;
   ModelLibrary& models;
 };
 
-void run_session(const Laboratory& laboratory, const PlannedSession& session,
+void run_session(const SharedParts& shared, const PlannedSession& session,
                  results::Recorder& recorder, Tapped& tapped) {
-  const auto& [study, protocol, settings, models] = laboratory;
+  const auto& [study, protocol, settings, models] = shared;
   SimulatedParticipant participant{protocol, settings, models, session.seed};
   VirtualTrialLoop trial_loop{participant.hand(), settings,
                               study.keeps_traces ? Keep::trace : Keep::events};
@@ -160,18 +160,18 @@ void run_session(const Laboratory& laboratory, const PlannedSession& session,
   TrialEngine engine{
       {protocol, models, trial_loop, reality, participant, nobody, states, session.seed}, recorder};
   running = &engine;
-  take_part(engine, session.schedule);
+  run_participant(engine, session.schedule);
   tapped.ticks += engine.ticks();
   tapped.trials += engine.trials();
 }
 
-void run_sessions(const Laboratory& laboratory, const std::vector<PlannedSession>& sessions,
+void run_sessions(const SharedParts& shared, const std::vector<PlannedSession>& sessions,
                   results::Store& store, Tapped& tapped) {
-  const Progress progress{fmt::format("{}simulating {} participants", laboratory.study.of_studies,
-                                      laboratory.study.participants)};
+  const Progress progress{fmt::format("{}simulating {} participants", shared.study.of_studies,
+                                      shared.study.participants)};
   results::Recorder recorder{store};
   Workers::share(sessions, [&](const PlannedSession& session) {
-    run_session(laboratory, session, recorder, tapped);
+    run_session(shared, session, recorder, tapped);
   });
 }
 }  // namespace
@@ -188,16 +188,16 @@ SimulatedTime simulate(const SimulatedStudy& study, const protocols::Protocol& p
   std::vector<PlannedSession> sessions;
   store.in_one_transaction([&] { sessions = add_sessions(study, protocol, rig, store); });
   if (is_new) {
-    store.write_unconfirmed();
+    store.suspend_sync();
   }
   Tapped tapped;
   try {
     run_sessions({study, protocol, settings, models}, sessions, store, tapped);
   } catch (...) {
-    store.confirm_all();
+    store.resume_sync();
     throw;
   }
-  store.confirm_all();
+  store.resume_sync();
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
   return {tapped.trials, static_cast<double>(tapped.ticks) / protocol.rate_hz, wall.count()};
 }

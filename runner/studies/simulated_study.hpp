@@ -6,7 +6,8 @@
 
 #include "protocols/protocol.hpp"
 namespace tapstudy::runner {
-// For a simulated study of which only the results are kept. RAII: removed with all it holds.
+// A directory for a simulated study of which only the results are kept. RAII: removed with all it
+// holds.
 class ScratchDirectory {
  public:
   explicit ScratchDirectory(std::uint64_t seed);
@@ -48,7 +49,7 @@ struct SimulatedDesign {
   std::uint64_t seed{};
 };
 
-// How one of a block's main results came out in many simulated studies.
+// One of a block's main results over many simulated studies.
 struct ResultOfDesign {
   std::string block;
   std::string name;

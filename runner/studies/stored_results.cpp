@@ -177,7 +177,7 @@ namespace {
 using results::Mode;
 using Excluded = std::map<std::string, std::string>;  // by id: why
 
-// Who was not excluded.
+// The participants who were not excluded.
 std::set<std::string> participants_of(const std::vector<results::SessionRow>& sessions,
                                       const Excluded& excluded, Mode mode) {
   std::set<std::string> participants;

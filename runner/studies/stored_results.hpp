@@ -10,18 +10,18 @@
 #include "runner/studies/stored_study.hpp"
 #include "runner/studies/study_summary.hpp"
 namespace tapstudy::runner {
-// Of the procedures of the blocks that are no practice, for each participant of one mode who was
-// not excluded.
+// Results of the adaptive procedures in blocks that are no practice, for each participant of one
+// mode who was not excluded.
 std::vector<analysis::TrackResult> track_results(const protocols::Protocol& protocol,
                                                  const std::vector<StudyStore>& stores,
                                                  results::Mode mode);
 // Sets the answers' tracks, of one store.
 void set_tracks(const protocols::Protocol& protocol, results::Store& store,
                 std::vector<results::AnswerRow>& answers);
-// Which of its block's procedures chose each answered trial's level.
+// The procedure that chose each answered trial's level.
 results::Table tracks_table(const protocols::Protocol& protocol, results::Store& store);
 
-// What one store holds of the participants of a mode, excluded ones aside.
+// The contents of one store for the participants of a mode, excluded ones aside.
 struct StoredResults {
   std::vector<results::SessionRow> sessions;
   std::vector<results::AnswerRow> answers;  // that count

@@ -25,7 +25,7 @@ protocols::PlannedTrial stored_trial(const results::TrialRow& row,
                                      const std::vector<results::AlternativeRow>& alternatives,
                                      const protocols::Block& block);
 
-// What was done of each block by participants of a mode, of all stores together.
+// The course of each block over participants of a mode, of all stores together.
 using DoneBlocks = std::map<std::string, results::BlockCourseRow>;
 DoneBlocks done_blocks(const std::vector<StudyStore>& stores, results::Mode mode);
 // Names of the stimuli that the device rendered in these blocks.
@@ -37,7 +37,7 @@ std::vector<results::AnswerRow> counted_answers(results::Store& store, results::
 
 // The forms of a protocol that are asked somewhere, by name, with the places in a session's order.
 std::vector<analysis::Questionnaire> questionnaires_of(const protocols::Protocol& protocol);
-// What participants of the mode answered; not those who were excluded.
+// Answers of participants of the mode to questionnaires; not of those who were excluded.
 std::vector<analysis::GivenAnswer> given_answers(const std::vector<StudyStore>& stores,
                                                  results::Mode mode);
 }  // namespace tapstudy::runner

@@ -29,7 +29,7 @@
 namespace tapstudy::runner {
 namespace {
 // Participants may read one label for several stimuli; a reader of the report must not.
-std::vector<analysis::Item> told_apart(std::vector<analysis::Item> items) {
+std::vector<analysis::Item> with_distinct_labels(std::vector<analysis::Item> items) {
   std::map<std::string, int> times;
   for (const analysis::Item& item : items) {
     ++times[item.label];
@@ -54,7 +54,7 @@ std::vector<analysis::Item> presented_items(const protocols::Protocol& protocol,
                          ? std::string{}
                          : std::string{stimulus.technique->name}});
   }
-  return told_apart(std::move(items));
+  return with_distinct_labels(std::move(items));
 }
 
 // An answer that names a level says nothing about other factors.
@@ -69,7 +69,7 @@ std::vector<analysis::Item> answered_items(const protocols::Protocol& protocol,
       items.push_back({name, name, {{block.response_factor, name}}});
     }
   }
-  return told_apart(std::move(items));
+  return with_distinct_labels(std::move(items));
 }
 
 constexpr int not_counted = -1;
@@ -95,7 +95,7 @@ analysis::BlockDesign::Redraw redraw_of(const protocols::Protocol& protocol,
   };
 }
 
-// Where the order is random.
+// Only a random order can be drawn again.
 void add_redraw(const protocols::Protocol& protocol, std::size_t block_index,
                 analysis::BlockDesign& design) {
   constexpr std::size_t constrained_cost = 20;
@@ -106,7 +106,7 @@ void add_redraw(const protocols::Protocol& protocol, std::size_t block_index,
   }
 }
 
-// Of one that the protocol's reader has accepted.
+// The axis has passed the protocol's reader.
 analysis::AxisName name_of(const std::string& axis) {
   const protocols::Axis& row = *protocols::find_axis(axis);
   return {axis, std::string{row.quantity}, std::string{row.unit}};
@@ -148,7 +148,7 @@ analysis::Vote vote_of(const protocols::Block& block) {
   return block.vote == protocols::Vote::first ? analysis::Vote::first : analysis::Vote::majority;
 }
 
-std::string premise_of(const protocols::Protocol& protocol) {
+std::string chance_assumption(const protocols::Protocol& protocol) {
   const protocols::SimulatedObserverSettings& observer = protocol.simulation.observer;
   return fmt::format(
       "simulated participants take the body of '{}', vibrating as by technique '{}', for the real "
@@ -177,7 +177,7 @@ analysis::StudyDesign design_of(const protocols::Protocol& protocol, results::Mo
     add_task_settings(block, protocol, part);
     add_redraw(protocol, i, part);
     if (mode == results::Mode::simulated && block.task->needs_reference()) {
-      part.premise = premise_of(protocol);
+      part.premise = chance_assumption(protocol);
     }
     for (const protocols::Hypothesis& hypothesis : protocol.hypotheses) {
       if (hypothesis.block == block.name) {
@@ -194,8 +194,9 @@ using results::ParticipantCourseRow;
 
 using Answers = std::vector<results::JournalledAnswer>;
 
-// Of one block; no trials if it was not practised, or has no right answers.
-analysis::Proportion right_in(const protocols::Block& block, const Answers& answers) {
+// The share of right answers in the practice of one block; no trials if it was not practised, or
+// has no right answers.
+analysis::Proportion practice_accuracy(const protocols::Block& block, const Answers& answers) {
   analysis::Proportion right;
   for (const results::JournalledAnswer& answer : answers) {
     const auto& is_correct = answer.response.is_correct;
@@ -218,7 +219,7 @@ void add_practice(const protocols::Protocol& protocol, const std::string& partic
   const PracticeRecord record{answers};
   for (const protocols::Block& block : protocol.blocks) {
     if (is_practised(block, answers)) {
-      analysis::PracticeResult result{participant, block.name, right_in(block, answers)};
+      analysis::PracticeResult result{participant, block.name, practice_accuracy(block, answers)};
       if (block.criterion) {
         result.is_criterion_met = record.is_met(block);
       }
@@ -310,7 +311,8 @@ void check_same_protocol(const std::vector<StudyStore>& stores) {
   }
 }
 
-// Of whatever name: a redacted copy has the sessions of its study.
+// Sessions are compared whatever the participants' names, because a redacted copy holds the
+// sessions of its study.
 void check_different_participants(const std::vector<StudyStore>& stores) {
   std::map<std::string, std::string> directories;
   std::map<std::pair<std::uint64_t, std::string>, std::string> begun;
@@ -370,7 +372,7 @@ Summary summary_of_study(const std::vector<StudyStore>& stores, Mode mode, Detai
     summary.sections.insert(summary.sections.begin(), std::move(*contrasts));
   }
   summary.provenance = provenance(study, all.sessions);
-  summary.procedure = procedure_words(protocol, all.sessions, summary.participant_ids, done);
+  summary.procedure = describe_procedure(protocol, all.sessions, summary.participant_ids, done);
   summary.unfinished = std::move(all.unfinished);
   summary.excluded = std::move(all.excluded);
   std::ranges::move(all.deviations, std::back_inserter(summary.deviations));

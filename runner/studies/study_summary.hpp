@@ -13,16 +13,16 @@ namespace tapstudy::runner {
 // The part of a protocol that a report of these participants needs.
 analysis::StudyDesign design_of(const protocols::Protocol& protocol, results::Mode mode);
 
-// What a report says of a study besides the results of its blocks, of the participants of one mode.
+// The sections of a report besides the results of its blocks, for the participants of one mode.
 std::vector<analysis::ReportSection> study_sections(const protocols::Protocol& protocol,
                                                     const std::vector<StudyStore>& stores,
                                                     results::Mode mode, const DoneBlocks& done);
 
 enum class Detail { all, main_results };  // of a report, or of a simulated design
 
-// What a study says of its participants of one mode; those who were excluded, practice and catch
-// trials are named, and left out of the results. Throws InvalidInput if there is no answer, two
-// stores are of different protocols, or a participant is in two of them.
+// The results of a study for its participants of one mode; those who were excluded, practice and
+// catch trials are named, and left out of the results. Throws InvalidInput if there is no answer,
+// two stores are of different protocols, or a participant is in two of them.
 analysis::Summary summary_of_study(const std::vector<StudyStore>& stores, results::Mode mode,
                                    Detail detail = Detail::all);
 }  // namespace tapstudy::runner

@@ -54,7 +54,7 @@ analysis::AnswerReading reading_of(const TableOptions& options) {
   return reading;
 }
 
-// What their comments say besides.
+// Adds the modes that the comments of the tables name.
 std::set<std::string> modes_of(const std::vector<NamedCsv>& tables,
                                std::set<std::string> modes = {}) {
   for (const NamedCsv& table : tables) {

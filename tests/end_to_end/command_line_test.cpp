@@ -590,3 +590,12 @@ TEST_CASE("modes and frames of a plate are drawn, one panel each", "[end_to_end]
     CHECK_FALSE(std::filesystem::exists(directory / "none.svg"));
   }
 }
+
+TEST_CASE("every link in the documentation leads somewhere, and every command in it runs",
+          "[end_to_end][slow]") {
+  const auto result =
+      testing::run_program({"/usr/bin/python3", "-B", testing::source("tests/docs/check_docs.py"),
+                            "--program", testing::tapstudy_program()});
+  INFO(result.standard_output << result.standard_error);
+  CHECK(result.exit_code == 0);
+}

@@ -180,10 +180,10 @@ TEST_CASE("a halted endpoint is cleared: force is off, and the trial is repeated
   CHECK(laboratory.sql("SELECT count(*) FROM response") == "4\n");
 }
 
-TEST_CASE("of a board that takes nothing, force is never said to be off",
+TEST_CASE("of a board that takes nothing, or takes all and has hung, force is never said to be off",
           "[end_to_end][usb][safety][slow]") {
   Laboratory laboratory;
-  const auto result = laboratory.session({"--nak-after", "990"});
+  const auto result = laboratory.session({GENERATE("--nak-after", "--hang-after"), "990"});
   INFO(result.standard_error);
   CHECK_THAT(result.standard_error, Contains("FORCE MAY STILL BE ON: SWITCH THE AMPLIFIER OFF") &&
                                         !Contains("force is off"));

@@ -50,6 +50,7 @@ struct Options {
   int unplug_after{0};
   int amplifier_off_after{0};
   int halt_after{0};
+  int hang_after{0};
   int nak_after{0};
   bool is_silent{false};
   bool answers_nonsense{false};
@@ -174,7 +175,7 @@ class Lab {
       }
       is_tapping_ = false;
       switch_amplifier(true);
-      if (options_.nak_after > 0) {
+      if (options_.nak_after > 0 || options_.hang_after > 0) {
         boards_.front()->take_again();
       }
       boards_.back()->set_heir(guardian());  // the device may have been opened anew
@@ -259,6 +260,9 @@ class Lab {
     if (exchange == options_.halt_after) {
       boards_.front()->halt();
     }
+    if (exchange == options_.hang_after) {
+      boards_.front()->hang();
+    }
     if (exchange == options_.nak_after) {
       boards_.front()->stop_taking();
     }
@@ -299,6 +303,7 @@ int main(int count, char** words) {
   app.add_option("--unplug-after", options.unplug_after);
   app.add_option("--amplifier-off-after", options.amplifier_off_after);
   app.add_option("--halt-after", options.halt_after);
+  app.add_option("--hang-after", options.hang_after);
   app.add_option("--nak-after", options.nak_after);
   app.add_flag("--silent", options.is_silent);
   app.add_flag("--nonsense", options.answers_nonsense);

@@ -56,6 +56,13 @@ void copy_from(pid_t process, std::uintptr_t address, void* to, std::size_t size
   }
 }
 
+// Gone, if the guardian is.
+void copy_to(pid_t process, std::uintptr_t address, void* from, std::size_t size) {
+  const iovec here{from, size};
+  const iovec there{reinterpret_cast<void*>(address), size};
+  static_cast<void>(process_vm_writev(process, &here, 1, &there, 1, 0));
+}
+
 template <class Value>
 Value value_at(pid_t process, std::uintptr_t address) {
   Value value{};
@@ -111,6 +118,11 @@ void MockedBoard::unplug() {
 void MockedBoard::halt() {
   const std::lock_guard lock{mutex_};
   usbfs_.halt_out(1);
+}
+
+void MockedBoard::hang() {
+  const std::lock_guard lock{mutex_};
+  usbfs_.persist_in(testing::FakeUsbfs::Trouble::out_lost);
 }
 
 void MockedBoard::stop_taking() {
@@ -199,11 +211,6 @@ Bytes MockedBoard::answer(std::span<const std::uint8_t> request) {
   return hardware_.answer(request);
 }
 
-int MockedBoard::take_plain_bulk(std::span<const std::uint8_t> request) {
-  answer(request);
-  return 0;
-}
-
 void MockedBoard::submit(UMockdevIoctlClient* client) {
   ClientData data = pointed_to(client);
   usbdevfs_urb* const urb = urb_of(data);
@@ -246,8 +253,13 @@ void MockedBoard::bulk(UMockdevIoctlClient* client) {
   // The test bed would look into the memory of the process that opened the node, not of its heir.
   auto transfer = value_at<usbdevfs_bulktransfer>(heir_, argument_of(client));
   Bytes bytes(transfer.len);
-  copy_from(heir_, reinterpret_cast<std::uintptr_t>(transfer.data), bytes.data(), bytes.size());
+  const auto there = reinterpret_cast<std::uintptr_t>(transfer.data);
+  copy_from(heir_, there, bytes.data(), bytes.size());
   transfer.data = bytes.data();
-  complete_with(client, usbfs_.ioctl(USBDEVFS_BULK, &transfer));
+  const int result = usbfs_.ioctl(USBDEVFS_BULK, &transfer);
+  if (result > 0 && transfer.ep == testing::in_endpoint) {
+    copy_to(heir_, there, bytes.data(), static_cast<std::size_t>(result));
+  }
+  complete_with(client, result);
 }
 }  // namespace tapstudy::lab

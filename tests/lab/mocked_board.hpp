@@ -41,8 +41,10 @@ class MockedBoard : private testing::UsbBoard {
 
   void plug_in();
   void unplug();
-  // Its OUT endpoint is halted until that is cleared; takes nothing; takes requests again.
+  // Its OUT endpoint is halted until that is cleared; its firmware hangs, while its endpoint takes
+  // requests; takes nothing; takes requests again.
   void halt();
+  void hang();
   void stop_taking();
   void take_again();
   void fall_silent() { usbfs_.persist_in(testing::FakeUsbfs::Trouble::missing); }
@@ -62,7 +64,6 @@ class MockedBoard : private testing::UsbBoard {
   void discard(UMockdevIoctlClient* client);
   void bulk(UMockdevIoctlClient* client);
   testing::Bytes answer(std::span<const std::uint8_t> request) override;
-  int take_plain_bulk(std::span<const std::uint8_t> request) override;
   std::string name() const;
 
   UMockdevTestbed* bed_;

@@ -16,7 +16,7 @@ from selenium.webdriver.common.actions.wheel_input import ScrollOrigin
 from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.support.ui import Select
 
-PATIENCE_S = 15
+PATIENCE_S = 60  # other tests run beside these; a wait that ends well is no longer for it
 AXE = os.environ.get("AXE_CORE")
 
 

@@ -57,7 +57,7 @@ class WholeSession(unittest.TestCase):
             is_there = screen and screen["kind"] == "trial" and screen["isSettled"]
             counts = [int(text) for text in re.findall(r"\d+", screen["progress"])] if is_there else []
             return screen if counts and min(counts) + 1 == number else None  # "1 of 8", or "8 中 1"
-        return browser.wait_until(self.driver, f"trial {number}", there, 30)
+        return browser.wait_until(self.driver, f"trial {number}", there)
 
     def answer_until_accepted(self, answer, index, tap=lambda: None):
         """As a person does who is told to tap first."""
@@ -72,7 +72,7 @@ class WholeSession(unittest.TestCase):
                 answer(self.driver, index)
                 return False
             return now and (now["kind"] != "trial" or now["progress"] != screen["progress"])
-        browser.wait_until(self.driver, "the next screen", moved_on, 30)
+        browser.wait_until(self.driver, "the next screen", moved_on)
 
     def operate(self, by_keyboard):
         """A note, a pause and its end: the trial begins again."""
@@ -84,14 +84,14 @@ class WholeSession(unittest.TestCase):
         browser.wait_for_screen(self.driver, "paused")
         browser.wait_for_state(self.operator, "paused")
         command(self.operator, "resume")
-        browser.wait_for_screen(self.driver, "trial", patience_s=30)
+        browser.wait_for_screen(self.driver, "trial")
 
     def check_operated(self):
         self.assertEqual(self.session.rows("SELECT action FROM operator_action ORDER BY action_id"),
                          [("note",), ("pause",), ("resume",)])
 
     def finish(self):
-        browser.wait_for_screen(self.driver, "ended", patience_s=30)
+        browser.wait_for_screen(self.driver, "ended")
         self.assertEqual(self.session.wait(), 0, self.session.said())
 
 
@@ -131,7 +131,7 @@ class Reality(WholeSession):
     def choose(self, by_keyboard):
         feel = browser.feel_by_keyboard if by_keyboard else browser.feel_by_mouse
         answer = browser.answer_by_keyboard if by_keyboard else browser.answer_by_mouse
-        screen = browser.wait_for_screen(self.driver, "trial", patience_s=30)
+        screen = browser.wait_for_screen(self.driver, "trial")
         browser.check_no_sideways_scrolling(self.driver)
         count = len(screen["alternatives"])
 
@@ -143,9 +143,9 @@ class Reality(WholeSession):
         self.answer_until_accepted(answer, count - 1, feel_all)
 
     def finish_choices(self, by_keyboard):
-        browser.wait_for_screen(self.driver, "trial", patience_s=30)
+        browser.wait_for_screen(self.driver, "trial")
         self.operate(by_keyboard)
-        while browser.wait_for_screen(self.driver, "trial", "ended", patience_s=30)["kind"] == "trial":
+        while browser.wait_for_screen(self.driver, "trial", "ended")["kind"] == "trial":
             self.choose(by_keyboard)
         self.finish()
         chosen = self.session.rows(
@@ -437,7 +437,7 @@ class EveryScreen(WholeSession):
         phases = browser.record_go_signals(self.driver)
 
         def follow_until_over():
-            browser.wait_until(self.driver, "the end of the intervals", lambda: phases()[-1][0] == "over", 60)
+            browser.wait_until(self.driver, "the end of the intervals", lambda: phases()[-1][0] == "over")
         self.next_trial(1)
         browser.answer_by_keyboard(self.driver, 0)
         browser.wait_until(self.driver, "the first interval", phases)
@@ -581,8 +581,8 @@ class Interruption(WholeSession):
         self.finish()
         self.assertEqual(self.session.responses(), [DISCRIMINATION[1]] + 7 * [DISCRIMINATION[2]])
 
-    def wait_until_said(self, text, patience_s=30):
-        end = time.monotonic() + patience_s
+    def wait_until_said(self, text):
+        end = time.monotonic() + browser.PATIENCE_S
         while text not in self.session.said():
             self.assertLess(time.monotonic(), end, self.session.said())
             time.sleep(0.1)

@@ -75,7 +75,7 @@ std::string every_key() {
 
 TEST_CASE("the schema has exactly the keys that the reader asks for", "[protocols][schema]") {
   REQUIRE_NOTHROW(protocols::parse_protocol(every_key(), every_key_file()));
-  // what stands in a procedure is compared by itself (procedures/procedure_schema_test.cpp)
+  // what stands in a procedure is compared by itself (procedures/read_procedures_test.cpp)
   const auto without_procedures = [](std::set<std::string> keys) {
     std::erase_if(keys,
                   [](const std::string& key) { return key.starts_with("blocks[].procedures[]."); });

@@ -5,7 +5,9 @@
 #include <catch2/catch_all.hpp>
 
 using Catch::Approx;
-inline auto Contains(const std::string& part) { return Catch::Matchers::ContainsSubstring(part); }
+inline auto Contains(const std::string& part) {
+  return Catch::Matchers::ContainsSubstring(part);
+}
 #else
 #include <catch2/catch.hpp>
 

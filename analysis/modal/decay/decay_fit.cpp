@@ -157,7 +157,8 @@ double error_of(const Eigen::Vector2d& slope, const Eigen::Matrix2d& covariance)
   return std::sqrt(std::max(0.0, slope.dot(covariance * slope)));
 }
 
-// Of ln z, or of s: covariance of its real and imaginary part, in the unit of 1 / unit_s.
+// Sets the standard errors of a pole from the covariance of the real and imaginary part of its
+// logarithm, ln z or s, in the unit of 1 / unit_s.
 void set_pole_errors(const Complex& log_z, const Eigen::Matrix2d& covariance, double unit_s,
                      FittedMode& mode) {
   const double size = std::abs(log_z);
@@ -231,7 +232,8 @@ WeightedDecay started(const SharingDecay& decay, const std::vector<Pole>& shared
   return {std::move(model), std::move(state), 1.0 / variance};
 }
 
-// Of the shared modes' amplitudes, the poles being known by all decays.
+// The significance of the shared modes' amplitudes in one decay, their poles being known from all
+// decays.
 void set_significance(const DecayModel::State& state, double variance, std::size_t shared,
                       DecayFit& fit) {
   const Eigen::VectorXd scale = state.basis.colwise().norm().cwiseMax(1e-300).cwiseInverse();

@@ -46,7 +46,7 @@ struct DecayFit {
   Eigen::VectorXcd fitted;  // the spectrum's values by the modes and the nuisance terms
 };
 
-// Maximum likelihood in white noise from these poles on (decay_model.hpp, decay_descent.hpp).
+// Maximum likelihood in white noise from these poles on (descend, decay_model.hpp).
 // Standard errors are those of the Cramer-Rao bound, with the noise of the residual. Steady lines
 // of these frequencies, such as hum, take part with amplitudes alone. Throws InvalidInput for more
 // unknowns than values.
@@ -66,7 +66,7 @@ struct SharedFit {
   std::vector<DecayFit> decays;
   double degrees_of_freedom{};
 };
-// Likewise of all decays together, at least one: what differs from one to the next are amplitudes.
+// As fit_decay, for one or more decays that share these poles: only amplitudes differ between them.
 SharedFit fit_shared_poles(const std::vector<SharingDecay>& decays,
                            const std::vector<Pole>& shared);
 }  // namespace tapstudy::analysis

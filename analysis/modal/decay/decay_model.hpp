@@ -40,7 +40,8 @@ class DecayModel {
   // d model / d unknowns: poles, then shares
   Eigen::MatrixXd jacobian(const State& state) const;
 
-  // Where a fit can begin: of what grows, at most e^30 over the decay.
+  // The logarithms at which a fit can begin: growing poles are limited to a factor of e^30 over the
+  // decay.
   Eigen::VectorXd logs_of(const std::vector<Pole>& poles) const;
   std::complex<double> log_of_pole(const Eigen::VectorXd& logs, Eigen::Index k) const {
     return {logs[2 * k] / length_, logs[2 * k + 1] / length_};

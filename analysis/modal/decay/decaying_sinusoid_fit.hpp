@@ -18,8 +18,8 @@ struct FittedSinusoid {
 };
 
 // Least squares of the samples from an impact on, with an offset: the best of a grid of decays and
-// frequencies in the band, refined by Levenberg-Marquardt (MINPACK's, by Eigen). Of at most the
-// first 4000 samples. Unset if no oscillation comes out of it: the frequency left the band, or
+// frequencies in the band, refined by Levenberg-Marquardt (MINPACK's, by Eigen). At most the first
+// 4000 samples are used. Unset if no oscillation comes out of it: the frequency left the band, or
 // nothing decays. Throws InvalidInput for fewer than 16 samples.
 std::optional<FittedSinusoid> fit_decaying_sinusoid(const FreeDecay& from_impact, const Band& band);
 

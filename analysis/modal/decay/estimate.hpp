@@ -12,11 +12,11 @@ struct Estimate {
   std::optional<Interval> bootstrap;  // over taps, bias-corrected and accelerated, of 5 and more
 };
 
-// Without a bootstrap; Student's interval.
+// An estimate with Student's interval and no bootstrap.
 Estimate t_estimate(double value, double standard_error, double degrees_of_freedom);
 
-// Of one tap: the value and its standard error with so many degrees of freedom. Of several: their
-// mean, and the interval over taps. Values and errors as many, at least one.
+// For one tap, its value and standard error with these degrees of freedom; for several, the mean
+// and its interval over taps. Values and errors as many, at least one.
 Estimate estimate_over_taps(const std::vector<double>& values, const std::vector<double>& errors,
                             double degrees_of_freedom_of_one);
 }  // namespace tapstudy::analysis

@@ -25,8 +25,9 @@ struct Pole {
   double damping_ratio{};  // -Re s / |s|
 };
 
-// How far apart the frequencies of one mode may be said to be: this share of it, a sixth of the
-// half-power bandwidth (2 damping_ratio frequency_hz) or four standard errors, whichever is most.
+// The distance within which two frequencies count as one mode: the largest of this share of the
+// frequency, a sixth of the half-power bandwidth (2 damping_ratio frequency_hz) and four standard
+// errors.
 double frequency_tolerance_hz(const Pole& pole, double share, double error_hz = 0.0);
 
 // ln z of the pole with the positive imaginary part, and back. |damping_ratio| < 1.

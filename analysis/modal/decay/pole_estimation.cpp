@@ -55,8 +55,8 @@ std::vector<Pole> poles_in(const Eigen::VectorXcd& eigenvalues, double rate_hz, 
   return poles;
 }
 
-// Most singular values are noise's; its largest is below three times what three quarters of all
-// exceed.
+// Counts the singular values above the noise. Most of them are the noise's, whose largest lies
+// below three times the lower quartile of all.
 int count_above_noise(const Eigen::VectorXd& singular_values) {
   const Eigen::Index half = singular_values.size() / 2;
   const double limit = std::max(3.0 * singular_values[half + half / 2], 1e-7 * singular_values[0]);

@@ -23,11 +23,12 @@ struct MatrixPencil {
 // Throws InvalidInput if fewer than 24 samples are left then.
 MatrixPencil matrix_pencil(const FreeDecay& decay, const Band& band, int max_order);
 
-// Of several decays of the same structure and one rate, with the standard deviations of their
-// noise (above 0): the Gram matrices of all, each over its noise's variance, are added. Modes too
-// close to be told apart in one decay are in several that excite them in different proportions
-// (as with several references, Vold et al. 1982). The pencil parameter follows from the median
-// length; decays shorter than twice that take no part. Empty if it is too small.
+// The same for several decays of one structure at one rate, with the standard deviations of their
+// noise (above 0): their Gram matrices are added, each divided by the variance of its noise. Modes
+// that are too close to be resolved in one decay are resolved in several that excite them in
+// different proportions (as with several references, Vold et al. 1982). The pencil parameter
+// follows from the median length; decays shorter than twice that are left out. Empty if it is too
+// small.
 MatrixPencil matrix_pencil(const std::vector<FreeDecay>& decays, const std::vector<double>& noise,
                            const Band& band, int max_order);
 
@@ -41,7 +42,7 @@ inline constexpr int min_stable_orders = 4;
 // half-power bandwidth if that is more) and 10 % (or 0.003) of its damping ratio.
 bool continues(const Pole& from, const Pole& to);
 // A stabilisation diagram, read: poles that at least min_stable_orders successive orders found,
-// each continuing the one before. Of chains at one pole the longest counts.
+// each continuing the one before. The longest chain at a pole counts.
 std::vector<StablePole> stable_poles(const std::vector<PolesOfOrder>& orders);
 
 // Poles of a rational fit to a spectrum by vector fitting (Gustavsen & Semlyen 1999), in z: the

@@ -56,7 +56,7 @@ class Assigner {
 
   static std::size_t place(Eigen::Index index) { return static_cast<std::size_t>(index); }
 
-  // Of those not reached, once they can be reached from this row.
+  // The nearest of the columns not reached yet, once they can be reached from this row.
   Eigen::Index nearest_column(Eigen::Index from_row, Search& search) const {
     Eigen::Index nearest = none;
     for (Eigen::Index column = 0; column < cost_.cols(); ++column) {

@@ -20,13 +20,13 @@ double median_of(const std::vector<std::vector<Pole>>& sets, std::size_t k, doub
 }
 }  // namespace
 
-bool Neighbours::may_hold(const Pole& pole) const {
+bool CloseModes::may_hold(const Pole& pole) const {
   return range.holds(pole.frequency_hz) && pole.damping_ratio > least_ratio / max_ratio_factor &&
          pole.damping_ratio < greatest_ratio * max_ratio_factor;
 }
 
-std::vector<Neighbours> neighbours_among(const std::vector<RepeatedMode>& modes) {
-  std::vector<Neighbours> all;
+std::vector<CloseModes> close_modes_among(const std::vector<RepeatedMode>& modes) {
+  std::vector<CloseModes> all;
   for (const RepeatedMode& mode : modes) {
     const double ratio = mode.damping_ratio.value;
     if (mode.standing == Standing::line || ratio <= 0.0) {
@@ -40,7 +40,7 @@ std::vector<Neighbours> neighbours_among(const std::vector<RepeatedMode>& modes)
       all.push_back({range, agreed, ratio, ratio});
       continue;
     }
-    Neighbours& last = all.back();
+    CloseModes& last = all.back();
     last.agreed += agreed;
     last.range.high_hz = std::max(last.range.high_hz, range.high_hz);
     last.least_ratio = std::min(last.least_ratio, ratio);
@@ -49,7 +49,7 @@ std::vector<Neighbours> neighbours_among(const std::vector<RepeatedMode>& modes)
   return all;
 }
 
-std::vector<Pole> poles_by_all(const MatrixPencil& pencil, const Neighbours& neighbours) {
+std::vector<Pole> poles_of_all_decays(const MatrixPencil& pencil, const CloseModes& neighbours) {
   std::map<std::size_t, std::vector<std::vector<Pole>>> by_count;
   for (const PolesOfOrder& order : pencil.orders) {
     std::vector<Pole> poles;
@@ -101,12 +101,13 @@ bool is_line(const TapModes& tap, const FittedMode& fitted) {
 }
 
 // Whether it is one of the neighbours, as the tap alone shows them.
-bool is_among(const Neighbours& neighbours, const TapModes& tap, const FittedMode& fitted) {
+bool is_among(const CloseModes& neighbours, const TapModes& tap, const FittedMode& fitted) {
   return neighbours.range.holds(frequency_of(fitted)) && !is_line(tap, fitted);
 }
 
-// What one tap shows beside the neighbours. Empty: a tap too short for so many modes.
-std::vector<SharingDecay> sharing(const std::vector<TapModes>& taps, const Neighbours& neighbours,
+// The decays of each channel with its modes beside the neighbours. Empty if one tap is too short
+// for so many modes.
+std::vector<SharingDecay> sharing(const std::vector<TapModes>& taps, const CloseModes& neighbours,
                                   std::size_t shared) {
   std::vector<SharingDecay> decays;
   for (const TapModes& tap : taps) {
@@ -116,7 +117,7 @@ std::vector<SharingDecay> sharing(const std::vector<TapModes>& taps, const Neigh
         decay.own.push_back(fitted.pole);
       }
     }
-    if (decay.own.size() + shared > most_modes(tap.spectrum, tap.lines_hz)) {
+    if (decay.own.size() + shared > max_mode_count(tap.spectrum, tap.lines_hz)) {
       return {};
     }
     decays.push_back(std::move(decay));
@@ -153,7 +154,7 @@ Criterion criterion_of(const SharedFit& fit, std::size_t shared) {
   return criterion;
 }
 
-std::vector<Pole> own_poles(const TapModes& tap, const Neighbours& neighbours) {
+std::vector<Pole> poles_of_impact(const TapModes& tap, const CloseModes& neighbours) {
   std::vector<Pole> poles;
   for (const FittedMode& fitted : tap.fit.modes) {
     if (is_among(neighbours, tap, fitted)) {
@@ -163,9 +164,9 @@ std::vector<Pole> own_poles(const TapModes& tap, const Neighbours& neighbours) {
   return poles;
 }
 
-// With poles of each impact's own, those that one of its channels shows; its channels share them.
+// The criterion of the model in which each impact has its own poles, shared by its channels.
 Criterion criterion_of_impacts(const std::vector<TapModes>& taps, const std::vector<int>& impacts,
-                               const Neighbours& neighbours) {
+                               const CloseModes& neighbours) {
   std::map<int, std::vector<TapModes>> by_impact;
   for (std::size_t i = 0; i < taps.size(); ++i) {
     by_impact[impacts[i]].push_back(taps[i]);
@@ -174,7 +175,7 @@ Criterion criterion_of_impacts(const std::vector<TapModes>& taps, const std::vec
   for (const auto& [impact, channels] : by_impact) {
     std::vector<std::vector<Pole>> poles;
     for (const TapModes& channel : channels) {
-      poles.push_back(own_poles(channel, neighbours));
+      poles.push_back(poles_of_impact(channel, neighbours));
     }
     const std::vector<Pole>& most = *std::ranges::max_element(poles, {}, &std::vector<Pole>::size);
     const std::vector<SharingDecay> decays = sharing(channels, neighbours, most.size());
@@ -203,7 +204,7 @@ std::vector<Pole> shared_poles(const SharedFit& fit, std::size_t shared) {
 std::vector<std::vector<Pole>> poles_without(const std::vector<SharingDecay>& decays,
                                              const std::vector<int>& impacts,
                                              const std::vector<Pole>& of_all,
-                                             const Neighbours& neighbours) {
+                                             const CloseModes& neighbours) {
   const std::set<int> different{impacts.begin(), impacts.end()};
   const std::vector<int> numbers{different.begin(), different.end()};
   const std::size_t groups = std::min(numbers.size(), max_groups);
@@ -269,7 +270,7 @@ RepeatedMode repeated(const std::vector<std::vector<Pole>>& without, std::size_t
   return mode;
 }
 
-void replace_in_tap(const Neighbours& neighbours, const DecayFit& fit, std::size_t shared,
+void replace_in_tap(const CloseModes& neighbours, const DecayFit& fit, std::size_t shared,
                     TapModes& tap) {
   std::erase_if(tap.modes, [&](const TapMode& mode) {
     return mode.standing != Standing::line && neighbours.range.holds(frequency_of(mode.fitted));
@@ -284,9 +285,9 @@ void replace_in_tap(const Neighbours& neighbours, const DecayFit& fit, std::size
   tap.fit = fit;
 }
 
-// Nothing is changed unless they are told apart.
-void tell_apart(const Neighbours& neighbours, const std::vector<Pole>& poles,
-                const std::vector<int>& impacts, ModesOfTaps& found) {
+// Changes nothing unless the modes are resolved.
+void resolve(const CloseModes& neighbours, const std::vector<Pole>& poles,
+             const std::vector<int>& impacts, ModesOfTaps& found) {
   const std::vector<SharingDecay> decays = sharing(found.taps, neighbours, poles.size());
   if (decays.empty()) {
     return;
@@ -322,7 +323,7 @@ double noise_of(const TapModes& tap, const FreeDecay& decay) {
   return std::max({tap.fit.noise, least * rms, 1e-150});
 }
 
-// Of the most decays that share a rate to a thousandth.
+// The pencil of the largest group of decays whose rates agree to a thousandth.
 MatrixPencil pencil_of(const std::vector<FreeDecay>& decays, const std::vector<TapModes>& taps,
                        const Band& band) {
   const auto is_of = [](double rate_hz) {
@@ -345,15 +346,15 @@ MatrixPencil pencil_of(const std::vector<FreeDecay>& decays, const std::vector<T
 }
 }  // namespace
 
-ModesOfTaps tell_close_modes_apart(const std::vector<FreeDecay>& decays,
-                                   const std::vector<int>& impacts, const Band& band,
-                                   const ModesOfTaps& found) {
+ModesOfTaps resolve_close_modes(const std::vector<FreeDecay>& decays,
+                                const std::vector<int>& impacts, const Band& band,
+                                const ModesOfTaps& found) {
   ModesOfTaps result = found;
   const MatrixPencil pencil = pencil_of(decays, found.taps, band);
-  for (const Neighbours& neighbours : neighbours_among(found.modes)) {
-    const std::vector<Pole> poles = poles_by_all(pencil, neighbours);
+  for (const CloseModes& neighbours : close_modes_among(found.modes)) {
+    const std::vector<Pole> poles = poles_of_all_decays(pencil, neighbours);
     if (!poles.empty()) {
-      tell_apart(neighbours, poles, impacts, result);
+      resolve(neighbours, poles, impacts, result);
     }
   }
   std::ranges::sort(result.modes, {},

@@ -5,7 +5,7 @@
 namespace tapstudy::analysis {
 // Modes whose intervals, frequency plus and minus half-power bandwidth, overlap; a mode alone is a
 // group of its own.
-struct Neighbours {
+struct CloseModes {
   Band range;
   std::size_t agreed{};
   double least_ratio{};
@@ -16,11 +16,11 @@ struct Neighbours {
 };
 
 // All modes but lines, in ascending frequency as they are given.
-std::vector<Neighbours> neighbours_among(const std::vector<RepeatedMode>& modes);
+std::vector<CloseModes> close_modes_among(const std::vector<RepeatedMode>& modes);
 
 // Two poles or more, and no fewer than are agreed, as most orders show them (at least as many as
 // make a pole stable); empty: none.
-std::vector<Pole> poles_by_all(const MatrixPencil& pencil, const Neighbours& neighbours);
+std::vector<Pole> poles_of_all_decays(const MatrixPencil& pencil, const CloseModes& neighbours);
 
 // A mode whose frequency depends on its amplitude is, to first order, one pole and another of the
 // same frequency and three times its decay (a cubic stiffness, Nayfeh & Mook 1979).
@@ -38,8 +38,9 @@ struct ModesOfTaps {
 // not taken for two modes, if they are found without any of the impacts as well, and if they are
 // not one mode whose frequency depends on its amplitude. Intervals are by the jackknife over
 // impacts, and not narrower than what the noise alone gives. Decays and impacts belong to the taps.
-// Of decays of different rates the most that have one take part in the pencil, all in the fit.
-ModesOfTaps tell_close_modes_apart(const std::vector<FreeDecay>& decays,
-                                   const std::vector<int>& impacts, const Band& band,
-                                   const ModesOfTaps& found);
+// Where decays differ in rate, the largest group of one rate enters the pencil, and all enter the
+// fit.
+ModesOfTaps resolve_close_modes(const std::vector<FreeDecay>& decays,
+                                const std::vector<int>& impacts, const Band& band,
+                                const ModesOfTaps& found);
 }  // namespace tapstudy::analysis

@@ -21,8 +21,9 @@ constexpr double step_s = 2e-5;
 constexpr double unlikely_s = 0.004;  // costs as much as a quarter of all agreement
 constexpr int rounds = 4;
 
-// At the impact, per unit of impulse: a row for each tap, a column for each mode.
-Eigen::MatrixXcd excited(const std::vector<Pole>& poles, const std::vector<PlacedTap>& taps) {
+// Complex amplitudes at the impact per unit of impulse: a row per tap, a column per mode.
+Eigen::MatrixXcd amplitudes_at_impact(const std::vector<Pole>& poles,
+                                      const std::vector<PlacedTap>& taps) {
   Eigen::MatrixXcd all(static_cast<Eigen::Index>(taps.size()),
                        static_cast<Eigen::Index>(poles.size()));
   for (std::size_t tap = 0; tap < taps.size(); ++tap) {
@@ -54,15 +55,15 @@ Complex doubled(const Complex& c) {
 // A sensor's modes in one phase each, doubled: a row for each sensor.
 class Alignment {
  public:
-  Alignment(const Eigen::MatrixXcd& excited, const std::vector<PlacedTap>& taps,
+  Alignment(const Eigen::MatrixXcd& amplitudes_at_impact, const std::vector<PlacedTap>& taps,
             Eigen::VectorXd rad_per_s)
-      : excited_{excited}, taps_{taps}, rad_per_s_{std::move(rad_per_s)} {
+      : amplitudes_at_impact_{amplitudes_at_impact}, taps_{taps}, rad_per_s_{std::move(rad_per_s)} {
     Eigen::Index sensors = 0;
     for (const PlacedTap& tap : taps) {
       sensors = std::max(sensors, static_cast<Eigen::Index>(tap.sensor) + 1);
       late_s_[tap.impact] = 0.0;
     }
-    phases_ = Eigen::MatrixXcd::Zero(sensors, excited.cols());
+    phases_ = Eigen::MatrixXcd::Zero(sensors, amplitudes_at_impact.cols());
     const int strongest = strongest_impact();
     add_phases([&](const PlacedTap& tap) { return tap.impact == strongest; });
     for (int round = 0; round < rounds; ++round) {
@@ -85,9 +86,9 @@ class Alignment {
   Eigen::Index sensor_of(std::size_t tap) const {
     return static_cast<Eigen::Index>(taps_[tap].sensor);
   }
-  // As if the impact had been so much later than it was taken to be.
+  // The amplitude if the impact had occurred this much later than assumed.
   Complex shifted_by(std::size_t tap, Eigen::Index mode, double late_s) const {
-    return excited_(static_cast<Eigen::Index>(tap), mode) *
+    return amplitudes_at_impact_(static_cast<Eigen::Index>(tap), mode) *
            std::polar(1.0, rad_per_s_[mode] * late_s);
   }
   Complex shifted(std::size_t tap, Eigen::Index mode) const {
@@ -97,7 +98,8 @@ class Alignment {
   int strongest_impact() const {
     std::map<int, double> sums;
     for (std::size_t tap = 0; tap < taps_.size(); ++tap) {
-      sums[taps_[tap].impact] += excited_.row(static_cast<Eigen::Index>(tap)).cwiseAbs().sum();
+      sums[taps_[tap].impact] +=
+          amplitudes_at_impact_.row(static_cast<Eigen::Index>(tap)).cwiseAbs().sum();
     }
     int strongest = sums.begin()->first;
     for (const auto& [impact, sum] : sums) {
@@ -108,7 +110,8 @@ class Alignment {
   template <class IsCounted>
   void add_phases(IsCounted is_counted) {
     for (std::size_t tap = 0; tap < taps_.size(); ++tap) {
-      for (Eigen::Index mode = 0; is_counted(taps_[tap]) && mode < excited_.cols(); ++mode) {
+      for (Eigen::Index mode = 0; is_counted(taps_[tap]) && mode < amplitudes_at_impact_.cols();
+           ++mode) {
         phases_(sensor_of(tap), mode) += doubled(shifted(tap, mode));
       }
     }
@@ -118,12 +121,13 @@ class Alignment {
     double sum = 0.0;
     double whole = 0.0;
     for (std::size_t tap = 0; tap < taps_.size(); ++tap) {
-      for (Eigen::Index mode = 0; taps_[tap].impact == impact && mode < excited_.cols(); ++mode) {
+      for (Eigen::Index mode = 0;
+           taps_[tap].impact == impact && mode < amplitudes_at_impact_.cols(); ++mode) {
         const Complex& phase = phases_(sensor_of(tap), mode);
         const double weight = std::sqrt(std::abs(phase));
         sum += weight * (doubled(shifted_by(tap, mode, late_s)) * std::conj(phase)).real() /
                std::max(std::abs(phase), 1e-300);
-        whole += weight * std::abs(excited_(static_cast<Eigen::Index>(tap), mode));
+        whole += weight * std::abs(amplitudes_at_impact_(static_cast<Eigen::Index>(tap), mode));
       }
     }
     constexpr double quarter = 0.25;
@@ -142,7 +146,7 @@ class Alignment {
     return best_s;
   }
 
-  const Eigen::MatrixXcd& excited_;
+  const Eigen::MatrixXcd& amplitudes_at_impact_;
   const std::vector<PlacedTap>& taps_;
   Eigen::VectorXd rad_per_s_;
   Eigen::MatrixXcd phases_;
@@ -171,7 +175,7 @@ Eigen::VectorXcd amplitudes_of(const FreeDecay& decay, const std::vector<Pole>& 
 
 Eigen::MatrixXd tapped_shapes(const std::vector<Pole>& poles, const std::vector<PlacedTap>& taps,
                               std::size_t places) {
-  const Eigen::MatrixXcd all = excited(poles, taps);
+  const Eigen::MatrixXcd all = amplitudes_at_impact(poles, taps);
   const Alignment alignment{all, taps, damped_rad_per_s(poles)};
   std::map<std::size_t, Eigen::MatrixXd> of_sensors;
   std::map<std::size_t, Eigen::VectorXd> counts;

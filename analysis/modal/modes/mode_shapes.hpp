@@ -18,8 +18,8 @@ struct PlacedTap {
   FreeDecay decay;
 };
 
-// What a mode of each of these poles does in a decay, by least squares: Re(c z^n), c at its first
-// sample.
+// The complex amplitudes c of modes with these poles in a decay, Re(c z^n), by least squares; c
+// refers to the first sample.
 Eigen::VectorXcd amplitudes_of(const FreeDecay& decay, const std::vector<Pole>& poles);
 
 // Shapes of the modes at `places` places, a column for each mode, each up to a factor: what a tap

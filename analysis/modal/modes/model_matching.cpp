@@ -157,7 +157,7 @@ std::vector<double> logarithms_of(const std::vector<Estimate>& estimates) {
   return logarithms(values);
 }
 
-// Of ln factor, and what its t has of degrees of freedom.
+// The standard error of ln factor and the degrees of freedom of its t.
 struct FactorError {
   double value{};
   double degrees_of_freedom{};
@@ -233,12 +233,12 @@ constexpr int between_solutions = 10;
 constexpr std::size_t fewest_modes = 3;
 constexpr double derivative_step = 0.01;  // of the logarithm of springs / E
 
-// Between solutions, in ln(springs / E).
+// The step between solutions in ln(springs / E).
 double step_log() {
   return std::log(10.0) / solutions_per_decade;
 }
 
-// Of ln(springs / E), relative to what was stated.
+// The sum of squares as a function of ln(springs / E) relative to the stated value (a profile).
 class Profile {
  public:
   Profile(const std::vector<Estimate>& measured_hz, const FrequenciesOnSprings& frequencies_hz)
@@ -317,7 +317,8 @@ double degrees_of_freedom(const Eigen::VectorXd& by_springs) {
   return static_cast<double>(by_springs.size()) - 2.0;
 }
 
-// Of ln E and ln(springs / E): ln f is half of ln E, and by_springs of the other.
+// The covariance of ln E and ln(springs / E): ln f depends on half of ln E, and on ln(springs / E)
+// by by_springs.
 Eigen::Matrix2d covariance_of(const Eigen::VectorXd& by_springs, double rms_misfit) {
   const Eigen::Index modes = by_springs.size();
   Eigen::MatrixX2d jacobian(modes, 2);

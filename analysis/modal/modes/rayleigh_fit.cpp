@@ -95,8 +95,9 @@ Coefficients one_free(const Weighted& system, Eigen::Index which) {
   return result;
 }
 
-// At 0, with the error that it had: how large it may be is known no better for that.
-void hold(Eigen::Index which, const Coefficients& both, Coefficients& fit) {
+// Holds a coefficient at 0 with its unconstrained error: the bound does not tell how large it may
+// be.
+void fix_at_zero(Eigen::Index which, const Coefficients& both, Coefficients& fit) {
   fit.unbounded[which] = both.value[which];
   fit.variance[which] = both.variance[which];
   fit.shares.row(which) = both.shares.row(which);
@@ -109,8 +110,8 @@ Coefficients not_negative(const Weighted& system) {
   }
   Coefficients alpha = one_free(system, 0);
   Coefficients beta = one_free(system, 1);
-  hold(1, both, alpha);
-  hold(0, both, beta);
+  fix_at_zero(1, both, alpha);
+  fix_at_zero(0, both, beta);
   return alpha.chi_squared < beta.chi_squared ? alpha : beta;
 }
 // Welch 1947 and Satterthwaite 1946, of a sum of errors that have so many each.

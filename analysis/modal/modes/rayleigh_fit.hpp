@@ -10,7 +10,7 @@ struct MeasuredRatio {
   double frequency_hz{};
   double ratio{};
   double standard_error{};  // above 0
-  // Of that error: below 30 it is an estimate over taps.
+  // Degrees of freedom of the standard error: below 30 it is an estimate over taps.
   double degrees_of_freedom{std::numeric_limits<double>::infinity()};
 };
 

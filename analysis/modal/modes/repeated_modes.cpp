@@ -13,33 +13,34 @@ namespace tapstudy::analysis {
 namespace {
 constexpr double same_frequency = 0.02;
 
-struct Sighting {
+struct ModeObservation {
   std::size_t tap{};
   const TapMode* mode{};
   double degrees_of_freedom{};
 };
-using Sightings = std::vector<Sighting>;
+using ModeObservations = std::vector<ModeObservation>;
 
-double frequency_of(const Sighting& one) {
+double frequency_of(const ModeObservation& one) {
   return one.mode->fitted.pole.frequency_hz;
 }
 
-Sightings sightings_in(const TapModes& tap, std::size_t number) {
-  Sightings all;
+ModeObservations observations_in(const TapModes& tap, std::size_t number) {
+  ModeObservations all;
   for (const TapMode& mode : tap.modes) {
     all.push_back({number, &mode, tap.fit.degrees_of_freedom});
   }
   return all;
 }
 
-const FittedMode& most_significant(const Sightings& group) {
-  return std::ranges::max_element(group, {},
-                                  [](const Sighting& one) { return one.mode->fitted.significance; })
+const FittedMode& most_significant(const ModeObservations& group) {
+  return std::ranges::max_element(
+             group, {}, [](const ModeObservation& one) { return one.mode->fitted.significance; })
       ->mode->fitted;
 }
 
-// Of their frequencies, over what may lie between those of one mode: up to 1 for the same.
-double distance(const Sightings& group, const Sighting& one) {
+// The distance between frequencies relative to the tolerance of one mode: up to 1 for the same
+// mode.
+double distance(const ModeObservations& group, const ModeObservation& one) {
   const FittedMode& known = most_significant(group);
   const double tolerance = frequency_tolerance_hz(
       known.pole, same_frequency,
@@ -56,7 +57,7 @@ double norm_of(const std::vector<double>& errors) {
 }
 
 // Each of one tap's modes is of another group, or of a new one: together so that they are nearest.
-void add_to_groups(const Sightings& of_tap, std::vector<Sightings>& groups) {
+void add_to_groups(const ModeObservations& of_tap, std::vector<ModeObservations>& groups) {
   constexpr double never = 1e3;
   const auto rows = static_cast<Eigen::Index>(of_tap.size());
   const auto known = static_cast<Eigen::Index>(groups.size());
@@ -80,60 +81,61 @@ void add_to_groups(const Sightings& of_tap, std::vector<Sightings>& groups) {
 }
 
 // Taps that show most modes come first: they tell close ones apart.
-std::vector<Sightings> groups_of(const std::vector<TapModes>& taps) {
-  std::vector<Sightings> of_taps;
+std::vector<ModeObservations> groups_of(const std::vector<TapModes>& taps) {
+  std::vector<ModeObservations> of_taps;
   for (std::size_t i = 0; i < taps.size(); ++i) {
-    of_taps.push_back(sightings_in(taps[i], i));
+    of_taps.push_back(observations_in(taps[i], i));
   }
-  std::ranges::stable_sort(of_taps, std::ranges::greater{}, &Sightings::size);
-  std::vector<Sightings> groups;
-  for (const Sightings& of_tap : of_taps) {
+  std::ranges::stable_sort(of_taps, std::ranges::greater{}, &ModeObservations::size);
+  std::vector<ModeObservations> groups;
+  for (const ModeObservations& of_tap : of_taps) {
     add_to_groups(of_tap, groups);
   }
   return groups;
 }
 
-Sightings of_standing(const Sightings& group, Standing standing) {
-  Sightings some;
+ModeObservations of_standing(const ModeObservations& group, Standing standing) {
+  ModeObservations some;
   std::ranges::copy_if(group, std::back_inserter(some),
-                       [&](const Sighting& one) { return one.mode->standing == standing; });
+                       [&](const ModeObservation& one) { return one.mode->standing == standing; });
   return some;
 }
 
-// What the channels of one impact say, averaged.
-struct Shown {
+// One mode in each impact, averaged over its channels.
+struct ImpactMeans {
   std::vector<double> frequencies_hz;
   std::vector<double> ratios;
   std::vector<double> frequency_errors_hz;
   std::vector<double> ratio_errors;
 };
-Shown shown_by(const Sightings& group, const std::vector<int>& impacts) {
-  std::map<int, Sightings> by_impact;
-  for (const Sighting& one : group) {
+ImpactMeans impact_means_of(const ModeObservations& group, const std::vector<int>& impacts) {
+  std::map<int, ModeObservations> by_impact;
+  for (const ModeObservation& one : group) {
     by_impact[impacts.empty() ? static_cast<int>(one.tap) : impacts[one.tap]].push_back(one);
   }
-  Shown shown;
+  ImpactMeans means;
   for (const auto& [impact, channels] : by_impact) {
     const auto count = static_cast<double>(channels.size());
     const auto of = [&, &channels = channels](auto value_of) {
       std::vector<double> values;
-      std::ranges::transform(channels, std::back_inserter(values),
-                             [&](const Sighting& one) { return value_of(one.mode->fitted); });
+      std::ranges::transform(channels, std::back_inserter(values), [&](const ModeObservation& one) {
+        return value_of(one.mode->fitted);
+      });
       return values;
     };
     const auto mean = [&](const std::vector<double>& values) {
       return std::accumulate(values.begin(), values.end(), 0.0) / count;
     };
-    shown.frequencies_hz.push_back(
+    means.frequencies_hz.push_back(
         mean(of([](const FittedMode& fitted) { return fitted.pole.frequency_hz; })));
-    shown.ratios.push_back(
+    means.ratios.push_back(
         mean(of([](const FittedMode& fitted) { return fitted.pole.damping_ratio; })));
-    shown.frequency_errors_hz.push_back(
+    means.frequency_errors_hz.push_back(
         norm_of(of([](const FittedMode& fitted) { return fitted.frequency_error_hz; })) / count);
-    shown.ratio_errors.push_back(
+    means.ratio_errors.push_back(
         norm_of(of([](const FittedMode& fitted) { return fitted.ratio_error; })) / count);
   }
-  return shown;
+  return means;
 }
 
 std::optional<double> scatter_p_of(const std::vector<double>& values,
@@ -157,13 +159,14 @@ std::optional<double> scatter_p_of(const std::vector<double>& values,
   return chi_squared_p(chi_squared, static_cast<double>(values.size()) - 1.0);
 }
 
-RepeatedMode summary_of(const Sightings& group, std::size_t taps, const std::vector<int>& impacts) {
-  const Sightings agreed = of_standing(group, Standing::agreed);
-  const Sightings lines = of_standing(group, Standing::line);
+RepeatedMode summary_of(const ModeObservations& group, std::size_t taps,
+                        const std::vector<int>& impacts) {
+  const ModeObservations agreed = of_standing(group, Standing::agreed);
+  const ModeObservations lines = of_standing(group, Standing::line);
   RepeatedMode mode;
   mode.taps = static_cast<int>(group.size());
   mode.agreed = static_cast<int>(agreed.size());
-  const Sightings* shown = &group;
+  const ModeObservations* shown = &group;
   if (2 * lines.size() > group.size()) {
     mode.standing = Standing::line;
     mode.why = lines.front().mode->why;
@@ -172,10 +175,10 @@ RepeatedMode summary_of(const Sightings& group, std::size_t taps, const std::vec
     mode.standing = Standing::agreed;
     shown = &agreed;
   } else {
-    const Sightings doubtful = of_standing(group, Standing::doubtful);
+    const ModeObservations doubtful = of_standing(group, Standing::doubtful);
     mode.why = doubtful.empty() ? "in one tap only" : doubtful.front().mode->why;
   }
-  const Shown of_impacts = shown_by(*shown, impacts);
+  const ImpactMeans of_impacts = impact_means_of(*shown, impacts);
   const double freedom = shown->front().degrees_of_freedom;
   mode.frequency_hz =
       estimate_over_taps(of_impacts.frequencies_hz, of_impacts.frequency_errors_hz, freedom);
@@ -190,7 +193,7 @@ RepeatedMode summary_of(const Sightings& group, std::size_t taps, const std::vec
 std::vector<RepeatedMode> modes_over_taps(const std::vector<TapModes>& taps,
                                           const std::vector<int>& impacts) {
   std::vector<RepeatedMode> modes;
-  for (const Sightings& group : groups_of(taps)) {
+  for (const ModeObservations& group : groups_of(taps)) {
     modes.push_back(summary_of(group, taps.size(), impacts));
   }
   std::ranges::sort(modes, {}, [](const RepeatedMode& mode) { return mode.frequency_hz.value; });

@@ -9,8 +9,8 @@ struct RepeatedMode {
   Estimate frequency_hz;
   Estimate damping_ratio;
   double degrees_of_freedom{};  // of their standard errors
-  // Of the frequencies' scatter over three taps or more: the probability that their own errors
-  // explain as much (chi-squared). Two modes that are too close to be told apart make it small.
+  // The probability (chi-squared) that the standard errors explain the scatter of the frequency
+  // over three or more taps. It is small where two modes are too close to be resolved.
   std::optional<double> scatter_p{};
   Standing standing{Standing::doubtful};
   std::string why;

@@ -13,8 +13,8 @@
 namespace tapstudy::analysis {
 namespace {
 constexpr double max_ratio = 0.7;
-// How far a tone falls within the tap, in nepers. Below the first it is steady, or drifts; what
-// falls by less than the second must do so for certain, and not be where the mains hum.
+// The fall of a tone within the tap, in nepers. Below steady_fall it is steady or drifts; below the
+// second limit the fall must be significant, and the frequency no harmonic of the mains.
 constexpr double steady_fall = 0.15;
 constexpr double plain_fall = 0.5;
 constexpr double min_decay_z = 2.0;
@@ -197,7 +197,7 @@ const char* name(Standing standing) {
 }
 
 // A mode has four unknowns, a line two; each value of the spectrum gives two numbers.
-std::size_t most_modes(const BandSpectrum& spectrum, const std::vector<double>& lines_hz) {
+std::size_t max_mode_count(const BandSpectrum& spectrum, const std::vector<double>& lines_hz) {
   const Eigen::Index values = spectrum.values.size();
   const auto beside_lines = (2 * values - 5 - 2 * std::ssize(lines_hz)) / 4;
   return static_cast<std::size_t>(std::clamp<Eigen::Index>(beside_lines, 0, (values - 4) / 3));
@@ -210,7 +210,7 @@ TapModes identify_modes(const FreeDecay& decay, const ModeFinding& finding) {
   result.lines_hz = finding.lines_hz;
   result.pencil = matrix_pencil(decay, wide, max_model_order);
   result.spectrum = band_spectrum(decay, wide);
-  const std::size_t room = most_modes(result.spectrum, finding.lines_hz);
+  const std::size_t room = max_mode_count(result.spectrum, finding.lines_hz);
   std::vector<StablePole> stable = stable_poles(result.pencil.orders);
   std::ranges::stable_sort(stable, std::ranges::greater{}, &StablePole::orders);
   stable.resize(std::min(stable.size(), room));
@@ -245,7 +245,7 @@ TapModes identify_modes(const FreeDecay& decay, const ModeFinding& finding) {
   return result;
 }
 
-std::vector<double> lines_missed(const TapModes& tap, const std::vector<TapModes>& taps) {
+std::vector<double> missed_lines(const TapModes& tap, const std::vector<TapModes>& taps) {
   std::vector<double> missed;
   const auto frequency_of = [](const TapMode& mode) { return mode.fitted.pole.frequency_hz; };
   for (const TapModes& other : taps) {

@@ -37,17 +37,17 @@ struct ModeFinding {
 // Modes of one tap. Poles that are stable by the matrix pencil and those by vector fitting are
 // fitted together (fit_decay), in a band up to a quarter wider, so that a mode just outside is not
 // felt inside; poles whose amplitude is not significant (chi-squared below 25) are dropped, the
-// weakest first. What remains is agreed if both methods found it: frequencies within 1 % (a sixth
-// of the half-power bandwidth or four standard errors if that is more), damping ratios within a
-// quarter (or 0.003, or four standard errors). What falls by less than 14 % over the tap, or not
+// weakest first. A remaining mode is agreed if both methods found it: frequencies within 1 % (a
+// sixth of the half-power bandwidth or four standard errors if that is more), damping ratios within
+// a quarter (or 0.003, or four standard errors). What falls by less than 14 % over the tap, or not
 // significantly, is a line; by less than 40 %, also where a harmonic of the mains is. Throws
 // InvalidInput for decays that are too short.
 TapModes identify_modes(const FreeDecay& decay, const ModeFinding& finding);
 
-// How many modes can be fitted to a spectrum beside lines.
-std::size_t most_modes(const BandSpectrum& spectrum, const std::vector<double>& lines_hz);
+// The largest number of modes that can be fitted to a spectrum beside lines.
+std::size_t max_mode_count(const BandSpectrum& spectrum, const std::vector<double>& lines_hz);
 
 // Lines that some taps show and this one does not, within 1 % of any mode of its own: beside a mode
 // of nearly the same frequency hum may go unnoticed, and falsify its damping. Each once.
-std::vector<double> lines_missed(const TapModes& tap, const std::vector<TapModes>& taps);
+std::vector<double> missed_lines(const TapModes& tap, const std::vector<TapModes>& taps);
 }  // namespace tapstudy::analysis

@@ -114,7 +114,7 @@ constexpr std::size_t frames_before = 5;
 constexpr double onset_ratio = 10.0;
 constexpr double rise_ratio = 2.0;
 constexpr double envelope_s = 0.05;
-constexpr double surprise_ratio = 4.0;
+constexpr double min_innovation_ratio = 4.0;
 constexpr double blow_ratio = 16.0;  // of a new blow while the last one still rings
 constexpr std::size_t settled_frames = 6;
 constexpr std::size_t look_back_frames = 125;
@@ -124,10 +124,10 @@ constexpr double pulse_over_noise = 6.0;
 constexpr double resting_share = 0.3;  // of where a pulse begins
 constexpr double pulse_pause_s = 0.001;
 
-// By how much a linear prediction errs more at a frame than since the last impact, in energy; unset
-// so soon after it that nothing can be compared.
-std::optional<double> surprise(std::size_t frame, std::size_t last_impact,
-                               const Energies& energies) {
+// The ratio of the prediction error at a frame to that since the last impact, in energy; unset so
+// soon after it that there is nothing to compare with.
+std::optional<double> innovation_ratio(std::size_t frame, std::size_t last_impact,
+                                       const Energies& energies) {
   const std::size_t first = std::max(last_impact + settled_frames,
                                      frame > look_back_frames ? frame - look_back_frames : 0);
   if (first + 2 > frame) {
@@ -151,9 +151,9 @@ bool is_impact(std::size_t frame, const std::vector<std::size_t>& impacts, doubl
     return false;
   }
   const auto unforeseen =
-      impacts.empty() ? std::nullopt : surprise(frame, impacts.back(), energies);
+      impacts.empty() ? std::nullopt : innovation_ratio(frame, impacts.back(), energies);
   if (energy > rise_ratio * envelope) {
-    return !unforeseen || *unforeseen > surprise_ratio;
+    return !unforeseen || *unforeseen > min_innovation_ratio;
   }
   return unforeseen && *unforeseen > blow_ratio;
 }

@@ -4,10 +4,10 @@
 
 #include "analysis/modal/recording/taps.hpp"
 namespace tapstudy::analysis {
-// What the samples before do not foretell: the errors of a linear prediction that is fitted to the
-// whole recording (autoregressive, Yule 1927), as mean squares of frames of so many samples. What
-// rings freely is foretold, beats and slow modes too; an impact is not. Samples of more than about
-// 4 kHz are averaged before, so that the prediction looks back over several milliseconds.
+// The innovations of a recording: errors of a linear prediction fitted to the whole of it
+// (autoregressive, Yule 1927), as mean squares over frames of this many samples. Free vibration is
+// predictable, including beats and slow modes; an impact is not. Samples above about 4 kHz are
+// averaged first, so that the prediction looks back over several milliseconds.
 std::vector<double> innovation_energies(const std::vector<double>& samples, double rate_hz,
                                         std::size_t frame);
 
@@ -29,10 +29,10 @@ struct Energies {
 
 Energies energies_of(const std::vector<double>& centred, double rate_hz);
 
-// Where a sensor, centred on its median, was struck: see find_taps.
+// The impacts seen by a sensor, centred on its median: see find_taps.
 std::vector<Impact> sensor_impacts(const Energies& energies, const std::vector<double>& centred,
                                    double rate_hz);
-// Where a force, centred likewise, has its pulses: see force_impacts.
+// The pulses of a force, centred on its median: see force_impacts.
 std::vector<Impact> force_pulses(const std::vector<double>& centred, double noise_rms,
                                  double rate_hz);
 }  // namespace tapstudy::analysis

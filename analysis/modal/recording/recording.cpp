@@ -177,7 +177,7 @@ double rate_from_times(const Table& table, const TimeColumn& column) {
   return 1.0 / (period * column.seconds_per_unit);
 }
 
-// By header, else by number from 1.
+// The column with this header or, failing that, this number from 1.
 std::size_t named_column(const Table& table, const std::string& column) {
   const auto found = std::ranges::find(table.headers(), column);
   if (found != table.headers().end()) {

@@ -3,7 +3,8 @@
 #include <string>
 #include <vector>
 namespace tapstudy::analysis {
-// What a sensor measured. Natural frequencies and damping ratios are the same in all three.
+// The quantity that a sensor measures. Natural frequencies and damping ratios are the same for all
+// three.
 enum class Quantity { acceleration, velocity, displacement };
 
 // "acceleration" ... Throws InvalidInput for another word.
@@ -28,9 +29,9 @@ inline constexpr std::size_t min_samples = 64;
 // Times may differ from a uniform grid by this share of a period.
 inline constexpr double max_jitter_periods = 0.1;
 
-// By the file's ending: .csv, .txt and .tsv as csv_recording, any other as sound_file. Throws
-// InvalidInput, with the file and, of CSV, the line: unreadable, no such column, no rate, times
-// that are not uniform, values that are not finite, fewer than min_samples.
+// Chooses the reader by the extension: read_csv_recording for .csv, .txt and .tsv, read_sound_file
+// for any other. Throws InvalidInput, with the file and, of CSV, the line: unreadable, no such
+// column, no rate, times that are not uniform, values that are not finite, fewer than min_samples.
 Recording read_recording(const std::string& file, const ReadingOptions& options);
 
 // One channel of a table: cells separated by tabs, semicolons or commas (the first of these that

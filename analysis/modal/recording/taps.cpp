@@ -225,7 +225,7 @@ double resolution_of(const std::vector<double>& samples) {
   return std::isfinite(least) ? least : 0.0;
 }
 
-// How far the signal moves at either end of a run, at most.
+// The larger step of the signal at the two ends of a run.
 double step_beside(const std::vector<double>& samples, std::size_t begin, std::size_t end) {
   const double before = begin > 0 ? std::abs(samples[begin - 1] - samples[begin]) : 0.0;
   const double after = end < samples.size() ? std::abs(samples[end] - samples[begin]) : 0.0;

@@ -21,8 +21,8 @@ struct FoundTaps {
   std::vector<std::string> remarks;  // what was left out, and why
 };
 
-// Where something struck. What strikes again within 30 ms is the same impact: `last_blow` is then
-// where it did so last, otherwise the onset.
+// An impact. Further blows within 30 ms belong to it: `last_blow` is the last of them, or the
+// onset.
 struct Impact {
   std::size_t onset{};
   std::size_t last_blow{};
@@ -45,8 +45,7 @@ FoundTaps taps_at(const std::vector<Impact>& impacts, const Recording& recording
 // median) by a tenth of the most that it does, having been back within 3 % for 1 ms. Throws
 // InvalidInput as find_taps if there is none.
 std::vector<Impact> force_impacts(const Recording& force);
-// What a channel shows where nothing rings: its median, and the standard deviation of its quietest
-// fifth.
+// The state of a channel at rest: its median, and the standard deviation of its quietest fifth.
 struct Resting {
   double value{};
   double noise_rms{};

@@ -40,8 +40,8 @@ ReportTable participants_taps_table(const std::map<std::string, TapsOfParticipan
                           interval(contacts_s.back(), none)});
   }
   if (participants.size() > 1) {
-    table.rows.push_back(
-        {word("mean"), count(all), mean_cell(speeds_m_s), mean_cell(peaks_n), mean_cell(contacts_s)});
+    table.rows.push_back({word("mean"), count(all), mean_cell(speeds_m_s), mean_cell(peaks_n),
+                          mean_cell(contacts_s)});
   }
   return table;
 }

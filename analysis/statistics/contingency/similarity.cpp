@@ -59,7 +59,7 @@ double fit_once(const Eigen::MatrixXd& counts, Factors& factors) {
   return change;
 }
 
-// Until it has settled; the last round's change.
+// Iterates until the fit has settled; returns the change in the last round.
 double fit(const Eigen::MatrixXd& counts, Factors& factors) {
   double change = 1.0;
   for (int round = 0; round < most_rounds && change > tolerance; ++round) {

@@ -17,18 +17,19 @@ struct SimilarityChoice {
   double g_squared{};                             // 2 sum n_ij ln(n_ij / fitted)
   // (k - 1)(k - 2) / 2 less the pairs that were never confused, not below 0
   int degrees_of_freedom{};
-  // Of g_squared, for large counts; 1 without degrees of freedom. All answers count as independent.
+  // The asymptotic p of g_squared; 1 without degrees of freedom. All answers count as independent.
   double p{};
 };
 // Refused for fewer than two classes or more than 40, for a class that was never answered right,
 // and where the fit does not settle. Throws InvalidInput as totals_of_square does.
 SimilarityChoice similarity_choice(const CountTable& table);
 
-// Of g_squared given the totals of rows, columns and pairs, where counts are too small for
-// chi-squared: exact, whatever the parameters, by a Markov chain over the tables with these totals
-// (Agresti 1992) from which as many are drawn before as after the table itself, at a random place
-// (Besag & Clifford 1989). Its steps add 1 along a cycle of classes and take 1 along its reverse.
-// All answers count as independent. Of more answers than it is for: the p of chi-squared, no draws.
+// The p of g_squared conditional on the totals of rows, columns and pairs, for counts too small for
+// chi-squared: exact whatever the parameters, by a Markov chain over the tables with these totals
+// (Agresti 1992), as many of them drawn before as after the observed table, at a random place
+// (Besag & Clifford 1989). A step adds 1 along a cycle of classes and subtracts 1 along its
+// reverse. All answers count as independent. Beyond the largest number of answers, p is that of
+// chi-squared and draws is 0.
 struct ConditionalFit {
   double p{};
   int draws{};

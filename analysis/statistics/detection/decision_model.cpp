@@ -39,10 +39,10 @@ double triangle(double d_prime) {
                    0.0, reach);
 }
 
-// Of four, y is odd. Sorted, the other three are a < b < c. Above them, y is furthest from the mean
-// of all if y - c > b - a. With u = b - a, v = c - b the differences have the joint density below
-// (3! orders), and y - c given them is Gaussian with mean d' - (u + 2v)/3 and variance 4/3. Below
-// them it is the same with -d'.
+// The probability of a correct answer among four observations, of which y is odd. Sorted, the other
+// three are a < b < c. Above them, y is furthest from the mean of all if y - c > b - a. With u = b
+// - a, v = c - b the differences have the joint density below (3! orders), and y - c given them is
+// Gaussian with mean d' - (u + 2v)/3 and variance 4/3. Below them it is the same with -d'.
 double odd_of_four(double d_prime) {
   const auto at = [&](double u, double v) {
     const double density = 6.0 * std::exp(-(u * u + u * v + v * v) / 3.0) / (2.0 * pi * sqrt3);

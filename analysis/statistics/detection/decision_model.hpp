@@ -39,8 +39,7 @@ struct DecisionTask {
   int alternatives{2};
 };
 
-// Of the functions below each throws InvalidInput for a number of alternatives that the model does
-// not have.
+// The functions below throw InvalidInput for a number of alternatives that the model does not have.
 double chance(const DecisionTask& task);
 // Pc(d'), d' >= 0 and finite; else throws InvalidInput. Increases from chance to 1.
 double proportion_correct(const DecisionTask& task, double d_prime);

@@ -23,9 +23,9 @@ struct YesNoSensitivity {
 // var z = p (1 - p) / (n phi(z)^2), at the corrected rates with n + 1 trials.
 YesNoSensitivity yes_no_sensitivity(const Proportion& hits, const Proportion& false_alarms);
 
-// Same/different of a differencing observer, who says "different" where two observations differ by
-// more than k (Macmillan & Creelman 2005, ch. 9): F = 2 Phi(-k / sqrt 2),
-// H = Phi((d' - k) / sqrt 2) + Phi((-d' - k) / sqrt 2).
+// The hit rate of a differencing observer in same/different, who says "different" where two
+// observations differ by more than k (Macmillan & Creelman 2005, ch. 9): F = 2 Phi(-k / sqrt 2), H
+// = Phi((d' - k) / sqrt 2) + Phi((-d' - k) / sqrt 2).
 double same_different_hit_rate(double d_prime, double false_alarm_rate);
 
 struct RatesSensitivity {
@@ -34,7 +34,7 @@ struct RatesSensitivity {
 };
 // The inverse of same_different_hit_rate.
 RatesSensitivity same_different_differencing(double hit_rate, double false_alarm_rate);
-// Same/different by independent observations: the unbiased proportion Phi((z(H) - z(F)) / 2)
+// d' in same/different by independent observations: the unbiased proportion Phi((z(H) - z(F)) / 2)
 // through the decision model of that name.
 RatesSensitivity same_different_independent(double hit_rate, double false_alarm_rate);
 

@@ -19,7 +19,7 @@ struct Slopes {
   Eigen::Matrix2d curvature{Eigen::Matrix2d::Zero()};
 };
 
-// Of sum ln B(k + a, n - k + b) - ln B(a, b).
+// Slopes of sum ln B(k + a, n - k + b) - ln B(a, b) along a and b.
 Slopes slopes_at(const std::vector<Proportion>& people, double a, double b) {
   Slopes sum;
   for (const Proportion& of : people) {
@@ -107,7 +107,7 @@ std::vector<Proportion> answered(const std::vector<Proportion>& participants) {
   return found;
 }
 
-// Of all answers, with its negative log likelihood.
+// The share of right answers in all pooled, with its negative log likelihood.
 Minimum pooled_share(const std::vector<Proportion>& people) {
   const Proportion all = sum(people);
   return {all.value(), -profile_at(people, all.value()).log_likelihood};

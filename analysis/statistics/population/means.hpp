@@ -5,7 +5,8 @@
 
 #include "analysis/statistics/proportion.hpp"
 namespace tapstudy::analysis {
-// Of a beta-binomial distribution: mean in (0, 1), nu = 1 / intra-class correlation - 1, above 0.
+// Parameters of a beta-binomial distribution: mean in (0, 1), nu = 1 / intra-class correlation - 1,
+// above 0.
 struct BetaBinomialParameters {
   double mean{};
   double nu{};

@@ -56,7 +56,7 @@ std::vector<std::size_t> permuted(const AnswerSequence& sequence, const Trials& 
   return responses;
 }
 
-// How often each stimulus of one participant got each response.
+// Shares of the responses to each stimulus of one participant.
 class SharesOfResponses {
  public:
   explicit SharesOfResponses(const AnswerSequence& sequence)
@@ -101,7 +101,7 @@ void add_expected(const AnswerSequence& sequence, std::vector<double>& expected)
   }
 }
 
-// Of sums over very many trials: normal, with a known mean and the variance of the draws.
+// The p of sums over very many trials: normal, with a known mean and the variance of the draws.
 double spread_p(const std::vector<double>& distances, double observed) {
   double squares = 0.0;
   for (const double distance : distances) {

@@ -10,7 +10,7 @@ struct AnswerSequence {
   std::vector<std::size_t> responses;  // the answer that was given
 };
 
-// From so many draws on, p is the share of them that are as far from `expected`, both + 1.
+// From this number of draws on, p is the share of them at least as far from `expected`, both + 1.
 inline constexpr int fewest_draws_to_count = 999;
 
 struct SerialEffect {

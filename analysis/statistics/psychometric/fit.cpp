@@ -22,8 +22,9 @@ bool is_held(const PsychometricBox& box, const PsychometricVector& at,
 }
 
 // The information where held parameters are as if known: their rows and columns are those of 1.
-Eigen::Matrix4d without_held(const BinomialLikelihood::Slopes& slopes, const PsychometricBox& box,
-                             const PsychometricVector& at, PsychometricVector& score) {
+Eigen::Matrix4d remove_fixed_parameters(const BinomialLikelihood::Slopes& slopes,
+                                        const PsychometricBox& box, const PsychometricVector& at,
+                                        PsychometricVector& score) {
   Eigen::Matrix4d information = slopes.information;
   score = slopes.score;
   for (Eigen::Index i = 0; i < 4; ++i) {
@@ -45,7 +46,8 @@ Maximum local_maximum(const BinomialLikelihood& likelihood, const PsychometricBo
   double damping = 1e-3;
   for (int iteration = 0; iteration < max_iterations && damping < most_damping; ++iteration) {
     PsychometricVector score;
-    Eigen::Matrix4d information = without_held(likelihood.slopes(best.at), box, best.at, score);
+    Eigen::Matrix4d information =
+        remove_fixed_parameters(likelihood.slopes(best.at), box, best.at, score);
     information.diagonal() *= 1.0 + damping;
     information.diagonal().array() += 1e-12;
     const PsychometricVector step = information.ldlt().solve(score);
@@ -74,7 +76,7 @@ Maximum refined(const BinomialLikelihood& likelihood, const PsychometricBox& box
   double last_length = 1e-3;
   for (int i = 0; i < most_steps && last_length > shortest; ++i) {
     PsychometricVector score;
-    Eigen::Matrix4d information = without_held(likelihood.slopes(at), box, at, score);
+    Eigen::Matrix4d information = remove_fixed_parameters(likelihood.slopes(at), box, at, score);
     information.diagonal().array() += 1e-12;
     const PsychometricVector step = information.ldlt().solve(score);
     if (!(step.norm() < last_length)) {
@@ -196,7 +198,7 @@ std::vector<double> thinned(const std::vector<double>& all, std::size_t most) {
   return some;
 }
 
-// At the levels and between them: a step there may be likelier than any gentle slope.
+// Starts lie at the levels and between them: a step there may be likelier than any gentle slope.
 std::vector<double> start_positions(const BinomialLikelihood& likelihood,
                                     const PsychometricBox& box) {
   constexpr std::size_t most = 21;
@@ -268,8 +270,8 @@ std::vector<PsychometricVector> starts_of(const BinomialLikelihood& likelihood,
 }
 }  // namespace
 
-Maximum greatest(const BinomialLikelihood& likelihood, const PsychometricBox& box,
-                 const std::vector<PsychometricVector>& further_starts) {
+Maximum global_maximum(const BinomialLikelihood& likelihood, const PsychometricBox& box,
+                       const std::vector<PsychometricVector>& further_starts) {
   std::vector<PsychometricVector> starts = starts_of(likelihood, box);
   starts.insert(starts.end(), further_starts.begin(), further_starts.end());
   Maximum best{starts.front(), -std::numeric_limits<double>::infinity()};
@@ -287,7 +289,7 @@ PsychometricFit fit_psychometric(const PsychometricModel& model, const std::vect
   const BinomialLikelihood likelihood = likelihood_of(model, levels);
   const PsychometricBox box = search_box(model, likelihood.levels());
   PsychometricFit fit;
-  fit.maximum = greatest(likelihood, box);
+  fit.maximum = global_maximum(likelihood, box);
   fit.outcome = outcome_of(model, likelihood, fit.maximum);
   fit.deviance = likelihood.deviance(fit.maximum.at);
   if (fit.outcome == FitOutcome::fitted) {

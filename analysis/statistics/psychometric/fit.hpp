@@ -24,7 +24,7 @@ Maximum local_maximum(const BinomialLikelihood& likelihood, const PsychometricBo
 Maximum refined(const BinomialLikelihood& likelihood, const PsychometricBox& box,
                 const Maximum& rough);
 
-// What is fitted. A rate with low = high is fixed, others are free within [low, high].
+// The model that is fitted. A rate with low = high is fixed, others are free within [low, high].
 struct PsychometricModel {
   core::PsychometricShape shape{};
   Interval guess{0.0, 0.0};      // 1/m for a choice among m
@@ -43,7 +43,7 @@ enum class FitOutcome {
   threshold_below,  // the threshold lies below the lowest level
   threshold_above   // above the highest
 };
-// What an outcome means, as a clause: "the answers do not increase with the value".
+// The meaning of an outcome, as a clause: "the answers do not increase with the value".
 std::string_view explanation(FitOutcome outcome);
 
 struct PsychometricCurve {
@@ -66,12 +66,12 @@ struct PsychometricFit {
 // high with guess.high + lapse.high < 1.
 PsychometricFit fit_psychometric(const PsychometricModel& model, const std::vector<Level>& levels);
 
-// Of these levels. Throws InvalidInput as checked_levels does.
+// The likelihood of these levels. Throws InvalidInput as checked_levels does.
 BinomialLikelihood likelihood_of(const PsychometricModel& model, const std::vector<Level>& levels);
 // The box that fit_psychometric searches: thresholds up to three times the levels' range beyond
 // them, slopes from nearly constant to a step within the smallest gap.
 PsychometricBox search_box(const PsychometricModel& model, const std::vector<Level>& levels);
-// The greatest likelihood in the box, from a grid of starts and from any given.
-Maximum greatest(const BinomialLikelihood& likelihood, const PsychometricBox& box,
-                 const std::vector<PsychometricVector>& further_starts = {});
+// The maximum of the likelihood in the box, from a grid of starts and from any given.
+Maximum global_maximum(const BinomialLikelihood& likelihood, const PsychometricBox& box,
+                       const std::vector<PsychometricVector>& further_starts = {});
 }  // namespace tapstudy::analysis

@@ -47,12 +47,13 @@ class Profile {
     while (inside.at[place] != limit) {
       const double outside = first_step > 0.0 ? std::min(limit, inside.at[place] + step)
                                               : std::max(limit, inside.at[place] + step);
-      const Maximum found = held_at(place, outside, inside.at);
+      const Maximum found = profile_at(place, outside, inside.at);
       if (maximum_.log_likelihood - found.log_likelihood > drop_) {
         // from the last point, too, and from it alone: one function of the value while it is
         // searched
         const auto excess = [&](double value) {
-          return maximum_.log_likelihood - held_at(place, value, inside.at).log_likelihood - drop_;
+          return maximum_.log_likelihood - profile_at(place, value, inside.at).log_likelihood -
+                 drop_;
         };
         return root(excess, inside.at[place], outside);
       }
@@ -63,12 +64,12 @@ class Profile {
   }
 
  private:
-  Maximum held_at(Eigen::Index place, double value, const PsychometricVector& last) const {
+  Maximum profile_at(Eigen::Index place, double value, const PsychometricVector& last) const {
     PsychometricBox held = box_;
     held.low[place] = held.high[place] = value;
     PsychometricVector of_maximum = maximum_.at;
     of_maximum[place] = value;
-    return greatest(likelihood_, held, {of_maximum, last});
+    return global_maximum(likelihood_, held, {of_maximum, last});
   }
 
   const BinomialLikelihood& likelihood_;
@@ -77,8 +78,8 @@ class Profile {
   double drop_;
 };
 
-std::vector<Level> drawn_anew(const std::vector<Level>& levels, const std::vector<double>& p,
-                              core::Rng& rng) {
+std::vector<Level> parametric_bootstrap_sample(const std::vector<Level>& levels,
+                                               const std::vector<double>& p, core::Rng& rng) {
   std::vector<Level> drawn = levels;
   for (std::size_t i = 0; i < drawn.size(); ++i) {
     drawn[i].answers.successes = 0;
@@ -135,7 +136,8 @@ GoodnessOfFit deviance_test(const PsychometricModel& model, const std::vector<Le
   int as_bad = 0;
   for (int draw = 0; draw < draws; ++draw) {
     // answers that fit exactly differ by rounding
-    const PsychometricFit drawn = fit_psychometric(model, drawn_anew(checked, p, rng));
+    const PsychometricFit drawn =
+        fit_psychometric(model, parametric_bootstrap_sample(checked, p, rng));
     as_bad += drawn.deviance >= fit.deviance - 1e-9 ? 1 : 0;
   }
   return {fit.deviance, (1.0 + as_bad) / (draws + 1.0), draws};
@@ -197,14 +199,14 @@ class Grid {
 
   // The densities lie in the order of the axes, the last one fastest.
   Marginals summed() const {
-    const double greatest = *std::ranges::max_element(log_densities_);
+    const double global_maximum = *std::ranges::max_element(log_densities_);
     Marginals marginals;
     for (std::size_t axis = 0; axis < posterior_parameters; ++axis) {
       marginals[axis].assign(axes_[axis].cells, 0.0);
     }
     double total = 0.0;
     for (std::size_t place = 0; place < log_densities_.size(); ++place) {
-      const double density = std::exp(log_densities_[place] - greatest);
+      const double density = std::exp(log_densities_[place] - global_maximum);
       total += density;
       std::size_t rest = place;
       for (std::size_t axis = posterior_parameters; axis-- > 0;) {
@@ -270,7 +272,7 @@ Marginals marginals_on(const PosteriorAxes& axes, const PsychometricModel& model
 }
 
 namespace {
-// From the first to the last cell that is not negligible, and one further on either side.
+// The axis from the first to the last cell that is not negligible, and one further on either side.
 GridAxis narrowed(const GridAxis& axis, const std::vector<double>& marginal) {
   const double negligible = 1e-5 * *std::ranges::max_element(marginal);
   const auto is_kept = [&](double probability) { return probability > negligible; };

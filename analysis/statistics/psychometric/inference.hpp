@@ -69,7 +69,7 @@ double log_prior_of_rate(double rate);
 // The distance on the axis from F = 0.05 to F = 0.95 at a slope of 1.
 double width_of_unit_slope(core::PsychometricShape shape);
 
-// Where the prior is not 0, coarse: free parameters with half the cells of a result.
+// A coarse grid over the support of the prior: free parameters with half the cells of a result.
 PosteriorAxes prior_axes(const PsychometricModel& model, const std::vector<Level>& levels);
 Marginals marginals_on(const PosteriorAxes& axes, const PsychometricModel& model,
                        const std::vector<Level>& levels);
@@ -81,7 +81,7 @@ struct Marginal {
   double median{};
   Interval credible;  // equal tails
   // The middles of the grid's cells, ascending, and the density there: its sum times the distance
-  // of two of them is 1. Of a fixed parameter empty.
+  // of two of them is 1. Empty for a fixed parameter.
   std::vector<double> at{};
   std::vector<double> density{};
 };

@@ -20,9 +20,8 @@ std::vector<Level> checked_levels(const std::vector<Level>& levels, core::Psycho
 double on_axis(core::PsychometricShape shape, double value);
 double from_axis(core::PsychometricShape shape, double position);
 
-// Where the levels lie on the axis: the two outermost and the smallest distance between two, but
-// for what may be rounding.
-// levels as checked; a value of 0 on a logarithmic axis is left out.
+// The extent of the levels on the axis: the two outermost and the smallest distance between two
+// that exceeds rounding. The levels are checked; a value of 0 on a logarithmic axis is left out.
 struct AxisRange {
   double low{};
   double high{};

@@ -23,7 +23,8 @@ double log_hypergeometric(std::int64_t k, std::int64_t marked, std::int64_t draw
 }  // namespace
 
 namespace {
-// Of `drawn` out of `population` of which `marked` are.
+// The hypergeometric distribution of marked ones among `drawn` from `population`, `marked` of which
+// are marked.
 struct Hypergeometric {
   std::int64_t marked{};
   std::int64_t drawn{};

@@ -6,9 +6,9 @@
 #include "analysis/statistics/confusion_matrix.hpp"
 #include "core/random/rng.hpp"
 namespace tapstudy::analysis {
-// How many of `drawn` without replacement are marked, of a population of which so many are:
-// hypergeometric, by inversion outward from the mode, or where that takes many steps by a ratio of
-// uniforms. marked and drawn in [0, population].
+// A hypergeometric variate: the marked ones among `drawn` without replacement from a population
+// with `marked` marked ones, by inversion outward from the mode or, where that takes many steps, by
+// a ratio of uniforms. marked and drawn in [0, population].
 std::int64_t random_hypergeometric(std::int64_t marked, std::int64_t drawn, std::int64_t population,
                                    core::Rng& rng);
 

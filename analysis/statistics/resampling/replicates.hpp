@@ -9,12 +9,12 @@ namespace tapstudy::analysis {
 void parallel_for(std::size_t count, unsigned threads,
                   const std::function<void(std::size_t)>& task);
 
-// What one replicate of a bootstrap or a permutation gives, from its own seed alone.
+// The statistic of one replicate of a bootstrap or a permutation, from its own seed alone.
 using Replicate = std::function<double(std::uint64_t seed)>;
 
 // count replicates, in order, on so many threads (0: one a processor). Each has a seed derived from
-// `seed` and its number, so that the results do not depend on the threads. What a replicate throws
-// is thrown. Throws InvalidInput if count is below 0.
+// `seed` and its number, so that the results do not depend on the threads. An exception of a
+// replicate is rethrown. Throws InvalidInput if count is below 0.
 std::vector<double> replicates(int count, const Replicate& replicate, std::uint64_t seed,
                                unsigned threads = 0);
 
@@ -23,8 +23,8 @@ using Replicates = std::function<std::vector<double>(std::uint64_t seed)>;
 std::vector<std::vector<double>> replicated_vectors(int count, const Replicates& replicate,
                                                     std::uint64_t seed, unsigned threads = 0);
 
-// How many replicates of so much work (cells, answers …) each a report can afford: between fewest
-// and most.
+// The number of replicates of this much work (cells, answers …) that a report can afford, between
+// fewest and most.
 int affordable_replicates(std::size_t work_each, int fewest, int most);
 
 // (1 + replicates at least as large as observed) / (replicates + 1) (Hope 1968). Values that differ

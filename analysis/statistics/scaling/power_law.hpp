@@ -11,7 +11,7 @@ struct MagnitudeEstimate {
 };
 using Estimates = std::vector<MagnitudeEstimate>;  // one participant's
 
-// Of all participants' estimates of one value.
+// The mean of all participants' estimates of one value.
 struct MagnitudeMean {
   double value{};
   double geometric_mean{};

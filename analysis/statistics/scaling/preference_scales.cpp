@@ -271,7 +271,7 @@ Consistency consistency(const Eigen::MatrixXi& is_preferred) {
 }
 
 namespace {
-// How often each item stood before each other.
+// Counts how often each item stood before each other.
 PairedCounts pairs_of(const std::vector<Ranking>& rankings, std::size_t items) {
   const auto count = static_cast<Eigen::Index>(items);
   PairedCounts counts{Eigen::MatrixXi::Zero(count, count), {}};

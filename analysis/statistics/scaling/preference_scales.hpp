@@ -60,7 +60,7 @@ struct ScaleMaximum {
 ScaleMaximum maximise_scale(const ScaleLikelihood& likelihood, Eigen::Index items,
                             Eigen::Index parameters);
 
-// With the intervals of the first `items` parameters.
+// The scale of a maximum, with the intervals of its first `items` parameters.
 PreferenceScale scale_of(const ScaleMaximum& maximum, Eigen::Index items);
 
 // Bradley & Terry 1952, Luce 1959, with ties after Davidson 1970. With values v,
@@ -70,8 +70,8 @@ struct BradleyTerry {
   PreferenceScale scale;  // values are logarithms of the abilities
   double nu{};            // 0 without ties
 };
-// By maximum likelihood. Throws InvalidInput as check_comparisons does (ties do not connect: a nu
-// that grows with the distance may explain them).
+// Maximum likelihood. Throws InvalidInput as check_comparisons does (ties do not connect: a nu that
+// grows with the distance may explain them).
 BradleyTerry bradley_terry(const PairedCounts& counts);
 
 // Thurstone 1927, Case V, by maximum likelihood: P(i preferred to j) = Phi(v_i - v_j). The unit is

@@ -26,7 +26,7 @@ struct StiffnessAndMass {
   std::vector<int> first_of_node{};
   // Rigid-body motions that neither constraints nor springs resist: 0 to 6.
   int rigid_body_modes{0};
-  // What resists them, six rows and columns for each body (RigidMotions::resisted).
+  // The resistance to these motions, six rows and columns for each body (RigidMotions::resisted).
   Eigen::MatrixXd resisted_motions{};
   auto stiffness() const { return K.selfadjointView<Eigen::Lower>(); }
   auto mass() const { return M.selfadjointView<Eigen::Lower>(); }
@@ -56,6 +56,6 @@ class RigidMotions {
   double size_m_;
 };
 
-// How many motions nothing resists: the dimension of the null space of such a sum.
+// The number of motions that nothing resists: the dimension of the null space of such a sum.
 int unresisted(const Eigen::MatrixXd& resisted_motions);
 }  // namespace tapstudy::core

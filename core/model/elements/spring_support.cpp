@@ -10,8 +10,8 @@ namespace {
 using Barycentric = Eigen::Vector3d;
 using Corners = std::array<Barycentric, 3>;
 
-// Every triangle is divided so often, lest a region is missed that holds none of its nodes; and at
-// most so often where it lies across the region's rim.
+// Minimum and maximum number of subdivisions of a triangle: the minimum finds regions that hold
+// none of its nodes, the maximum is reached along a region's rim.
 constexpr int least_divisions = 2;
 constexpr int most_divisions = 6;
 

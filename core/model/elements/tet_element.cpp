@@ -82,7 +82,7 @@ struct Geometry {
   Gradients<4> gradients;  // of the barycentric coordinates
 };
 
-// From L_i = a_i + b_i x + c_i y + d_i z.
+// The shape functions are L_i = a_i + b_i x + c_i y + d_i z.
 Geometry geometry_of(const TetCorners& corners_m) {
   Eigen::Matrix4d coordinates;
   coordinates << Eigen::Vector4d::Ones(), corners_m;

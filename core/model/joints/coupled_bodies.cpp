@@ -28,14 +28,14 @@ void add_block(const SparseMatrix& block, int first, Entries& entries) {
 
 class Elongations {
  public:
-  Elongations(const Plate& plate, const Contacts& contacts, const CoupledBodies& system)
-      : plate_{plate}, contacts_{contacts}, system_{system} {}
+  Elongations(const Plate& plate, const Joints& joints, const CoupledBodies& system)
+      : plate_{plate}, joints_{joints}, system_{system} {}
 
   std::vector<Elongation> all() const {
     std::vector<Elongation> elongations;
-    for (std::size_t i = 0; i < contacts_.springs.size(); ++i) {
+    for (std::size_t i = 0; i < joints_.springs.size(); ++i) {
       for (Eigen::Index axis = 0; axis < 3; ++axis) {
-        if (contacts_.springs[i].stiffness_n_per_m[axis] > 0.0) {
+        if (joints_.springs[i].stiffness_n_per_m[axis] > 0.0) {
           elongations.push_back(along(axis, i));
         }
       }
@@ -43,12 +43,12 @@ class Elongations {
     return elongations;
   }
 
-  // Axes are parallel, so that shifts of the bodies must bring all contacts together at once: else
+  // Axes are parallel, so that shifts of the bodies must bring all joints together at once: else
   // the springs would hold free bodies against turning.
   void check_can_touch() const {
     const std::vector<Vec3> shifts_m = shifts_of_bodies();
-    for (std::size_t i = 0; i < contacts_.springs.size(); ++i) {
-      const auto& joins = contacts_.springs[i];
+    for (std::size_t i = 0; i < joints_.springs.size(); ++i) {
+      const auto& joins = joints_.springs[i];
       const double apart_m =
           (shifts_m[joins.to.body] - shifts_m[joins.from.body] + shift_m(i)).norm();
       if (apart_m > max_misplacement * larger_diagonal_m(joins)) {
@@ -62,14 +62,14 @@ class Elongations {
 
  private:
   struct NamedEnd {
-    const ContactSpring::End& end;
+    const JointSpring::End& end;
     std::size_t spring;
     const char* name;  // as in a protocol
   };
   static constexpr double max_misplacement = 0.02;  // of a body: discs are meshed coarsely
 
   Elongation along(Eigen::Index axis, std::size_t spring) const {
-    const ContactSpring& joins = contacts_.springs[spring];
+    const JointSpring& joins = joints_.springs[spring];
     const auto motions = 6 * static_cast<Eigen::Index>(system_.bodies.size());
     Elongation elongation{
         spring, joins.stiffness_n_per_m[axis], {}, Eigen::VectorXd::Zero(motions)};
@@ -77,11 +77,11 @@ class Elongations {
     add({joins.to, spring, "to"}, axis, -1.0, elongation);
     return elongation;
   }
-  double larger_diagonal_m(const ContactSpring& spring) const {
+  double larger_diagonal_m(const JointSpring& spring) const {
     return std::max(bounds(shape_of(spring.from.body)).size_m().norm(),
                     bounds(shape_of(spring.to.body)).size_m().norm());
   }
-  // By which each body comes to lie where the first springs that reach it join it.
+  // The translation of each body to where the first springs that reach it join it.
   std::vector<Vec3> shifts_of_bodies() const {
     std::vector<std::optional<Vec3>> shifts_m(system_.bodies.size());
     for (std::optional<Vec3>& first : shifts_m) {
@@ -98,9 +98,9 @@ class Elongations {
     return all_m;
   }
   bool reach_another(std::vector<std::optional<Vec3>>& shifts_m) const {
-    for (std::size_t i = 0; i < contacts_.springs.size(); ++i) {
-      std::optional<Vec3>& of_from = shifts_m[contacts_.springs[i].from.body];
-      std::optional<Vec3>& of_to = shifts_m[contacts_.springs[i].to.body];
+    for (std::size_t i = 0; i < joints_.springs.size(); ++i) {
+      std::optional<Vec3>& of_from = shifts_m[joints_.springs[i].from.body];
+      std::optional<Vec3>& of_to = shifts_m[joints_.springs[i].to.body];
       if (of_from.has_value() != of_to.has_value()) {
         (of_from ? of_to : of_from) = of_from ? Vec3{*of_from - shift_m(i)} : *of_to + shift_m(i);
         return true;
@@ -108,16 +108,16 @@ class Elongations {
     }
     return false;
   }
-  // From one end of a spring to the other.
+  // The translation from one end of a spring to the other.
   Vec3 shift_m(std::size_t spring) const {
-    const ContactSpring& joins = contacts_.springs[spring];
+    const JointSpring& joins = joints_.springs[spring];
     return mean_place_m({joins.to, spring, "to"}) - mean_place_m({joins.from, spring, "from"});
   }
   const Shape& shape_of(std::size_t body) const {
-    return body == 0 ? plate_.shape : contacts_.bodies.at(body - 1).shape;
+    return body == 0 ? plate_.shape : joints_.bodies.at(body - 1).shape;
   }
   std::vector<Eigen::Index> nodes_at(const NamedEnd& named) const {
-    const ContactSpring::End& end = named.end;
+    const JointSpring::End& end = named.end;
     return nodes_of(end.region, system_.bodies.at(end.body).mesh, shape_of(end.body),
                     fmt::format("contact spring {}, {}", named.spring + 1, named.name));
   }
@@ -130,7 +130,7 @@ class Elongations {
     return place_m;
   }
   void add(const NamedEnd& named, Eigen::Index axis, double sign, Elongation& elongation) const {
-    const ContactSpring::End& end = named.end;
+    const JointSpring::End& end = named.end;
     const DiscreteBody& body = system_.bodies.at(end.body);
     const RigidMotions motions{body.mesh};
     for (const NodeWeight& one : mean_weights(body.mesh, nodes_at(named))) {
@@ -145,7 +145,7 @@ class Elongations {
   }
 
   const Plate& plate_;
-  const Contacts& contacts_;
+  const Joints& joints_;
   const CoupledBodies& system_;
 };
 
@@ -180,8 +180,7 @@ void place_after_one_another(CoupledBodies& system) {
 }
 }  // namespace
 
-CoupledBodies coupled(const Plate& plate, std::vector<DiscreteBody> bodies,
-                      const Contacts& contacts) {
+CoupledBodies coupled(const Plate& plate, std::vector<DiscreteBody> bodies, const Joints& joints) {
   CoupledBodies system;
   system.bodies = std::move(bodies);
   place_after_one_another(system);
@@ -197,7 +196,7 @@ CoupledBodies coupled(const Plate& plate, std::vector<DiscreteBody> bodies,
     resisted.block<6, 6>(6 * static_cast<Eigen::Index>(i), 6 * static_cast<Eigen::Index>(i)) =
         body.matrices.resisted_motions;
   }
-  const Elongations elongations{plate, contacts, system};
+  const Elongations elongations{plate, joints, system};
   elongations.check_can_touch();
   system.elongations = elongations.all();
   for (const Elongation& elongation : system.elongations) {
@@ -211,10 +210,10 @@ CoupledBodies coupled(const Plate& plate, std::vector<DiscreteBody> bodies,
 }
 
 namespace {
-std::vector<Fixation> regions_of(std::size_t body, const Contacts& contacts) {
+std::vector<Fixation> regions_of(std::size_t body, const Joints& joints) {
   std::vector<Fixation> regions;
-  for (const ContactSpring& spring : contacts.springs) {
-    for (const ContactSpring::End* const end : {&spring.from, &spring.to}) {
+  for (const JointSpring& spring : joints.springs) {
+    for (const JointSpring::End* const end : {&spring.from, &spring.to}) {
       if (end->body == body) {
         regions.push_back(end->region);
       }
@@ -224,18 +223,18 @@ std::vector<Fixation> regions_of(std::size_t body, const Contacts& contacts) {
 }
 
 std::vector<DiscreteBody> all_discretised(const BodySpec& body, const ProgressHook& progress) {
-  const Contacts& contacts = *body.contacts;
+  const Joints& joints = *body.joints;
   const Material unit{1.0, 1.0, body.poissons_ratio, {}};
   std::vector<DiscreteBody> all{
-      discretised(body, unit, body.mesh.size, regions_of(0, contacts), progress)};
-  for (const BodyInContact& other : contacts.bodies) {
+      discretised(body, unit, body.mesh.size, regions_of(0, joints), progress)};
+  for (const JoinedBody& other : joints.bodies) {
     all.push_back(discretised(other, other.material, other.mesh.size,
-                              regions_of(all.size(), contacts), progress));
+                              regions_of(all.size(), joints), progress));
   }
   return all;
 }
 
-// Of each mode.
+// The squared elongation in each mode.
 Eigen::ArrayXd squares(const Elongation& elongation, const Eigen::MatrixXd& shapes) {
   Eigen::ArrayXd displacement = Eigen::ArrayXd::Zero(shapes.cols());
   for (const auto& [dof, weight] : elongation.weights) {
@@ -270,14 +269,14 @@ void set_energy_shares(const CoupledBodies& system, std::size_t springs, const M
 }
 }  // namespace
 
-SolvedBody solve_in_contact(const BodySpec& body, const ProgressHook& progress) {
-  CoupledBodies system = coupled(body, all_discretised(body, progress), *body.contacts);
+SolvedBody solve_joined_bodies(const BodySpec& body, const ProgressHook& progress) {
+  CoupledBodies system = coupled(body, all_discretised(body, progress), *body.joints);
   const double turn = 2.0 * std::numbers::pi;
   const Modes modes = solve_modes(system.matrices, body.band_limit_rad_per_m / turn, progress);
   SolvedBody solved;
   solved.modes.kappa_rad_per_m = modes.omega_rad_s;
   solved.modes.band_limit_rad_per_m = body.band_limit_rad_per_m;
-  set_energy_shares(system, body.contacts->springs.size(), modes, solved.modes);
+  set_energy_shares(system, body.joints->springs.size(), modes, solved.modes);
   solved.modes.report = report_on(system.bodies, modes);
   DiscreteBody& tapped = system.bodies.front();
   solved.displacement = with_constrained_rows(modes.shapes.topRows(tapped.dofs.count), tapped.dofs);

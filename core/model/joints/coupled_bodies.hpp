@@ -9,7 +9,7 @@ namespace tapstudy::core {
 // One spring along one axis, by what it measures: the mean displacement of one region less that of
 // the other.
 struct Elongation {
-  std::size_t spring{};  // its place in Contacts
+  std::size_t spring{};  // its place in Joints
   double stiffness_n_per_m{};
   std::vector<std::pair<int, double>> weights;  // of free degrees of freedom
   Eigen::VectorXd motions;                      // of the bodies' rigid-body motions
@@ -23,14 +23,13 @@ struct CoupledBodies {
   StiffnessAndMass matrices;  // block-diagonal but for the springs
 };
 
-// Throws ModelError if a contact touches no node of its body, and if contacts of two bodies cannot
+// Throws ModelError if a joint touches no node of its body, and if joints of two bodies cannot
 // lie on one another at once.
-CoupledBodies coupled(const Plate& plate, std::vector<DiscreteBody> bodies,
-                      const Contacts& contacts);
+CoupledBodies coupled(const Plate& plate, std::vector<DiscreteBody> bodies, const Joints& joints);
 
-// The modes of a body together with those that it touches (body.contacts), and its own part of
+// The modes of a body together with those that it touches (body.joints), and its own part of
 // their shapes. All bodies are one eigenproblem, not each one's modes coupled (component mode
 // synthesis, Craig & Bampton 1968): nothing is truncated, and the count of modes is proved as that
 // of a body alone. Throws ModelError as solve_body.
-SolvedBody solve_in_contact(const BodySpec& body, const ProgressHook& progress);
+SolvedBody solve_joined_bodies(const BodySpec& body, const ProgressHook& progress);
 }  // namespace tapstudy::core

@@ -144,7 +144,7 @@ void check_count(const Shape& shape, const MeshSize& size) {
       extent.x(), extent.y(), extent.z(), std::max(from_shape, from_size), max_tets, advice)};
 }
 
-// From body to TetGen's coordinates and back: relative to the low corner, thickened.
+// Maps the body to TetGen's coordinates and back: relative to the low corner, thickened.
 struct Thickening {
   Vec3 low_m;
   double flattening;

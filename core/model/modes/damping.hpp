@@ -24,9 +24,9 @@ struct DampedModes {
 // The part of the modes' damping ratios that is due to one of several bodies: its ratio at the
 // mode's frequency by its share of the strain energy (modal strain energy method: Ungar & Kerwin
 // 1962; Johnson & Kienholz 1982); where coefficients are stated, alpha's part by its share of the
-// kinetic energy (eq. 3). What couples modes through damping is left out, as is usual for light
-// damping.
-// Throws ModelError as damp, and for a list of modal ratios: the modes are not those of one body.
+// kinetic energy (eq. 3). Damping terms that couple modes are left out, as is usual for light
+// damping. Throws ModelError as damp, and for a list of modal ratios: the modes are not those of
+// one body.
 Eigen::ArrayXd damping_ratios_due_to(const Damping& damping, const Eigen::ArrayXd& omega_rad_s,
                                      const Eigen::ArrayXd& kinetic_share,
                                      const Eigen::ArrayXd& strain_share);

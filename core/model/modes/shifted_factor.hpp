@@ -7,8 +7,8 @@ namespace tapstudy::core {
 // The symmetric factorisation L D L' of K - sigma M. It serves two purposes: by Sylvester's law of
 // inertia the number of eigenvalues of K x = lambda M x below sigma equals the number of negative
 // pivots of D; and it provides the solve required by a shift-invert eigenvalue iteration.
-// By MUMPS (Amestoy et al. 2001): multifrontal, fill-reducing ordering, pivoting for indefinite D.
-// The library keeps global state and is not thread-safe.
+// Computed by MUMPS (Amestoy et al. 2001): multifrontal, fill-reducing ordering, pivoting for
+// indefinite D. The library keeps global state and is not thread-safe.
 class ShiftedFactor {
  public:
   // sigma in rad²/s². Throws ModelError if the matrix is singular or the factors need more memory

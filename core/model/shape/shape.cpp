@@ -96,7 +96,7 @@ Eigen::Vector2d nearest_on_outline(const TriangleSurface& surface, const Eigen::
 }
 }  // namespace
 
-std::string TopHeight::outline_words(const Eigen::Vector2d& sideways_m) const {
+std::string TopHeight::describe_touchable(const Eigen::Vector2d& sideways_m) const {
   if (triangles_) {
     const Eigen::Vector2d nearest = nearest_on_outline(triangles_->surface(), sideways_m);
     return fmt::format("seen from above its nearest place is ({:.4g}, {:.4g})", nearest.x(),

@@ -49,15 +49,15 @@ double volume_m3(const Shape& shape);
 // Identical text for bitwise identical shapes.
 std::string content_key(const Shape& shape);
 
-// Where a finger descending along -z first touches a body.
+// The height at which a finger descending along -z first touches a body.
 class TopHeight {
  public:
   explicit TopHeight(const Shape& shape);
   // z in the plate frame; nullopt where the vertical line misses the body.
   std::optional<double> at_m(const Eigen::Vector2d& sideways_m) const;
-  // What may be touched from above, for messages: a plate's extent, or the place on a body nearest
-  // to a point that misses it.
-  std::string outline_words(const Eigen::Vector2d& sideways_m) const;
+  // For messages, the region that can be touched from above: a plate's extent, or the place on a
+  // body nearest to a point that misses it.
+  std::string describe_touchable(const Eigen::Vector2d& sideways_m) const;
 
  private:
   Bounds bounds_;

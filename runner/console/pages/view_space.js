@@ -92,6 +92,10 @@ class Pointer {
   }
 }
 
+// As many as a processor paints in time where there is no graphics card: with more, the page's signs
+// of life would be late, and the session paused.
+const maxPixels = 2e6;
+
 export class SpacePainter {
   constructor(frame, whenLost) {
     this.renderer = new THREE.WebGLRenderer({ antialias: true, alpha: true });
@@ -116,7 +120,7 @@ export class SpacePainter {
   }
 
   resize(width, height) {
-    this.renderer.setPixelRatio(pixelRatio());
+    this.renderer.setPixelRatio(Math.min(pixelRatio(), Math.sqrt(maxPixels / (width * height))));
     this.renderer.setSize(width, height);
     this.camera.aspect = width / height;
     this.#fit();

@@ -22,8 +22,8 @@ constexpr double usable_rate_share = 0.4;  // of the rate; sensors' own filters 
 constexpr double max_rate_share = 0.47;
 }  // namespace
 
-analysis::Band sought_band(const TapQuestion& question, double rate_hz,
-                           std::optional<double> band_limit_hz) {
+analysis::Band modal_band(const TapQuestion& question, double rate_hz,
+                          std::optional<double> band_limit_hz) {
   if (!question.band) {
     return {default_low_hz,
             std::min(usable_rate_share * rate_hz, band_limit_hz.value_or(default_high_hz))};
@@ -66,7 +66,7 @@ void share_lines(const analysis::Band& band, std::vector<IdentifiedTap>& taps,
   const std::vector<analysis::TapModes> alone = modes_of(taps);
   for (IdentifiedTap& tap : taps) {
     analysis::ModeFinding finding{band};
-    finding.lines_hz = analysis::lines_missed(tap.modes, alone);
+    finding.lines_hz = analysis::missed_lines(tap.modes, alone);
     if (!finding.lines_hz.empty()) {
       identify_beside_lines(finding, tap, remarks);
     }
@@ -85,7 +85,7 @@ std::vector<analysis::RepeatedMode> modes_over_all(const analysis::Band& band,
     impacts.push_back(tap.impact);
   }
   const std::vector<analysis::TapModes> alone = modes_of(taps);
-  analysis::ModesOfTaps found = analysis::tell_close_modes_apart(
+  analysis::ModesOfTaps found = analysis::resolve_close_modes(
       decays, impacts, band, {alone, analysis::modes_over_taps(alone, impacts)});
   for (std::size_t i = 0; i < taps.size(); ++i) {
     taps[i].modes = std::move(found.taps[i]);
@@ -114,7 +114,7 @@ double newtons_per_unit(const SinusoidLaw& law, analysis::Quantity quantity,
 
 using Fits = std::vector<const IdentifiedTap*>;
 
-// By impact: its channels vary together.
+// Groups the fits by impact, because the channels of one impact vary together.
 std::map<int, Fits> fits_of(const TapIdentification& found) {
   std::map<int, Fits> fits;
   for (const IdentifiedTap& tap : found.taps) {

@@ -93,7 +93,7 @@ double largest(const analysis::Recording& recording) {
   return std::max(std::abs(low), std::abs(high));
 }
 
-// By header or by number.
+// A column may be named by its header or by its number.
 void check_named_once(const MeasuredFile& measured) {
   std::vector<std::string> names;
   std::ranges::transform(measured.channels, std::back_inserter(names),

@@ -23,9 +23,9 @@ struct MeasuredFile {
 // Throws InvalidInput as read_recording does, and for a column that is asked for twice.
 MeasuredFile read_measured_file(const std::string& file, const TapQuestion& question);
 
-// Of the channel in which taps stand out most from the noise; they are the same in all channels.
-// Where a force was recorded, an impact is where it strikes. Throws InvalidInput if no channel, or
-// the force, has one.
+// The taps of the channel in which they stand out most from the noise; they are the same in all
+// channels. Where a force was recorded, an impact is where it strikes. Throws InvalidInput if no
+// channel, or the force, has one.
 analysis::FoundTaps find_taps(const MeasuredFile& measured, const analysis::TapFinding& finding);
 
 // The force of an impact, above what it was before, for as long as it acts near the tap's onset.

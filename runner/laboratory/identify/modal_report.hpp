@@ -5,14 +5,14 @@
 #include "analysis/report/figures/figure.hpp"
 #include "runner/laboratory/identify/tap_identification.hpp"
 namespace tapstudy::runner {
-// To stdout: taps, modes, damping, sinusoid, the model beside it, and remarks.
+// Prints taps, modes, damping, sinusoid, the model beside it, and remarks to stdout.
 void print(const TapIdentification& found);
 
-// What a protocol takes, with intervals as comments: of a protocol's stimulus its material, whole,
-// under `materials`, else `damping` alone; under `rendering` the sinusoid where its force is known.
-// Damping is Rayleigh's where it fits, else a ratio a mode: of the model's modes inside the band,
-// those that were not measured get a ratio by linear interpolation over frequency. Where springs
-// were found, the plate's `fixations`, whole, under `plates`.
+// The results as keys of a protocol, with intervals as comments: the whole material under
+// `materials` if a stimulus was named, else `damping` alone; under `rendering` the sinusoid where
+// its force is known. Damping is Rayleigh's where it fits, else a ratio a mode: of the model's
+// modes inside the band, those that were not measured get a ratio by linear interpolation over
+// frequency. Where springs were found, the plate's `fixations`, whole, under `plates`.
 std::string yaml_of(const TapIdentification& found);
 
 // One of a protocol's fixations, as it is read: {region: ...}. is_of_box: of a plate, not a

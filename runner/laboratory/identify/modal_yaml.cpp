@@ -124,7 +124,7 @@ std::string modal(const TapIdentification& found) {
   return listed(of_model.empty() ? ratios_of_measured(found) : of_model);
 }
 
-// At least one mode is agreed.
+// Precondition: at least one mode is agreed.
 std::string damping_of(const TapIdentification& found, const std::string& indent) {
   const auto& rayleigh = found.rayleigh;
   if (!rayleigh) {

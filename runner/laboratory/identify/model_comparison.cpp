@@ -16,7 +16,8 @@
 #include "runner/session/stimuli/model_library.hpp"
 namespace tapstudy::runner {
 namespace {
-// Of a place in a triangle seen from above; nullopt outside of it, and edge on.
+// Barycentric coordinates of a place in a triangle seen from above; nullopt outside it and for a
+// triangle seen edge on.
 std::optional<std::array<double, 3>> barycentric(const std::array<Eigen::Vector2d, 3>& corners,
                                                  const Eigen::Vector2d& at) {
   constexpr double rounding = 1e-9;
@@ -41,7 +42,7 @@ struct TopPlace {
   std::array<double, 3> barycentric{};
 };
 
-// Of the triangles there, seen from above, the one that is nearest to where the upper surface is.
+// The triangle there, seen from above, that is nearest to the upper surface.
 TopPlace top_place(const core::ModalModel& model, const Eigen::Vector2d& at_m, double z_m) {
   TopPlace found;
   double nearest_m = 0.0;

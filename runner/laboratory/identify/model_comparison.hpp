@@ -18,7 +18,7 @@ struct MeasuredShapes {
 };
 inline constexpr std::size_t fewest_places = 3;
 
-// Of each impact's place the number of the place, in the order in which places come.
+// The distinct places tapped, in order of appearance, and the number of each impact's place.
 struct NumberedPlaces {
   std::vector<Eigen::Vector2d> places_m;
   std::vector<std::size_t> of_impacts;
@@ -30,7 +30,7 @@ NumberedPlaces numbered(const std::vector<Eigen::Vector2d>& of_impacts_m);
 Eigen::MatrixXd assurance_of(const MeasuredShapes& measured, const core::ModalModel& model,
                              const core::Shape& body);
 
-// Of a plate on springs: all of them by one factor.
+// The springs of a plate, all updated by one factor.
 struct IdentifiedSprings {
   analysis::Estimate factor;  // on the protocol's
   std::string plate_name;

@@ -82,8 +82,8 @@ class Identifier {
     }
     const double slowest_hz = rate_of(*std::ranges::min_element(files, {}, rate_of));
     check_playback_rate(files);
-    result_.band = sought_band(result_.question, slowest_hz,
-                               protocol_ ? std::optional{protocol_->band_limit_hz} : std::nullopt);
+    result_.band = modal_band(result_.question, slowest_hz,
+                              protocol_ ? std::optional{protocol_->band_limit_hz} : std::nullopt);
     int impacts = 0;
     for (const MeasuredFile& file : files) {
       impacts += add(file, impacts);
@@ -111,7 +111,7 @@ class Identifier {
       }
     }
   }
-  // How many impacts it has; `before` are those of earlier recordings.
+  // Returns the number of impacts in the file; `before` is the number in earlier recordings.
   int add(const MeasuredFile& file, int before) {
     const analysis::FoundTaps found = find_taps(file, result_.question.finding);
     for (const std::string& remark : found.remarks) {
@@ -203,7 +203,7 @@ class Identifier {
     }
   }
 
-  // Of the agreed modes.
+  // The measured shapes of the agreed modes.
   std::optional<MeasuredShapes> measured_shapes() {
     if (result_.places_m.empty()) {
       return std::nullopt;

@@ -11,7 +11,7 @@
 #include "runner/laboratory/identify/model_comparison.hpp"
 #include "runner/terminal/logging.hpp"
 namespace tapstudy::runner {
-// What is asked of recordings of real taps.
+// The request for an identification from recordings of real taps.
 struct TapQuestion {
   std::vector<std::string> recordings;
   analysis::ReadingOptions reading;  // its column left open
@@ -29,7 +29,7 @@ struct TapQuestion {
   std::string stimulus;
 };
 
-// Of what struck.
+// The force of an impact.
 struct ImpactForce {
   double impulse_n_s{};  // above 0
   double centre_s{};     // when, by the centroid of the force

@@ -20,8 +20,8 @@ std::string with_unit(double value, const std::string& unit) {
 }
 
 std::string missed(const Measure& measure) {
-  return fmt::format("{} is {}, not {}", measure.name, value_in_words(measure),
-                     limits_in_words(measure));
+  return fmt::format("{} is {}, not {}", measure.name, describe_value(measure),
+                     describe_limits(measure));
 }
 
 std::string missed(const Method& method) {
@@ -62,11 +62,11 @@ double difference_percent(double value, double printed) {
   return 100.0 * std::abs(value / printed - 1.0);
 }
 
-std::string value_in_words(const Measure& measure) {
+std::string describe_value(const Measure& measure) {
   return with_unit(measure.value, measure.unit);
 }
 
-std::string limits_in_words(const Measure& measure) {
+std::string describe_limits(const Measure& measure) {
   const auto& low = measure.at_least;
   const auto& high = measure.at_most;
   if (low && high) {

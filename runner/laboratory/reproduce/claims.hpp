@@ -32,8 +32,8 @@ Measure within(double low, double high, const std::string& name, double value,
 Measure shown(const std::string& name, double value, const std::string& unit = {});
 double difference_percent(double value, double printed);
 // "1.25 mm"; and of a measure that is judged "at least 1.5 mm", "between 1 and 2 mm".
-std::string value_in_words(const Measure& measure);
-std::string limits_in_words(const Measure& measure);
+std::string describe_value(const Measure& measure);
+std::string describe_limits(const Measure& measure);
 
 // One way to compute what the claim is about.
 struct Method {
@@ -72,11 +72,11 @@ struct Claim {
   std::vector<Drawing> drawings{};
   std::vector<Animation> animations{};
   ClaimVerdict verdict() const;
-  // By which methods it holds, and of each of the others the measures that do not.
+  // The methods that confirm the claim, and the failing measures of each of the others.
   std::vector<std::string> reasons() const;
 };
 
-// What no computation can show.
+// A statement of the paper that no computation can test.
 struct NotReproducible {
   std::string section;
   std::string statement;
@@ -88,7 +88,7 @@ inline constexpr std::string_view printed = "as printed";
 inline constexpr std::string_view recommended = "as recommended";
 }  // namespace method
 
-// What all claims are measured with.
+// The settings and models shared by all measurements.
 struct Bench {
   Effort effort{Effort::full};  // quick: fewer simulated participants, fewer thicknesses
   std::uint64_t seed{1};
@@ -98,11 +98,11 @@ struct Bench {
   bool is_quick() const { return effort == Effort::quick; }
 };
 
-// Of Figure 3, beside the page.
+// The animation of Figure 3, a file beside the page.
 inline constexpr std::string_view strike_animation_file = "figure_3.png";
 
 // Claims that are measured together. To add some: a file with a function, declared here, and a row
-// in claim_table.cpp.
+// in claims.cpp.
 struct ClaimGroup {
   std::string_view name;  // by which `reproduce --only` chooses it
   std::string_view title;
@@ -123,7 +123,7 @@ std::vector<Claim> finger_vibration(Bench& bench);  // section 5.2.3
 std::vector<Claim> discrimination(Bench& bench);    // Table 2
 std::vector<Claim> reality(Bench& bench);           // sections 5.2.2 and 5.2.3
 
-// What no computation can show, and why.
+// The statements that no computation can test, and why.
 const std::vector<NotReproducible>& not_reproducible();
 
 struct MeasuredGroup {

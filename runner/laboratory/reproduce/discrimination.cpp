@@ -71,7 +71,8 @@ std::vector<double> drawn_shares(const Row& answers, core::Rng& rng) {
   return shares;
 }
 
-// Of tables whose rows are drawn from these shares, as rare under the probabilities as the counts.
+// The share of tables, with rows drawn from these shares, that are at most as probable as the
+// counts.
 template <class SharesOf>
 double share_as_rare(const analysis::CountTable& counts, const Rows& rows,
                      const Probabilities& probabilities, std::uint64_t seed, SharesOf shares_of) {
@@ -139,7 +140,7 @@ ConfusionMatrix printed_table() {
   return analysis::read_counts(analysis::read_csv(stream, table_file), table_file);
 }
 
-// What simulated participants answer, of each stimulus, with this internal noise.
+// The answers of simulated participants to each stimulus at this internal noise.
 struct Predicted {
   double noise_db{};
   ConfusionMatrix answers;
@@ -226,11 +227,11 @@ Method cross_validated(const Bench& bench, const ConfusionMatrix& table, const S
   return method;
 }
 
-std::string what_command_shows(const std::vector<Simulated>& studies) {
+std::string describe_commands(const std::vector<Simulated>& studies) {
   return fmt::format(
       "The command simulates the protocol's own noise, {} dB; another is a line of the protocol, "
       "simulation.observer.noise_db. 5 mm thick: as recommended, with {}.",
-      studies.front().protocol.simulation.observer.noise_db, how_thin);
+      studies.front().protocol.simulation.observer.noise_db, thin_plate_changes);
 }
 
 Claim table_of_observer(const Bench& bench, const ConfusionMatrix& table,
@@ -247,7 +248,7 @@ Claim table_of_observer(const Bench& bench, const ConfusionMatrix& table,
   for (const Simulated& study : studies) {
     claim.methods.push_back(cross_validated(bench, table, study));
   }
-  claim.remarks.push_back(what_command_shows(studies));
+  claim.remarks.push_back(describe_commands(studies));
   return claim;
 }
 
@@ -290,7 +291,7 @@ Claim structure_well_material_less(const Bench& bench, const ConfusionMatrix& ta
                    "%"),
           within(100.0 * interval.low, 100.0 * interval.high, "material right", material, "%")}});
   }
-  claim.remarks.push_back(what_command_shows(studies));
+  claim.remarks.push_back(describe_commands(studies));
   return claim;
 }
 

@@ -8,11 +8,12 @@ namespace tapstudy::runner {
 using Rows = std::vector<std::size_t>;
 using Probabilities = std::vector<std::vector<double>>;  // each above 0, each row sums to 1
 
-// Of answers; half an answer is added to each cell, so that none is impossible.
+// Response probabilities estimated from answers; half an answer is added to each cell, so that none
+// is impossible.
 Probabilities probabilities_of(const analysis::CountTable& answers);
 
-// Of these rows of the counts: the sum of counts times logarithms of probabilities. What is left
-// out does not depend on the probabilities.
+// The log-likelihood of these rows: the sum of counts times logarithms of probabilities, without
+// the terms that do not depend on the probabilities.
 double log_likelihood(const analysis::CountTable& counts, const Rows& rows,
                       const Probabilities& probabilities);
 

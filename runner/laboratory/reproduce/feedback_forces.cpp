@@ -60,13 +60,13 @@ double share(const TapForce& force, Part part) {
                                             : force.high_n;
   return 100.0 * peak_n / force.penalty_n;
 }
-const char* words(Part part) {
+const char* describe_part(Part part) {
   return part == Part::whole ? "vibration"
          : part == Part::low ? "vibration below 100 Hz"
                              : "vibration above 100 Hz";
 }
 
-// How much of a part of the vibration is seen at a point of the plates.
+// A limit on one part of the vibration at a point of the plates.
 struct Question {
   const char* point;
   std::vector<const char*> fixations;
@@ -85,7 +85,8 @@ std::vector<Measure> measures(const Taps& taps, const Question& question) {
       }
       all.push_back(question.limited(
           question.limit,
-          fmt::format("{}_{} at {}: {}", material, fixations, question.point, words(question.part)),
+          fmt::format("{}_{} at {}: {}", material, fixations, question.point,
+                      describe_part(question.part)),
           share(taps.at(material, fixations, question.point), question.part), "% of penalty"));
     }
   }
@@ -162,7 +163,7 @@ Measure aluminium_over_others(const Taps& taps, const char* fixations, const cha
   const double most = std::max(peak("mdf"), peak("acrylic"));
   const std::string name =
       fmt::format("{}_{} at {}: {} over that of {} of MDF and acrylic", taps.route.aluminium,
-                  fixations, point, words(part), is_largest ? "the larger" : "the smaller");
+                  fixations, point, describe_part(part), is_largest ? "the larger" : "the smaller");
   const double aluminium = peak(taps.route.aluminium);
   return is_largest ? at_least(1.0, name, aluminium / most) : at_most(1.0, name, aluminium / least);
 }

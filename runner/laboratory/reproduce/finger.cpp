@@ -93,7 +93,7 @@ double virtual_db(Bench& bench, const protocols::Protocol& protocol, const std::
                       .matrix());
 }
 
-// By how much the force of a real tap differs from that on a rigid surface.
+// The level of the difference between the force of a real tap and that on a rigid surface.
 double plates_part_db(Bench& bench, const protocols::Protocol& real, const std::string& plate,
                       const Eigen::Vector2d& at_m) {
   const auto stimulus = stimulus_with(real, real.stimulus(plate));
@@ -226,12 +226,12 @@ struct TappedPlate {
   RealTap found;
 };
 
-// Which pad and damper a mass would need to ring as the paper's finger does.
+// The pad stiffness and damper with which a mass rings as the paper's finger does.
 struct NeededFinger {
   double pad_n_per_m{};
   double damping_n_s_per_m{};
 };
-NeededFinger needed(const core::Finger& finger) {
+NeededFinger finger_ringing_as_printed(const core::Finger& finger) {
   const double decay = slowed_by * printed_decay_per_s;
   const double omega = 2.0 * pi * slowed_by * printed_hz;
   return {finger.mass_kg * (omega * omega + decay * decay) - finger.stiffness_n_per_m,
@@ -240,7 +240,8 @@ NeededFinger needed(const core::Finger& finger) {
 
 enum class Pad { contact_spring, as_needed };
 
-// On P1, beside a fixed point, where the paper's users complained. Screws hold real plates.
+// The taps are on P1, beside a fixed point, where the paper's users complained. Screws hold real
+// plates.
 std::vector<TappedPlate> real_taps(Bench& bench, Pad pad) {
   std::vector<TappedPlate> all;
   for (const Route& route : bench.plates) {
@@ -253,7 +254,7 @@ std::vector<TappedPlate> real_taps(Bench& bench, Pad pad) {
       const auto plate = bench.models.plate_of(protocol, stimulus);
       TappedPlate tap{route, name, stimulus.rendering, {}};
       if (pad == Pad::as_needed) {
-        const NeededFinger wanted = needed(tap.settings.finger);
+        const NeededFinger wanted = finger_ringing_as_printed(tap.settings.finger);
         tap.settings.penalty_stiffness_n_per_m = wanted.pad_n_per_m;
         tap.settings.finger.damping_n_s_per_m = wanted.damping_n_s_per_m;
         tap.route.name +=
@@ -331,7 +332,7 @@ Claim twice_as_fast(const std::vector<TappedPlate>& taps) {
     method.measures.push_back(
         within(decay / tolerance, decay * tolerance, tap.stimulus + ": decay", found_decay, "1/s"));
   }
-  const NeededFinger wanted = needed(taps.front().settings.finger);
+  const NeededFinger wanted = finger_ringing_as_printed(taps.front().settings.finger);
   claim.findings = {
       shown("pad stiffness with which 5.8 g in contact ring at 500 Hz", 1e-3 * wanted.pad_n_per_m,
             "kN/m"),
@@ -339,7 +340,7 @@ Claim twice_as_fast(const std::vector<TappedPlate>& taps) {
   return claim;
 }
 
-// What a tap with the sinusoid alone renders, from the impact on.
+// The force of a tap with the sinusoid alone, from the impact on.
 std::vector<double> rendered_n(Bench& bench, const protocols::Protocol& protocol,
                                const char* stimulus, double speed_m_s, double& impact_m_s) {
   const auto presented = stimulus_with(protocol, protocol.stimulus(stimulus));

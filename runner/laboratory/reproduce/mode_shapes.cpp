@@ -27,7 +27,7 @@ double largest_value(const analysis::ColourMap& map) {
   return most;
 }
 
-// From blue by way of violet to red.
+// The scale runs from blue by way of violet to red.
 std::string colour(std::size_t shade) {
   constexpr std::array blue{33.0, 102.0, 200.0};
   constexpr std::array red{205.0, 24.0, 43.0};
@@ -153,7 +153,7 @@ double largest_anywhere(const analysis::ColourMap& map) {
   return largest_at(map, all);
 }
 
-// Of a strike on the middle.
+// The map of a strike on the middle.
 analysis::ColourMap struck(Bench& bench, const protocols::Protocol& protocol,
                            const protocols::PresentedStimulus& stimulus) {
   const auto plate = bench.models.plate_of(protocol, stimulus);

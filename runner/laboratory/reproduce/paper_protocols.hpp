@@ -22,15 +22,15 @@ struct Route {
   std::vector<std::string> materials() const { return {"mdf", "acrylic", aluminium}; }
 };
 
-// As printed: protocols/paper, plates of 5 cm, linear elements, single vertices held, Newmark.
-// As recommended: protocols/recommended, quadratic elements, screws' heads, the exact integrator.
-// 5 mm thick: as recommended, a tenth of the printed thickness; with the printed modulus of
-// aluminium (1 GPa), and with the metal's (70 GPa).
+// The routes are: as printed (protocols/paper, plates of 5 cm, linear elements, single vertices
+// held, Newmark); as recommended (protocols/recommended, quadratic elements, screws' heads, the
+// exact integrator); and 5 mm thick, as recommended with a tenth of the printed thickness, with the
+// printed modulus of aluminium (1 GPa) and with the metal's (70 GPa).
 const std::vector<Route>& routes();
 
 // A protocol with its plates 5 mm thick, meshed as in protocols/recommended/forces_thin.yaml.
 protocols::Protocol with_thin_plates(protocols::Protocol protocol);
-inline constexpr const char* how_thin =
+inline constexpr const char* thin_plate_changes =
     "size_m: [0.6, 0.6, 0.005] and the mesh of protocols/recommended/forces_thin.yaml";
 
 // The command that shows a plate's modes; that taps it at a named point, with what is asked beside.

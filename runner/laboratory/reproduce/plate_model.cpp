@@ -46,7 +46,7 @@ Claim tetrahedra(Bench& bench) {
   return claim;
 }
 
-// What TetGen's bound on an element's shape does to the mesh.
+// The effect of TetGen's bound on element shape on the mesh.
 std::vector<Measure> meshes_of(const protocols::Plate& body) {
   std::vector<Measure> found;
   for (const double ratio : {1.2, 1.414, 2.0, 4.0}) {
@@ -117,16 +117,16 @@ constexpr double printed_in_band = 55.0;
 constexpr double similar_count = 0.1;
 constexpr double thin_m = 0.005;  // protocols/recommended/forces_thin.yaml
 
-struct Held {
+struct FixationVariant {
   std::string method;
   std::string file;
   std::vector<std::string> stimuli;
 };
 
-std::vector<Held> held_at_four(const std::vector<Route>& plates) {
-  std::vector<Held> all{{std::string{method::printed},
-                         "protocols/paper/plate_model.yaml",
-                         {"mdf", "acrylic", "aluminium"}}};
+std::vector<FixationVariant> four_point_variants(const std::vector<Route>& plates) {
+  std::vector<FixationVariant> all{{std::string{method::printed},
+                                    "protocols/paper/plate_model.yaml",
+                                    {"mdf", "acrylic", "aluminium"}}};
   for (const Route& route : plates) {
     if (route.is_printed) {
       continue;
@@ -143,8 +143,8 @@ double modes_in_band(Bench& bench, const protocols::Protocol& protocol, const st
   return static_cast<double>(bench.models.plate_of(protocol, stimulus)->model.frequency_hz.size());
 }
 
-// Of linear elements as `trade` measures them, in the protocol's band and at its rate: the coarsest
-// mesh it tries.
+// The frequency error of the coarsest mesh of linear elements that `trade` tries, in the protocol's
+// band and at its rate.
 Measure error_of_linear_elements(const Bench& bench, const protocols::Protocol& protocol,
                                  const std::string& name) {
   const Trade trade =
@@ -208,7 +208,7 @@ double printed_last_hz(const Eigen::ArrayXd& frequencies_hz) {
   return frequencies_hz.size() > last ? frequencies_hz[last] : std::nan("");
 }
 
-// Of a thin plate: its frequencies grow with its thickness (Kirchhoff).
+// Frequencies of a thin plate are proportional to its thickness (Kirchhoff).
 analysis::Chart chart_of_counts(const std::string& material, const Eigen::ArrayXd& frequencies_hz,
                                 double band_limit_hz) {
   analysis::Chart chart;
@@ -229,21 +229,22 @@ analysis::Chart chart_of_counts(const std::string& material, const Eigen::ArrayX
   return chart;
 }
 
-struct WouldGiveIt {
+struct FittedPlate {
   double thickness_m{};
   double modulus_pa{};  // with the printed thickness: frequencies grow with its root
 };
 
 // A material, and up to where its frequencies are computed: beyond the 55th.
-struct Wide {
+struct MaterialBand {
   const char* material;
   double thin_hz;
   double thick_hz;
 };
-constexpr std::array wide{Wide{"mdf", 900.0, 4500.0}, Wide{"acrylic", 800.0, 3800.0},
-                          Wide{"aluminium", 350.0, 1400.0}};
+constexpr std::array wide{MaterialBand{"mdf", 900.0, 4500.0},
+                          MaterialBand{"acrylic", 800.0, 3800.0},
+                          MaterialBand{"aluminium", 350.0, 1400.0}};
 
-WouldGiveIt would_give_it(Bench& bench, const Wide& of, Drawing& drawing) {
+FittedPlate fit_plate_to_mode_count(Bench& bench, const MaterialBand& of, Drawing& drawing) {
   const std::string name = std::string{of.material} + "_four";
   const protocols::Protocol thin = shipped_protocol("protocols/recommended/forces_thin.yaml");
   const protocols::Protocol thick = shipped_protocol("protocols/recommended/forces.yaml");
@@ -257,11 +258,11 @@ WouldGiveIt would_give_it(Bench& bench, const Wide& of, Drawing& drawing) {
           material.youngs_modulus_pa * ratio * ratio};
 }
 
-void add_what_would_give_it(Bench& bench, Claim& claim) {
+void add_alternative_explanations(Bench& bench, Claim& claim) {
   Drawing drawing{"Which thickness would give it", {}};
   std::vector<std::string> sought_mm;
-  for (const Wide& of : wide) {
-    const WouldGiveIt found = would_give_it(bench, of, drawing);
+  for (const MaterialBand& of : wide) {
+    const FittedPlate found = fit_plate_to_mode_count(bench, of, drawing);
     claim.findings.push_back(shown(fmt::format("thickness with 55 modes, {}", of.material),
                                    1e3 * found.thickness_m, "mm"));
     claim.findings.push_back(shown(
@@ -285,11 +286,11 @@ Claim modes_below_band_limit(Bench& bench) {
               .rule =
                   "Of one of the three materials, for the paper does not say of which: the count "
                   "nearest to 55 differs from it by no more than 10 %."};
-  for (const Held& held : held_at_four(bench.plates)) {
-    const protocols::Protocol protocol = shipped_protocol(held.file);
-    Method method{held.method, modes_command(held.file, held.stimuli.front()), {}};
+  for (const FixationVariant& variant : four_point_variants(bench.plates)) {
+    const protocols::Protocol protocol = shipped_protocol(variant.file);
+    Method method{variant.method, modes_command(variant.file, variant.stimuli.front()), {}};
     double nearest = HUGE_VAL;
-    for (const std::string& name : held.stimuli) {
+    for (const std::string& name : variant.stimuli) {
       const double count = modes_in_band(bench, protocol, name);
       method.measures.push_back(shown("modes of " + name, count));
       nearest = std::min(nearest, difference_percent(count, printed_in_band));
@@ -298,7 +299,7 @@ Claim modes_below_band_limit(Bench& bench) {
         at_most(100.0 * similar_count, "least difference from 55", nearest, "%"));
     claim.methods.push_back(std::move(method));
   }
-  add_what_would_give_it(bench, claim);
+  add_alternative_explanations(bench, claim);
   return claim;
 }
 
@@ -315,7 +316,7 @@ constexpr double printed_longest_ms = 0.22;
 constexpr Eigen::Index printed_modes_in_band = 55;
 constexpr int timed_ticks = 20'000;
 
-// With as many modes as the paper simulates, wherever below wide_hz their frequencies lie.
+// A model with as many modes as the paper simulates, wherever below wide_hz their frequencies lie.
 core::VibratingPlate plate_with_printed_modes(Bench& bench, protocols::Protocol protocol,
                                               const std::string& name, double wide_hz) {
   protocol.band_limit_hz = wide_hz;
@@ -330,7 +331,7 @@ core::VibratingPlate plate_with_printed_modes(Bench& bench, protocols::Protocol 
   return core::VibratingPlate{core::model_of(*body, material, (1.0 + 1e-9) * last_hz)};
 }
 
-// Of this thread: while another program runs, none passes.
+// Processor time of this thread, which does not advance while another program runs.
 double processor_time_s() {
   timespec now{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);

@@ -1,5 +1,5 @@
 // Sections 5.2.2 and 5.2.3: which technique people choose as the most realistic, beside an observer
-// that chooses the one whose felt taps are nearest to those of a real plate (real_tap.hpp).
+// that chooses the one whose felt taps are nearest to those of a real plate (tap_responses.hpp).
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -192,7 +192,7 @@ Claim claim_of(const Study& study, Bench& bench) {
     felt = felt_in(world, study, bench);
     claim.methods.push_back(judged(world, study, felt, bench));
   }
-  claim.remarks.push_back(fmt::format("5 mm thick: as recommended, with {}.", how_thin));
+  claim.remarks.push_back(fmt::format("5 mm thick: as recommended, with {}.", thin_plate_changes));
   claim.remarks.emplace_back(
       "The sinusoid's amplitude A is not printed: the paper found it by cut and try. Beside the "
       "shipped protocols' 3 N s/m it is set to that of 0.1 to 30 N s/m which is nearest to the "

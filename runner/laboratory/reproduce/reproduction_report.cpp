@@ -60,9 +60,9 @@ constexpr const char* end_table = "</tbody></table></div>\n";
 
 void write_measure(std::ostream& out, const Measure& measure) {
   core::print(out, "<tr><th scope=row>{}</th><td>{}</td><td{}>{}</td></tr>\n",
-              escaped(measure.name), escaped(value_in_words(measure)),
+              escaped(measure.name), escaped(describe_value(measure)),
               measure.holds() ? "" : " class=missed",
-              measure.is_judged() ? fmt::format("{}: {}", escaped(limits_in_words(measure)),
+              measure.is_judged() ? fmt::format("{}: {}", escaped(describe_limits(measure)),
                                                 measure.holds() ? "holds" : "does not hold")
                                   : "");
 }
@@ -87,7 +87,7 @@ void write_findings(std::ostream& out, const Claim& claim) {
               "<th scope=col>what</th><th scope=col>value</th>");
   for (const Measure& finding : claim.findings) {
     core::print(out, "<tr><th scope=row>{}</th><td>{}</td></tr>\n", escaped(finding.name),
-                escaped(value_in_words(finding)));
+                escaped(describe_value(finding)));
   }
   out << end_table;
 }
@@ -276,7 +276,7 @@ std::string written(void (*write)(std::ostream&, const Reproduction&),
 }
 }  // namespace
 
-void make_room_for_reproduction(const std::string& directory) {
+void create_reproduction_directory(const std::string& directory) {
   core::make_directories(directory);
   core::check_is_new(in(directory, page_file));
   core::check_is_new(in(directory, json_file));

@@ -8,12 +8,12 @@ namespace tapstudy::runner {
 // the figures. Neither computes anything.
 void write_html(std::ostream& out, const Reproduction& reproduction);
 void write_json(std::ostream& out, const Reproduction& reproduction);
-// To stdout: every claim with its judgement.
+// Prints every claim with its judgement to stdout.
 void print(const Reproduction& reproduction);
 
 // Creates the directory, so that output errors are found before the computation. Throws
 // InvalidInput if it cannot be created or one of the files below already exists.
-void make_room_for_reproduction(const std::string& directory);
+void create_reproduction_directory(const std::string& directory);
 // reproduction.html and reproduction.json. Throws InvalidInput, and leaves neither, if one exists
 // already or cannot be written.
 void write_files(const std::string& directory, const Reproduction& reproduction);

@@ -27,7 +27,7 @@ double largest(const std::vector<double>& values) {
   return most;
 }
 
-// What is left of the discrete Fourier transform below a frequency.
+// The signal limited to frequencies below the limit, by the discrete Fourier transform.
 std::vector<double> below(const std::vector<double>& values, double limit_hz, double rate_hz) {
   const auto count = static_cast<double>(values.size());
   std::vector<double> kept(values.size(), 0.0);

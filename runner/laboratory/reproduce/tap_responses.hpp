@@ -11,7 +11,7 @@ namespace tapstudy::runner {
 inline constexpr double shown_s = 0.3;  // from a little before the impact on
 inline constexpr double low_limit_hz = 100.0;
 
-// What a tap's trace says of its force, from the impact on.
+// The force of a tap from its trace, from the impact on.
 struct TapForce {
   double penalty_n{};  // largest magnitudes
   double vibration_n{};
@@ -27,10 +27,11 @@ TapForce tap_force(const std::vector<core::TraceSample>& trace, double rate_hz);
 // The whole force over time, and the vibration alone below it, both in newtons.
 std::string force_svg(const TapForce& force, const std::string& title);
 
-// What a real plate makes a finger feel, as far as tapstudy can compute it: a bare finger of 5.8 g,
-// coupled to the plate by its pad for as long as it touches (core/tick/coupled_finger.hpp), at
-// 48 kHz with the exact integrator, coming down three times as fast as on a virtual plate, for the
-// paper says that its users' hands moved around three times slower there.
+// Settings for the force of a real plate on a finger, as far as tapstudy can compute it: a bare
+// finger of 5.8 g, coupled to the plate by its pad for as long as it touches
+// (core/tick/coupled_finger.hpp), at 48 kHz with the exact integrator, at three times the speed on
+// a virtual plate, because the paper says that its users' hands moved around three times slower
+// there.
 inline constexpr double real_rate_hz = 48'000.0;
 inline constexpr double real_finger_kg = 0.0058;
 inline constexpr double real_over_virtual_speed = 3.0;
@@ -42,7 +43,7 @@ struct RealTap {
   Eigen::VectorXd plate_m_s2;   // and of the plate below it
   Eigen::VectorXd force_n;      // of the finger on the hand
 };
-// With the settings of with_real_finger(). Without a plate the surface is rigid.
+// Requires the settings of with_real_finger(). Without a plate the surface is rigid.
 RealTap real_tap(const core::VibratingPlate* plate, const core::RenderSettings& settings,
                  const Eigen::Vector2d& at_m, double seconds);
 

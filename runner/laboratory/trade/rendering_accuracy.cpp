@@ -78,7 +78,7 @@ constexpr double lowest_hz = 20.0;
 constexpr double felt_share = 1e-3;
 constexpr double silence_db = 60.0;
 
-// Of the discrete Fourier transform of n samples.
+// Phase angles of one bin of the discrete Fourier transform of n samples.
 Eigen::ArrayXd angles_of_bin(Eigen::Index k, Eigen::Index n) {
   return 2.0 * pi * static_cast<double>(k) / static_cast<double>(n) *
          Eigen::ArrayXd::LinSpaced(n, 0.0, static_cast<double>(n - 1));
@@ -125,7 +125,7 @@ double level_error_db(const Forces& reference, const Forces& found, double rate_
 }
 
 namespace {
-// Without what lies above the band limit, by the discrete Fourier transform.
+// Removes frequencies above the band limit, by the discrete Fourier transform.
 Forces below(const Forces& forces, double rate_hz, double band_limit_hz) {
   const Eigen::Index n = forces.rows();
   const auto size = static_cast<double>(n);

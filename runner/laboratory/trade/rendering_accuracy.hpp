@@ -21,8 +21,8 @@ struct SampledModes {
 };
 
 // Each mode of the reference below the band limit is matched with the found mode whose shape is
-// most like it by the modal assurance criterion (Allemang & Brown 1982). Of close frequencies any
-// mixture of the shapes is a mode as well, so their criteria add up.
+// most like it by the modal assurance criterion (Allemang & Brown 1982). Where frequencies are
+// close, any mixture of their shapes is a mode as well, so their criteria add up.
 struct ModeMatch {
   double frequency_error{};  // the largest of a matched mode; a missing one counts as if it lay at
                              // the band limit
@@ -43,8 +43,8 @@ double level_error_db(const Forces& reference, const Forces& found, double rate_
                       double band_limit_hz);
 
 // The difference in decay below the band limit [dB], maximum over the tapping points: by how much
-// the level after the first 40 ms, less the level before, differs from the reference's. What has
-// decayed by more than 20 dB has decayed.
+// the level after the first 40 ms, less the level before, differs from the reference's. Decays
+// beyond 20 dB count as 20 dB.
 double decay_error_db(const Forces& reference, const Forces& found, double rate_hz,
                       double band_limit_hz);
 

@@ -31,8 +31,8 @@ class Workbench {
   void fix_damping(const core::BodyModes& body);
   core::ModalModel model_of(const core::BodyModes& body, double band_limit_hz) const;
   core::VibratingPlate plate_of(core::ModalModel model) const;
-  // For 0.3 s after a strike on each tapping point, at the protocol's ticks whatever the rate,
-  // which must be a whole multiple of the protocol's.
+  // Forces for 0.3 s after a strike on each tapping point, at the protocol's ticks whatever the
+  // rate, which must be a whole multiple of the protocol's.
   Forces forces_n(const core::VibratingPlate& plate, core::Integrator integrator,
                   double rate_hz) const;
   double tick_ns(const core::VibratingPlate& plate) const;
@@ -102,7 +102,7 @@ core::BodyModes Workbench::solve(const core::Meshing& mesh, double band_limit_hz
 
 void Workbench::fix_damping(const core::BodyModes& body) {
   const auto* ratios = std::get_if<core::TwoRatioDamping>(&spec_.material.damping);
-  if (spec_.contacts || ratios == nullptr) {
+  if (spec_.joints || ratios == nullptr) {
     return;
   }
   if (const auto rayleigh = model_of(body, spec_.band_limit_hz).damping) {
@@ -113,7 +113,7 @@ void Workbench::fix_damping(const core::BodyModes& body) {
 }
 
 core::ModalModel Workbench::model_of(const core::BodyModes& body, double band_limit_hz) const {
-  return core::model_of(body, spec_.material, band_limit_hz, spec_.contacts.get());
+  return core::model_of(body, spec_.material, band_limit_hz, spec_.joints.get());
 }
 
 core::VibratingPlate Workbench::plate_of(core::ModalModel model) const {

@@ -76,7 +76,7 @@ struct Refused {
   std::string words;  // why
 };
 
-// How much is tried: everything, or all but the finest mesh.
+// The extent of the search: everything, or all but the finest mesh.
 enum class Effort { full, quick };
 
 struct Trade {

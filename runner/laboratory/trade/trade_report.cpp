@@ -269,7 +269,7 @@ std::string in(const std::string& directory, const char* name) {
 }
 }  // namespace
 
-void make_room(const std::string& directory) {
+void create_trade_directory(const std::string& directory) {
   core::make_directories(directory);
   for (const char* const name : {"trade.csv", "stability.csv", "trade.json", "trade.svg"}) {
     core::check_is_new(in(directory, name));

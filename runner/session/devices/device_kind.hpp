@@ -34,7 +34,7 @@ struct DeviceRequest {
 };
 
 // A kind of device: its section of the rig (protocols::RigDevice), its detection, and how it is
-// opened. To add one: a file in this folder with its class, a row in device_table.cpp, and its
+// opened. To add one: a file in this folder with its class, a row in device_kind.cpp, and its
 // section in protocols/schema/devices. Only what is the device's own (its calibration and the
 // command for it) refers to it by name.
 class DeviceKind : public protocols::RigDevice {

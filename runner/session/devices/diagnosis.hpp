@@ -18,7 +18,7 @@ struct RepeatedProbe {
 // Measured real-time performance of the machine.
 struct Diagnosis {
   device::Nanoseconds period{};
-  std::vector<std::pair<std::string, std::string>> machine;  // machine_facts.hpp
+  std::vector<std::pair<std::string, std::string>> machine;  // kernel, clock, governor, limits
   std::string sleep;  // whether the system agreed not to sleep; empty: not asked
   RepeatedProbe idle;
   std::optional<RepeatedProbe> loaded;

@@ -3,54 +3,64 @@
 #include <algorithm>
 #include <limits>
 
-#include "runner/session/engine/adjusted_exploration.hpp"
-#include "runner/session/engine/answering_exploration.hpp"
-#include "runner/session/engine/interval_exploration.hpp"
-#include "runner/session/engine/limited_exploration.hpp"
-#include "runner/session/engine/operated_exploration.hpp"
 #include "runner/session/engine/trial_record.hpp"
 #include "runner/session/participants/planned_taps.hpp"
+#include "runner/session/participants/trial_control.hpp"
 #include "runner/session/stimuli/model_library.hpp"
 #include "runner/terminal/logging.hpp"
 #include "runner/terminal/process_exit.hpp"
 namespace tapstudy::runner {
 namespace {
-// Until an answer that may be given, the end of the block's time, a request of the operator, a stop
-// or a fault.
-void ask(const TrialInView& view, Exploration& exploration, const SessionParts& parts,
+// The operator's requests reach the trial, its selected alternative the operator, and each answer
+// that is entered, changed or withdrawn becomes a state of the session.
+TrialLinks links_of(const TrialInView& view, const SessionParts& parts) {
+  return {[&by = parts.by] {
+            return OperatorRequests{by.take_switch(), by.request(), by.is_paused()};
+          },
+          [&by = parts.by](std::size_t alternative) { by.alternative_is_selected(alternative); },
+          [&](const std::string& answer) {
+            const protocols::PlannedTrial& trial = view.trial;
+            parts.states.enter(
+                SessionState::answering, trial.number,
+                answer.empty()
+                    ? ""
+                    : trial.task->response(trial, parts.protocol.block(trial.block), answer));
+          }};
+}
+
+// Ends with an answer that may be given, the end of the block's time, a request of the operator, a
+// stop or a fault.
+void ask(const TrialInView& view, TrialControl& control, const SessionParts& parts,
          Presentation& presentation) {
   const protocols::PlannedTrial& trial = view.trial;
-  OperatedExploration operated{exploration, parts.by};
-  LimitedExploration limited{operated, view.prompt.block->explore};
   const protocols::Block& block = parts.protocol.block(trial.block);
-  AnsweringExploration answering{limited, parts.states, trial, block};
   // an answer that was accepted in time may be handed over a little later
   constexpr double handover_s = 0.05;
   const double latest_s =
       view.prompt.block->explore.max_seconds.value_or(std::numeric_limits<double>::infinity()) +
       handover_s;
-  while (const auto answer = parts.participant.perform(view.prompt, answering)) {
-    if (limited.time_s() > latest_s) {
+  while (const auto answer = parts.participant.perform(view.prompt, control)) {
+    if (control.time_s() > latest_s) {
       break;
     }
-    const std::optional<TooEarly> why = too_early(view.prompt, *answer, limited);
-    const bool is_rendering = limited.is_rendering();
+    const std::optional<TooEarly> why = too_early(view.prompt, *answer, control.explored());
+    const bool is_rendering = control.is_rendering();
     if (!why && is_rendering) {
       presentation.answer = Answer{trial.task->response(trial, block, *answer),
-                                   std::min(limited.time_s(), latest_s - handover_s)};
+                                   std::min(control.time_s(), latest_s - handover_s)};
       parts.states.enter(SessionState::confirmed, trial.number);
       return;
     }
     if (!is_rendering) {
-      presentation.is_answered_in_a_stall = exploration.is_running();
+      presentation.is_answered_in_a_stall = control.is_loop_running();
       break;
     }
     parts.participant.refused(view.prompt, *why);
   }
-  if (exploration.is_running() && !stop_was_asked()) {
-    presentation.is_timed_out = limited.is_over();
-    if (const auto& ended = operated.ended_by_operator()) {
-      presentation.request = ended->request;
+  if (control.is_loop_running() && !stop_was_asked()) {
+    presentation.is_timed_out = control.is_time_over();
+    if (const auto& ended = control.ended_by_operator()) {
+      presentation.request = ended->end;
       presentation.is_paused = ended->is_paused;
     }
   }
@@ -71,7 +81,7 @@ TrialStimuli stimuli_of(const protocols::PlannedTrial& trial, bool is_of_real_pl
   return build_trial_stimuli(parts.protocol, presented, parts.models);
 }
 
-// Of events at the same time those of the trace come first.
+// The events of the trace come first among those at the same time.
 void add_in_time(const std::vector<results::EventRow>& more,
                  std::vector<results::EventRow>& events) {
   events.insert(events.end(), more.begin(), more.end());
@@ -102,11 +112,10 @@ Presentation present(const TrialInView& trial, const SessionParts& parts) {
   presentation.result = loop.run(rendered, [&](Exploration& exploration) {
     parts.states.enter(SessionState::exploring, trial.trial.number);  // masking is heard by now
     parts.by.trial_begins(trial);
-    AdjustedExploration adjusted{exploration, trial.trial, *trial.prompt.block, events};
-    IntervalExploration in_turn{adjusted, trial.prompt.block->explore,
-                                trial.prompt.alternative_labels.size(), events};
+    TrialControl control{exploration, rules_of(trial.trial, *trial.prompt.block), events,
+                         links_of(trial, parts)};
     try {
-      ask(trial, in_turn, parts, presentation);
+      ask(trial, control, parts, presentation);
     } catch (...) {
       presentation.failure = std::current_exception();
     }

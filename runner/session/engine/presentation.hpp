@@ -13,18 +13,18 @@
 #include "runner/session/trial_loop/real_plates.hpp"
 #include "runner/session/trial_loop/trial_loop.hpp"
 namespace tapstudy::runner {
-// What came of presenting a trial once.
+// The outcome of presenting a trial once.
 struct Presentation {
   TrialResult result{};
   std::optional<Answer> answer{};
   bool is_answered_in_a_stall{};
   bool is_timed_out{};
-  std::optional<TrialRequest> request{};  // of the operator, that ended it
-  bool is_paused{};                       // likewise
+  std::optional<TrialRequest> request{};  // the operator's, that ended it
+  bool is_paused{};                       // by the operator, which ended it
   std::exception_ptr failure{};           // thrown again once the trial is stored
 };
 
-// What a session is made of: who takes part, and what they work with.
+// The people and things that a session is made of.
 struct SessionParts {
   const protocols::Protocol& protocol;
   ModelLibrary& models;
@@ -34,7 +34,7 @@ struct SessionParts {
   Operator& by;
   SessionStates& states;
   std::uint64_t seed{};  // of the session
-  // Told of what happens in a trial beside its trace, as it does; may be empty.
+  // Told of a trial's events that are not found in its trace, as they happen; may be empty.
   std::function<void(const results::EventRow& event, int trial)> tell{};
 };
 

@@ -256,13 +256,15 @@ TrialEngine::Outcome TrialEngine::run_trial(const PlannedTrial& planned, const C
   const core::TickFault fault = presentation.result.loop.stopped_by;
   store(trial, std::move(presentation), ending);
   switch (ending) {
-    case TrialEnding::faulted:
+    case TrialEnding::faulted: {
       if (answer) {
         note_answer(trial, prompt, answer->response);
       }
       parts_.participant.interrupted();
-      return {.interruption = Interruption{trial.number, fault, answer.has_value(),
-                                           parts_.trial_loop.is_force_off()}};
+      const bool is_force_off = parts_.trial_loop.is_force_off();  // it may be by now
+      parts_.by.force_is(is_force_off ? ForceState::off : ForceState::unknown);
+      return {.interruption = Interruption{trial.number, fault, answer.has_value(), is_force_off}};
+    }
     case TrialEnding::timed_out: {
       const bool is_requeued = block.explore.at_limit == protocols::AtLimit::requeue;
       parts_.participant.timed_out(prompt, is_requeued);

@@ -1,9 +1,6 @@
 #pragma once
-#include <functional>
 #include <optional>
 #include <string>
-#include <utility>
-#include <vector>
 
 #include "core/haptics/haptic_state.hpp"
 #include "protocols/schedule/schedule.hpp"
@@ -11,24 +8,6 @@
 #include "runner/session/engine/session_states.hpp"
 #include "runner/session/trial_loop/trial_loop.hpp"
 namespace tapstudy::runner {
-// What happens in a trial beside its trace: kept, and told as it happens.
-class TrialEvents {
- public:
-  using Tell = std::function<void(const results::EventRow&)>;
-  explicit TrialEvents(Tell tell = {}) : tell_{std::move(tell)} {}
-  void add(results::EventRow event) {
-    rows_.push_back(std::move(event));
-    if (tell_) {
-      tell_(rows_.back());
-    }
-  }
-  const std::vector<results::EventRow>& rows() const { return rows_; }
-
- private:
-  Tell tell_;
-  std::vector<results::EventRow> rows_;
-};
-
 enum class TrialEnding { answered, repeated, timed_out, skipped, paused, interrupted, faulted };
 
 // The session's state after it; nullopt: it is about to be stopped.
@@ -42,7 +21,7 @@ struct Interruption {
   int trial{};
   core::TickFault fault{};
   bool is_answered{};
-  bool is_force_off{};  // confirmed by the device, or taken from its guardian
+  bool is_force_off{};  // confirmed by the device, to the loop or to its guardian
 };
 std::string to_text(const Interruption& interruption);
 

@@ -11,6 +11,7 @@
 #include "protocols/schedule/schedule.hpp"
 #include "results/rows.hpp"
 #include "runner/session/participants/participant.hpp"
+#include "runner/session/participants/trial_control.hpp"
 namespace tapstudy::runner {
 // What an operator can do during a session. The names are typed, and stored.
 enum class OperatorAction {
@@ -60,9 +61,6 @@ struct AnswerInView {
 // unknown: the device did not confirm zero force.
 enum class ForceState { off, on, unknown };
 
-// What the operator asks for the running trial.
-enum class TrialRequest { repeat, skip };
-
 // The person who runs a session, as the trial engine sees them. This one wants nothing: nobody runs
 // a simulated study.
 class Operator {
@@ -87,7 +85,5 @@ class Operator {
   virtual std::optional<TrialRequest> request() const { return {}; }  // for the running trial
   virtual std::optional<std::size_t> take_switch() { return {}; }     // to which alternative
   virtual std::string end_reason() const { return {}; }               // if the operator ended it
-
-  bool wants_trial_over() const { return is_paused() || request().has_value(); }
 };
 }  // namespace tapstudy::runner

@@ -8,8 +8,9 @@
 #include <vector>
 
 #include "protocols/protocol.hpp"
-#include "runner/session/trial_loop/exploration.hpp"
 namespace tapstudy::runner {
+class TrialControl;
+
 // How far a participant is: of the practice while it lasts, then of the trials that count.
 struct TrialProgress {
   int done{};  // and need not come again
@@ -87,8 +88,7 @@ class Participant {
   virtual void get_ready(const TrialPrompt& /*prompt*/) {}
   // Explores and answers: one of the prompt's answers, or nullopt if the trial could not be
   // finished.
-  virtual std::optional<std::string> perform(const TrialPrompt& prompt,
-                                             Exploration& exploration) = 0;
+  virtual std::optional<std::string> perform(const TrialPrompt& prompt, TrialControl& control) = 0;
   // How sure the participant is of the answer just given; nullopt if that is not said.
   virtual std::optional<int> confidence(const protocols::Confidence& /*scale*/) { return {}; }
   // Which answer was right.

@@ -8,6 +8,7 @@
 
 #include "core/error.hpp"
 #include "runner/session/participants/planned_taps.hpp"
+#include "runner/session/participants/trial_control.hpp"
 #include "runner/session/stimuli/model_library.hpp"
 #include "runner/session/trial_loop/real_plates.hpp"
 #include "runner/session/trial_loop/trial_loop.hpp"
@@ -15,8 +16,8 @@ namespace tapstudy::runner {
 namespace {
 using core::Purpose;
 
-// What must be memorised for the tasks of the blocks that are tapped this way, in the order of the
-// protocol.
+// The stimuli to be memorised for the tasks of the blocks that are tapped this way, in the order of
+// the protocol.
 std::vector<protocols::Remembered> all_remembered(
     const protocols::Protocol& protocol, const std::optional<protocols::ScriptedTaps>& taps) {
   std::vector<protocols::Remembered> all;
@@ -33,7 +34,6 @@ std::vector<protocols::Remembered> all_remembered(
   return all;
 }
 
-// What this participant is like, among others.
 protocols::Simulation drawn_person(protocols::Simulation simulation, std::uint64_t seed) {
   core::Rng rng{core::derived_seed(seed, Purpose::person)};
   const protocols::SimulatedPeopleSettings& people = simulation.people;
@@ -45,25 +45,25 @@ protocols::Simulation drawn_person(protocols::Simulation simulation, std::uint64
 }
 }  // namespace
 
-// One trial: what was felt of each alternative.
+// One trial, with the taps felt of each alternative.
 class SimulatedParticipant::Touch final : public protocols::SimulatedTouch {
  public:
-  Touch(SimulatedParticipant& self, const TrialPrompt& prompt, Exploration& exploration)
+  Touch(SimulatedParticipant& self, const TrialPrompt& prompt, TrialControl& control)
       : self_{self},
         observer_{self.observer_of(*prompt.block)},
         scripted_{prompt.block->explore.scripted_taps},
-        exploration_{exploration},
+        control_{control},
         settings_{prompt.answers.settings},
         felt_(std::max<std::size_t>(1, prompt.alternative_labels.size())) {}
   void visit(std::size_t alternative) override {
-    if (exploration_.intervals() != nullptr) {
+    if (control_.intervals() != nullptr) {
       if (visits_[alternative]++ == presentations_) {
         attend();
       }
       return;
     }
     if (felt_.size() > 1) {
-      exploration_.switch_to(alternative);
+      control_.switch_to(alternative);
     }
     tap(alternative);
   }
@@ -90,51 +90,51 @@ class SimulatedParticipant::Touch final : public protocols::SimulatedTouch {
     return observer_.level_db(percept(alternative));
   }
   bool adjust(int settings) override {
-    const auto wanted = static_cast<std::ptrdiff_t>(exploration_.setting()) + settings;
+    const auto wanted = static_cast<std::ptrdiff_t>(control_.setting()) + settings;
     if (wanted < 0 || wanted >= static_cast<std::ptrdiff_t>(settings_)) {
       return false;
     }
-    exploration_.adjust(static_cast<std::size_t>(wanted));
+    control_.adjust(static_cast<std::size_t>(wanted));
     felt_.back().clear();
     if (noise_.size() == felt_.size()) {
       noise_.back() = observer_.noise();
     }
     return true;
   }
-  std::size_t setting() const override { return exploration_.setting(); }
+  std::size_t setting() const override { return control_.setting(); }
   core::Rng& rng() override { return self_.hand_rng_; }
 
  private:
   using Phase = IntervalState::Phase;
   void tap(std::size_t alternative) {
-    exploration_.pass_time(self_.begin_taps(scripted_, self_.person_.taps.taps_per_visit));
+    control_.pass_time(self_.begin_taps(scripted_, self_.person_.taps.taps_per_visit));
     keep_felt(alternative);
   }
   void keep_felt(std::size_t alternative) {
     const auto taps = self_.just_felt();
     felt_.at(alternative).insert(felt_.at(alternative).end(), taps.begin(), taps.end());
   }
-  // What was begun in an interval ends with it.
+  // Taps that were begun in an interval end with it.
   void tap_in_interval() {
-    const std::size_t alternative = exploration_.current();
+    const std::size_t alternative = control_.current();
     const double end_s =
-        exploration_.time_s() + self_.begin_taps(scripted_, self_.person_.taps.taps_per_visit);
-    while (exploration_.is_running() && exploration_.intervals()->phase == Phase::open &&
-           exploration_.current() == alternative && exploration_.time_s() < end_s) {
-      exploration_.pass_time(poll_s);
+        control_.time_s() + self_.begin_taps(scripted_, self_.person_.taps.taps_per_visit);
+    while (control_.poll() && control_.intervals()->phase == Phase::open &&
+           control_.current() == alternative && control_.time_s() < end_s) {
+      control_.pass_time(poll_s);
     }
     keep_felt(alternative);
   }
   // All intervals, in the order in which they come; as often as there are replays.
   void attend() {
     if (presentations_++ > 0) {
-      exploration_.replay();
+      control_.replay();
     }
-    while (exploration_.is_running() && exploration_.intervals()->phase != Phase::over) {
-      if (exploration_.intervals()->phase == Phase::open) {
+    while (control_.poll() && control_.intervals()->phase != Phase::over) {
+      if (control_.intervals()->phase == Phase::open) {
         tap_in_interval();
       } else {
-        exploration_.pass_time(poll_s);
+        control_.pass_time(poll_s);
       }
     }
   }
@@ -143,7 +143,7 @@ class SimulatedParticipant::Touch final : public protocols::SimulatedTouch {
   SimulatedParticipant& self_;
   SimulatedObserver& observer_;
   const Scripted& scripted_;
-  Exploration& exploration_;
+  TrialControl& control_;
   std::size_t settings_;
   std::map<std::size_t, int> visits_;  // asked for, of intervals
   int presentations_{0};               // of all intervals
@@ -202,7 +202,7 @@ SimulatedObserver& SimulatedParticipant::observer_of(const protocols::Block& blo
 void SimulatedParticipant::remember(ModelLibrary& models, TrainedObserver& by) {
   const protocols::Protocol reality = with_real_plates(protocol_);
   VirtualTrialLoop world{hand_, settings_, Keep::nothing};
-  using Body = std::tuple<const core::Plate*, const core::Material*, const core::Contacts*>;
+  using Body = std::tuple<const core::Plate*, const core::Material*, const core::Joints*>;
   std::map<Body, std::vector<FeltTap>> felt;
   const auto felt_of = [&](const protocols::PresentedStimulus& stimulus) {
     TrialStimuli stimuli = build_trial_stimuli(reality, {stimulus}, models);
@@ -262,8 +262,8 @@ void SimulatedParticipant::timed_out(const TrialPrompt& prompt, bool is_presente
 }
 
 std::optional<std::string> SimulatedParticipant::perform(const TrialPrompt& prompt,
-                                                         Exploration& exploration) {
-  Touch touch{*this, prompt, exploration};
+                                                         TrialControl& control) {
+  Touch touch{*this, prompt, control};
   return prompt.block->task->simulated_answer(*prompt.block, person_, touch);
 }
 }  // namespace tapstudy::runner

@@ -26,7 +26,7 @@ class SimulatedParticipant final : public Participant {
   // Throws InvalidInput if its taps can never meet the block's limits.
   void refused(const TrialPrompt& prompt, const TooEarly& why) override;
   void timed_out(const TrialPrompt& prompt, bool is_presented_again) override;
-  std::optional<std::string> perform(const TrialPrompt& prompt, Exploration& exploration) override;
+  std::optional<std::string> perform(const TrialPrompt& prompt, TrialControl& control) override;
 
  private:
   class Touch;

@@ -169,7 +169,7 @@ void TerminalParticipant::saved(const TrialPrompt& prompt) {
 namespace {
 using protocols::ItemKind;
 
-std::string what_to_type(const protocols::FormItem& item) {
+std::string input_hint(const protocols::FormItem& item) {
   switch (item.kind) {
     case ItemKind::likert:
       return fmt::format("1 ({}) to {} ({})", item.low, item.steps, item.high);
@@ -219,7 +219,7 @@ std::string TerminalParticipant::answer_to(const protocols::FormItem& item) {
     say("  {}  {}\n", i + 1, item.options[i].label);
   }
   while (true) {
-    say("  {}{}: ", what_to_type(item), item.is_required ? "" : "; Enter leaves it out");
+    say("  {}{}: ", input_hint(item), item.is_required ? "" : "; Enter leaves it out");
     const auto line = next_of_participant([] { return true; });
     if (!line || asks_to_quit(*line)) {
       ask_to_stop();

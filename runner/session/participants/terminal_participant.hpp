@@ -25,7 +25,7 @@ class TerminalParticipant final : public Participant {
   FormAnswers fill_in(const protocols::Form& form) override;
   void wait_while(const std::function<bool()>& is_paused) override;
   void get_ready(const TrialPrompt& prompt) override;
-  std::optional<std::string> perform(const TrialPrompt& prompt, Exploration& exploration) override;
+  std::optional<std::string> perform(const TrialPrompt& prompt, TrialControl& control) override;
   std::optional<int> confidence(const protocols::Confidence& scale) override;
   void feedback(bool is_correct, const std::string& right_label) override;
   void saved(const TrialPrompt& prompt) override;
@@ -46,18 +46,18 @@ class TerminalParticipant final : public Participant {
   bool forget_typed_ahead();
   // A script cannot be asked to tap first: its next line waits until the plate was touched.
   void let_script_wait(const TrialPrompt& prompt, std::size_t alternative,
-                       Exploration& exploration) const;
-  // Or to hear out all intervals.
-  void wait_for_intervals(const TrialPrompt& prompt, Exploration& exploration);
-  bool passes_time_until(const std::function<bool()>& is_done, Exploration& exploration) const;
-  std::optional<std::string> next_line(const TrialPrompt& prompt, Exploration& exploration);
+                       TrialControl& control) const;
+  // A script's next line also waits until all intervals are over.
+  void wait_for_intervals(const TrialPrompt& prompt, TrialControl& control);
+  bool passes_time_until(const std::function<bool()>& is_done, TrialControl& control) const;
+  std::optional<std::string> next_line(const TrialPrompt& prompt, TrialControl& control);
   // "correct 2": whether the word was that.
-  bool corrects(const std::string& line, const TrialPrompt& prompt, Exploration& exploration) const;
+  bool corrects(const std::string& line, const TrialPrompt& prompt, TrialControl& control) const;
   // "++", "-": whether the line was that.
-  bool adjusts(const std::string& line, const TrialPrompt& prompt, Exploration& exploration) const;
-  std::optional<std::string> answer_by_itself(const TrialPrompt& prompt, Exploration& exploration);
+  bool adjusts(const std::string& line, const TrialPrompt& prompt, TrialControl& control) const;
+  std::optional<std::string> answer_by_itself(const TrialPrompt& prompt, TrialControl& control);
   std::optional<std::string> answer_among_alternatives(const TrialPrompt& prompt,
-                                                       Exploration& exploration);
+                                                       TrialControl& control);
 
   LineInput& input_;
   TypedCommands& commands_;

@@ -69,10 +69,10 @@ std::string upper_case_without_spaces(const std::string& line) {
 }
 
 std::optional<std::string> answer_typed(const std::string& line, const TrialPrompt& prompt,
-                                        const Exploration& exploration) {
+                                        const TrialControl& control) {
   if (prompt.answers.settings > 0) {
     return upper_case_without_spaces(line) == "="
-               ? std::optional{fmt::format("{}", exploration.setting() + 1)}
+               ? std::optional{fmt::format("{}", control.setting() + 1)}
                : std::nullopt;
   }
   return prompt.answers_name_alternatives()
@@ -89,7 +89,7 @@ std::optional<int> settings_moved(const std::string& line) {
              : std::optional{(is_up ? 1 : -1) * static_cast<int>(word.size())};
 }
 
-std::string how_to_answer(const TrialPrompt& prompt) {
+std::string answer_instructions(const TrialPrompt& prompt) {
   if (prompt.answers.settings > 0) {
     return fmt::format("   + or -: change {}, ++ by more.   =: it is set.",
                        prompt.alternative_labels.back());
@@ -116,15 +116,15 @@ std::string expected_among_alternatives(const TrialPrompt& prompt) {
 
 using Phase = IntervalState::Phase;
 
-void TypedIntervals::announce(const Exploration& exploration) {
-  const IntervalState* const state = exploration.intervals();
+void TypedIntervals::announce(const TrialControl& control) {
+  const IntervalState* const state = control.intervals();
   if (state == nullptr || told_ == *state) {
     return;
   }
   if (state->phase == Phase::leaving) {
     say("\n  lift your finger\n> ");
   } else if (state->phase == Phase::open) {
-    say("\n  now {}{}\n> ", labels_.at(exploration.current()), is_scripted_ ? "" : ": tap it");
+    say("\n  now {}{}\n> ", labels_.at(control.current()), is_scripted_ ? "" : ": tap it");
   } else if (told_ && told_->phase == Phase::open) {
     say("\n  stop{}\n> ",
         state->phase != Phase::over ? "; the next one follows"
@@ -135,7 +135,7 @@ void TypedIntervals::announce(const Exploration& exploration) {
   told_ = *state;
 }
 
-std::string how_they_come(const TrialPrompt& prompt) {
+std::string interval_instructions(const TrialPrompt& prompt) {
   const auto& intervals = prompt.block->explore.intervals;
   if (!intervals) {
     return "";
@@ -147,8 +147,8 @@ std::string how_they_come(const TrialPrompt& prompt) {
       intervals->max_replays > 0 ? "   again: all of them once more." : "");
 }
 
-bool replays(const std::string& line, Exploration& exploration) {
-  const IntervalState* const state = exploration.intervals();
+bool replays(const std::string& line, TrialControl& control) {
+  const IntervalState* const state = control.intervals();
   if (state == nullptr || upper_case_without_spaces(line) != "AGAIN") {
     return false;
   }
@@ -157,7 +157,7 @@ bool replays(const std::string& line, Exploration& exploration) {
   } else if (state->replays_left == 0) {
     say("  they do not come again: please answer\n");
   }
-  exploration.replay();
+  control.replay();
   return true;
 }
 
@@ -213,12 +213,12 @@ void TerminalParticipant::get_ready(const TrialPrompt& prompt) {
   }
   intervals_.emplace(prompt);
   if (!prompt.alternative_labels.empty()) {
-    const std::string how = how_they_come(prompt);
+    const std::string intervals = interval_instructions(prompt);
     say("{}{}\n",
-        how.empty()
+        intervals.empty()
             ? fmt::format("  {}: feel that one.", fmt::join(prompt.alternative_labels, ", "))
-            : how,
-        how_to_answer(prompt));
+            : intervals,
+        answer_instructions(prompt));
   }
   if (prompt.answers.modulus) {
     say("  {} is {}\n", prompt.alternative_labels.front(), *prompt.answers.modulus);
@@ -226,24 +226,24 @@ void TerminalParticipant::get_ready(const TrialPrompt& prompt) {
 }
 
 std::optional<std::string> TerminalParticipant::next_line(const TrialPrompt& prompt,
-                                                          Exploration& exploration) {
+                                                          TrialControl& control) {
   while (true) {
     say("> ");
     const auto line = next_of_participant([&] {
-      intervals_->announce(exploration);
-      return exploration.is_running();
+      intervals_->announce(control);
+      return control.poll();
     });
     if (!line || asks_to_quit(*line)) {
       return std::nullopt;
     }
-    if (!corrects(*line, prompt, exploration)) {
+    if (!corrects(*line, prompt, control)) {
       return line;
     }
   }
 }
 
 bool TerminalParticipant::corrects(const std::string& line, const TrialPrompt& prompt,
-                                   Exploration& exploration) const {
+                                   TrialControl& control) const {
   constexpr std::string_view command{"CORRECT"};
   if (!prompt.previous || !upper_case_without_spaces(line).starts_with(command)) {
     return false;
@@ -255,9 +255,8 @@ bool TerminalParticipant::corrects(const std::string& line, const TrialPrompt& p
     return true;
   }
   const std::shared_future<void> stored = prompt.previous->correct(text);
-  while (stored.wait_for(std::chrono::seconds{0}) != std::future_status::ready &&
-         exploration.is_running()) {
-    exploration.pass_time(0.01);
+  while (stored.wait_for(std::chrono::seconds{0}) != std::future_status::ready && control.poll()) {
+    control.pass_time(0.01);
   }
   try {
     stored.get();
@@ -269,51 +268,51 @@ bool TerminalParticipant::corrects(const std::string& line, const TrialPrompt& p
 }
 
 std::optional<std::string> TerminalParticipant::perform(const TrialPrompt& prompt,
-                                                        Exploration& exploration) {
-  return prompt.alternative_labels.empty() ? answer_by_itself(prompt, exploration)
-                                           : answer_among_alternatives(prompt, exploration);
+                                                        TrialControl& control) {
+  return prompt.alternative_labels.empty() ? answer_by_itself(prompt, control)
+                                           : answer_among_alternatives(prompt, control);
 }
 
 bool TerminalParticipant::passes_time_until(const std::function<bool()>& is_done,
-                                            Exploration& exploration) const {
+                                            TrialControl& control) const {
   constexpr double step_s = 0.005;
-  if (input_.is_terminal() || !exploration.is_running() || stop_was_asked() || is_done()) {
+  if (input_.is_terminal() || !control.poll() || stop_was_asked() || is_done()) {
     return false;
   }
-  exploration.pass_time(step_s);
+  control.pass_time(step_s);
   return true;
 }
 
 void TerminalParticipant::let_script_wait(const TrialPrompt& prompt, std::size_t alternative,
-                                          Exploration& exploration) const {
+                                          TrialControl& control) const {
   const protocols::ExploreLimits& limits = prompt.block->explore;
   const auto is_done = [&] {
-    return exploration.contacts(alternative) >= limits.min_contacts &&
-           exploration.time_s() >= limits.min_seconds;
+    return control.contacts(alternative) >= limits.min_contacts &&
+           control.time_s() >= limits.min_seconds;
   };
-  const double until_s = exploration.time_s() + script_patience_s + limits.min_seconds;
-  while (passes_time_until(is_done, exploration)) {
-    if (exploration.time_s() > until_s) {
+  const double until_s = control.time_s() + script_patience_s + limits.min_seconds;
+  while (passes_time_until(is_done, control)) {
+    if (control.time_s() > until_s) {
       say("  the plate was tapped {} of {} times in {:.0f} s: no response, stopping\n",
-          exploration.contacts(alternative), limits.min_contacts, script_patience_s);
+          control.contacts(alternative), limits.min_contacts, script_patience_s);
       ask_to_stop();
     }
   }
 }
 
-void TerminalParticipant::wait_for_intervals(const TrialPrompt& prompt, Exploration& exploration) {
-  const IntervalState* const state = exploration.intervals();
+void TerminalParticipant::wait_for_intervals(const TrialPrompt& prompt, TrialControl& control) {
+  const IntervalState* const state = control.intervals();
   if (state == nullptr) {
     return;
   }
   const double lasts_s =
       static_cast<double>(prompt.alternative_labels.size()) *
       (prompt.block->explore.intervals->seconds + prompt.block->explore.intervals->gap_seconds);
-  const double until_s = exploration.time_s() + script_patience_s + lasts_s;
+  const double until_s = control.time_s() + script_patience_s + lasts_s;
   const auto is_over = [&] { return state->phase == IntervalState::Phase::over; };
-  while (passes_time_until(is_over, exploration)) {
-    intervals_->announce(exploration);
-    if (exploration.time_s() > until_s) {
+  while (passes_time_until(is_over, control)) {
+    intervals_->announce(control);
+    if (control.time_s() > until_s) {
       say("  an interval was not tapped in for {:.0f} s: no response, stopping\n",
           script_patience_s);
       ask_to_stop();
@@ -322,10 +321,10 @@ void TerminalParticipant::wait_for_intervals(const TrialPrompt& prompt, Explorat
 }
 
 std::optional<std::string> TerminalParticipant::answer_by_itself(const TrialPrompt& prompt,
-                                                                 Exploration& exploration) {
-  while (const auto line = next_line(prompt, exploration)) {
-    if (auto answer = answer_typed(*line, prompt, exploration)) {
-      let_script_wait(prompt, 0, exploration);
+                                                                 TrialControl& control) {
+  while (const auto line = next_line(prompt, control)) {
+    if (auto answer = answer_typed(*line, prompt, control)) {
+      let_script_wait(prompt, 0, control);
       return answer;
     }
     say("  please type {}, or quit\n", expected_answer(prompt.answers));
@@ -333,31 +332,30 @@ std::optional<std::string> TerminalParticipant::answer_by_itself(const TrialProm
   return std::nullopt;
 }
 
-std::optional<std::string> TerminalParticipant::answer_among_alternatives(
-    const TrialPrompt& prompt, Exploration& exploration) {
+std::optional<std::string> TerminalParticipant::answer_among_alternatives(const TrialPrompt& prompt,
+                                                                          TrialControl& control) {
   const std::vector<std::string>& labels = prompt.alternative_labels;
-  while (const auto line = next_line(prompt, exploration)) {
-    wait_for_intervals(prompt, exploration);
-    if (auto answer = answer_typed(*line, prompt, exploration)) {
+  while (const auto line = next_line(prompt, control)) {
+    wait_for_intervals(prompt, control);
+    if (auto answer = answer_typed(*line, prompt, control)) {
       return answer;
     }
-    if (replays(*line, exploration)) {
+    if (replays(*line, control)) {
       continue;
     }
     const auto alternative = index_of(upper_case_without_spaces(*line), labels);
-    if (alternative && exploration.intervals() == nullptr) {
-      exploration.switch_to(*alternative);
+    if (alternative && control.intervals() == nullptr) {
+      control.switch_to(*alternative);
       say("  now {} (takes effect once the finger is off the plate)\n", labels[*alternative]);
-      let_script_wait(prompt, *alternative, exploration);
+      let_script_wait(prompt, *alternative, control);
       continue;
     }
-    if (adjusts(*line, prompt, exploration)) {
+    if (adjusts(*line, prompt, control)) {
       continue;
     }
     say("  please type {}{}, or quit\n",
-        exploration.intervals() == nullptr
-            ? fmt::format("{} to feel one, ", fmt::join(labels, ", "))
-            : "",
+        control.intervals() == nullptr ? fmt::format("{} to feel one, ", fmt::join(labels, ", "))
+                                       : "",
         expected_among_alternatives(prompt));
   }
   return std::nullopt;
@@ -365,23 +363,23 @@ std::optional<std::string> TerminalParticipant::answer_among_alternatives(
 
 // As far as there are settings.
 bool TerminalParticipant::adjusts(const std::string& line, const TrialPrompt& prompt,
-                                  Exploration& exploration) const {
+                                  TrialControl& control) const {
   const auto moved = settings_moved(line);
   if (prompt.answers.settings == 0 || !moved) {
     return false;
   }
   const auto last = static_cast<std::ptrdiff_t>(prompt.answers.settings) - 1;
-  const auto from = static_cast<std::ptrdiff_t>(exploration.setting());
+  const auto from = static_cast<std::ptrdiff_t>(control.setting());
   const std::ptrdiff_t to = std::clamp<std::ptrdiff_t>(from + *moved, 0, last);
   const std::string& label = prompt.alternative_labels.back();
   if (to == from) {
     say("  {} is at its limit in that direction\n", label);
     return true;
   }
-  exploration.adjust(static_cast<std::size_t>(to));
+  control.adjust(static_cast<std::size_t>(to));
   say("  {} is changed (takes effect once the finger is off the plate){}\n", label,
       to == from + *moved ? "" : fmt::format("; {} is at its limit in that direction", label));
-  let_script_wait(prompt, prompt.alternative_labels.size() - 1, exploration);
+  let_script_wait(prompt, prompt.alternative_labels.size() - 1, control);
   return true;
 }
 }  // namespace tapstudy::runner

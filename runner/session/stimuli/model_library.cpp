@@ -45,10 +45,10 @@ std::string first_frequency(core::PlateSpec spec) {
 std::string damping_key(const protocols::PresentedStimulus& stimulus) {
   std::string key = core::content_key(*stimulus.material);
   if (stimulus.contacts) {
-    for (const core::BodyInContact& body : stimulus.contacts->bodies) {
+    for (const core::JoinedBody& body : stimulus.contacts->bodies) {
       key += " " + core::content_key(body.material);
     }
-    for (const core::ContactSpring& spring : stimulus.contacts->springs) {
+    for (const core::JointSpring& spring : stimulus.contacts->springs) {
       key += fmt::format(" {:a}", spring.loss_factor);
     }
   }
@@ -66,7 +66,7 @@ void check_has_mode(Eigen::Index modes_in_band, const core::PlateSpec& spec) {
       spec.band_limit_hz, first_frequency(spec))};
 }
 
-core::ModelCache models_of_this_user() {
+core::ModelCache user_model_cache() {
   return {cache_directory(), fmt::format("{} {}", program_version(), git_hash())};
 }
 
@@ -74,7 +74,7 @@ core::PlateSpec plate_spec(const protocols::Protocol& protocol,
                            const protocols::PresentedStimulus& stimulus) {
   core::PlateSpec spec{*stimulus.plate, *stimulus.material, protocol.band_limit_hz};
   spec.theory = stimulus.technique->theory;
-  spec.contacts = stimulus.contacts;
+  spec.joints = stimulus.contacts;
   return spec;
 }
 
@@ -122,7 +122,7 @@ ModelLibrary::Body ModelLibrary::body(const protocols::Protocol& protocol,
   Progress progress{fmt::format("building the model of '{}'", stimulus.name)};
   body = std::make_shared<const core::BodyModes>(core::solve_body(spec, progress.hook()).modes);
   ++solved_;
-  if (!cache_.keep(key, *body)) {
+  if (!cache_.store(key, *body)) {
     warn(fmt::format("{}: models cannot be cached here and will be rebuilt", cache_.directory()));
   }
   return body;

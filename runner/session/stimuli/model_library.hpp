@@ -56,7 +56,7 @@ core::VibratingPlate vibrating_plate(const core::Shape& shape, core::ModalModel 
 
 // Models of this program's version: in $TAPSTUDY_CACHE, else $XDG_CACHE_HOME/tapstudy, else
 // ~/.cache/tapstudy; without any, nowhere.
-core::ModelCache models_of_this_user();
+core::ModelCache user_model_cache();
 
 // Models of plates: each body is solved once for all materials that share it, and only if a
 // vibrating technique needs it. Thread-safe.
@@ -64,8 +64,7 @@ class ModelLibrary {
  public:
   using Plate = std::shared_ptr<const core::VibratingPlate>;
   using Body = std::shared_ptr<const core::BodyModes>;
-  explicit ModelLibrary(core::ModelCache cache = models_of_this_user())
-      : cache_{std::move(cache)} {}
+  explicit ModelLibrary(core::ModelCache cache = user_model_cache()) : cache_{std::move(cache)} {}
 
   // Throws InvalidInput or ModelError, naming the stimulus and its values. After build_all neither
   // meshes nor solves. Only plates of stimuli at their own values are kept: of a family as many may

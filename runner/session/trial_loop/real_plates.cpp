@@ -11,15 +11,18 @@ namespace tapstudy::runner {
 namespace {
 class IdleExploration final : public Exploration {
  public:
-  void switch_to(std::size_t /*alternative*/) override {}
+  void request_position(std::size_t /*position*/) override {}
+  void request_silence(bool /*is_silent*/) override {}
+  bool is_as_requested() const override { return true; }
   void pass_time(double seconds) override {
     std::this_thread::sleep_for(std::chrono::duration<double>{seconds});
   }
   bool is_running() const override { return true; }
+  bool is_rendering() const override { return true; }
   double time_s() const override {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
   }
-  int contacts(std::size_t /*alternative*/) const override { return 0; }
+  int contacts(std::size_t /*position*/) const override { return 0; }
 
  private:
   std::chrono::steady_clock::time_point start_{std::chrono::steady_clock::now()};

@@ -30,6 +30,7 @@ class VirtualExploration final : public LoopExploration {
     }
   }
   bool is_running() const override { return loop().report().stopped_by == core::TickFault::none; }
+  bool is_rendering() const override { return is_running(); }
   double time_s() const override { return static_cast<double>(loop().report().ticks) * period_s_; }
 
  private:

@@ -16,7 +16,7 @@ struct TrialResult {
   std::int64_t dropped_samples{};
 };
 
-// What a trial's haptic loop renders, and to whose taps: the hand's at the device or scripted ones.
+// A trial's haptic loop renders these, to the taps of the hand at the device or to scripted ones.
 struct Rendered {
   std::span<core::TapRenderer> alternatives;
   std::optional<device::RepeatedTap> scripted{};
@@ -35,26 +35,21 @@ class TrialLoop {
 std::optional<device::ScriptedHand> scripted_hand(const Rendered& rendered,
                                                   const device::LoopSettings& settings);
 
-// What an exploration asks of the haptic loop, whatever its clock.
+// An exploration by means of the haptic loop, whatever its clock.
 class LoopExploration : public Exploration {
  public:
   // The loop must outlive it.
   explicit LoopExploration(device::HapticLoop& loop) : loop_{loop} {}
-  void switch_to(std::size_t alternative) override {
-    current_ = alternative;
-    loop_.request_alternative(alternative);
-  }
-  std::size_t current() const override { return current_; }
-  void silence(bool is_silent) override { loop_.request_silence(is_silent); }
-  bool is_as_asked() const override { return loop_.is_as_requested(); }
-  int contacts(std::size_t alternative) const override { return loop_.contacts(alternative); }
+  void request_position(std::size_t position) override { loop_.request_alternative(position); }
+  void request_silence(bool is_silent) override { loop_.request_silence(is_silent); }
+  bool is_as_requested() const override { return loop_.is_as_requested(); }
+  int contacts(std::size_t position) const override { return loop_.contacts(position); }
 
  protected:
   device::HapticLoop& loop() const { return loop_; }
 
  private:
   device::HapticLoop& loop_;
-  std::size_t current_{0};
 };
 
 enum class Keep { trace, events, nothing };

@@ -48,15 +48,15 @@ struct BoardOnBoard {
   explicit BoardOnBoard(core::RegionShape shape) {
     board.material = material_of(3e9, 1180.0, 0.02);
     board.band_limit_hz = 900.0;
-    core::BodyInContact table{block({0.4, 0.4, 0.02}, 2e-5), material_of(2.5e9, 610.0, 0.05)};
+    core::JoinedBody table{block({0.4, 0.4, 0.02}, 2e-5), material_of(2.5e9, 610.0, 0.05)};
     table.fixations = {side(core::Side::left), side(core::Side::right)};
-    core::Contacts contacts{{table}, {}};
+    core::Joints joints{{table}, {}};
     for (const auto& [x, y] : {std::pair{-0.1, -0.08}, {0.1, -0.08}, {-0.1, 0.08}, {0.1, 0.08}}) {
-      contacts.springs.push_back({{0, region(shape, {x, y, 0.0}, core::Face::bottom)},
-                                  {1, region(shape, {x, y, 0.0}, core::Face::top)},
-                                  {2e5, 3e5, 1e6}});
+      joints.springs.push_back({{0, region(shape, {x, y, 0.0}, core::Face::bottom)},
+                                {1, region(shape, {x, y, 0.0}, core::Face::top)},
+                                {2e5, 3e5, 1e6}});
     }
-    board.contacts = std::make_shared<const core::Contacts>(contacts);
+    board.joints = std::make_shared<const core::Joints>(joints);
   }
   core::PlateSpec board{block({0.24, 0.2, 0.01}, 4e-6), {}, 0.0};
 };
@@ -64,15 +64,15 @@ struct BoardOnBoard {
 // All of it anew, by what is stated: the same meshes, which the solution does not keep.
 core::CoupledBodies discrete(const core::PlateSpec& spec) {
   std::vector<core::Fixation> regions[2];
-  for (const core::ContactSpring& spring : spec.contacts->springs) {
+  for (const core::JointSpring& spring : spec.joints->springs) {
     regions[0].push_back(spring.from.region);
     regions[1].push_back(spring.to.region);
   }
-  const core::BodyInContact& other = spec.contacts->bodies.front();
+  const core::JoinedBody& other = spec.joints->bodies.front();
   std::vector<core::DiscreteBody> bodies{
       core::discretised(spec, spec.material, spec.mesh.size, regions[0], {}),
       core::discretised(other, other.material, other.mesh.size, regions[1], {})};
-  return core::coupled(spec, std::move(bodies), *spec.contacts);
+  return core::coupled(spec, std::move(bodies), *spec.joints);
 }
 
 // A heavy stiff block on feet, each of which is a spring of its own: closed forms below.
@@ -92,11 +92,11 @@ TEST_CASE("CalculiX finds the same frequencies of a board on a board",
   const core::ModalModel ours = core::build_plate_model(spec).modal;
   const core::CoupledBodies system = discrete(spec);
   testing::CalculixInput input;
-  const core::BodyInContact& table = spec.contacts->bodies.front();
+  const core::JoinedBody& table = spec.joints->bodies.front();
   const std::array<Eigen::Index, 2> first{
       input.add_body(spec, spec.material, system.bodies[0].mesh),
       input.add_body(table, table.material, system.bodies[1].mesh)};
-  for (const core::ContactSpring& spring : spec.contacts->springs) {
+  for (const core::JointSpring& spring : spec.joints->springs) {
     const auto from = core::nodes_of(spring.from.region, system.bodies[0].mesh, spec.shape);
     const auto to = core::nodes_of(spring.to.region, system.bodies[1].mesh, table.shape);
     REQUIRE((from.size() == 1 && to.size() == 1));
@@ -116,14 +116,14 @@ TEST_CASE("CalculiX finds the same frequencies of a board on a board",
 
 TEST_CASE("a stiff block on four soft feet moves up and down at sqrt(k / m)", "[core][model]") {
   core::PlateSpec spec = stiff_block(60.0);
-  core::BodyInContact ground{block({0.3, 0.3, 0.05}, 1e-4), material_of(1e13, 2000.0, 0.01)};
+  core::JoinedBody ground{block({0.3, 0.3, 0.05}, 1e-4), material_of(1e13, 2000.0, 0.01)};
   ground.fixations = {side(core::Side::bottom)};
-  core::Contacts contacts{{ground}, {}};
+  core::Joints joints{{ground}, {}};
   for (const auto& [x, y] : {std::pair{-0.03, -0.03}, {0.03, -0.03}, {-0.03, 0.03}, {0.03, 0.03}}) {
-    contacts.springs.push_back(
+    joints.springs.push_back(
         {{0, disc(x, y, core::Face::bottom)}, {1, disc(x, y, core::Face::top)}, {0, 0, 5e3}});
   }
-  spec.contacts = std::make_shared<const core::Contacts>(contacts);
+  spec.joints = std::make_shared<const core::Joints>(joints);
   const core::SolvedBody body = core::solve_body(core::body_of(spec));
   CHECK(body.modes.report.rigid_body_modes == 3);  // it slides along x and y, and turns about z
   const core::ModalModel modal = core::model_of(body.modes, spec);
@@ -141,21 +141,21 @@ TEST_CASE("a stiff block on four soft feet moves up and down at sqrt(k / m)", "[
 
 TEST_CASE("a block slides on the ground, however many nodes hold the ground", "[core][model]") {
   core::PlateSpec spec = stiff_block(60.0);
-  core::BodyInContact ground{block({0.8, 0.8, 0.025}, 3e-6), material_of(1e13, 2000.0, 0.01)};
+  core::JoinedBody ground{block({0.8, 0.8, 0.025}, 3e-6), material_of(1e13, 2000.0, 0.01)};
   ground.fixations = {side(core::Side::bottom)};
-  core::Contacts contacts{{ground}, {}};
+  core::Joints joints{{ground}, {}};
   for (const auto& [x, y] : {std::pair{-0.03, -0.03}, {0.03, -0.03}, {0.0, 0.03}}) {
-    contacts.springs.push_back(
+    joints.springs.push_back(
         {{0, disc(x, y, core::Face::bottom)}, {1, disc(x, y, core::Face::top)}, {0, 0, 5e3}});
   }
-  spec.contacts = std::make_shared<const core::Contacts>(contacts);
+  spec.joints = std::make_shared<const core::Joints>(joints);
   CHECK(core::solve_body(core::body_of(spec)).modes.report.rigid_body_modes == 3);
 }
 
 TEST_CASE("two equal free blocks on one spring part at sqrt(2 k / m)", "[core][model]") {
   core::PlateSpec spec = stiff_block(200.0);
-  const core::BodyInContact other{static_cast<const core::Plate&>(spec), spec.material};
-  spec.contacts = std::make_shared<const core::Contacts>(core::Contacts{
+  const core::JoinedBody other{static_cast<const core::Plate&>(spec), spec.material};
+  spec.joints = std::make_shared<const core::Joints>(core::Joints{
       {other}, {{{0, side(core::Side::bottom)}, {1, side(core::Side::top)}, {0.0, 0.0, 1e5}}}});
   const core::SolvedBody body = core::solve_body(core::body_of(spec));
   CHECK(body.modes.report.rigid_body_modes == 11);
@@ -164,7 +164,7 @@ TEST_CASE("two equal free blocks on one spring part at sqrt(2 k / m)", "[core][m
   CHECK(modal.frequency_hz[0] == Approx(natural_hz(2.0 * 1e5, block_kg)).epsilon(1e-4));
   CHECK(body.modes.kinetic_share(0, 0) == Approx(0.5).epsilon(1e-6));
   CHECK(modal.damping_ratio[0] < 1e-6);  // all strain is in the spring, which has no losses
-  core::Contacts lossy = *spec.contacts;
+  core::Joints lossy = *spec.joints;
   lossy.springs.front().loss_factor = 0.2;
   CHECK(core::model_of(body.modes, spec.material, 200.0, &lossy).damping_ratio[0] ==
         Approx(0.1).epsilon(1e-4));
@@ -172,13 +172,13 @@ TEST_CASE("two equal free blocks on one spring part at sqrt(2 k / m)", "[core][m
 
 TEST_CASE("three equal free blocks in a ring of springs part at sqrt(3 k / m)", "[core][model]") {
   core::PlateSpec spec = stiff_block(200.0);
-  const core::BodyInContact other{static_cast<const core::Plate&>(spec), spec.material};
+  const core::JoinedBody other{static_cast<const core::Plate&>(spec), spec.material};
   const auto spring = [](std::size_t from, std::size_t to) {
-    return core::ContactSpring{
+    return core::JointSpring{
         {from, side(core::Side::bottom)}, {to, side(core::Side::bottom)}, {0.0, 0.0, 1e5}};
   };
-  spec.contacts = std::make_shared<const core::Contacts>(
-      core::Contacts{{other, other}, {spring(0, 1), spring(1, 2), spring(2, 0)}});
+  spec.joints = std::make_shared<const core::Joints>(
+      core::Joints{{other, other}, {spring(0, 1), spring(1, 2), spring(2, 0)}});
   const core::SolvedBody body = core::solve_body(core::body_of(spec));
   CHECK(body.modes.report.rigid_body_modes == 16);
   const core::ModalModel modal = core::model_of(body.modes, spec);
@@ -194,8 +194,8 @@ TEST_CASE("a contact that is stiff beyond all else is a joint: a bar of two halv
   core::PlateSpec half = whole;
   half.shape = core::Box{{0.2, 0.03, 0.02}};
   half.fixations = {side(core::Side::left)};
-  core::BodyInContact rest{block({0.2, 0.03, 0.02}, 2e-6), whole.material};
-  core::Contacts contacts{{rest}, {}};
+  core::JoinedBody rest{block({0.2, 0.03, 0.02}, 2e-6), whole.material};
+  core::Joints joints{{rest}, {}};
   // Not the mean of the whole face, which may tilt: those of six parts.
   for (const double y : {-0.015, -0.005, 0.005}) {
     for (const double z : {-0.02, -0.01}) {
@@ -206,10 +206,10 @@ TEST_CASE("a contact that is stiff beyond all else is a joint: a bar of two halv
         part.high_m = {x, y + 0.01, z + 0.01};
         return part;
       };
-      contacts.springs.push_back({{0, at(0.1)}, {1, at(-0.1)}, core::Vec3::Constant(1e9)});
+      joints.springs.push_back({{0, at(0.1)}, {1, at(-0.1)}, core::Vec3::Constant(1e9)});
     }
   }
-  half.contacts = std::make_shared<const core::Contacts>(contacts);
+  half.joints = std::make_shared<const core::Joints>(joints);
   const Eigen::ArrayXd joined_hz = core::build_plate_model(half).modal.frequency_hz;
   const Eigen::ArrayXd whole_hz = core::build_plate_model(whole).modal.frequency_hz;
   REQUIRE(joined_hz.size() == whole_hz.size());
@@ -232,10 +232,10 @@ TEST_CASE("the energy of a mode is in the bodies and springs", "[core][model]") 
 TEST_CASE("bodies of one Rayleigh damping, joined by a stiff contact, keep it", "[core][model]") {
   core::PlateSpec spec = BoardOnBoard{core::RegionShape::disc}.board;
   const core::RayleighDamping rayleigh{30.0, 4e-5};
-  core::Contacts contacts = *spec.contacts;
+  core::Joints joints = *spec.joints;
   spec.material.damping = rayleigh;
-  contacts.bodies.front().material.damping = rayleigh;
-  spec.contacts = std::make_shared<const core::Contacts>(contacts);
+  joints.bodies.front().material.damping = rayleigh;
+  spec.joints = std::make_shared<const core::Joints>(joints);
   const core::BodyModes modes = core::solve_body(core::body_of(spec)).modes;
   const core::ModalModel modal = core::model_of(modes, spec);
   const Eigen::ArrayXd omega = 2.0 * std::numbers::pi * modal.frequency_hz;
@@ -249,13 +249,13 @@ TEST_CASE("bodies of one Rayleigh damping, joined by a stiff contact, keep it", 
 TEST_CASE("a ratio that is stated for a frequency is that of the material in contact, too",
           "[core][model]") {
   core::PlateSpec spec = BoardOnBoard{core::RegionShape::disc}.board;
-  core::Contacts contacts = *spec.contacts;
+  core::Joints joints = *spec.joints;
   spec.material.damping = core::ConstantDamping{};
-  contacts.bodies.front().material.damping = core::FittedDamping{{{100.0, 0.05}, {400.0, 0.08}}};
-  spec.contacts = std::make_shared<const core::Contacts>(contacts);
+  joints.bodies.front().material.damping = core::FittedDamping{{{100.0, 0.05}, {400.0, 0.08}}};
+  spec.joints = std::make_shared<const core::Joints>(joints);
   const core::BodyModes modes = core::solve_body(core::body_of(spec)).modes;
   const core::ModalModel modal = core::model_of(modes, spec);
-  const auto alone = core::damp(contacts.bodies.front().material.damping,
+  const auto alone = core::damp(joints.bodies.front().material.damping,
                                 2.0 * std::numbers::pi * modal.frequency_hz);
   const Eigen::ArrayXd share = modes.strain_share.row(1).head(modal.frequency_hz.size());
   CHECK((modal.damping_ratio - share * alone.ratios).abs().maxCoeff() < 1e-12);
@@ -267,9 +267,9 @@ TEST_CASE("modal ratios are refused in contact, and a contact that touches nothi
   core::PlateSpec listed = spec;
   listed.material.damping = core::ModalDamping{{0.01}, 0.01};
   CHECK_THROWS_AS(core::build_plate_model(listed), core::ModelError);
-  core::Contacts beside = *spec.contacts;
+  core::Joints beside = *spec.joints;
   beside.springs.front().to.region.at_m.x() = 5.0;
-  spec.contacts = std::make_shared<const core::Contacts>(beside);
+  spec.joints = std::make_shared<const core::Joints>(beside);
   CHECK_THROWS_WITH(core::build_plate_model(spec), Contains("contact spring 1, to: the disc") &&
                                                        Contains("touches no node of the body"));
 }
@@ -277,43 +277,43 @@ TEST_CASE("modal ratios are refused in contact, and a contact that touches nothi
 TEST_CASE("models differ by every property of a contact, and of what is touched", "[core][model]") {
   const core::PlateSpec spec = BoardOnBoard{core::RegionShape::disc}.board;
   const auto key_with = [&](const auto& change) {
-    core::Contacts changed = *spec.contacts;
+    core::Joints changed = *spec.joints;
     change(changed);
     core::PlateSpec other = spec;
-    other.contacts = std::make_shared<const core::Contacts>(changed);
+    other.joints = std::make_shared<const core::Joints>(changed);
     return core::content_key(core::body_of(other));
   };
   const std::string own = core::content_key(core::body_of(spec));
-  CHECK(own == key_with([](core::Contacts&) {}));
-  CHECK(own != key_with([](core::Contacts& c) { c.springs[0].stiffness_n_per_m.x() *= 2.0; }));
-  CHECK(own != key_with([](core::Contacts& c) { c.springs[1].from.region.at_m.x() += 0.01; }));
-  CHECK(own != key_with([](core::Contacts& c) { c.springs.pop_back(); }));
-  CHECK(own != key_with([](core::Contacts& c) { c.bodies[0].material.density_kg_per_m3 = 1.0; }));
-  CHECK(own != key_with([](core::Contacts& c) { c.bodies[0].fixations.pop_back(); }));
+  CHECK(own == key_with([](core::Joints&) {}));
+  CHECK(own != key_with([](core::Joints& c) { c.springs[0].stiffness_n_per_m.x() *= 2.0; }));
+  CHECK(own != key_with([](core::Joints& c) { c.springs[1].from.region.at_m.x() += 0.01; }));
+  CHECK(own != key_with([](core::Joints& c) { c.springs.pop_back(); }));
+  CHECK(own != key_with([](core::Joints& c) { c.bodies[0].material.density_kg_per_m3 = 1.0; }));
+  CHECK(own != key_with([](core::Joints& c) { c.bodies[0].fixations.pop_back(); }));
   core::PlateSpec lighter = spec;
   lighter.material.density_kg_per_m3 /= 2.0;
   CHECK(own != core::content_key(core::body_of(lighter)));
   core::PlateSpec alone = spec;
-  alone.contacts.reset();
+  alone.joints.reset();
   CHECK(own != core::content_key(core::body_of(alone)));
 }
 
 TEST_CASE("contacts that no shift of a body brings together are refused", "[core][model]") {
   core::PlateSpec spec = stiff_block(60.0);
-  core::BodyInContact other{block({0.1, 0.1, 0.05}, 2e-5), material_of(1e13, 2000.0, 0.01)};
+  core::JoinedBody other{block({0.1, 0.1, 0.05}, 2e-5), material_of(1e13, 2000.0, 0.01)};
   const bool is_other_way_round = GENERATE(false, true);
   const auto joined_at = [&](double further_m) {
-    core::Contacts contacts{{other}, {}};
+    core::Joints joints{{other}, {}};
     for (const double x : {-0.03, 0.03}) {
       const double to_x = x < 0.0 ? x : x + further_m;
-      contacts.springs.push_back({{0, disc(x, 0.0, core::Face::bottom)},
-                                  {1, disc(to_x, 0.0, core::Face::top)},
-                                  {1e5, 1e5, 1e5}});
+      joints.springs.push_back({{0, disc(x, 0.0, core::Face::bottom)},
+                                {1, disc(to_x, 0.0, core::Face::top)},
+                                {1e5, 1e5, 1e5}});
     }
     if (is_other_way_round) {
-      std::swap(contacts.springs.back().from, contacts.springs.back().to);
+      std::swap(joints.springs.back().from, joints.springs.back().to);
     }
-    spec.contacts = std::make_shared<const core::Contacts>(contacts);
+    spec.joints = std::make_shared<const core::Joints>(joints);
     return core::solve_body(core::body_of(spec)).modes.report.rigid_body_modes;
   };
   CHECK(joined_at(0.0) == 7);  // as one body, and a turn about the line of contacts
@@ -324,18 +324,18 @@ TEST_CASE("contacts that no shift of a body brings together are refused", "[core
 TEST_CASE("three bodies in a ring are refused unless all of their contacts meet at once",
           "[core][model]") {
   core::PlateSpec spec = stiff_block(60.0);
-  const core::BodyInContact other{block({0.1, 0.1, 0.05}, 2e-5), material_of(1e13, 2000.0, 0.01)};
+  const core::JoinedBody other{block({0.1, 0.1, 0.05}, 2e-5), material_of(1e13, 2000.0, 0.01)};
   const auto ring_with = [&](double further_m) {
-    core::Contacts contacts{{other, other}, {}};
+    core::Joints joints{{other, other}, {}};
     const auto join = [&](std::size_t from, std::size_t to, double to_x) {
-      contacts.springs.push_back({{from, disc(0.0, 0.0, core::Face::bottom)},
-                                  {to, disc(to_x, 0.0, core::Face::bottom)},
-                                  {1e5, 1e5, 1e5}});
+      joints.springs.push_back({{from, disc(0.0, 0.0, core::Face::bottom)},
+                                {to, disc(to_x, 0.0, core::Face::bottom)},
+                                {1e5, 1e5, 1e5}});
     };
     join(0, 1, 0.0);
     join(0, 2, 0.0);
     join(1, 2, further_m);
-    spec.contacts = std::make_shared<const core::Contacts>(contacts);
+    spec.joints = std::make_shared<const core::Joints>(joints);
     core::solve_body(core::body_of(spec));
   };
   CHECK_NOTHROW(ring_with(0.0));

@@ -86,7 +86,7 @@ TEST_CASE("what was kept is found to the last bit, under its own key only", "[co
   const ModelCache cache{directory / "models", "1"};
   const core::BodyModes modes = some_modes();
   CHECK_FALSE(cache.find("a plate"));
-  CHECK(cache.keep("a plate", modes));
+  CHECK(cache.store("a plate", modes));
   const auto found = cache.find("a plate");
   REQUIRE(found);
   CHECK((found->kappa_rad_per_m == modes.kappa_rad_per_m).all());
@@ -102,7 +102,7 @@ TEST_CASE("what was kept is found to the last bit, under its own key only", "[co
 TEST_CASE("a torn or altered file counts as absent and is replaced", "[core][cache]") {
   const testing::TempDirectory directory;
   const ModelCache cache{directory / "models", "1"};
-  CHECK(cache.keep("a plate", some_modes()));
+  CHECK(cache.store("a plate", some_modes()));
   const std::string file = only_file_in(directory / "models");
   const std::string whole = testing::contents(file);
   for (const std::size_t length : {std::size_t{0}, whole.size() / 2, whole.size() - 1}) {
@@ -113,7 +113,7 @@ TEST_CASE("a torn or altered file counts as absent and is replaced", "[core][cac
   altered[whole.size() / 2] ^= 1;
   std::ofstream{file, std::ios::binary} << altered;
   CHECK_FALSE(cache.find("a plate"));
-  CHECK(cache.keep("a plate", some_modes()));
+  CHECK(cache.store("a plate", some_modes()));
   CHECK(cache.find("a plate"));
   only_file_in(directory / "models");
 }
@@ -129,7 +129,7 @@ TEST_CASE("processes that keep and find at once find all or nothing", "[core][ca
     if (children.back() == 0) {
       bool is_whole = true;
       for (int turn = 0; turn < 200; ++turn) {
-        const bool is_kept = cache.keep("a plate", modes);
+        const bool is_kept = cache.store("a plate", modes);
         const auto found = cache.find("a plate");
         is_whole = is_whole && is_kept && found && core::encoded(*found) == kept;
       }
@@ -146,7 +146,7 @@ TEST_CASE("processes that keep and find at once find all or nothing", "[core][ca
 
 TEST_CASE("a cache without a place keeps nothing, and says so", "[core][cache]") {
   const ModelCache nowhere{"/proc/no/such/place", "1"};
-  CHECK_FALSE(nowhere.keep("a plate", some_modes()));
+  CHECK_FALSE(nowhere.store("a plate", some_modes()));
   CHECK_FALSE(nowhere.find("a plate"));
 }
 

@@ -1,6 +1,7 @@
 #include "device/spidar/spidar_g6.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <thread>
 
@@ -376,6 +377,78 @@ TEST_CASE("a halted endpoint is cleared, and an unconfirmed stop is said to be o
   }
 }
 
+namespace {
+// A SPIDAR as a session opens it, with its guardian in a process of its own.
+struct Guarded {
+  explicit Guarded(std::uint16_t board_product) : product{board_product} {}
+  std::uint16_t product;
+  SimulatedSpidar hardware;
+  std::atomic<double> strongest_n{0.0};
+  FakeBus bus{device::cyverse_vendor, product, [this](auto request) {
+                const testing::Bytes reply = hardware.answer(request);
+                strongest_n = hardware.tension_n().maxCoeff();
+                return reply;
+              }};
+  device::UsbNode node{testing::node_of(bus)};
+  std::unique_ptr<device::SpidarBoard> board{device::board_of(product)};
+  // a busy machine may keep the test from beating for long
+  device::Guardian guardian{node, {0x02, 0x86, board->zero_force_packet(), 20.0, 0, -1}};
+  device::LibusbPipe pipe{node, {}, std::chrono::milliseconds{25}};
+  device::SpidarG6 spidar{pipe, *board, [this] {
+                            device::SpidarSettings settings = testing::simulated_settings();
+                            settings.watchdog = &guardian.channel();
+                            return settings;
+                          }()};
+
+  void pull() {
+    for (int step = 1; step <= 50; ++step) {
+      REQUIRE(spidar.tighten(step / 50.0) == TickFault::none);
+    }
+    REQUIRE(spidar.home() == TickFault::none);
+    REQUIRE(spidar.begin() == TickFault::none);
+    REQUIRE(tick() == TickFault::none);
+    REQUIRE(tick() == TickFault::none);
+    REQUIRE(strongest_n > 1.0);
+  }
+  TickFault tick() {
+    core::HandState hand;
+    const TickFault fault = spidar.read(hand, 1e-3);
+    return fault == TickFault::none ? spidar.write({0.0, 3.0, 0.0}) : fault;
+  }
+  void pass_rounds(std::uint64_t count) {
+    const std::uint64_t from = guardian.channel().rounds();
+    while (guardian.channel().rounds() < from + count) {
+      usleep(1000);
+    }
+  }
+};
+}  // namespace
+
+TEST_CASE(
+    "of a board that takes every packet and answers none, force is not off until a reply says so",
+    "[device][spidar][safety][usb]") {
+  Guarded guarded{GENERATE(device::sh4_product, device::simple_product)};
+  guarded.pull();
+  guarded.bus.persist_in(Trouble::out_lost);
+  TickFault fault = TickFault::none;
+  for (int i = 0; i < 10 && fault == TickFault::none; ++i) {
+    fault = guarded.tick();
+  }
+  CHECK(fault == TickFault::no_reply);
+  CHECK(guarded.spidar.emergency_stop() == device::StopOutcome::unconfirmed);
+  guarded.pass_rounds(20);
+  CHECK_FALSE(guarded.spidar.is_force_off());
+  CHECK(guarded.strongest_n > 1.0);
+  CHECK_FALSE(guarded.guardian.channel().may_close_relay());
+  guarded.bus.persist_in(Trouble::none);
+  for (int i = 0; i < 1000 && !guarded.spidar.is_force_off(); ++i) {
+    guarded.pass_rounds(1);
+  }
+  CHECK(guarded.spidar.is_force_off());
+  CHECK(guarded.strongest_n == 0.0);
+  CHECK_FALSE(guarded.guardian.channel().may_close_relay());
+}
+
 TEST_CASE(
     "a wall on the grip rests up to the bound of a force that acts a tick late, and chatters "
     "above",
@@ -504,7 +577,7 @@ TEST_CASE("with force on, a SPIDAR is watched and its guardian with it",
     CHECK(watch.is_on());
     CHECK(watch.must_repeat());
     CHECK_FALSE(spidar.is_force_off());
-    watch.note_zero_taken();
+    watch.note_zero_confirmed();
     CHECK(spidar.is_force_off());
   }
   SECTION("an output that the guardian takes in the middle of an exchange is the guardian's") {

@@ -8,17 +8,21 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
+#include <atomic>
 #include <bit>
 #include <csignal>
 #include <cstdlib>
 #include <fstream>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "device/relay/serial_port.hpp"
 #include "device/spidar/board.hpp"
+#include "device/usb/libusb_pipe.hpp"
 #include "support/catch.hpp"
 #include "support/usb/fake_bus.hpp"
 using namespace tapstudy;
@@ -31,8 +35,15 @@ constexpr double four_rounds_s = 0.02;
 constexpr double two_hundred_rounds_s = 1.0;
 
 device::GuardianSettings settings(double max_stall_s = four_rounds_s) {
-  const auto zero_force_packet = device::Sh4Board::request({});
-  return {0x02, 0x86, {zero_force_packet.begin(), zero_force_packet.end()}, max_stall_s, 0};
+  return {0x02, 0x86, device::Sh4Board{}.zero_force_packet(), max_stall_s, 0};
+}
+
+// Echoes what it was sent, as an SH4 board does, or one count more.
+Bytes echo(std::span<const std::uint8_t> request, bool is_right) {
+  Bytes reply(512, 0);
+  std::copy_n(request.begin() + 2, 16, reply.begin());
+  reply[0] = static_cast<std::uint8_t>(reply[0] + (is_right ? 0 : 1));
+  return reply;
 }
 
 // Everything that arrives until all writers are gone.
@@ -86,8 +97,10 @@ namespace {
 // A board whose plain bulk packets come out of a pipe, and a guardian for it.
 struct Watched {
   std::array<int, 2> ends{};
-  FakeBus bus{device::cyverse_vendor, device::sh4_product,
-              [](std::span<const std::uint8_t>) { return Bytes{}; }};
+  std::atomic<bool> echoes_rightly{true};
+  FakeBus bus{
+      device::cyverse_vendor, device::sh4_product,
+      [this](std::span<const std::uint8_t> request) { return echo(request, echoes_rightly); }};
   std::optional<device::UsbNode> node;
   std::optional<device::Guardian> guardian;
 
@@ -164,7 +177,7 @@ TEST_CASE("a program that stands still with force on loses it, every round anew,
 }
 
 TEST_CASE(
-    "a guardian asked to repeat zero force clears a halted endpoint and tells when it is taken",
+    "a guardian asked to repeat zero force clears a halted endpoint and tells when it is confirmed",
     "[device][usb][guardian][safety]") {
   const int clears = GENERATE(0, 1, 1'000'000);
   Watched watched;
@@ -176,7 +189,7 @@ TEST_CASE(
     watch.beat();
     watched.pass_rounds(1);
   }
-  CHECK(watch.is_zero_taken() == (clears < 2));
+  CHECK(watch.is_zero_confirmed() == (clears < 2));
   CHECK((watched.packets() > 5) == (clears < 2));
   CHECK_FALSE(watch.has_acted());
   watch.end();
@@ -184,6 +197,49 @@ TEST_CASE(
   watched.packets();
   watched.pass_rounds(5);
   CHECK(watched.packets() == 0);
+}
+
+TEST_CASE("nothing but a whole reply that carries the zeros, and is not from before, confirms them",
+          "[device][usb][guardian][safety]") {
+  using Trouble = FakeBus::Trouble;
+  Watched watched;
+  device::LibusbPipe pipe{*watched.node, {}, std::chrono::milliseconds{25}};
+  const device::Sh4Board::Packet zeros = device::Sh4Board::request({});
+  for (int i = 0; i < 3; ++i) {  // their replies are left over
+    REQUIRE(pipe.send(zeros) == device::UsbOutcome::ok);
+  }
+  SECTION("none comes any more") {
+    watched.bus.persist_in(GENERATE(Trouble::missing, Trouble::out_lost));
+  }
+  SECTION("half a reply comes") {
+    watched.bus.persist_in(Trouble::short_reply);
+  }
+  SECTION("it echoes something else") {
+    watched.echoes_rightly = false;
+  }
+  device::WatchdogChannel& watch = watched.watch(two_hundred_rounds_s);
+  watch.repeat_zero_force();
+  watched.pass_rounds(10);
+  CHECK_FALSE(watch.is_zero_confirmed());
+  watched.bus.persist_in(Trouble::none);
+  watched.echoes_rightly = true;
+  for (int i = 0; i < 1000 && !watch.is_zero_confirmed(); ++i) {
+    watched.pass_rounds(1);
+  }
+  CHECK(watch.is_zero_confirmed());
+}
+
+TEST_CASE("a guardian left alone with a board that had force repeats zero force until it replies",
+          "[device][usb][guardian][safety]") {
+  Watched watched;
+  watched.watch().allow_power();
+  watched.bus.persist_in(FakeBus::Trouble::out_lost);
+  watched.guardian.reset();
+  CHECK(watched.at_least(10) >= 10);
+  CHECK(watched.bus.requests().empty());
+  watched.bus.persist_in(FakeBus::Trouble::none);
+  CHECK(watched.packets_of_the_end() >= 1);
+  CHECK_FALSE(watched.bus.requests().empty());
 }
 
 TEST_CASE("a guardian left alone repeats zero force until it is taken, three times",
@@ -249,29 +305,47 @@ struct SerialPort {
   SerialPort& operator=(const SerialPort&) = delete;
   SerialPort(SerialPort&&) = delete;
   SerialPort& operator=(SerialPort&&) = delete;
-  // Since asked before.
-  std::size_t signs_of_life() const {
-    std::array<char, 4096> bytes{};
-    const ssize_t count = read(far_end, bytes.data(), bytes.size());
-    return count > 0 ? static_cast<std::size_t>(count) : 0;
+  // Since asked before. What was written comes out a while later, and before a mark of the test's
+  // own, which may be discarded on its way.
+  std::size_t signs_of_life(const device::DeadManRelay& relay) {
+    mark_ = static_cast<char>('a' + (mark_ - 'a' + 1) % 26);
+    std::size_t signs = 0;
+    for (int i = 0;; ++i) {
+      if (i % 100 == 0) {
+        REQUIRE(write(relay.descriptor(), &mark_, 1) == 1);
+      }
+      std::array<char, 4096> bytes{};
+      const ssize_t count = read(far_end, bytes.data(), bytes.size());
+      const std::string_view read{bytes.data(),
+                                  static_cast<std::size_t>(std::max<ssize_t>(0, count))};
+      signs += static_cast<std::size_t>(std::ranges::count(read, sign_of_life));
+      if (read.find(mark_) != std::string_view::npos) {
+        return signs;
+      }
+      usleep(1000);
+    }
   }
+
+ private:
+  static constexpr char sign_of_life = 0x55;
+  char mark_{'a'};
 };
 }  // namespace
 
 TEST_CASE("a relay is kept closed while all is well, and by nothing else",
           "[device][usb][guardian][safety]") {
-  const SerialPort port;
+  SerialPort port;
   Watched watched;
   const device::DeadManRelay relay{port.name};
   device::WatchdogChannel& watch = watched.watch(two_hundred_rounds_s, relay.descriptor());
   const auto signs_of_twenty_rounds = [&](bool beats) {
     watched.pass_rounds(1);
-    static_cast<void>(port.signs_of_life());
+    static_cast<void>(port.signs_of_life(relay));
     for (int i = 0; i < 20; ++i) {
       beats ? watch.beat() : void();
       watched.pass_rounds(1);
     }
-    return port.signs_of_life();
+    return port.signs_of_life(relay);
   };
   CHECK(signs_of_twenty_rounds(false) == 0);  // zero force is not confirmed yet
   watch.allow_power();
@@ -291,8 +365,8 @@ TEST_CASE("a relay is kept closed while all is well, and by nothing else",
   }
   SECTION("without a guardian nobody holds it") {
     CHECK(watched.packets_of_the_end() == 3);
-    static_cast<void>(port.signs_of_life());
-    CHECK(port.signs_of_life() == 0);
+    static_cast<void>(port.signs_of_life(relay));
+    CHECK(port.signs_of_life(relay) == 0);
   }
 }
 

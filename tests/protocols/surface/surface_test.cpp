@@ -320,5 +320,5 @@ TEST_CASE("a surface is turned about its vector, then moved; beside it is its ne
   const core::TopHeight top{solid("offset_m: [0, 0, 0]")};
   const Eigen::Vector2d beside{usual.high_m.x() + 1.0, 0.0};
   REQUIRE_FALSE(top.at_m(beside));
-  CHECK_THAT(top.outline_words(beside), Contains("nearest place is ("));
+  CHECK_THAT(top.describe_touchable(beside), Contains("nearest place is ("));
 }

@@ -162,7 +162,8 @@ OperatorActionRow action(std::int64_t session_id, const std::string& name,
   return {session_id, 1.0, name, std::nullopt, detail};
 }
 
-SessionRow add_participant(Store& store, const std::string& id, const Store::Others& others) {
+SessionRow add_participant(Store& store, const std::string& id,
+                           const Store::OtherParticipants& others) {
   SessionRow row = small_study::session(id);
   row.planned_order = "1 main 1 a\n2 main 1 b\n";
   const Store::Place place = store.place_of(id, Mode::real, others);
@@ -303,8 +304,8 @@ TEST_CASE(
   const testing::TempDirectory directory;
   Store store = Store::open_or_create(directory.path(), small_study::study);
   bool has_trials_left = true;
-  const Store::Others is_p02{[](const std::string& id) { return id == "P02"; },
-                             [&](const std::string& /*id*/) { return has_trials_left; }};
+  const Store::OtherParticipants is_p02{[](const std::string& id) { return id == "P02"; },
+                                        [&](const std::string& /*id*/) { return has_trials_left; }};
   const SessionRow killed = add_participant(store, "P01", is_p02);
   const SessionRow active = add_participant(store, "P02", is_p02);
   CHECK(active.order_index == killed.order_index);  // who was never asked anything keeps no order

@@ -54,6 +54,18 @@ TEST_CASE("a trace of another codec is refused, not misread", "[results][store]"
   CHECK_THROWS_WITH(each_trace_chunk(store, [](auto, auto) {}), refused);
 }
 
+TEST_CASE("traces come by session and number, in whatever order trials were stored",
+          "[results][store]") {
+  const testing::TempDirectory directory;
+  auto [store, row] = begun_study(directory.path());
+  for (const int number : {3, 1, 2}) {
+    store.add_trial(trial(row.id, number, "a"));
+  }
+  std::vector<std::int64_t> visited;  // an id counts what was stored
+  each_trace_chunk(store, [&](std::int64_t trial_id, auto) { visited.push_back(trial_id); });
+  CHECK(visited == std::vector<std::int64_t>{2, 3, 1});
+}
+
 TEST_CASE("a trial is there whole or not at all", "[results][store]") {
   const testing::TempDirectory directory;
   auto [store, row] = begun_study(directory.path());

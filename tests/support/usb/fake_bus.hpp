@@ -1,9 +1,11 @@
 #pragma once
+#include <array>
 #include <chrono>
 #include <cstdint>
 #include <functional>
 #include <mutex>
 #include <span>
+#include <thread>
 #include <vector>
 
 #include "support/usb/fake_usbfs.hpp"
@@ -12,6 +14,10 @@ struct pollfd;
 namespace tapstudy::testing {
 // A USB device of one request and one reply, behind the kernel's interface to user space. The test
 // program's own ioctl, read and poll answer for its descriptor; libusb above them is the real one.
+// Its clock is the bus's own, which passes only while libusb waits: time-outs take no time, and a
+// machine that is busy elsewhere causes none.
+// A process forked from this one has the same device: a thread here answers its plain bulk
+// transfers.
 class FakeBus : private UsbBoard {
  public:
   using Trouble = FakeUsbfs::Trouble;
@@ -27,7 +33,7 @@ class FakeBus : private UsbBoard {
 
   // Opens the device's node; the descriptor is the caller's from then on.
   int open();
-  // What is sent to the device without libusb goes to this descriptor as well.
+  // What a forked process sends to the device goes to this descriptor as well.
   void copy_plain_bulk_to(int descriptor) { plain_bulk_copy_ = descriptor; }
   // Trouble with the next request, or with the one after so many more.
   void plan(Trouble trouble, int after = 0, std::chrono::milliseconds delay = {});
@@ -47,10 +53,10 @@ class FakeBus : private UsbBoard {
   static FakeBus* of(int descriptor);
 
  private:
-  using Clock = std::chrono::steady_clock;
   Bytes answer(std::span<const std::uint8_t> request) override;
-  int take_plain_bulk(std::span<const std::uint8_t> request) override;
   void show_news();
+  void answer_forked_processes();
+  int ask_from_forked_process(unsigned long request, void* argument);
 
   mutable std::mutex mutex_;
   int descriptor_;
@@ -63,5 +69,8 @@ class FakeBus : private UsbBoard {
   int plain_bulk_copy_{-1};
   std::vector<Bytes> requests_;
   bool keeps_requests_{true};
+  int generation_;
+  std::array<int, 2> line_{};  // its first end is this process's
+  std::thread answering_;
 };
 }  // namespace tapstudy::testing

@@ -58,7 +58,7 @@ void FakeUsbfs::send_back(Bytes reply, Trouble trouble) {
     case Trouble::missing:
       return;
     case Trouble::late:
-      planned.due = Clock::now() + delay_;
+      planned.due = now_() + delay_;
       break;
     case Trouble::short_reply:
       planned.bytes.resize(planned.bytes.size() / 2);
@@ -88,7 +88,7 @@ void FakeUsbfs::send_back(Bytes reply, Trouble trouble) {
 }
 
 void FakeUsbfs::deliver_what_is_due() {
-  while (has_reply_under_way() && replies_.front().due <= Clock::now()) {
+  while (has_reply_under_way() && replies_.front().due <= now_()) {
     usbdevfs_urb* const urb = waiting_.front();
     const Reply& reply = replies_.front();
     const auto length = std::min(static_cast<std::size_t>(urb->buffer_length), reply.bytes.size());
@@ -181,9 +181,25 @@ void FakeUsbfs::forget_transfers() {
   done_.clear();
 }
 
+// Without libusb, and without waiting. A transfer that libusb has under way is served first.
+int FakeUsbfs::bulk_in(const usbdevfs_bulktransfer& transfer) {
+  deliver_what_is_due();
+  if (replies_.empty() || replies_.front().due > now_()) {
+    return -ETIMEDOUT;
+  }
+  const Reply reply = std::move(replies_.front());
+  replies_.pop_front();
+  const auto length = std::min(static_cast<std::size_t>(transfer.len), reply.bytes.size());
+  std::memcpy(transfer.data, reply.bytes.data(), length);
+  return reply.status == 0 ? static_cast<int>(length) : reply.status;
+}
+
 int FakeUsbfs::bulk(const usbdevfs_bulktransfer& transfer) {
   if (is_gone_) {
     return -ENODEV;
+  }
+  if (transfer.ep == in_endpoint) {
+    return bulk_in(transfer);
   }
   if (clears_needed_ > 0) {
     return -EPIPE;
@@ -191,10 +207,14 @@ int FakeUsbfs::bulk(const usbdevfs_bulktransfer& transfer) {
   if (lasting_ == Trouble::out_nak) {
     return -ETIMEDOUT;
   }
-  const int error =
-      board_.take_plain_bulk({static_cast<const std::uint8_t*>(transfer.data), transfer.len});
-  replies_.clear();  // none is left over for whoever reads next
-  return error < 0 ? error : static_cast<int>(transfer.len);
+  if (lasting_ != Trouble::out_lost) {
+    Bytes reply = board_.answer({static_cast<const std::uint8_t*>(transfer.data), transfer.len});
+    if (!reply.empty()) {
+      send_back(std::move(reply), lasting_);
+      deliver_what_is_due();
+    }
+  }
+  return static_cast<int>(transfer.len);
 }
 
 int FakeUsbfs::ioctl(unsigned long request, void* argument) {

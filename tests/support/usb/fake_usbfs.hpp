@@ -39,9 +39,13 @@ class UsbBoard {
   virtual ~UsbBoard() = default;
   // Empty: no reply is due.
   virtual Bytes answer(std::span<const std::uint8_t> request) = 0;
-  // A request that is sent without libusb, and whose reply nobody waits for; 0 or a negative errno.
-  virtual int take_plain_bulk(std::span<const std::uint8_t> request) = 0;
 };
+
+// Time since some fixed moment.
+using Now = std::chrono::nanoseconds (*)();
+inline std::chrono::nanoseconds real_now() {
+  return std::chrono::steady_clock::now().time_since_epoch();
+}
 
 // What usbfs does with the descriptor of a board's node, however its ioctls get here. Every
 // transfer lies in this process's memory, with its buffer. One thread at a time.
@@ -63,7 +67,8 @@ class FakeUsbfs {
     out_lost,      // the request is taken, and never reaches the board
   };
 
-  FakeUsbfs(UsbBoard& board, unsigned address) : board_{board}, address_{address} {}
+  FakeUsbfs(UsbBoard& board, unsigned address, Now now = real_now)
+      : board_{board}, address_{address}, now_{now} {}
 
   // As inside the kernel: a result, or a negative errno; -ENOTTY for what it does not know.
   int ioctl(unsigned long request, void* argument);
@@ -81,9 +86,10 @@ class FakeUsbfs {
   bool has_news() const { return !done_.empty() || is_gone_; }
   bool is_waited_for() const { return !waiting_.empty(); }
   bool has_reply_under_way() const { return !replies_.empty() && !waiting_.empty(); }
+  // Where one is under way.
+  std::chrono::nanoseconds next_reply_due() const { return replies_.front().due; }
 
  private:
-  using Clock = std::chrono::steady_clock;
   int submit(usbdevfs_urb* urb);
   int take_request(usbdevfs_urb* urb);
   bool is_held_up(usbdevfs_urb* urb, Trouble trouble);
@@ -94,10 +100,12 @@ class FakeUsbfs {
   int discard(const void* urb);
   void forget_transfers();
   int bulk(const usbdevfs_bulktransfer& transfer);
+  int bulk_in(const usbdevfs_bulktransfer& transfer);
   Trouble trouble_now();
 
   UsbBoard& board_;
   unsigned address_;
+  Now now_;
   bool is_gone_{false};
   std::deque<usbdevfs_urb*> waiting_;    // for a reply
   std::deque<usbdevfs_urb*> not_taken_;  // requests that the board does not take
@@ -106,7 +114,7 @@ class FakeUsbfs {
   struct Reply {
     Bytes bytes;
     int status{0};
-    Clock::time_point due{};
+    std::chrono::nanoseconds due{};
   };
   std::deque<Reply> replies_;
   Bytes last_reply_;

@@ -28,7 +28,7 @@ struct SpidarOnBus {
   FakeBus bus{device::cyverse_vendor, product,
               [this](auto request) { return hardware.answer(request); }};
   device::UsbNode node{node_of(bus)};
-  // half of what a late reply takes, and ample for a machine that runs other tests meanwhile
+  // in the bus's time
   device::LibusbPipe pipe{node, {}, std::chrono::milliseconds{25}};
   std::unique_ptr<device::SpidarBoard> board{device::board_of(product)};
   device::SpidarG6 spidar{pipe, *board, simulated_settings()};

@@ -44,7 +44,7 @@ std::vector<Estimate> estimates(const std::vector<double>& values) {
 }  // namespace
 
 TEST_CASE("of two modes Rayleigh's coefficients are those of the paper's equation 13",
-          "[analysis][modal_identification]") {
+          "[analysis][modal]") {
   const core::RayleighDamping two = core::rayleigh_from_two_ratios(
       {0.05, 0.04}, 2.0 * std::numbers::pi * 50.0, 2.0 * std::numbers::pi * 200.0);
   const auto fit = fit_rayleigh({{50.0, 0.05, 0.001}, {200.0, 0.04, 0.004}});
@@ -55,7 +55,7 @@ TEST_CASE("of two modes Rayleigh's coefficients are those of the paper's equatio
 }
 
 TEST_CASE("the weighted fit of ratios, its errors and chi-squared are NumPy's",
-          "[analysis][modal_identification]") {
+          "[analysis][modal]") {
   const auto fit = fit_rayleigh(
       {{50.0, 0.06, 0.002}, {100.0, 0.035, 0.001}, {150.0, 0.036, 0.002}, {250.0, 0.042, 0.003}});
   REQUIRE(fit);
@@ -79,8 +79,7 @@ out(stats.chi2.sf(chi, 2), np.max(abs(0.5 * (x[0] / w + x[1] * w) / z - 1)))
   CHECK(fit->largest_misfit == Approx(numbers[6]));
 }
 
-TEST_CASE("planted Rayleigh coefficients lie inside 95 % of their intervals",
-          "[analysis][modal_identification]") {
+TEST_CASE("planted Rayleigh coefficients lie inside 95 % of their intervals", "[analysis][modal]") {
   const core::RayleighDamping planted{30.0, 4e-5};
   core::Rng rng{8};
   constexpr int fits = 400;
@@ -103,7 +102,7 @@ TEST_CASE("planted Rayleigh coefficients lie inside 95 % of their intervals",
 
 TEST_CASE(
     "so they do where errors are known from few taps alone, and true laws are seldom rejected",
-    "[analysis][modal_identification]") {
+    "[analysis][modal]") {
   const core::RayleighDamping planted{30.0, 4e-5};
   const auto modes = GENERATE(std::size_t{2}, std::size_t{3}, std::size_t{5});
   const int taps = GENERATE(2, 3, 6);
@@ -136,7 +135,7 @@ TEST_CASE(
 }
 
 TEST_CASE("close modes are told apart over taps of which each shows another best",
-          "[analysis][modal_identification]") {
+          "[analysis][modal]") {
   const auto tap = [](double first_hz, double second_hz, double first_significance) {
     TapModes modes;
     for (const auto& [frequency_hz, significance] :
@@ -161,7 +160,7 @@ TEST_CASE("close modes are told apart over taps of which each shows another best
   CHECK(modes[1].taps == 3);
 }
 
-TEST_CASE("a coefficient is never negative", "[analysis][modal_identification]") {
+TEST_CASE("a coefficient is never negative", "[analysis][modal]") {
   // falls faster than 1 / omega
   const auto fit = fit_rayleigh({{50.0, 0.08, 0.001}, {100.0, 0.03, 0.001}, {200.0, 0.01, 0.001}});
   REQUIRE(fit);
@@ -173,8 +172,7 @@ TEST_CASE("a coefficient is never negative", "[analysis][modal_identification]")
   CHECK_THROWS_AS(fit_rayleigh({{50.0, 0.08, 0.0}, {90.0, 0.07, 0.001}}), core::InvalidInput);
 }
 
-TEST_CASE("Young's modulus follows the square of the frequencies",
-          "[analysis][modal_identification]") {
+TEST_CASE("Young's modulus follows the square of the frequencies", "[analysis][modal]") {
   const double factor = GENERATE(0.9, 1.0, 1.07);
   std::vector<double> measured;
   for (const double frequency_hz : {48.0, 142.0, 231.0}) {  // not every mode is excited
@@ -189,7 +187,7 @@ TEST_CASE("Young's modulus follows the square of the frequencies",
 }
 
 TEST_CASE("the interval of Young's modulus holds what was planted, 95 times in 100",
-          "[analysis][modal_identification]") {
+          "[analysis][modal]") {
   core::Rng rng{4};
   constexpr int fits = 400;
   int inside = 0;
@@ -204,7 +202,7 @@ TEST_CASE("the interval of Young's modulus holds what was planted, 95 times in 1
   CHECK(std::abs(inside - 0.95 * fits) <= 3.3 * std::sqrt(fits * 0.95 * 0.05));
 }
 
-TEST_CASE("modes are assigned as SciPy's assignment does", "[analysis][modal_identification]") {
+TEST_CASE("modes are assigned as SciPy's assignment does", "[analysis][modal]") {
   core::Rng rng{9};
   for (int i = 0; i < 5; ++i) {
     std::vector<double> model;
@@ -230,8 +228,7 @@ TEST_CASE("modes are assigned as SciPy's assignment does", "[analysis][modal_ide
   }
 }
 
-TEST_CASE("Young's modulus is found from a stated one that is far off",
-          "[analysis][modal_identification]") {
+TEST_CASE("Young's modulus is found from a stated one that is far off", "[analysis][modal]") {
   const double stated_over_true = GENERATE(0.3, 0.5, 0.75, 1.0, 1.6, 3.3);
   CAPTURE(stated_over_true);
   core::Rng rng{8};
@@ -251,8 +248,7 @@ TEST_CASE("Young's modulus is found from a stated one that is far off",
   CHECK_FALSE(update->rival_pa);
 }
 
-TEST_CASE("a mode that the model does not have stays without a partner",
-          "[analysis][modal_identification]") {
+TEST_CASE("a mode that the model does not have stays without a partner", "[analysis][modal]") {
   const auto update =
       update_youngs_modulus(estimates({48.0, 70.0, 97.0, 142.0}), five_modes_hz, 1e9);
   REQUIRE(update);
@@ -262,7 +258,7 @@ TEST_CASE("a mode that the model does not have stays without a partner",
 }
 
 TEST_CASE("a decaying sinusoid and its errors are those of SciPy's curve_fit",
-          "[analysis][modal_identification]") {
+          "[analysis][modal]") {
   const auto numbers = testing::python_numbers(R"(
 from scipy.optimize import curve_fit
 rng = np.random.default_rng(6)
@@ -287,8 +283,7 @@ out(x[:4], np.sqrt(np.diag(cov))[:3], data)
   CHECK(fit->explained > 0.99);
 }
 
-TEST_CASE("a sensor that points the other way measures the same sinusoid",
-          "[analysis][modal_identification]") {
+TEST_CASE("a sensor that points the other way measures the same sinusoid", "[analysis][modal]") {
   FreeDecay decay = testing::planted_decay({{{250.0, 0.3}, 2.0}}, 20000.0, 0.02);
   const auto one = fit_decaying_sinusoid(decay, {20.0, 2000.0});
   decay.samples *= -1.0;
@@ -300,7 +295,7 @@ TEST_CASE("a sensor that points the other way measures the same sinusoid",
 }
 
 TEST_CASE("amplitudes over impact speeds follow a line through the origin, as statsmodels fits it",
-          "[analysis][modal_identification]") {
+          "[analysis][modal]") {
   const auto law = amplitude_per_speed({0.1, 0.2, 0.4, 0.5}, {0.31, 0.58, 1.22, 1.49});
   const auto numbers = testing::python_numbers(R"(
 import statsmodels.api as sm
@@ -316,7 +311,7 @@ out(r.params, r.bse, r.conf_int())
 }
 
 TEST_CASE("a line of amplitudes over speeds is statsmodels', and says whether it is a proportion",
-          "[analysis][modal_identification]") {
+          "[analysis][modal]") {
   const std::vector<double> speeds{0.1, 0.2, 0.3, 0.4, 0.5};
   const std::vector<double> offset{1.52, 1.98, 2.51, 3.02, 3.47};
   const auto line = amplitude_line(speeds, offset);
@@ -339,7 +334,7 @@ out(r.params, r.bse, r.conf_int())
 }
 
 TEST_CASE("over taps the interval is Student's, of one tap that of its noise",
-          "[analysis][modal_identification]") {
+          "[analysis][modal]") {
   const Estimate several = estimate_over_taps({1.0, 1.2, 1.1, 0.9, 1.3}, {9, 9, 9, 9, 9}, 100.0);
   const auto numbers = testing::python_numbers(R"(
 from scipy import stats

@@ -43,7 +43,7 @@ int agreed_in(const TapModes& tap) {
 }  // namespace
 
 TEST_CASE("without noise both methods find the poles, wherever the decay is cut off",
-          "[analysis][modal_identification]") {
+          "[analysis][modal]") {
   const double duration_s = GENERATE(0.1, 0.37, 1.0);
   const FreeDecay decay = testing::planted_decay(planted_modes, 4000.0, duration_s);
   const auto orders = matrix_pencil(decay, band, 8).orders;
@@ -57,7 +57,7 @@ TEST_CASE("without noise both methods find the poles, wherever the decay is cut 
   }
 }
 
-TEST_CASE("filtering and decimating a decay leaves its poles", "[analysis][modal_identification]") {
+TEST_CASE("filtering and decimating a decay leaves its poles", "[analysis][modal]") {
   const FreeDecay decay = testing::planted_decay(planted_modes, 48000.0, 0.4);
   const FreeDecay slow = decimated(decay, band.high_hz);
   CHECK(slow.rate_hz >= 4.0 * band.high_hz);
@@ -68,7 +68,7 @@ TEST_CASE("filtering and decimating a decay leaves its poles", "[analysis][modal
 }
 
 TEST_CASE("the transform of a cut exponential and its slopes are those of the sum",
-          "[analysis][modal_identification]") {
+          "[analysis][modal]") {
   const double rate_hz = 1000.0;
   // on a bin, where the closed form divides by 0; near one; damped
   const Pole pole = GENERATE(Pole{50.0, 0.0}, Pole{50.0, 1e-9}, Pole{77.7, 0.05});
@@ -94,7 +94,7 @@ TEST_CASE("the transform of a cut exponential and its slopes are those of the su
 }
 
 TEST_CASE("modes of a system that SciPy simulates are the eigenvalues that NumPy finds",
-          "[analysis][modal_identification]") {
+          "[analysis][modal]") {
   const auto numbers = testing::python_numbers(R"(
 from scipy import signal, linalg
 rng = np.random.default_rng(3)
@@ -127,7 +127,7 @@ out(y + 1e-3 * np.std(y) * rng.normal(size=len(y)))
 }
 
 TEST_CASE("standard errors are those of the Cramer-Rao bound, which NumPy computes from the decay",
-          "[analysis][modal_identification]") {
+          "[analysis][modal]") {
   FreeDecay decay = testing::planted_decay({{{100.0, 0.03}, 2.0, 0.5}}, 1000.0, 0.4);
   core::Rng rng{5};
   const double noise = testing::add_noise(decay, 30.0, rng);
@@ -156,8 +156,7 @@ out(np.sqrt(np.diag(np.linalg.inv(J.T @ J)))[:4] * sigma)
   CHECK(mode.phase_error_rad == Approx(bound[3]).epsilon(0.01));
 }
 
-TEST_CASE("two modes closer than their half-power bandwidth are told apart",
-          "[analysis][modal_identification]") {
+TEST_CASE("two modes closer than their half-power bandwidth are told apart", "[analysis][modal]") {
   FreeDecay decay =
       testing::planted_decay({{{118.0, 0.03}, 1.0}, {{122.0, 0.03}, 0.8}}, 2000.0, 0.5);
   core::Rng rng{11};
@@ -168,7 +167,7 @@ TEST_CASE("two modes closer than their half-power bandwidth are told apart",
   CHECK(tap.modes[1].fitted.pole.frequency_hz == Approx(122.0).margin(0.2));
 }
 
-TEST_CASE("noise has no agreed mode", "[analysis][modal_identification]") {
+TEST_CASE("noise has no agreed mode", "[analysis][modal]") {
   core::Rng rng{2};
   for (int i = 0; i < 20; ++i) {
     FreeDecay noise{2000.0, Eigen::VectorXd(800)};
@@ -179,8 +178,7 @@ TEST_CASE("noise has no agreed mode", "[analysis][modal_identification]") {
   }
 }
 
-TEST_CASE("an undamped line is no mode, and at the mains it is called hum",
-          "[analysis][modal_identification]") {
+TEST_CASE("an undamped line is no mode, and at the mains it is called hum", "[analysis][modal]") {
   using Line = std::tuple<double, double, std::string>;
   // the last falls a little, significantly, but by no more than a tenth in the whole tap
   const auto [line_hz, ratio, words] = GENERATE(values<Line>({{50.0, 0.0, "50 Hz hum"},
@@ -201,7 +199,7 @@ TEST_CASE("an undamped line is no mode, and at the mains it is called hum",
 }
 
 TEST_CASE("a mode whose tap is over before it has fallen by half is a mode, not a steady tone",
-          "[analysis][modal_identification]") {
+          "[analysis][modal]") {
   FreeDecay decay =
       testing::planted_decay({{{62.0, 0.004}, 1.0}, {{118.0, 0.003}, 0.7}}, 4000.0, 0.22);
   core::Rng rng{5};
@@ -214,8 +212,7 @@ TEST_CASE("a mode whose tap is over before it has fallen by half is a mode, not 
   }
 }
 
-TEST_CASE("a pole that does not last over the orders is not stable",
-          "[analysis][modal_identification]") {
+TEST_CASE("a pole that does not last over the orders is not stable", "[analysis][modal]") {
   std::vector<PolesOfOrder> orders;
   for (int order = 2; order <= 20; order += 2) {
     std::vector<Pole> poles{{100.0, 0.02}};
@@ -233,14 +230,14 @@ TEST_CASE("a pole that does not last over the orders is not stable",
 }
 
 TEST_CASE("a decay that is too short for the band is refused with the length it takes",
-          "[analysis][modal_identification]") {
+          "[analysis][modal]") {
   const FreeDecay decay = testing::planted_decay(planted_modes, 4000.0, 0.01);
   CHECK_THROWS_WITH(identify_modes(decay, {band}), Contains("too short") && Contains("at least"));
   CHECK_THROWS_AS(identify_modes(decay, {band}), core::InvalidInput);
 }
 
 TEST_CASE("hum beside a mode falsifies its damping until another tap tells of it",
-          "[analysis][modal_identification]") {
+          "[analysis][modal]") {
   const std::vector<PlantedMode> with_hum{{{48.3, 0.055}, 1.0}, {{50.0, 0.0}, 0.03, 0.7}};
   // too short a tap to tell the two apart
   FreeDecay decay = testing::planted_decay(with_hum, 4000.0, 0.12);
@@ -252,8 +249,8 @@ TEST_CASE("hum beside a mode falsifies its damping until another tap tells of it
   const std::vector<TapModes> taps{alone, identify_modes(long_decay, {{20.0, 200.0}})};
   REQUIRE(alone.modes.size() == 1);
   REQUIRE(taps[1].modes.size() == 2);
-  CHECK(lines_missed(taps[1], taps).empty());
-  const std::vector<double> lines_hz = lines_missed(alone, taps);
+  CHECK(missed_lines(taps[1], taps).empty());
+  const std::vector<double> lines_hz = missed_lines(alone, taps);
   REQUIRE(lines_hz.size() == 1);
   CHECK(lines_hz.front() == Approx(50.0).margin(0.05));
   const TapModes told = identify_modes(decay, {{20.0, 200.0}, lines_hz});
@@ -378,14 +375,14 @@ void clip(Recording& recording) {
 }  // namespace
 
 TEST_CASE("frequencies and damping ratios lie inside 95 % of their intervals at any noise",
-          "[analysis][modal_identification][slow]") {
+          "[analysis][modal][slow]") {
   const double signal_to_noise_db = GENERATE(40.0, 20.0, 10.0);
   check_holds(std::to_string(signal_to_noise_db) + " dB",
               coverage_of(signal_to_noise_db, 60, leave));
 }
 
 TEST_CASE("hum of the mains, clipped samples and a second tap soon after leave the intervals true",
-          "[analysis][modal_identification][slow]") {
+          "[analysis][modal][slow]") {
   check_holds("hum", coverage_of(30.0, 40, add_hum));
   check_holds("clipped", coverage_of(30.0, 40, clip));
   check_holds("two taps", coverage_of(30.0, 30, leave, {0.4, 0.55}));

@@ -36,7 +36,7 @@ double cost_of(const std::vector<std::size_t>& columns, const Eigen::MatrixXd& c
 }
 }  // namespace
 
-TEST_CASE("the least cost of an assignment is SciPy's", "[analysis][modal_identification]") {
+TEST_CASE("the least cost of an assignment is SciPy's", "[analysis][modal]") {
   core::Rng rng{4};
   std::string script = "from scipy.optimize import linear_sum_assignment as f\n";
   std::vector<double> ours;
@@ -57,15 +57,14 @@ TEST_CASE("the least cost of an assignment is SciPy's", "[analysis][modal_identi
 }
 
 TEST_CASE("shapes in proportion have an assurance of 1, orthogonal ones and none of 0",
-          "[analysis][modal_identification]") {
+          "[analysis][modal]") {
   const Eigen::Vector3d shape{1.0, -2.0, 0.5};
   CHECK(modal_assurance(shape, -3.0 * shape) == Approx(1.0).epsilon(1e-12));
   CHECK(modal_assurance(shape, Eigen::Vector3d{2.0, 1.0, 0.0}) == Approx(0.0).margin(1e-12));
   CHECK(modal_assurance(shape, Eigen::Vector3d::Zero()) == 0.0);
 }
 
-TEST_CASE("what channels say of one impact is one observation",
-          "[analysis][modal_identification]") {
+TEST_CASE("what channels say of one impact is one observation", "[analysis][modal]") {
   std::vector<TapModes> one_channel;
   std::vector<TapModes> two_channels;
   std::vector<int> impacts;
@@ -86,7 +85,7 @@ TEST_CASE("what channels say of one impact is one observation",
 }
 
 TEST_CASE("taps that differ as their errors say do not scatter, however unequal the errors",
-          "[analysis][modal_identification]") {
+          "[analysis][modal]") {
   const std::vector<double> errors_hz{0.01, 0.01, 0.01, 0.03, 0.03, 0.03, 0.1, 0.1};
   core::Rng rng{2};
   constexpr int recordings = 2000;
@@ -164,7 +163,7 @@ ModesOfTaps found_in(const std::vector<Channel>& channels, double signal_to_nois
     impacts.push_back(channel.impact);
     alone.push_back(identify_modes(decay, {sought}));
   }
-  return tell_close_modes_apart(decays, impacts, sought, {alone, modes_over_taps(alone, impacts)});
+  return resolve_close_modes(decays, impacts, sought, {alone, modes_over_taps(alone, impacts)});
 }
 
 std::vector<RepeatedMode> agreed_near(const ModesOfTaps& found, double frequency_hz) {
@@ -206,7 +205,7 @@ CloseCoverage close_coverage_of(double apart_hz, double signal_to_noise_db, int 
 }  // namespace
 
 TEST_CASE("two modes within a fraction of their bandwidth come back inside their intervals",
-          "[analysis][modal_identification][slow]") {
+          "[analysis][modal][slow]") {
   const auto [signal_to_noise_db, apart_hz] =
       GENERATE(table<double, double>({{40.0, 1.0}, {20.0, 1.0}, {10.0, 2.0}}));
   constexpr int recordings = 12;
@@ -218,7 +217,7 @@ TEST_CASE("two modes within a fraction of their bandwidth come back inside their
   CHECK(coverage.inside >= expected - 3.3 * std::sqrt(0.05 * expected));
 }
 
-TEST_CASE("two modes that are one pole come back as one", "[analysis][modal_identification]") {
+TEST_CASE("two modes that are one pole come back as one", "[analysis][modal]") {
   const Pole pole{low_hz, ratio};
   const ModesOfTaps found = found_in(channels_of(pole, pole), 20.0, 1);
   const std::vector<RepeatedMode> near = agreed_near(found, low_hz);
@@ -227,8 +226,7 @@ TEST_CASE("two modes that are one pole come back as one", "[analysis][modal_iden
   CHECK(contains(near.front().damping_ratio, ratio));
 }
 
-TEST_CASE("a mode whose frequency depends on the tap is not taken for two",
-          "[analysis][modal_identification]") {
+TEST_CASE("a mode whose frequency depends on the tap is not taken for two", "[analysis][modal]") {
   std::vector<Channel> channels;
   for (int impact = 0; impact < 6; ++impact) {
     const Pole pole{low_hz * (1.0 - 0.003 * impact), ratio};
@@ -238,8 +236,7 @@ TEST_CASE("a mode whose frequency depends on the tap is not taken for two",
   CHECK(agreed_near(found, low_hz).size() == 1);
 }
 
-TEST_CASE("what is told apart replaces what the taps alone showed",
-          "[analysis][modal_identification]") {
+TEST_CASE("what is told apart replaces what the taps alone showed", "[analysis][modal]") {
   const std::vector<Channel> channels = channels_of({low_hz, ratio}, {low_hz + 2.0, ratio});
   const ModesOfTaps found = found_in(channels, 30.0, 3);
   REQUIRE(agreed_near(found, low_hz).size() == 2);
@@ -253,7 +250,7 @@ TEST_CASE("what is told apart replaces what the taps alone showed",
 }
 
 TEST_CASE("a mode whose frequency falls with its amplitude is not taken for two",
-          "[analysis][modal_identification]") {
+          "[analysis][modal]") {
   core::Rng rng{4};
   std::vector<FreeDecay> decays;
   std::vector<int> impacts;
@@ -274,7 +271,7 @@ TEST_CASE("a mode whose frequency falls with its amplitude is not taken for two"
   }
   const ModesOfTaps by_taps{alone, modes_over_taps(alone, impacts)};
   REQUIRE(agreed_near(by_taps, low_hz).size() == 1);
-  const ModesOfTaps found = tell_close_modes_apart(decays, impacts, sought, by_taps);
+  const ModesOfTaps found = resolve_close_modes(decays, impacts, sought, by_taps);
   CHECK(agreed_near(found, low_hz).size() == 1);
 }
 

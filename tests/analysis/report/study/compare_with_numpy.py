@@ -15,7 +15,7 @@ import numpy as np
 import yaml
 from scipy import stats
 
-sys.path.insert(0, os.path.join(os.path.dirname(__file__), "../../../results"))
+sys.path.insert(0, os.path.join(os.path.dirname(__file__), "../../../../results"))
 sys.dont_write_bytecode = True
 import read_trace
 

@@ -108,8 +108,8 @@ TEST_CASE("forces, waveforms and spectra in a report are what NumPy finds in the
   const std::string study = simulated(directory, protocol);
   REQUIRE(testing::tapstudy({"report", study}).exit_code == 0);
   const auto compared = testing::run_program(
-      {"/usr/bin/python3", testing::source("tests/analysis/report/study/compare_with_numpy.py"), study,
-       study + "/report.json", testing::shipped(protocol)});
+      {"/usr/bin/python3", testing::source("tests/analysis/report/study/compare_with_numpy.py"),
+       study, study + "/report.json", testing::shipped(protocol)});
   INFO(protocol << ": " << compared.standard_error);
   CHECK(compared.exit_code == 0);
   const auto fits = testing::run_program(

@@ -31,12 +31,14 @@ class TroubledTrialLoop final : public runner::TrialLoop {
                           const runner::Explore& explore) override {
     struct Nothing final : runner::Exploration {
       bool is_stalled{};
-      void switch_to(std::size_t /*alternative*/) override {}
+      void request_position(std::size_t /*position*/) override {}
+      void request_silence(bool /*is_silent*/) override {}
+      bool is_as_requested() const override { return true; }
       void pass_time(double /*seconds*/) override {}
       bool is_running() const override { return true; }
       bool is_rendering() const override { return !is_stalled; }
       double time_s() const override { return 1.0; }
-      int contacts(std::size_t /*alternative*/) const override { return 1; }
+      int contacts(std::size_t /*position*/) const override { return 1; }
     } exploration;
     exploration.is_stalled = troubles_.stalled_trials-- > 0;
     explore(exploration);
@@ -55,7 +57,7 @@ class TroubledTrialLoop final : public runner::TrialLoop {
 class FirstOption final : public runner::Participant {
  public:
   std::optional<std::string> perform(const runner::TrialPrompt& prompt,
-                                     runner::Exploration& /*exploration*/) override {
+                                     runner::TrialControl& /*control*/) override {
     return prompt.answers.options.front().name;
   }
   void repeats(const runner::TrialPrompt& /*prompt*/) override { ++repeats_told; }
@@ -123,12 +125,15 @@ class PassingTime final : public runner::TrialLoop {
     struct Passing final : runner::Exploration {
       double now_s{0.0};
       double touches_per_s{};
-      void switch_to(std::size_t /*alternative*/) override {}
+      void request_position(std::size_t /*position*/) override {}
+      void request_silence(bool /*is_silent*/) override {}
+      bool is_as_requested() const override { return true; }
       void pass_time(double seconds) override { now_s += seconds; }
       bool is_running() const override { return true; }
+      bool is_rendering() const override { return true; }
       double time_s() const override { return now_s; }
-      int contacts(std::size_t alternative) const override {
-        return std::max(0, static_cast<int>(touches_per_s * now_s) - static_cast<int>(alternative));
+      int contacts(std::size_t position) const override {
+        return std::max(0, static_cast<int>(touches_per_s * now_s) - static_cast<int>(position));
       }
     } exploration;
     exploration.touches_per_s = touches_per_s_;
@@ -144,13 +149,12 @@ class PassingTime final : public runner::TrialLoop {
 class Hasty final : public runner::Participant {
  public:
   std::optional<std::string> perform(const runner::TrialPrompt& prompt,
-                                     runner::Exploration& exploration) override {
-    if (!exploration.is_running()) {
+                                     runner::TrialControl& control) override {
+    if (!control.poll()) {
       return std::nullopt;
     }
-    exploration.pass_time(1.0);
-    return exploration.is_running() ? std::optional{prompt.answers.options.front().name}
-                                    : std::nullopt;
+    control.pass_time(1.0);
+    return control.poll() ? std::optional{prompt.answers.options.front().name} : std::nullopt;
   }
   void refused(const runner::TrialPrompt& /*prompt*/, const runner::TooEarly& why) override {
     reasons.push_back(to_text(why));
@@ -275,7 +279,7 @@ class CountedRests final : public runner::Participant {
  public:
   explicit CountedRests(double& now_s) : now_s_{now_s} {}
   std::optional<std::string> perform(const runner::TrialPrompt& /*prompt*/,
-                                     runner::Exploration& /*exploration*/) override {
+                                     runner::TrialControl& /*control*/) override {
     return std::nullopt;
   }
   void rest(const protocols::Breaks& /*breaks*/) override {
@@ -316,7 +320,7 @@ TEST_CASE("the end of practice is said before trials that count, unless their in
           "[runner][session]") {
   struct Person final : runner::Participant {
     std::optional<std::string> perform(const runner::TrialPrompt& /*prompt*/,
-                                       runner::Exploration& /*exploration*/) override {
+                                       runner::TrialControl& /*control*/) override {
       return std::nullopt;
     }
     void practice_is_over() override { ++times_said; }
@@ -372,7 +376,7 @@ TEST_CASE("a block's questionnaire that an interruption left open is asked befor
   struct Person final : runner::Participant {
     explicit Person(std::vector<std::string>& done) : done_{done} {}
     std::optional<std::string> perform(const runner::TrialPrompt& /*prompt*/,
-                                       runner::Exploration& /*exploration*/) override {
+                                       runner::TrialControl& /*control*/) override {
       return std::nullopt;
     }
     void read(const std::string& text) override { done_.push_back(text); }

@@ -34,20 +34,23 @@ class Endless final : public TrialLoop {
  public:
   class Feeling final : public Exploration {
    public:
-    void switch_to(std::size_t alternative) override { current_ = alternative; }
-    std::size_t current() const override { return current_; }
+    void request_position(std::size_t position) override { position_ = position; }
+    void request_silence(bool /*is_silent*/) override {}
+    bool is_as_requested() const override { return true; }
+    std::size_t position() const { return position_; }
     void pass_time(double /*seconds*/) override {}
     bool is_running() const override { return true; }
+    bool is_rendering() const override { return true; }
     double time_s() const override { return 1.0; }
-    int contacts(std::size_t /*alternative*/) const override { return 5; }
+    int contacts(std::size_t /*position*/) const override { return 5; }
 
    private:
-    std::size_t current_{0};
+    std::size_t position_{0};
   };
   TrialResult run(const Rendered& /*rendered*/, const Explore& explore) override {
     Feeling feeling;
     explore(feeling);
-    felt_last = feeling.current();
+    felt_last = feeling.position();
     return {};
   }
   std::size_t felt_last{0};
@@ -58,7 +61,7 @@ class Scripted final : public Participant {
  public:
   explicit Scripted(std::vector<std::string> commands) : commands_{std::move(commands)} {}
   OperatorDesk* desk{nullptr};
-  std::optional<std::string> perform(const TrialPrompt& prompt, Exploration& exploration) override {
+  std::optional<std::string> perform(const TrialPrompt& prompt, TrialControl& control) override {
     const std::string command = next_ < commands_.size() ? commands_[next_] : "";
     ++next_;
     try {
@@ -68,8 +71,7 @@ class Scripted final : public Participant {
     } catch (const core::InvalidInput& error) {
       refusals.emplace_back(error.what());
     }
-    return exploration.is_running() ? std::optional{prompt.answers.options.front().name}
-                                    : std::nullopt;
+    return control.poll() ? std::optional{prompt.answers.options.front().name} : std::nullopt;
   }
   void wait_while(const std::function<bool()>& is_paused) override {
     ++pauses;

@@ -360,7 +360,7 @@ TEST_CASE("what damps is of a stimulus's own: materials and contacts", "[runner]
       protocols::read_protocol(testing::shipped("examples/plate_on_feet.yaml").string());
   protocols::Stimulus stiff = protocol.stimulus("table");
   protocols::Contacts contacts = *stiff.contacts;
-  for (core::ContactSpring& spring : contacts.springs) {
+  for (core::JointSpring& spring : contacts.springs) {
     spring.loss_factor = 0.0;
   }
   stiff.contacts = std::make_shared<const protocols::Contacts>(contacts);

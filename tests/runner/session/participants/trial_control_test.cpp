@@ -1,14 +1,14 @@
-// How the settings of an alternative are rendered: each by a position of the loop.
+// What a participant and an operator can do in a trial.
+#include "runner/session/participants/trial_control.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <utility>
+#include <vector>
 
 #include "protocols/reader/read_protocol.hpp"
 #include "protocols/schedule/schedule.hpp"
-#include "runner/session/engine/adjusted_exploration.hpp"
-#include "runner/session/engine/interval_exploration.hpp"
-#include "runner/session/engine/limited_exploration.hpp"
-#include "runner/session/participants/participant.hpp"
 #include "support/catch.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;
@@ -16,10 +16,13 @@ using namespace tapstudy;
 namespace {
 class Positions final : public runner::Exploration {
  public:
-  void switch_to(std::size_t position) override { current_ = position; }
-  std::size_t current() const override { return current_; }
+  void request_position(std::size_t position) override { current_ = position; }
+  void request_silence(bool /*is_silent*/) override {}
+  bool is_as_requested() const override { return true; }
+  std::size_t current() const { return current_; }
   void pass_time(double seconds) override { time_s_ += seconds; }
   bool is_running() const override { return true; }
+  bool is_rendering() const override { return true; }
   double time_s() const override { return time_s_; }
   int contacts(std::size_t position) const override { return contacts_.at(position); }
   std::map<std::size_t, int> contacts_;
@@ -68,7 +71,7 @@ TEST_CASE("a setting is rendered at once, felt by itself, and an event with its 
   Positions positions;
   positions.contacts_ = {{0, 5}, {3, 7}, {11, 0}};
   runner::TrialEvents events;
-  runner::AdjustedExploration adjusted{positions, trial, planned.block, events};
+  runner::TrialControl adjusted{positions, runner::rules_of(trial, planned.block), events};
   CHECK(values.at(adjusted.setting()) == start);
   adjusted.switch_to(1);
   CHECK(positions.current() == 1 + adjusted.setting());
@@ -104,7 +107,8 @@ TEST_CASE("alternatives without settings keep their positions", "[runner][sessio
     }
     Positions positions;
     runner::TrialEvents events;
-    runner::AdjustedExploration same{positions, trial, planned.protocol.block(trial.block), events};
+    runner::TrialControl same{positions,
+                              runner::rules_of(trial, planned.protocol.block(trial.block)), events};
     for (std::size_t i = 0; i < trial.alternatives.size(); ++i) {
       positions.contacts_[i] = 10 + static_cast<int>(i);
       same.switch_to(i);
@@ -125,21 +129,22 @@ namespace {
 // Ticks of a millisecond; taps as often as it is told what is not silent.
 class World final : public runner::Exploration {
  public:
-  void switch_to(std::size_t alternative) override { current_ = alternative; }
-  std::size_t current() const override { return current_; }
-  void silence(bool is_silent) override { is_silent_ = is_silent; }
+  void request_position(std::size_t position) override { current_ = position; }
+  std::size_t current() const { return current_; }
+  void request_silence(bool is_silent) override { is_silent_ = is_silent; }
   void pass_time(double seconds) override {
     const std::int64_t passed = std::llround(seconds * 1000.0);
     ticks_ += passed;
     contacts_[current_] += !is_silent_ && taps ? static_cast<int>(passed) : 0;
   }
   bool is_running() const override { return true; }
+  bool is_rendering() const override { return true; }
   double time_s() const override { return 1e-3 * static_cast<double>(ticks_); }
-  int contacts(std::size_t alternative) const override {
-    return contacts_.contains(alternative) ? contacts_.at(alternative) : 0;
+  int contacts(std::size_t position) const override {
+    return contacts_.contains(position) ? contacts_.at(position) : 0;
   }
   bool is_silent() const { return is_silent_; }
-  bool is_as_asked() const override { return !presses; }
+  bool is_as_requested() const override { return !presses; }
   bool taps{true};
   bool presses{false};  // the finger stays on the plate, so that nothing changes
 
@@ -162,7 +167,7 @@ TEST_CASE("alternatives come in their order, each for its time, with silence aro
   World world;
   const protocols::ExploreLimits limits = limits_with(0);
   runner::TrialEvents events;
-  runner::IntervalExploration in_turn{world, limits, 3, events};
+  runner::TrialControl in_turn{world, {limits, 3}, events};
   for (int i = 0; i < 6000; ++i) {
     in_turn.switch_to(2);  // nobody switches
     in_turn.pass_time(0.001);
@@ -188,7 +193,7 @@ TEST_CASE("however long the participant lets pass at once, intervals begin and e
   World world;
   const protocols::ExploreLimits limits = limits_with(0);
   runner::TrialEvents events;
-  runner::IntervalExploration in_turn{world, limits, 2, events};
+  runner::TrialControl in_turn{world, {limits, 2}, events};
   in_turn.pass_time(10.0);
   CHECK(in_turn.time_s() == Approx(10.0));
   REQUIRE(events.rows().size() == 4);
@@ -207,16 +212,16 @@ TEST_CASE("an interval lasts until it was tapped, and only then an answer is tak
   prompt.block = &block;
   prompt.alternative_labels = {"A", "B"};
   runner::TrialEvents events;
-  runner::IntervalExploration in_turn{world, block.explore, 2, events};
+  runner::TrialControl in_turn{world, {block.explore, 2}, events};
   in_turn.pass_time(20.0);
   CHECK(in_turn.intervals()->phase == Phase::open);
   CHECK(in_turn.current() == 0);
-  REQUIRE(too_early(prompt, "A", in_turn).has_value());
-  CHECK(too_early(prompt, "A", in_turn)->reason == runner::TooEarly::Reason::intervals);
+  REQUIRE(too_early(prompt, "A", in_turn.explored()).has_value());
+  CHECK(too_early(prompt, "A", in_turn.explored())->reason == runner::TooEarly::Reason::intervals);
   world.taps = true;
   in_turn.pass_time(5.0);
   CHECK(in_turn.intervals()->phase == Phase::over);
-  CHECK_FALSE(too_early(prompt, "A", in_turn).has_value());
+  CHECK_FALSE(too_early(prompt, "A", in_turn.explored()).has_value());
 }
 
 TEST_CASE("an interval begins, and its time counts, once its alternative is felt",
@@ -224,7 +229,7 @@ TEST_CASE("an interval begins, and its time counts, once its alternative is felt
   World world;
   const protocols::ExploreLimits limits = limits_with(0);
   runner::TrialEvents events;
-  runner::IntervalExploration in_turn{world, limits, 2, events};
+  runner::TrialControl in_turn{world, {limits, 2}, events};
   in_turn.pass_time(1.0);
   world.presses = true;  // from within the first interval until long after its end
   in_turn.pass_time(2.0);
@@ -242,7 +247,7 @@ TEST_CASE("all intervals come again as often as the protocol allows, and only wh
   World world;
   const protocols::ExploreLimits limits = limits_with(2);
   runner::TrialEvents events;
-  runner::IntervalExploration in_turn{world, limits, 2, events};
+  runner::TrialControl in_turn{world, {limits, 2}, events};
   in_turn.replay();
   CHECK(in_turn.intervals()->replays_left == 2);
   for (const int left : {1, 0, 0}) {
@@ -255,15 +260,65 @@ TEST_CASE("all intervals come again as often as the protocol allows, and only wh
   CHECK(std::ranges::count(events.rows(), "interval_replay", &results::EventRow::kind) == 2);
 }
 
-TEST_CASE("without intervals an exploration is as free as it was", "[runner][session]") {
+TEST_CASE("without intervals alternatives are switched freely", "[runner][session]") {
   World world;
   const protocols::ExploreLimits limits;
   runner::TrialEvents events;
-  runner::IntervalExploration free{world, limits, 2, events};
+  runner::TrialControl free{world, {limits, 2}, events};
   free.pass_time(3.0);
   free.switch_to(1);
   CHECK(world.current() == 1);
   CHECK_FALSE(world.is_silent());
   CHECK(free.intervals() == nullptr);
   CHECK(events.rows().empty());
+}
+
+// Rules by themselves.
+TEST_CASE("no more time passes in a trial than its limit leaves", "[runner][session]") {
+  runner::TrialRules rules;
+  CHECK(rules.seconds_left_of(3.0, 100.0) == 3.0);
+  CHECK_FALSE(rules.is_time_over(1e9));
+  rules.limits.max_seconds = 5.0;
+  CHECK(rules.seconds_left_of(3.0, 1.0) == 3.0);
+  CHECK(rules.seconds_left_of(3.0, 4.0) == 1.0);
+  CHECK(rules.seconds_left_of(3.0, 7.0) == 0.0);
+  CHECK_FALSE(rules.is_time_over(4.999));
+  CHECK(rules.is_time_over(5.0));
+}
+
+TEST_CASE("the operator ends a trial by the request that came first, and switches where one can",
+          "[runner][session][operator]") {
+  Positions positions;
+  runner::TrialEvents events;
+  runner::OperatorRequests wanted;
+  std::vector<std::size_t> told;
+  runner::TrialControl control{
+      positions,
+      {{}, 3},
+      events,
+      {[&] { return std::exchange(wanted, {}); }, [&](std::size_t i) { told.push_back(i); }}};
+  wanted.switch_to = 2;
+  CHECK(control.poll());
+  CHECK(positions.current() == 2);
+  CHECK(told == std::vector<std::size_t>{2});
+  wanted.end = runner::TrialRequest::skip;
+  CHECK_FALSE(control.poll());
+  wanted.is_paused = true;
+  CHECK_FALSE(control.poll());
+  REQUIRE(control.ended_by_operator());
+  CHECK(control.ended_by_operator()->end == runner::TrialRequest::skip);
+  CHECK_FALSE(control.ended_by_operator()->is_paused);
+}
+
+TEST_CASE("an answer that is entered twice is told once, and its withdrawal too",
+          "[runner][session]") {
+  Positions positions;
+  runner::TrialEvents events;
+  std::vector<std::string> told;
+  runner::TrialControl control{
+      positions, {}, events, {{}, {}, [&](const std::string& answer) { told.push_back(answer); }}};
+  for (const char* const answer : {"", "A", "A", "B", "", ""}) {
+    control.enter_answer(answer);
+  }
+  CHECK(told == std::vector<std::string>{"A", "B", ""});
 }

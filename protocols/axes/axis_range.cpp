@@ -92,15 +92,14 @@ bool check_spacing(MapReader& reader, Spacing spacing, double lowest) {
 std::optional<SpacedEnds> read_ends(MapReader& reader, const EndKeys& keys, const Range& allowed) {
   const std::size_t earlier_problems = reader.problems_in_file();
   SpacedEnds ends;
-  ends.low = reader.number(keys.low, allowed);
-  ends.high = reader.number(keys.high, allowed);
+  ends.low = reader.number({keys.low, "lowest value"}, allowed);
+  ends.high = reader.number({keys.high, "highest value, above " + keys.low}, allowed);
   ends.spacing = read_spacing(reader);
   if (reader.problems_in_file() > earlier_problems) {
     return std::nullopt;
   }
   if (!(ends.low < ends.high)) {
-    reader.reject(keys.low.name,
-                  fmt::format("{} is not below {}, {}", ends.low, keys.high.name, ends.high));
+    reader.reject(keys.low, fmt::format("{} is not below {}, {}", ends.low, keys.high, ends.high));
     return std::nullopt;
   }
   return check_spacing(reader, ends.spacing, ends.low) ? std::optional{ends} : std::nullopt;
@@ -119,7 +118,7 @@ std::optional<SpacedValues> read_spaced(MapReader& reader, const EndKeys& keys,
   if (std::ranges::adjacent_find(values, std::greater_equal{}) != values.end()) {
     reader.reject("count", fmt::format("is too high: values between {} and {} are no longer "
                                        "distinct",
-                                       keys.low.name, keys.high.name));
+                                       keys.low, keys.high));
     return std::nullopt;
   }
   return spaced_values;

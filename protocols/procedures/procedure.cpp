@@ -85,9 +85,7 @@ std::optional<std::vector<double>> read_grid(MapReader& reader, const Range& sta
   if (reader.has("values")) {
     return listed(reader, allowed);
   }
-  const auto spaced =
-      read_spaced(reader, {{"min", "lowest value"}, {"max", "highest value, above min"}}, allowed,
-                  max_grid_values);
+  const auto spaced = read_spaced(reader, {"min", "max"}, allowed, max_grid_values);
   return spaced ? std::optional{spaced->values} : std::nullopt;
 }
 }  // namespace tapstudy::protocols

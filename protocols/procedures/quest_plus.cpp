@@ -106,12 +106,19 @@ class DesignReader {
   DesignReader(MapReader& reader, const core::PsychometricShapeRow& shape)
       : reader_{&reader}, shape_{&shape} {}
 
-  void read_stimulus() {
+  void read_curve() {
     reader_->map({"stimulus", "values of the first axis, that of the psychometric function"},
                  Presence::required, [&](MapReader& own) { read_axis(own); });
     if (!design_.axes.empty() && shape_->is_logarithmic && design_.axes[0].front() < 0.0) {
       refuse("stimulus", fmt::format("has values below 0, where {} is not defined", shape_->name));
     }
+    read_parameter(
+        {"threshold", "stimulus value at which F is one half (weibull, gumbel: 1 - 1/e)"},
+        threshold_range());
+    read_parameter(
+        {"slope",
+         "steepness of F per unit of the value, or per decade for shapes of the logarithm"},
+        Range::positive(largest_value));
   }
   void read_parameter(const Key& key, const Range& range) {
     reader_->map(key, Presence::required,
@@ -234,6 +241,12 @@ QuestPlusStop read_stop(MapReader& top, bool may_be_narrow) {
 }
 
 const Range rate{0.0, 1.0, true, false};
+Key guess_key() {
+  return {"guess", "proportion correct far below the threshold"};
+}
+Key lapse_key() {
+  return {"lapse", "proportion incorrect far above it"};
+}
 
 class QuestPlus final : public Procedure {
  public:
@@ -244,16 +257,9 @@ class QuestPlus final : public Procedure {
   }
   std::shared_ptr<const TrackSettings> read(MapReader& reader) const override {
     DesignReader design{reader, read_function(reader)};
-    design.read_stimulus();
-    design.read_parameter(
-        {"threshold", "stimulus value at which F is one half (weibull, gumbel: 1 - 1/e)"},
-        design.threshold_range());
-    design.read_parameter(
-        {"slope",
-         "steepness of F per unit of the value, or per decade for shapes of the logarithm"},
-        Range::positive(largest_value));
-    design.read_parameter({"guess", "proportion correct far below the threshold"}, rate);
-    design.read_parameter({"lapse", "proportion incorrect far above it"}, rate);
+    design.read_curve();
+    design.read_parameter(guess_key(), rate);
+    design.read_parameter(lapse_key(), rate);
     design.read_further_axes();
     design.check_rates();
     return design.built(read_stop(reader, true), "QUEST+ (Watson 2017)");
@@ -268,16 +274,9 @@ class Psi final : public Procedure {
   }
   std::shared_ptr<const TrackSettings> read(MapReader& reader) const override {
     DesignReader design{reader, read_function(reader)};
-    design.read_stimulus();
-    design.read_parameter(
-        {"threshold", "stimulus value at which F is one half (weibull, gumbel: 1 - 1/e)"},
-        design.threshold_range());
-    design.read_parameter(
-        {"slope",
-         "steepness of F per unit of the value, or per decade for shapes of the logarithm"},
-        Range::positive(largest_value));
-    design.read_fixed({"guess", "proportion correct far below the threshold"}, rate);
-    design.read_fixed({"lapse", "proportion incorrect far above it"}, rate);
+    design.read_curve();
+    design.read_fixed(guess_key(), rate);
+    design.read_fixed(lapse_key(), rate);
     design.check_rates();
     return design.built(read_stop(reader, false), "the psi method (Kontsevich & Tyler 1999)");
   }

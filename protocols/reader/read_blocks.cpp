@@ -204,21 +204,7 @@ void check_presented(MapReader& reader, const Protocol& protocol, const Block& b
   }
 }
 
-// The keys that blocks of every task have; the task reads its own.
-Block read_block(MapReader& reader, const Protocol& protocol) {
-  Block block;
-  block.name = reader.name({"name", "unique among the blocks"});
-  block.task = find_task(reader.word(
-      {"task",
-       "identification: which plate is this; choice: switch among blind labels, then choose; "
-       "comparison: which is the comparison, along an axis, or of fixed stimuli, listed from the "
-       "least to the greatest, the greater one; same_different, odd_one_out, abx: discrimination "
-       "of two; paired: which of two, all pairs; ranking: all in order, the first one first; "
-       "rating: one on a scale of steps; magnitude: how much, as a number; match_to_sample: which "
-       "of several is like the sample; adjustment: one is moved along an axis until it feels equal "
-       "to a standard"},
-      "task", task_names()));
-  block.question = reader.translated({"question", "text that participants are asked"});
+void read_presentations(MapReader& reader, const Protocol& protocol, Block& block) {
   block.stimuli = reader.words({"stimuli",
                                 "presented, or chosen among; at most 26; at least 2 where several "
                                 "are told apart; with procedures one that varies"},
@@ -239,6 +225,39 @@ Block read_block(MapReader& reader, const Protocol& protocol) {
        {"shuffle_within_repetition", Order::shuffle_within_repetition},
        {"williams", Order::williams}},
       "shuffle");
+}
+
+void read_keys_of_task(MapReader& reader, const Protocol& protocol, Block& block) {
+  block.task->read(reader, protocol, block);
+  check_presented(reader, protocol, block);
+  if (block.gives_feedback && block.allows_correction) {
+    reader.reject("correction", "cannot be combined with feedback");
+  }
+  if (!block.task->has_correct_answer()) {
+    reader.check("feedback", !block.gives_feedback, R"({"const": false})",
+                 fmt::format("the task {} has no right answer", block.task->name()));
+  }
+  if (!block.task->uses_order()) {
+    reader.refuse("order", "a task that draws alternatives anew in each trial takes no order");
+  }
+}
+
+// The keys that blocks of every task have; the task reads its own.
+Block read_block(MapReader& reader, const Protocol& protocol) {
+  Block block;
+  block.name = reader.name({"name", "unique among the blocks"});
+  block.task = find_task(reader.word(
+      {"task",
+       "identification: which plate is this; choice: switch among blind labels, then choose; "
+       "comparison: which is the comparison, along an axis, or of fixed stimuli, listed from the "
+       "least to the greatest, the greater one; same_different, odd_one_out, abx: discrimination "
+       "of two; paired: which of two, all pairs; ranking: all in order, the first one first; "
+       "rating: one on a scale of steps; magnitude: how much, as a number; match_to_sample: which "
+       "of several is like the sample; adjustment: one is moved along an axis until it feels equal "
+       "to a standard"},
+      "task", task_names()));
+  block.question = reader.translated({"question", "text that participants are asked"});
+  read_presentations(reader, protocol, block);
   read_practice(reader, block);
   if (block.task != nullptr && block.task->uses_order()) {
     if (block.order == Order::listed || block.order == Order::williams) {
@@ -264,18 +283,7 @@ Block read_block(MapReader& reader, const Protocol& protocol) {
                       "uncertain, is presented again, so often at most"},
                      0, 10, 0);
   if (block.task != nullptr) {
-    block.task->read(reader, protocol, block);
-    check_presented(reader, protocol, block);
-    if (block.gives_feedback && block.allows_correction) {
-      reader.reject("correction", "cannot be combined with feedback");
-    }
-    if (!block.task->has_correct_answer()) {
-      reader.check("feedback", !block.gives_feedback, R"({"const": false})",
-                   fmt::format("the task {} has no right answer", block.task->name()));
-    }
-    if (!block.task->uses_order()) {
-      reader.refuse("order", "a task that draws alternatives anew in each trial takes no order");
-    }
+    read_keys_of_task(reader, protocol, block);
   }
   return block;
 }

@@ -35,7 +35,7 @@ std::optional<SpacedValues> read_listed(MapReader& reader, const Range& allowed)
 
 // nullopt: a problem was noted.
 std::optional<AxisRange> read_range(MapReader& reader, const Axis& axis, const Range& allowed) {
-  const EndKeys keys{{"from", "lowest value"}, {"to", "highest value, above from"}};
+  const EndKeys keys{"from", "to"};
   if (axis.kind == AxisKind::scaled) {
     const auto ends = read_ends(reader, keys, allowed);
     return ends ? std::optional{AxisRange{&axis, ends->low, ends->high, ends->spacing}}

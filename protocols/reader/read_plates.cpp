@@ -44,16 +44,16 @@ void read_hold(MapReader& reader, core::Fixation& fixation) {
   fixation.springs_n_per_m = springs_n_per_m;
 }
 
+Key at_key() {
+  return {"at_m", "vertex and disc with size_m: x, y; ball, and vertex of a surface: x, y, z"};
+}
+
 void read_place(MapReader& reader, bool is_box, core::Fixation& fixation) {
   if (!is_box) {
-    fixation.at_m = reader.numbers(
-        {"at_m", "vertex and disc with size_m: x, y; ball, and vertex of a surface: x, y, z"}, 3,
-        coordinate_m);
+    fixation.at_m = reader.numbers(at_key(), 3, coordinate_m);
     return;
   }
-  fixation.at_m.head<2>() = reader.numbers(
-      {"at_m", "vertex and disc with size_m: x, y; ball, and vertex of a surface: x, y, z"}, 2,
-      coordinate_m);
+  fixation.at_m.head<2>() = reader.numbers(at_key(), 2, coordinate_m);
   fixation.face = reader.one_of<core::Face>(
       {"face",
        "vertex and disc with size_m only: both faces, one of them, or through the thickness"},
@@ -78,9 +78,7 @@ core::Fixation read_region(MapReader& reader, bool is_box) {
       read_place(reader, is_box, fixation);
       break;
     case RegionShape::ball:
-      fixation.at_m = reader.numbers(
-          {"at_m", "vertex and disc with size_m: x, y; ball, and vertex of a surface: x, y, z"}, 3,
-          coordinate_m);
+      fixation.at_m = reader.numbers(at_key(), 3, coordinate_m);
       break;
     case RegionShape::box:
       fixation.low_m =
@@ -313,7 +311,7 @@ void read_body(const std::string& name, MapReader& reader, const Protocol& proto
 
 // nullopt for a name that was rejected.
 std::optional<core::JointSpring::End> read_end(MapReader& reader, const Key& key,
-                                                 const EndsByName& ends) {
+                                               const EndsByName& ends) {
   const auto found = ends.find(reader.word(key, "contact point", keys_of(ends)));
   return found == ends.end() ? std::nullopt : std::optional{found->second};
 }

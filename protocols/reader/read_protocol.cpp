@@ -20,7 +20,7 @@ ReadFile beside(const std::string& file) {
 }
 
 void read_whole(MapReader& top, Protocol& protocol, const ReadFile& read_file) {
-  top.word({"format", "version of the file format"}, "format", {"tapstudy/1"});
+  top.check_format("tapstudy/1");
   protocol.title = top.translated({"title",
                                    "of the study, as participants' pages and reports show it: it "
                                    "should not give the question away"});

@@ -183,7 +183,7 @@ void read_own_placement(MapReader& top, const std::function<void(const core::Pla
 }
 
 void read_whole(MapReader& top, const std::string& file, RigDevices devices, Rig& rig) {
-  top.word({"format", "version of the file format"}, "format", {"tapstudy-rig/1"});
+  top.check_format("tapstudy-rig/1");
   read_device(top, file, devices, rig);
   read_limits(top, rig.gate.limits);
   if (rig.has_hardware) {
@@ -272,7 +272,7 @@ core::StringCalibration read_string(MapReader& reader) {
 }
 
 core::SpidarCalibration read_calibration(MapReader& top, const std::vector<std::string>& types) {
-  top.word({"format", "version of the file format"}, "format", {format});
+  top.check_format(format);
   top.word({"device", "kind of device"}, "device", {device});
   top.word({"type", "type of the frame; must be that of the rig"}, "type of this rig", types);
   core::SpidarCalibration calibration;

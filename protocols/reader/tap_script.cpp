@@ -58,7 +58,7 @@ TapStep read_step(MapReader& reader, const Plate& plate) {
 TapScript parse_tap_script(const std::string& text, const std::string& file, const Plate& plate) {
   Problems problems{file};
   MapReader top = MapReader::whole_file(text, file, problems);
-  top.word({"format", "version of the file format"}, "format", {"tapstudy-taps/1"});
+  top.check_format("tapstudy-taps/1");
   TapScript script;
   script.rest_s =
       top.number({"rest_s", "how long the last contact is held"}, {0.0, long_script_s}, 0.3);

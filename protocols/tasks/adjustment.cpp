@@ -7,7 +7,7 @@
 #include "protocols/axes/axis_range.hpp"
 #include "protocols/axes/presented_stimulus.hpp"
 #include "protocols/reader/read_sections.hpp"
-#include "protocols/tasks/read_axis_values.hpp"
+#include "protocols/tasks/shared_keys.hpp"
 #include "protocols/tasks/task.hpp"
 #include "protocols/tasks/task_parts.hpp"
 #include "protocols/yaml/yaml_reader.hpp"
@@ -22,10 +22,9 @@ std::vector<double> read_settings(MapReader& reader, Spacing& spacing) {
               "adjustment only, required there: the values that participants can choose; runs "
               "start at random ones, half below and half above the standard"},
              MapReader::Presence::required, [&](MapReader& inner) {
-               const auto read = read_spaced(
-                   inner, {{"from", "lowest value"}, {"to", "highest value, above from"}},
-                   {-largest_adjusted_value, largest_adjusted_value},
-                   static_cast<int>(max_settings));
+               const auto read = read_spaced(inner, {"from", "to"},
+                                             {-largest_adjusted_value, largest_adjusted_value},
+                                             static_cast<int>(max_settings));
                if (read) {
                  values = read->values;
                  spacing = read->spacing;
@@ -44,10 +43,7 @@ void read_standard(MapReader& reader, const Protocol& protocol, const Block& blo
   };
   const double own = is_usable ? presented({}) : 0.0;
   const double standard =
-      reader.number({"standard",
-                     "with procedures, or adjustment without a reference: value on the axis, in "
-                     "its unit; adjustment: within the settings; unset: the stimulus's own"},
-                    {-largest_adjusted_value, largest_adjusted_value}, own);
+      read_standard_value(reader, {-largest_adjusted_value, largest_adjusted_value}, own);
   if (!is_usable) {
     return;
   }
@@ -89,7 +85,7 @@ std::optional<Adjustment> read_adjustment(MapReader& reader, const Protocol& pro
   const std::vector<double> asked = read_settings(reader, adjustment.spacing);
   const char* const one_that_varies = "an adjustment moves one stimulus, which must have `vary`";
   reader.check_count("stimuli", block.stimuli, 0, 1, one_that_varies);
-  if (!reader.depends_on_others(!axes.empty())) {
+  if (reader.depends_on_others(axes.empty())) {
     for (const char* const key : {"axis", "standard", "reference"}) {
       reader.leave(key);
     }

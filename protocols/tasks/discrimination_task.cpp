@@ -8,7 +8,7 @@
 #include "core/error.hpp"
 #include "protocols/axes/presented_stimulus.hpp"
 #include "protocols/reader/read_sections.hpp"
-#include "protocols/tasks/read_axis_values.hpp"
+#include "protocols/tasks/shared_keys.hpp"
 namespace tapstudy::protocols {
 namespace {
 constexpr double any = 1e15;
@@ -185,11 +185,7 @@ std::optional<Comparison> read_comparison(MapReader& reader, const Protocol& pro
   const bool is_known =
       std::ranges::find(axes, comparison.axis) != axes.end() && family->is_complete();
   const double own = is_known ? presented_values(protocol, *family, {}).at(comparison.axis) : 0.0;
-  comparison.standard =
-      reader.number({"standard",
-                     "with procedures, or adjustment without a reference: value on the axis, in "
-                     "its unit; adjustment: within the settings; unset: the stimulus's own"},
-                    {-any, any}, own);
+  comparison.standard = read_standard_value(reader, {-any, any}, own);
   comparison.is_fraction =
       reader.one_of<bool>({"level",
                            "with procedures only: what they choose: a fraction of the standard, or "

@@ -5,7 +5,7 @@
 
 #include "protocols/reader/read_sections.hpp"
 #include "protocols/schedule/ordering.hpp"
-#include "protocols/tasks/read_axis_values.hpp"
+#include "protocols/tasks/shared_keys.hpp"
 #include "protocols/tasks/task.hpp"
 #include "protocols/tasks/task_parts.hpp"
 #include "protocols/yaml/yaml_reader.hpp"

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "protocols/tasks/sample_task.hpp"
+#include "protocols/tasks/shared_keys.hpp"
 #include "protocols/tasks/task.hpp"
 #include "protocols/yaml/yaml_reader.hpp"
 namespace tapstudy::protocols {
@@ -40,10 +41,7 @@ class MatchToSample final : public SampleTask {
     return block.alternatives == 2 ? "abx_differencing" : "";
   }
   void read(MapReader& reader, const Protocol& /*protocol*/, Block& block) const override {
-    block.alternatives = reader.integer(
-        {"alternatives",
-         "comparison: 2 to 8; odd_one_out: 3 or 4; match_to_sample: 2 to 4; unset: 2, or 3"},
-        2, 4, 3);
+    block.alternatives = read_alternatives(reader, 2, 4, 3);
     reader.check_count("stimuli", block.stimuli, alternatives(block), max_stimuli,
                        fmt::format("a match to sample among {} alternatives needs at least as many "
                                    "stimuli",

@@ -19,10 +19,6 @@ std::size_t Description::ask(Question question) {
   return answer;
 }
 
-bool Description::ask_hidden() {
-  return ask({Question::Kind::hidden, std::to_string(hidden_++), {false, true}}) == 1;
-}
-
 const Description::Property* Description::find(const std::string& key) const {
   const auto found = std::ranges::find(properties_, key, &Property::name);
   return found == properties_.end() ? nullptr : &*found;
@@ -156,6 +152,37 @@ SchemaJson common(const SchemaJson& one, const SchemaJson& two) {
   return both;
 }
 
+// What both demand under one condition.
+SchemaJson common_rules(const SchemaJson& one, const SchemaJson& two) {
+  SchemaJson rules = SchemaJson::array();
+  for (const SchemaJson& rule : one) {
+    const auto same = std::ranges::find_if(
+        two, [&](const SchemaJson& other) { return other["if"] == rule["if"]; });
+    SchemaJson then = SchemaJson::object();
+    if (same == two.end()) {
+      continue;
+    }
+    for (const auto& [name, demanded] : rule["then"].items()) {
+      const SchemaJson other = (*same)["then"].value(name, SchemaJson{});
+      if (name == "required" && other.is_array()) {
+        if (SchemaJson required = common(demanded, other); !required.empty()) {
+          then[name] = std::move(required);
+        }
+      } else if (name == "properties" && other.is_object()) {
+        for (const auto& [key, schema] : demanded.items()) {
+          if (other.contains(key) && other[key] == schema) {
+            then[name][key] = schema;
+          }
+        }
+      }
+    }
+    if (!then.empty()) {
+      rules.push_back({{"if", rule["if"]}, {"then", then}});
+    }
+  }
+  return rules;
+}
+
 SchemaJson merged(const SchemaJson& one, const SchemaJson& two);
 
 void merge_properties(SchemaJson& into, const SchemaJson& other) {
@@ -188,10 +215,11 @@ SchemaJson merged(const SchemaJson& one, const SchemaJson& two) {
       }
     }
   }
-  for (const char* const name : {"required", "allOf"}) {
-    if (both.contains(name)) {
-      both[name] = common(both[name], two.value(name, SchemaJson::array()));
-    }
+  if (both.contains("required")) {
+    both["required"] = common(both["required"], two.value("required", SchemaJson::array()));
+  }
+  if (both.contains("allOf")) {
+    both["allOf"] = common_rules(both["allOf"], two.value("allOf", SchemaJson::array()));
   }
   for (const char* const name : {"items", "additionalProperties"}) {
     if (both.contains(name) && two.contains(name)) {
@@ -400,7 +428,8 @@ void Rules::add_branch(const Node& node, const Branch& branch,
   for (const Branch& other : node.branches) {
     if (other.question != branch.question &&
         reached.contains(Description::name_of(node.pass.asked()[other.question]))) {
-      still.merge(possible(*other.node));
+      std::ranges::copy_if(possible(*other.node), std::inserter(still, still.end()),
+                           [&](const Key& key) { return node.pass.find(key) == nullptr; });
     }
   }
   for (const Key& key : possible(node)) {

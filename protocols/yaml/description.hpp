@@ -42,7 +42,6 @@ class Description {
   static std::string name_of(const Question& question);
   // The answer in this pass, an index.
   std::size_t ask(Question question);
-  bool ask_hidden();
   // Of one key the first description is kept.
   void add(const Key& key, SchemaJson value, bool is_required, const SchemaJson& otherwise = {});
   // In this pass the key is not allowed.
@@ -61,7 +60,6 @@ class Description {
  private:
   Answers chosen_;
   KnownMappings* known_;
-  int hidden_{0};
   std::vector<Question> asked_;
   std::vector<Property> properties_;
   SchemaJson choices_ = SchemaJson::object();

@@ -32,7 +32,7 @@ std::string MapReader::schema_of(const std::string& title, const std::string& ab
     top.pass_ = &pass;
     read(top);
   }));
-  return schema.dump(2);
+  return schema.dump(2) + "\n";
 }
 
 void MapReader::describe_inner(const Key& key, Presence presence, Shape shape, const ReadMap& read,

@@ -356,6 +356,10 @@ std::string MapReader::word(const Key& key, const std::string& kind,
   return node && is_allowed(*node, path_of(key.name), kind, allowed) ? node->Scalar() : harmless;
 }
 
+void MapReader::check_format(const std::string& version) {
+  word({"format", "version of the file format"}, "format", {version});
+}
+
 std::vector<std::string> MapReader::words(
     const Key& key, const std::string& kind, const std::vector<std::string>& allowed,
     const std::optional<std::vector<std::string>>& otherwise) {

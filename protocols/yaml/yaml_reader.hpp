@@ -82,12 +82,14 @@ class MapReader {
   void leave(const std::string& key) { known_.push_back(key); }
   // Rejects the key if it is given: it is not for what the other keys say.
   void refuse(const std::string& key, const std::string& what);
-  // Rejects a list of names that has fewer or more.
   // Rejects the key's value if it is not right; `schema` says the same in JSON schema's members.
   void check(const std::string& key, bool is_right, const std::string& schema,
              const std::string& what);
+  // Rejects a list of names that has fewer or more.
   void check_count(const std::string& key, const std::vector<std::string>& names, std::size_t least,
                    std::size_t most, const std::string& what);
+  // The key `format`, which says this.
+  void check_format(const std::string& version);
   double number(const Key& key, const Range& range, std::optional<double> otherwise = {});
   int integer(const Key& key, int low, int high, std::optional<int> otherwise = {});
   bool yes_or_no(const Key& key, std::optional<bool> otherwise = {});
@@ -162,7 +164,6 @@ class MapReader {
   void reject(const std::string& what);
   void reject(const std::string& key, const std::string& what);
   std::size_t problems_in_file() const { return problems_->count(); }  // so far
-  bool is_describing() const { return pass_ != nullptr; }
   void finish();
 
  private:

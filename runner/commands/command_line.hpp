@@ -43,6 +43,7 @@ class Command {
   // A file name that must have the given extension.
   void file(const std::string& name, std::string& value, const std::string& ending,
             const std::string& help);
+  // Required if it is positional.
   void one_of(const std::string& name, std::string& value, const std::vector<std::string>& allowed,
               const std::string& help);
   void flag(const std::string& name, bool& value, const std::string& help);

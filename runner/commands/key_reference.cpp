@@ -158,7 +158,9 @@ std::string condition_words(const Json& condition) {
     return fmt::format("{}", fmt::join(words, ", "));
   };
   if (condition.contains("properties") && condition["properties"].size() == 1) {
-    const auto& [key, value] = *condition["properties"].items().begin();
+    const auto entry = condition["properties"].begin();
+    const std::string& key = entry.key();
+    const Json& value = entry.value();
     return fmt::format(
         "with `{}` {}", key,
         value.contains("const") ? code(value["const"]) : codes(value.value("enum", Json::array())));
@@ -166,6 +168,12 @@ std::string condition_words(const Json& condition) {
   const bool is_not = condition.contains("not");
   const std::string named = keys(is_not ? condition["not"] : condition);
   return named.empty() ? "" : (is_not ? "without " : "with ") + named;
+}
+
+const Json& properties_of(const Json& schema) {
+  static const Json none = Json::object();
+  const auto found = schema.find("properties");
+  return found == schema.end() ? none : *found;
 }
 
 std::string default_of(const std::string& key, const Json& value, const Json& schema) {
@@ -202,7 +210,7 @@ void add_table(const std::string& path, const Json& schema, std::string& text) {
     rows += fmt::format("| `{}` | {} | {} | {} | {} |\n", key, unit, cell(otherwise),
                         cell(range_of(value)), cell(value.value("description", "")));
   };
-  for (const auto& [key, value] : schema.value("properties", Json::object()).items()) {
+  for (const auto& [key, value] : properties_of(schema).items()) {
     add(key, unit_of(key), value, default_of(key, value, schema));
   }
   const Json each = schema.value("additionalProperties", Json(false));
@@ -245,7 +253,7 @@ std::vector<std::pair<std::string, Json>> inner(const std::string& path, const J
       found.emplace_back(std::move(name), std::move(value));
     }
   };
-  for (const auto& [key, value] : schema.value("properties", Json::object()).items()) {
+  for (const auto& [key, value] : properties_of(schema).items()) {
     add(below(path, key), value);
   }
   if (schema.contains("additionalProperties") && schema["additionalProperties"].is_object()) {

@@ -44,11 +44,7 @@ class RemoteKind final : public DeviceKind {
             protocols::MapReader::Presence::required, [&](protocols::MapReader& reader) {
               section->port = static_cast<std::uint16_t>(
                   reader.integer({"port", "UDP port on the loopback interface"}, 1024, 65535));
-              section->max_reply_s = reader.number(
-                  {"max_reply_s",
-                   "a reply that takes longer is missing; more than three in a row, or a tenth of "
-                   "all in the long run, are a fault; at most half of loop.max_stall_s"},
-                  {0.001, 0.05}, section->max_reply_s);
+              section->max_reply_s = read_max_reply_s(reader, section->max_reply_s);
               section->delay_ticks =
                   reader.integer({"delay_ticks",
                                   "ticks between the request of a force and its action, for the "

@@ -44,9 +44,10 @@ void add_schema(CommandParser& line) {
   std::vector<std::string> names;
   std::ranges::transform(key_documents(), std::back_inserter(names), &KeyDocument::name);
   auto name = std::make_shared<std::string>();
-  Command command =
-      line.add("schema", "Print the JSON schema of a kind of YAML file, or what all keys mean");
-  command.one_of("of", *name, names, "kind of file; reference: every key of all, in Markdown");
+  Command command = line.add(
+      "schema", "Print the JSON schema of a kind of YAML file, or what all their keys mean");
+  command.one_of("kind", *name, names,
+                 "JSON schema of this kind of file; reference: every key of all, in Markdown");
   command.on_run([name] {
     fmt::print("{}", std::ranges::find(key_documents(), *name, &KeyDocument::name)->text());
   });

@@ -455,11 +455,14 @@ bool names(const nlohmann::json& required, const std::string& key) {
   return std::ranges::find(required, nlohmann::json(key)) != required.end();
 }
 
-// Of a mapping's keys, whatever the others are.
+// Whatever the other keys of a mapping are, and whether or not they are needed in its place.
 bool may_be_missing(const std::string& key, const nlohmann::json& mapping) {
   using nlohmann::json;
   const auto requires_key = [&](const json& rule) {
-    return names(rule.value("then", rule).value("required", json::array()), key);
+    const json required = rule.value("then", rule).value("required", json::array());
+    const std::string otherwise = rule.value("if", json::object()).value("not", json{}).dump();
+    return names(required, key) ||
+           (!required.empty() && otherwise.find("[\"" + key + "\"]") != std::string::npos);
   };
   return !requires_key(mapping) &&
          std::ranges::none_of(std::vector{"allOf", "anyOf", "oneOf"}, [&](const char* rules) {

@@ -39,6 +39,8 @@ const char* to_text(TickFault fault) noexcept {
       return "the device released the force because no requests arrived";
     case TickFault::velocity_wrong:
       return "the device reports a velocity that is not the change of its position (in m/s?)";
+    case TickFault::position_frozen:
+      return "the device replies, but its position has stopped changing under force (encoders?)";
     case TickFault::tensions_unsolved:
       return "no string tensions were found for the force";
     case TickFault::too_late:

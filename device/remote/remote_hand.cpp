@@ -171,6 +171,7 @@ TickFault RemoteHand::begin() noexcept {
   held_.forget();
   exerted_.forget();
   velocity_.forget();
+  reading_.forget();
   since_reply_s_ = 0.0;
   is_holding_ = false;
   released_replies_ = 0;
@@ -193,6 +194,15 @@ TickFault RemoteHand::fault_of_report() noexcept {
   return exerted_.judge(force_n_, detail_.achieved_n);
 }
 
+// Protocols 1 and 2 do not number their samples: one that is repeated is known by its bits.
+TickFault RemoteHand::fault_of_motion(const core::HandState& hand, double elapsed_s) noexcept {
+  const core::HandState last = std::exchange(last_, hand);
+  const bool is_same =
+      last.position_m == hand.position_m && last.velocity_m_s == hand.velocity_m_s;
+  return reading_.judge(is_same, force_n_, elapsed_s) ? TickFault::position_frozen
+                                                      : velocity_.judge(hand, elapsed_s);
+}
+
 TickFault RemoteHand::read(core::HandState& hand, double elapsed_s) noexcept {
   since_reply_s_ += elapsed_s;
   const TickFault fault = ask(hand);
@@ -208,7 +218,7 @@ TickFault RemoteHand::read(core::HandState& hand, double elapsed_s) noexcept {
   held_.keep(hand);
   const TickFault of_report = fault_of_report();
   return of_report != TickFault::none ? of_report
-                                      : velocity_.judge(hand, std::exchange(since_reply_s_, 0.0));
+                                      : fault_of_motion(hand, std::exchange(since_reply_s_, 0.0));
 }
 
 TickFault RemoteHand::write(const core::Vec3& force_n) noexcept {

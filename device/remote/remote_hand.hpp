@@ -6,6 +6,7 @@
 
 #include "core/haptics/haptic_state.hpp"
 #include "device/device.hpp"
+#include "device/frozen_reading.hpp"
 #include "device/remote/datagram_pipe.hpp"
 namespace tapstudy::device {
 // Of a measured force: less may be an offset, noise, or lost in friction.
@@ -83,6 +84,7 @@ class RemoteHand final : public Device {
   core::TickFault ask(core::HandState& hand) noexcept;
   core::TickFault receive(core::HandState& hand) noexcept;
   core::TickFault fault_of_report() noexcept;
+  core::TickFault fault_of_motion(const core::HandState& hand, double elapsed_s) noexcept;
   void sleep_for(std::chrono::nanoseconds duration) noexcept;
 
   std::uint16_t port_;
@@ -91,6 +93,8 @@ class RemoteHand final : public Device {
   std::uint32_t number_{0};
   core::Vec3 force_n_{core::Vec3::Zero()};
   HeldHand held_;
+  core::HandState last_;
+  FrozenReading reading_;
   ExertedForce exerted_;
   VelocityCheck velocity_;
   double since_reply_s_{0.0};

@@ -84,6 +84,7 @@ TickFault SpidarG6::home() noexcept {
 
 TickFault SpidarG6::begin() noexcept {
   held_.forget();
+  counts_.forget();
   detail_.missed_replies = 0;
   without_voltage_s_ = 0.0;
   return link_.begin_watch();
@@ -147,12 +148,21 @@ double SpidarG6::longest_step_m() const noexcept {
   return largest_m_per_count * static_cast<double>(largest_step_);
 }
 
+TickFault SpidarG6::fault_of_counters(double elapsed_s) noexcept {
+  if (counts_.judge(largest_step_ == 0, force_n_, elapsed_s)) {
+    return TickFault::position_frozen;
+  }
+  return longest_step_m() > settings_.limits.max_string_speed_m_s * elapsed_s
+             ? TickFault::counter_jumped
+             : TickFault::none;
+}
+
 // After a pause the intermediate path is unknown: the first tick has no velocity and no limit on
 // the step.
 TickFault SpidarG6::follow(core::HandState& hand, double elapsed_s) noexcept {
   const bool has_position = held_.is_known();
-  if (has_position && longest_step_m() > settings_.limits.max_string_speed_m_s * elapsed_s) {
-    return TickFault::counter_jumped;
+  if (const TickFault fault = fault_of_counters(elapsed_s); has_position && fault != TickFault::none) {
+    return fault;
   }
   const FoundPose found = find_pose(settings_.geometry, lengths_m(), pose_,
                                     has_position ? rounds_a_tick : rounds_from_anywhere);
@@ -176,6 +186,7 @@ TickFault SpidarG6::follow(core::HandState& hand, double elapsed_s) noexcept {
 }
 
 TickFault SpidarG6::write(const core::Vec3& force_n) noexcept {
+  force_n_ = force_n;
   const Tensions tensions =
       tension_solver_.solve(strings_, {with_z_turned(force_n), core::Vec3::Zero()});
   dac_counts_ = dac_counts_of(tensions.tension_n, settings_.calibration);

@@ -2,6 +2,7 @@
 #include <memory>
 
 #include "device/device.hpp"
+#include "device/frozen_reading.hpp"
 #include "device/spidar/board_link.hpp"
 #include "device/spidar/calibration.hpp"
 #include "device/spidar/tensions.hpp"
@@ -67,6 +68,7 @@ class SpidarG6 final : public Device {
   core::TickFault exchange(double elapsed_s) noexcept;
   core::TickFault exchange_patiently() noexcept;
   core::TickFault fault_of_amplifier(double elapsed_s) noexcept;
+  core::TickFault fault_of_counters(double elapsed_s) noexcept;
   core::TickFault follow(core::HandState& hand, double elapsed_s) noexcept;
   double longest_step_m() const noexcept;
   PerString lengths_m() const noexcept;
@@ -84,6 +86,8 @@ class SpidarG6 final : public Device {
   std::int64_t largest_step_{0};
   bool is_homed_{false};
   HeldHand held_;
+  core::Vec3 force_n_{core::Vec3::Zero()};  // the last that was written
+  FrozenReading counts_;
   double unread_s_{0.0};  // since the position was last read
   double without_voltage_s_{0.0};
   DeviceDetail detail_;

@@ -533,6 +533,22 @@ TEST_CASE("a velocity that is not the change of position ends the trial; one tha
   CHECK(stage.loop.loop->report().stopped_by == fault);
 }
 
+TEST_CASE("a position that stands still to the bit under force ends the trial; one at rest does not",
+          "[device][safety][remote]") {
+  const bool is_alive = GENERATE(true, false);
+  Stage stage;
+  stage.program.is_version_2 = GENERATE(false, true);
+  stage.press();
+  const std::int64_t before = stage.loop.loop->report().ticks;
+  for (int tick = 0; tick < 20'000; ++tick) {
+    stage.program.height_m += is_alive ? 1e-9 * (tick % 2 == 0 ? 1 : -1) : 0.0;
+    stage.loop.tick(1);
+  }
+  const device::LoopReport& report = stage.loop.loop->report();
+  CHECK(report.stopped_by == (is_alive ? TickFault::none : TickFault::position_frozen));
+  CHECK(static_cast<double>(report.ticks - before) == Approx(is_alive ? 20'000 : 3000).margin(2));
+}
+
 TEST_CASE("a program that reports a released force in every reply is not believed",
           "[device][safety][remote]") {
   Stage stage;

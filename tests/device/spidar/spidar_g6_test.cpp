@@ -147,6 +147,7 @@ using Trouble = FakeBus::Trouble;
 
 namespace {
 struct Bench : testing::SpidarOnBus {
+  explicit Bench(std::uint16_t board_product = device::sh4_product) : SpidarOnBus{board_product} {}
   void start() {
     for (int step = 1; step <= 500; ++step) {
       REQUIRE(spidar.tighten(step / 500.0) == TickFault::none);
@@ -374,6 +375,57 @@ TEST_CASE("a halted endpoint is cleared, and an unconfirmed stop is said to be o
     bench.bus.persist_in(GENERATE(Trouble::out_nak, Trouble::out_lost));
     CHECK(bench.spidar.emergency_stop() == device::StopOutcome::unconfirmed);
     CHECK_FALSE(bench.spidar.is_force_off());
+  }
+}
+
+TEST_CASE("counters that stand still under force end it: 3 s after they did, or 50 ms after a newton",
+          "[device][spidar][safety]") {
+  Bench bench{GENERATE(device::sh4_product, device::simple_product)};
+  bench.start();
+  const auto ticks_until_fault = [&](const Vec3& force_n) {
+    int ticks = 0;
+    while (ticks < 20'000 && bench.tick(force_n) == TickFault::none) {
+      ++ticks;
+    }
+    CHECK(bench.tick(force_n) == TickFault::position_frozen);
+    return ticks;
+  };
+  for (int i = 0; i < 30; ++i) {  // the hand is still on its way
+    REQUIRE(bench.tick({0.0, 2.5, 0.0}) == TickFault::none);
+  }
+  bench.hardware.stop_counting();
+  SECTION("under a steady force") {
+    CHECK(ticks_until_fault({0.0, 2.5, 0.0}) == Approx(3000).margin(2));
+  }
+  SECTION("under one that changed, wherever the hand is meanwhile") {
+    bench.hardware.hold_at({0.0, 0.015, 0.0});
+    REQUIRE(bench.tick({0.0, 1.4, 0.0}) == TickFault::none);
+    CHECK(ticks_until_fault({0.0, 1.4, 0.0}) == Approx(50).margin(2));
+  }
+}
+
+TEST_CASE("a hand at rest, a grip that nobody holds and a vibration are not taken for frozen",
+          "[device][spidar][safety]") {
+  Bench bench;
+  bench.hardware.be_rigid();
+  bench.start();
+  SECTION("a hand ten times stiller than most") {
+    for (int i = 0; i < 20'000; ++i) {
+      const double t_s = 1e-3 * i;
+      bench.hardware.put_at({5e-5 * t_s, 1.8e-6 * std::sin(2.0 * M_PI * 9.0 * t_s), 0.0});
+      REQUIRE(bench.tick({0.0, 2.5, 0.0}) == TickFault::none);
+    }
+  }
+  SECTION("a grip at rest without force") {
+    for (int i = 0; i < 20'000; ++i) {
+      REQUIRE(bench.tick({0.0, 0.45, 0.0}) == TickFault::none);
+    }
+  }
+  SECTION("a vibration too fast for a hand to follow") {
+    for (int i = 0; i < 2500; ++i) {
+      REQUIRE(bench.tick({0.0, 1.5 + std::sin(2.0 * M_PI * 200.0 * 1e-3 * i), 0.0}) ==
+              TickFault::none);
+    }
   }
 }
 

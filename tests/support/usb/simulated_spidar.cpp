@@ -46,6 +46,9 @@ void SimulatedSpidar::pass_a_tick() {
 }
 
 std::array<std::int64_t, 8> SimulatedSpidar::counters() const {
+  if (stopped_at_) {
+    return *stopped_at_;
+  }
   std::array<std::int64_t, 8> all{};
   const device::PerString length_m =
       strings_at(geometry_, {position_m_, Eigen::Matrix3d::Identity()}).length_m;

@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include "device/spidar/calibration.hpp"
@@ -30,6 +31,7 @@ class SimulatedSpidar {
   // What the board gets wrong.
   void jump(std::size_t string, int counts) { slip_.at(string) += counts; }
   void echo_wrongly() { echoes_wrongly_ = true; }
+  void stop_counting() { stopped_at_ = counters(); }
   // Which of the two a real board does is not known.
   void echo_the_request_before() { echoes_the_request_before_ = true; }
 
@@ -52,6 +54,7 @@ class SimulatedSpidar {
   double tick_s_{1e-3};
   int rotary_switch_{3};
   std::array<int, 8> slip_{};
+  std::optional<std::array<std::int64_t, 8>> stopped_at_;
   bool is_rigid_{false};
   bool is_amplifier_on_{true};
   bool echoes_wrongly_{false};

@@ -12,14 +12,15 @@ namespace tapstudy::device {
 // SPIDAR's counter has steps of 17 um, so this is 15 of them along the force and 4 or more on a
 // string whose direction has a cosine of 0.3 with it; other devices resolve 0.1 mm or better. Its
 // strings alone would not do: of polyethylene (100 GPa), 0.4 mm thick and 0.1 m long, one gives
-// 8 um per newton, half a step. A grip that is clamped to a bench may therefore be taken for frozen. A vibration is not such a change: at 200 Hz, 1 N moves 0.1 kg by 6 um. The time
-// counts only while force stays 1 N away.
+// 8 um per newton, half a step. A grip that is clamped to a bench may therefore be taken for
+// frozen. A vibration is not such a change: at 200 Hz, 1 N moves 0.1 kg by 6 um. The time counts
+// only while force stays 1 N away.
 //
 // Or 0.5 N or more have been exerted for 3 s. Whoever presses does so with a force that trembles by
-// 1 % at 8 to 12 Hz: 5 mN by 400 N/m is 12 um rms, 35 um peak to peak, two steps on the string along
-// it. A hand ten times stiller moves an eighth of a step in each cycle, and leaves eight counters,
-// whose edges lie anywhere, as they are with (7/8)^8 = 0.34; but it also drifts, by 50 um/s or
-// more, so that each third of a second is a new draw: 0.34^9 = 7e-5 in 3 s.
+// 1 % at 8 to 12 Hz: 5 mN by 400 N/m is 12 um rms, 35 um peak to peak, two steps on the string
+// along it. A hand ten times stiller moves an eighth of a step in each cycle, and leaves eight
+// counters, whose edges lie anywhere, as they are with (7/8)^8 = 0.34; but it also drifts, by 50
+// um/s or more, so that each third of a second is a new draw: 0.34^9 = 7e-5 in 3 s.
 //
 // Without force nothing is concluded: a grip that nobody holds lies still.
 class FrozenReading {

@@ -37,6 +37,7 @@ struct Rig {
   core::RealtimeRequest realtime;
   int max_late_ticks_in_a_row{0};            // 0: any
   double max_stall_s{0.0};                   // between two ticks; 0: any
+  double max_missed_share{1.0};              // of the periods of a second; 1: any
   std::optional<core::Placement> placement;  // instead of the protocol's
   std::optional<core::AudioOutput> audio;    // where masking noise is played
   MarkerSettings markers;

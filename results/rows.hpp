@@ -158,6 +158,9 @@ struct TrialRow {
   bool is_of_real_plate{};  // not rendered: a plate that was mounted
 };
 
+// A trial with more of its ticks skipped is not quite what was designed.
+inline constexpr double max_skipped_share = 0.01;
+
 // The course of one participant's sessions. Trials are presentations, practice aside; values of the
 // loop are over every stored trial.
 struct ParticipantCourseRow {
@@ -180,6 +183,7 @@ struct ParticipantCourseRow {
   std::int64_t ticks{};
   std::int64_t late{};
   std::int64_t skipped_ticks{};
+  int incomplete_trials{};  // answered with more than max_skipped_share of their ticks skipped
   std::int64_t saturated{};
   std::int64_t dropped_samples{};
   double lateness_p999_s{};  // of the trial where it was largest

@@ -41,6 +41,9 @@ const char* to_text(TickFault fault) noexcept {
       return "the device reports a velocity that is not the change of its position (in m/s?)";
     case TickFault::position_frozen:
       return "the device replies, but its position has stopped changing under force (encoders?)";
+    case TickFault::periods_missed:
+      return "too many of the loop's periods were missed within a second: the device replies late, "
+             "or the machine is busy (tapstudy doctor --rig measures both)";
     case TickFault::tensions_unsolved:
       return "no string tensions were found for the force";
     case TickFault::too_late:

@@ -66,6 +66,8 @@ class CoupledFinger {
   void begin(double hand_m, double hand_velocity_m_s, double surface_m) noexcept;
   // One tick, at the end of which the hand is here. Returns c [N].
   double tick(double hand_m, const SurfaceTick& surface) noexcept;
+  // Where the hand is when the last tick ends.
+  double hand_m() const noexcept { return hand_m_; }
   // F: the mean force of the finger on the hand in the last tick [N, outwards positive].
   double force_on_hand_n() const noexcept { return force_on_hand_n_; }
   // The energy of finger, finger's spring and contact.

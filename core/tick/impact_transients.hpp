@@ -10,7 +10,7 @@ class DecayingSinusoid final : public AddedForce {
  public:
   explicit DecayingSinusoid(const RenderSettings& settings) noexcept
       : shape_{settings.sinusoid}, dt_s_{settings.dt_s} {}
-  void advance() noexcept override { age_s_ += dt_s_; }
+  void advance(int periods) noexcept override { age_s_ += periods * dt_s_; }
   void touch(const Contact& contact) noexcept override;
   void impact(double speed_m_s) noexcept override;
   void add_to(ForceParts& parts) const noexcept override { parts.sinusoid_n += force_n(); }
@@ -35,7 +35,7 @@ class RecordedTransient final : public AddedForce {
   // Sampled at the rate of the loop; at least one tap.
   RecordedTransient(std::vector<RecordedTap> taps, double gain)
       : taps_{std::move(taps)}, gain_{gain} {}
-  void advance() noexcept override { ++tick_; }
+  void advance(int periods) noexcept override { tick_ += static_cast<std::size_t>(periods); }
   void touch(const Contact& contact) noexcept override { at_m_ = contact.god_object_m.head<2>(); }
   void impact(double speed_m_s) noexcept override;
   void add_to(ForceParts& parts) const noexcept override;

@@ -7,6 +7,12 @@ PlateVibration::PlateVibration(const VibratingPlate& plate, const RenderSettings
       gain_{settings.vibration_gain},
       state_{plate.model, settings.integrator, settings.dt_s} {}
 
+void PlateVibration::advance(int periods) noexcept {
+  for (; periods > 0; --periods) {
+    state_.tick();
+  }
+}
+
 void PlateVibration::touch(const Contact& contact) noexcept {
   state_.touch(plate_->place_of(contact), contact.normal);  // eq. 16
 }
@@ -26,22 +32,37 @@ CoupledVibration::CoupledVibration(const VibratingPlate& plate, const RenderSett
       state_{plate.model, settings.integrator, settings.dt_s},
       finger_{settings.finger, settings.penalty_stiffness_n_per_m, settings.dt_s} {}
 
-void CoupledVibration::advance() noexcept {
+// In contact the periods that were missed wait for touch(), which knows where the hand is now. If
+// the finger has lifted meanwhile, they are made up for in the next tick: nobody feels the modes
+// until then.
+void CoupledVibration::advance(int periods) noexcept {
   was_touching_ = is_touching_;
   is_touching_ = false;
-  state_.tick();
+  behind_ += periods;
+  for (const int left = was_touching_ ? behind_ - 1 : 0; behind_ > left; --behind_) {
+    state_.tick();
+  }
 }
 
 void CoupledVibration::touch(const Contact& contact) noexcept {
   is_touching_ = true;
   state_.touch(plate_->place_of(contact), contact.normal);
   const double hand_m = -contact.penetration_m;
-  const SurfaceTick surface{state_.previous_displacement_m(), state_.displacement_m(),
-                            state_.compliance_m_per_n()};
   if (!was_touching_) {
     finger_.begin(hand_m - dt_s_ * contact.normal_velocity_m_s, contact.normal_velocity_m_s,
-                  surface.before_m);
+                  state_.previous_displacement_m());
   }
+  const double step_m = (hand_m - finger_.hand_m()) / (behind_ + 1);
+  for (; behind_ > 0; --behind_) {
+    press(hand_m - behind_ * step_m);
+    state_.tick();
+  }
+  press(hand_m);
+}
+
+void CoupledVibration::press(double hand_m) noexcept {
+  const SurfaceTick surface{state_.previous_displacement_m(), state_.displacement_m(),
+                            state_.compliance_m_per_n()};
   state_.push(-finger_.tick(hand_m, surface));
 }
 
@@ -53,6 +74,7 @@ void CoupledVibration::reset() noexcept {
   state_.reset();
   is_touching_ = false;
   was_touching_ = false;
+  behind_ = 0;
 }
 
 double CoupledVibration::coupled_energy_j() const noexcept {

@@ -14,7 +14,7 @@ class PlateVibration final : public AddedForce {
  public:
   // The plate must outlive it.
   PlateVibration(const VibratingPlate& plate, const RenderSettings& settings);
-  void advance() noexcept override { state_.tick(); }
+  void advance(int periods) noexcept override;
   void touch(const Contact& contact) noexcept override;
   void impact(double speed_m_s) noexcept override;
   void add_to(ForceParts& parts) const noexcept override;
@@ -31,13 +31,14 @@ class PlateVibration final : public AddedForce {
 // A finger that stays on the vibrating body during the tap: CoupledFinger on all modes at the
 // god-object. It is rendered beside the penalty force, which holds the hand at the body's rest
 // shape as in every technique and does not act on the modes. The finger exists while the hand
-// touches; before, it moves as the hand does. Free modes only: their vibration_gain is not used,
-// because a scaled reaction would not be passive.
+// touches; before, it moves as the hand does. Over periods that were missed the hand is taken to
+// have moved at constant speed, and the contact acts all the while. Free modes only: their
+// vibration_gain is not used, because a scaled reaction would not be passive.
 class CoupledVibration final : public AddedForce {
  public:
   // The plate must outlive it.
   CoupledVibration(const VibratingPlate& plate, const RenderSettings& settings);
-  void advance() noexcept override;
+  void advance(int periods) noexcept override;
   void touch(const Contact& contact) noexcept override;
   // The impact is the contact force itself.
   void impact(double /*speed_m_s*/) noexcept override {}
@@ -49,11 +50,14 @@ class CoupledVibration final : public AddedForce {
   double coupled_energy_j() const noexcept;
 
  private:
+  void press(double hand_m) noexcept;
+
   const VibratingPlate* plate_;
   double dt_s_;
   ModalState state_;
   CoupledFinger finger_;
   bool is_touching_{false};
   bool was_touching_{false};  // one tick ago
+  int behind_{0};             // periods by which the modes have yet to advance
 };
 }  // namespace tapstudy::core

@@ -21,11 +21,11 @@ TapRenderer::TapRenderer(const RenderSettings& settings, TouchedShape shape,
       contact_{contact_with(shape_, settings.release_height_m)},
       added_{std::move(added)} {}
 
-RenderedTick TapRenderer::tick(HandState tip) noexcept {
+RenderedTick TapRenderer::tick(HandState tip, int periods) noexcept {
   tip.position_m = tip.position_m.cwiseProduct(own_scale_);
   tip.velocity_m_s = tip.velocity_m_s.cwiseProduct(own_scale_);
   for (const auto& added : added_) {
-    added->advance();
+    added->advance(periods);
   }
   RenderedTick rendered;
   rendered.contact = std::visit(

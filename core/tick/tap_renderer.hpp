@@ -24,8 +24,9 @@ class TapRenderer {
   TapRenderer(const RenderSettings& settings, TouchedShape shape,
               std::vector<std::unique_ptr<AddedForce>> added);
   // The tip is in the placement's plate frame; the contact is in the plate's own, which has its own
-  // lateral scale.
-  RenderedTick tick(HandState tip) noexcept;
+  // lateral scale. A vibration advances by this many periods: it keeps its pitch if some are
+  // missed.
+  RenderedTick tick(HandState tip, int periods = 1) noexcept;
   bool is_touching() const noexcept;  // NOLINT(bugprone-exception-escape)
   // Kinetic plus elastic energy of the vibrating body.
   double energy_j() const noexcept;

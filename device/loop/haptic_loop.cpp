@@ -13,6 +13,8 @@ std::array<double, 3> as_array(const core::Vec3& v) noexcept {
 constexpr Nanoseconds min_suspension = 10'000'000;
 // After a longer time without a tick, force rises again from nothing.
 constexpr Nanoseconds max_gap = 3'000'000;
+// No vibration outlasts so many periods.
+constexpr Nanoseconds max_made_up = 100'000;
 
 core::Vec3 as_vector(const std::array<double, 3>& a) noexcept {
   return {a[0], a[1], a[2]};
@@ -88,16 +90,17 @@ void HapticLoop::begin() noexcept {
   has_begun_ = true;
 }
 
-// A missed period is skipped, never caught up in a burst; the phase is kept.
+// A missed period is skipped, never made up for in a burst of ticks; the phase is kept.
 void HapticLoop::note_lateness(Nanoseconds woke_at) noexcept {
   const Nanoseconds lateness = woke_at - deadline_;
-  const Nanoseconds missed = lateness / settings_.period;
+  missed_ = lateness / settings_.period;
   const bool is_late = lateness > settings_.period / 2;
   report_.lateness.add(lateness);
   report_.late += is_late ? 1 : 0;
   late_in_a_row_ = is_late ? late_in_a_row_ + 1 : 0;
-  report_.skipped += missed;
-  deadline_ += (missed + 1) * settings_.period;
+  report_.skipped += missed_;
+  missed_lately_.add(woke_at - began_at(), missed_);
+  deadline_ += (missed_ + 1) * settings_.period;
 }
 
 TickFault HapticLoop::fault_of_absence(Nanoseconds elapsed) noexcept {
@@ -125,9 +128,15 @@ TickFault HapticLoop::fault_of_time(Nanoseconds woke_at, Nanoseconds elapsed) no
                           elapsed > settings_.max_heartbeat_gap)) {
     return TickFault::heartbeat_lost;  // or the loop itself stalled for as long
   }
-  const bool gives_up =
-      settings_.max_late_in_a_row > 0 && late_in_a_row_ > settings_.max_late_in_a_row;
-  return gives_up ? TickFault::too_late : TickFault::none;
+  return fault_of_lateness();
+}
+
+TickFault HapticLoop::fault_of_lateness() const noexcept {
+  if (settings_.max_late_in_a_row > 0 && late_in_a_row_ > settings_.max_late_in_a_row) {
+    return TickFault::too_late;
+  }
+  const auto missed = static_cast<double>(missed_lately_.within_a_second() * settings_.period);
+  return missed > settings_.max_missed_share * 1e9 ? TickFault::periods_missed : TickFault::none;
 }
 
 void HapticLoop::take_requests() noexcept {
@@ -198,14 +207,23 @@ double HapticLoop::bridging_share(const DeviceDetail& detail, Nanoseconds elapse
 
 core::RenderedTick HapticLoop::follow(const core::HandState& hand,
                                       core::TraceSample& sample) noexcept {
-  if (taps_ == nullptr) {
-    return alternatives_[current_].tick(settings_.placement.to_plate(hand));
+  const int periods = 1 + static_cast<int>(std::min(missed_, max_made_up));
+  return taps_ != nullptr
+             ? follow_taps(periods, sample)
+             : alternatives_[current_].tick(settings_.placement.to_plate(hand), periods);
+}
+
+// In silence the scripted hand rests above its place, so that each interval begins alike.
+core::RenderedTick HapticLoop::follow_taps(int periods, core::TraceSample& sample) noexcept {
+  for (int missed = 1; missed < periods && !is_silent_; ++missed) {
+    taps_->move(on_taps_n_);
   }
   const core::HandState tip = taps_->state();
   const core::RenderedTick followed =
-      alternatives_[current_].tick(settings_.placement.to_plate(tip));
-  if (!is_silent_) {  // in silence it rests above its place, so that each interval begins alike
-    taps_->move(core::Placement::force_to_device(followed.force_n));
+      alternatives_[current_].tick(settings_.placement.to_plate(tip), periods);
+  on_taps_n_ = core::Placement::force_to_device(followed.force_n);
+  if (!is_silent_) {
+    taps_->move(on_taps_n_);
   }
   sample.position_m = as_array(tip.position_m);
   sample.velocity_m_s = as_array(tip.velocity_m_s);

@@ -10,6 +10,7 @@
 #include "device/device.hpp"
 #include "device/hand/scripted_hand.hpp"
 #include "device/loop/force_gate.hpp"
+#include "device/loop/missed_periods.hpp"
 #include "device/loop/tick_clock.hpp"
 namespace tapstudy::device {
 struct LoopReport {
@@ -29,6 +30,7 @@ struct LoopSettings {
   core::Placement placement;
   int max_late_in_a_row{0};          // a longer run is a fault; 0: unlimited
   Nanoseconds max_stall{0};          // a longer time between two ticks is a fault; 0: unlimited
+  double max_missed_share{1.0};      // of the periods of a second; a larger one is a fault
   Nanoseconds max_heartbeat_gap{0};  // a longer gap is a fault; 0: no heartbeat
 };
 
@@ -36,7 +38,9 @@ inline constexpr std::size_t max_alternatives = 128;  // traces have a byte for 
 
 // wait → read → render → limit → write → record, once per period, for one trial. The renderers are
 // the trial's alternatives; a switch request takes effect in the first tick without contact, so
-// that the force law never changes during contact. At most max_alternatives. All referenced objects
+// that the force law never changes during contact. A period that was missed is not made up for in
+// force, but vibrations advance by it, so that they keep their pitch, as does the scripted hand. At
+// most max_alternatives. All referenced objects
 // must outlive the loop.
 //
 // Where a scripted hand taps, the device's hand feels what the scripted one feels: its position
@@ -95,12 +99,14 @@ class HapticLoop {
   bool step() noexcept;  // false after a fault
   core::TickFault fault_of_time(Nanoseconds woke_at, Nanoseconds elapsed) noexcept;
   core::TickFault fault_of_absence(Nanoseconds elapsed) noexcept;
+  core::TickFault fault_of_lateness() const noexcept;
   double bridging_share(const DeviceDetail& detail, Nanoseconds elapsed) noexcept;
   core::TraceSample unread_sample(Nanoseconds now) const noexcept;
   core::TraceSample tick(Nanoseconds now, Nanoseconds elapsed) noexcept;
   void render(const core::HandState& hand, double share, double elapsed_s,
               core::TraceSample& sample) noexcept;
   core::RenderedTick follow(const core::HandState& hand, core::TraceSample& sample) noexcept;
+  core::RenderedTick follow_taps(int periods, core::TraceSample& sample) noexcept;
   void take_requests() noexcept;
   void note_lateness(Nanoseconds woke_at) noexcept;
 
@@ -125,6 +131,9 @@ class HapticLoop {
   Nanoseconds last_tick_{0};
   Nanoseconds suspended_before_{0};
   int late_in_a_row_{0};
+  Nanoseconds missed_{0};  // periods, just before this tick
+  MissedPeriods missed_lately_;
+  core::Vec3 on_taps_n_{core::Vec3::Zero()};  // the force on the scripted hand
   bool has_begun_{false};
   bool was_bridged_{false};
   double unread_s_{0.0};  // since the position was last read

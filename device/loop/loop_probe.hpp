@@ -7,7 +7,7 @@
 #include "device/loop/tick_clock.hpp"
 namespace tapstudy::device {
 struct ProbedLoop {
-  std::string realtime;  // what the machine granted
+  GrantedRealtime realtime;
   int timer_slack_ns{};  // of the loop's own thread
   LatenessCount lateness;
   std::int64_t late{0};  // by more than half a period

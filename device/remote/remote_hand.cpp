@@ -11,33 +11,52 @@
 namespace tapstudy::device {
 using core::TickFault;
 namespace {
-constexpr double peak_kept_a_tick = 0.9;  // a tenth is left after 22 ticks
 constexpr double max_ratio = 2.0;
 constexpr double margin_n = 1.0;
-constexpr int max_ticks_above = 2;
-constexpr int max_ticks_against = 5;
+constexpr double max_above_s = 0.0025;
+constexpr double max_against_s = 0.0055;
 constexpr double min_ratio = 0.05;
-constexpr int max_ticks_without = 30;
+constexpr double max_without_s = max_report_lag_s + 0.03;
+
+void count(double& total_s, bool is_so, double elapsed_s) noexcept {
+  total_s = is_so ? total_s + elapsed_s : 0.0;
+}
 }  // namespace
 
-TickFault ExertedForce::judge(const core::Vec3& commanded_n,
-                              const core::Vec3& reported_n) noexcept {
+void ExertedForce::remember(const core::Vec3& commanded_n, double elapsed_s) noexcept {
+  current_s_ += elapsed_s;
+  if (current_s_ > 0.5 * max_report_lag_s) {
+    recent_ = {Commands{commanded_n, commanded_n}, recent_[0], recent_[1]};
+    current_s_ = 0.0;
+  }
+  recent_[0].low_n = recent_[0].low_n.cwiseMin(commanded_n);
+  recent_[0].high_n = recent_[0].high_n.cwiseMax(commanded_n);
+}
+
+double ExertedForce::largest_along(const core::Vec3& direction) const noexcept {
+  double largest = 0.0;
+  for (const Commands& commands : recent_) {
+    const core::Vec3 furthest = (direction.array() > 0.0).select(commands.high_n, commands.low_n);
+    largest = std::max(largest, furthest.dot(direction));
+  }
+  return largest;
+}
+
+TickFault ExertedForce::judge(const core::Vec3& commanded_n, const core::Vec3& reported_n,
+                              double elapsed_s) noexcept {
+  remember(commanded_n, elapsed_s);
   const double commanded = commanded_n.norm();
   const double reported = reported_n.norm();
-  recent_peak_n_ = std::max(commanded, peak_kept_a_tick * recent_peak_n_);
   if (std::isnan(reported)) {
     return TickFault::none;
   }
-  const bool is_above = reported > max_ratio * recent_peak_n_ + margin_n;
+  const double explained_n = reported > 0.0 ? largest_along(reported_n / reported) : 0.0;
   const bool is_force = commanded >= noticeable_n;
   const double along = is_force ? reported_n.dot(commanded_n) / commanded : 0.0;
-  const bool is_against = along <= -noticeable_n;
-  const bool is_without = is_force && along < min_ratio * commanded;
-  ticks_above_ = is_above ? ticks_above_ + 1 : 0;
-  ticks_against_ = is_against ? ticks_against_ + 1 : 0;
-  ticks_without_ = is_without ? ticks_without_ + 1 : 0;
-  return ticks_above_ > max_ticks_above || ticks_against_ > max_ticks_against ||
-                 ticks_without_ > max_ticks_without
+  count(above_s_, reported > max_ratio * explained_n + margin_n, elapsed_s);
+  count(against_s_, along <= -noticeable_n && explained_n < min_ratio * reported, elapsed_s);
+  count(without_s_, is_force && along < min_ratio * commanded, elapsed_s);
+  return above_s_ > max_above_s || against_s_ > max_against_s || without_s_ > max_without_s
              ? TickFault::force_not_followed
              : TickFault::none;
 }
@@ -76,6 +95,7 @@ namespace {
 constexpr double untold = std::numeric_limits<double>::quiet_NaN();
 constexpr int max_zero_force_requests = 30;  // a device may measure its force late
 constexpr int attempts = 40;
+constexpr int measured_round_trips = 200;
 constexpr int max_released_replies = 30;  // after a silence, until the other program holds again
 constexpr std::chrono::milliseconds patience{50};  // timeout per attempt
 }  // namespace
@@ -180,7 +200,7 @@ TickFault RemoteHand::begin() noexcept {
 }
 
 // Between trials nobody asks, so that the first replies may report a release; not all of them.
-TickFault RemoteHand::fault_of_report() noexcept {
+TickFault RemoteHand::fault_of_report(double elapsed_s) noexcept {
   const std::uint32_t status = status_.value_or(motors_on);
   if ((status & motors_on) == 0) {
     return TickFault::amplifier_off;
@@ -191,14 +211,13 @@ TickFault RemoteHand::fault_of_report() noexcept {
     return TickFault::force_released;
   }
   is_holding_ = is_holding_ || !has_released;
-  return exerted_.judge(force_n_, detail_.achieved_n);
+  return exerted_.judge(force_n_, detail_.achieved_n, elapsed_s);
 }
 
 // Protocols 1 and 2 do not number their samples: one that is repeated is known by its bits.
 TickFault RemoteHand::fault_of_motion(const core::HandState& hand, double elapsed_s) noexcept {
   const core::HandState last = std::exchange(last_, hand);
-  const bool is_same =
-      last.position_m == hand.position_m && last.velocity_m_s == hand.velocity_m_s;
+  const bool is_same = last.position_m == hand.position_m && last.velocity_m_s == hand.velocity_m_s;
   return reading_.judge(is_same, force_n_, elapsed_s) ? TickFault::position_frozen
                                                       : velocity_.judge(hand, elapsed_s);
 }
@@ -216,9 +235,9 @@ TickFault RemoteHand::read(core::HandState& hand, double elapsed_s) noexcept {
   }
   detail_.missed_replies = 0;
   held_.keep(hand);
-  const TickFault of_report = fault_of_report();
-  return of_report != TickFault::none ? of_report
-                                      : fault_of_motion(hand, std::exchange(since_reply_s_, 0.0));
+  const double since_s = std::exchange(since_reply_s_, 0.0);
+  const TickFault of_report = fault_of_report(since_s);
+  return of_report != TickFault::none ? of_report : fault_of_motion(hand, since_s);
 }
 
 TickFault RemoteHand::write(const core::Vec3& force_n) noexcept {
@@ -252,6 +271,18 @@ RemoteHand::Release RemoteHand::release_after(std::chrono::milliseconds silence)
   sleep_for(silence);
   const std::optional<bool> after = reported();
   return !after ? Release::not_reported : *after ? Release::released : Release::held;
+}
+
+LatenessCount RemoteHand::round_trips() noexcept {
+  force_n_ = core::Vec3::Zero();
+  LatenessCount times;
+  for (int i = 0; i < measured_round_trips; ++i) {
+    const Nanoseconds start = pipe_->now();
+    core::HandState ignored;
+    const bool has_replied = ask(ignored) == TickFault::none;
+    times.add(has_replied ? pipe_->now() - start : max_reply_.count());
+  }
+  return times;
 }
 
 // Confirmed by a reply to a request that carried zero force, and that does not report another; the

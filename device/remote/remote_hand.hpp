@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <chrono>
 #include <cstdint>
 #include <memory>
@@ -7,27 +8,41 @@
 #include "core/haptics/haptic_state.hpp"
 #include "device/device.hpp"
 #include "device/frozen_reading.hpp"
+#include "device/loop/tick_clock.hpp"
 #include "device/remote/datagram_pipe.hpp"
 namespace tapstudy::device {
 // Of a measured force: less may be an offset, noise, or lost in friction.
 inline constexpr double noticeable_n = 0.5;
 
-// Compares the force that a device reports with the force that it was sent. Faults are a report far
-// above, in three ticks running; one against the commanded force, in six; and one of almost nothing
-// along it for 30 ticks of force. Margins are wide, since devices measure late and coarsely. One
-// that reports nothing (NaN) is not judged.
+// A device may report its force, not exert it, so much later than it was sent.
+inline constexpr double max_report_lag_s = 0.02;
+
+// Compares the force that a device reports with those that it was sent within max_report_lag_s.
+// Faults are a report more than twice and 1 N above the largest of them along it, for 3 ms; one
+// against the force while none was sent that way, for 6 ms; and one of almost nothing for 30 ms
+// longer than the lag. Margins are wide, since devices measure coarsely. One that reports nothing
+// (NaN) is not judged.
 class ExertedForce {
  public:
   void forget() noexcept { *this = {}; }
-  // Once a tick: what was commanded when the device reported.
-  [[nodiscard]] core::TickFault judge(const core::Vec3& commanded_n,
-                                      const core::Vec3& reported_n) noexcept;
+  // Once a reply, with what was commanded when the device reported, and the time since the last.
+  [[nodiscard]] core::TickFault judge(const core::Vec3& commanded_n, const core::Vec3& reported_n,
+                                      double elapsed_s) noexcept;
 
  private:
-  double recent_peak_n_{0.0};  // of the commands, decaying
-  int ticks_above_{0};
-  int ticks_against_{0};
-  int ticks_without_{0};
+  // The box of the commands of half a lag.
+  struct Commands {
+    core::Vec3 low_n{core::Vec3::Zero()};
+    core::Vec3 high_n{core::Vec3::Zero()};
+  };
+  void remember(const core::Vec3& commanded_n, double elapsed_s) noexcept;
+  double largest_along(const core::Vec3& direction) const noexcept;
+
+  std::array<Commands, 3> recent_{};  // the current half lag first
+  double current_s_{0.0};
+  double above_s_{0.0};
+  double against_s_{0.0};
+  double without_s_{0.0};
 };
 
 // Compares the velocity that a device reports with the change of its position, since the strength
@@ -78,12 +93,14 @@ class RemoteHand final : public Device {
     not_reported      // by version 1; or there was no reply
   };
   Release release_after(std::chrono::milliseconds silence) noexcept;
+  // How long requests take that carry zero force; one without a reply counts as the longest.
+  LatenessCount round_trips() noexcept;
 
  private:
   core::TickFault send(bool wants_reply) noexcept;
   core::TickFault ask(core::HandState& hand) noexcept;
   core::TickFault receive(core::HandState& hand) noexcept;
-  core::TickFault fault_of_report() noexcept;
+  core::TickFault fault_of_report(double elapsed_s) noexcept;
   core::TickFault fault_of_motion(const core::HandState& hand, double elapsed_s) noexcept;
   void sleep_for(std::chrono::nanoseconds duration) noexcept;
 

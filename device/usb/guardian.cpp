@@ -66,8 +66,7 @@ namespace {
 constexpr unsigned packet_time_out_ms = 20;
 constexpr unsigned reply_time_out_ms = 5;  // a later one comes in the next round
 constexpr int max_left_over_replies = 16;
-constexpr int round_ms = 5;
-constexpr int rounds_per_heartbeat = 2;
+constexpr int rounds_per_heartbeat = 5;
 constexpr std::chrono::seconds max_final{60};
 constexpr int max_wait_for_end_ms = 200;
 
@@ -89,7 +88,9 @@ class Watchdog {
         node_{node},
         settings_{settings},
         channel_{channel},
-        max_still_rounds_{std::max(1, static_cast<int>(1e3 * settings.max_stall_s) / round_ms)} {}
+        // the last beat may have been up to a round before the first of these
+        max_still_rounds_{
+            std::max(1, static_cast<int>(1e3 * settings.max_stall_s) / guardian_round_ms - 1)} {}
 
   [[noreturn]] void run() noexcept {
     for (const int signal : std::array{SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGPIPE, SIGTSTP}) {
@@ -119,7 +120,7 @@ class Watchdog {
          (taken < zero_force_packets || !is_confirmed) && std::chrono::steady_clock::now() < end;
          ++i) {
       if (i > zero_force_packets) {
-        ::poll(nullptr, 0, round_ms);
+        ::poll(nullptr, 0, guardian_round_ms);
       }
       const Zero zero = zero_force();
       if (zero == Zero::refused && errno == ENODEV) {
@@ -140,7 +141,7 @@ class Watchdog {
   // Waits for one polling cycle; false once the pipe is closed.
   bool is_parent_alive() const noexcept {
     pollfd waiting{life_, POLLIN, 0};
-    if (::poll(&waiting, 1, round_ms) <= 0) {
+    if (::poll(&waiting, 1, guardian_round_ms) <= 0) {
       return true;
     }
     char byte = 0;

@@ -85,6 +85,8 @@ bool is_guardian_alive(const WatchdogChannel& channel) noexcept;
 // long as the child lives. Only async-signal-safe functions are used.
 void close_named_sockets() noexcept;
 
+inline constexpr int guardian_round_ms = 2;
+
 struct GuardianSettings {
   std::uint8_t out_endpoint{};
   std::uint8_t in_endpoint{};
@@ -99,7 +101,7 @@ struct GuardianSettings {
 // a child process holds the device's open node and waits on a pipe whose other end only tapstudy
 // has; when that closes, it sends the zero-force packet three times, and where force may have been
 // on until the board replies to it, for a minute at most, and exits. It sends it in every
-// round of 5 ms, and keeps running, as long as tapstudy is stalled with force on (suspended or
+// round of guardian_round_ms, and keeps running, as long as tapstudy is stalled with force on (suspended or
 // starved of CPU time), and where tapstudy could not confirm zero force itself: a halted endpoint
 // is cleared first, and the board's reply is read, which alone confirms it. It asks for a priority
 // above the loop's and for locked memory of its own, and tapstudy offers itself to the kernel's

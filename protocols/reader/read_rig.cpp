@@ -15,10 +15,12 @@ using Presence = MapReader::Presence;
 // A person's hand is on hardware; a simulated one may wait for any time (0).
 constexpr int max_late_ticks_of_hardware = 20;
 constexpr double max_stall_of_hardware_s = 0.01;
+constexpr double max_missed_share_of_hardware = 0.01;
 
 void read_loop(MapReader& top, Rig& rig) {
   rig.max_late_ticks_in_a_row = rig.has_hardware ? max_late_ticks_of_hardware : 0;
   rig.max_stall_s = rig.has_hardware ? max_stall_of_hardware_s : 0.0;
+  rig.max_missed_share = rig.has_hardware ? max_missed_share_of_hardware : 1.0;
   top.map({"loop", "real-time settings requested for the haptic loop; the system may refuse them"},
           Presence::optional, [&](MapReader& reader) {
             core::RealtimeRequest& realtime = rig.realtime;
@@ -40,6 +42,11 @@ void read_loop(MapReader& top, Rig& rig) {
                                "a longer time between two ticks ends the trial; 0, not with "
                                "hardware: no limit; unset: 0.01 with hardware, else 0"},
                               {0.0, 0.1, !rig.has_hardware, true}, rig.max_stall_s);
+            rig.max_missed_share = reader.number(
+                {"max_missed_share",
+                 "more of the periods of a second missed end the trial; 1: any; unset: 0.01 with "
+                 "hardware, else 1"},
+                {0.001, 1.0}, rig.max_missed_share);
           });
 }
 

@@ -155,10 +155,11 @@ void add_loop(Store& store, ParticipantCourseRow& course) {
       "  coalesce(sum((SELECT count(*) FROM event "
       "    WHERE event.trial_id = trial.trial_id AND kind = 'impact')), 0), "
       "  coalesce(sum((SELECT count(*) FROM event "
-      "    WHERE event.trial_id = trial.trial_id AND kind = 'late_impact')), 0) "
+      "    WHERE event.trial_id = trial.trial_id AND kind = 'late_impact')), 0), "
+      "  count(*) FILTER (WHERE status = 'answered' AND skipped > ? * (ticks + skipped)) "
       "FROM trial JOIN session USING (session_id) JOIN tick_statistics USING (trial_id) "
       "WHERE participant_id = ?");
-  row.bind(course.participant_id).step();
+  row.bind(max_skipped_share).bind(course.participant_id).step();
   course.ticks = row.integer(0);
   course.late = row.integer(1);
   course.skipped_ticks = row.integer(2);
@@ -168,6 +169,7 @@ void add_loop(Store& store, ParticipantCourseRow& course) {
   course.worst_lateness_s = row.real(6);
   course.impacts = row.integer(7);
   course.late_impacts = row.integer(8);
+  course.incomplete_trials = row.small_integer(9);
 }
 
 void add_masking(Store& store, ParticipantCourseRow& course) {

@@ -35,12 +35,15 @@ void print(const char* name, const RepeatedProbe& probed) {
 }
 
 void print(const Diagnosis& diagnosis) {
-  fmt::print("loop       {}\n", diagnosis.idle.total.realtime);
+  fmt::print("loop       {}\n", diagnosis.idle.total.realtime.text);
   for (const auto& [name, value] : diagnosis.machine) {
     fmt::print("{:<11}{}\n", name, value);
   }
   fmt::print("timer      slack {} ns\n", diagnosis.idle.total.timer_slack_ns);
   fmt::print("sleep      {}\n", diagnosis.sleep);
+  for (const auto& [what, remedy] : diagnosis.idle.total.realtime.refusals) {
+    fmt::print("refused    {}: {}\n", what, remedy);
+  }
   fmt::print("\nlateness [us] of {} ticks at {} Hz\n", diagnosis.idle.total.lateness.count(),
              1e9 / static_cast<double>(diagnosis.period));
   fmt::print("               median       p99     p99.9     worst    late   holds\n");
@@ -54,6 +57,9 @@ void print(const Diagnosis& diagnosis) {
   if (diagnosis.round_trip) {
     fmt::print("\nround trip [us] of {} requests to the device\n", diagnosis.round_trip->count());
     print("", *diagnosis.round_trip, "");
+  }
+  if (!diagnosis.release.empty()) {
+    fmt::print("\nrelease    {}\n", diagnosis.release);
   }
 }
 
@@ -111,11 +117,9 @@ void run_doctor(const DoctorOptions& options) {
   Diagnosis diagnosis =
       diagnose(rig.realtime, static_cast<device::Nanoseconds>(1e9 / options.rate_hz),
                options.seconds, Under::load_too, zero_force_exchange(options, rig));
+  diagnosis.release = release;
   diagnosis.sleep = device::SleepInhibitor{}.outcome();
   print(diagnosis);
-  if (!release.empty()) {
-    fmt::print("\nrelease    {}\n", release);
-  }
   if (!options.figure.empty()) {
     draw(diagnosis, options.figure);
   }

@@ -232,6 +232,11 @@ std::string deviations_of(const results::ParticipantCourseRow& course) {
     parts.push_back(fmt::format("catch trials missed: {} of {}",
                                 course.catch_trials - course.catch_right, course.catch_trials));
   }
+  if (course.incomplete_trials > 0) {
+    parts.push_back(
+        fmt::format("trials in which more than {:g} % of the loop's periods were missed: {}",
+                    100.0 * results::max_skipped_share, course.incomplete_trials));
+  }
   return parts.empty() ? "" : fmt::format("{}: {}", course.participant_id, fmt::join(parts, ", "));
 }
 

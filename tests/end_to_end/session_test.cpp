@@ -179,11 +179,12 @@ TEST_CASE("a session runs on a device that another program drives, and can be re
   const TempDirectory directory;
   const std::uint16_t port = testing::free_port();
   const testing::ExampleBridge bridge{port};
-  testing::write(directory / "rig.yaml",
-                 testing::replaced(testing::contents(testing::shipped("rigs/remote.yaml")),
-                                   "port: 50607, max_reply_s: 0.003",
-                                   fmt::format("port: {}, max_reply_s: 0.05", port)) +
-                     "loop: {max_late_ticks_in_a_row: 1000000, max_stall_s: 0.1}\n");
+  testing::write(
+      directory / "rig.yaml",
+      testing::replaced(testing::contents(testing::shipped("rigs/remote.yaml")),
+                        "port: 50607, max_reply_s: 0.003",
+                        fmt::format("port: {}, max_reply_s: 0.05", port)) +
+          "loop: {max_late_ticks_in_a_row: 1000000, max_stall_s: 0.1, max_missed_share: 1}\n");
   const auto live = testing::run_program(
       {"/usr/bin/python3", testing::source("tests/support/with_logind.py"), "/bin/bash", "-c",
        "for i in 1 2 3 4 1 2 3 4; do sleep 0.9; echo $i; done | \"$0\" run \"$1\" --rig \"$2\" "

@@ -23,6 +23,9 @@ class SessionDevice {
   virtual void get_ready() = 0;
   // Communication round trip, if the device has a communication link.
   virtual std::optional<device::LatenessCount> round_trip() const { return std::nullopt; }
+  // What was found when it was tried, at zero force, whether the device lets go of the force when
+  // the program falls silent; empty if there is nothing to try.
+  virtual std::string release() const { return {}; }
 };
 
 // The context in which a device is opened.
@@ -40,7 +43,8 @@ class DeviceKind : public protocols::RigDevice {
  public:
   // Throws InvalidInput if its section of the rig is implausible.
   virtual void check(const protocols::Rig& /*rig*/) const {}
-  // Throws DeviceError if it does not reply, InvalidInput if the rig refers to what does not exist.
+  // Throws DeviceError if it does not reply or does not let go of the force when the program falls
+  // silent, InvalidInput if the rig refers to what does not exist.
   virtual std::unique_ptr<SessionDevice> open(const DeviceRequest& request) const = 0;
   // Whether it can hold its grip there, in the device frame.
   virtual bool reaches(const protocols::Rig& /*rig*/, const core::Vec3& /*at_m*/) const {
@@ -62,8 +66,7 @@ class DeviceKind : public protocols::RigDevice {
   virtual std::function<void()> zero_force_exchange(const protocols::Rig& /*rig*/) const {
     return {};
   }
-  // Tries whether the device lets go of the force by itself when the program falls silent, at zero
-  // force; what was found, or empty if there is nothing to try. Throws DeviceError if it does not.
+  // SessionDevice::release() without a session.
   virtual std::string tried_release(const protocols::Rig& /*rig*/) const { return {}; }
 };
 
@@ -72,7 +75,7 @@ const std::vector<const DeviceKind*>& device_kinds();
 const DeviceKind& kind_of(const protocols::Rig& rig);
 
 // The key `max_reply_s` of a device with a communication link.
-double read_max_reply_s(protocols::MapReader& section, double usual_s);
+double read_max_reply_s(protocols::MapReader& section, double least_s, double usual_s);
 
 // A simulated hand that taps points drawn from the session's seed.
 const DeviceKind& simulated_hand();

@@ -64,6 +64,20 @@ std::string real_time_share() {
                                           line_of("/proc/sys/kernel/sched_rt_period_us"));
 }
 
+std::string governor() {
+  const std::string found = line_of("/sys/devices/system/cpu/cpu0/cpufreq/scaling_governor");
+  return found.empty() || found == "performance"
+             ? or_unknown(found)
+             : found + " (slow to speed up: sudo cpupower frequency-set -g performance)";
+}
+
+std::string isolated_processors() {
+  const std::string found = line_of("/sys/devices/system/cpu/isolated");
+  return found.empty()
+             ? "none (isolcpus=N on the kernel's command line, and loop.cpu: N in the rig)"
+             : found;
+}
+
 // Threads that handle the USB controller's interrupts, on kernels that have such.
 std::string usb_interrupt_threads() {
   std::vector<std::string> found;
@@ -85,15 +99,15 @@ std::string usb_interrupt_threads() {
 }  // namespace
 
 std::vector<std::pair<std::string, std::string>> machine_facts() {
-  return {
-      {"kernel", kernel()},
-      {"clock", clock_source()},
-      {"governor", or_unknown(line_of("/sys/devices/system/cpu/cpu0/cpufreq/scaling_governor"))},
-      {"idle", or_unknown(line_of("/sys/devices/system/cpu/cpuidle/current_driver"))},
-      {"rt share", real_time_share()},
-      {"rtprio", limit(RLIMIT_RTPRIO)},
-      {"memlock", limit(RLIMIT_MEMLOCK)},
-      {"usb irq", usb_interrupt_threads()}};
+  return {{"kernel", kernel()},
+          {"clock", clock_source()},
+          {"governor", governor()},
+          {"isolated", isolated_processors()},
+          {"idle", or_unknown(line_of("/sys/devices/system/cpu/cpuidle/current_driver"))},
+          {"rt share", real_time_share()},
+          {"rtprio", limit(RLIMIT_RTPRIO)},
+          {"memlock", limit(RLIMIT_MEMLOCK)},
+          {"usb irq", usb_interrupt_threads()}};
 }
 
 namespace {
@@ -191,6 +205,9 @@ std::string to_json(const Diagnosis& diagnosis) {
   }
   if (!diagnosis.sleep.empty()) {
     json["sleep"] = diagnosis.sleep;
+  }
+  if (!diagnosis.release.empty()) {
+    json["release"] = diagnosis.release;
   }
   if (diagnosis.loaded) {
     json["loaded"] = json_of(*diagnosis.loaded);

@@ -19,6 +19,7 @@ struct RepeatedProbe {
 struct Diagnosis {
   device::Nanoseconds period{};
   std::vector<std::pair<std::string, std::string>> machine;  // kernel, clock, governor, limits
+  std::string release;                                       // SessionDevice::release()
   std::string sleep;  // whether the system agreed not to sleep; empty: not asked
   RepeatedProbe idle;
   std::optional<RepeatedProbe> loaded;

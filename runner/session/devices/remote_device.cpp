@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "device/loop/tick_clock.hpp"
 #include "device/remote/remote_hand.hpp"
 #include "protocols/yaml/yaml_reader.hpp"
 #include "runner/session/devices/device_kind.hpp"
@@ -13,8 +14,9 @@ constexpr std::chrono::milliseconds tried_silence{150};
 
 struct RemoteSection final : protocols::DeviceSection {
   std::uint16_t port{};
-  double max_reply_s{0.003};  // of the other program to a tick's question
-  int delay_ticks{1};         // of its force
+  double max_reply_s{0.003};             // of the other program to a tick's question
+  int delay_ticks{1};                    // of its force
+  std::string accepted_without_release;  // who answers for it, and why; empty: nobody does
   double max_reply_time_s() const override { return max_reply_s; }
 };
 
@@ -27,10 +29,58 @@ class RemoteDevice final : public SessionDevice {
   device::Device& device() override { return hand_; }
   device::RemoteHand& hand() { return hand_; }
   void get_ready() override {}
+  std::optional<device::LatenessCount> round_trip() const override { return round_trip_; }
+  std::string release() const override { return release_; }
+  // Throws DeviceError where a force might stay on if this program died.
+  void try_release(const std::string& accepted_without) {
+    release_ = described(hand_.release_after(tried_silence), accepted_without);
+  }
+  void measure_round_trip() { round_trip_ = hand_.round_trips(); }
 
  private:
+  static std::string described(device::RemoteHand::Release release,
+                               const std::string& accepted_without) {
+    using enum device::RemoteHand::Release;
+    if (release == released) {
+      return fmt::format(
+          "the other program reports that it released the force after {} ms without "
+          "requests",
+          tried_silence.count());
+    }
+    const std::string found = fault_of(release);
+    if (release == always_reported || accepted_without.empty()) {
+      throw device::DeviceError{fmt::format(
+          "remote: {}{}", found,
+          release == always_reported
+              ? ""
+              : "; if it lets go all the same, say in the rig how this was found and who answers "
+                "for it (remote: {accepted_without_release: …})")};
+    }
+    return fmt::format("{}; according to the rig: {}", found, accepted_without);
+  }
+  static std::string fault_of(device::RemoteHand::Release release) {
+    using enum device::RemoteHand::Release;
+    switch (release) {
+      case held:
+        return fmt::format(
+            "the other program did not release the force after {} ms without requests",
+            tried_silence.count());
+      case always_reported:
+        return "the other program reports a released force in every reply: it must report it only "
+               "after a silence (device/remote/packets.hpp)";
+      case not_reported:
+        return "the other program does not report whether it releases the force when requests stop "
+               "(version 1 of the protocol cannot)";
+      case released:
+        break;
+    }
+    return {};
+  }
+
   SessionLock lock_;
   device::RemoteHand hand_;
+  std::string release_;
+  std::optional<device::LatenessCount> round_trip_;
 };
 
 class RemoteKind final : public DeviceKind {
@@ -44,12 +94,18 @@ class RemoteKind final : public DeviceKind {
             protocols::MapReader::Presence::required, [&](protocols::MapReader& reader) {
               section->port = static_cast<std::uint16_t>(
                   reader.integer({"port", "UDP port on the loopback interface"}, 1024, 65535));
-              section->max_reply_s = read_max_reply_s(reader, section->max_reply_s);
+              section->max_reply_s = read_max_reply_s(reader, 0.0001, section->max_reply_s);
               section->delay_ticks =
                   reader.integer({"delay_ticks",
                                   "ticks between the request of a force and its action, for the "
                                   "stability bound that `check` prints"},
                                  0, 10, section->delay_ticks);
+              section->accepted_without_release = reader.text(
+                  {"accepted_without_release",
+                   "for a program that does not report that it releases the force when requests "
+                   "stop, and is refused otherwise: how it was found that it does, and who answers "
+                   "for it; unset: such a program is refused"},
+                  "");
             });
     return section;
   }
@@ -69,30 +125,17 @@ class RemoteKind final : public DeviceKind {
     };
   }
   std::string tried_release(const protocols::Rig& rig) const override {
-    RemoteDevice opened{dynamic_cast<const RemoteSection&>(*rig.section)};
-    using Release = device::RemoteHand::Release;
-    switch (opened.hand().release_after(tried_silence)) {
-      case Release::held:
-        throw device::DeviceError{fmt::format(
-            "remote: the other program did not release the force after {} ms without requests",
-            tried_silence.count())};
-      case Release::always_reported:
-        throw device::DeviceError{
-            "remote: the other program reports a released force in every reply: it must report it "
-            "only after a silence (device/remote/packets.hpp)"};
-      case Release::not_reported:
-        break;
-      case Release::released:
-        return fmt::format(
-            "the other program reports that it released the force after {} ms "
-            "without requests",
-            tried_silence.count());
-    }
-    return "the other program does not report this, or did not reply (version 1 cannot report "
-           "it): test it manually";
+    const auto& section = dynamic_cast<const RemoteSection&>(*rig.section);
+    RemoteDevice opened{section};
+    opened.try_release(section.accepted_without_release);
+    return opened.release();
   }
   std::unique_ptr<SessionDevice> open(const DeviceRequest& request) const override {
-    return std::make_unique<RemoteDevice>(dynamic_cast<const RemoteSection&>(*request.rig.section));
+    const auto& section = dynamic_cast<const RemoteSection&>(*request.rig.section);
+    auto opened = std::make_unique<RemoteDevice>(section);
+    opened->try_release(section.accepted_without_release);
+    opened->measure_round_trip();
+    return opened;
   }
 };
 }  // namespace

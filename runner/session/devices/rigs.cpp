@@ -80,6 +80,7 @@ device::LoopSettings loop_settings(const protocols::Protocol& protocol, const pr
   settings.gate = rig.gate;
   settings.max_late_in_a_row = rig.max_late_ticks_in_a_row;
   settings.max_stall = std::llround(1e9 * rig.max_stall_s);
+  settings.max_missed_share = rig.max_missed_share;
   if (rig.has_hardware) {
     settings.max_heartbeat_gap = max_heartbeat_gap;
   }

@@ -216,7 +216,7 @@ class SpidarKind final : public DeviceKind {
     }
     section.max_turn_rad = reader.number({"max_turn_rad", "grip rotation beyond it is a fault"},
                                          Range::positive(0.5), section.max_turn_rad);
-    section.max_reply_s = read_max_reply_s(reader, section.max_reply_s);
+    section.max_reply_s = read_max_reply_s(reader, 0.001, section.max_reply_s);
     if (reader.has("relay")) {
       section.relay = reader.text({"relay",
                                    "serial port of a dead-man relay in the amplifier's supply, "

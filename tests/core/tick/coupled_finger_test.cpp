@@ -162,7 +162,7 @@ TEST_CASE("plate, finger and contact never gain more energy than the hand's work
       bool was_touching = false;
       for (int tick = 0; tick < 2000; ++tick) {
         const Contact& now = contact.tick(hand.tick());
-        coupled.advance();
+        coupled.advance(1);
         double brought_j = 0.0;
         if (now.touching) {
           coupled.touch(now);

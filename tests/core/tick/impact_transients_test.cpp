@@ -24,8 +24,8 @@ double force_n(double x_m) {
   contact.god_object_m = {x_m, 0.07, 0.0};
   sinusoid.touch(contact);
   sinusoid.impact(struck_m_s);
-  sinusoid.advance();
-  sinusoid.advance();
+  sinusoid.advance(1);
+  sinusoid.advance(1);
   ForceParts parts;
   sinusoid.add_to(parts);
   return parts.sinusoid_n;
@@ -54,8 +54,8 @@ TEST_CASE("a sinusoid that rings keeps the frequency of its impact", "[core][tic
   sinusoid.impact(struck_m_s);
   contact.god_object_m.x() = 0.2;
   sinusoid.touch(contact);
-  sinusoid.advance();
-  sinusoid.advance();
+  sinusoid.advance(1);
+  sinusoid.advance(1);
   ForceParts parts;
   sinusoid.add_to(parts);
   CHECK(parts.sinusoid_n == Approx(expected_n(3.0, 100.0)));
@@ -116,8 +116,8 @@ TEST_CASE(
     sinusoid.add_to(parts);
     felt_n2 += std::pow(parts.sinusoid_n, 2);
     difference_n2 += std::pow(parts.sinusoid_n - felt_n(*recorded), 2);
-    recorded->advance();
-    sinusoid.advance();
+    recorded->advance(1);
+    sinusoid.advance(1);
   }
   // the sudden beginning has frequencies that the loop's rate cannot hold
   CHECK(std::sqrt(difference_n2 / felt_n2) < 0.025);
@@ -137,8 +137,8 @@ TEST_CASE("what a device is known to halve is commanded twice as strong",
   }
   for (int tick = 0; tick < 90; ++tick) {
     CHECK(felt_n(*commanded) == Approx(2.0 * felt_n(*as_recorded)).margin(1e-9));
-    as_recorded->advance();
-    commanded->advance();
+    as_recorded->advance(1);
+    commanded->advance(1);
   }
 }
 
@@ -170,11 +170,11 @@ TEST_CASE("a recording is silent before an impact, after its end and when it is 
   force->impact(1.0);
   for (const double expected_n : {1.0, 2.0, 3.0, 0.0, 0.0}) {
     CHECK(felt_n(*force) == expected_n);
-    force->advance();
+    force->advance(1);
   }
   force->impact(2.0);
   CHECK(felt_n(*force) == 2.0);
-  force->advance();
+  force->advance(1);
   force->impact(1.0);  // from its beginning again
   CHECK(felt_n(*force) == 1.0);
   force->reset();

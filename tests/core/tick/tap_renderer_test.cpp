@@ -97,6 +97,38 @@ TEST_CASE("the sinusoid is the same wherever one taps and follows its formula",
   }
 }
 
+TEST_CASE("after missed periods every technique's force is what it is where none were missed",
+          "[core][technique]") {
+  // straight in, a little deeper with each period, and out again
+  const auto tip_at = [](int period) -> HandState {
+    const double depth_m = period < 250 ? 0.001 + 1e-5 * period : -0.002;
+    return {{0.2, 0.2, -depth_m}, {0.0, 0.0, -0.01}};
+  };
+  const int missed = GENERATE(1, 2, 7);
+  for (const Technique& technique : techniques()) {
+    INFO(technique.name);
+    const auto renderer = [&] {
+      TapRenderer made = make_renderer(technique, settings(), PlateFace{0.3, 0.3}, &tapped_plate());
+      made.tick({{0.2, 0.2, 0.001}, {0.0, 0.0, -0.3}});
+      made.tick(tip_at(0));
+      return made;
+    };
+    TapRenderer whole = renderer();
+    TapRenderer sparse = renderer();
+    for (int period = 1; period <= 300; ++period) {
+      const RenderedTick expected = whole.tick(tip_at(period));
+      const bool is_made = period % (missed + 1) == 0;
+      if (is_made) {
+        const RenderedTick made = sparse.tick(tip_at(period), missed + 1);
+        CHECK(made.force_n.z() == Approx(expected.force_n.z()).margin(1e-9));
+        if (period < 250) {
+          CHECK(sparse.energy_j() == Approx(whole.energy_j()).margin(1e-15));
+        }
+      }
+    }
+  }
+}
+
 TEST_CASE("the plate's vibration depends on where one taps", "[core][technique]") {
   const auto corner = tapped("fem", 0.24, 0.24);
   const auto fixed = tapped("fem", -0.29, -0.29);

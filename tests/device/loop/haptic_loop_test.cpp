@@ -15,7 +15,7 @@ using core::Vec3;
 
 namespace {
 // In a plate 2 mm deep from the second reading on; fails on cue.
-class FakeDevice final : public device::Device {
+class FakeDevice : public device::Device {
  public:
   core::TickFault read(core::HandState& hand, double seconds) noexcept override {
     hand.position_m = {0.0, ++reads_ == 1 ? 0.01 : height_m, 0.0};
@@ -59,6 +59,28 @@ class FakeDevice final : public device::Device {
  private:
   int reads_{0};
   int writes_{0};
+};
+
+// Replies in its own time, during which the loop's clock goes on.
+class BusyClock final : public device::TickClock {
+ public:
+  device::Nanoseconds now() noexcept override { return now_; }
+  device::Nanoseconds wait_until(device::Nanoseconds deadline) noexcept override {
+    return now_ = std::max(now_, deadline);
+  }
+  void pass(device::Nanoseconds time) noexcept { now_ += time; }
+
+ private:
+  device::Nanoseconds now_{0};
+};
+
+struct SlowDevice final : FakeDevice {
+  core::TickFault read(core::HandState& hand, double seconds) noexcept override {
+    clock.pass(reply);
+    return FakeDevice::read(hand, seconds);
+  }
+  BusyClock clock;
+  device::Nanoseconds reply{0};
 };
 
 // Wakes as late as it is told.
@@ -198,6 +220,50 @@ TEST_CASE("late ticks are counted, missed ones skipped, and the rhythm stays", "
   CHECK(loop.report().late == 2);
   CHECK(loop.report().skipped == 3);
   CHECK(loop.report().lateness.worst() == 3'200'000);
+}
+
+TEST_CASE("a vibration keeps its pitch however late the device replies, or the trial ends for it",
+          "[device][loop][safety]") {
+  constexpr double frequency_hz = 100.0;
+  constexpr double period_s = 1e-3;
+  SlowDevice hand;
+  hand.speed_m_s = -0.1;
+  const auto [reply, is_tolerable] =
+      GENERATE(table<device::Nanoseconds, bool>({{500'000, true},
+                                                 {1'000'000, true},
+                                                 {1'005'000, true},
+                                                 {1'050'000, false},
+                                                 {1'100'000, false},
+                                                 {1'500'000, false},
+                                                 {2'700'000, false}}));
+  hand.reply = reply;
+  core::RenderSettings rendering;
+  rendering.sinusoid = {3.0, 2.0, frequency_hz, {}};
+  std::vector<core::TapRenderer> renderers;
+  renderers.push_back(core::make_renderer(*core::find_technique("sinusoid"), rendering,
+                                          core::PlateFace{0.3, 0.3}, nullptr));
+  device::LoopSettings settings;
+  settings.gate.limits = {10.0, 1e5};
+  const bool is_judged = GENERATE(false, true);
+  settings.max_missed_share = is_judged ? 0.01 : 1.0;
+  core::SpscRing<core::TraceSample> trace{4096};
+  device::HapticLoop loop{hand, renderers, settings, trace, hand.clock};
+  loop.run_ticks(1500);
+  CAPTURE(reply, is_judged);
+  CHECK((loop.report().stopped_by == core::TickFault::periods_missed) ==
+        (is_judged && !is_tolerable));
+  const std::vector<core::TraceSample> samples = testing::samples_of(trace);
+  const auto periods_at = [](const core::TraceSample& sample) { return sample.t_ns / 1'000'000; };
+  const auto impact = std::ranges::find_if(samples, &core::TraceSample::impact);
+  REQUIRE(impact != samples.end());
+  for (auto sample = impact; sample != samples.end(); ++sample) {
+    const double t_s = period_s * static_cast<double>(periods_at(*sample) - periods_at(*impact));
+    const double expected_n =
+        0.3 * std::exp(-2.0 * t_s) * std::sin(2.0 * M_PI * frequency_hz * t_s);
+    if (sample->fault == core::TickFault::none) {
+      REQUIRE(sample->sinusoid_n == Approx(expected_n).margin(1e-9));
+    }
+  }
 }
 
 TEST_CASE("another alternative is taken only off the plate", "[device][loop][safety]") {

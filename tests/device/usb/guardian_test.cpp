@@ -30,9 +30,9 @@ using testing::Bytes;
 using testing::FakeBus;
 
 namespace {
-constexpr double four_rounds_s = 0.02;
+constexpr double four_rounds_s = 4e-3 * device::guardian_round_ms;
 // For a test that beats: a busy machine may keep it from doing so for long.
-constexpr double two_hundred_rounds_s = 1.0;
+constexpr double long_stall_s = 1.0;
 
 device::GuardianSettings settings(double max_stall_s = four_rounds_s) {
   return {0x02, 0x86, device::Sh4Board{}.zero_force_packet(), max_stall_s, 0};
@@ -182,7 +182,7 @@ TEST_CASE(
   const int clears = GENERATE(0, 1, 1'000'000);
   Watched watched;
   watched.bus.halt_out(clears);
-  device::WatchdogChannel& watch = watched.watch(two_hundred_rounds_s);
+  device::WatchdogChannel& watch = watched.watch(long_stall_s);
   watch.begin();
   watch.repeat_zero_force();
   for (int i = 0; i < 10; ++i) {
@@ -217,7 +217,7 @@ TEST_CASE("nothing but a whole reply that carries the zeros, and is not from bef
   SECTION("it echoes something else") {
     watched.echoes_rightly = false;
   }
-  device::WatchdogChannel& watch = watched.watch(two_hundred_rounds_s);
+  device::WatchdogChannel& watch = watched.watch(long_stall_s);
   watch.repeat_zero_force();
   watched.pass_rounds(10);
   CHECK_FALSE(watch.is_zero_confirmed());
@@ -337,31 +337,32 @@ TEST_CASE("a relay is kept closed while all is well, and by nothing else",
   SerialPort port;
   Watched watched;
   const device::DeadManRelay relay{port.name};
-  device::WatchdogChannel& watch = watched.watch(two_hundred_rounds_s, relay.descriptor());
-  const auto signs_of_twenty_rounds = [&](bool beats) {
+  device::WatchdogChannel& watch = watched.watch(long_stall_s, relay.descriptor());
+  const auto signs_of_fifty_rounds = [&](bool beats) {
     watched.pass_rounds(1);
     static_cast<void>(port.signs_of_life(relay));
-    for (int i = 0; i < 20; ++i) {
+    for (int i = 0; i < 50; ++i) {
       beats ? watch.beat() : void();
       watched.pass_rounds(1);
     }
     return port.signs_of_life(relay);
   };
-  CHECK(signs_of_twenty_rounds(false) == 0);  // zero force is not confirmed yet
+  CHECK(signs_of_fifty_rounds(false) == 0);  // zero force is not confirmed yet
   watch.allow_power();
-  CHECK(signs_of_twenty_rounds(false) >= 9);  // at rest nobody need beat
+  CHECK(signs_of_fifty_rounds(false) >= 9);  // at rest nobody need beat
   watch.begin();
-  CHECK(signs_of_twenty_rounds(true) >= 9);
+  CHECK(signs_of_fifty_rounds(true) >= 9);
   SECTION("a stop that is not confirmed opens it, until it is") {
     watch.repeat_zero_force();
-    CHECK(signs_of_twenty_rounds(true) <= 1);
+    CHECK(signs_of_fifty_rounds(true) <= 1);
     watch.end();
-    CHECK(signs_of_twenty_rounds(false) >= 9);
+    CHECK(signs_of_fifty_rounds(false) >= 9);
   }
   SECTION("a program that stands still opens it for good") {
-    watched.pass_rounds(210);
-    CHECK(signs_of_twenty_rounds(false) == 0);
-    CHECK(signs_of_twenty_rounds(true) == 0);
+    watched.pass_rounds(static_cast<std::uint64_t>(1e3 * long_stall_s) / device::guardian_round_ms +
+                        10);
+    CHECK(signs_of_fifty_rounds(false) == 0);
+    CHECK(signs_of_fifty_rounds(true) == 0);
   }
   SECTION("without a guardian nobody holds it") {
     CHECK(watched.packets_of_the_end() == 3);

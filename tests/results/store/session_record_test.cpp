@@ -78,6 +78,8 @@ for person in sorted({s["participant_id"] for s in sessions}):
   loop = [t for t in ticks if t["trial_id"] in ids]
   for name in ("ticks", "late", "skipped", "saturated", "dropped_samples"):
     out(sum(t[name] for t in loop))
+  out(sum(t["skipped"] > 0.01 * (t["ticks"] + t["skipped"]) for t in loop
+          if any(o["trial_id"] == t["trial_id"] and o["status"] == "answered" for o in own)))
   out(max(t["lateness_p999_s"] for t in loop), max(t["worst_lateness_s"] for t in loop))
   of = lambda kind: [e["value"] for e in events if e["trial_id"] in ids and e["kind"] == kind]
   out(len(of("impact")), len(of("late_impact")), len(of("masking")), min(of("masking")),
@@ -92,8 +94,8 @@ std::vector<double> counted_by_store(Store& store) {
     add(row.sessions, row.answered, row.interrupted, row.repeated, row.skipped, row.timed_out,
         row.given_up, row.corrected, row.catch_trials, row.catch_right, row.form_items,
         row.form_items_left_out, row.ticks, row.late, row.skipped_ticks, row.saturated,
-        row.dropped_samples, row.lateness_p999_s, row.worst_lateness_s, row.impacts,
-        row.late_impacts, row.masked_trials, row.masking_low_db.value(),
+        row.dropped_samples, row.incomplete_trials, row.lateness_p999_s, row.worst_lateness_s,
+        row.impacts, row.late_impacts, row.masked_trials, row.masking_low_db.value(),
         row.masking_high_db.value(), row.masking_gaps);
   }
   return all;

@@ -14,8 +14,8 @@ SchemaJson described(const Range& range);
 SchemaJson described_integer(int low, int high);
 SchemaJson described_text(TextLines lines, TextLanguages languages);
 SchemaJson described_name();
-// Without a file there are no names of other sections, or nameless ones (and "." of a body's point):
-// then any name.
+// Without a file there are no names of other sections, or nameless ones (and "." of a body's
+// point): then any name.
 SchemaJson described_words(const std::vector<std::string>& allowed);
 SchemaJson described_named(SchemaJson value, std::size_t least);
 SchemaJson described_empty(bool is_optional);

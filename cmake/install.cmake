@@ -3,9 +3,12 @@
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
-# The manual page and the completions, which the program makes from the definitions of its commands.
+# What the program makes of itself: manual page and completions from the definitions of its commands,
+# the reference and the JSON schemas of its YAML files from their readers.
 set(documents_dir ${PROJECT_BINARY_DIR}/documents)
-set(documents ${documents_dir}/tapstudy.1 ${documents_dir}/tapstudy.bash ${documents_dir}/_tapstudy)
+set(documents ${documents_dir}/tapstudy.1 ${documents_dir}/tapstudy.bash ${documents_dir}/_tapstudy
+  ${documents_dir}/keys.md ${documents_dir}/schema/protocol.schema.json
+  ${documents_dir}/schema/rig.schema.json ${documents_dir}/schema/calibration.schema.json)
 add_custom_command(OUTPUT ${documents}
   COMMAND ${CMAKE_COMMAND} -E make_directory ${documents_dir}
   COMMAND tapstudy --documents ${documents_dir} DEPENDS tapstudy VERBATIM)
@@ -18,9 +21,10 @@ install(FILES ${documents_dir}/tapstudy.bash RENAME tapstudy
   DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
 install(FILES ${documents_dir}/_tapstudy DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions)
 install(DIRECTORY protocols/paper protocols/recommended protocols/examples protocols/rigs
+  ${documents_dir}/schema  # beside them, where their first lines look for it
   DESTINATION ${CMAKE_INSTALL_DATADIR}/tapstudy/protocols)
 install(FILES device/udev/70-tapstudy.rules DESTINATION lib/udev/rules.d)
-install(FILES README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(FILES README.md CHANGELOG.md ${documents_dir}/keys.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(FILES LICENSE RENAME copyright DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(DIRECTORY docs/ DESTINATION ${CMAKE_INSTALL_DOCDIR} OPTIONAL)
 

@@ -185,6 +185,8 @@ struct PracticeCriterion {
 // which the operator mounts.
 enum class Presented { virtual_plates, real_plates };
 
+inline constexpr std::size_t max_stimuli = 26;  // of a block: they have letters as labels
+
 struct Block {
   std::string name;
   const Task* task{};

@@ -36,12 +36,14 @@ struct Axis {
   std::string_view name;      // in protocols, on the command line and in data; ends in its unit
   std::string_view quantity;  // in reports
   std::string_view unit;      // SI; empty for a ratio
+  std::string_view meaning;   // in the reference of keys
   AxisKind kind{};
   bool (*is_used_by)(const core::Technique& technique){};  // null: by all
   bool is_of_boxes{};                                      // other shapes cannot vary so
   bool is_without_springs{};                               // plates on springs do not scale so
   // What the stimulus allows: what the study's own key allows, or less.
   Range (*allowed)(const PresentedStimulus& stimulus){};
+  Range of_any_stimulus;
   double (*value)(const PresentedStimulus& stimulus){};
   // Plates and materials are shared: it exchanges them for changed copies.
   void (*set)(PresentedStimulus& stimulus, double value){};

@@ -77,8 +77,8 @@ std::string described(const AxisValues& values) {
 }
 
 Spacing read_spacing(MapReader& reader) {
-  return reader.one_of<Spacing>("spacing", {{"linear", Spacing::linear}, {"log", Spacing::log}},
-                                "linear");
+  return reader.one_of<Spacing>({"spacing", "equal differences or equal ratios between values"},
+                                {{"linear", Spacing::linear}, {"log", Spacing::log}}, "linear");
 }
 
 bool check_spacing(MapReader& reader, Spacing spacing, double lowest) {
@@ -92,8 +92,8 @@ bool check_spacing(MapReader& reader, Spacing spacing, double lowest) {
 std::optional<SpacedEnds> read_ends(MapReader& reader, const EndKeys& keys, const Range& allowed) {
   const std::size_t earlier_problems = reader.problems_in_file();
   SpacedEnds ends;
-  ends.low = reader.number(keys.low, allowed);
-  ends.high = reader.number(keys.high, allowed);
+  ends.low = reader.number({keys.low, "lowest value"}, allowed);
+  ends.high = reader.number({keys.high, "highest value, above " + keys.low}, allowed);
   ends.spacing = read_spacing(reader);
   if (reader.problems_in_file() > earlier_problems) {
     return std::nullopt;
@@ -108,7 +108,7 @@ std::optional<SpacedEnds> read_ends(MapReader& reader, const EndKeys& keys, cons
 std::optional<SpacedValues> read_spaced(MapReader& reader, const EndKeys& keys,
                                         const Range& allowed, int max_count) {
   const std::size_t earlier_problems = reader.problems_in_file();
-  const int count = reader.integer("count", 2, max_count);
+  const int count = reader.integer({"count", "how many values, both ends included"}, 2, max_count);
   const std::optional<SpacedEnds> ends = read_ends(reader, keys, allowed);
   if (!ends || reader.problems_in_file() > earlier_problems) {
     return std::nullopt;

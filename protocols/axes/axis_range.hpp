@@ -54,8 +54,8 @@ Spacing read_spacing(MapReader& reader);
 bool check_spacing(MapReader& reader, Spacing spacing, double lowest);
 
 struct EndKeys {
-  const char* low;
-  const char* high;
+  std::string low;
+  std::string high;
 };
 // Of the keys of the ends and of `spacing`, linear or log. nullopt: a problem was noted.
 std::optional<SpacedEnds> read_ends(MapReader& reader, const EndKeys& keys, const Range& allowed);

@@ -2,6 +2,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <memory>
 #include <utility>
 
@@ -141,65 +142,104 @@ bool scales_vibration(const core::Technique& technique) {
 bool has_sinusoid(const core::Technique& technique) {
   return technique.has(core::decaying_sinusoid);
 }
+using P = PresentedStimulus;
+constexpr std::array table{
+    Axis{"youngs_modulus_pa", "Young's modulus", "Pa",
+         "Young's modulus; for techniques with the plate's vibration", AxisKind::scaled, vibrates,
+         false, true, constant<allowed::youngs_modulus_pa>, allowed::youngs_modulus_pa,
+         [](const P& stimulus) { return stimulus.material->youngs_modulus_pa; },
+         [](P& stimulus, double value) {
+           change_material(stimulus, [&](Material& m) { m.youngs_modulus_pa = value; });
+         },
+         true},
+    Axis{"density_kg_per_m3", "density", "kg/m³",
+         "density; for techniques with the plate's vibration", AxisKind::scaled, vibrates, false,
+         false, constant<allowed::density_kg_per_m3>, allowed::density_kg_per_m3,
+         [](const P& stimulus) { return stimulus.material->density_kg_per_m3; },
+         [](P& stimulus, double value) {
+           change_material(stimulus, [&](Material& m) { m.density_kg_per_m3 = value; });
+         },
+         true},
+    Axis{"damping_scale",
+         "damping scale",
+         "",
+         "factor on every damping ratio of the material; for techniques with the plate's vibration",
+         AxisKind::scaled,
+         vibrates,
+         false,
+         false,
+         damping_factors,
+         {0.0, max_factor},
+         [](const P& /*stimulus*/) { return 1.0; },
+         [](P& stimulus, double value) {
+           change_material(stimulus,
+                           [&](Material& m) { m.damping = core::scaled(m.damping, value); });
+         }},
+    Axis{"vibration_gain",
+         "vibration gain",
+         "",
+         "factor on the vibration force; for techniques of fem, beam and recorded; not of "
+         "fem-coupled, where a scaled reaction would not be passive",
+         AxisKind::scaled,
+         scales_vibration,
+         false,
+         false,
+         gains,
+         {0.0, max_factor},
+         of_rendering<&Rendering::vibration_gain>,
+         set_rendering<&Rendering::vibration_gain>,
+         false,
+         true},
+    Axis{"sinusoid_amplitude_n_s_per_m", "sinusoid amplitude", "N s/m",
+         "amplitude per impact speed; for techniques with the sinusoid", AxisKind::scaled,
+         has_sinusoid, false, false, constant<allowed::sinusoid_amplitude_n_s_per_m>,
+         allowed::sinusoid_amplitude_n_s_per_m, of_sinusoid<&Sinusoid::amplitude_n_s_per_m>,
+         set_sinusoid<&Sinusoid::amplitude_n_s_per_m>, false, true},
+    Axis{"sinusoid_decay_per_s", "sinusoid decay rate", "1/s",
+         "decay rate of the amplitude; for techniques with the sinusoid", AxisKind::scaled,
+         has_sinusoid, false, false, constant<allowed::sinusoid_decay_per_s>,
+         allowed::sinusoid_decay_per_s, of_sinusoid<&Sinusoid::decay_per_s>,
+         set_sinusoid<&Sinusoid::decay_per_s>, false, true},
+    Axis{"sinusoid_frequency_hz", "sinusoid frequency", "Hz",
+         "frequency, below half of rate_hz; for techniques with the sinusoid", AxisKind::scaled,
+         has_sinusoid, false, false, frequencies_hz, allowed::sinusoid_frequency_hz,
+         of_sinusoid<&Sinusoid::frequency_hz>, set_sinusoid<&Sinusoid::frequency_hz>, false, true},
+    Axis{"penalty_stiffness_n_per_m", "contact stiffness", "N/m",
+         "contact spring; for every technique", AxisKind::scaled, nullptr, false, false,
+         constant<allowed::penalty_stiffness_n_per_m>, allowed::penalty_stiffness_n_per_m,
+         of_rendering<&Rendering::penalty_stiffness_n_per_m>,
+         set_rendering<&Rendering::penalty_stiffness_n_per_m>, false, true},
+    Axis{"poissons_ratio", "Poisson's ratio", "",
+         "Poisson's ratio, a model for each value; for techniques with the plate's vibration",
+         AxisKind::tabled, vibrates_as_a_solid, false, false, constant<allowed::poissons_ratio>,
+         allowed::poissons_ratio,
+         [](const P& stimulus) { return stimulus.material->poissons_ratio; },
+         [](P& stimulus, double value) {
+           change_material(stimulus, [&](Material& m) { m.poissons_ratio = value; });
+         }},
+    Axis{
+        "thickness_m", "thickness", "m",
+        "thickness of a box, a model for each value; fixations stay where they are; for techniques "
+        "with the plate's vibration",
+        AxisKind::tabled, vibrates, true, false, constant<allowed::edge_m>, allowed::edge_m,
+        [](const P& stimulus) { return box_of(stimulus).size_m.z(); },
+        [](P& stimulus, double value) {
+          change_plate(stimulus,
+                       [&](Plate& plate) { std::get<core::Box>(plate.shape).size_m.z() = value; });
+        }},
+    Axis{"lateral_size_m", "lateral size", "m",
+         "edge of a box along x, a model for each value; the other edge, fixations (not their "
+         "radii) "
+         "and tapping points move with it, on the device the plate stays as large as it is; for "
+         "techniques with the plate's vibration",
+         AxisKind::tabled, vibrates, true, false, lateral_sizes_m, allowed::edge_m,
+         [](const P& stimulus) { return box_of(stimulus).size_m.x(); }, set_lateral_size, true},
+};
 }  // namespace
 
 const std::vector<Axis>& axes() {
-  using P = PresentedStimulus;
-  static const std::vector<Axis> table{
-      {"youngs_modulus_pa", "Young's modulus", "Pa", AxisKind::scaled, vibrates, false, true,
-       constant<allowed::youngs_modulus_pa>,
-       [](const P& stimulus) { return stimulus.material->youngs_modulus_pa; },
-       [](P& stimulus, double value) {
-         change_material(stimulus, [&](Material& m) { m.youngs_modulus_pa = value; });
-       },
-       true},
-      {"density_kg_per_m3", "density", "kg/m³", AxisKind::scaled, vibrates, false, false,
-       constant<allowed::density_kg_per_m3>,
-       [](const P& stimulus) { return stimulus.material->density_kg_per_m3; },
-       [](P& stimulus, double value) {
-         change_material(stimulus, [&](Material& m) { m.density_kg_per_m3 = value; });
-       },
-       true},
-      {"damping_scale", "damping scale", "", AxisKind::scaled, vibrates, false, false,
-       damping_factors, [](const P& /*stimulus*/) { return 1.0; },
-       [](P& stimulus, double value) {
-         change_material(stimulus,
-                         [&](Material& m) { m.damping = core::scaled(m.damping, value); });
-       }},
-      {"vibration_gain", "vibration gain", "", AxisKind::scaled, scales_vibration, false, false,
-       gains, of_rendering<&Rendering::vibration_gain>, set_rendering<&Rendering::vibration_gain>,
-       false, true},
-      {"sinusoid_amplitude_n_s_per_m", "sinusoid amplitude", "N s/m", AxisKind::scaled,
-       has_sinusoid, false, false, constant<allowed::sinusoid_amplitude_n_s_per_m>,
-       of_sinusoid<&Sinusoid::amplitude_n_s_per_m>, set_sinusoid<&Sinusoid::amplitude_n_s_per_m>,
-       false, true},
-      {"sinusoid_decay_per_s", "sinusoid decay rate", "1/s", AxisKind::scaled, has_sinusoid, false,
-       false, constant<allowed::sinusoid_decay_per_s>, of_sinusoid<&Sinusoid::decay_per_s>,
-       set_sinusoid<&Sinusoid::decay_per_s>, false, true},
-      {"sinusoid_frequency_hz", "sinusoid frequency", "Hz", AxisKind::scaled, has_sinusoid, false,
-       false, frequencies_hz, of_sinusoid<&Sinusoid::frequency_hz>,
-       set_sinusoid<&Sinusoid::frequency_hz>, false, true},
-      {"penalty_stiffness_n_per_m", "contact stiffness", "N/m", AxisKind::scaled, nullptr, false,
-       false, constant<allowed::penalty_stiffness_n_per_m>,
-       of_rendering<&Rendering::penalty_stiffness_n_per_m>,
-       set_rendering<&Rendering::penalty_stiffness_n_per_m>, false, true},
-      {"poissons_ratio", "Poisson's ratio", "", AxisKind::tabled, vibrates_as_a_solid, false, false,
-       constant<allowed::poissons_ratio>,
-       [](const P& stimulus) { return stimulus.material->poissons_ratio; },
-       [](P& stimulus, double value) {
-         change_material(stimulus, [&](Material& m) { m.poissons_ratio = value; });
-       }},
-      {"thickness_m", "thickness", "m", AxisKind::tabled, vibrates, true, false,
-       constant<allowed::edge_m>, [](const P& stimulus) { return box_of(stimulus).size_m.z(); },
-       [](P& stimulus, double value) {
-         change_plate(stimulus,
-                      [&](Plate& plate) { std::get<core::Box>(plate.shape).size_m.z() = value; });
-       }},
-      {"lateral_size_m", "lateral size", "m", AxisKind::tabled, vibrates, true, false,
-       lateral_sizes_m, [](const P& stimulus) { return box_of(stimulus).size_m.x(); },
-       set_lateral_size, true},
-  };
-  return table;
+  static const std::vector<Axis> all{table.begin(), table.end()};
+  return all;
 }
 
 const Axis* find_axis(std::string_view name) {

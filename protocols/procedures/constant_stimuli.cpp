@@ -70,11 +70,15 @@ class ConstantSettings final : public TrackSettings {
 class ConstantStimuli final : public Procedure {
  public:
   std::string_view name() const override { return "constant"; }
+  std::string_view meaning() const override {
+    return "method of constant stimuli: given values in random order";
+  }
   std::shared_ptr<const TrackSettings> read(MapReader& reader) const override {
     const auto values = read_grid(reader);
-    const int repetitions = reader.integer("repetitions", 1, max_repetitions);
+    const int repetitions = reader.integer({"repetitions", "of each value"}, 1, max_repetitions);
     const bool is_within_repetition = reader.one_of<bool>(
-        "order", {{"shuffle_within_repetition", true}, {"shuffle", false}}, "shuffle");
+        {"order", "all presentations in random order, or each repetition by itself"},
+        {{"shuffle_within_repetition", true}, {"shuffle", false}}, "shuffle");
     if (!values) {
       return nullptr;
     }

@@ -43,14 +43,14 @@ const std::vector<const Procedure*>& procedures() {
 
 std::shared_ptr<const TrackSettings> read_procedure(MapReader& reader) {
   std::shared_ptr<const TrackSettings> settings;
-  std::vector<std::string_view> names;
-  int given = 0;
+  std::vector<std::string> names;
   for (const Procedure* procedure : procedures()) {
-    names.push_back(procedure->name());
-    reader.map(std::string{procedure->name()}, MapReader::Presence::optional,
+    names.emplace_back(procedure->name());
+    reader.map({std::string{procedure->name()}, std::string{procedure->meaning()}},
+               MapReader::Presence::optional,
                [&](MapReader& own) { settings = procedure->read(own); });
-    given += reader.has(std::string{procedure->name()}) ? 1 : 0;
   }
+  const int given = reader.count_given(names, MapReader::Presence::required);
   if (given != 1) {
     reader.reject(
         fmt::format("names {} procedures instead of one (of: {})", given, fmt::join(names, ", ")));
@@ -60,15 +60,16 @@ std::shared_ptr<const TrackSettings> read_procedure(MapReader& reader) {
 }
 
 namespace {
-std::optional<std::vector<double>> listed(MapReader& reader) {
+std::optional<std::vector<double>> listed(MapReader& reader, const Range& allowed) {
   for (const char* key : {"min", "max", "count", "spacing"}) {
-    if (reader.has(key)) {
-      reader.reject(key, "is not for values that are listed");
-    }
+    reader.refuse(key, "is not for values that are listed");
   }
-  std::vector<double> values = reader.number_list("values", {-largest_value, largest_value});
+  std::vector<double> values =
+      reader.number_list({"values", "values to present, in increasing order"}, allowed);
+  reader.check("values", values.size() <= max_grid_values,
+               fmt::format(R"({{"maxItems": {}, "uniqueItems": true}})", max_grid_values),
+               "are too many (at most 10000)");
   if (values.size() > max_grid_values) {
-    reader.reject("values", "are too many (at most 10000)");
     return std::nullopt;
   }
   if (values.empty() || std::ranges::adjacent_find(values, std::greater_equal{}) != values.end()) {
@@ -79,12 +80,12 @@ std::optional<std::vector<double>> listed(MapReader& reader) {
 }
 }  // namespace
 
-std::optional<std::vector<double>> read_grid(MapReader& reader) {
+std::optional<std::vector<double>> read_grid(MapReader& reader, const Range& stated) {
+  const Range allowed = reader.narrowed(stated, {-largest_value, largest_value});
   if (reader.has("values")) {
-    return listed(reader);
+    return listed(reader, allowed);
   }
-  const auto spaced =
-      read_spaced(reader, {"min", "max"}, {-largest_value, largest_value}, max_grid_values);
+  const auto spaced = read_spaced(reader, {"min", "max"}, allowed, max_grid_values);
   return spaced ? std::optional{spaced->values} : std::nullopt;
 }
 }  // namespace tapstudy::protocols

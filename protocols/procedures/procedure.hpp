@@ -14,8 +14,6 @@
 namespace tapstudy::protocols {
 using core::operator""_source;
 
-class MapReader;
-
 // A change of direction of a staircase: at which trial (from 1) and at which value it turned.
 struct Reversal {
   std::size_t trial{};
@@ -109,12 +107,12 @@ class TrackSettings {
 };
 
 // A psychophysical procedure: which stimulus value comes next. To add one: a file beside this with
-// its class, a row in procedure.cpp, a schema in protocols/schema/procedures/; nothing else
-// refers to a procedure by name.
+// its class, a row in procedure.cpp; nothing else refers to a procedure by name.
 class Procedure {
  public:
   virtual ~Procedure() = default;
   virtual std::string_view name() const = 0;
+  virtual std::string_view meaning() const = 0;  // in the reference of keys
   // Its own keys; problems go to the reader. nullptr: no track could be started with these, and the
   // problem was noted.
   virtual std::shared_ptr<const TrackSettings> read(MapReader& reader) const = 0;
@@ -141,6 +139,8 @@ inline constexpr double largest_value = 1e9;
 inline constexpr int max_grid_values = 10'000;
 
 // The keys of a grid: `values`, listed in increasing order; or `min`, `max`, `count` and `spacing`,
-// linear or log. At least one value, strictly increasing. nullopt: a problem was noted.
-std::optional<std::vector<double>> read_grid(MapReader& reader);
+// linear or log. At least one value, strictly increasing. nullopt: a problem was noted. What values
+// the schema allows is stated; the caller checks it.
+std::optional<std::vector<double>> read_grid(MapReader& reader,
+                                             const Range& stated = {-largest_value, largest_value});
 }  // namespace tapstudy::protocols

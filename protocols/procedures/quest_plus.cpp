@@ -22,8 +22,10 @@ enum class Prior { uniform, normal, log_normal, listed };
 
 std::vector<double> bell_weights(MapReader& reader, const std::vector<double>& values,
                                  bool is_log) {
-  const double mean = reader.number("mean", {-largest_value, largest_value});
-  const double deviation = reader.number("sd", Range::positive(largest_value));
+  const double mean = reader.number({"mean", "of the normal prior; of log_normal its median"},
+                                    {-largest_value, largest_value});
+  const double deviation = reader.number({"sd", "of the normal prior; of log_normal in decades"},
+                                         Range::positive(largest_value));
   if (values.empty()) {
     return {};
   }
@@ -46,7 +48,8 @@ std::vector<double> bell_weights(MapReader& reader, const std::vector<double>& v
 }
 
 std::vector<double> listed_weights(MapReader& reader, std::size_t values) {
-  std::vector<double> weights = reader.number_list("weights", {0.0, largest_value});
+  std::vector<double> weights = reader.number_list(
+      {"weights", "prior weight of each value, not all 0"}, {0.0, largest_value});
   if (values == 0) {
     return {};
   }
@@ -64,23 +67,26 @@ std::vector<double> listed_weights(MapReader& reader, std::size_t values) {
 void refuse_keys_of_others(MapReader& reader, Prior prior) {
   const bool is_bell = prior == Prior::normal || prior == Prior::log_normal;
   for (const char* key : {"mean", "sd"}) {
-    if (!is_bell && reader.has(key)) {
-      reader.reject(key, "is for prior: normal or log_normal only");
+    if (!is_bell) {
+      reader.refuse(key, "is for prior: normal or log_normal only");
     }
   }
-  if (prior != Prior::listed && reader.has("weights")) {
-    reader.reject("weights", "is for prior: listed only");
+  if (prior != Prior::listed) {
+    reader.refuse("weights", "is for prior: listed only");
   }
 }
 }  // namespace
 
 std::vector<double> read_prior(MapReader& reader, const std::vector<double>& values) {
-  const auto prior = reader.one_of<Prior>("prior",
-                                          {{"uniform", Prior::uniform},
-                                           {"normal", Prior::normal},
-                                           {"log_normal", Prior::log_normal},
-                                           {"listed", Prior::listed}},
-                                          "uniform");
+  const auto prior =
+      reader.one_of<Prior>({"prior",
+                            "weight of each value before the first answer: equal; a normal "
+                            "distribution of the value or of its logarithm to base 10; or listed"},
+                           {{"uniform", Prior::uniform},
+                            {"normal", Prior::normal},
+                            {"log_normal", Prior::log_normal},
+                            {"listed", Prior::listed}},
+                           "uniform");
   refuse_keys_of_others(reader, prior);
   if (prior == Prior::uniform) {
     return std::vector<double>(values.size(), 1.0);
@@ -100,28 +106,45 @@ class DesignReader {
   DesignReader(MapReader& reader, const core::PsychometricShapeRow& shape)
       : reader_{&reader}, shape_{&shape} {}
 
-  void read_stimulus() {
-    reader_->map("stimulus", Presence::required, [&](MapReader& own) { read_axis(own); });
+  void read_curve() {
+    reader_->map({"stimulus", "values of the first axis, that of the psychometric function"},
+                 Presence::required, [&](MapReader& own) { read_axis(own); });
     if (!design_.axes.empty() && shape_->is_logarithmic && design_.axes[0].front() < 0.0) {
       refuse("stimulus", fmt::format("has values below 0, where {} is not defined", shape_->name));
     }
+    read_parameter(
+        {"threshold", "stimulus value at which F is one half (weibull, gumbel: 1 - 1/e)"},
+        threshold_range());
+    read_parameter(
+        {"slope",
+         "steepness of F per unit of the value, or per decade for shapes of the logarithm"},
+        Range::positive(largest_value));
   }
-  void read_parameter(const std::string& name, const Range& range) {
-    reader_->map(name, Presence::required,
-                 [&](MapReader& own) { add_parameter(own, name, range); });
+  void read_parameter(const Key& key, const Range& range) {
+    reader_->map(key, Presence::required,
+                 [&](MapReader& own) { add_parameter(own, key.name, range); });
   }
-  void read_fixed(const std::string& name, const Range& range) {
-    design_.parameters.push_back({name, {reader_->number(name, range)}, {1.0}, false});
+  void read_fixed(const Key& key, const Range& range) {
+    design_.parameters.push_back({key.name, {reader_->number(key, range)}, {1.0}, false});
   }
   void read_further_axes() {
-    reader_->list("further_axes", Presence::optional, [&](MapReader& own) {
-      const std::string name = fmt::format("effect_{}", design_.axes.size() + 1);
-      read_axis(own);
-      origins_.push_back(own.number("origin", {-largest_value, largest_value}, 0.0));
-      own.map("effect", Presence::required, [&](MapReader& effect) {
-        add_parameter(effect, name, {-largest_value, largest_value});
-      });
-    });
+    reader_->list(
+        {"further_axes",
+         "of the stimuli, which move the threshold; those of the block's `further_axes`, in their "
+         "order"},
+        Presence::optional, [&](MapReader& own) {
+          const std::string name = fmt::format("effect_{}", design_.axes.size() + 1);
+          read_axis(own);
+          origins_.push_back(own.number(
+              {"origin", "value on the axis at which the threshold is as `threshold` says"},
+              {-largest_value, largest_value}, 0.0));
+          own.map({"effect",
+                   "shift of the threshold (of its logarithm to base 10, for shapes of the "
+                   "logarithm) per unit of this axis"},
+                  Presence::required, [&](MapReader& effect) {
+                    add_parameter(effect, name, {-largest_value, largest_value});
+                  });
+        });
   }
   void check_rates() {
     if (is_complete() && highest(2) + highest(3) >= 1.0) {
@@ -169,8 +192,9 @@ class DesignReader {
   }
 
   void add_parameter(MapReader& own, const std::string& name, const Range& range) {
-    const auto values = read_grid(own);
-    const bool is_nuisance = own.yes_or_no("nuisance", false);
+    const auto values = read_grid(own, range);
+    const bool is_nuisance = own.yes_or_no(
+        {"nuisance", "estimated, but stimuli are not chosen to learn about it"}, false);
     const std::vector<double> weights = read_prior(own, values.value_or(std::vector<double>{}));
     if (!values || weights.empty()) {
       is_refused_ = true;
@@ -193,33 +217,50 @@ class DesignReader {
 
 const core::PsychometricShapeRow& read_function(MapReader& reader) {
   const auto* const row = core::find_psychometric_shape(
-      reader.word("function", "psychometric function", core::psychometric_shape_names()));
+      reader.word({"function",
+                   "shape F of the psychometric function guess + (1 - guess - lapse) F "
+                   "(core/psychometric_function.hpp)"},
+                  "psychometric function", core::psychometric_shape_names()));
   return row == nullptr ? core::psychometric_shapes().front() : *row;
 }
 
 QuestPlusStop read_stop(MapReader& top, bool may_be_narrow) {
   QuestPlusStop stop;
-  top.map("stop", Presence::required, [&](MapReader& reader) {
-    stop.trials = static_cast<std::size_t>(reader.integer("trials", 1, max_quest_trials));
-    if (may_be_narrow && reader.has("threshold_sd")) {
-      stop.standard_deviation = reader.number("threshold_sd", Range::positive(largest_value));
-    }
-  });
+  top.map({"stop", "when it ends: whichever comes first"}, Presence::required,
+          [&](MapReader& reader) {
+            stop.trials = static_cast<std::size_t>(
+                reader.integer({"trials", "at most so many trials"}, 1, max_quest_trials));
+            if (may_be_narrow && reader.has("threshold_sd")) {
+              stop.standard_deviation =
+                  reader.number({"threshold_sd",
+                                 "once the posterior standard deviation of the threshold is at "
+                                 "most this; unset: after trials only"},
+                                Range::positive(largest_value));
+            }
+          });
   return stop;
 }
 
 const Range rate{0.0, 1.0, true, false};
+Key guess_key() {
+  return {"guess", "proportion correct far below the threshold"};
+}
+Key lapse_key() {
+  return {"lapse", "proportion incorrect far above it"};
+}
 
 class QuestPlus final : public Procedure {
  public:
   std::string_view name() const override { return "quest_plus"; }
+  std::string_view meaning() const override {
+    return "QUEST+ (Watson 2017): the stimulus after which the posterior of the parameters is "
+           "expected to have the least entropy";
+  }
   std::shared_ptr<const TrackSettings> read(MapReader& reader) const override {
     DesignReader design{reader, read_function(reader)};
-    design.read_stimulus();
-    design.read_parameter("threshold", design.threshold_range());
-    design.read_parameter("slope", Range::positive(largest_value));
-    design.read_parameter("guess", rate);
-    design.read_parameter("lapse", rate);
+    design.read_curve();
+    design.read_parameter(guess_key(), rate);
+    design.read_parameter(lapse_key(), rate);
     design.read_further_axes();
     design.check_rates();
     return design.built(read_stop(reader, true), core::citing("QUEST+ ({})", "Watson 2017"_source));
@@ -229,13 +270,14 @@ class QuestPlus final : public Procedure {
 class Psi final : public Procedure {
  public:
   std::string_view name() const override { return "psi"; }
+  std::string_view meaning() const override {
+    return "psi method (Kontsevich & Tyler 1999): QUEST+ of threshold and slope";
+  }
   std::shared_ptr<const TrackSettings> read(MapReader& reader) const override {
     DesignReader design{reader, read_function(reader)};
-    design.read_stimulus();
-    design.read_parameter("threshold", design.threshold_range());
-    design.read_parameter("slope", Range::positive(largest_value));
-    design.read_fixed("guess", rate);
-    design.read_fixed("lapse", rate);
+    design.read_curve();
+    design.read_fixed(guess_key(), rate);
+    design.read_fixed(lapse_key(), rate);
     design.check_rates();
     return design.built(read_stop(reader, false),
                         core::citing("the psi method ({})", "Kontsevich & Tyler 1999"_source));

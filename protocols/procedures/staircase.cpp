@@ -190,21 +190,29 @@ class StaircaseStart final : public TrackSettings {
 };
 
 // In dB where the step is a factor.
-double read_step(MapReader& reader, const std::string& key, StepKind kind,
+double read_step(MapReader& reader, const Key& key, StepKind kind,
                  std::optional<double> otherwise) {
   const double step = reader.number(key, Range::positive(largest_value), otherwise);
-  if (reader.has(key) && kind == StepKind::factor && step <= 1.0) {
-    reader.reject(key, "is not above 1, as a factor must be to move");
+  if (reader.has(key.name) && kind == StepKind::factor && step <= 1.0) {
+    reader.reject(key.name, "is not above 1, as a factor must be to move");
   }
   return step;
 }
 
 void read_steps(MapReader& reader, StaircaseSettings& settings) {
   const auto kind = reader.one_of<StepKind>(
-      "steps", {{"linear", StepKind::linear}, {"db", StepKind::db}, {"factor", StepKind::factor}});
+      {"steps", "added to the value, in decibels of it (20 log10), or factors of it"},
+      {{"linear", StepKind::linear}, {"db", StepKind::db}, {"factor", StepKind::factor}});
   settings.is_in_db = kind != StepKind::linear;
-  settings.first_step = read_step(reader, "first_step", kind, {});
-  settings.min_step = read_step(reader, "min_step", kind, settings.first_step);
+  settings.first_step = read_step(
+      reader,
+      {"first_step", "step after correct answers until the first reversal; a factor is above 1"},
+      kind, {});
+  settings.min_step = read_step(
+      reader,
+      {"min_step",
+       "each reversal halves the step (of a factor: its logarithm) until this; unset: no halving"},
+      kind, settings.first_step);
   if (settings.min_step > settings.first_step) {
     reader.reject("min_step", "is above first_step");
   }
@@ -215,43 +223,57 @@ void read_steps(MapReader& reader, StaircaseSettings& settings) {
 }
 
 void read_rule(MapReader& reader, StaircaseSettings& settings) {
-  const auto rule = reader.one_of<Rule>(
-      "rule", {{"transformed", Rule::transformed}, {"weighted", Rule::weighted}});
+  const auto rule =
+      reader.one_of<Rule>({"rule",
+                           "transformed: so many answers in a row make a step (Levitt 1971); "
+                           "weighted: each answer makes one, of unequal size (Kaernbach 1991)"},
+                          {{"transformed", Rule::transformed}, {"weighted", Rule::weighted}});
   const bool is_weighted = rule == Rule::weighted;
   for (const char* key : {"n_down", "n_up"}) {
-    if (is_weighted && reader.has(key)) {
-      reader.reject(key, "is for rule: transformed only");
+    if (is_weighted) {
+      reader.refuse(key, "is for rule: transformed only");
     }
   }
-  if (!is_weighted && reader.has("target")) {
-    reader.reject("target", "is for rule: weighted only");
+  if (!is_weighted) {
+    reader.refuse("target", "is for rule: weighted only");
   }
   if (is_weighted) {
-    const double target = reader.number("target", {0.05, 0.95});
+    const double target =
+        reader.number({"target",
+                       "proportion correct to settle at; the step after an incorrect answer is "
+                       "target / (1 - target) times the other"},
+                      {0.05, 0.95});
     settings.easier_per_harder = target / (1.0 - target);
   } else {
-    settings.n_down = reader.integer("n_down", 1, 10);
-    settings.n_up = reader.integer("n_up", 1, 10, 1);
+    settings.n_down = reader.integer(
+        {"n_down", "correct answers in a row that make the next stimulus harder"}, 1, 10);
+    settings.n_up = reader.integer(
+        {"n_up", "incorrect answers in a row that make it easier; with rule: transformed only"}, 1,
+        10, 1);
   }
 }
 
 void read_stop(MapReader& top, StaircaseSettings& settings) {
-  top.map("stop", MapReader::Presence::required, [&](MapReader& reader) {
-    if (!reader.has("reversals") && !reader.has("trials")) {
-      reader.reject("has neither reversals nor trials");
-    }
-    if (reader.has("reversals")) {
-      settings.max_reversals =
-          static_cast<std::size_t>(reader.integer("reversals", 1, max_staircase_reversals));
-    }
-    settings.max_trials = static_cast<std::size_t>(
-        reader.integer("trials", 1, max_staircase_trials, max_staircase_trials));
-  });
-  settings.estimate_reversals =
-      static_cast<std::size_t>(top.integer("estimate_reversals", 2, max_staircase_reversals));
-  if (settings.estimate_reversals % 2 != 0) {
-    top.reject("estimate_reversals", "is odd: as many peaks as valleys are averaged");
-  }
+  top.map(
+      {"stop", "when the staircase ends: whichever comes first"}, MapReader::Presence::required,
+      [&](MapReader& reader) {
+        if (reader.count_given({"reversals", "trials"}, MapReader::Presence::at_least_one) == 0) {
+          reader.reject("has neither reversals nor trials");
+        }
+        if (reader.has("reversals")) {
+          settings.max_reversals = static_cast<std::size_t>(
+              reader.integer({"reversals", "after so many reversals; unset: any number"}, 1,
+                             max_staircase_reversals));
+        }
+        settings.max_trials = static_cast<std::size_t>(reader.integer(
+            {"trials", "after so many trials"}, 1, max_staircase_trials, max_staircase_trials));
+      });
+  settings.estimate_reversals = static_cast<std::size_t>(
+      top.integer({"estimate_reversals",
+                   "the estimate is the mean of the last so many reversals, an even number"},
+                  2, max_staircase_reversals));
+  top.check("estimate_reversals", settings.estimate_reversals % 2 == 0, R"({"multipleOf": 2})",
+            "is odd: as many peaks as valleys are averaged");
   // the first trial is no reversal
   const std::size_t attainable = settings.max_trials - 1;
   if (settings.estimate_reversals >
@@ -262,9 +284,9 @@ void read_stop(MapReader& top, StaircaseSettings& settings) {
 
 bool read_limits(MapReader& reader, StaircaseSettings& settings) {
   const Range any{-largest_value, largest_value};
-  settings.start = reader.number("start", any);
-  settings.min = reader.number("min", any);
-  settings.max = reader.number("max", any);
+  settings.start = reader.number({"start", "first value, from min to max"}, any);
+  settings.min = reader.number({"min", "lowest value; above 0 with steps: db or factor"}, any);
+  settings.max = reader.number({"max", "highest value, above min"}, any);
   if (settings.max <= settings.min) {
     reader.reject("max", "is not above min: the staircase cannot move");
     return false;
@@ -305,11 +327,13 @@ void check_room(MapReader& reader, const StaircaseSettings& settings) {
 class Staircase final : public Procedure {
  public:
   std::string_view name() const override { return "staircase"; }
+  std::string_view meaning() const override { return "up-down staircase"; }
   std::shared_ptr<const TrackSettings> read(MapReader& reader) const override {
     StaircaseSettings settings;
     read_rule(reader, settings);
-    settings.is_harder_below =
-        reader.one_of<bool>("after_correct", {{"decrease", true}, {"increase", false}}, "decrease");
+    settings.is_harder_below = reader.one_of<bool>(
+        {"after_correct", "whether correct answers decrease or increase the value"},
+        {{"decrease", true}, {"increase", false}}, "decrease");
     read_steps(reader, settings);
     const bool has_room = read_limits(reader, settings);
     read_stop(reader, settings);

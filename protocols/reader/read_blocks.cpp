@@ -85,12 +85,18 @@ std::vector<std::string> task_names() {
 
 OrderConstraints read_constraints(MapReader& block) {
   OrderConstraints constraints;
-  block.map("constraints", Presence::optional, [&](MapReader& reader) {
-    if (reader.has("max_run")) {
-      constraints.max_run = reader.integer("max_run", 1, 1000);
-    }
-    constraints.min_distance = reader.integer("min_distance", 1, 1000, 1);
-  });
+  block.map(
+      {"constraints", "for random orders; all that satisfy them are equally likely; unset: none"},
+      Presence::optional, [&](MapReader& reader) {
+        if (reader.has("max_run")) {
+          constraints.max_run = reader.integer(
+              {"max_run", "of one stimulus in a row; 1: no immediate repetition; unset: any"}, 1,
+              1000);
+        }
+        constraints.min_distance = reader.integer(
+            {"min_distance", "trials from one presentation of a stimulus to its next; 1: any"}, 1,
+            1000, 1);
+      });
   return constraints;
 }
 
@@ -111,10 +117,6 @@ void check_constraints(MapReader& reader, const Block& block) {
   if (!block.constraints.are_any()) {
     return;
   }
-  if (block.order == Order::listed || block.order == Order::williams) {
-    reader.reject("constraints", "are for random orders: this one is given");
-    return;
-  }
   if (has_catch_trials_of_its_own_stimuli(block)) {
     reader.reject("constraints",
                   "would be broken by catch trials of the block's own stimuli (catch_trials of "
@@ -130,30 +132,40 @@ void check_constraints(MapReader& reader, const Block& block) {
 }
 
 void read_practice(MapReader& reader, Block& block) {
-  block.is_practice = reader.yes_or_no("practice", false);
-  reader.map("criterion", Presence::optional, [&](MapReader& inner) {
-    PracticeCriterion criterion;
-    criterion.of_last = inner.integer("of_last", 1, 1000);
-    criterion.correct = inner.integer("correct", 1, 1000);
-    criterion.must_be_met =
-        inner.one_of<bool>("otherwise", {{"go_on", false}, {"end", true}}, "go_on");
-    if (criterion.correct > criterion.of_last) {
-      inner.reject("correct", fmt::format("of {} answers no {} can be right", criterion.of_last,
-                                          criterion.correct));
-    }
-    block.criterion = criterion;
-  });
-  if (block.criterion && !block.is_practice) {
-    reader.reject("criterion", "is for practice: it ends a block by how well it is answered");
+  block.is_practice = reader.yes_or_no({"practice", "excluded from reports"}, false);
+  if (!block.is_practice) {
+    reader.refuse("criterion", "is for practice: it ends a block by how well it is answered");
+    return;
   }
+  if (block.task != nullptr && !block.task->has_correct_answer()) {
+    reader.refuse("criterion", fmt::format("the task {} has no right answer", block.task->name()));
+    return;
+  }
+  reader.map({"criterion",
+              "practice of a task with right answers only: ends the block early; repetitions is "
+              "then the most there can be; unset: all trials"},
+             Presence::optional, [&](MapReader& inner) {
+               PracticeCriterion criterion;
+               criterion.of_last = inner.integer(
+                   {"of_last", "among so many answers in a row; at most the block's trials"}, 1,
+                   1000);
+               criterion.correct = inner.integer(
+                   {"correct", "so many right answers end the block; at most of_last"}, 1, 1000);
+               criterion.must_be_met = inner.one_of<bool>(
+                   {"otherwise",
+                    "where it is not met: the study begins all the same, or the session ends"},
+                   {{"go_on", false}, {"end", true}}, "go_on");
+               if (criterion.correct > criterion.of_last) {
+                 inner.reject("correct", fmt::format("of {} answers no {} can be right",
+                                                     criterion.of_last, criterion.correct));
+               }
+               block.criterion = criterion;
+             });
 }
 
 void check_criterion(MapReader& reader, const Block& block) {
   if (!block.criterion) {
     return;
-  }
-  if (!block.task->has_correct_answer()) {
-    reader.reject("criterion", fmt::format("the task {} has no right answer", block.task->name()));
   }
   if (block.comparison) {
     reader.reject("criterion",
@@ -166,13 +178,15 @@ void check_criterion(MapReader& reader, const Block& block) {
 
 // A body can be mounted only as it is.
 void check_presented(MapReader& reader, const Protocol& protocol, const Block& block) {
-  if (block.presented == Presented::virtual_plates) {
-    return;
+  const bool is_virtual = block.presented == Presented::virtual_plates;
+  if (!block.task->can_present_real_plates()) {
+    reader.check("presented", is_virtual, R"({"const": "virtual"})",
+                 fmt::format("the task {} has several alternatives at hand; real plates are "
+                             "mounted one at a time",
+                             block.task->name()));
   }
-  if (block.task != nullptr && !block.task->can_present_real_plates()) {
-    reader.reject("presented", fmt::format("the task {} has several alternatives at hand; real "
-                                           "plates are mounted one at a time",
-                                           block.task->name()));
+  if (is_virtual) {
+    return;
   }
   std::map<std::tuple<const Plate*, const Material*, const Contacts*>, std::string> stimulus_of;
   for (const std::string& name : all_presented(block)) {
@@ -190,45 +204,86 @@ void check_presented(MapReader& reader, const Protocol& protocol, const Block& b
   }
 }
 
+void read_presentations(MapReader& reader, const Protocol& protocol, Block& block) {
+  block.stimuli = reader.words({"stimuli",
+                                "presented, or chosen among; at most 26; at least 2 where several "
+                                "are told apart; with procedures one that varies"},
+                               "stimulus", stimulus_names(protocol));
+  reader.check_count("stimuli", block.stimuli, 0, max_stimuli, "a block has at most 26 stimuli");
+  block.repetitions =
+      reader.integer({"repetitions",
+                      "identification, rating, magnitude: presentations of each stimulus, at each "
+                      "of its values; choice and ranking: number of trials; others: presentations "
+                      "of each pair in each arrangement; not with procedures"},
+                     1, 1000, 1);
+  block.order = reader.one_of<Order>(
+      {"order",
+       "identification, rating and magnitude only: shuffled overall, file order, shuffled per "
+       "repetition, or balanced Latin square over participants"},
+      {{"shuffle", Order::shuffle},
+       {"listed", Order::listed},
+       {"shuffle_within_repetition", Order::shuffle_within_repetition},
+       {"williams", Order::williams}},
+      "shuffle");
+}
+
+void read_keys_of_task(MapReader& reader, const Protocol& protocol, Block& block) {
+  block.task->read(reader, protocol, block);
+  check_presented(reader, protocol, block);
+  if (block.gives_feedback && block.allows_correction) {
+    reader.reject("correction", "cannot be combined with feedback");
+  }
+  if (!block.task->has_correct_answer()) {
+    reader.check("feedback", !block.gives_feedback, R"({"const": false})",
+                 fmt::format("the task {} has no right answer", block.task->name()));
+  }
+  if (!block.task->uses_order()) {
+    reader.refuse("order", "a task that draws alternatives anew in each trial takes no order");
+  }
+}
+
 // The keys that blocks of every task have; the task reads its own.
 Block read_block(MapReader& reader, const Protocol& protocol) {
   Block block;
-  block.name = reader.name("name");
-  block.task = find_task(reader.word("task", "task", task_names()));
-  block.question = reader.translated("question");
-  block.stimuli = reader.words("stimuli", "stimulus", stimulus_names(protocol));
-  block.repetitions = reader.integer("repetitions", 1, 1000, 1);
-  block.order =
-      reader.one_of<Order>("order",
-                           {{"shuffle", Order::shuffle},
-                            {"listed", Order::listed},
-                            {"shuffle_within_repetition", Order::shuffle_within_repetition},
-                            {"williams", Order::williams}},
-                           "shuffle");
+  block.name = reader.name({"name", "unique among the blocks"});
+  block.task = find_task(reader.word(
+      {"task",
+       "identification: which plate is this; choice: switch among blind labels, then choose; "
+       "comparison: which is the comparison, along an axis, or of fixed stimuli, listed from the "
+       "least to the greatest, the greater one; same_different, odd_one_out, abx: discrimination "
+       "of two; paired: which of two, all pairs; ranking: all in order, the first one first; "
+       "rating: one on a scale of steps; magnitude: how much, as a number; match_to_sample: which "
+       "of several is like the sample; adjustment: one is moved along an axis until it feels equal "
+       "to a standard"},
+      "task", task_names()));
+  block.question = reader.translated({"question", "text that participants are asked"});
+  read_presentations(reader, protocol, block);
   read_practice(reader, block);
   if (block.task != nullptr && block.task->uses_order()) {
-    block.constraints = read_constraints(reader);
+    if (block.order == Order::listed || block.order == Order::williams) {
+      reader.refuse("constraints", "are for random orders: this one is given");
+    } else {
+      block.constraints = read_constraints(reader);
+    }
   }
   block.presented = reader.one_of<Presented>(
-      "presented", {{"virtual", Presented::virtual_plates}, {"real", Presented::real_plates}},
-      "virtual");
+      {"presented",
+       "real: identification or rating of the plates themselves, which the operator mounts; "
+       "nothing is rendered or measured"},
+      {{"virtual", Presented::virtual_plates}, {"real", Presented::real_plates}}, "virtual");
   block.explore = read_explore(reader, protocol, block.presented);
   read_between_trials(reader, block);
-  block.allows_correction = reader.yes_or_no("correction", false);
-  block.forms_after = read_form_names(reader, "forms_after", protocol);
-  block.max_late_impact_repeats = reader.integer("max_late_impact_repeats", 0, 10, 0);
+  block.allows_correction = reader.yes_or_no(
+      {"correction", "the participant may correct the last answer during the next trial"}, false);
+  block.forms_after = read_form_names(
+      reader, {"forms_after", "names of forms, asked after the block's last trial"}, protocol);
+  block.max_late_impact_repeats =
+      reader.integer({"max_late_impact_repeats",
+                      "a trial with an impact up to 5 ms after a late tick, whose strength is "
+                      "uncertain, is presented again, so often at most"},
+                     0, 10, 0);
   if (block.task != nullptr) {
-    block.task->read(reader, protocol, block);
-    check_presented(reader, protocol, block);
-    if (block.gives_feedback && block.allows_correction) {
-      reader.reject("correction", "cannot be combined with feedback");
-    }
-    if (block.gives_feedback && !block.task->has_correct_answer()) {
-      reader.reject("feedback", fmt::format("the task {} has no right answer", block.task->name()));
-    }
-    if (!block.task->uses_order() && reader.has("order")) {
-      reader.reject("order", "a task that draws alternatives anew in each trial takes no order");
-    }
+    read_keys_of_task(reader, protocol, block);
   }
   return block;
 }
@@ -245,25 +300,24 @@ void check_block(MapReader& reader, const Block& block, const Protocol& protocol
   if (std::ranges::find(protocol.blocks, block.name, &Block::name) != protocol.blocks.end()) {
     reader.reject("name", fmt::format("'{}' is the name of an earlier block", block.name));
   }
-  if (block.stimuli.size() > 26) {
-    reader.reject("stimuli", "a block has at most 26 stimuli");
-  }
 }
 }  // namespace
 
 void read_blocks(MapReader& top, Protocol& protocol) {
   constexpr int max_seed = 1'000'000'000;
-  protocol.counterbalancing_seed =
-      static_cast<std::uint64_t>(top.integer("counterbalancing_seed", 0, max_seed, 1));
-  top.list("blocks", Presence::optional, [&](MapReader& reader) {
-    const std::size_t earlier_problems = reader.problems_in_file();
-    const Block block = read_block(reader, protocol);
-    check_block(reader, block, protocol);
-    if (reader.problems_in_file() == earlier_problems) {  // only such a block can be drawn
-      check_intervals(reader, block);
-    }
-    protocol.blocks.push_back(block);
-  });
+  protocol.counterbalancing_seed = static_cast<std::uint64_t>(top.integer(
+      {"counterbalancing_seed", "assigns the balanced orders (order: williams) to participants"}, 0,
+      max_seed, 1));
+  top.list({"blocks", "parts of a session, in file order unless block_order says otherwise"},
+           Presence::optional, [&](MapReader& reader) {
+             const std::size_t earlier_problems = reader.problems_in_file();
+             const Block block = read_block(reader, protocol);
+             check_block(reader, block, protocol);
+             if (reader.problems_in_file() == earlier_problems) {  // only such a block can be drawn
+               check_intervals(reader, block);
+             }
+             protocol.blocks.push_back(block);
+           });
   if (!protocol.blocks.empty()) {
     check_places(top, protocol);
   }
@@ -276,14 +330,20 @@ void read_block_order(MapReader& top, Protocol& protocol) {
       movable.push_back(block.name);
     }
   }
-  top.map("block_order", Presence::optional, [&](MapReader& reader) {
-    BlockOrder& chosen = protocol.block_order;
-    chosen.order =
-        reader.one_of<Order>("order", {{"shuffle", Order::shuffle}, {"williams", Order::williams}});
-    chosen.blocks = reader.words("blocks", "block without practice", movable, movable);
-    if (chosen.blocks.size() < 2) {
-      reader.reject("takes two blocks or more, without counting practice");
-    }
-  });
+  top.map(
+      {"block_order", "how blocks follow one another; unset: as in the file"}, Presence::optional,
+      [&](MapReader& reader) {
+        BlockOrder& chosen = protocol.block_order;
+        chosen.order = reader.one_of<Order>(
+            {"order", "random for each participant, or a balanced Latin square over participants"},
+            {{"shuffle", Order::shuffle}, {"williams", Order::williams}});
+        chosen.blocks =
+            reader.words({"blocks",
+                          "those that exchange their places; the others stay where they are. A "
+                          "practice block moves with the block after it; unset: all but practice"},
+                         "block without practice", movable, movable);
+        reader.check("blocks", chosen.blocks.size() >= 2, R"({"minItems": 2})",
+                     "are not two blocks or more, without counting practice");
+      });
 }
 }  // namespace tapstudy::protocols

@@ -20,11 +20,13 @@ constexpr int max_count = 1000;
 
 std::optional<SpacedValues> read_listed(MapReader& reader, const Range& allowed) {
   const std::size_t earlier_problems = reader.problems_in_file();
-  SpacedValues listed{reader.number_list("values", allowed), read_spacing(reader)};
+  SpacedValues listed{reader.number_list({"values", "what can be presented"}, allowed),
+                      read_spacing(reader)};
   std::ranges::sort(listed.values);
-  if (const auto twice = std::ranges::adjacent_find(listed.values); twice != listed.values.end()) {
-    reader.reject("values", fmt::format("{} is listed twice", *twice));
-  }
+  const auto twice = std::ranges::adjacent_find(listed.values);
+  const bool are_different = twice == listed.values.end();
+  reader.check("values", are_different, R"({"uniqueItems": true})",
+               are_different ? "" : fmt::format("{} is listed twice", *twice));
   const bool is_read = reader.problems_in_file() == earlier_problems;
   return is_read && check_spacing(reader, listed.spacing, listed.values.front())
              ? std::optional{listed}
@@ -33,7 +35,7 @@ std::optional<SpacedValues> read_listed(MapReader& reader, const Range& allowed)
 
 // nullopt: a problem was noted.
 std::optional<AxisRange> read_range(MapReader& reader, const Axis& axis, const Range& allowed) {
-  constexpr EndKeys keys{"from", "to"};
+  const EndKeys keys{"from", "to"};
   if (axis.kind == AxisKind::scaled) {
     const auto ends = read_ends(reader, keys, allowed);
     return ends ? std::optional{AxisRange{&axis, ends->low, ends->high, ends->spacing}}
@@ -90,7 +92,9 @@ std::string why_refused(const Axis& axis, const PresentedStimulus& own) {
 void read_axis(MapReader& reader, const Axis& axis, const PresentedStimulus& own,
                std::vector<AxisRange>& ranges) {
   const std::string why = why_refused(axis, own);
-  const auto range = read_range(reader, axis, why.empty() ? axis.allowed(own) : any_number());
+  const auto range = read_range(
+      reader, axis,
+      reader.narrowed(axis.of_any_stimulus, why.empty() ? axis.allowed(own) : any_number()));
   if (!why.empty()) {
     reader.reject(why);
   } else if (range) {
@@ -103,50 +107,60 @@ AxisValues read_own_rendering(MapReader& stimulus_reader, const Stimulus& stimul
                               const Protocol& protocol) {
   AxisValues values;
   const PresentedStimulus studys = stimulus_with(protocol, whole(stimulus));
-  stimulus_reader.map("rendering", Presence::optional, [&](MapReader& reader) {
-    for (const Axis& axis : axes()) {
-      const std::string name{axis.name};
-      if (!axis.is_of_rendering) {
-        continue;
-      }
-      if (!reader.has(name)) {
-        reader.number(name, any_number(), 0.0);  // a known key, if not given
-        continue;
-      }
-      const std::string why = why_refused(axis, studys);
-      const double value = reader.number(name, why.empty() ? axis.allowed(studys) : any_number());
-      if (why.empty()) {
-        values[name] = value;
-      } else {
-        reader.reject(name, why);
-      }
-    }
-  });
+  stimulus_reader.map(
+      {"rendering", "what is not the study's rendering: the gain of each part of the force"},
+      Presence::optional, [&](MapReader& reader) {
+        for (const Axis& axis : axes()) {
+          const std::string name{axis.name};
+          if (!axis.is_of_rendering) {
+            continue;
+          }
+          const std::string why = why_refused(axis, studys);
+          const Range range = why.empty() ? axis.allowed(studys) : any_number();
+          const Key key{name, fmt::format("{}; unset: the study's", axis.meaning)};
+          const double value =
+              reader.number(key, reader.narrowed(axis.of_any_stimulus, range), 0.0);
+          if (!reader.has(name)) {
+            continue;
+          }
+          if (why.empty()) {
+            values[name] = value;
+          } else {
+            reader.reject(name, why);
+          }
+        }
+      });
   return values;
 }
 
 void read_vary(MapReader& stimulus_reader, const Protocol& protocol, Stimulus& stimulus) {
   const PresentedStimulus own = stimulus_with(protocol, whole(stimulus));
-  std::size_t named = 0;
-  stimulus_reader.map("vary", Presence::optional, [&](MapReader& vary) {
-    for (const Axis& axis : axes()) {
-      named += vary.has(std::string{axis.name}) ? 1 : 0;
-      const auto read = [&](MapReader& reader) { read_axis(reader, axis, own, stimulus.vary); };
-      if (axis.kind == AxisKind::scaled) {
-        vary.map_or_list(std::string{axis.name}, Presence::optional, {"from", "to", "spacing"},
-                         read);
-      } else {
-        vary.map(std::string{axis.name}, Presence::optional, read);
-      }
-    }
-    if (named == 0) {
-      vary.reject(fmt::format("names no axis (one of: {})", fmt::join(axis_names(), ", ")));
-    }
-    check_models(vary, stimulus.vary, own);
-  });
+  int named = 0;
+  stimulus_reader.map(
+      {"vary",
+       "axes along which the stimulus varies, which makes it a family; trials without values "
+       "present the stimulus's own; of a table the nearest value is presented, never an "
+       "interpolated one; at most 200 models; unset: it does not vary"},
+      Presence::optional, [&](MapReader& vary) {
+        named = vary.count_given(axis_names(), Presence::at_least_one);
+        for (const Axis& axis : axes()) {
+          const Key key{std::string{axis.name},
+                        fmt::format("{}; unset: the stimulus's own", axis.meaning)};
+          const auto read = [&](MapReader& reader) { read_axis(reader, axis, own, stimulus.vary); };
+          if (axis.kind == AxisKind::scaled) {
+            vary.map_or_list(key, Presence::optional, {"from", "to", "spacing"}, read);
+          } else {
+            vary.map(key, Presence::optional, read);
+          }
+        }
+        if (named == 0) {
+          vary.reject(fmt::format("names no axis (one of: {})", fmt::join(axis_names(), ", ")));
+        }
+        check_models(vary, stimulus.vary, own);
+      });
   stimulus.vary_stated_at = stimulus_reader.stated_at("vary");
   stimulus.is_vary_refused =
-      stimulus_reader.has("vary") && (stimulus.vary.empty() || stimulus.vary.size() < named);
+      stimulus_reader.has("vary") && (stimulus.vary.empty() || std::ssize(stimulus.vary) < named);
 }
 
 namespace {
@@ -217,19 +231,16 @@ void check_technique(MapReader& reader, const Stimulus& stimulus, const Protocol
     reader.reject("technique",
                   fmt::format("'{}' is for {}", stimulus.technique->name, core::beam_requirements));
   }
-  if (stimulus.recording && !stimulus.technique->has(core::recorded_transient)) {
-    reader.reject("recording",
-                  fmt::format("technique '{}' does not play it", stimulus.technique->name));
-  }
 }
 
 }  // namespace
 
 void read_points(MapReader& top, Protocol& protocol) {
-  top.each_point("tapping_points_m", Presence::required,
-                 [&](const std::string& name, const Eigen::Vector2d& at_m) {
-                   protocol.tapping_points_m[name] = at_m;
-                 });
+  top.each_point(
+      {"tapping_points_m", "named points on the plates, from the centre: x right, y away"},
+      Presence::required, [&](const std::string& name, const Eigen::Vector2d& at_m) {
+        protocol.tapping_points_m[name] = at_m;
+      });
 }
 
 std::vector<std::string> stimulus_names(const Protocol& protocol) {
@@ -239,62 +250,92 @@ std::vector<std::string> stimulus_names(const Protocol& protocol) {
 }
 
 void read_stimuli(MapReader& top, Protocol& protocol) {
-  top.each("stimuli", Presence::required, [&](const std::string& name, MapReader& reader) {
-    Stimulus stimulus;
-    stimulus.name = name;
-    stimulus.label = reader.translated("label", name);
-    stimulus.plate =
-        named(protocol.plates, reader.word("plate", "plate", keys_of(protocol.plates)));
-    stimulus.material =
-        named(protocol.materials, reader.word("material", "material", keys_of(protocol.materials)));
-    stimulus.technique =
-        core::find_technique(reader.word("technique", "technique", core::technique_names()));
-    if (reader.has("recording")) {
-      stimulus.recording = named(
-          protocol.recordings, reader.word("recording", "recording", keys_of(protocol.recordings)));
-    }
-    reader.each_text("factors", Presence::optional,
-                     [&](const std::string& factor, const std::string& level) {
-                       stimulus.factors[factor] = level;
-                     });
-    if (reader.has("contacts")) {
-      stimulus.contacts = named(protocol.contacts, reader.word("contacts", "set of contacts",
-                                                               keys_of(protocol.contacts)));
-    }
-    check_factors(reader, stimulus, protocol);
-    check_technique(reader, stimulus, protocol);
-    check_contacts(reader, stimulus, protocol);
-    stimulus.rendering = read_own_rendering(reader, stimulus, protocol);
-    read_vary(reader, protocol, stimulus);
-    protocol.stimuli.push_back(stimulus);
-  });
+  top.each(
+      {"stimuli", "what can be presented: a plate of a material, rendered by a technique"},
+      Presence::required, [&](const std::string& name, MapReader& reader) {
+        Stimulus stimulus;
+        stimulus.name = name;
+        stimulus.label = reader.translated(
+            {"label", "what participants read; unset: the stimulus's name"}, name);
+        stimulus.plate = named(protocol.plates, reader.word({"plate", "name of a plate"}, "plate",
+                                                            keys_of(protocol.plates)));
+        stimulus.material =
+            named(protocol.materials, reader.word({"material", "name of a material"}, "material",
+                                                  keys_of(protocol.materials)));
+        stimulus.technique = core::find_technique(reader.word(
+            {"technique",
+             "added to the contact spring: nothing, decaying sinusoid at each impact, vibration of "
+             "the plate, both, or a finger that stays on the vibrating plate, each acting on the "
+             "other; or the vibration of a beam in closed form; or a measured transient at each "
+             "impact; these without or with the sinusoid"},
+            "technique", core::technique_names()));
+        if (stimulus.technique != nullptr && !stimulus.technique->has(core::recorded_transient)) {
+          reader.refuse("recording",
+                        fmt::format("technique '{}' does not play it", stimulus.technique->name));
+        } else if (stimulus.technique != nullptr || reader.has("recording")) {
+          stimulus.recording = named(
+              protocol.recordings,
+              reader.word({"recording",
+                           "name of a recording; techniques recorded and recorded+sinusoid only"},
+                          "recording", keys_of(protocol.recordings)));
+        }
+        reader.each_text({"factors",
+                          "factor and level, by which reports break down accuracy; the same "
+                          "factors for all stimuli"},
+                         Presence::optional,
+                         [&](const std::string& factor, const std::string& level) {
+                           stimulus.factors[factor] = level;
+                         });
+        if (reader.has("contacts")) {
+          stimulus.contacts =
+              named(protocol.contacts,
+                    reader.word(
+                        {"contacts",
+                         "key in contacts, of this plate; youngs_modulus_pa, density_kg_per_m3 and "
+                         "lateral_size_m cannot vary then; unset: the plate touches no other body"},
+                        "set of contacts", keys_of(protocol.contacts)));
+        }
+        check_factors(reader, stimulus, protocol);
+        check_technique(reader, stimulus, protocol);
+        check_contacts(reader, stimulus, protocol);
+        stimulus.rendering = read_own_rendering(reader, stimulus, protocol);
+        read_vary(reader, protocol, stimulus);
+        protocol.stimuli.push_back(stimulus);
+      });
   check_points(top, protocol);
 }
 
 void read_hypotheses(MapReader& top, Protocol& protocol) {
   std::vector<std::string> blocks;
   std::ranges::transform(protocol.blocks, std::back_inserter(blocks), &Block::name);
-  top.list("hypotheses", Presence::optional, [&](MapReader& reader) {
-    Hypothesis hypothesis;
-    hypothesis.name = reader.name("name");
-    hypothesis.statement = reader.text("statement");
-    hypothesis.block = reader.word("block", "block", blocks);
-    hypothesis.claim =
-        reader.one_of<Claim>("claim", {{"accuracy_above_chance", Claim::accuracy_above_chance},
-                                       {"chosen_above_chance", Claim::chosen_above_chance},
-                                       {"rated_highest", Claim::rated_highest}});
-    const auto block = std::ranges::find(protocol.blocks, hypothesis.block, &Block::name);
-    const bool is_known = block != protocol.blocks.end() && block->task != nullptr;
-    if (hypothesis.claim != Claim::accuracy_above_chance) {
-      hypothesis.stimulus = reader.word("stimulus", "stimulus of the block",
-                                        is_known ? block->stimuli : stimulus_names(protocol));
-    }
-    if (is_known && block->task->claim() != hypothesis.claim) {
-      reader.reject("claim", "does not fit the task of the block");
-    } else if (is_known && block->comparison) {
-      reader.reject("block", "has procedures: its threshold is estimated, and no claim is tested");
-    }
-    protocol.hypotheses.push_back(hypothesis);
-  });
+  top.list(
+      {"hypotheses", "declared before the study; reports test these as planned"},
+      Presence::optional, [&](MapReader& reader) {
+        Hypothesis hypothesis;
+        hypothesis.name = reader.name({"name", "short name of the hypothesis"});
+        hypothesis.statement = reader.text({"statement", "the hypothesis in words, for reports"});
+        hypothesis.block = reader.word({"block", "name of a block"}, "block", blocks);
+        hypothesis.claim = reader.one_of<Claim>(
+            {"claim",
+             "accuracy_above_chance for tasks with right answers, chosen_above_chance for choice "
+             "and paired, rated_highest for rating"},
+            {{"accuracy_above_chance", Claim::accuracy_above_chance},
+             {"chosen_above_chance", Claim::chosen_above_chance},
+             {"rated_highest", Claim::rated_highest}});
+        const auto block = std::ranges::find(protocol.blocks, hypothesis.block, &Block::name);
+        const bool is_known = block != protocol.blocks.end() && block->task != nullptr;
+        if (hypothesis.claim != Claim::accuracy_above_chance) {
+          hypothesis.stimulus = reader.word(
+              {"stimulus", "stimulus of the block that is expected to be chosen, or rated highest"},
+              "stimulus of the block", is_known ? block->stimuli : stimulus_names(protocol));
+        }
+        if (is_known && block->task->claim() != hypothesis.claim) {
+          reader.reject("claim", "does not fit the task of the block");
+        } else if (is_known && block->comparison) {
+          reader.reject("block",
+                        "has procedures: its threshold is estimated, and no claim is tested");
+        }
+        protocol.hypotheses.push_back(hypothesis);
+      });
 }
 }  // namespace tapstudy::protocols

@@ -16,10 +16,12 @@ namespace tapstudy::protocols {
 namespace {
 using Presence = MapReader::Presence;
 constexpr Range coordinate_m{-10.0, 10.0};
+constexpr const char* some_above_0 = R"({"contains": {"exclusiveMinimum": 0}})";
 
 std::array<bool, 3> read_axes(MapReader& fixation) {
-  const std::string axes = fixation.word(
-      "axes", "set of axes", {"xyz", "xy", "xz", "yz", "x", "y", "z"}, std::string{"xyz"});
+  const std::string axes =
+      fixation.word({"axes", "constrained axes, plate frame; not beside springs_n_per_m"},
+                    "set of axes", {"xyz", "xy", "xz", "yz", "x", "y", "z"}, std::string{"xyz"});
   const auto has = [&](char axis) { return axes.find(axis) != std::string::npos; };
   return {has('x'), has('y'), has('z')};
 }
@@ -30,29 +32,42 @@ void read_hold(MapReader& reader, core::Fixation& fixation) {
     fixation.constrained_axes = read_axes(reader);
     return;
   }
-  if (reader.has("axes")) {
-    reader.reject("axes", "not beside springs_n_per_m, whose axes of stiffness 0 are free");
-  }
-  const core::Vec3 springs_n_per_m = reader.numbers("springs_n_per_m", 3, allowed::spring_n_per_m);
-  if (springs_n_per_m.isZero(0.0)) {
-    reader.reject("springs_n_per_m", "holds nothing: every stiffness is 0");
-  }
+  reader.refuse("axes", "not beside springs_n_per_m, whose axes of stiffness 0 are free");
+  const core::Vec3 springs_n_per_m =
+      reader.numbers({"springs_n_per_m",
+                      "the region is not held rigidly but on springs to the ground: stiffness of "
+                      "the whole region along x, y and z, 0: free along that axis; "
+                      "youngs_modulus_pa cannot vary on such a plate; unset: rigid"},
+                     3, allowed::spring_n_per_m);
+  reader.check("springs_n_per_m", !springs_n_per_m.isZero(0.0), some_above_0,
+               "holds nothing: every stiffness is 0");
   fixation.springs_n_per_m = springs_n_per_m;
+}
+
+Key at_key() {
+  return {"at_m", "vertex and disc with size_m: x, y; ball, and vertex of a surface: x, y, z"};
 }
 
 void read_place(MapReader& reader, bool is_box, core::Fixation& fixation) {
   if (!is_box) {
-    fixation.at_m = reader.numbers("at_m", 3, coordinate_m);
+    fixation.at_m = reader.numbers(at_key(), 3, coordinate_m);
     return;
   }
-  fixation.at_m.head<2>() = reader.numbers("at_m", 2, coordinate_m);
-  fixation.face = reader.one_of<core::Face>("face", core::face_names, "both");
+  fixation.at_m.head<2>() = reader.numbers(at_key(), 2, coordinate_m);
+  fixation.face = reader.one_of<core::Face>(
+      {"face",
+       "vertex and disc with size_m only: both faces, one of them, or through the thickness"},
+      core::face_names, "both");
 }
 
 core::Fixation read_region(MapReader& reader, bool is_box) {
   using core::RegionShape;
   core::Fixation fixation;
-  fixation.shape = reader.one_of<RegionShape>("region", core::region_names);
+  fixation.shape =
+      reader.one_of<RegionShape>({"region",
+                                  "vertex: single nodes; disc: circle on the faces; ball, box: all "
+                                  "nodes within; side: all nodes on it"},
+                                 core::region_names);
   switch (fixation.shape) {
     case RegionShape::disc:
       if (!is_box) {
@@ -63,21 +78,26 @@ core::Fixation read_region(MapReader& reader, bool is_box) {
       read_place(reader, is_box, fixation);
       break;
     case RegionShape::ball:
-      fixation.at_m = reader.numbers("at_m", 3, coordinate_m);
+      fixation.at_m = reader.numbers(at_key(), 3, coordinate_m);
       break;
     case RegionShape::box:
-      fixation.low_m = reader.numbers("low_m", 3, coordinate_m);
-      fixation.high_m = reader.numbers("high_m", 3, coordinate_m);
+      fixation.low_m =
+          reader.numbers({"low_m", "lower corner of a box region, plate frame"}, 3, coordinate_m);
+      fixation.high_m = reader.numbers({"high_m", "upper corner of a box region, not below low_m"},
+                                       3, coordinate_m);
       if ((fixation.low_m.array() > fixation.high_m.array()).any()) {
         reader.reject("low_m", "is not below high_m along every axis");
       }
       break;
     case RegionShape::side:
-      fixation.side = reader.one_of<core::Side>("side", core::side_names);
+      fixation.side = reader.one_of<core::Side>(
+          {"side", "side of the bounding box: left is low x, front low y, bottom low z"},
+          core::side_names);
       break;
   }
   if (fixation.shape == RegionShape::disc || fixation.shape == RegionShape::ball) {
-    fixation.radius_m = reader.number("radius_m", Range::positive(10.0));
+    fixation.radius_m =
+        reader.number({"radius_m", "radius of a disc or ball"}, Range::positive(10.0));
   }
   return fixation;
 }
@@ -90,14 +110,26 @@ core::Fixation read_fixation(MapReader& reader, bool is_box) {
 
 core::Meshing read_mesh(MapReader& mesh) {
   core::Meshing meshing;
-  meshing.order = mesh.integer("order", 1, 2, 1);
+  meshing.order =
+      mesh.integer({"order", "element order: 1 as in the paper; 2 is far more accurate"}, 1, 2, 1);
   if (mesh.has("max_tet_volume_m3")) {
-    meshing.size.max_tet_volume_m3 = mesh.number("max_tet_volume_m3", Range::positive(1e6));
+    meshing.size.max_tet_volume_m3 =
+        mesh.number({"max_tet_volume_m3",
+                     "maximum tetrahedron volume, with accuracy that of the first round; unset: no "
+                     "limit, with accuracy 1/200 of the body"},
+                    Range::positive(1e6));
   }
-  meshing.size.radius_edge_ratio = mesh.number("radius_edge_ratio", {1.1, 10.0}, 1.414);
-  meshing.size.flattening = mesh.number("flattening", {1.0, core::max_flattening}, 1.0);
+  meshing.size.radius_edge_ratio =
+      mesh.number({"radius_edge_ratio", "TetGen's bound on circumradius over shortest edge"},
+                  {1.1, 10.0}, 1.414);
+  meshing.size.flattening =
+      mesh.number({"flattening", "elements are this many times wider than thick, for thin sheets"},
+                  {1.0, core::max_flattening}, 1.0);
   if (mesh.has("accuracy")) {
-    meshing.accuracy = mesh.number("accuracy", {1e-5, 1.0, true, false});
+    meshing.accuracy = mesh.number({"accuracy",
+                                    "refine until no frequency in the band changes by more than "
+                                    "this fraction; unset: no refinement"},
+                                   {1e-5, 1.0, true, false});
   }
   return meshing;
 }
@@ -117,10 +149,15 @@ const SurfaceSource& surface_of(const std::string& file, const ReadFile& read_fi
 Eigen::Isometry3d read_pose(MapReader& reader) {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   if (reader.has("offset_m")) {
-    pose.translation() = reader.numbers("offset_m", 3, coordinate_m);
+    pose.translation() = reader.numbers(
+        {"offset_m", "moves the surface in the plate frame, after it was turned; unset: stays"}, 3,
+        coordinate_m);
   }
   if (reader.has("rotation_rad")) {
-    const Eigen::Vector3d turn = reader.numbers("rotation_rad", 3, {-6.3, 6.3});
+    const Eigen::Vector3d turn = reader.numbers(
+        {"rotation_rad",
+         "turns the surface about the direction of this vector by its length; unset: stays"},
+        3, {-6.3, 6.3});
     if (turn.norm() > 0.0) {
       pose.linear() = Eigen::AngleAxisd{turn.norm(), turn.normalized()}.toRotationMatrix();
     }
@@ -131,33 +168,36 @@ Eigen::Isometry3d read_pose(MapReader& reader) {
 // Problems of the surface itself are reported at its key; reading then continues.
 core::Shape read_surface_shape(MapReader& plate, const ReadFile& read_file, Protocol& protocol) {
   core::Shape shape = core::Box{core::Vec3::Constant(10.0)};  // placeholder until read
-  plate.map("surface", Presence::required, [&](MapReader& reader) {
-    const std::string file = reader.text("file");
-    const std::size_t earlier_problems = reader.problems_in_file();
-    const double metres_per_unit = reader.number("metres_per_unit", Range::positive(1000.0));
-    const bool is_scaled = reader.problems_in_file() == earlier_problems;
-    const Eigen::Isometry3d pose = read_pose(reader);
-    if (!is_scaled) {
-      return;  // its size would be wrong
-    }
-    try {
-      const SurfaceSource& source = surface_of(file, read_file, protocol);
-      core::TriangleSurface surface = read_surface(source, metres_per_unit);
-      for (auto point : surface.points_m.rowwise()) {
-        point = (pose * point.transpose()).transpose().eval();
-      }
-      check_surface(surface);
-      shape = core::Solid{std::move(surface)};
-    } catch (const core::InvalidInput& error) {
-      reader.reject("file", error.what());
-    }
-  });
+  plate.map({"surface", "closed surface from a file, instead of a box"}, Presence::required,
+            [&](MapReader& reader) {
+              const std::string file =
+                  reader.text({"file", "STL, PLY, OFF or OBJ; path relative to the protocol"});
+              const std::size_t earlier_problems = reader.problems_in_file();
+              const double metres_per_unit = reader.number(
+                  {"metres_per_unit", "0.001 for a file in millimetres"}, Range::positive(1000.0));
+              const bool is_scaled = reader.problems_in_file() == earlier_problems;
+              const Eigen::Isometry3d pose = read_pose(reader);
+              if (!is_scaled) {
+                return;  // its size would be wrong
+              }
+              try {
+                const SurfaceSource& source = surface_of(file, read_file, protocol);
+                core::TriangleSurface surface = read_surface(source, metres_per_unit);
+                for (auto point : surface.points_m.rowwise()) {
+                  point = (pose * point.transpose()).transpose().eval();
+                }
+                check_surface(surface);
+                shape = core::Solid{std::move(surface)};
+              } catch (const core::InvalidInput& error) {
+                reader.reject("file", error.what());
+              }
+            });
   return shape;
 }
 void read_lateral_scale(MapReader& reader, bool is_box, const core::Placement& placement,
                         Plate& plate) {
-  const double scale =
-      reader.number("lateral_scale", Range::positive(1000.0), placement.lateral_scale);
+  const double scale = reader.number({"lateral_scale", "of this plate; unset: the placement's"},
+                                     Range::positive(1000.0), placement.lateral_scale);
   if (placement.lateral_scale > 0.0) {  // or it was rejected
     plate.lateral_ratio = scale / placement.lateral_scale;
   }
@@ -175,8 +215,10 @@ void read_own_points(MapReader& reader, const Protocol& protocol, Plate& plate) 
   for (const auto& [name, at_m] : protocol.tapping_points_m) {
     plate.tapping_points_m[name] = at_m / plate.lateral_ratio;
   }
-  reader.each_point("tapping_points_m", Presence::optional,
-                    [&](const std::string& name, const Eigen::Vector2d& at_m) {
+  reader.each_point({"tapping_points_m",
+                     "of this plate, for some of the study's names; unset: the study's, at the "
+                     "same places of the device"},
+                    Presence::optional, [&](const std::string& name, const Eigen::Vector2d& at_m) {
                       if (!plate.tapping_points_m.contains(name)) {
                         reader.reject(
                             "tapping_points_m",
@@ -190,24 +232,32 @@ void read_own_points(MapReader& reader, const Protocol& protocol, Plate& plate) 
 }  // namespace
 
 void read_plates(MapReader& top, Protocol& protocol, const ReadFile& read_file) {
-  top.each("plates", Presence::required, [&](const std::string& name, MapReader& reader) {
-    Plate plate;
-    plate.stated_at = reader.stated_at();
-    const bool is_box = !reader.has("surface");
-    plate.shape = is_box ? core::Shape{core::Box{reader.numbers("size_m", 3, allowed::edge_m)}}
-                         : read_surface_shape(reader, read_file, protocol);
-    reader.map("mesh", Presence::optional, [&](MapReader& mesh) { plate.mesh = read_mesh(mesh); });
-    reader.list("fixations", Presence::required, [&](MapReader& fixation) {
-      plate.fixations.push_back(read_fixation(fixation, is_box));
-    });
-    reader.each("contact_points", Presence::optional,
-                [&](const std::string& point, MapReader& region) {
-                  plate.contact_points[point] = read_region(region, is_box);
-                });
-    read_lateral_scale(reader, is_box, protocol.placement, plate);
-    read_own_points(reader, protocol, plate);
-    protocol.plates[name] = std::make_shared<const Plate>(std::move(plate));
-  });
+  top.each(
+      {"plates", "named bodies, each a box or a closed surface, with mesh and boundary conditions"},
+      Presence::required, [&](const std::string& name, MapReader& reader) {
+        Plate plate;
+        plate.stated_at = reader.stated_at();
+        const bool is_box = !reader.has("surface");
+        plate.shape = is_box ? core::Shape{core::Box{reader.numbers(
+                                   {"size_m", "edge lengths of a box along x, y and z (thickness)"},
+                                   3, allowed::edge_m)}}
+                             : read_surface_shape(reader, read_file, protocol);
+        reader.map({"mesh", "settings of the tetrahedral mesh"}, Presence::optional,
+                   [&](MapReader& mesh) { plate.mesh = read_mesh(mesh); });
+        reader.list({"fixations", "regions that are held; an empty list: none"}, Presence::required,
+                    [&](MapReader& fixation) {
+                      plate.fixations.push_back(read_fixation(fixation, is_box));
+                    });
+        reader.each(
+            {"contact_points",
+             "regions at which the plate may touch other bodies, by name; as those of fixations"},
+            Presence::optional, [&](const std::string& point, MapReader& region) {
+              plate.contact_points[point] = read_region(region, is_box);
+            });
+        read_lateral_scale(reader, is_box, protocol.placement, plate);
+        read_own_points(reader, protocol, plate);
+        protocol.plates[name] = std::make_shared<const Plate>(std::move(plate));
+      });
 }
 
 // Bodies that a tapped plate touches, and the springs between them.
@@ -237,10 +287,11 @@ void add_points(const std::string& body, const std::shared_ptr<const Plate>& pla
 
 void read_body(const std::string& name, MapReader& reader, const Protocol& protocol,
                Contacts& contacts, EndsByName& ends) {
-  const auto plate =
-      named(protocol.plates, reader.word("plate", "plate", keys_of(protocol.plates)));
+  const auto plate = named(
+      protocol.plates, reader.word({"plate", "key in plates"}, "plate", keys_of(protocol.plates)));
   const auto material =
-      named(protocol.materials, reader.word("material", "material", keys_of(protocol.materials)));
+      named(protocol.materials, reader.word({"material", "key in materials; without modal_ratios"},
+                                            "material", keys_of(protocol.materials)));
   if (plate) {
     check_mesh(reader, "plate", *plate);
   }
@@ -259,7 +310,7 @@ void read_body(const std::string& name, MapReader& reader, const Protocol& proto
 }
 
 // nullopt for a name that was rejected.
-std::optional<core::JointSpring::End> read_end(MapReader& reader, const std::string& key,
+std::optional<core::JointSpring::End> read_end(MapReader& reader, const Key& key,
                                                const EndsByName& ends) {
   const auto found = ends.find(reader.word(key, "contact point", keys_of(ends)));
   return found == ends.end() ? std::nullopt : std::optional{found->second};
@@ -268,16 +319,24 @@ std::optional<core::JointSpring::End> read_end(MapReader& reader, const std::str
 // nullopt where an end was rejected.
 std::optional<core::JointSpring> read_spring(MapReader& reader, const EndsByName& ends) {
   core::JointSpring spring;
-  const auto from = read_end(reader, "from", ends);
-  const auto to = read_end(reader, "to", ends);
+  const auto from = read_end(
+      reader,
+      {"from", "BODY.POINT: a contact point of a body's plate; the tapped plate has its own name"},
+      ends);
+  const auto to = read_end(reader, {"to", "likewise, of another body"}, ends);
   if (from && to && from->body == to->body) {
     reader.reject("to", "is a point of the same body as from");
   }
-  spring.stiffness_n_per_m = reader.numbers("springs_n_per_m", 3, allowed::spring_n_per_m);
-  if (spring.stiffness_n_per_m.isZero(0.0)) {
-    reader.reject("springs_n_per_m", "joins nothing: every stiffness is 0");
-  }
-  spring.loss_factor = reader.number("loss_factor", {0.0, 2.0}, 0.0);
+  spring.stiffness_n_per_m = reader.numbers({"springs_n_per_m",
+                                             "along x, y and z, between the mean displacements of "
+                                             "the two regions; 0: none along that axis"},
+                                            3, allowed::spring_n_per_m);
+  reader.check("springs_n_per_m", !spring.stiffness_n_per_m.isZero(0.0), some_above_0,
+               "joins nothing: every stiffness is 0");
+  spring.loss_factor = reader.number({"loss_factor",
+                                      "of the pad between the regions: a mode whose strain is all "
+                                      "in it has half of this as damping ratio"},
+                                     {0.0, 2.0}, 0.0);
   if (!from || !to) {
     return std::nullopt;
   }
@@ -309,25 +368,32 @@ void check_are_joined(MapReader& reader, const Contacts& contacts,
 Contacts read_set(MapReader& reader, const Protocol& protocol) {
   Contacts contacts;
   EndsByName ends;
-  const std::string tapped = reader.word("tapped", "plate", keys_of(protocol.plates));
+  const std::string tapped =
+      reader.word({"tapped", "plate of the stimuli that name these contacts"}, "plate",
+                  keys_of(protocol.plates));
   add_points(tapped, named(protocol.plates, tapped), contacts, ends);
   if (contacts.plates.front()) {
     check_mesh(reader, "tapped", *contacts.plates.front());
   }
   std::vector<std::string> bodies;
   bool are_ends_known = true;
-  reader.each("bodies", Presence::required, [&](const std::string& name, MapReader& body) {
-    bodies.push_back(name);
-    if (name == tapped) {
-      body.reject("has the name of the plate that is tapped");
-    }
-    read_body(name, body, protocol, contacts, ends);
-  });
-  reader.list("springs", Presence::at_least_one, [&](MapReader& inner) {
-    const auto spring = read_spring(inner, ends);
-    are_ends_known = are_ends_known && spring;
-    contacts.springs.push_back(spring.value_or(core::JointSpring{}));
-  });
+  reader.each({"bodies",
+               "the other bodies, by names of their own, each joined to the tapped plate by "
+               "springs, directly or through others; axes parallel to those of the tapped plate; "
+               "without mesh.accuracy"},
+              Presence::required, [&](const std::string& name, MapReader& body) {
+                bodies.push_back(name);
+                if (name == tapped) {
+                  body.reject("has the name of the plate that is tapped");
+                }
+                read_body(name, body, protocol, contacts, ends);
+              });
+  reader.list({"springs", "what joins the bodies; linear: contacts are never lost"},
+              Presence::at_least_one, [&](MapReader& inner) {
+                const auto spring = read_spring(inner, ends);
+                are_ends_known = are_ends_known && spring;
+                contacts.springs.push_back(spring.value_or(core::JointSpring{}));
+              });
   if (are_ends_known && !contacts.springs.empty()) {
     check_are_joined(reader, contacts, bodies);
   }
@@ -336,9 +402,12 @@ Contacts read_set(MapReader& reader, const Protocol& protocol) {
 }  // namespace
 
 void read_contacts(MapReader& top, Protocol& protocol) {
-  top.each("contacts", Presence::optional, [&](const std::string& name, MapReader& reader) {
-    protocol.contacts[name] = std::make_shared<const Contacts>(read_set(reader, protocol));
-  });
+  top.each(
+      {"contacts",
+       "what tapped plates touch: other bodies, joined to them by springs, all vibrating together"},
+      Presence::optional, [&](const std::string& name, MapReader& reader) {
+        protocol.contacts[name] = std::make_shared<const Contacts>(read_set(reader, protocol));
+      });
 }
 
 void check_contacts(MapReader& reader, const Stimulus& stimulus, const Protocol& protocol) {

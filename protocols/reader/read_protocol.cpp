@@ -19,22 +19,27 @@ ReadFile beside(const std::string& file) {
   };
 }
 
-Protocol parse(const StudyText& study, const ReadFile& read_file, Problems& problems) {
-  Protocol protocol;
-  protocol.text = study.text;
-  protocol.translations.language = study.language;
-  MapReader top = MapReader::whole_file(study.text, study.file, problems, &protocol.translations);
-  top.word("format", "format", {"tapstudy/1"});
-  protocol.title = top.translated("title");
-  protocol.notes = top.paragraphs("notes", "");
-  const int planned = top.integer("participants", 1, max_participants, 1);
+void read_whole(MapReader& top, Protocol& protocol, const ReadFile& read_file) {
+  top.check_format("tapstudy/1");
+  protocol.title = top.translated({"title",
+                                   "of the study, as participants' pages and reports show it: it "
+                                   "should not give the question away"});
+  protocol.notes = top.paragraphs({"notes", "free text, printed in reports"}, "");
+  const int planned =
+      top.integer({"participants", "how many are planned, for check and simulate; unset: 10"}, 1,
+                  max_participants, 1);
   if (top.has("participants")) {
     protocol.participants = planned;
   }
-  protocol.instructions = top.translated_paragraphs("instructions", "");
+  protocol.instructions = top.translated_paragraphs(
+      {"instructions", "for participants, shown before the first trial; paragraphs"}, "");
   read_rendering(top, protocol);
-  read_placement(top, MapReader::Presence::required,
-                 [&](const core::Placement& placement) { protocol.placement = placement; });
+  read_placement(
+      top,
+      {"placement",
+       "position of the plate in the device's workspace; the scale along the normal is always 1"},
+      MapReader::Presence::required,
+      [&](const core::Placement& placement) { protocol.placement = placement; });
   read_materials(top, protocol);
   read_points(top, protocol);
   read_plates(top, protocol, read_file);
@@ -48,10 +53,27 @@ Protocol parse(const StudyText& study, const ReadFile& read_file, Problems& prob
   read_hypotheses(top, protocol);
   read_masking(top, protocol);
   read_simulation(top, protocol);
+}
+
+Protocol parse(const StudyText& study, const ReadFile& read_file, Problems& problems) {
+  Protocol protocol;
+  protocol.text = study.text;
+  protocol.translations.language = study.language;
+  MapReader top = MapReader::whole_file(study.text, study.file, problems, &protocol.translations);
+  read_whole(top, protocol, read_file);
   top.finish();
   return protocol;
 }
 }  // namespace
+
+std::string protocol_schema() {
+  return MapReader::schema_of(
+      "protocol", "A user study of tapped virtual plates. SI units, spelled in the keys.",
+      [](MapReader& top) {
+        Protocol protocol;
+        read_whole(top, protocol, {});
+      });
+}
 
 Protocol parse_protocol(const std::string& text, const std::string& file) {
   return parse_protocol({text, file}, beside(file));

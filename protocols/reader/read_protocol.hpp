@@ -20,6 +20,8 @@ Protocol parse_protocol(const StudyText& study, const ReadFile& read_file);
 // The same from a file. Throws InvalidInput also if it cannot be read.
 Protocol read_protocol(const std::string& file, const std::string& language = {});
 
+// The JSON schema of a protocol.
+std::string protocol_schema();
 // Every key the protocol reader looked up in this text (`*` any name, `[]` any list index).
 std::set<std::string> keys_asked_for(const std::string& text, const std::string& file);
 }  // namespace tapstudy::protocols

@@ -21,20 +21,33 @@ void read_loop(MapReader& top, Rig& rig) {
   rig.max_late_ticks_in_a_row = rig.has_hardware ? max_late_ticks_of_hardware : 0;
   rig.max_stall_s = rig.has_hardware ? max_stall_of_hardware_s : 0.0;
   rig.max_missed_share = rig.has_hardware ? max_missed_share_of_hardware : 1.0;
-  top.map("loop", Presence::optional, [&](MapReader& reader) {
-    core::RealtimeRequest& realtime = rig.realtime;
-    realtime.fifo_priority = reader.integer("fifo_priority", 0, 99, realtime.fifo_priority);
-    realtime.lock_memory = reader.yes_or_no("lock_memory", realtime.lock_memory);
-    if (reader.has("cpu")) {
-      realtime.cpu = reader.integer("cpu", 0, 1023);
-    }
-    rig.max_late_ticks_in_a_row =
-        reader.integer("max_late_ticks_in_a_row", rig.has_hardware ? 1 : 0, 1'000'000,
-                       rig.max_late_ticks_in_a_row);
-    rig.max_stall_s =
-        reader.number("max_stall_s", {0.0, 0.1, !rig.has_hardware, true}, rig.max_stall_s);
-    rig.max_missed_share = reader.number("max_missed_share", {0.001, 1.0}, rig.max_missed_share);
-  });
+  top.map({"loop", "real-time settings requested for the haptic loop; the system may refuse them"},
+          Presence::optional, [&](MapReader& reader) {
+            core::RealtimeRequest& realtime = rig.realtime;
+            realtime.fifo_priority = reader.integer(
+                {"fifo_priority", "SCHED_FIFO priority of the haptic thread; 0: not requested"}, 0,
+                99, realtime.fifo_priority);
+            realtime.lock_memory = reader.yes_or_no(
+                {"lock_memory", "lock the program's memory against paging"}, realtime.lock_memory);
+            if (reader.has("cpu")) {
+              realtime.cpu = reader.integer({"cpu", "processor to run on; unset: any"}, 0, 1023);
+            }
+            rig.max_late_ticks_in_a_row =
+                reader.integer({"max_late_ticks_in_a_row",
+                                "more consecutive late ticks end the trial; 0, not with hardware: "
+                                "no limit; unset: 20 with hardware, else 0"},
+                               rig.has_hardware ? 1 : 0, 1'000'000, rig.max_late_ticks_in_a_row);
+            rig.max_stall_s =
+                reader.number({"max_stall_s",
+                               "a longer time between two ticks ends the trial; 0, not with "
+                               "hardware: no limit; unset: 0.01 with hardware, else 0"},
+                              {0.0, 0.1, !rig.has_hardware, true}, rig.max_stall_s);
+            rig.max_missed_share = reader.number(
+                {"max_missed_share",
+                 "more of the periods of a second missed end the trial; 1: any; unset: 0.01 with "
+                 "hardware, else 1"},
+                {0.001, 1.0}, rig.max_missed_share);
+          });
 }
 
 void check_reply_time(MapReader& top, const Rig& rig) {
@@ -48,10 +61,16 @@ void check_reply_time(MapReader& top, const Rig& rig) {
 
 // Motion limits are mandatory for hardware; simulated and recorded hands cannot be hurt.
 void read_limits_of_motion(MapReader& top, core::GateSettings& gate) {
-  gate.max_hand_speed_m_s = top.number("max_hand_speed_m_s", Range::positive(10.0));
-  gate.workspace_radius_m = top.number("workspace_radius_m", Range::positive(1.0));
-  gate.force_rise_s = top.number("force_rise_s", {0.1, 10.0}, 0.5);
-  gate.force_fall_s = top.number("force_fall_s", {0.01, 1.0}, 0.1);
+  gate.max_hand_speed_m_s = top.number(
+      {"max_hand_speed_m_s", "a faster hand ends the trial; hardware only"}, Range::positive(10.0));
+  gate.workspace_radius_m =
+      top.number({"workspace_radius_m",
+                  "a hand farther from the device's origin ends the trial; hardware only"},
+                 Range::positive(1.0));
+  gate.force_rise_s =
+      top.number({"force_rise_s", "ramp from zero to full force; hardware only"}, {0.1, 10.0}, 0.5);
+  gate.force_fall_s =
+      top.number({"force_fall_s", "ramp from full to zero force; hardware only"}, {0.01, 1.0}, 0.1);
 }
 
 std::vector<std::string> names_of(RigDevices devices) {
@@ -63,7 +82,7 @@ std::vector<std::string> names_of(RigDevices devices) {
 }
 
 void read_device(MapReader& top, const std::string& file, RigDevices devices, Rig& rig) {
-  rig.device = top.word("device", "device", names_of(devices));
+  rig.device = top.word({"device", "kind of device"}, "device", names_of(devices));
   const auto device = std::ranges::find(devices, std::string_view{rig.device}, &RigDevice::name);
   if (device == devices.end()) {
     return;
@@ -77,8 +96,10 @@ void read_device(MapReader& top, const std::string& file, RigDevices devices, Ri
 constexpr double max_time_to_full_force_s = 0.1;
 
 void read_limits(MapReader& top, core::ForceLimits& limits) {
-  limits.max_force_n = top.number("max_force_n", {0.01, 100.0});
-  limits.max_force_rate_n_per_s = top.number("max_force_rate_n_per_s", Range::positive(1e6));
+  limits.max_force_n =
+      top.number({"max_force_n", "larger forces are scaled down to it"}, {0.01, 100.0});
+  limits.max_force_rate_n_per_s = top.number(
+      {"max_force_rate_n_per_s", "limit on the rate of change of force"}, Range::positive(1e6));
   const double least_n_per_s = limits.max_force_n / max_time_to_full_force_s;
   if (top.has("max_force_rate_n_per_s") && limits.max_force_rate_n_per_s < least_n_per_s) {
     top.reject("max_force_rate_n_per_s",
@@ -89,46 +110,105 @@ void read_limits(MapReader& top, core::ForceLimits& limits) {
 }
 
 void read_audio(MapReader& top, Rig& rig) {
-  top.map("audio", Presence::optional, [&](MapReader& reader) {
-    core::AudioOutput& audio = rig.audio.emplace();
-    audio.card = reader.text("card", audio.card);
-    if (audio.card.find('|') !=
-        std::string::npos) {  // ALSA's plug-in `file` would run what follows
-      reader.reject("card", "names a command to run ('|')");
-    }
-    audio.rate_hz = reader.integer("rate_hz", 8000, 192'000, audio.rate_hz);
-    audio.gain_db = reader.number("gain_db", {-60.0, 60.0}, audio.gain_db);
-  });
+  top.map(
+      {"audio",
+       "sound card of the masking noise; unset: the card `default` with hardware, else none",
+       "audio: {card: \"plughw:1\", rate_hz: 48000, gain_db: -6}"},
+      Presence::optional, [&](MapReader& reader) {
+        core::AudioOutput& audio = rig.audio.emplace();
+        audio.card = reader.text(
+            {"card", "name of an ALSA PCM (`aplay -L` lists them); in quotes if it has a comma"},
+            audio.card);
+        // ALSA's plug-in `file` would run what follows
+        reader.check("card", audio.card.find('|') == std::string::npos,
+                     R"({"not": {"pattern": "[|]"}})", "names a command to run ('|')");
+        audio.rate_hz =
+            reader.integer({"rate_hz", "samples a second"}, 8000, 192'000, audio.rate_hz);
+        audio.gain_db = reader.number(
+            {"gain_db",
+             "calibration of card and headphones, added to the level that the protocol asks for"},
+            {-60.0, 60.0}, audio.gain_db);
+      });
 }
 
 void read_response(MapReader& top, Rig& rig) {
-  top.map("vibration_response", Presence::optional, [&](MapReader& reader) {
-    core::DeviceResponse response;
-    reader.list("points", Presence::at_least_one, [&](MapReader& point) {
-      const double frequency_hz = point.number("frequency_hz", Range::positive(1e5));
-      if (!response.points.empty() && frequency_hz <= response.points.back().frequency_hz) {
-        point.reject("frequency_hz", "is not above that of the point before");
-      }
-      response.points.push_back({frequency_hz, point.number("gain", {1e-3, 1e3})});
-    });
-    response.max_boost = reader.number("max_boost", {1.0, 100.0}, response.max_boost);
-    rig.vibration_response = std::make_shared<const core::DeviceResponse>(std::move(response));
-  });
+  top.map(
+      {"vibration_response",
+       "what the device makes of a commanded vibration: undone in what technique `recorded` plays, "
+       "by a filter of minimum phase"},
+      Presence::optional, [&](MapReader& reader) {
+        core::DeviceResponse response;
+        reader.list(
+            {"points",
+             "as measured; straight lines between them on logarithmic axes, beyond them constant"},
+            Presence::at_least_one, [&](MapReader& point) {
+              const double frequency_hz =
+                  point.number({"frequency_hz", "ascending"}, Range::positive(1e5));
+              if (!response.points.empty() && frequency_hz <= response.points.back().frequency_hz) {
+                point.reject("frequency_hz", "is not above that of the point before");
+              }
+              response.points.push_back(
+                  {frequency_hz,
+                   point.number({"gain", "force at the grip over force commanded, in magnitude"},
+                                {1e-3, 1e3})});
+            });
+        response.max_boost = reader.number({"max_boost", "no frequency is amplified by more"},
+                                           {1.0, 100.0}, response.max_boost);
+        rig.vibration_response = std::make_shared<const core::DeviceResponse>(std::move(response));
+      });
 }
 
 // A file is looked for beside the rig.
 void read_markers(MapReader& top, const std::string& file, Rig& rig) {
-  top.map("markers", Presence::optional, [&](MapReader& reader) {
-    reader.map("osc", Presence::optional, [&](MapReader& osc) {
-      OscTarget& target = rig.markers.osc.emplace();
-      target.host = osc.text("host", target.host);
-      target.port = osc.integer("port", 1, 65'535);
-    });
-    if (reader.has("lines")) {
-      rig.markers.lines =
-          (std::filesystem::path{file}.parent_path() / reader.text("lines")).string();
-    }
-  });
+  top.map({"markers",
+           "who is told of the session's changes of state, as they happen "
+           "(`runner/session/markers/README.md`); unset: nobody",
+           "markers: {osc: {port: 9000}, lines: /dev/ttyUSB0}"},
+          Presence::optional, [&](MapReader& reader) {
+            reader.map({"osc", "Open Sound Control over UDP: `/tapstudy/<state>`; unset: none"},
+                       Presence::optional, [&](MapReader& osc) {
+                         OscTarget& target = rig.markers.osc.emplace();
+                         target.host =
+                             osc.text({"host", "name or address, looked up before the session"},
+                                      target.host);
+                         target.port = osc.integer({"port", "UDP port"}, 1, 65'535);
+                       });
+            if (reader.has("lines")) {
+              rig.markers.lines =
+                  (std::filesystem::path{file}.parent_path() /
+                   reader.text({"lines",
+                                "serial port (115 200 baud, 8N1), named pipe or file that gets a "
+                                "line for each; relative to the rig's folder; unset: none"}))
+                      .string();
+            }
+          });
+}
+
+void read_own_placement(MapReader& top, const std::function<void(const core::Placement&)>& take) {
+  read_placement(top, {"placement", "replaces the protocol's placement; unset: the protocol's"},
+                 Presence::optional, take);
+}
+
+void read_whole(MapReader& top, const std::string& file, RigDevices devices, Rig& rig) {
+  top.check_format("tapstudy-rig/1");
+  read_device(top, file, devices, rig);
+  read_limits(top, rig.gate.limits);
+  if (rig.has_hardware) {
+    read_limits_of_motion(top, rig.gate);
+  }
+  if (top.has("vibration_band_hz")) {
+    rig.vibration_band_hz =
+        top.number({"vibration_band_hz",
+                    "the highest frequency of vibration that the device renders; `check --rig` "
+                    "names the modes above it; unset: taken for 300 Hz there"},
+                   Range::positive(1e5));
+  }
+  read_response(top, rig);
+  read_loop(top, rig);
+  check_reply_time(top, rig);
+  read_own_placement(top, [&](const core::Placement& placement) { rig.placement = placement; });
+  read_audio(top, rig);
+  read_markers(top, file, rig);
 }
 
 Rig parse(const std::string& text, const std::string& file, RigDevices devices,
@@ -136,22 +216,7 @@ Rig parse(const std::string& text, const std::string& file, RigDevices devices,
   MapReader top = MapReader::whole_file(text, file, problems);
   Rig rig;
   rig.text = text;
-  top.word("format", "format", {"tapstudy-rig/1"});
-  read_device(top, file, devices, rig);
-  read_limits(top, rig.gate.limits);
-  if (rig.has_hardware) {
-    read_limits_of_motion(top, rig.gate);
-  }
-  if (top.has("vibration_band_hz")) {
-    rig.vibration_band_hz = top.number("vibration_band_hz", Range::positive(1e5));
-  }
-  read_response(top, rig);
-  read_loop(top, rig);
-  check_reply_time(top, rig);
-  read_placement(top, Presence::optional,
-                 [&](const core::Placement& placement) { rig.placement = placement; });
-  read_audio(top, rig);
-  read_markers(top, file, rig);
+  read_whole(top, file, devices, rig);
   top.finish();
   return rig;
 }
@@ -164,6 +229,15 @@ Rig parse_rig(const std::string& text, const std::string& file, RigDevices devic
   return rig;
 }
 
+std::string rig_schema(RigDevices devices) {
+  return MapReader::schema_of(
+      "rig", "The device of a study and what it may do. SI units, spelled in the keys.",
+      [&](MapReader& top) {
+        Rig rig;
+        read_whole(top, "", devices, rig);
+      });
+}
+
 std::optional<core::Placement> placement_in_stored_rig(const std::string& rig_text) {
   if (rig_text.empty()) {
     return std::nullopt;
@@ -172,7 +246,7 @@ std::optional<core::Placement> placement_in_stored_rig(const std::string& rig_te
   Problems problems{file};
   MapReader top = MapReader::first_document(rig_text, file, problems);  // a calibration follows
   std::optional<core::Placement> placement;
-  read_placement(top, Presence::optional, [&](const core::Placement& own) { placement = own; });
+  read_own_placement(top, [&](const core::Placement& own) { placement = own; });
   problems.throw_if_any();
   return placement;
 }
@@ -191,42 +265,60 @@ constexpr const char* device = "spidar-g6";
 
 core::StringCalibration read_string(MapReader& reader) {
   core::StringCalibration string;
-  string.metres_per_count = reader.number("metres_per_count", {-1e-3, 1e-3});
-  string.volts_per_newton = reader.number("volts_per_newton", Range::positive(100.0));
-  string.dac_counts_per_volt = reader.number("dac_counts_per_volt", Range::positive(1e5));
-  if (string.metres_per_count == 0.0) {
-    reader.reject("metres_per_count", "is zero (measure it: pull 0.1 m of string)");
-  }
+  string.metres_per_count = reader.number(
+      {"metres_per_count",
+       "string length per encoder count; negative if the count falls as the string lengthens"},
+      {-1e-3, 1e-3});
+  string.volts_per_newton = reader.number({"volts_per_newton", "output voltage per string tension"},
+                                          Range::positive(100.0));
+  string.dac_counts_per_volt =
+      reader.number({"dac_counts_per_volt", "DAC counts per output voltage"}, Range::positive(1e5));
+  reader.check("metres_per_count", string.metres_per_count != 0.0, R"({"not": {"const": 0}})",
+               "is zero (measure it: pull 0.1 m of string)");
   return string;
+}
+
+core::SpidarCalibration read_calibration(MapReader& top, const std::vector<std::string>& types) {
+  top.check_format(format);
+  top.word({"device", "kind of device"}, "device", {device});
+  top.word({"type", "type of the frame; must be that of the rig"}, "type of this rig", types);
+  core::SpidarCalibration calibration;
+  calibration.min_tension_n =
+      top.number({"min_tension_n", "keeps the strings taut"}, Range::positive(5.0));
+  calibration.max_tension_n = top.number(
+      {"max_tension_n", "maximum tension per string; above min_tension_n"}, Range::positive(20.0));
+  if (calibration.min_tension_n >= calibration.max_tension_n) {
+    top.reject("max_tension_n", "is not above min_tension_n");
+  }
+  std::size_t count = 0;
+  top.list({"strings", "one per motor, in the order of the motors"}, Presence::required,
+           [&](MapReader& reader) {
+             const core::StringCalibration string = read_string(reader);
+             if (count < calibration.strings.size()) {
+               calibration.strings.at(count) = string;
+             }
+             ++count;
+           });
+  top.check("strings", count == calibration.strings.size(), R"({"minItems": 8, "maxItems": 8})",
+            "must be eight, one for each string, in the order of the motors");
+  return calibration;
 }
 
 core::SpidarCalibration parse(const std::string& text, const std::string& file,
                               const std::string& type, Problems& problems) {
   MapReader top = MapReader::whole_file(text, file, problems);
-  top.word("format", "format", {format});
-  top.word("device", "device", {device});
-  top.word("type", "type of this rig", {type});
-  core::SpidarCalibration calibration;
-  calibration.min_tension_n = top.number("min_tension_n", Range::positive(5.0));
-  calibration.max_tension_n = top.number("max_tension_n", Range::positive(20.0));
-  if (calibration.min_tension_n >= calibration.max_tension_n) {
-    top.reject("max_tension_n", "is not above min_tension_n");
-  }
-  std::size_t count = 0;
-  top.list("strings", Presence::required, [&](MapReader& reader) {
-    const core::StringCalibration string = read_string(reader);
-    if (count < calibration.strings.size()) {
-      calibration.strings.at(count) = string;
-    }
-    ++count;
-  });
-  if (count != calibration.strings.size()) {
-    top.reject("strings", "must be eight, one for each string, in the order of the motors");
-  }
+  const core::SpidarCalibration calibration = read_calibration(top, {type});
   top.finish();
   return calibration;
 }
 }  // namespace
+
+std::string calibration_schema(const std::vector<std::string>& types) {
+  return MapReader::schema_of(
+      "calibration",
+      "What was measured on one SPIDAR-G6, string by string. SI units, spelled in the keys.",
+      [&](MapReader& top) { read_calibration(top, types); });
+}
 
 core::SpidarCalibration parse_calibration(const std::string& text, const std::string& file,
                                           const std::string& type) {

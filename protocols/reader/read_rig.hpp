@@ -39,6 +39,9 @@ Rig parse_rig(const std::string& text, const std::string& file, RigDevices devic
 // Every key that the reader asked for while reading this text, for the schema's test.
 std::set<std::string> rig_keys_asked_for(const std::string& text, const std::string& file,
                                          RigDevices devices);
+// The JSON schemas of a rig and of a calibration for frames of these types.
+std::string rig_schema(RigDevices devices);
+std::string calibration_schema(const std::vector<std::string>& types);
 // Where the plate lies, of the text that a session stores: its rig, and after "---" the device's
 // calibration. nullopt: where the protocol says; also of an empty text. Throws InvalidInput if that
 // text is broken.

@@ -8,7 +8,7 @@ namespace tapstudy::protocols {
 // The sections of a protocol, each reading its part of the file into its part of the Protocol.
 // Sections that refer to other sections are read after them.
 void read_rendering(MapReader& top, Protocol& protocol);
-void read_placement(MapReader& top, MapReader::Presence presence,
+void read_placement(MapReader& top, const Key& key, MapReader::Presence presence,
                     const std::function<void(const core::Placement&)>& take);
 void read_materials(MapReader& top, Protocol& protocol);
 void read_points(MapReader& top, Protocol& protocol);
@@ -28,7 +28,7 @@ AxisValues read_own_rendering(MapReader& stimulus_reader, const Stimulus& stimul
                               const Protocol& protocol);
 void read_vary(MapReader& stimulus_reader, const Protocol& protocol, Stimulus& stimulus);
 void read_forms(MapReader& top, Protocol& protocol);
-std::vector<std::string> read_form_names(MapReader& reader, const std::string& key,
+std::vector<std::string> read_form_names(MapReader& reader, const Key& key,
                                          const Protocol& protocol);
 void read_display(MapReader& top, Protocol& protocol);
 void read_blocks(MapReader& top, Protocol& protocol);

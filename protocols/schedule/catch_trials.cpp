@@ -10,33 +10,38 @@ namespace tapstudy::protocols {
 std::optional<CatchTrials> read_catch_trials(MapReader& reader, const Protocol& protocol,
                                              const Block& block) {
   std::optional<CatchTrials> found;
-  reader.map("catch_trials", MapReader::Presence::optional, [&](MapReader& inner) {
-    CatchTrials trials;
-    trials.count = inner.integer("count", 1, 1000);
-    inner.each_text(
-        "expected", MapReader::Presence::required,
-        [&](const std::string& stimulus, const std::string& answer) {
-          const auto names = stimulus_names(protocol);
-          if (std::ranges::find(names, stimulus) == names.end()) {
-            inner.reject("expected", fmt::format("'{}' is not a stimulus", stimulus));
-          }
-          if (std::ranges::find(block.responses, answer) == block.responses.end()) {
-            inner.reject("expected", fmt::format("'{}' cannot be answered (one of: {})", answer,
-                                                 fmt::join(block.responses, ", ")));
-          }
-          const auto right = block.right_response.find(stimulus);
-          if (right != block.right_response.end() && right->second != answer) {
-            inner.reject("expected", fmt::format("'{}' is presented in the block, where "
-                                                 "'{}' is right",
-                                                 stimulus, right->second));
-          }
-          trials.expected[stimulus] = answer;
-        });
-    if (trials.expected.empty()) {
-      inner.reject("expected", "names no stimulus");
-    }
-    found = trials;
-  });
+  reader.map({"catch_trials",
+              "identification only: trials that show who attends, at random places, in no result; "
+              "unset: none"},
+             MapReader::Presence::optional, [&](MapReader& inner) {
+               CatchTrials trials;
+               trials.count = inner.integer({"count", "in the block"}, 1, 1000);
+               inner.each_text(
+                   {"expected", "by stimulus, which nobody should mistake"},
+                   MapReader::Presence::at_least_one,
+                   [&](const std::string& stimulus, const std::string& answer) {
+                     const auto names = stimulus_names(protocol);
+                     if (std::ranges::find(names, stimulus) == names.end()) {
+                       inner.reject("expected", fmt::format("'{}' is not a stimulus", stimulus));
+                     }
+                     if (std::ranges::find(block.responses, answer) == block.responses.end()) {
+                       inner.reject("expected",
+                                    fmt::format("'{}' cannot be answered (one of: {})", answer,
+                                                fmt::join(block.responses, ", ")));
+                     }
+                     const auto right = block.right_response.find(stimulus);
+                     if (right != block.right_response.end() && right->second != answer) {
+                       inner.reject("expected", fmt::format("'{}' is presented in the block, where "
+                                                            "'{}' is right",
+                                                            stimulus, right->second));
+                     }
+                     trials.expected[stimulus] = answer;
+                   });
+               if (trials.expected.empty()) {
+                 inner.reject("expected", "names no stimulus");
+               }
+               found = trials;
+             });
   return found;
 }
 

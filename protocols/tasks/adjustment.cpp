@@ -7,7 +7,7 @@
 #include "protocols/axes/axis_range.hpp"
 #include "protocols/axes/presented_stimulus.hpp"
 #include "protocols/reader/read_sections.hpp"
-#include "protocols/tasks/read_axis_values.hpp"
+#include "protocols/tasks/shared_keys.hpp"
 #include "protocols/tasks/task.hpp"
 #include "protocols/tasks/task_parts.hpp"
 #include "protocols/yaml/yaml_reader.hpp"
@@ -18,33 +18,39 @@ constexpr double largest_adjusted_value = 1e15;
 // The values that the key `settings` asks for.
 std::vector<double> read_settings(MapReader& reader, Spacing& spacing) {
   std::vector<double> values;
-  reader.map("settings", MapReader::Presence::required, [&](MapReader& inner) {
-    const auto read =
-        read_spaced(inner, {"from", "to"}, {-largest_adjusted_value, largest_adjusted_value},
-                    static_cast<int>(max_settings));
-    if (read) {
-      values = read->values;
-      spacing = read->spacing;
-    }
-  });
+  reader.map({"settings",
+              "adjustment only, required there: the values that participants can choose; runs "
+              "start at random ones, half below and half above the standard"},
+             MapReader::Presence::required, [&](MapReader& inner) {
+               const auto read = read_spaced(inner, {"from", "to"},
+                                             {-largest_adjusted_value, largest_adjusted_value},
+                                             static_cast<int>(max_settings));
+               if (read) {
+                 values = read->values;
+                 spacing = read->spacing;
+               }
+             });
   return values;
 }
 
 // The stimulus's own value where none is given. Nothing is checked where the settings were refused.
-void read_standard(MapReader& reader, const Protocol& protocol, const Stimulus& family,
+void read_standard(MapReader& reader, const Protocol& protocol, const Block& block,
                    Adjustment& adjustment) {
   const bool is_usable = !adjustment.values.empty();
-  const double own = is_usable ? presented_values(protocol, family, {}).at(adjustment.axis) : 0.0;
+  const auto presented = [&](const AxisValues& asked) {
+    return presented_values(protocol, protocol.stimulus(block.stimuli.front()), asked)
+        .at(adjustment.axis);
+  };
+  const double own = is_usable ? presented({}) : 0.0;
   const double standard =
-      reader.number("standard", {-largest_adjusted_value, largest_adjusted_value}, own);
+      read_standard_value(reader, {-largest_adjusted_value, largest_adjusted_value}, own);
   if (!is_usable) {
     return;
   }
   const double low = adjustment.values.front();
   const double high = adjustment.values.back();
   try {
-    adjustment.standard =
-        presented_values(protocol, family, {{adjustment.axis, standard}}).at(adjustment.axis);
+    adjustment.standard = presented({{adjustment.axis, standard}});
   } catch (const core::InvalidInput& error) {
     reader.reject("standard", error.what());
     return;
@@ -60,13 +66,14 @@ void read_standard(MapReader& reader, const Protocol& protocol, const Stimulus& 
 
 void read_reference(MapReader& reader, const Protocol& protocol, const Block& block,
                     Adjustment& adjustment) {
-  adjustment.reference = reader.word("reference", "stimulus", stimulus_names(protocol));
-  if (adjustment.reference == block.stimuli.front()) {
+  adjustment.reference = reader.word({"reference",
+                                      "adjustment only: another stimulus is the standard; unset: "
+                                      "the stimulus itself at `standard`"},
+                                     "stimulus", stimulus_names(protocol));
+  if (!block.stimuli.empty() && adjustment.reference == block.stimuli.front()) {
     reader.reject("reference", "is the stimulus that is adjusted: give its value as standard");
   }
-  if (!reader.text("standard", "").empty()) {
-    reader.reject("standard", "is a value of the stimulus itself: not with a reference");
-  }
+  reader.refuse("standard", "is a value of the stimulus itself: not with a reference");
 }
 
 std::optional<Adjustment> read_adjustment(MapReader& reader, const Protocol& protocol,
@@ -76,12 +83,14 @@ std::optional<Adjustment> read_adjustment(MapReader& reader, const Protocol& pro
                                             : std::vector<std::string>{};
   Adjustment adjustment;
   const std::vector<double> asked = read_settings(reader, adjustment.spacing);
-  if (axes.empty()) {
+  const char* const one_that_varies = "an adjustment moves one stimulus, which must have `vary`";
+  reader.check_count("stimuli", block.stimuli, 0, 1, one_that_varies);
+  if (reader.depends_on_others(axes.empty())) {
     for (const char* const key : {"axis", "standard", "reference"}) {
-      reader.text(key, "");
+      reader.leave(key);
     }
     if (block.stimuli.size() != 1 || !is_vary_refused(protocol, block)) {
-      reader.reject("stimuli", "an adjustment moves one stimulus, which must have `vary`");
+      reader.reject("stimuli", one_that_varies);
     }
     return std::nullopt;
   }
@@ -93,8 +102,7 @@ std::optional<Adjustment> read_adjustment(MapReader& reader, const Protocol& pro
   if (reader.has("reference")) {
     read_reference(reader, protocol, block, adjustment);
   } else {
-    reader.text("reference", "");  // known, if not given
-    read_standard(reader, protocol, protocol.stimulus(block.stimuli.front()), adjustment);
+    read_standard(reader, protocol, block, adjustment);
   }
   return adjustment.values.empty() ? std::nullopt : std::optional{adjustment};
 }
@@ -135,9 +143,8 @@ class AdjustmentTask final : public PreferenceTask {
 
   void read(MapReader& reader, const Protocol& protocol, Block& block) const override {
     block.adjustment = read_adjustment(reader, protocol, block);
-    if (block.allows_correction) {
-      reader.reject("correction", "is of answers that participants can name, not of a setting");
-    }
+    reader.check("correction", !block.allows_correction, R"({"const": false})",
+                 "is of answers that participants can name, not of a setting");
   }
   std::vector<PlannedTrial> trials(const Block& block, const Draw& draw) const override {
     core::Rng rng{

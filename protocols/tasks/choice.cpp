@@ -12,11 +12,13 @@ class Choice final : public WholeSetTask {
   std::string_view success() const override { return "choose the expected one"; }
 
   void read(MapReader& reader, const Protocol& /*protocol*/, Block& block) const override {
-    block.vote = reader.one_of<Vote>("vote", {{"majority", Vote::majority}, {"first", Vote::first}},
-                                     "majority");
-    if (block.stimuli.size() < 2) {
-      reader.reject("stimuli", "a choice needs at least two stimuli to choose from");
-    }
+    block.vote =
+        reader.one_of<Vote>({"vote",
+                             "choice only: which of a participant's repeated choices counts; "
+                             "majority: the most frequent, of equals the earliest"},
+                            {{"majority", Vote::majority}, {"first", Vote::first}}, "majority");
+    reader.check_count("stimuli", block.stimuli, 2, max_stimuli,
+                       "a choice needs at least two stimuli to choose from");
   }
 
   Answers answers(const Block& block, const Protocol& /*protocol*/) const override {

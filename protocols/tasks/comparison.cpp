@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "protocols/tasks/discrimination_task.hpp"
+#include "protocols/tasks/shared_keys.hpp"
 #include "protocols/tasks/task.hpp"
 #include "protocols/yaml/yaml_reader.hpp"
 namespace tapstudy::protocols {
@@ -21,9 +22,10 @@ class ComparisonTask final : public DiscriminationTask {
 
   void read(MapReader& reader, const Protocol& protocol, Block& block) const override {
     DiscriminationTask::read(reader, protocol, block);
-    block.alternatives = reader.integer("alternatives", 2, 8, 2);
+    block.alternatives = read_alternatives(reader, 2, 8, 2);
     const bool is_standard_right =
-        reader.one_of<bool>("right", {{"comparison", false}, {"standard", true}}, "comparison");
+        reader.one_of<bool>({"right", "comparison with procedures only: which of two is asked for"},
+                            {{"comparison", false}, {"standard", true}}, "comparison");
     if (block.comparison) {
       block.comparison->is_standard_right = is_standard_right;
     } else if (is_standard_right) {

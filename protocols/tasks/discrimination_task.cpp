@@ -8,7 +8,7 @@
 #include "core/error.hpp"
 #include "protocols/axes/presented_stimulus.hpp"
 #include "protocols/reader/read_sections.hpp"
-#include "protocols/tasks/read_axis_values.hpp"
+#include "protocols/tasks/shared_keys.hpp"
 namespace tapstudy::protocols {
 namespace {
 constexpr double any = 1e15;
@@ -113,22 +113,28 @@ std::vector<std::string> read_further_axes(MapReader& reader, const std::vector<
   }
   std::vector<std::string> others = axes;
   std::erase(others, axis);
-  return reader.words("further_axes", "further axis", others);
+  return reader.words({"further_axes",
+                       "with procedures of several axes only: the further ones, in their order; "
+                       "all alternatives of a trial have the same values on them; unset: none"},
+                      "further axis", others);
 }
 
 // Where the standard cannot be presented, which is said already, procedures are only read.
 void read_tracks(MapReader& reader, const Protocol& protocol, const Stimulus* usable_family,
                  Comparison& comparison) {
-  reader.list("procedures", MapReader::Presence::at_least_one, [&](MapReader& inner) {
-    const auto track = read_procedure(inner);
-    if (track == nullptr) {
-      return;
-    }
-    if (usable_family != nullptr) {
-      check_track(inner, protocol, *usable_family, comparison, *track);
-    }
-    comparison.tracks.push_back(track);
-  });
+  reader.list({"procedures",
+               "what chooses the comparison's level from trial to trial; several are interleaved; "
+               "unset: fixed stimuli"},
+              MapReader::Presence::at_least_one, [&](MapReader& inner) {
+                const auto track = read_procedure(inner);
+                if (track == nullptr) {
+                  return;
+                }
+                if (usable_family != nullptr) {
+                  check_track(inner, protocol, *usable_family, comparison, *track);
+                }
+                comparison.tracks.push_back(track);
+              });
 }
 // Unset: what the procedures assume, where it fits the side.
 void read_function(MapReader& reader, Comparison& comparison) {
@@ -147,7 +153,11 @@ void read_function(MapReader& reader, Comparison& comparison) {
     }
   }
   const auto* const row = core::find_psychometric_shape(
-      reader.word("function", "psychometric function", core::psychometric_shape_names(),
+      reader.word({"function",
+                   "with procedures only: the psychometric function that the report fits; on "
+                   "either side of the standard logistic or cumulative_gaussian; unset: what the "
+                   "first procedure assumes, else weibull, on either side cumulative_gaussian"},
+                  "psychometric function", core::psychometric_shape_names(),
                   std::string{core::row_of(assumed).name}));
   if (row == nullptr) {
     return;  // noted
@@ -168,19 +178,25 @@ std::optional<Comparison> read_comparison(MapReader& reader, const Protocol& pro
   const Stimulus* const family = family_of(protocol, block);
   const std::vector<std::string> axes =
       family == nullptr ? std::vector<std::string>{} : axes_of(protocol, family->name);
-  if (family != nullptr) {
+  if (reader.depends_on_others(family != nullptr)) {
     comparison.axis = read_axis(reader, protocol, block, axes);
     comparison.further_axes = read_further_axes(reader, axes, comparison.axis);
   }
   const bool is_known =
       std::ranges::find(axes, comparison.axis) != axes.end() && family->is_complete();
   const double own = is_known ? presented_values(protocol, *family, {}).at(comparison.axis) : 0.0;
-  comparison.standard = reader.number("standard", {-any, any}, own);
+  comparison.standard = read_standard_value(reader, {-any, any}, own);
   comparison.is_fraction =
-      reader.one_of<bool>("level", {{"fraction", true}, {"difference", false}}, "fraction");
+      reader.one_of<bool>({"level",
+                           "with procedures only: what they choose: a fraction of the standard, or "
+                           "a difference in the axis's unit"},
+                          {{"fraction", true}, {"difference", false}}, "fraction");
   comparison.side = reader.one_of<Side>(
-      "comparison", {{"above", Side::above}, {"below", Side::below}, {"either", Side::either}},
-      "above");
+      {"comparison",
+       "with procedures only: where comparisons lie; levels are positive above and below. either "
+       "(task comparison, two alternatives): levels have a sign, procedures follow how often the "
+       "comparison is judged greater, and the report has points of subjective equality"},
+      {{"above", Side::above}, {"below", Side::below}, {"either", Side::either}}, "above");
   if (comparison.side == Side::either && sides == Sides::one) {
     reader.reject("comparison", "lies on one side of the standard: above or below");
   }
@@ -191,8 +207,10 @@ std::optional<Comparison> read_comparison(MapReader& reader, const Protocol& pro
   }
   read_tracks(reader, protocol, is_usable ? family : nullptr, comparison);
   read_function(reader, comparison);
+  const char* const one_that_varies = "procedures vary one stimulus, which must have `vary`";
+  reader.check_count("stimuli", block.stimuli, 0, 1, one_that_varies);
   if (family == nullptr && !is_vary_refused(protocol, block)) {
-    reader.reject("stimuli", "procedures vary one stimulus, which must have `vary`");
+    reader.reject("stimuli", one_that_varies);
   }
   return comparison.tracks.empty() ? std::nullopt : std::optional{comparison};
 }
@@ -213,13 +231,11 @@ std::size_t observations(const Comparison& comparison) {
 void DiscriminationTask::read(MapReader& reader, const Protocol& protocol, Block& block) const {
   if (reader.has("procedures")) {
     block.comparison = read_comparison(reader, protocol, block, sides());
-    if (reader.has("repetitions")) {
-      reader.reject("repetitions", "is what the procedures make it");
-    }
-  } else if (block.stimuli.size() < 2) {
-    reader.reject("stimuli",
-                  "one stimulus is compared with itself only along an axis: give "
-                  "procedures, or at least two stimuli");
+    reader.refuse("repetitions", "is what the procedures make it");
+  } else {
+    reader.check_count("stimuli", block.stimuli, 2, max_stimuli,
+                       "one stimulus is compared with itself only along an axis: give procedures, "
+                       "or at least two stimuli");
   }
 }
 

@@ -8,6 +8,7 @@
 #include "protocols/reader/read_sections.hpp"
 #include "protocols/schedule/catch_trials.hpp"
 #include "protocols/schedule/ordering.hpp"
+#include "protocols/tasks/shared_keys.hpp"
 #include "protocols/tasks/task.hpp"
 #include "protocols/tasks/task_parts.hpp"
 namespace tapstudy::protocols {
@@ -27,6 +28,13 @@ std::vector<std::string> levels_of(const std::string& factor, const Protocol& pr
   return levels;
 }
 
+Key responses_key() {
+  return {
+      "responses",
+      "identification only: allowed answers, at least 2: stimuli, those presented among them, or "
+      "levels of response_factor; unset: the stimuli, or their levels"};
+}
+
 // Levels are refused with the factor that is to be named.
 void read_stimuli_as_responses(MapReader& reader, const std::vector<std::string>& factors,
                                const Protocol& protocol, Block& block) {
@@ -39,7 +47,7 @@ void read_stimuli_as_responses(MapReader& reader, const std::vector<std::string>
       known.push_back(level);
     }
   }
-  block.responses = reader.words("responses", "stimulus", known, block.stimuli);
+  block.responses = reader.words(responses_key(), "stimulus", known, block.stimuli);
   for (const std::string& response : block.responses) {
     if (std::ranges::find(stimuli, response) == stimuli.end()) {
       reader.reject("responses", fmt::format("'{0}' is a level of the factor '{1}': add "
@@ -59,18 +67,16 @@ void read_responses(MapReader& reader, const Protocol& protocol, Block& block) {
     read_stimuli_as_responses(reader, factors, protocol, block);
     return;
   }
-  block.response_factor = reader.word("response_factor", "factor", factors);
-  block.responses = reader.words(
-      "responses", "level", levels_of(block.response_factor, protocol, stimulus_names(protocol)),
-      levels_of(block.response_factor, protocol, block.stimuli));
-  reader.each_translated("response_labels", MapReader::Presence::optional,
-                         [&](const std::string& level, const std::string& label) {
-                           if (std::ranges::find(block.responses, level) == block.responses.end()) {
-                             reader.reject("response_labels",
-                                           fmt::format("'{}' cannot be answered", level));
-                           }
-                           block.response_labels[level] = label;
-                         });
+  block.response_factor =
+      reader.word({"response_factor",
+                   "identification only: the factor that is asked for (which material?), whose "
+                   "levels are the answers; unset: the stimulus"},
+                  "factor", factors);
+  block.responses =
+      reader.words(responses_key(), "level",
+                   levels_of(block.response_factor, protocol, stimulus_names(protocol)),
+                   levels_of(block.response_factor, protocol, block.stimuli));
+  read_response_labels(reader, block.responses, block);
 }
 
 // Of those that were not rejected already.
@@ -118,9 +124,8 @@ class Identification final : public Task {
   void read(MapReader& reader, const Protocol& protocol, Block& block) const override {
     read_responses(reader, protocol, block);
     block.right_response = right_responses(protocol, block);
-    if (block.responses.size() < 2) {
-      reader.reject("responses", "an identification needs at least two possible answers");
-    }
+    reader.check("responses", block.responses.size() >= 2, R"({"minItems": 2})",
+                 "an identification needs at least two possible answers");
     for (const auto& [stimulus, right] : block.right_response) {
       if (std::ranges::find(block.responses, right) == block.responses.end()) {
         reader.reject("responses", fmt::format("'{}' is presented, but '{}' cannot be answered",

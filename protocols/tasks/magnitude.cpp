@@ -5,7 +5,7 @@
 
 #include "protocols/reader/read_sections.hpp"
 #include "protocols/schedule/ordering.hpp"
-#include "protocols/tasks/read_axis_values.hpp"
+#include "protocols/tasks/shared_keys.hpp"
 #include "protocols/tasks/task.hpp"
 #include "protocols/tasks/task_parts.hpp"
 #include "protocols/yaml/yaml_reader.hpp"
@@ -16,16 +16,17 @@ constexpr double largest_magnitude_value = 1e15;
 std::optional<ValuesOnAxis> read_values(MapReader& reader, const Protocol& protocol,
                                         const Block& block) {
   if (!reader.has("values")) {
-    if (reader.has("axis")) {
-      reader.reject("axis", "has values only with `values`");
-    }
+    reader.refuse("axis", "has values only with `values`");
     return std::nullopt;
   }
   const std::vector<std::string> axes =
       block.stimuli.empty() ? std::vector<std::string>{} : axes_of(protocol, block.stimuli.front());
   const std::string axis = read_axis(reader, protocol, block, axes);
   const std::vector<double> asked =
-      reader.number_list("values", {-largest_magnitude_value, largest_magnitude_value});
+      reader.number_list({"values",
+                          "magnitude only: on the axis, in increasing order; every stimulus is "
+                          "presented at each; unset: the stimuli as they are"},
+                         {-largest_magnitude_value, largest_magnitude_value});
   if (axes.empty()) {
     reader.reject("stimuli", "values are of stimuli that have `vary`");
   }
@@ -50,10 +51,16 @@ class Magnitude final : public PreferenceTask {
 
   void read(MapReader& reader, const Protocol& protocol, Block& block) const override {
     block.on_axis = read_values(reader, protocol, block);
-    reader.map("modulus", MapReader::Presence::optional, [&](MapReader& inner) {
-      block.modulus = Modulus{inner.word("stimulus", "stimulus", stimulus_names(protocol)),
-                              inner.number("number", Range::positive(1e6))};
-    });
+    reader.map({"modulus",
+                "magnitude only: a stimulus whose number is given; unset: participants choose "
+                "their own unit"},
+               MapReader::Presence::optional, [&](MapReader& inner) {
+                 block.modulus =
+                     Modulus{inner.word({"stimulus", "presented as A in every trial; B is judged"},
+                                        "stimulus", stimulus_names(protocol)),
+                             inner.number({"number", "what participants are told that A is"},
+                                          Range::positive(1e6))};
+               });
   }
   std::vector<PlannedTrial> trials(const Block& block, const Draw& draw) const override {
     std::vector<PlannedTrial> all = ordered_trials(*this, block, draw);

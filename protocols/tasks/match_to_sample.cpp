@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "protocols/tasks/sample_task.hpp"
+#include "protocols/tasks/shared_keys.hpp"
 #include "protocols/tasks/task.hpp"
 #include "protocols/yaml/yaml_reader.hpp"
 namespace tapstudy::protocols {
@@ -40,12 +41,12 @@ class MatchToSample final : public SampleTask {
     return block.alternatives == 2 ? "abx_differencing" : "";
   }
   void read(MapReader& reader, const Protocol& /*protocol*/, Block& block) const override {
-    block.alternatives = reader.integer("alternatives", 2, 4, 3);
-    if (block.stimuli.size() < alternatives(block)) {
-      reader.reject("stimuli", fmt::format("a match to sample among {} alternatives needs at least "
-                                           "as many stimuli",
-                                           block.alternatives));
-    } else if (trials_per_repetition(block) > max_trials) {
+    block.alternatives = read_alternatives(reader, 2, 4, 3);
+    reader.check_count("stimuli", block.stimuli, alternatives(block), max_stimuli,
+                       fmt::format("a match to sample among {} alternatives needs at least as many "
+                                   "stimuli",
+                                   block.alternatives));
+    if (block.stimuli.size() >= alternatives(block) && trials_per_repetition(block) > max_trials) {
       reader.reject("stimuli",
                     fmt::format("{} stimuli give {} trials in each repetition; at most "
                                 "{} are allowed",

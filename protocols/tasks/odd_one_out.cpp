@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "protocols/tasks/discrimination_task.hpp"
+#include "protocols/tasks/shared_keys.hpp"
 #include "protocols/tasks/task.hpp"
 #include "protocols/yaml/yaml_reader.hpp"
 namespace tapstudy::protocols {
@@ -11,7 +12,7 @@ class OddOneOut final : public DiscriminationTask {
   std::string_view name() const override { return "odd_one_out"; }
   std::string_view decision_model(const Block& /*block*/) const override { return "oddity"; }
   void read(MapReader& reader, const Protocol& protocol, Block& block) const override {
-    block.alternatives = reader.integer("alternatives", 3, 4, 3);
+    block.alternatives = read_alternatives(reader, 3, 4, 3);
     DiscriminationTask::read(reader, protocol, block);
   }
   Answers answers(const Block& block, const Protocol& /*protocol*/) const override {

@@ -22,10 +22,11 @@ class Paired final : public PreferenceTask {
   }
 
   void read(MapReader& reader, const Protocol& /*protocol*/, Block& block) const override {
-    if (block.stimuli.size() < 2) {
-      reader.reject("stimuli", "pairs take at least two stimuli");
-    }
-    block.tie = reader.translated("tie", "");
+    reader.check_count("stimuli", block.stimuli, 2, max_stimuli, "pairs take at least two stimuli");
+    block.tie = reader.translated({"tie",
+                                   "paired only: a third answer, that there is no difference, and "
+                                   "its label; stored as `tie`; unset: one of the two is chosen"},
+                                  "");
     if (!block.tie.empty() && std::ranges::find(block.stimuli, tie) != block.stimuli.end()) {
       reader.reject("tie", "is how this answer is stored: no stimulus can be called so");
     }

@@ -28,10 +28,9 @@ class Ranking final : public WholeSetTask {
 
   void read(MapReader& reader, const Protocol& /*protocol*/, Block& block) const override {
     const std::size_t count = block.stimuli.size();
-    if (count < fewest || count > most) {
-      reader.reject("stimuli",
-                    fmt::format("a ranking is of {} to {} stimuli, not {}", fewest, most, count));
-    }
+    reader.check_count(
+        "stimuli", block.stimuli, fewest, most,
+        fmt::format("a ranking is of {} to {} stimuli, not {}", fewest, most, count));
     if (!block.explore.must_visit_all) {
       reader.reject("explore", "visit_all cannot be false: a ranking is of stimuli that were felt");
     }

@@ -23,13 +23,14 @@ class Rating final : public PreferenceTask {
   void read(MapReader& reader, const Protocol& /*protocol*/, Block& block) const override {
     RatingScale scale;
     scale.kind = reader.one_of<ScaleKind>(
-        "scale", {{"likert", ScaleKind::likert}, {"visual_analogue", ScaleKind::visual_analogue}},
-        "likert");
+        {"scale", "rating only: steps from 1, or a mark on a line, stored as 0 to 1"},
+        {{"likert", ScaleKind::likert}, {"visual_analogue", ScaleKind::visual_analogue}}, "likert");
     if (scale.kind == ScaleKind::likert) {
-      scale.steps = reader.integer("steps", 2, 11, scale.steps);
+      scale.steps =
+          reader.integer({"steps", "rating only, with likert: from 1 to this"}, 2, 11, scale.steps);
     }
-    scale.low = reader.translated("low");
-    scale.high = reader.translated("high");
+    scale.low = reader.translated({"low", "what the lowest means; unset: not of this task"});
+    scale.high = reader.translated({"high", "what the highest means; unset: not of this task"});
     block.rating = scale;
   }
   std::vector<PlannedTrial> trials(const Block& block, const Draw& draw) const override {

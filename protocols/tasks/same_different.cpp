@@ -1,4 +1,5 @@
 #include "protocols/tasks/discrimination_task.hpp"
+#include "protocols/tasks/shared_keys.hpp"
 #include "protocols/tasks/task.hpp"
 #include "protocols/yaml/yaml_reader.hpp"
 namespace tapstudy::protocols {
@@ -31,14 +32,7 @@ class SameDifferent final : public DiscriminationTask {
   }
   void read(MapReader& reader, const Protocol& protocol, Block& block) const override {
     DiscriminationTask::read(reader, protocol, block);
-    reader.each_translated("response_labels", MapReader::Presence::optional,
-                           [&](const std::string& response, const std::string& label) {
-                             if (response != same && response != different) {
-                               reader.reject("response_labels",
-                                             "'" + response + "' is neither same nor different");
-                             }
-                             block.response_labels[response] = label;
-                           });
+    read_response_labels(reader, {same, different}, block);
   }
   std::optional<bool> is_correct(const PlannedTrial& trial, const Block& /*block*/,
                                  const std::string& response) const override {

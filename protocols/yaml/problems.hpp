@@ -18,7 +18,9 @@ class Problems {
   explicit Problems(std::string file) : file_{std::move(file)} {}
   // line and column count from 0. Of one key the first problem is kept: others follow from it.
   void add(int line, int column, const std::string& key_path, const std::string& what);
-  std::size_t count() const { return problems_.size(); }
+  std::size_t count() const { return problems_.size() + unread_; }
+  // A value that is described but not read counts as a problem: nothing can be made of it.
+  void add_unread() { ++unread_; }
   // "file:line:column: key.path"
   std::string place(int line, int column, const std::string& key_path) const;
   // Throws InvalidInput if there are any, one line per problem, `file:line:column: key.path: what`,
@@ -37,6 +39,7 @@ class Problems {
   };
   std::string file_;
   std::vector<Problem> problems_;
+  std::size_t unread_{0};
   std::set<std::string> places_;  // of these
   std::set<std::string> asked_;
 };

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "protocols/yaml/described_values.hpp"
 #include "protocols/yaml/problems.hpp"
 #include "protocols/yaml/yaml_reader.hpp"
 namespace tapstudy::protocols {
@@ -19,30 +20,80 @@ void MapReader::read_inner(const YAML::Node& node, const std::string& path,
   inner.finish();
 }
 
-void MapReader::map(const std::string& key, Presence presence, const ReadMap& read) {
-  if (const auto node = find(key, presence != Presence::optional)) {
-    read_inner(*node, path_of(key), pattern_of(key), read);
+std::string MapReader::schema_of(const std::string& title, const std::string& about,
+                                 const ReadMap& read) {
+  SchemaJson schema{{"$schema", "https://json-schema.org/draft/2020-12/schema"},
+                    {"title", "tapstudy " + title},
+                    {"description", about}};
+  Problems ignored{title};
+  KnownMappings known;
+  schema.update(described_mapping("", known, [&](Description& pass) {
+    MapReader top{YAML::Node{YAML::NodeType::Map}, "", "", ignored, nullptr};
+    top.pass_ = &pass;
+    read(top);
+  }));
+  return schema.dump(2) + "\n";
+}
+
+void MapReader::describe_inner(const Key& key, Presence presence, Shape shape, const ReadMap& read,
+                               const std::vector<std::string>& as_list) {
+  problems_->add_unread();
+  SchemaJson schema =
+      described_mapping(pattern_of(key.name), pass_->known_mappings(), [&](Description& pass) {
+        MapReader inner{YAML::Node{YAML::NodeType::Map}, path_of(key.name), pattern_of(key.name),
+                        *problems_, translations_};
+        inner.pass_ = &pass;
+        read(inner);
+      });
+  const bool is_optional = presence == Presence::optional;
+  if (shape == Shape::named) {
+    schema = described_named(std::move(schema), 1);
+  } else if (shape == Shape::list) {
+    schema = {{"type", "array"}, {"items", std::move(schema)}};
+    if (presence == Presence::at_least_one) {
+      schema["minItems"] = 1;
+    }
+  }
+  if (!as_list.empty()) {
+    make_list_too(schema, as_list);
+  }
+  pass_->add(
+      key, std::move(schema), !is_optional,
+      shape == Shape::list ? described_empty_list(is_optional) : described_empty(is_optional));
+}
+
+void MapReader::map(const Key& key, Presence presence, const ReadMap& read) {
+  if (pass_ != nullptr) {
+    describe_inner(key, presence, Shape::mapping, read);
+    return;
+  }
+  if (const auto node = find(key.name, presence != Presence::optional)) {
+    read_inner(*node, path_of(key.name), pattern_of(key.name), read);
   }
 }
 
-void MapReader::map_or_list(const std::string& key, Presence presence,
-                            const std::vector<std::string>& keys, const ReadMap& read) {
-  const auto node = find(key, presence != Presence::optional);
+void MapReader::map_or_list(const Key& key, Presence presence, const std::vector<std::string>& keys,
+                            const ReadMap& read) {
+  if (pass_ != nullptr) {
+    describe_inner(key, presence, Shape::mapping, read, keys);
+    return;
+  }
+  const auto node = find(key.name, presence != Presence::optional);
   if (!node) {
     return;
   }
   if (node->IsMap()) {
-    read_inner(*node, path_of(key), pattern_of(key), read);
+    read_inner(*node, path_of(key.name), pattern_of(key.name), read);
     return;
   }
   if (!node->IsSequence()) {
-    reject_at(*node, path_of(key),
+    reject_at(*node, path_of(key.name),
               fmt::format("{} is neither a mapping nor a list of {}", kind_of(*node),
                           fmt::join(keys, ", ")));
     return;
   }
   if (node->size() > keys.size() || node->size() + 1 < keys.size()) {
-    reject_at(*node, path_of(key),
+    reject_at(*node, path_of(key.name),
               fmt::format("is not a list of {}: it has {} values (the last may be left out)",
                           fmt::join(keys, ", "), node->size()));
     return;
@@ -51,7 +102,7 @@ void MapReader::map_or_list(const std::string& key, Presence presence,
   for (std::size_t i = 0; i < node->size(); ++i) {
     mapping[keys[i]] = (*node)[i];
   }
-  MapReader inner{mapping, path_of(key), pattern_of(key), *problems_, translations_};
+  MapReader inner{mapping, path_of(key.name), pattern_of(key.name), *problems_, translations_};
   inner.list_ = std::make_unique<YAML::Node>(*node);
   read(inner);
 }
@@ -65,77 +116,145 @@ std::optional<YAML::Node> MapReader::find_map(const std::string& key, Presence p
   return node;
 }
 
-void MapReader::each(const std::string& key, Presence presence, const ReadNamed& read) {
-  const auto node = find_map(key, presence);
+void MapReader::each(const Key& key, Presence presence, const ReadNamed& read) {
+  if (pass_ != nullptr) {
+    describe_inner(key, presence, Shape::named, [&](MapReader& inner) { read("", inner); });
+    return;
+  }
+  const auto node = find_map(key.name, presence);
   if (!node) {
     return;
   }
   std::vector<std::string> seen;
   for (const auto& entry : *node) {
-    if (!check_name(entry.first, path_of(key))) {
+    if (!check_name(entry.first, path_of(key.name))) {
       continue;
     }
     const std::string name = entry.first.Scalar();
     if (std::ranges::find(seen, name) != seen.end()) {
-      reject_at(entry.first, path_of(key) + "." + name, "is there twice");
+      reject_at(entry.first, path_of(key.name) + "." + name, "is there twice");
     }
     seen.push_back(name);
-    read_inner(entry.second, path_of(key) + "." + name, pattern_of(key) + ".*",
+    read_inner(entry.second, path_of(key.name) + "." + name, pattern_of(key.name) + ".*",
                [&](MapReader& inner) { read(name, inner); });
   }
 }
 
+namespace {
+constexpr Range place_m{-100.0, 100.0};
+}
+
 void MapReader::each_point(
-    const std::string& key, Presence presence,
+    const Key& key, Presence presence,
     const std::function<void(const std::string&, const Eigen::Vector2d&)>& take) {
-  const auto node = find_map(key, presence);
+  if (pass_ != nullptr) {
+    SchemaJson point{
+        {"type", "array"}, {"items", described(place_m)}, {"minItems", 2}, {"maxItems", 2}};
+    pass_->add(key, described_named(std::move(point), 1), presence != Presence::optional);
+    return;
+  }
+  const auto node = find_map(key.name, presence);
   if (!node) {
     return;
   }
-  read_inner(*node, path_of(key), pattern_of(key), [&](MapReader& points) {
+  read_inner(*node, path_of(key.name), pattern_of(key.name), [&](MapReader& points) {
     points.has_free_names_ = true;
     for (const auto& entry : *points.node_) {
-      if (points.check_name(entry.first, path_of(key))) {
+      if (points.check_name(entry.first, path_of(key.name))) {
         const std::string name = entry.first.Scalar();
-        take(name, points.numbers(name, 2, {-100.0, 100.0}));
+        take(name, points.numbers(Key{name}, 2, place_m));
       }
     }
   });
 }
 
-void MapReader::each_text(const std::string& key, Presence presence,
+void MapReader::each_text(const Key& key, Presence presence,
                           const std::function<void(const std::string&, const std::string&)>& take) {
+  if (pass_ != nullptr) {
+    pass_->add(key, described_named(described_name(), presence == Presence::at_least_one ? 1 : 0),
+               presence != Presence::optional, described_empty(presence == Presence::optional));
+    return;
+  }
   each_named(key, presence,
-             [&](MapReader& texts, const std::string& name) { take(name, texts.name(name)); });
+             [&](MapReader& texts, const std::string& name) { take(name, texts.name(Key{name})); });
 }
 
 void MapReader::each_named(
-    const std::string& key, Presence presence,
+    const Key& key, Presence presence,
     const std::function<void(MapReader& inner, const std::string& name)>& read) {
   map(key, presence, [&](MapReader& inner) {
     inner.has_free_names_ = true;
     for (const auto& entry : *inner.node_) {
-      if (inner.check_name(entry.first, path_of(key))) {
+      if (inner.check_name(entry.first, path_of(key.name))) {
         read(inner, entry.first.Scalar());
       }
     }
   });
 }
 
-void MapReader::list(const std::string& key, Presence presence, const ReadMap& read) {
-  const auto node = find(key, presence != Presence::optional);
+void MapReader::list(const Key& key, Presence presence, const ReadMap& read) {
+  if (pass_ != nullptr) {
+    describe_inner(key, presence, Shape::list, read);
+    return;
+  }
+  const auto node = find(key.name, presence != Presence::optional);
   if (!node) {
     return;
   }
   if (!node->IsSequence()) {
-    reject_at(*node, path_of(key), fmt::format("{} is not a list", kind_of(*node)));
+    reject_at(*node, path_of(key.name), fmt::format("{} is not a list", kind_of(*node)));
     return;
   }
   if (presence == Presence::at_least_one && node->size() == 0) {
-    reject_at(*node, path_of(key), "is empty (at least one)");
+    reject_at(*node, path_of(key.name), "is empty (at least one)");
   }
   for (std::size_t i = 0; i < node->size(); ++i) {
-    read_inner((*node)[i], fmt::format("{}[{}]", path_of(key), i), pattern_of(key) + "[]", read);
+    read_inner((*node)[i], fmt::format("{}[{}]", path_of(key.name), i), pattern_of(key.name) + "[]",
+               read);
+  }
+}
+
+int MapReader::count_given(const std::vector<std::string>& keys, Presence presence) {
+  if (pass_ != nullptr) {
+    pass_->choose(presence == Presence::at_least_one ? "anyOf" : "oneOf", keys);
+    return 0;
+  }
+  return static_cast<int>(std::ranges::count_if(keys, [&](const auto& key) { return has(key); }));
+}
+
+bool MapReader::depends_on_others(bool condition) {
+  return pass_ == nullptr
+             ? condition
+             : pass_->ask({Description::Question::Kind::hidden, "", {false, true}}) == 1;
+}
+
+Range MapReader::narrowed(const Range& stated, const Range& here) const {
+  return pass_ == nullptr ? here : stated;
+}
+
+void MapReader::refuse(const std::string& key, const std::string& what) {
+  if (pass_ != nullptr) {
+    pass_->remove(key);
+  } else if (has(key)) {
+    reject(key, what);
+  }
+}
+
+void MapReader::check(const std::string& key, bool is_right, const std::string& schema,
+                      const std::string& what) {
+  if (pass_ != nullptr) {
+    pass_->narrow(key, SchemaJson::parse(schema));
+  } else if (!is_right) {
+    reject(key, what);
+  }
+}
+
+void MapReader::check_count(const std::string& key, const std::vector<std::string>& names,
+                            std::size_t least, std::size_t most, const std::string& what) {
+  if (pass_ != nullptr) {
+    pass_->narrow(key, {{"minItems", std::max<std::size_t>(least, 1)}, {"maxItems", most}});
+  } else if (names.size() < least || names.size() > most) {
+    reject(key, what);
   }
 }
 

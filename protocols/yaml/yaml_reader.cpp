@@ -14,6 +14,7 @@
 #include <string>
 
 #include "core/error.hpp"
+#include "protocols/yaml/described_values.hpp"
 #include "protocols/yaml/problems.hpp"
 namespace tapstudy::protocols {
 // Throws YAML::Exception if the text is not YAML.
@@ -144,6 +145,9 @@ std::string MapReader::pattern_of(const std::string& key) const {
 
 void MapReader::reject_at(const YAML::Node& node, const std::string& path,
                           const std::string& what) {
+  if (pass_ != nullptr) {
+    return;
+  }
   problems_->add(std::max(0, node.Mark().line), std::max(0, node.Mark().column), path, what);
 }
 void MapReader::reject(const std::string& what) {
@@ -170,6 +174,9 @@ std::string MapReader::stated_at(const std::string& key) const {
 }
 
 bool MapReader::has(const std::string& key) {
+  if (pass_ != nullptr) {
+    return pass_->ask({Description::Question::Kind::given, key, {false, true}}) == 1;
+  }
   looked_for_.push_back(key);
   const YAML::Node& whole = *node_;
   return whole[key].IsDefined();
@@ -203,36 +210,53 @@ std::optional<double> MapReader::as_number(const YAML::Node& node, const std::st
   return value;
 }
 
-double MapReader::number(const std::string& key, const Range& range,
-                         std::optional<double> otherwise) {
+double MapReader::number(const Key& key, const Range& range, std::optional<double> otherwise) {
   const double harmless = otherwise.value_or(range.low_included ? range.low : range.high);
-  const auto node = find(key, !otherwise);
-  return node ? as_number(*node, path_of(key), range).value_or(harmless) : harmless;
+  if (pass_ != nullptr) {
+    problems_->add_unread();
+    pass_->add(key, described(range), !otherwise, described_default(otherwise));
+    return harmless;
+  }
+  const auto node = find(key.name, !otherwise);
+  return node ? as_number(*node, path_of(key.name), range).value_or(harmless) : harmless;
 }
 
-int MapReader::integer(const std::string& key, int low, int high, std::optional<int> otherwise) {
-  const auto node = find(key, !otherwise);
+int MapReader::integer(const Key& key, int low, int high, std::optional<int> otherwise) {
+  if (pass_ != nullptr) {
+    problems_->add_unread();
+    pass_->add(key, described_integer(low, high), !otherwise, described_default(otherwise));
+    return low + static_cast<int>(chosen_integer(*pass_, key.name, low, high, otherwise));
+  }
+  const auto node = find(key.name, !otherwise);
   if (!node) {
     return otherwise.value_or(low);
   }
   int value{};
   if (!node->IsScalar() || !YAML::convert<int>::decode(*node, value)) {
-    reject_at(*node, path_of(key), fmt::format("{} is not a whole number", kind_of(*node)));
+    reject_at(*node, path_of(key.name), fmt::format("{} is not a whole number", kind_of(*node)));
     return low;
   }
   if (value < low || value > high) {
-    reject_at(*node, path_of(key),
+    reject_at(*node, path_of(key.name),
               fmt::format("{} is not allowed (from {} to {})", value, low, high));
     return low;
   }
   return value;
 }
 
-bool MapReader::yes_or_no(const std::string& key, std::optional<bool> otherwise) {
-  const auto node = find(key, !otherwise);
+bool MapReader::yes_or_no(const Key& key, std::optional<bool> otherwise) {
+  if (pass_ != nullptr) {
+    pass_->add(key, {{"type", "boolean"}}, !otherwise, described_default(otherwise));
+    return pass_->ask({Description::Question::Kind::value,
+                       key.name,
+                       {false, true},
+                       otherwise.value_or(false) ? std::size_t{1} : std::size_t{0}}) == 1;
+  }
+  const auto node = find(key.name, !otherwise);
   bool value = otherwise.value_or(false);
   if (node && !YAML::convert<bool>::decode(*node, value)) {
-    reject_at(*node, path_of(key), fmt::format("{} is neither true nor false", kind_of(*node)));
+    reject_at(*node, path_of(key.name),
+              fmt::format("{} is neither true nor false", kind_of(*node)));
   }
   return value;
 }
@@ -248,45 +272,62 @@ bool MapReader::check_name(const YAML::Node& node, const std::string& path) {
   return false;
 }
 
-std::string MapReader::name(const std::string& key) {
-  const auto node = find(key, true);
-  return node && check_name(*node, path_of(key)) ? node->Scalar() : "";
+std::string MapReader::name(const Key& key) {
+  if (pass_ != nullptr) {
+    pass_->add(key, described_name(), true);
+    return "";
+  }
+  const auto node = find(key.name, true);
+  return node && check_name(*node, path_of(key.name)) ? node->Scalar() : "";
 }
 
-std::vector<double> MapReader::number_list(const std::string& key, const Range& range) {
+std::vector<double> MapReader::number_list(const Key& key, const Range& range) {
   std::vector<double> values;
-  const auto node = find(key, true);
+  if (pass_ != nullptr) {
+    problems_->add_unread();
+    pass_->add(key, {{"type", "array"}, {"items", described(range)}, {"minItems", 1}}, true);
+    return values;
+  }
+  const auto node = find(key.name, true);
   if (!node) {
     return values;
   }
   if (!node->IsSequence() || node->size() == 0) {
-    reject_at(*node, path_of(key), "is not a list of numbers");
+    reject_at(*node, path_of(key.name), "is not a list of numbers");
     return values;
   }
   for (std::size_t i = 0; i < node->size(); ++i) {
-    const std::string path = fmt::format("{}[{}]", path_of(key), i);
+    const std::string path = fmt::format("{}[{}]", path_of(key.name), i);
     values.push_back(as_number((*node)[i], path, range).value_or(range.high));
   }
   return values;
 }
 
-Eigen::VectorXd MapReader::numbers(const std::string& key, Eigen::Index size, const Range& range) {
+Eigen::VectorXd MapReader::numbers(const Key& key, Eigen::Index size, const Range& range) {
   Eigen::VectorXd values = Eigen::VectorXd::Constant(size, range.high);
-  const auto node = find(key, true);
+  if (pass_ != nullptr) {
+    problems_->add_unread();
+    pass_->add(
+        key,
+        {{"type", "array"}, {"items", described(range)}, {"minItems", size}, {"maxItems", size}},
+        true);
+    return values;
+  }
+  const auto node = find(key.name, true);
   if (!node) {
     return values;
   }
   if (!node->IsSequence() || node->size() != static_cast<std::size_t>(size)) {
     const bool is_longer = node->IsSequence() && node->size() > static_cast<std::size_t>(size);
     reject_at(
-        *node, path_of(key),
+        *node, path_of(key.name),
         fmt::format(
             "is not a list of {} numbers{}", size,
             is_longer ? fmt::format(": it has {} (decimals take a point)", node->size()) : ""));
     return values;
   }
   for (Eigen::Index i = 0; i < size; ++i) {
-    const std::string path = fmt::format("{}[{}]", path_of(key), i);
+    const std::string path = fmt::format("{}[{}]", path_of(key.name), i);
     values[i] = as_number((*node)[i], path, range).value_or(range.high);
   }
   return values;
@@ -304,28 +345,45 @@ bool MapReader::is_allowed(const YAML::Node& node, const std::string& path, cons
   return false;
 }
 
-std::string MapReader::word(const std::string& key, const std::string& kind,
+std::string MapReader::word(const Key& key, const std::string& kind,
                             const std::vector<std::string>& allowed,
                             const std::optional<std::string>& otherwise) {
-  const auto node = find(key, !otherwise);
+  if (pass_ != nullptr) {
+    return described_word(*pass_, key, allowed, otherwise);
+  }
+  const auto node = find(key.name, !otherwise);
   const std::string harmless = otherwise.value_or("");
-  return node && is_allowed(*node, path_of(key), kind, allowed) ? node->Scalar() : harmless;
+  return node && is_allowed(*node, path_of(key.name), kind, allowed) ? node->Scalar() : harmless;
+}
+
+void MapReader::check_format(const std::string& version) {
+  word({"format", "version of the file format"}, "format", {version});
 }
 
 std::vector<std::string> MapReader::words(
-    const std::string& key, const std::string& kind, const std::vector<std::string>& allowed,
+    const Key& key, const std::string& kind, const std::vector<std::string>& allowed,
     const std::optional<std::vector<std::string>>& otherwise) {
-  const auto node = find(key, !otherwise);
+  if (pass_ != nullptr) {
+    problems_->add_unread();
+    pass_->add(key,
+               {{"type", "array"},
+                {"items", described_words(allowed)},
+                {"minItems", 1},
+                {"uniqueItems", true}},
+               !otherwise, described_default(otherwise));
+    return {};
+  }
+  const auto node = find(key.name, !otherwise);
   if (!node) {
     return otherwise.value_or(std::vector<std::string>{});
   }
   if (!node->IsSequence() || node->size() == 0) {
-    reject_at(*node, path_of(key), fmt::format("is not a list of at least one {}", kind));
+    reject_at(*node, path_of(key.name), fmt::format("is not a list of at least one {}", kind));
     return {};
   }
   std::vector<std::string> chosen;
   for (std::size_t i = 0; i < node->size(); ++i) {
-    const std::string path = fmt::format("{}[{}]", path_of(key), i);
+    const std::string path = fmt::format("{}[{}]", path_of(key.name), i);
     const YAML::Node item = (*node)[i];
     if (!is_allowed(item, path, kind, allowed)) {
       continue;

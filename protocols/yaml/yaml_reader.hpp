@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "protocols/yaml/key.hpp"
 #include "protocols/yaml/problems.hpp"
 namespace tapstudy::protocols {
 // Texts for participants, which a file may give in several languages: {en: Which plate?, ja: …}.
@@ -44,6 +45,7 @@ struct Range {
 
   static Range positive(double high = 1e30) { return {0.0, high, false, true}; }
 };
+class Description;
 
 // 1 to 64 letters, digits, '_', '-', '+' or '.', not starting with '-', '+' or '.'.
 bool is_name(const std::string& text);
@@ -59,6 +61,9 @@ class MapReader {
   // The same, but only the first of the documents in it is read.
   static MapReader first_document(const std::string& text, const std::string& file,
                                   Problems& problems, Translations* translations = nullptr);
+  // The JSON schema of what a reader reads, made by running it without a file.
+  static std::string schema_of(const std::string& title, const std::string& about,
+                               const std::function<void(MapReader&)>& read);
   ~MapReader();
   MapReader(MapReader&& other) noexcept;
   MapReader(const MapReader& other) = delete;
@@ -67,38 +72,55 @@ class MapReader {
 
   enum class Presence { required, at_least_one, optional };  // at_least_one: of a list
   bool has(const std::string& key);
-  double number(const std::string& key, const Range& range, std::optional<double> otherwise = {});
-  int integer(const std::string& key, int low, int high, std::optional<int> otherwise = {});
-  bool yes_or_no(const std::string& key, std::optional<bool> otherwise = {});
+  // How many of these are given; at least one, or exactly one, has to be.
+  int count_given(const std::vector<std::string>& keys, Presence presence);
+  // The condition, which other sections decide: a schema allows either.
+  bool depends_on_others(bool condition);
+  // A range as it is without a file, and as it is with the other keys of this one.
+  Range narrowed(const Range& stated, const Range& here) const;
+  // The key is left as it is: what it depends on was rejected.
+  void leave(const std::string& key) { known_.push_back(key); }
+  // Rejects the key if it is given: it is not for what the other keys say.
+  void refuse(const std::string& key, const std::string& what);
+  // Rejects the key's value if it is not right; `schema` says the same in JSON schema's members.
+  void check(const std::string& key, bool is_right, const std::string& schema,
+             const std::string& what);
+  // Rejects a list of names that has fewer or more.
+  void check_count(const std::string& key, const std::vector<std::string>& names, std::size_t least,
+                   std::size_t most, const std::string& what);
+  // The key `format`, which says this.
+  void check_format(const std::string& version);
+  double number(const Key& key, const Range& range, std::optional<double> otherwise = {});
+  int integer(const Key& key, int low, int high, std::optional<int> otherwise = {});
+  bool yes_or_no(const Key& key, std::optional<bool> otherwise = {});
   // Any text on one line; paragraphs may have several.
-  std::string text(const std::string& key, const std::optional<std::string>& otherwise = {});
-  std::string paragraphs(const std::string& key, const std::optional<std::string>& otherwise = {});
+  std::string text(const Key& key, const std::optional<std::string>& otherwise = {});
+  std::string paragraphs(const Key& key, const std::optional<std::string>& otherwise = {});
   // The same of what participants read: a text, or one for each language.
-  std::string translated(const std::string& key, const std::optional<std::string>& otherwise = {});
-  std::string translated_paragraphs(const std::string& key,
+  std::string translated(const Key& key, const std::optional<std::string>& otherwise = {});
+  std::string translated_paragraphs(const Key& key,
                                     const std::optional<std::string>& otherwise = {});
   // A list of such texts, each once: its name in the data, which is the first text, and its label.
-  std::vector<std::pair<std::string, std::string>> translated_list(const std::string& key);
+  std::vector<std::pair<std::string, std::string>> translated_list(const Key& key);
   // A mapping from free names to such texts.
-  void each_translated(const std::string& key, Presence presence,
+  void each_translated(const Key& key, Presence presence,
                        const std::function<void(const std::string&, const std::string&)>& take);
   // Of a text that this key stands for: the wanted language if it is given, else the first.
   std::string language_among(const std::string& key, const std::vector<std::string>& given);
   // A name that is valid in data, tables and file names: see is_name.
-  std::string name(const std::string& key);
+  std::string name(const Key& key);
   // `size` numbers in brackets.
-  Eigen::VectorXd numbers(const std::string& key, Eigen::Index size, const Range& range);
+  Eigen::VectorXd numbers(const Key& key, Eigen::Index size, const Range& range);
   // As many as there are, at least one.
-  std::vector<double> number_list(const std::string& key, const Range& range);
+  std::vector<double> number_list(const Key& key, const Range& range);
   // One of the given words; kind names what they are.
-  std::string word(const std::string& key, const std::string& kind,
-                   const std::vector<std::string>& allowed,
+  std::string word(const Key& key, const std::string& kind, const std::vector<std::string>& allowed,
                    const std::optional<std::string>& otherwise = {});
-  std::vector<std::string> words(const std::string& key, const std::string& kind,
+  std::vector<std::string> words(const Key& key, const std::string& kind,
                                  const std::vector<std::string>& allowed,
                                  const std::optional<std::vector<std::string>>& otherwise = {});
   template <class Value>
-  Value one_of(const std::string& key, const std::vector<std::pair<std::string, Value>>& table,
+  Value one_of(const Key& key, const std::vector<std::pair<std::string, Value>>& table,
                const std::optional<std::string>& otherwise = {}) {
     std::vector<std::string> allowed;
     for (const auto& [name, value] : table) {
@@ -114,7 +136,7 @@ class MapReader {
   }
   // Of an enumeration whose names stand in its order.
   template <class Enumeration, std::size_t Size>
-  Enumeration one_of(const std::string& key, const std::array<std::string_view, Size>& names,
+  Enumeration one_of(const Key& key, const std::array<std::string_view, Size>& names,
                      const std::optional<std::string>& otherwise = {}) {
     const std::string chosen = word(key, "value", {names.begin(), names.end()}, otherwise);
     const auto at = std::ranges::find(names, chosen);
@@ -122,18 +144,18 @@ class MapReader {
   }
   using ReadMap = std::function<void(MapReader&)>;
   using ReadNamed = std::function<void(const std::string& name, MapReader&)>;
-  void map(const std::string& key, Presence presence, const ReadMap& read);
+  void map(const Key& key, Presence presence, const ReadMap& read);
   // The same, also written as a list: the values of these keys in their order, the last of which
   // may be left out.
-  void map_or_list(const std::string& key, Presence presence, const std::vector<std::string>& keys,
+  void map_or_list(const Key& key, Presence presence, const std::vector<std::string>& keys,
                    const ReadMap& read);
   // A mapping from free names to mappings / to two numbers / to text; a list of mappings.
-  void each(const std::string& key, Presence presence, const ReadNamed& read);
-  void each_point(const std::string& key, Presence presence,
+  void each(const Key& key, Presence presence, const ReadNamed& read);
+  void each_point(const Key& key, Presence presence,
                   const std::function<void(const std::string&, const Eigen::Vector2d&)>& take);
-  void each_text(const std::string& key, Presence presence,
+  void each_text(const Key& key, Presence presence,
                  const std::function<void(const std::string&, const std::string&)>& take);
-  void list(const std::string& key, Presence presence, const ReadMap& read);
+  void list(const Key& key, Presence presence, const ReadMap& read);
 
   // "file:line:column: key.path" of this mapping, or of one of its keys.
   std::string stated_at() const;
@@ -146,6 +168,10 @@ class MapReader {
 
  private:
   enum class Lines { one, several };
+  enum class Shape { mapping, named, list };
+  // Without a file: what the inner reader asks for.
+  void describe_inner(const Key& key, Presence presence, Shape shape, const ReadMap& read,
+                      const std::vector<std::string>& as_list = {});
   MapReader(const YAML::Node& node, std::string path, std::string pattern, Problems& problems,
             Translations* translations);
   std::string text_at(const YAML::Node& node, const std::string& path, Lines lines);
@@ -165,7 +191,7 @@ class MapReader {
   void read_inner(const YAML::Node& node, const std::string& path, const std::string& pattern,
                   const ReadMap& read);
   // Each key of a mapping from free names, in the file's order.
-  void each_named(const std::string& key, Presence presence,
+  void each_named(const Key& key, Presence presence,
                   const std::function<void(MapReader& inner, const std::string& name)>& read);
   std::optional<YAML::Node> find_map(const std::string& key, Presence presence);
   bool check_name(const YAML::Node& node, const std::string& path);
@@ -181,5 +207,6 @@ class MapReader {
   std::vector<std::string> looked_for_;  // by `has`: keys that may be given, read or not
   Problems* problems_;
   Translations* translations_;  // nullptr: one language is all that is read
+  Description* pass_{nullptr};  // nullptr: a file is read
 };
 }  // namespace tapstudy::protocols

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/text/plain_text.hpp"
+#include "protocols/yaml/described_values.hpp"
 #include "protocols/yaml/problems.hpp"
 #include "protocols/yaml/yaml_reader.hpp"
 namespace tapstudy::protocols {
@@ -45,15 +46,24 @@ std::string MapReader::text_at(const YAML::Node& node, const std::string& path, 
   return node.Scalar();
 }
 
-std::string MapReader::text(const std::string& key, const std::optional<std::string>& otherwise) {
-  const auto node = find(key, !otherwise);
-  return node ? text_at(*node, path_of(key), Lines::one) : otherwise.value_or("");
+std::string MapReader::text(const Key& key, const std::optional<std::string>& otherwise) {
+  if (pass_ != nullptr) {
+    pass_->add(key, described_text(TextLines::one, TextLanguages::one), !otherwise,
+               described_default(otherwise));
+    return otherwise.value_or("");
+  }
+  const auto node = find(key.name, !otherwise);
+  return node ? text_at(*node, path_of(key.name), Lines::one) : otherwise.value_or("");
 }
 
-std::string MapReader::paragraphs(const std::string& key,
-                                  const std::optional<std::string>& otherwise) {
-  const auto node = find(key, !otherwise);
-  return node ? text_at(*node, path_of(key), Lines::several) : otherwise.value_or("");
+std::string MapReader::paragraphs(const Key& key, const std::optional<std::string>& otherwise) {
+  if (pass_ != nullptr) {
+    pass_->add(key, described_text(TextLines::several, TextLanguages::one), !otherwise,
+               described_default(otherwise));
+    return otherwise.value_or("");
+  }
+  const auto node = find(key.name, !otherwise);
+  return node ? text_at(*node, path_of(key.name), Lines::several) : otherwise.value_or("");
 }
 
 std::vector<std::pair<std::string, std::string>> MapReader::languages_at(const YAML::Node& node,
@@ -100,16 +110,25 @@ std::string MapReader::translation_at(const YAML::Node& node, const std::string&
   return (wanted == texts.end() ? texts.front() : *wanted).second;
 }
 
-std::string MapReader::translated(const std::string& key,
-                                  const std::optional<std::string>& otherwise) {
-  const auto node = find(key, !otherwise);
-  return node ? translation_at(*node, path_of(key), Lines::one) : otherwise.value_or("");
+std::string MapReader::translated(const Key& key, const std::optional<std::string>& otherwise) {
+  if (pass_ != nullptr) {
+    pass_->add(key, described_text(TextLines::one, TextLanguages::several), !otherwise,
+               described_default(otherwise));
+    return otherwise.value_or("");
+  }
+  const auto node = find(key.name, !otherwise);
+  return node ? translation_at(*node, path_of(key.name), Lines::one) : otherwise.value_or("");
 }
 
-std::string MapReader::translated_paragraphs(const std::string& key,
+std::string MapReader::translated_paragraphs(const Key& key,
                                              const std::optional<std::string>& otherwise) {
-  const auto node = find(key, !otherwise);
-  return node ? translation_at(*node, path_of(key), Lines::several) : otherwise.value_or("");
+  if (pass_ != nullptr) {
+    pass_->add(key, described_text(TextLines::several, TextLanguages::several), !otherwise,
+               described_default(otherwise));
+    return otherwise.value_or("");
+  }
+  const auto node = find(key.name, !otherwise);
+  return node ? translation_at(*node, path_of(key.name), Lines::several) : otherwise.value_or("");
 }
 
 std::string MapReader::language_among(const std::string& key,
@@ -122,17 +141,25 @@ std::string MapReader::language_among(const std::string& key,
   return wanted == given.end() ? given.front() : *wanted;
 }
 
-std::vector<std::pair<std::string, std::string>> MapReader::translated_list(
-    const std::string& key) {
+std::vector<std::pair<std::string, std::string>> MapReader::translated_list(const Key& key) {
   std::vector<std::pair<std::string, std::string>> all;
-  const auto node = find(key, true);
+  if (pass_ != nullptr) {
+    pass_->add(key,
+               {{"type", "array"},
+                {"items", described_text(TextLines::one, TextLanguages::several)},
+                {"minItems", 1},
+                {"uniqueItems", true}},
+               true);
+    return all;
+  }
+  const auto node = find(key.name, true);
   if (node && (!node->IsSequence() || node->size() == 0)) {
-    reject_at(*node, path_of(key), "is not a list of texts");
+    reject_at(*node, path_of(key.name), "is not a list of texts");
     return all;
   }
   for (std::size_t i = 0; node && i < node->size(); ++i) {
     const YAML::Node item = (*node)[i];
-    const std::string path = fmt::format("{}[{}]", path_of(key), i);
+    const std::string path = fmt::format("{}[{}]", path_of(key.name), i);
     const std::string name = languages_at(item, path, Lines::one).front().second;
     if (std::ranges::find(all, name, &decltype(all)::value_type::first) != all.end()) {
       reject_at(item, path, fmt::format("'{}' is listed twice", name));
@@ -144,10 +171,15 @@ std::vector<std::pair<std::string, std::string>> MapReader::translated_list(
 }
 
 void MapReader::each_translated(
-    const std::string& key, Presence presence,
+    const Key& key, Presence presence,
     const std::function<void(const std::string&, const std::string&)>& take) {
+  if (pass_ != nullptr) {
+    pass_->add(key, described_named(described_text(TextLines::one, TextLanguages::several), 1),
+               presence != Presence::optional, described_empty(presence == Presence::optional));
+    return;
+  }
   each_named(key, presence, [&](MapReader& texts, const std::string& name) {
-    take(name, texts.translated(name));
+    take(name, texts.translated(Key{name}));
   });
 }
 }  // namespace tapstudy::protocols

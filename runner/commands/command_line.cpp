@@ -14,6 +14,7 @@
 #include "core/error.hpp"
 #include "protocols/yaml/problems.hpp"
 #include "runner/build_info/build_info.hpp"
+#include "runner/commands/key_reference.hpp"
 namespace tapstudy::runner {
 namespace {
 // Rejects empty values, e.g. from an unset variable in a script.
@@ -127,7 +128,9 @@ void Command::file(const std::string& name, std::string& value, const std::strin
 
 void Command::one_of(const std::string& name, std::string& value,
                      const std::vector<std::string>& allowed, const std::string& help) {
-  app_->add_option(name, value, help)->check(CLI::IsMember(allowed));
+  app_->add_option(name, value, help)
+      ->required(!name.starts_with('-'))
+      ->check(CLI::IsMember(allowed));
 }
 
 void Command::flag(const std::string& name, bool& value, const std::string& help) {
@@ -252,8 +255,10 @@ ExitCode run_command_line(int argc, const char* const* argv) {
   add_devices(line);
   add_doctor(line);
   add_calibrate(line);
+  add_schema(line);
   if (argc == 3 && std::string_view{argv[1]} == "--documents") {  // for the build: not in --help
     write_command_documents(line.definition(), argv[2]);
+    write_key_documents(argv[2]);
     return ExitCode::done;
   }
   return line.parse(argc, argv);

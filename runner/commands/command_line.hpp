@@ -43,6 +43,7 @@ class Command {
   // A file name that must have the given extension.
   void file(const std::string& name, std::string& value, const std::string& ending,
             const std::string& help);
+  // Required if it is positional.
   void one_of(const std::string& name, std::string& value, const std::vector<std::string>& allowed,
               const std::string& help);
   void flag(const std::string& name, bool& value, const std::string& help);
@@ -93,6 +94,7 @@ void add_identify(CommandParser& line);
 void add_devices(CommandParser& line);
 void add_doctor(CommandParser& line);
 void add_calibrate(CommandParser& line);
+void add_schema(CommandParser& line);
 
 // Parses and runs one command line. Throws what the command throws.
 ExitCode run_command_line(int argc, const char* const* argv);

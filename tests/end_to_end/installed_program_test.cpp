@@ -56,7 +56,7 @@ TEST_CASE("the manual page and both completions name every option that a command
   const std::string zsh = testing::contents(directory / "_tapstudy");
   const std::string bash = directory / "tapstudy.bash";
   const Names commands = completed_by_bash(bash, "''");
-  CHECK(commands.size() == 18);  // 16, --help and --version
+  CHECK(commands.size() == 19);  // 17, --help and --version
   for (const std::string& command : commands) {
     if (command.starts_with('-')) {
       continue;
@@ -72,6 +72,25 @@ TEST_CASE("the manual page and both completions name every option that a command
     CHECK(all_matches(in_zsh, std::regex{R"re('\*?(--[a-z-]+)\[)re"}) == options);
   }
   CHECK(completed_by_bash(bash, "export --format ''") == Names{"bids", "csv", "hdf5"});
+}
+
+TEST_CASE("the schema that the first line of a shipped file names is installed beside its folder",
+          "[end_to_end][install]") {
+  const testing::TempDirectory directory;
+  REQUIRE(testing::tapstudy({"--documents", directory / "."}).exit_code == 0);
+  int named = 0;
+  for (const auto& entry : fs::recursive_directory_iterator{testing::shipped("")}) {
+    std::smatch line;
+    const std::string text = entry.path().extension() == ".yaml" ? testing::contents(entry) : "";
+    if (std::regex_search(text, line, std::regex{"^# .*[$]schema=\\.\\./(.*)\n"})) {
+      ++named;
+      CAPTURE(entry.path());
+      CHECK(fs::exists(fs::path{directory / "."} / line[1].str()));
+    }
+  }
+  CHECK(named > 20);
+  CHECK(testing::contents(directory / "schema/protocol.schema.json") ==
+        testing::tapstudy({"schema", "protocol"}).standard_output);
 }
 
 TEST_CASE("a protocol that is no file is the one of that name installed with the program",

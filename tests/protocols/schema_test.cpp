@@ -1,5 +1,8 @@
 // The JSON schema that editors use against the reader that decides.
+#include <algorithm>
 #include <cstdlib>
+#include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
@@ -9,6 +12,7 @@
 #include "core/error.hpp"
 #include "protocols/reader/read_protocol.hpp"
 #include "protocols/reader/read_rig.hpp"
+#include "runner/commands/key_reference.hpp"
 #include "runner/session/devices/rigs.hpp"
 #include "support/catch.hpp"
 #include "support/processes.hpp"
@@ -36,20 +40,29 @@ bool reader_accepts(const std::string& text) {
   return true;
 }
 
-std::string schema_file(const std::string& schema) {
-  return testing::shipped("schema/" + schema + ".schema.json").string();
+const std::map<std::string, std::string>& schemas() {
+  static const std::map<std::string, std::string> made{
+      {"protocol", protocols::protocol_schema()},
+      {"rig", runner::rig_schema()},
+      {"calibration", runner::calibration_schema()}};
+  return made;
 }
 
+nlohmann::json parsed(const std::string& schema) {
+  return nlohmann::json::parse(schemas().at(schema));
+}
 std::set<std::string> keys_in(const std::string& schema) {
-  return testing::schema_keys(nlohmann::json::parse(testing::contents(schema_file(schema))));
+  return testing::schema_keys(parsed(schema));
 }
 
 // By the jsonschema library of Python, which knows nothing of our reader. A line each.
 std::vector<std::string> verdicts_of_schema(const std::vector<std::string>& texts,
                                             const std::string& schema = "protocol") {
   const testing::TempDirectory directory;
-  std::vector<std::string> command{
-      "/usr/bin/python3", testing::source("tests/protocols/validate.py"), schema_file(schema)};
+  std::vector<std::string> command{"/usr/bin/python3",
+                                   testing::source("tests/protocols/validate.py"),
+                                   directory / "schema.json"};
+  testing::write(command.back(), schemas().at(schema));
   for (const std::string& text : texts) {
     command.push_back(directory / (std::to_string(command.size()) + ".yaml"));
     testing::write(command.back(), text);
@@ -96,6 +109,7 @@ TEST_CASE("schema and reader accept the same protocols", "[protocols][schema]") 
       {"radius_m: 0.02}", "low_m: [0, 0, 0]}"},
       {"side: left}", "side: under}"},
       {"region: side, side: left", "region: side, side: left, radius_m: 1"},
+      {"region: side, side: left", "region: side"},
       {"metres_per_unit: 0.001", "metres_per_unit: 0"},
       {"modal_ratios: [0.02, 0.01]", "modal_ratios: []"},
       {"modal_ratios: [0.02, 0.01], further", "further"},
@@ -108,6 +122,8 @@ TEST_CASE("schema and reader accept the same protocols", "[protocols][schema]") 
       {"vote: first", "values: [1]"},
       {"vote: first", "vote: last"},
       {"vote: first", "feedback: true"},
+      {"vote: first", "further_axes: [youngs_modulus_pa]"},
+      {"vote: first", "response_labels: {a: A}"},
       {"    practice: true\n", ""},
       {"every_trials: 3, ", ""},
       {"steps: 4", "steps: 8"},
@@ -418,10 +434,100 @@ TEST_CASE("schema and reader accept the same calibrations", "[protocols][rig][sc
   }
 }
 
-// protocols/README.md against the JSON schemas from which it is generated.
-TEST_CASE("the reference of the keys says what the schemas say", "[protocols][schema]") {
-  const auto result = testing::run_program(
-      {"/usr/bin/python3", testing::shipped("schema/write_readme.py").string(), "--check"});
-  INFO(result.standard_output << result.standard_error);
-  CHECK(result.exit_code == 0);
+TEST_CASE("every protocol and rig that is shipped fits its schema", "[protocols][rig][schema]") {
+  for (const auto& [kind, folders] : std::map<std::string, std::vector<std::string>>{
+           {"protocol", {"paper", "recommended", "examples"}}, {"rig", {"rigs"}}}) {
+    std::vector<std::string> texts;
+    for (const std::string& folder : folders) {
+      for (const auto& entry : std::filesystem::directory_iterator{testing::shipped(folder)}) {
+        if (entry.path().extension() == ".yaml") {
+          texts.push_back(testing::contents(entry.path()));
+        }
+      }
+    }
+    REQUIRE(texts.size() > 1);
+    CHECK(std::ranges::count(verdicts_of_schema(texts, kind), "fits") == std::ssize(texts));
+  }
+}
+
+namespace {
+bool names(const nlohmann::json& required, const std::string& key) {
+  return std::ranges::find(required, nlohmann::json(key)) != required.end();
+}
+
+// Whatever the other keys of a mapping are, and whether or not they are needed in its place.
+bool may_be_missing(const std::string& key, const nlohmann::json& mapping) {
+  using nlohmann::json;
+  const auto requires_key = [&](const json& rule) {
+    const json required = rule.value("then", rule).value("required", json::array());
+    const std::string otherwise = rule.value("if", json::object()).value("not", json{}).dump();
+    return names(required, key) ||
+           (!required.empty() && otherwise.find("[\"" + key + "\"]") != std::string::npos);
+  };
+  return !requires_key(mapping) &&
+         std::ranges::none_of(std::vector{"allOf", "anyOf", "oneOf"}, [&](const char* rules) {
+           return std::ranges::any_of(mapping.value(rules, json::array()), requires_key);
+         });
+}
+
+void collect_gaps(const std::string& path, const nlohmann::json& schema,
+                  std::vector<std::string>& gaps) {
+  using nlohmann::json;
+  const json properties = schema.value("properties", json::object());
+  for (const auto& [key, value] : properties.items()) {
+    const std::string said = value.value("description", "");
+    const bool is_open = may_be_missing(key, schema) && !value.contains("default");
+    if (said.empty() || (is_open && said.find("unset") == std::string::npos)) {
+      gaps.push_back(path + key);
+    }
+    collect_gaps(path + key + ".", value, gaps);
+  }
+  for (const char* const inner : {"items", "additionalProperties"}) {
+    if (schema.contains(inner) && schema[inner].is_object()) {
+      collect_gaps(path, schema[inner], gaps);
+    }
+  }
+}
+}  // namespace
+
+TEST_CASE("every key says what it means and, where it may be missing, what holds without it",
+          "[protocols][rig][schema]") {
+  std::vector<std::string> gaps;
+  for (const auto& [kind, text] : schemas()) {
+    collect_gaps(kind + ": ", parsed(kind), gaps);
+  }
+  CHECK(gaps == std::vector<std::string>{});
+}
+
+TEST_CASE("the reference has a row for every key that the schemas have",
+          "[protocols][rig][schema]") {
+  for (const auto& [kind, text] : schemas()) {
+    const std::string reference = runner::key_reference({text});
+    for (const std::string& key : keys_in(kind)) {
+      const bool is_free = key.ends_with(".*");
+      const auto dot = key.rfind('.', is_free ? key.size() - 3 : std::string::npos);
+      CAPTURE(key);
+      CHECK(reference.find("| `" + key.substr(dot + 1) + "` |") != std::string::npos);
+    }
+  }
+}
+
+TEST_CASE("the line that reads a key is all that schema, reference and refusals know it by",
+          "[protocols][schema]") {
+  const auto read = [](protocols::MapReader& reader) {
+    reader.number({"mass_kg", "mass of the hand"}, {0.0, 10.0}, 1.0);
+  };
+  const std::string schema = protocols::MapReader::schema_of("hand", "A hand.", read);
+  CHECK(nlohmann::json::parse(schema)["properties"] == nlohmann::json::parse(R"({"mass_kg": {
+      "type": "number", "minimum": 0, "maximum": 10, "default": 1,
+      "description": "mass of the hand"}})"));
+  CHECK(runner::key_reference({schema}).find(
+            "| `mass_kg` | kg | `1.0` | 0 to 10 | mass of the hand |") != std::string::npos);
+  protocols::Problems problems{"hand.yaml"};
+  auto reader = protocols::MapReader::whole_file("mas_kg: 2", "hand.yaml", problems);
+  read(reader);
+  reader.finish();
+  CHECK_THROWS_WITH(problems.throw_if_any(),
+                    "hand.yaml:1:1: mas_kg: is not a known key (one of: mass_kg, did you mean "
+                    "'mass_kg'?)");
 }

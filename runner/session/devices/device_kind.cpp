@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/error.hpp"
+#include "protocols/yaml/yaml_reader.hpp"
 namespace tapstudy::runner {
 const std::vector<const DeviceKind*>& device_kinds() {
   static const std::vector<const DeviceKind*> table{&simulated_hand(), &spidar_g6(),
@@ -19,6 +20,14 @@ const DeviceKind& kind_of(const protocols::Rig& rig) {
     throw core::InvalidInput{"rig: device: '" + rig.device + "' is not a known device"};
   }
   return **found;
+}
+
+double read_max_reply_s(protocols::MapReader& section, double least_s, double usual_s) {
+  return section.number(
+      {"max_reply_s",
+       "a reply that takes longer is missing; more than three in a row, or a tenth of all in the "
+       "long run, are a fault; at most half of loop.max_stall_s"},
+      {least_s, 0.05}, usual_s);
 }
 
 std::unique_ptr<SessionDevice> reconnect(const std::string& what_happened,

@@ -37,9 +37,8 @@ struct DeviceRequest {
 };
 
 // A kind of device: its section of the rig (protocols::RigDevice), its detection, and how it is
-// opened. To add one: a file in this folder with its class, a row in device_kind.cpp, and its
-// section in protocols/schema/devices. Only what is the device's own (its calibration and the
-// command for it) refers to it by name.
+// opened. To add one: a file in this folder with its class, a row in device_kind.cpp. Only what is
+// the device's own (its calibration and the command for it) refers to it by name.
 class DeviceKind : public protocols::RigDevice {
  public:
   // Throws InvalidInput if its section of the rig is implausible.
@@ -74,6 +73,9 @@ class DeviceKind : public protocols::RigDevice {
 // All there are.
 const std::vector<const DeviceKind*>& device_kinds();
 const DeviceKind& kind_of(const protocols::Rig& rig);
+
+// The key `max_reply_s` of a device with a communication link.
+double read_max_reply_s(protocols::MapReader& section, double least_s, double usual_s);
 
 // A simulated hand that taps points drawn from the session's seed.
 const DeviceKind& simulated_hand();

@@ -90,12 +90,23 @@ class RemoteKind final : public DeviceKind {
   std::shared_ptr<const protocols::DeviceSection> read_section(
       protocols::MapReader& top, const protocols::RigText& /*rig*/) const override {
     auto section = std::make_shared<RemoteSection>();
-    top.map("remote", protocols::MapReader::Presence::required, [&](protocols::MapReader& reader) {
-      section->port = static_cast<std::uint16_t>(reader.integer("port", 1024, 65535));
-      section->max_reply_s = reader.number("max_reply_s", {0.0001, 0.05}, section->max_reply_s);
-      section->delay_ticks = reader.integer("delay_ticks", 0, 10, section->delay_ticks);
-      section->accepted_without_release = reader.text("accepted_without_release", "");
-    });
+    top.map({"remote", "a device driven by another program on this machine"},
+            protocols::MapReader::Presence::required, [&](protocols::MapReader& reader) {
+              section->port = static_cast<std::uint16_t>(
+                  reader.integer({"port", "UDP port on the loopback interface"}, 1024, 65535));
+              section->max_reply_s = read_max_reply_s(reader, 0.0001, section->max_reply_s);
+              section->delay_ticks =
+                  reader.integer({"delay_ticks",
+                                  "ticks between the request of a force and its action, for the "
+                                  "stability bound that `check` prints"},
+                                 0, 10, section->delay_ticks);
+              section->accepted_without_release = reader.text(
+                  {"accepted_without_release",
+                   "for a program that does not report that it releases the force when requests "
+                   "stop, and is refused otherwise: how it was found that it does, and who answers "
+                   "for it; unset: such a program is refused"},
+                  "");
+            });
     return section;
   }
   int delay_ticks(const protocols::Rig& rig) const override {

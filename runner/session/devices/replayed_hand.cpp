@@ -53,11 +53,17 @@ class ReplayKind final : public DeviceKind {
   std::shared_ptr<const protocols::DeviceSection> read_section(
       protocols::MapReader& top, const protocols::RigText& rig) const override {
     auto section = std::make_shared<ReplaySection>();
-    top.map("replay", protocols::MapReader::Presence::required, [&](protocols::MapReader& reader) {
-      section->directory =
-          (std::filesystem::path{rig.directory} / reader.text("directory")).string();
-      section->trial_id = reader.integer("trial_id", 1, 2'000'000'000);
-    });
+    top.map({"replay", "replays the hand of a stored trial",
+             "replay: {directory: my_study, trial_id: 1}"},
+            protocols::MapReader::Presence::required, [&](protocols::MapReader& reader) {
+              section->directory =
+                  (std::filesystem::path{rig.directory} /
+                   reader.text(
+                       {"directory", "study that contains the trial; path relative to the rig"}))
+                      .string();
+              section->trial_id = reader.integer({"trial_id", "number of the trial in the study"},
+                                                 1, 2'000'000'000);
+            });
     return section;
   }
   std::unique_ptr<SessionDevice> open(const DeviceRequest& request) const override {

@@ -6,6 +6,7 @@
 
 #include "core/error.hpp"
 #include "core/model/shape/shape.hpp"
+#include "device/spidar/kinematics.hpp"
 #include "protocols/reader/read_rig.hpp"
 #include "protocols/yaml/text_file.hpp"
 #include "runner/session/devices/device_kind.hpp"
@@ -51,6 +52,13 @@ protocols::Rig parse_rig(const std::string& text, const std::string& file) {
 
 protocols::Rig read_rig(const std::string& file) {
   return parse_rig(protocols::contents_of(file), file);
+}
+
+std::string rig_schema() {
+  return protocols::rig_schema(rig_devices());
+}
+std::string calibration_schema() {
+  return protocols::calibration_schema(device::spidar_types());
 }
 
 std::set<std::string> rig_keys_asked_for(const std::string& text, const std::string& file) {

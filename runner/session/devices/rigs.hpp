@@ -10,6 +10,8 @@ namespace tapstudy::runner {
 protocols::Rig parse_rig(const std::string& text, const std::string& file);
 // Throws InvalidInput also if the file cannot be read.
 protocols::Rig read_rig(const std::string& file);
+std::string rig_schema();
+std::string calibration_schema();
 std::set<std::string> rig_keys_asked_for(const std::string& text, const std::string& file);
 // The rig of a study without hardware: the simulated hand, 10 N.
 protocols::Rig simulated_rig();

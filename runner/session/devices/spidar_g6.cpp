@@ -132,7 +132,7 @@ class SpidarKind final : public DeviceKind {
   std::shared_ptr<const protocols::DeviceSection> read_section(
       MapReader& top, const protocols::RigText& rig) const override {
     auto section = std::make_shared<SpidarSection>();
-    top.map("spidar", MapReader::Presence::required,
+    top.map({"spidar", "a SPIDAR-G6 on its USB board"}, MapReader::Presence::required,
             [&](MapReader& reader) { read(reader, rig, *section); });
     return section;
   }
@@ -208,18 +208,28 @@ class SpidarKind final : public DeviceKind {
     }
   }
   static void read(MapReader& reader, const protocols::RigText& rig, SpidarSection& section) {
-    section.type = reader.word("type", "type", device::spidar_types());
+    section.type = reader.word({"type", "type of the frame"}, "type", device::spidar_types());
     if (reader.has("rotary_switch")) {
-      section.rotary_switch = reader.integer("rotary_switch", 0, 15);
+      section.rotary_switch = reader.integer(
+          {"rotary_switch", "selects the board if several are connected; unset: the only one"}, 0,
+          15);
     }
-    section.max_turn_rad =
-        reader.number("max_turn_rad", Range::positive(0.5), section.max_turn_rad);
-    section.max_reply_s = reader.number("max_reply_s", {0.001, 0.05}, section.max_reply_s);
+    section.max_turn_rad = reader.number({"max_turn_rad", "grip rotation beyond it is a fault"},
+                                         Range::positive(0.5), section.max_turn_rad);
+    section.max_reply_s = read_max_reply_s(reader, 0.001, section.max_reply_s);
     if (reader.has("relay")) {
-      section.relay = reader.text("relay");
+      section.relay = reader.text({"relay",
+                                   "serial port of a dead-man relay in the amplifier's supply, "
+                                   "which opens 50 ms after the last byte; unset: there is none"});
     }
-    section.is_amplifier_sensed = reader.yes_or_no("amplifier_sensed", section.is_amplifier_sensed);
-    const std::string calibration = reader.text("calibration");
+    section.is_amplifier_sensed =
+        reader.yes_or_no({"amplifier_sensed",
+                          "end the trial if the board measures no voltage at the motors; false: "
+                          "this board's measurement is not to be relied on"},
+                         section.is_amplifier_sensed);
+    const std::string calibration = reader.text({"calibration",
+                                                 "file measured on this individual device by "
+                                                 "`tapstudy calibrate`; path relative to the rig"});
     if (section.type.empty() || calibration.empty()) {
       return;
     }

@@ -15,18 +15,10 @@ using namespace tapstudy;
 
 namespace {
 // A mapping with one key, a procedure.
-nlohmann::json whole_schema() {
-  nlohmann::json schema{{"title", "tapstudy procedures"},
-                        {"description", "Which stimulus comes next."},
-                        {"type", "object"},
-                        {"additionalProperties", false}};
-  for (const protocols::Procedure* procedure : protocols::procedures()) {
-    const std::string name{procedure->name()};
-    schema["properties"][name] = nlohmann::json::parse(
-        testing::contents(testing::shipped("schema/procedures/" + name + ".json")));
-    schema["oneOf"].push_back({{"required", {name}}});
-  }
-  return schema;
+std::string whole_schema() {
+  return protocols::MapReader::schema_of(
+      "procedures", "Which stimulus comes next.",
+      [](protocols::MapReader& reader) { protocols::read_procedure(reader); });
 }
 
 // With every key, in both forms where there are two.
@@ -132,12 +124,12 @@ const std::vector<Change> changes{
 
 TEST_CASE("the schemas of procedures have exactly the keys that their readers ask for",
           "[protocols][procedures][schema]") {
-  CHECK(testing::schema_keys(whole_schema()) == asked_keys());
+  CHECK(testing::schema_keys(nlohmann::json::parse(whole_schema())) == asked_keys());
 }
 
 TEST_CASE("schemas and readers of procedures accept the same", "[protocols][procedures][schema]") {
   const testing::TempDirectory directory;
-  testing::write(directory / "schema.json", whole_schema().dump());
+  testing::write(directory / "schema.json", whole_schema());
   std::vector<std::string> texts = every_key;
   for (const auto& [base, from, to] : changes) {
     texts.push_back(testing::replaced(every_key[base], from, to));
@@ -162,21 +154,6 @@ TEST_CASE("schemas and readers of procedures accept the same", "[protocols][proc
   for (const std::string& text : every_key) {
     CHECK(reader_accepts(text));
   }
-}
-
-TEST_CASE("the reference of keys can be written from the schemas of procedures",
-          "[protocols][procedures][schema]") {
-  const testing::TempDirectory directory;
-  testing::write(directory / "schema.json", whole_schema().dump());
-  const auto run = testing::run_program(
-      {"/usr/bin/python3", "-c",
-       "import json, sys; sys.path.insert(0, sys.argv[1]); import write_readme\n"
-       "schema = json.load(open(sys.argv[2]))\n"
-       "write_readme.nested('', schema, '')\n"
-       "sys.exit('\\n'.join(write_readme.gaps('', schema)) or 0)",
-       testing::shipped("schema").string(), directory / "schema.json"});
-  INFO(run.standard_error);
-  CHECK(run.exit_code == 0);
 }
 
 // Settings with which no procedure could do its work, by line and key.

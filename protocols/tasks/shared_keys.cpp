@@ -1,4 +1,7 @@
-#include "protocols/tasks/read_axis_values.hpp"
+#include "protocols/tasks/shared_keys.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -25,11 +28,46 @@ bool is_vary_refused(const Protocol& protocol, const Block& block) {
 
 std::string read_axis(MapReader& reader, const Protocol& protocol, const Block& block,
                       const std::vector<std::string>& axes) {
-  if (reader.has("axis") && is_vary_refused(protocol, block)) {
-    return reader.text("axis");
+  const Key key{
+      "axis",
+      "with procedures: along which the comparison differs from its standard; magnitude: of the "
+      "values; adjustment: that is moved along; unset: the only one of the stimulus"};
+  if (reader.has(key.name) && is_vary_refused(protocol, block)) {
+    return reader.text(key);
   }
-  return reader.word("axis", "axis of the stimuli", axes,
-                     axes.size() == 1 ? std::optional{axes.front()} : std::nullopt);
+  return reader.word(key, "axis of the stimuli", axes,
+                     reader.depends_on_others(axes.size() == 1)
+                         ? std::optional{axes.empty() ? std::string{} : axes.front()}
+                         : std::nullopt);
+}
+
+double read_standard_value(MapReader& reader, const Range& range, double own) {
+  return reader.number(
+      {"standard",
+       "with procedures, or adjustment without a reference: value on the axis, in its unit; "
+       "adjustment: within the settings; unset: the stimulus's own"},
+      range, own);
+}
+
+int read_alternatives(MapReader& reader, int low, int high, int usual) {
+  return reader.integer(
+      {"alternatives",
+       "comparison: 2 to 8; odd_one_out: 3 or 4; match_to_sample: 2 to 4; unset: 2, or 3"},
+      low, high, usual);
+}
+
+void read_response_labels(MapReader& reader, const std::vector<std::string>& responses,
+                          Block& block) {
+  reader.each_translated(
+      {"response_labels",
+       "by level of response_factor, or of same and different; unset: the level itself"},
+      MapReader::Presence::optional, [&](const std::string& response, const std::string& label) {
+        if (std::ranges::find(responses, response) == responses.end()) {
+          reader.reject("response_labels", fmt::format("'{}' cannot be answered (one of: {})",
+                                                       response, fmt::join(responses, ", ")));
+        }
+        block.response_labels[response] = label;
+      });
 }
 
 std::vector<double> presented_on_axis(MapReader& reader, const std::string& key,

@@ -161,7 +161,8 @@ TickFault SpidarG6::fault_of_counters(double elapsed_s) noexcept {
 // the step.
 TickFault SpidarG6::follow(core::HandState& hand, double elapsed_s) noexcept {
   const bool has_position = held_.is_known();
-  if (const TickFault fault = fault_of_counters(elapsed_s); has_position && fault != TickFault::none) {
+  if (const TickFault fault = fault_of_counters(elapsed_s);
+      has_position && fault != TickFault::none) {
     return fault;
   }
   const FoundPose found = find_pose(settings_.geometry, lengths_m(), pose_,

@@ -237,11 +237,13 @@ inline CitingText joined(const std::vector<CitingText>& texts, const char* betwe
 }
 }  // namespace tapstudy::core
 
+namespace fmt {
 template <class Text>
 requires std::same_as<Text, tapstudy::core::Source> ||
     std::same_as<Text, tapstudy::core::CitingText>
-struct fmt::formatter<Text> : fmt::formatter<std::string_view> {
+struct formatter<Text> : formatter<std::string_view> {
   auto format(const Text& text, format_context& context) const {
-    return fmt::formatter<std::string_view>::format(text.view(), context);
+    return formatter<std::string_view>::format(text.view(), context);
   }
 };
+}  // namespace fmt

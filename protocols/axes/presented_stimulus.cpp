@@ -102,18 +102,18 @@ PresentedStimulus stimulus_at(const Protocol& protocol, const Stimulus& stimulus
 
 std::vector<AxisValues> table_of_models(const Protocol& protocol, const Stimulus& stimulus) {
   const AxisValues own = stimulus_with(protocol, stimulus).values;
-  std::vector<AxisValues> table{{}};
+  std::vector<AxisValues> rows{{}};
   for (const AxisRange& range : stimulus.vary) {
     const std::string name{range.axis->name};
-    std::vector<AxisValues> longer = table;
+    std::vector<AxisValues> longer = rows;
     for (const double value : range.table) {
-      for (AxisValues values : value == own.at(name) ? std::vector<AxisValues>{} : table) {
+      for (AxisValues values : value == own.at(name) ? std::vector<AxisValues>{} : rows) {
         values[name] = value;
         longer.push_back(std::move(values));
       }
     }
-    table = std::move(longer);
+    rows = std::move(longer);
   }
-  return table;
+  return rows;
 }
 }  // namespace tapstudy::protocols

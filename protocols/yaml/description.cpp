@@ -66,7 +66,6 @@ namespace {
 // A pass, and those that differ from it by one answer each.
 struct Branch;
 struct Node {
-  explicit Node(Description done) : pass{std::move(done)} {}
   Description pass;
   std::vector<Branch> branches;
 };
@@ -84,7 +83,7 @@ std::set<std::string> names_of(const std::vector<Description::Question>& questio
 
 Node explored(const std::function<void(Description&)>& read, const Description& usual,
               const Description::Answers& chosen, std::set<std::string> answered) {
-  Node node{usual};
+  Node node{usual, {}};
   const std::vector<Description::Question>& asked = node.pass.asked();
   const std::set<std::string> before = answered;
   answered.merge(names_of(asked));

@@ -152,6 +152,7 @@ SchemaJson common(const SchemaJson& one, const SchemaJson& two) {
 }
 
 // What both demand under one condition.
+// Cases of JSON Schema's keywords. NOLINTNEXTLINE(readability-function-cognitive-complexity)
 SchemaJson common_rules(const SchemaJson& one, const SchemaJson& two) {
   SchemaJson rules = SchemaJson::array();
   for (const SchemaJson& rule : one) {
@@ -191,6 +192,7 @@ void merge_properties(SchemaJson& into, const SchemaJson& other) {
 }
 
 // What allows all that either allows.
+// Cases of JSON Schema's keywords. NOLINTNEXTLINE(readability-function-cognitive-complexity)
 SchemaJson merged(const SchemaJson& one, const SchemaJson& two) {
   if (one == two || !one.is_object() || !two.is_object()) {
     return one;
@@ -232,6 +234,7 @@ SchemaJson merged(const SchemaJson& one, const SchemaJson& two) {
 }
 
 // What this schema demands beyond the merged one.
+// Cases of JSON Schema's keywords. NOLINTNEXTLINE(readability-function-cognitive-complexity)
 SchemaJson demands(const SchemaJson& schema, const SchemaJson& all) {
   static const std::set<std::string> said{"description", "default", "examples"};
   SchemaJson more = SchemaJson::object();
@@ -319,6 +322,7 @@ class Rules {
   }
 
   // Whether one of the branches is taken, or none.
+  // Cases of JSON Schema's keywords. NOLINTNEXTLINE(readability-function-cognitive-complexity)
   static Condition with(const Node& node, const std::vector<SchemaJson>& context,
                         const Guards& guards, bool is_taken) {
     std::map<std::size_t, std::set<std::size_t>> answers;
@@ -416,6 +420,7 @@ void Rules::add_usual(const Node& node, const std::vector<SchemaJson>& context) 
   }
 }
 
+// Cases of JSON Schema's keywords. NOLINTNEXTLINE(readability-function-cognitive-complexity)
 void Rules::add_branch(const Node& node, const Branch& branch,
                        const std::vector<SchemaJson>& context) {
   const Condition condition = with(node, context, {&branch}, true);

@@ -109,6 +109,7 @@ std::string list_range(const Json& schema) {
   return fmt::format("{}", fmt::join(words, ", "));
 }
 
+// Cases of JSON Schema's keywords. NOLINTNEXTLINE(readability-function-cognitive-complexity)
 std::string range_of(const Json& schema) {
   const Json type = schema.value("type", Json{});
   if (schema.contains("const")) {
@@ -146,6 +147,7 @@ std::string range_of(const Json& schema) {
 }
 
 // Under which other keys, or values of them, a condition holds; empty where it is another one.
+// Cases of JSON Schema's keywords. NOLINTNEXTLINE(readability-function-cognitive-complexity)
 std::string condition_words(const Json& condition) {
   const auto keys = [](const Json& given) {
     Words words;

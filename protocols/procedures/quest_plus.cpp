@@ -253,7 +253,7 @@ class QuestPlus final : public Procedure {
  public:
   std::string_view name() const override { return "quest_plus"; }
   std::string_view meaning() const override {
-    return "QUEST+ (Watson 2017): the stimulus after which the posterior of the parameters is "
+    return "QUEST+: the stimulus after which the posterior of the parameters is "
            "expected to have the least entropy";
   }
   std::shared_ptr<const TrackSettings> read(MapReader& reader) const override {
@@ -270,9 +270,7 @@ class QuestPlus final : public Procedure {
 class Psi final : public Procedure {
  public:
   std::string_view name() const override { return "psi"; }
-  std::string_view meaning() const override {
-    return "psi method (Kontsevich & Tyler 1999): QUEST+ of threshold and slope";
-  }
+  std::string_view meaning() const override { return "psi method: QUEST+ of threshold and slope"; }
   std::shared_ptr<const TrackSettings> read(MapReader& reader) const override {
     DesignReader design{reader, read_function(reader)};
     design.read_curve();

@@ -53,7 +53,7 @@ Form read_form(const std::string& name, MapReader& reader) {
   if (reader.has("shipped")) {
     reader.word(
         {"shipped",
-         "instead of the rest; nasa_tlx: the raw task load index (Hart 2006), in English, German "
+         "instead of the rest; nasa_tlx: the raw task load index, in English, German "
          "and Japanese (translations are ours, not validated); unset: the form is given here"},
         "form", {"nasa_tlx"});
     form = nasa_tlx(reader.language_among("shipped", nasa_tlx_languages()));

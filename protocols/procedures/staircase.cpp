@@ -11,9 +11,9 @@ namespace tapstudy::protocols {
 // An up-down staircase. Correct answers in a row make the next stimulus harder, incorrect ones in a
 // row easier; each change ends the row.
 //
-// Transformed: n_down correct, or n_up incorrect, in a row; equal steps. It settles
+// Transformed (Levitt 1971): n_down correct, or n_up incorrect, in a row; equal steps. It settles
 //   where either change is as likely as the other: at n_up = 1, psi = 0.5^(1/n_down).
-// Weighted: one answer each; the step towards easier is target / (1 - target)
+// Weighted (Kaernbach 1991): one answer each; the step towards easier is target / (1 - target)
 //   times the one towards harder. It settles at psi = target.
 //
 // Steps are added to the value (linear), or are decibels of it: value = start 10^(dB/20). Each

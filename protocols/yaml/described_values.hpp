@@ -7,9 +7,6 @@
 #include "protocols/yaml/description.hpp"
 #include "protocols/yaml/yaml_reader.hpp"
 namespace tapstudy::protocols {
-enum class TextLines { one, several };
-enum class TextLanguages { one, several };
-
 SchemaJson described(const Range& range);
 SchemaJson described_integer(int low, int high);
 SchemaJson described_text(TextLines lines, TextLanguages languages);

@@ -110,7 +110,8 @@ void visit(const Node& node, const std::function<void(const Description&)>& take
   }
 }
 
-// The end of a range that allows more. `less` is whether the first value is the looser.
+// Leaves the end of a range that allows more: the lower of two low ends, the higher of two high
+// ones, and none if one of the ranges is open there.
 void merge_end(SchemaJson& into, const SchemaJson& other, const char* open, const char* closed,
                bool is_low) {
   const auto end = [&](const SchemaJson& schema) -> std::optional<std::pair<double, bool>> {
@@ -151,33 +152,44 @@ SchemaJson common(const SchemaJson& one, const SchemaJson& two) {
   return both;
 }
 
-// What both demand under one condition.
-// Cases of JSON Schema's keywords. NOLINTNEXTLINE(readability-function-cognitive-complexity)
+SchemaJson common_properties(const SchemaJson& one, const SchemaJson& two) {
+  SchemaJson both = SchemaJson::object();
+  for (const auto& [key, schema] : one.items()) {
+    if (two.contains(key) && two[key] == schema) {
+      both[key] = schema;
+    }
+  }
+  return both;
+}
+
+// Of what follows from one condition in each, what follows in both.
+SchemaJson common_demands(const SchemaJson& one, const SchemaJson& two) {
+  SchemaJson both = SchemaJson::object();
+  for (const auto& [name, demanded] : one.items()) {
+    SchemaJson shared;
+    if (name == "required" && two.contains(name)) {
+      shared = common(demanded, two[name]);
+    } else if (name == "properties" && two.contains(name)) {
+      shared = common_properties(demanded, two[name]);
+    }
+    if (!shared.empty()) {
+      both[name] = std::move(shared);
+    }
+  }
+  return both;
+}
+
+// The rules of both, under one condition each.
 SchemaJson common_rules(const SchemaJson& one, const SchemaJson& two) {
   SchemaJson rules = SchemaJson::array();
   for (const SchemaJson& rule : one) {
     const auto same = std::ranges::find_if(
         two, [&](const SchemaJson& other) { return other["if"] == rule["if"]; });
-    SchemaJson then = SchemaJson::object();
     if (same == two.end()) {
       continue;
     }
-    for (const auto& [name, demanded] : rule["then"].items()) {
-      const SchemaJson other = (*same)["then"].value(name, SchemaJson{});
-      if (name == "required" && other.is_array()) {
-        if (SchemaJson required = common(demanded, other); !required.empty()) {
-          then[name] = std::move(required);
-        }
-      } else if (name == "properties" && other.is_object()) {
-        for (const auto& [key, schema] : demanded.items()) {
-          if (other.contains(key) && other[key] == schema) {
-            then[name][key] = schema;
-          }
-        }
-      }
-    }
-    if (!then.empty()) {
-      rules.push_back({{"if", rule["if"]}, {"then", then}});
+    if (SchemaJson then = common_demands(rule["then"], (*same)["then"]); !then.empty()) {
+      rules.push_back({{"if", rule["if"]}, {"then", std::move(then)}});
     }
   }
   return rules;
@@ -191,8 +203,34 @@ void merge_properties(SchemaJson& into, const SchemaJson& other) {
   }
 }
 
+void keep_if_same(SchemaJson& into, const SchemaJson& other, const char* name) {
+  if (into.contains(name) && (!other.contains(name) || other[name] != into[name])) {
+    into.erase(name);
+  }
+}
+
+void merge_words(SchemaJson& into, const SchemaJson& other) {
+  for (const SchemaJson& word : other) {
+    if (std::ranges::find(into, word) == into.end()) {
+      into.push_back(word);
+    }
+  }
+}
+
+void merge_lists(SchemaJson& into, const SchemaJson& other) {
+  const auto other_list = [&](const char* name) { return other.value(name, SchemaJson::array()); };
+  if (into.contains("enum")) {
+    merge_words(into["enum"], other_list("enum"));
+  }
+  if (into.contains("required")) {
+    into["required"] = common(into["required"], other_list("required"));
+  }
+  if (into.contains("allOf")) {
+    into["allOf"] = common_rules(into["allOf"], other_list("allOf"));
+  }
+}
+
 // What allows all that either allows.
-// Cases of JSON Schema's keywords. NOLINTNEXTLINE(readability-function-cognitive-complexity)
 SchemaJson merged(const SchemaJson& one, const SchemaJson& two) {
   if (one == two || !one.is_object() || !two.is_object()) {
     return one;
@@ -205,23 +243,9 @@ SchemaJson merged(const SchemaJson& one, const SchemaJson& two) {
   }
   merge_count(both, two, "maxItems", false);
   for (const char* const same : {"anyOf", "oneOf", "contains", "not", "const"}) {
-    if (both.contains(same) && (!two.contains(same) || two[same] != both[same])) {
-      both.erase(same);
-    }
+    keep_if_same(both, two, same);
   }
-  if (both.contains("enum")) {
-    for (const SchemaJson& word : two.value("enum", SchemaJson::array())) {
-      if (std::ranges::find(both["enum"], word) == both["enum"].end()) {
-        both["enum"].push_back(word);
-      }
-    }
-  }
-  if (both.contains("required")) {
-    both["required"] = common(both["required"], two.value("required", SchemaJson::array()));
-  }
-  if (both.contains("allOf")) {
-    both["allOf"] = common_rules(both["allOf"], two.value("allOf", SchemaJson::array()));
-  }
+  merge_lists(both, two);
   for (const char* const name : {"items", "additionalProperties"}) {
     if (both.contains(name) && two.contains(name)) {
       both[name] = merged(both[name], two[name]);
@@ -233,8 +257,21 @@ SchemaJson merged(const SchemaJson& one, const SchemaJson& two) {
   return both;
 }
 
+SchemaJson demands(const SchemaJson& schema, const SchemaJson& all);
+
+// Null if there are none.
+SchemaJson demands_on_properties(const SchemaJson& properties, const SchemaJson& all) {
+  SchemaJson more;
+  for (const auto& [key, inner] : all.items()) {
+    SchemaJson own = properties.contains(key) ? demands(properties[key], inner) : SchemaJson(false);
+    if (!own.is_object() || !own.empty()) {
+      more[key] = std::move(own);
+    }
+  }
+  return more;
+}
+
 // What this schema demands beyond the merged one.
-// Cases of JSON Schema's keywords. NOLINTNEXTLINE(readability-function-cognitive-complexity)
 SchemaJson demands(const SchemaJson& schema, const SchemaJson& all) {
   static const std::set<std::string> said{"description", "default", "examples"};
   SchemaJson more = SchemaJson::object();
@@ -243,11 +280,8 @@ SchemaJson demands(const SchemaJson& schema, const SchemaJson& all) {
       continue;
     }
     if (name == "properties") {
-      for (const auto& [key, inner] : all[name].items()) {
-        const SchemaJson own = value.contains(key) ? demands(value[key], inner) : SchemaJson(false);
-        if (!own.is_object() || !own.empty()) {
-          more[name][key] = own;
-        }
+      if (SchemaJson inner = demands_on_properties(value, all[name]); !inner.is_null()) {
+        more[name] = std::move(inner);
       }
     } else if (value.is_object() && all.contains(name) && all[name].is_object()) {
       more[name] = demands(value, all[name]);
@@ -321,8 +355,18 @@ class Rules {
     return condition;
   }
 
+  static std::set<std::size_t> other_answers(const Description::Question& question,
+                                             const std::set<std::size_t>& chosen) {
+    std::set<std::size_t> others;
+    for (std::size_t i = 0; i < question.answers.size(); ++i) {
+      if (!chosen.contains(i)) {
+        others.insert(i);
+      }
+    }
+    return others;
+  }
+
   // Whether one of the branches is taken, or none.
-  // Cases of JSON Schema's keywords. NOLINTNEXTLINE(readability-function-cognitive-complexity)
   static Condition with(const Node& node, const std::vector<SchemaJson>& context,
                         const Guards& guards, bool is_taken) {
     std::map<std::size_t, std::set<std::size_t>> answers;
@@ -335,16 +379,8 @@ class Rules {
       if (question.kind == Description::Question::Kind::hidden) {
         return std::nullopt;
       }
-      std::set<std::size_t> wanted = chosen;
-      if (answers.size() == 1 && !is_taken) {
-        wanted.clear();
-        for (std::size_t i = 0; i < question.answers.size(); ++i) {
-          if (!chosen.contains(i)) {
-            wanted.insert(i);
-          }
-        }
-      }
-      any.push_back(answered(question, wanted));
+      const bool is_other = answers.size() == 1 && !is_taken;
+      any.push_back(answered(question, is_other ? other_answers(question, chosen) : chosen));
     }
     std::vector<SchemaJson> all = context;
     const SchemaJson one = any.size() == 1 ? any.front() : SchemaJson{{"anyOf", any}};
@@ -381,6 +417,9 @@ class Rules {
       allow(condition, key, more);
     }
   }
+  static std::set<Key> still_possible(const Node& node, const Branch& branch);
+  void add_key_of_branch(const Node& node, const Branch& branch, const Key& key,
+                         const Condition& condition);
   void add_usual(const Node& node, const std::vector<SchemaJson>& context);
   void add_branch(const Node& node, const Branch& branch, const std::vector<SchemaJson>& context);
   static Guards offering(const Node& node, const Key& key) {
@@ -420,13 +459,8 @@ void Rules::add_usual(const Node& node, const std::vector<SchemaJson>& context) 
   }
 }
 
-// Cases of JSON Schema's keywords. NOLINTNEXTLINE(readability-function-cognitive-complexity)
-void Rules::add_branch(const Node& node, const Branch& branch,
-                       const std::vector<SchemaJson>& context) {
-  const Condition condition = with(node, context, {&branch}, true);
-  if (!condition) {
-    return;
-  }
+// The keys that the branch may offer, and those that questions which it asks as well may bring.
+std::set<Rules::Key> Rules::still_possible(const Node& node, const Branch& branch) {
   const std::set<std::string> reached = names_of(branch.node->pass.asked());
   std::set<Key> still = possible(*branch.node);
   for (const Branch& other : node.branches) {
@@ -436,28 +470,44 @@ void Rules::add_branch(const Node& node, const Branch& branch,
                            [&](const Key& key) { return node.pass.find(key) == nullptr; });
     }
   }
+  return still;
+}
+
+void Rules::add_key_of_branch(const Node& node, const Branch& branch, const Key& key,
+                              const Condition& condition) {
+  const auto* const before = node.pass.find(key);
+  const auto* const now = branch.node->pass.find(key);
+  if (now == nullptr) {
+    return;
+  }
+  const bool is_new = before == nullptr || !before->is_required;
+  if (now->is_required && is_new && !is_about(node, branch, key) &&
+      removing(*branch.node, key).empty()) {
+    require(condition, key);
+  }
+  if ((before == nullptr || before->schema != now->schema) &&
+      changing(*branch.node, key, now->schema).empty()) {
+    refine(condition, key, now->schema);
+  }
+}
+
+void Rules::add_branch(const Node& node, const Branch& branch,
+                       const std::vector<SchemaJson>& context) {
+  const Condition condition = with(node, context, {&branch}, true);
+  if (!condition) {
+    return;
+  }
+  const std::set<Key> still = still_possible(node, branch);
   for (const Key& key : possible(node)) {
-    const auto* const before = node.pass.find(key);
-    const auto* const now = branch.node->pass.find(key);
     const Guards guards = offering(node, key);
-    const bool is_said = before == nullptr && std::ranges::all_of(guards, [&](auto* b) {
-                           return b->question == branch.question && !is_about(node, *b, key);
-                         });
+    const bool is_said =
+        node.pass.find(key) == nullptr && std::ranges::all_of(guards, [&](auto* b) {
+          return b->question == branch.question && !is_about(node, *b, key);
+        });
     if (!still.contains(key) && !is_said) {
       allow(condition, key, false);
     }
-    if (now == nullptr) {
-      continue;
-    }
-    const bool is_new = before == nullptr || !before->is_required;
-    if (now->is_required && is_new && !is_about(node, branch, key) &&
-        removing(*branch.node, key).empty()) {
-      require(condition, key);
-    }
-    if ((before == nullptr || before->schema != now->schema) &&
-        changing(*branch.node, key, now->schema).empty()) {
-      refine(condition, key, now->schema);
-    }
+    add_key_of_branch(node, branch, key, condition);
   }
   add(*branch.node, *condition);
 }

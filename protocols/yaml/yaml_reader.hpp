@@ -28,6 +28,8 @@ std::vector<std::string> texts_without(const std::string& language,
 // All languages that a text is given in.
 std::set<std::string> languages_of(const Translations& translations);
 bool is_language(const std::string& text);
+enum class TextLines { one, several };
+enum class TextLanguages { one, several };
 }  // namespace tapstudy::protocols
 
 namespace YAML {  // NOLINT(readability-identifier-naming): the library's own name
@@ -167,19 +169,20 @@ class MapReader {
   void finish();
 
  private:
-  enum class Lines { one, several };
   enum class Shape { mapping, named, list };
   // Without a file: what the inner reader asks for.
   void describe_inner(const Key& key, Presence presence, Shape shape, const ReadMap& read,
                       const std::vector<std::string>& as_list = {});
   MapReader(const YAML::Node& node, std::string path, std::string pattern, Problems& problems,
             Translations* translations);
-  std::string text_at(const YAML::Node& node, const std::string& path, Lines lines);
+  std::string any_text(const Key& key, const std::optional<std::string>& otherwise, TextLines lines,
+                       TextLanguages languages);
+  std::string text_at(const YAML::Node& node, const std::string& path, TextLines lines);
   // By language; a text that is one for all languages has none.
   std::vector<std::pair<std::string, std::string>> languages_at(const YAML::Node& node,
                                                                 const std::string& path,
-                                                                Lines lines);
-  std::string translation_at(const YAML::Node& node, const std::string& path, Lines lines);
+                                                                TextLines lines);
+  std::string translation_at(const YAML::Node& node, const std::string& path, TextLines lines);
   // The value under the key, or nothing after noting that it is missing.
   std::optional<YAML::Node> find(const std::string& key, bool required);
   std::string path_of(const std::string& key) const;

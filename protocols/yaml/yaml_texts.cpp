@@ -33,42 +33,53 @@ std::vector<std::string> texts_without(const std::string& language,
   return paths;
 }
 
-std::string MapReader::text_at(const YAML::Node& node, const std::string& path, Lines lines) {
+std::string MapReader::text_at(const YAML::Node& node, const std::string& path, TextLines lines) {
   const bool is_text = node.IsScalar() && core::is_plain_text(node.Scalar());
   const bool is_line = is_text && !node.Scalar().empty() &&
                        node.Scalar().find_first_of("\n\r\t") == std::string::npos;
-  if (lines == Lines::one ? !is_line : !is_text) {
+  if (lines == TextLines::one ? !is_line : !is_text) {
     reject_at(node, path,
               fmt::format("{} is not {}", kind_of(node),
-                          lines == Lines::one ? "one line of text" : "text"));
+                          lines == TextLines::one ? "one line of text" : "text"));
     return "";
   }
   return node.Scalar();
 }
 
-std::string MapReader::text(const Key& key, const std::optional<std::string>& otherwise) {
+std::string MapReader::any_text(const Key& key, const std::optional<std::string>& otherwise,
+                                TextLines lines, TextLanguages languages) {
   if (pass_ != nullptr) {
-    pass_->add(key, described_text(TextLines::one, TextLanguages::one), !otherwise,
-               described_default(otherwise));
+    pass_->add(key, described_text(lines, languages), !otherwise, described_default(otherwise));
     return otherwise.value_or("");
   }
   const auto node = find(key.name, !otherwise);
-  return node ? text_at(*node, path_of(key.name), Lines::one) : otherwise.value_or("");
+  if (!node) {
+    return otherwise.value_or("");
+  }
+  return languages == TextLanguages::one ? text_at(*node, path_of(key.name), lines)
+                                         : translation_at(*node, path_of(key.name), lines);
+}
+
+std::string MapReader::text(const Key& key, const std::optional<std::string>& otherwise) {
+  return any_text(key, otherwise, TextLines::one, TextLanguages::one);
 }
 
 std::string MapReader::paragraphs(const Key& key, const std::optional<std::string>& otherwise) {
-  if (pass_ != nullptr) {
-    pass_->add(key, described_text(TextLines::several, TextLanguages::one), !otherwise,
-               described_default(otherwise));
-    return otherwise.value_or("");
-  }
-  const auto node = find(key.name, !otherwise);
-  return node ? text_at(*node, path_of(key.name), Lines::several) : otherwise.value_or("");
+  return any_text(key, otherwise, TextLines::several, TextLanguages::one);
+}
+
+std::string MapReader::translated(const Key& key, const std::optional<std::string>& otherwise) {
+  return any_text(key, otherwise, TextLines::one, TextLanguages::several);
+}
+
+std::string MapReader::translated_paragraphs(const Key& key,
+                                             const std::optional<std::string>& otherwise) {
+  return any_text(key, otherwise, TextLines::several, TextLanguages::several);
 }
 
 std::vector<std::pair<std::string, std::string>> MapReader::languages_at(const YAML::Node& node,
                                                                          const std::string& path,
-                                                                         Lines lines) {
+                                                                         TextLines lines) {
   if (!node.IsMap()) {
     return {{"", text_at(node, path, lines)}};
   }
@@ -94,7 +105,7 @@ std::vector<std::pair<std::string, std::string>> MapReader::languages_at(const Y
 }
 
 std::string MapReader::translation_at(const YAML::Node& node, const std::string& path,
-                                      Lines lines) {
+                                      TextLines lines) {
   const auto texts = languages_at(node, path, lines);
   if (translations_ == nullptr) {
     return texts.front().second;
@@ -108,27 +119,6 @@ std::string MapReader::translation_at(const YAML::Node& node, const std::string&
   const auto wanted =
       std::ranges::find(texts, translations_->language, &decltype(texts)::value_type::first);
   return (wanted == texts.end() ? texts.front() : *wanted).second;
-}
-
-std::string MapReader::translated(const Key& key, const std::optional<std::string>& otherwise) {
-  if (pass_ != nullptr) {
-    pass_->add(key, described_text(TextLines::one, TextLanguages::several), !otherwise,
-               described_default(otherwise));
-    return otherwise.value_or("");
-  }
-  const auto node = find(key.name, !otherwise);
-  return node ? translation_at(*node, path_of(key.name), Lines::one) : otherwise.value_or("");
-}
-
-std::string MapReader::translated_paragraphs(const Key& key,
-                                             const std::optional<std::string>& otherwise) {
-  if (pass_ != nullptr) {
-    pass_->add(key, described_text(TextLines::several, TextLanguages::several), !otherwise,
-               described_default(otherwise));
-    return otherwise.value_or("");
-  }
-  const auto node = find(key.name, !otherwise);
-  return node ? translation_at(*node, path_of(key.name), Lines::several) : otherwise.value_or("");
 }
 
 std::string MapReader::language_among(const std::string& key,
@@ -160,11 +150,11 @@ std::vector<std::pair<std::string, std::string>> MapReader::translated_list(cons
   for (std::size_t i = 0; node && i < node->size(); ++i) {
     const YAML::Node item = (*node)[i];
     const std::string path = fmt::format("{}[{}]", path_of(key.name), i);
-    const std::string name = languages_at(item, path, Lines::one).front().second;
+    const std::string name = languages_at(item, path, TextLines::one).front().second;
     if (std::ranges::find(all, name, &decltype(all)::value_type::first) != all.end()) {
       reject_at(item, path, fmt::format("'{}' is listed twice", name));
     } else {
-      all.emplace_back(name, translation_at(item, path, Lines::one));
+      all.emplace_back(name, translation_at(item, path, TextLines::one));
     }
   }
   return all;

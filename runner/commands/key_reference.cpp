@@ -109,32 +109,27 @@ std::string list_range(const Json& schema) {
   return fmt::format("{}", fmt::join(words, ", "));
 }
 
-// Cases of JSON Schema's keywords. NOLINTNEXTLINE(readability-function-cognitive-complexity)
-std::string range_of(const Json& schema) {
-  const Json type = schema.value("type", Json{});
-  if (schema.contains("const")) {
-    return code(schema["const"]);
+std::string range_of_listable(const Json& schema) {
+  Words keys;
+  for (const auto& entry : schema["properties"].items()) {
+    keys.push_back(code(entry.key()));
   }
-  if (schema.contains("enum")) {
-    return codes(schema["enum"]);
+  return fmt::format("mapping, or list of {}", fmt::join(keys, ", "));
+}
+
+std::string range_of_mapping(const Json& schema) {
+  if (schema.contains("properties")) {
+    return "mapping";
   }
-  if (schema.contains("prefixItems")) {
-    Words keys;
-    for (const auto& entry : schema["properties"].items()) {
-      keys.push_back(code(entry.key()));
-    }
-    return fmt::format("mapping, or list of {}", fmt::join(keys, ", "));
-  }
-  if (is_translated(schema)) {
-    return "text, or one for each language";
-  }
+  return schema.contains("minProperties") ? "mapping of names, at least 1" : "mapping of names";
+}
+
+std::string range_of_type(const Json& type, const Json& schema) {
   if (type == "array") {
     return list_range(schema);
   }
   if (type == "object") {
-    return schema.contains("properties")      ? "mapping"
-           : schema.contains("minProperties") ? "mapping of names, at least 1"
-                                              : "mapping of names";
+    return range_of_mapping(schema);
   }
   if (type.is_array()) {
     return "a name";
@@ -146,19 +141,35 @@ std::string range_of(const Json& schema) {
                            : (type == "integer" ? "whole, " : "") + bounds(schema);
 }
 
-// Under which other keys, or values of them, a condition holds; empty where it is another one.
-// Cases of JSON Schema's keywords. NOLINTNEXTLINE(readability-function-cognitive-complexity)
-std::string condition_words(const Json& condition) {
-  const auto keys = [](const Json& given) {
-    Words words;
-    for (const Json& one : given.contains("anyOf") ? given["anyOf"] : Json::array({given})) {
-      if (!one.contains("required") || one.contains("properties")) {
-        return std::string{};
-      }
-      words.push_back(codes(one["required"]));
+std::string range_of(const Json& schema) {
+  if (schema.contains("const")) {
+    return code(schema["const"]);
+  }
+  if (schema.contains("enum")) {
+    return codes(schema["enum"]);
+  }
+  if (schema.contains("prefixItems")) {
+    return range_of_listable(schema);
+  }
+  return is_translated(schema) ? "text, or one for each language"
+                               : range_of_type(schema.value("type", Json{}), schema);
+}
+
+// The keys that have to be given; empty where something else is demanded, too.
+std::string keys_given(const Json& condition) {
+  Words words;
+  for (const Json& one :
+       condition.contains("anyOf") ? condition["anyOf"] : Json::array({condition})) {
+    if (!one.contains("required") || one.contains("properties")) {
+      return {};
     }
-    return fmt::format("{}", fmt::join(words, ", "));
-  };
+    words.push_back(codes(one["required"]));
+  }
+  return fmt::format("{}", fmt::join(words, ", "));
+}
+
+// Under which other keys, or values of them, a condition holds; empty where it is another one.
+std::string condition_words(const Json& condition) {
   if (condition.contains("properties") && condition["properties"].size() == 1) {
     const auto entry = condition["properties"].begin();
     const std::string& key = entry.key();
@@ -168,7 +179,7 @@ std::string condition_words(const Json& condition) {
         value.contains("const") ? code(value["const"]) : codes(value.value("enum", Json::array())));
   }
   const bool is_not = condition.contains("not");
-  const std::string named = keys(is_not ? condition["not"] : condition);
+  const std::string named = keys_given(is_not ? condition["not"] : condition);
   return named.empty() ? "" : (is_not ? "without " : "with ") + named;
 }
 

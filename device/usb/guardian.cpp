@@ -67,6 +67,7 @@ constexpr unsigned packet_time_out_ms = 20;
 constexpr unsigned reply_time_out_ms = 5;  // a later one comes in the next round
 constexpr int max_left_over_replies = 16;
 constexpr int rounds_per_heartbeat = 5;
+constexpr int repeat_ms = 5;  // zero force is sent so often, which leaves the bus to the program
 constexpr std::chrono::seconds max_final{60};
 constexpr int max_wait_for_end_ms = 200;
 
@@ -120,7 +121,7 @@ class Watchdog {
          (taken < zero_force_packets || !is_confirmed) && std::chrono::steady_clock::now() < end;
          ++i) {
       if (i > zero_force_packets) {
-        ::poll(nullptr, 0, guardian_round_ms);
+        ::poll(nullptr, 0, repeat_ms);
       }
       const Zero zero = zero_force();
       if (zero == Zero::refused && errno == ENODEV) {
@@ -138,10 +139,10 @@ class Watchdog {
     }
     mlockall(MCL_CURRENT | MCL_ONFAULT);  // only what it touches, not the program's whole image
   }
-  // Waits for one polling cycle; false once the pipe is closed.
+  // Waits for the next round; false once the pipe is closed.
   bool is_parent_alive() const noexcept {
     pollfd waiting{life_, POLLIN, 0};
-    if (::poll(&waiting, 1, guardian_round_ms) <= 0) {
+    if (::poll(&waiting, 1, is_sending_ ? repeat_ms : guardian_round_ms) <= 0) {
       return true;
     }
     char byte = 0;
@@ -155,10 +156,11 @@ class Watchdog {
     if (is_stalled) {
       channel_.take_output_over();  // first: a resumed program must see it before sending
     }
-    if (settings_.relay >= 0 && (is_stalled || channel_.must_repeat())) {
+    is_sending_ = is_stalled || channel_.must_repeat();
+    if (settings_.relay >= 0 && is_sending_) {
       tcflush(settings_.relay, TCOFLUSH);  // bytes not yet sent would keep it closed
     }
-    if (!is_stalled && !channel_.must_repeat()) {
+    if (!is_sending_) {
       has_read_left_over_ = false;
     } else if (zero_force() == Zero::confirmed) {
       channel_.note_zero_confirmed();
@@ -235,6 +237,7 @@ class Watchdog {
   std::uint64_t beats_{0};
   int still_rounds_{0};
   unsigned round_{0};
+  bool is_sending_{false};  // zero force, in place of the program
   bool has_read_left_over_{false};
   std::array<std::uint8_t, max_reply_bytes> reply_{};
 };

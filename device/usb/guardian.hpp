@@ -100,16 +100,16 @@ struct GuardianSettings {
 // tapstudy die with force on, for any reason including SIGKILL, the strings would keep pulling. So
 // a child process holds the device's open node and waits on a pipe whose other end only tapstudy
 // has; when that closes, it sends the zero-force packet three times, and where force may have been
-// on until the board replies to it, for a minute at most, and exits. It sends it in every
-// round of guardian_round_ms, and keeps running, as long as tapstudy is stalled with force on
-// (suspended or starved of CPU time), and where tapstudy could not confirm zero force itself: a
-// halted endpoint is cleared first, and the board's reply is read, which alone confirms it. It asks
-// for a priority above the loop's and for locked memory of its own, and tapstudy offers itself to
-// the kernel's out-of-memory killer first. It also gives the sign of life to a dead-man relay
-// (device/relay), from the first confirmed zero force on and unless it has taken over or repeats
-// zero force. Why not a library: none outlives the process that it is linked into. A supervisor
-// such as systemd does, but would start a program that opens the device anew, where this child
-// holds it already.
+// on until the board replies to it, for a minute at most, and exits. It looks in
+// rounds of guardian_round_ms, and sends it every 5 ms and keeps running as long as tapstudy is
+// stalled with force on (suspended or starved of CPU time), and where tapstudy could not confirm
+// zero force itself: a halted endpoint is cleared first, and the board's reply is read, which alone
+// confirms it. It asks for a priority above the loop's and for locked memory of its own, and
+// tapstudy offers itself to the kernel's out-of-memory killer first. It also gives the sign of life
+// to a dead-man relay (device/relay), from the first confirmed zero force on and unless it has
+// taken over or repeats zero force. Why not a library: none outlives the process that it is linked
+// into. A supervisor such as systemd does, but would start a program that opens the device anew,
+// where this child holds it already.
 class Guardian {
  public:
   // May be called with other threads running: the child uses no locks they could hold. Throws

@@ -57,6 +57,7 @@ void BoardLink::end_watch() noexcept {
   is_force_off_ = true;
   if (watchdog_ != nullptr) {
     watchdog_->end();
+    watchdog_->pause_repeating(false);
   }
 }
 
@@ -132,7 +133,16 @@ bool BoardLink::is_echo_right() noexcept {
   return echoes_this_request_.value_or(is_of_this) ? is_of_this : is_of_the_one_before;
 }
 
+// Asked again while the guardian repeats zero force: it has to have finished its round.
+void BoardLink::take_over_from_guardian() noexcept {
+  if (watchdog_ != nullptr && watchdog_->must_repeat()) {
+    watchdog_->pause_repeating(true);
+    static_cast<void>(is_guardian_alive(*watchdog_));
+  }
+}
+
 StopOutcome BoardLink::stop() noexcept {
+  take_over_from_guardian();
   bool has_late_reply = missed_replies_ > 0;
   for (int i = 0; i < zero_force_packets; ++i) {
     if (is_watched()) {
@@ -153,6 +163,7 @@ StopOutcome BoardLink::stop() noexcept {
   }
   if (watchdog_ != nullptr) {
     watchdog_->repeat_zero_force();
+    watchdog_->pause_repeating(false);
   }
   return StopOutcome::unconfirmed;
 }

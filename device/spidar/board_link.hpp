@@ -18,6 +18,7 @@ class BoardLink {
   // No force without a guardian that is seen to be alive; waits for it, up to 0.1 s.
   [[nodiscard]] core::TickFault begin_watch() noexcept;
   void end_watch() noexcept;
+  void take_over_from_guardian() noexcept;
   // Sends these outputs. no_reply may be followed by another exchange: its late reply will not be
   // taken for the next one if the board echoes.
   [[nodiscard]] core::TickFault exchange(const DacCounts& outputs, double elapsed_s) noexcept;

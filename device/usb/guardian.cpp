@@ -156,8 +156,8 @@ class Watchdog {
     if (is_stalled) {
       channel_.take_output_over();  // first: a resumed program must see it before sending
     }
-    is_sending_ = is_stalled || channel_.must_repeat();
-    if (settings_.relay >= 0 && is_sending_) {
+    is_sending_ = is_stalled || (channel_.must_repeat() && !channel_.is_paused());
+    if (settings_.relay >= 0 && (is_sending_ || channel_.must_repeat())) {
       tcflush(settings_.relay, TCOFLUSH);  // bytes not yet sent would keep it closed
     }
     if (!is_sending_) {

@@ -44,6 +44,9 @@ class WatchdogChannel {
     is_zero_confirmed_.store(false);
     must_repeat_.store(true);
   }
+  // While the program itself stops the board, the guardian repeats nothing unless the program
+  // stands still: of two that read replies each might get the other's.
+  void pause_repeating(bool is_paused) noexcept { is_paused_.store(is_paused); }
   // The board has replied to the guardian's zero force since the request to repeat it.
   bool is_zero_confirmed() const noexcept { return is_zero_confirmed_.load(); }
   // The guardian has zeroed the force because the program stalled.
@@ -52,6 +55,7 @@ class WatchdogChannel {
   // Used by the guardian, once per polling cycle.
   bool is_on() const noexcept { return is_on_.load(); }
   bool must_repeat() const noexcept { return must_repeat_.load(); }
+  bool is_paused() const noexcept { return is_paused_.load(); }
   bool is_power_allowed() const noexcept { return is_power_allowed_.load(); }
   bool may_close_relay() const noexcept {
     return is_power_allowed() && !must_repeat() && !has_acted();
@@ -70,6 +74,7 @@ class WatchdogChannel {
   std::atomic<bool> is_on_{false};
   std::atomic<bool> is_power_allowed_{false};
   std::atomic<bool> must_repeat_{false};
+  std::atomic<bool> is_paused_{false};
   std::atomic<bool> is_zero_confirmed_{false};
   std::atomic<Output> output_{Output::free};
   std::atomic<std::uint64_t> beats_{0};

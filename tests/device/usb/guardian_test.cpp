@@ -199,6 +199,28 @@ TEST_CASE(
   CHECK(watched.packets() == 0);
 }
 
+TEST_CASE(
+    "while the program stops the board itself its guardian sends nothing, unless it stands still",
+    "[device][usb][guardian][safety]") {
+  const bool stands_still = GENERATE(false, true);
+  Watched watched;
+  device::WatchdogChannel& watch = watched.watch(stands_still ? four_rounds_s : long_stall_s);
+  watch.begin();
+  watch.repeat_zero_force();
+  REQUIRE(watched.at_least(1) > 0);
+  watch.pause_repeating(true);
+  watched.pass_rounds(2);
+  watched.packets();
+  for (int i = 0; i < 10; ++i) {
+    stands_still ? void() : watch.beat();
+    watched.pass_rounds(1);
+  }
+  CHECK((watched.packets() > 0) == stands_still);
+  CHECK_FALSE(watch.may_close_relay());
+  watch.pause_repeating(false);
+  CHECK(watched.at_least(1) > 0);
+}
+
 TEST_CASE("nothing but a whole reply that carries the zeros, and is not from before, confirms them",
           "[device][usb][guardian][safety]") {
   using Trouble = FakeBus::Trouble;

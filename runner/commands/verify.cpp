@@ -29,6 +29,8 @@ struct PublishedReport {
   bool is_there{};
   std::string not_compared{};              // why, in words; empty: it was
   std::vector<std::string> differences{};  // "report.json /blocks/0/…: 61, made anew 41", files
+  // Sentences on earlier versions that this one adds, and that were left out of the comparison.
+  std::vector<std::string> added{};
 };
 // Compares what report.json, the tables beside it and the page hold; where it was made is left out,
 // and what it leaves out (--only) is not missed; one that differs and is older than the journal's
@@ -162,6 +164,23 @@ ordered_json read_published(const fs::path& file) {
   return published;
 }
 
+// A report made before this version lacks what this version says of the earlier ones: so does, for
+// the comparison, the one made anew. Returns what was left out.
+std::vector<std::string> without_added_sentences(const ordered_json& published,
+                                                 const results::Store& store,
+                                                 analysis::Summary& summary) {
+  const ordered_json said = published.value("deviations", ordered_json::array());
+  std::vector<std::string> added;
+  for (const std::string& sentence :
+       rendered_by_earlier_versions(stored_protocol(store.study()), store.sessions())) {
+    if (std::ranges::find(said, ordered_json(sentence)) == said.end() &&
+        std::erase(summary.deviations, sentence) > 0) {
+      added.push_back(sentence);
+    }
+  }
+  return added;
+}
+
 bool is_older(const fs::path& file, const fs::path& than) {
   std::error_code error;
   const auto of_file = fs::last_write_time(file, error);
@@ -187,6 +206,7 @@ PublishedReport published_report(const std::string& directory, results::Store& s
     found.not_compared = error.what();
     return found;
   }
+  found.added = without_added_sentences(published, store, summary);
   const ordered_json anew = json_of(summary);
   if (published.value("participants", ordered_json{}) < anew.at("participants")) {
     found.not_compared = "it was made of fewer participants than there are now";
@@ -305,6 +325,9 @@ std::string print_published(const PublishedReport& report) {
   constexpr std::size_t max_printed = 20;
   for (std::size_t i = 0; i < std::min(report.differences.size(), max_printed); ++i) {
     fmt::print("differs: {}\n", report.differences[i]);
+  }
+  for (const std::string& sentence : report.added) {
+    fmt::print("report.json      lacks what this version says of earlier ones: {}\n", sentence);
   }
   if (report.differences.empty()) {
     fmt::print("report.json      its tables and page: identical to a regenerated report\n");

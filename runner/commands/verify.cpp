@@ -167,7 +167,7 @@ ordered_json read_published(const fs::path& file) {
 // A report made before this version lacks what this version says of the earlier ones: so does, for
 // the comparison, the one made anew. Returns what was left out.
 std::vector<std::string> without_added_sentences(const ordered_json& published,
-                                                 const results::Store& store,
+                                                 results::Store& store,
                                                  analysis::Summary& summary) {
   const ordered_json said = published.value("deviations", ordered_json::array());
   std::vector<std::string> added;

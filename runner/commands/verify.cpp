@@ -167,12 +167,17 @@ ordered_json read_published(const fs::path& file) {
 // A report made before this version lacks what this version says of the earlier ones: so does, for
 // the comparison, the one made anew. Returns what was left out.
 std::vector<std::string> without_added_sentences(const ordered_json& published,
-                                                 results::Store& store,
+                                                 results::Store& store, results::Mode mode,
                                                  analysis::Summary& summary) {
   const ordered_json said = published.value("deviations", ordered_json::array());
+  const auto excluded = store.excluded_participants();
+  std::vector<results::SessionRow> sessions = store.sessions();
+  std::erase_if(sessions, [&](const results::SessionRow& session) {
+    return session.mode != mode || excluded.contains(session.participant_id);
+  });
   std::vector<std::string> added;
   for (const std::string& sentence :
-       rendered_by_earlier_versions(stored_protocol(store.study()), store.sessions())) {
+       rendered_by_earlier_versions(stored_protocol(store.study()), sessions)) {
     if (std::ranges::find(said, ordered_json(sentence)) == said.end() &&
         std::erase(summary.deviations, sentence) > 0) {
       added.push_back(sentence);
@@ -198,15 +203,16 @@ PublishedReport published_report(const std::string& directory, results::Store& s
   }
   found.is_there = true;
   const ordered_json published = read_published(file);
+  results::Mode mode{};
   analysis::Summary summary;
   try {
-    summary = summary_of_study({{directory, &store}},
-                               results::mode_from(published.at("modes").get<std::string>()));
+    mode = results::mode_from(published.at("modes").get<std::string>());
+    summary = summary_of_study({{directory, &store}}, mode);
   } catch (const core::Error& error) {  // of another version
     found.not_compared = error.what();
     return found;
   }
-  found.added = without_added_sentences(published, store, summary);
+  found.added = without_added_sentences(published, store, mode, summary);
   const ordered_json anew = json_of(summary);
   if (published.value("participants", ordered_json{}) < anew.at("participants")) {
     found.not_compared = "it was made of fewer participants than there are now";

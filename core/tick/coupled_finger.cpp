@@ -166,36 +166,52 @@ class TwoContacts {
   // <= 0: false position in Illinois's form (Dowell & Jarratt 1971), with a bisection now and then,
   // so that the number of steps is bounded.
   HeldContacts searched() const noexcept {
-    double low = 0.0;
-    double high =
+    const double most_n =
         discrete_gradient_n(support_.before_m, support_.unloaded_m, support_.stiffness_n_per_m);
-    double at_low = excess_n(low);
-    double at_high = excess_n(high);
-    double root = at_low >= 0.0 ? low : high;
-    for (int step = 1; step <= max_steps && at_low < 0.0 && at_high > 0.0; ++step) {
+    Bracket bracket{0.0, most_n, excess_n(0.0), excess_n(most_n)};
+    double root_n = bracket.at_low_n >= 0.0 ? 0.0 : most_n;
+    for (int step = 1; step <= max_steps && bracket.holds_a_root(); ++step) {
       const bool is_bisection = step % 4 == 0;
-      root =
-          is_bisection ? 0.5 * (low + high) : (low * at_high - high * at_low) / (at_high - at_low);
-      const double at_root = excess_n(root);
-      if (std::abs(at_root) <= precision * root || high - low <= precision * high) {
+      root_n = bracket.next_n(is_bisection);
+      const double at_root_n = excess_n(root_n);
+      if (std::abs(at_root_n) <= precision * root_n || bracket.is_narrow()) {
         break;
       }
-      if (at_root < 0.0) {
-        low = root;
-        at_low = at_root;
-        at_high *= is_bisection ? 1.0 : 0.5;
-      } else {
-        high = root;
-        at_high = at_root;
-        at_low *= is_bisection ? 1.0 : 0.5;
-      }
+      bracket.narrow(root_n, at_root_n, is_bisection);
     }
-    return {pad_n(root), root};
+    return {pad_n(root_n), root_n};
   }
 
  private:
   static constexpr int max_steps = 200;
   static constexpr double precision = 1e-14;
+
+  struct Bracket {
+    double low_n;
+    double high_n;
+    double at_low_n;
+    double at_high_n;
+
+    bool holds_a_root() const noexcept { return at_low_n < 0.0 && at_high_n > 0.0; }
+    bool is_narrow() const noexcept { return high_n - low_n <= precision * high_n; }
+    double next_n(bool is_bisection) const noexcept {
+      return is_bisection ? 0.5 * (low_n + high_n)
+                          : (low_n * at_high_n - high_n * at_low_n) / (at_high_n - at_low_n);
+    }
+    // The value at the end that stays is halved, so that it does not stay for ever.
+    void narrow(double root_n, double at_root_n, bool is_bisection) noexcept {
+      const double kept = is_bisection ? 1.0 : 0.5;
+      if (at_root_n < 0.0) {
+        low_n = root_n;
+        at_low_n = at_root_n;
+        at_high_n *= kept;
+      } else {
+        high_n = root_n;
+        at_high_n = at_root_n;
+        at_low_n *= kept;
+      }
+    }
+  };
 
   double pad_n(double support_n) const noexcept {
     return held_contact_force_n(

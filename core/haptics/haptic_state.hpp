@@ -54,7 +54,7 @@ struct HandState {
 // The parts of the force on the finger along the outward normal of the plate, before the limiter.
 struct ForceParts {
   double penalty_n{0.0};    // the penalty force (paper eq. 1)
-  double vibration_n{0.0};  // paper eq. 17, or of a coupled finger
+  double vibration_n{0.0};  // paper eq. 17; what a coupled finger adds to the penalty force
   double sinusoid_n{0.0};   // paper section 5.2.3
   double total_n() const noexcept { return penalty_n + vibration_n + sinusoid_n; }  // eq. 18
 };

@@ -8,8 +8,7 @@ const ForcePart plate_vibration{
     true, [](const RenderSettings& /*settings*/) { return std::string_view{}; },
     [](const RenderSettings& settings, const VibratingPlate* plate) -> std::unique_ptr<AddedForce> {
       return std::make_unique<PlateVibration>(*plate, settings);
-    },
-    nullptr};
+    }};
 
 const ForcePart coupled_vibration{
     true,
@@ -21,12 +20,6 @@ const ForcePart coupled_vibration{
     },
     [](const RenderSettings& settings, const VibratingPlate* plate) -> std::unique_ptr<AddedForce> {
       return std::make_unique<CoupledVibration>(*plate, settings);
-    },
-    // the pad, as stiff as the contact spring, in series with the finger's spring
-    [](const RenderSettings& settings) {
-      const double pad = settings.penalty_stiffness_n_per_m;
-      const double finger = settings.finger.stiffness_n_per_m;
-      return pad * finger / (pad + finger);
     }};
 
 const ForcePart decaying_sinusoid{
@@ -37,8 +30,7 @@ const ForcePart decaying_sinusoid{
                  : "rendering.sinusoid with an amplitude above 0";
     },
     [](const RenderSettings& settings, const VibratingPlate* /*plate*/)
-        -> std::unique_ptr<AddedForce> { return std::make_unique<DecayingSinusoid>(settings); },
-    nullptr};
+        -> std::unique_ptr<AddedForce> { return std::make_unique<DecayingSinusoid>(settings); }};
 
 const ForcePart recorded_transient{
     false,
@@ -56,6 +48,5 @@ const ForcePart recorded_transient{
         }
       }
       return std::make_unique<RecordedTransient>(std::move(taps), settings.vibration_gain);
-    },
-    nullptr};
+    }};
 }  // namespace tapstudy::core

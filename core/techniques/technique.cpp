@@ -36,14 +36,6 @@ std::string_view Technique::missing(const RenderSettings& settings) const {
   return {};
 }
 
-double Technique::added_stiffness_n_per_m(const RenderSettings& settings) const {
-  double sum = 0.0;
-  for (const ForcePart* const part : parts) {
-    sum += part->added_stiffness_n_per_m == nullptr ? 0.0 : part->added_stiffness_n_per_m(settings);
-  }
-  return sum;
-}
-
 const Technique* find_technique(std::string_view name) {
   const auto found = std::ranges::find(techniques(), name, &Technique::name);
   return found == techniques().end() ? nullptr : &*found;

@@ -18,8 +18,6 @@ struct ForcePart {
   // plate is non-null if a model is needed; it must outlive the returned object.
   std::unique_ptr<AddedForce> (*make)(const RenderSettings& settings,
                                       const VibratingPlate* plate){};
-  // The stiffness that it adds to the contact spring in a slow press; null: none.
-  double (*added_stiffness_n_per_m)(const RenderSettings& settings){};
 };
 
 // force_parts.cpp
@@ -38,8 +36,6 @@ struct Technique {
   bool needs_model() const;
   bool needs_beam() const { return needs_model() && theory == Theory::beam; }
   bool has(const ForcePart& part) const;
-  // The stiffness added to the contact spring in a slow press.
-  double added_stiffness_n_per_m(const RenderSettings& settings) const;
   // The missing setting: see ForcePart.
   std::string_view missing(const RenderSettings& settings) const;
 };

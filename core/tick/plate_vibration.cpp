@@ -1,5 +1,7 @@
 #include "core/tick/plate_vibration.hpp"
 
+#include <algorithm>
+
 namespace tapstudy::core {
 PlateVibration::PlateVibration(const VibratingPlate& plate, const RenderSettings& settings)
     : plate_{&plate},
@@ -30,7 +32,10 @@ CoupledVibration::CoupledVibration(const VibratingPlate& plate, const RenderSett
     : plate_{&plate},
       dt_s_{settings.dt_s},
       state_{plate.model, settings.integrator, settings.dt_s},
-      finger_{settings.finger, settings.penalty_stiffness_n_per_m, settings.dt_s} {}
+      penalty_stiffness_n_per_m_{settings.penalty_stiffness_n_per_m},
+      finger_{settings.finger,
+              contact_stiffness_beside(settings.finger, settings.penalty_stiffness_n_per_m),
+              settings.dt_s} {}
 
 // In contact the periods that were missed wait for touch(), which knows where the hand is now. If
 // the finger has lifted meanwhile, they are made up for in the next tick: nobody feels the modes
@@ -49,8 +54,9 @@ void CoupledVibration::touch(const Contact& contact) noexcept {
   state_.touch(plate_->place_of(contact), contact.normal);
   const double hand_m = -contact.penetration_m;
   if (!was_touching_) {
-    finger_.begin(hand_m - dt_s_ * contact.normal_velocity_m_s, contact.normal_velocity_m_s,
-                  state_.previous_displacement_m());
+    // it was not inside yet, whatever the device says of its speed
+    const double hand_before_m = std::max(0.0, hand_m - dt_s_ * contact.normal_velocity_m_s);
+    finger_.begin(hand_before_m, contact.normal_velocity_m_s, state_.previous_displacement_m());
   }
   const double step_m = (hand_m - finger_.hand_m()) / (behind_ + 1);
   for (; behind_ > 0; --behind_) {
@@ -67,7 +73,7 @@ void CoupledVibration::press(double hand_m) noexcept {
 }
 
 void CoupledVibration::add_to(ForceParts& parts) const noexcept {
-  parts.vibration_n += finger_.force_on_hand_n();
+  parts.vibration_n += finger_.force_on_hand_n() + penalty_stiffness_n_per_m_ * finger_.hand_m();
 }
 
 void CoupledVibration::reset() noexcept {

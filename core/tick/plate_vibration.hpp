@@ -29,11 +29,13 @@ class PlateVibration final : public AddedForce {
 };
 
 // A finger that stays on the vibrating body during the tap: CoupledFinger on all modes at the
-// god-object. It is rendered beside the penalty force, which holds the hand at the body's rest
-// shape as in every technique and does not act on the modes. The finger exists while the hand
-// touches; before, it moves as the hand does. Over periods that were missed the hand is taken to
-// have moved at constant speed, and the contact acts all the while. Free modes only: their
-// vibration_gain is not used, because a scaled reaction would not be passive.
+// god-object, whose contact is as stiff as the penalty spring. What the hand feels of it takes the
+// place of the penalty force K (g - h) at the body's rest shape: the force added is the difference
+// of the two, so that at rest on a body that does not give way it is zero, as with every technique.
+// The finger exists while the hand touches; before, it moves as the hand does. Over periods that
+// were missed the hand is taken to have moved at constant speed, and the contact acts all the
+// while. Free modes only: their vibration_gain is not used, because a scaled reaction would not be
+// passive.
 class CoupledVibration final : public AddedForce {
  public:
   // The plate must outlive it.
@@ -55,6 +57,7 @@ class CoupledVibration final : public AddedForce {
   const VibratingPlate* plate_;
   double dt_s_;
   ModalState state_;
+  double penalty_stiffness_n_per_m_;
   CoupledFinger finger_;
   bool is_touching_{false};
   bool was_touching_{false};  // one tick ago

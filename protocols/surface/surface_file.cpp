@@ -1,18 +1,16 @@
 #include "protocols/surface/surface_file.hpp"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
-#include <CGAL/IO/OBJ.h>
 #include <CGAL/IO/OFF.h>
-#include <CGAL/IO/PLY.h>
-#include <CGAL/IO/STL.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <charconv>
 #include <cmath>
 #include <filesystem>
-#include <map>
+#include <optional>
 #include <sstream>
 #include <utility>
 #include <vector>
@@ -20,31 +18,15 @@
 #include "core/error.hpp"
 #include "core/files/sha256.hpp"
 #include "core/process/bounded_child.hpp"
+#include "core/text/plain_text.hpp"
 #include "protocols/surface/cut_polygon.hpp"
+#include "protocols/surface/surface_soup.hpp"
+#include "protocols/yaml/problems.hpp"
 namespace tapstudy::protocols {
 namespace {
-using Point = CGAL::Exact_predicates_inexact_constructions_kernel::Point_3;
-using Polygon = std::vector<std::size_t>;
+using core::Vec3;
 using Triangle = std::array<int, 3>;
 constexpr double max_coordinate_m = 1e6;
-
-struct Soup {
-  std::vector<Point> points;
-  std::vector<Polygon> polygons;
-};
-
-bool read_soup(std::istream& bytes, const std::string& ending, Soup& soup) {
-  if (ending == ".stl") {
-    return CGAL::IO::read_STL(bytes, soup.points, soup.polygons);
-  }
-  if (ending == ".ply") {
-    return CGAL::IO::read_PLY(bytes, soup.points, soup.polygons);
-  }
-  if (ending == ".off") {
-    return CGAL::IO::read_OFF(bytes, soup.points, soup.polygons);
-  }
-  return ending == ".obj" && CGAL::IO::read_OBJ(bytes, soup.points, soup.polygons);
-}
 
 std::string ending_of(const std::string& file) {
   std::string ending = std::filesystem::path{file}.extension().string();
@@ -53,55 +35,182 @@ std::string ending_of(const std::string& file) {
   return ending;
 }
 
-[[noreturn]] void refuse(const SurfaceSource& source) {
-  throw core::InvalidInput{source.file +
-                           ": is not a surface (one of: .stl, .ply, .off, .obj, with at least "
-                           "one face; is it cut short?)"};
+// What else bodies come as, and the program that makes triangles of it.
+struct Converter {
+  std::string_view ending;
+  std::string_view holds;
+  std::string_view command;
+};
+constexpr std::array<Converter, 8> converters{
+    Converter{".3mf", "3MF", "assimp export {} body.ply (Debian: assimp-utils)"},
+    Converter{".gltf", "glTF", "assimp export {} body.ply (Debian: assimp-utils)"},
+    Converter{".glb", "glTF", "assimp export {} body.ply (Debian: assimp-utils)"},
+    Converter{".dae", "COLLADA", "assimp export {} body.ply (Debian: assimp-utils)"},
+    Converter{".step", "STEP: curved faces", "gmsh {} -2 -o body.stl (Debian: gmsh)"},
+    Converter{".stp", "STEP: curved faces", "gmsh {} -2 -o body.stl (Debian: gmsh)"},
+    Converter{".iges", "IGES: curved faces", "gmsh {} -2 -o body.stl (Debian: gmsh)"},
+    Converter{".igs", "IGES: curved faces", "gmsh {} -2 -o body.stl (Debian: gmsh)"},
+};
+
+[[noreturn]] void refuse_format(const std::string& file) {
+  const auto* const known = std::ranges::find(converters, ending_of(file), &Converter::ending);
+  throw core::InvalidInput{fmt::format(
+      "{}: is not a surface that is read (one of: .stl, .ply, .off, .obj){}", file,
+      known == converters.end() ? ""
+                                : fmt::format("; it holds {}. Convert it: {}", known->holds,
+                                              fmt::format(fmt::runtime(known->command), file)))};
 }
 
-Soup soup_of(const SurfaceSource& source) {
-  Soup soup;
+[[noreturn]] void refuse_off(const SurfaceSource& source) {
+  std::string_view text{source.bytes};
+  throw core::InvalidInput{fmt::format(
+      "{}: is not a surface: not an OFF of at least one face, all of whose corners are among its "
+      "points; its first line is '{}', and it has {} bytes",
+      source.file, printable(std::string{take_line(text)}), source.bytes.size())};
+}
+
+SurfaceSoup soup_of_off(const SurfaceSource& source) {
+  using Point = CGAL::Exact_predicates_inexact_constructions_kernel::Point_3;
+  SurfaceSoup soup;
+  std::vector<Point> points;
   std::istringstream bytes{source.bytes};
   bool is_read = false;
   try {
-    is_read = read_soup(bytes, ending_of(source.file), soup);
+    is_read = CGAL::IO::read_OFF(bytes, points, soup.polygons);
   } catch (const std::exception&) {
     is_read = false;
   }
-  const auto is_inside = [&](const Polygon& polygon) {
-    return polygon.size() >= 3 && std::ranges::all_of(polygon, [&](std::size_t corner) {
-             return corner < soup.points.size();
-           });
+  const auto is_inside = [&](const std::vector<std::size_t>& polygon) {
+    return polygon.size() >= 3 &&
+           std::ranges::all_of(polygon, [&](std::size_t corner) { return corner < points.size(); });
   };
   if (!is_read || soup.polygons.empty() || !std::ranges::all_of(soup.polygons, is_inside)) {
-    refuse(source);
+    refuse_off(source);
+  }
+  for (const Point& p : points) {
+    soup.points.emplace_back(p.x(), p.y(), p.z());
   }
   return soup;
 }
 
-// Before anything is computed from them: no product of coordinates may overflow.
-void check_points(const Soup& soup, const std::string& file, double metres_per_unit) {
-  for (const Point& p : soup.points) {
-    const double farthest_m =
-        metres_per_unit * std::max({std::abs(p.x()), std::abs(p.y()), std::abs(p.z())});
+const core::ChildJob reading{"read a surface", [](const std::string& packed) {
+                               core::UnpackedBytes bytes{packed};
+                               auto file = bytes.get<std::string>();
+                               soup_of_off({std::move(file), bytes.get<std::string>(), {}});
+                               return std::string{"read"};
+                             }};
+
+// CGAL's reader takes a file at its word, and crashes or takes all memory where it lies: what it
+// survives elsewhere, it survives here.
+void try_reading_off(const SurfaceSource& source) {
+  constexpr core::ChildLimits limits{15, 2'000'000'000};
+  core::PackedBytes bytes;
+  bytes.put(source.file);
+  bytes.put(source.bytes);
+  try {
+    core::in_bounded_child(reading, bytes.take(), source.file, limits);
+  } catch (const core::ModelError&) {
+    refuse_off(source);
+  }
+}
+
+SurfaceSoup soup_of(const SurfaceSource& source) {
+  const std::string ending = ending_of(source.file);
+  if (ending == ".stl") {
+    return read_stl(source.file, source.bytes);
+  }
+  if (ending == ".ply") {
+    return read_ply(source.file, source.bytes);
+  }
+  if (ending == ".obj") {
+    return read_obj(source.file, source.bytes);
+  }
+  if (ending != ".off") {
+    refuse_format(source.file);
+  }
+  try_reading_off(source);
+  return soup_of_off(source);
+}
+
+// The power of ten that a factor is; unset: it is none.
+std::optional<int> power_of_ten(double factor) {
+  std::array<char, 32> text{};
+  const auto end =
+      std::to_chars(text.begin(), text.end(), factor, std::chars_format::scientific).ptr;
+  const std::string_view written{text.data(), static_cast<std::size_t>(end - text.data())};
+  if (!written.starts_with("1e")) {
+    return std::nullopt;
+  }
+  return core::number_in<int>(written.substr(written[2] == '+' ? 3 : 2));
+}
+
+// The shortest decimal number that rounds to this one; in single precision, where that holds it to
+// the bit: what was written as 0.1 is 0.1 from an ASCII file, a binary one and one of the digits of
+// single precision.
+std::string shortest_decimal(double value) {
+  std::array<char, 32> text{};
+  const auto single = static_cast<float>(value);
+  const auto written =
+      static_cast<double>(single) == value
+          ? std::to_chars(text.begin(), text.end(), single, std::chars_format::scientific)
+          : std::to_chars(text.begin(), text.end(), value, std::chars_format::scientific);
+  return {text.data(), written.ptr};
+}
+
+// Decimal numbers times a power of ten are again decimal numbers, without rounding in between: 100
+// in millimetres is the same number as 0.1 in metres.
+double scaled(double coordinate, double metres_per_unit, std::optional<int> power) {
+  const std::string decimal = shortest_decimal(coordinate);
+  if (!power) {
+    return core::number_in<double>(decimal).value() * metres_per_unit;
+  }
+  const auto e = decimal.find('e');
+  const int exponent =
+      core::number_in<int>(std::string_view{decimal}.substr(decimal[e + 1] == '+' ? e + 2 : e + 1))
+          .value();
+  // unset: so small that it is none
+  return core::number_in<double>(fmt::format("{}e{}", decimal.substr(0, e), exponent + *power))
+      .value_or(0.0);
+}
+
+// In metres, and before anything is computed from them: no product of coordinates may overflow.
+void scale(SurfaceSoup& soup, const std::string& file, double metres_per_unit) {
+  const std::optional<int> power = power_of_ten(metres_per_unit);
+  for (Vec3& point : soup.points) {
+    const double farthest_m = metres_per_unit * point.cwiseAbs().maxCoeff();
     if (!(farthest_m <= max_coordinate_m)) {
       throw core::InvalidInput{fmt::format(
           "{}: a point is {:.4g} m from the origin (at most {} m; is metres_per_unit right?)", file,
           farthest_m, max_coordinate_m)};
     }
+    for (double& x : point) {
+      x = scaled(x, metres_per_unit, power) + 0.0;  // adding zero maps -0 to 0
+    }
   }
 }
 
-std::vector<std::array<std::size_t, 3>> triangles_of(const Polygon& polygon, const Soup& soup,
-                                                     const std::string& file,
-                                                     double metres_per_unit) {
+bool comes_before(const Vec3& a, const Vec3& b) {
+  return std::ranges::lexicographical_compare(a, b);
+}
+
+// Begins at the corner that comes first, so that it is cut alike wherever the file begins it.
+std::vector<std::size_t> from_first_corner(std::vector<std::size_t> polygon,
+                                           const SurfaceSoup& soup) {
+  const auto first = std::ranges::min_element(
+      polygon, comes_before, [&](std::size_t corner) { return soup.points[corner]; });
+  std::rotate(polygon.begin(), first, polygon.end());
+  return polygon;
+}
+
+std::vector<std::array<std::size_t, 3>> triangles_of(const std::vector<std::size_t>& polygon,
+                                                     const SurfaceSoup& soup,
+                                                     const std::string& file) {
   if (polygon.size() == 3) {
     return {{polygon[0], polygon[1], polygon[2]}};
   }
   std::vector<core::Vec3> corners_m;
   for (const std::size_t corner : polygon) {
-    const Point& p = soup.points[corner];
-    corners_m.push_back(metres_per_unit * core::Vec3{p.x(), p.y(), p.z()});
+    corners_m.push_back(soup.points[corner]);
   }
   auto triangles = cut_polygon(corners_m);
   if (triangles.empty()) {
@@ -118,53 +227,45 @@ std::vector<std::array<std::size_t, 3>> triangles_of(const Polygon& polygon, con
   return triangles;
 }
 
-// Merges coincident points.
-class JoinedPoints {
- public:
-  int number_of(const Point& p, double metres_per_unit) {
-    // adding zero maps -0 to 0
-    const Place place{metres_per_unit * p.x() + 0.0, metres_per_unit * p.y() + 0.0,
-                      metres_per_unit * p.z() + 0.0};
-    const auto [found, is_new] = numbers_.emplace(place, static_cast<int>(points_.size()));
-    if (is_new) {
-      points_.push_back(place);
+// Coincident points are one. Points in the order of their coordinates, each triangle from its first
+// corner, triangles in the order of these: meshers build on the order, which is that of the writing
+// program, so that without it the same surface in two files is two bodies.
+core::TriangleSurface in_canonical_order(const std::vector<std::array<std::size_t, 3>>& triangles,
+                                         const SurfaceSoup& soup) {
+  std::vector<std::size_t> used;
+  for (const auto& triangle : triangles) {
+    used.insert(used.end(), triangle.begin(), triangle.end());
+  }
+  const auto place = [&](std::size_t point) { return soup.points[point]; };
+  std::ranges::sort(used, comes_before, place);
+  std::vector<int> number(soup.points.size());
+  std::vector<std::size_t> distinct;
+  for (const std::size_t point : used) {
+    if (distinct.empty() || place(distinct.back()) != place(point)) {
+      distinct.push_back(point);
     }
-    return found->second;
+    number[point] = static_cast<int>(distinct.size()) - 1;
   }
-  core::TriangleSurface::Points take() const {
-    core::TriangleSurface::Points points{static_cast<Eigen::Index>(points_.size()), 3};
-    for (std::size_t i = 0; i < points_.size(); ++i) {
-      points.row(static_cast<Eigen::Index>(i)) =
-          Eigen::Map<const Eigen::RowVector3d>{points_[i].data()};
-    }
-    return points;
+  std::vector<Triangle> numbered;
+  for (const auto& triangle : triangles) {
+    Triangle corners{};
+    std::ranges::transform(triangle, corners.begin(),
+                           [&](std::size_t point) { return number[point]; });
+    std::rotate(corners.begin(), std::ranges::min_element(corners), corners.end());
+    numbered.push_back(corners);
   }
-
- private:
-  using Place = std::array<double, 3>;
-  std::map<Place, int> numbers_;
-  std::vector<Place> points_;
-};
-
-const core::ChildJob reading{"read a surface", [](const std::string& packed) {
-                               core::UnpackedBytes bytes{packed};
-                               auto file = bytes.get<std::string>();
-                               soup_of({std::move(file), bytes.get<std::string>(), {}});
-                               return std::string{"read"};
-                             }};
-
-// CGAL's readers take a file at its word, and crash or take all memory where it lies: what they
-// survive elsewhere, they survive here.
-void try_reading(const SurfaceSource& source) {
-  constexpr core::ChildLimits limits{15, 2'000'000'000};
-  core::PackedBytes bytes;
-  bytes.put(source.file);
-  bytes.put(source.bytes);
-  try {
-    core::in_bounded_child(reading, bytes.take(), source.file, limits);
-  } catch (const core::ModelError&) {
-    refuse(source);
+  std::ranges::sort(numbered);
+  core::TriangleSurface surface;
+  surface.points_m.resize(static_cast<Eigen::Index>(distinct.size()), 3);
+  for (std::size_t i = 0; i < distinct.size(); ++i) {
+    surface.points_m.row(static_cast<Eigen::Index>(i)) = place(distinct[i]).transpose();
   }
+  surface.triangles.resize(static_cast<Eigen::Index>(numbered.size()), 3);
+  for (std::size_t i = 0; i < numbered.size(); ++i) {
+    surface.triangles.row(static_cast<Eigen::Index>(i)) =
+        Eigen::Map<const Eigen::RowVector3i>{numbered[i].data()};
+  }
+  return surface;
 }
 }  // namespace
 
@@ -174,27 +275,13 @@ SurfaceSource surface_source(std::string file, std::string bytes) {
 }
 
 core::TriangleSurface read_surface(const SurfaceSource& source, double metres_per_unit) {
-  try_reading(source);
-  const Soup soup = soup_of(source);
-  check_points(soup, source.file, metres_per_unit);
-  JoinedPoints points;
-  std::vector<Triangle> triangles;
-  for (const Polygon& polygon : soup.polygons) {
-    for (const auto& corners : triangles_of(polygon, soup, source.file, metres_per_unit)) {
-      Triangle triangle{};
-      std::ranges::transform(corners, triangle.begin(), [&](std::size_t corner) {
-        return points.number_of(soup.points[corner], metres_per_unit);
-      });
-      triangles.push_back(triangle);
-    }
+  SurfaceSoup soup = soup_of(source);
+  scale(soup, source.file, metres_per_unit);
+  std::vector<std::array<std::size_t, 3>> triangles;
+  for (const auto& polygon : soup.polygons) {
+    const auto cut = triangles_of(from_first_corner(polygon, soup), soup, source.file);
+    triangles.insert(triangles.end(), cut.begin(), cut.end());
   }
-  core::TriangleSurface surface;
-  surface.points_m = points.take();
-  surface.triangles.resize(static_cast<Eigen::Index>(triangles.size()), 3);
-  for (std::size_t i = 0; i < triangles.size(); ++i) {
-    surface.triangles.row(static_cast<Eigen::Index>(i)) =
-        Eigen::Map<const Eigen::RowVector3i>{triangles[i].data()};
-  }
-  return surface;
+  return in_canonical_order(triangles, soup);
 }
 }  // namespace tapstudy::protocols

@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cctype>
 #include <numeric>
+#include <sstream>
+#include <string_view>
 #include <tuple>
 #include <utility>
 
@@ -56,8 +58,22 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
 }
 }  // namespace
 
+void Problems::read_from(const std::string& text) {
+  std::istringstream stream{text};
+  std::string line;
+  while (std::getline(stream, line)) {
+    lines_.push_back(line);
+  }
+}
+
 std::string Problems::place(int line, int column, const std::string& key_path) const {
-  return fmt::format("{}:{}:{}{}{}", file_, line + 1, column + 1, key_path.empty() ? "" : ": ",
+  const auto row = static_cast<std::size_t>(line);
+  const auto bytes = static_cast<std::size_t>(column);
+  const std::size_t characters =
+      row < lines_.size() && bytes <= lines_[row].size()
+          ? core::character_count(std::string_view{lines_[row]}.substr(0, bytes))
+          : bytes;
+  return fmt::format("{}:{}:{}{}{}", file_, line + 1, characters + 1, key_path.empty() ? "" : ": ",
                      key_path);
 }
 

@@ -16,12 +16,15 @@ std::string kind_of(const YAML::Node& node);
 class Problems {
  public:
   explicit Problems(std::string file) : file_{std::move(file)} {}
-  // line and column count from 0. Of one key the first problem is kept: others follow from it.
+  // The text of the file, so that columns can be told in characters.
+  void read_from(const std::string& text);
+  // line and column count from 0, the column in bytes, as the parser has it. Of one key the first
+  // problem is kept: others follow from it.
   void add(int line, int column, const std::string& key_path, const std::string& what);
   std::size_t count() const { return problems_.size() + unread_; }
   // A value that is described but not read counts as a problem: nothing can be made of it.
   void add_unread() { ++unread_; }
-  // "file:line:column: key.path"
+  // "file:line:column: key.path", both from 1, the column in characters
   std::string place(int line, int column, const std::string& key_path) const;
   // Throws InvalidInput if there are any, one line per problem, `file:line:column: key.path: what`,
   // in the order of the file.
@@ -38,6 +41,7 @@ class Problems {
     std::string text;
   };
   std::string file_;
+  std::vector<std::string> lines_;  // of the text
   std::vector<Problem> problems_;
   std::size_t unread_{0};
   std::set<std::string> places_;  // of these

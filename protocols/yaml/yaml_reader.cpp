@@ -9,9 +9,12 @@
 
 #include <algorithm>
 #include <cctype>
+#include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <sstream>
 #include <string>
+#include <string_view>
 
 #include "core/error.hpp"
 #include "protocols/yaml/described_values.hpp"
@@ -98,8 +101,9 @@ MapReader::MapReader(MapReader&& other) noexcept = default;
 
 namespace {
 // The first document; `check` is of the text as YAML.
-YAML::Node loaded(const std::string& text, const std::string& file,
+YAML::Node loaded(const std::string& text, const std::string& file, Problems& problems,
                   const std::function<void()>& check) {
+  problems.read_from(text);
   if (!utf8::is_valid(text.begin(), text.end())) {
     throw core::InvalidInput{fmt::format("{}:1:1: not UTF-8 text", file)};
   }
@@ -111,9 +115,9 @@ YAML::Node loaded(const std::string& text, const std::string& file,
     }
     return document;
   } catch (const YAML::Exception& error) {
-    throw core::InvalidInput{fmt::format("{}:{}:{}: not YAML: {} ({})", file, error.mark.line + 1,
-                                         error.mark.column + 1, error.msg,
-                                         likely_cause(text, error.mark.line))};
+    throw core::InvalidInput{fmt::format("{}: not YAML: {} ({})",
+                                         problems.place(error.mark.line, error.mark.column, ""),
+                                         error.msg, likely_cause(text, error.mark.line))};
   }
 }
 }  // namespace
@@ -125,12 +129,12 @@ MapReader MapReader::whole_file(const std::string& text, const std::string& file
       throw core::InvalidInput{fmt::format("{}: holds more than one YAML document", file)};
     }
   };
-  return {loaded(text, file, check_is_one), "", "", problems, translations};
+  return {loaded(text, file, problems, check_is_one), "", "", problems, translations};
 }
 
 MapReader MapReader::first_document(const std::string& text, const std::string& file,
                                     Problems& problems, Translations* translations) {
-  return {loaded(text, file, [] {}), "", "", problems, translations};
+  return {loaded(text, file, problems, [] {}), "", "", problems, translations};
 }
 
 std::string MapReader::path_of(const std::string& key) const {
@@ -196,10 +200,32 @@ std::optional<YAML::Node> MapReader::find(const std::string& key, bool required)
   return std::nullopt;
 }
 
+namespace {
+// As YAML 1.2 has whole numbers (core schema, 10.3.2): decimal, zeros before it or not, 0o octal,
+// 0x hexadecimal. Unset: it is none, or beyond 64 bits.
+std::optional<std::int64_t> whole_number_in(std::string_view text) {
+  const bool is_negative = text.starts_with('-');
+  const bool is_signed = is_negative || text.starts_with('+');
+  std::string_view digits = text.substr(is_signed ? 1 : 0);
+  int base = 10;
+  if (!is_signed && (digits.starts_with("0o") || digits.starts_with("0x"))) {
+    base = digits[1] == 'o' ? 8 : 16;
+    digits.remove_prefix(2);
+  }
+  std::int64_t number{};
+  const char* const end = digits.data() + digits.size();
+  const auto [stopped, error] = std::from_chars(digits.data(), end, number, base);
+  const bool is_whole =
+      error == std::errc{} && stopped == end && !digits.empty() && digits.front() != '-';
+  return is_whole ? std::optional{is_negative ? -number : number} : std::nullopt;
+}
+}  // namespace
+
 std::optional<double> MapReader::as_number(const YAML::Node& node, const std::string& path,
                                            const Range& range) {
-  double value{};
-  if (!node.IsScalar() || !YAML::convert<double>::decode(node, value)) {
+  const auto whole = node.IsScalar() ? whole_number_in(node.Scalar()) : std::nullopt;
+  auto value = static_cast<double>(whole.value_or(0));
+  if (!node.IsScalar() || (!whole && !YAML::convert<double>::decode(node, value))) {
     reject_at(node, path, fmt::format("{} is not a number", kind_of(node)));
     return std::nullopt;
   }
@@ -231,17 +257,17 @@ int MapReader::integer(const Key& key, int low, int high, std::optional<int> oth
   if (!node) {
     return otherwise.value_or(low);
   }
-  int value{};
-  if (!node->IsScalar() || !YAML::convert<int>::decode(*node, value)) {
+  const auto value = node->IsScalar() ? whole_number_in(node->Scalar()) : std::nullopt;
+  if (!value) {
     reject_at(*node, path_of(key.name), fmt::format("{} is not a whole number", kind_of(*node)));
     return low;
   }
-  if (value < low || value > high) {
+  if (*value < low || *value > high) {
     reject_at(*node, path_of(key.name),
-              fmt::format("{} is not allowed (from {} to {})", value, low, high));
+              fmt::format("{} is not allowed (from {} to {})", *value, low, high));
     return low;
   }
-  return value;
+  return static_cast<int>(*value);
 }
 
 bool MapReader::yes_or_no(const Key& key, std::optional<bool> otherwise) {

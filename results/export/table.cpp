@@ -150,7 +150,9 @@ std::vector<Column> columns_of_traces() {
       {"velocity_z_m_s", real, "m/s", "Velocity of the hand along z"},
       {"penetration_m", real, "m", "Depth of the hand below the surface of what is presented"},
       {"penalty_n", real, "N", "Penalty force along the outward normal, before the limiter"},
-      {"vibration_n", real, "N", "Force of the plate's vibration along the normal"},
+      {"vibration_n", real, "N",
+       "Force of the plate's vibration along the normal, or what a coupled finger adds to "
+       "penalty_n"},
       {"sinusoid_n", real, "N", "Force of the decaying sinusoid along the normal"},
       {"force_x_n", real, "N", "Commanded force, after the limiter, along x"},
       {"force_y_n", real, "N", "Commanded force, after the limiter, along y"},

@@ -29,6 +29,8 @@ struct PublishedReport {
   bool is_there{};
   std::string not_compared{};              // why, in words; empty: it was
   std::vector<std::string> differences{};  // "report.json /blocks/0/…: 61, made anew 41", files
+  // Sentences on earlier versions that this one adds, and that were left out of the comparison.
+  std::vector<std::string> added{};
 };
 // Compares what report.json, the tables beside it and the page hold; where it was made is left out,
 // and what it leaves out (--only) is not missed; one that differs and is older than the journal's
@@ -162,6 +164,28 @@ ordered_json read_published(const fs::path& file) {
   return published;
 }
 
+// A report made before this version lacks what this version says of the earlier ones: so does, for
+// the comparison, the one made anew. Returns what was left out.
+std::vector<std::string> without_added_sentences(const ordered_json& published,
+                                                 results::Store& store, results::Mode mode,
+                                                 analysis::Summary& summary) {
+  const ordered_json said = published.value("deviations", ordered_json::array());
+  const auto excluded = store.excluded_participants();
+  std::vector<results::SessionRow> sessions = store.sessions();
+  std::erase_if(sessions, [&](const results::SessionRow& session) {
+    return session.mode != mode || excluded.contains(session.participant_id);
+  });
+  std::vector<std::string> added;
+  for (const std::string& sentence :
+       rendered_by_earlier_versions(stored_protocol(store.study()), sessions)) {
+    if (std::ranges::find(said, ordered_json(sentence)) == said.end() &&
+        std::erase(summary.deviations, sentence) > 0) {
+      added.push_back(sentence);
+    }
+  }
+  return added;
+}
+
 bool is_older(const fs::path& file, const fs::path& than) {
   std::error_code error;
   const auto of_file = fs::last_write_time(file, error);
@@ -179,14 +203,16 @@ PublishedReport published_report(const std::string& directory, results::Store& s
   }
   found.is_there = true;
   const ordered_json published = read_published(file);
+  results::Mode mode{};
   analysis::Summary summary;
   try {
-    summary = summary_of_study({{directory, &store}},
-                               results::mode_from(published.at("modes").get<std::string>()));
+    mode = results::mode_from(published.at("modes").get<std::string>());
+    summary = summary_of_study({{directory, &store}}, mode);
   } catch (const core::Error& error) {  // of another version
     found.not_compared = error.what();
     return found;
   }
+  found.added = without_added_sentences(published, store, mode, summary);
   const ordered_json anew = json_of(summary);
   if (published.value("participants", ordered_json{}) < anew.at("participants")) {
     found.not_compared = "it was made of fewer participants than there are now";
@@ -305,6 +331,9 @@ std::string print_published(const PublishedReport& report) {
   constexpr std::size_t max_printed = 20;
   for (std::size_t i = 0; i < std::min(report.differences.size(), max_printed); ++i) {
     fmt::print("differs: {}\n", report.differences[i]);
+  }
+  for (const std::string& sentence : report.added) {
+    fmt::print("report.json      lacks what this version says of earlier ones: {}\n", sentence);
   }
   if (report.differences.empty()) {
     fmt::print("report.json      its tables and page: identical to a regenerated report\n");

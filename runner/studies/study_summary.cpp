@@ -7,6 +7,7 @@
 #include <iterator>
 #include <map>
 #include <set>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -16,6 +17,8 @@
 #include "analysis/report/study/rendered.hpp"
 #include "core/error.hpp"
 #include "core/random/rng.hpp"
+#include "core/techniques/technique.hpp"
+#include "core/text/plain_text.hpp"
 #include "protocols/axes/axis.hpp"
 #include "protocols/schedule/catch_trials.hpp"
 #include "protocols/schedule/ordering.hpp"
@@ -340,6 +343,47 @@ void check_different_participants(const std::vector<StudyStore>& stores) {
 }
 }  // namespace
 
+namespace {
+bool is_before(const std::string& version, int major, int minor) {
+  const auto first_dot = version.find('.');
+  const auto second_dot = version.find('.', first_dot + 1);
+  if (first_dot == std::string::npos || second_dot == std::string::npos) {
+    return false;
+  }
+  const std::string_view text{version};
+  const auto of_major = core::number_in<int>(text.substr(0, first_dot));
+  const auto of_minor =
+      core::number_in<int>(text.substr(first_dot + 1, second_dot - first_dot - 1));
+  return of_major && of_minor && std::pair{*of_major, *of_minor} < std::pair{major, minor};
+}
+}  // namespace
+
+std::vector<std::string> rendered_by_earlier_versions(
+    const protocols::Protocol& protocol, const std::vector<results::SessionRow>& sessions) {
+  std::set<std::string> versions;
+  for (const results::SessionRow& session : sessions) {
+    if (is_before(session.program_version, 0, 2)) {
+      versions.insert(session.program_version);
+    }
+  }
+  const auto coupled = std::ranges::find_if(protocol.stimuli, [](const auto& stimulus) {
+    return stimulus.technique->has(core::coupled_vibration);
+  });
+  if (versions.empty() || coupled == protocol.stimuli.end()) {
+    return {};
+  }
+  const double contact = protocol.rendering.penalty_stiffness_n_per_m;
+  const double finger = protocol.rendering.finger.stiffness_n_per_m;
+  const double in_series = contact * finger / (contact + finger);
+  return {fmt::format(
+      "sessions run by tapstudy {}: {} pressed slowly was stiffer than techniques without a "
+      "coupled finger ({:.4g} N/m instead of {:.4g} with the protocol's own values), and the plate "
+      "carried {:.0f} % of the force that the hand felt; from 0.2.0 on all techniques are equally "
+      "stiff at rest, and it carries all of it",
+      fmt::join(versions, ", "), coupled->technique->name, contact + in_series, contact,
+      100.0 * in_series / (contact + in_series))};
+}
+
 Summary summary_of_study(const std::vector<StudyStore>& stores, Mode mode, Detail detail) {
   check_same_protocol(stores);
   check_different_participants(stores);
@@ -376,6 +420,8 @@ Summary summary_of_study(const std::vector<StudyStore>& stores, Mode mode, Detai
   summary.unfinished = std::move(all.unfinished);
   summary.excluded = std::move(all.excluded);
   std::ranges::move(all.deviations, std::back_inserter(summary.deviations));
+  std::ranges::move(rendered_by_earlier_versions(protocol, all.sessions),
+                    std::back_inserter(summary.deviations));
   return summary;
 }
 }  // namespace tapstudy::runner

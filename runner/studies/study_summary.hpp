@@ -25,4 +25,10 @@ enum class Detail { all, main_results };  // of a report, or of a simulated desi
 // two stores are of different protocols, or a participant is in two of them.
 analysis::Summary summary_of_study(const std::vector<StudyStore>& stores, results::Mode mode,
                                    Detail detail = Detail::all);
+
+// What a study's sessions rendered otherwise than this version would, because an earlier one ran
+// them: sentences, which the report has among its deviations. Versions that are not of the form
+// "0.1.0" count as this one.
+std::vector<std::string> rendered_by_earlier_versions(
+    const protocols::Protocol& protocol, const std::vector<results::SessionRow>& sessions);
 }  // namespace tapstudy::runner

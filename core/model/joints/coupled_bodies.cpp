@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <iterator>
 #include <numbers>
@@ -29,7 +30,7 @@ void add_block(const SparseMatrix& block, int first, Entries& entries) {
 class Elongations {
  public:
   Elongations(const Plate& plate, const Joints& joints, const CoupledBodies& system)
-      : plate_{plate}, joints_{joints}, system_{system} {}
+      : plate_{plate}, joints_{joints}, system_{system}, shifts_m_{shifts_of_bodies()} {}
 
   std::vector<Elongation> all() const {
     std::vector<Elongation> elongations;
@@ -46,11 +47,10 @@ class Elongations {
   // Axes are parallel, so that shifts of the bodies must bring all joints together at once: else
   // the springs would hold free bodies against turning.
   void check_can_touch() const {
-    const std::vector<Vec3> shifts_m = shifts_of_bodies();
     for (std::size_t i = 0; i < joints_.springs.size(); ++i) {
       const auto& joins = joints_.springs[i];
       const double apart_m =
-          (shifts_m[joins.to.body] - shifts_m[joins.from.body] + shift_m(i)).norm();
+          (shifts_m_[joins.to.body] - shifts_m_[joins.from.body] + shift_m(i)).norm();
       if (apart_m > max_misplacement * larger_diagonal_m(joins)) {
         throw ModelError{fmt::format(
             "contact spring {} joins places that cannot lie on one another while those of the "
@@ -123,17 +123,51 @@ class Elongations {
   }
   Vec3 mean_place_m(const NamedEnd& named) const {
     const TetMesh& mesh = system_.bodies.at(named.end.body).mesh;
+    return mean_of(mean_weights(mesh, nodes_at(named)), mesh);
+  }
+  static Vec3 mean_of(const std::vector<NodeWeight>& weights, const TetMesh& mesh) {
     Vec3 place_m = Vec3::Zero();
-    for (const NodeWeight& one : mean_weights(mesh, nodes_at(named))) {
+    for (const NodeWeight& one : weights) {
       place_m += one.weight * mesh.nodes_m.row(one.node).transpose();
     }
     return place_m;
+  }
+  // The mean place of both ends, in the frame of this one.
+  Vec3 middle_m(const NamedEnd& named) const {
+    const JointSpring& joins = joints_.springs[named.spring];
+    const Vec3 from_m =
+        mean_place_m({joins.from, named.spring, "from"}) + shifts_m_[joins.from.body];
+    const Vec3 to_m = mean_place_m({joins.to, named.spring, "to"}) + shifts_m_[joins.to.body];
+    return 0.5 * (from_m + to_m) - shifts_m_[named.end.body];
+  }
+  // The mean displacement of a region about the place where both ends meet. Two meshes of one disc
+  // have their means a little apart, and springs between these would hold free bodies against
+  // turning: so the weights are tilted, w (1 + a·(x - mean)), until their mean place is that one.
+  // Only along a region's extent; a point stays where it is.
+  std::vector<NodeWeight> weights_of(const NamedEnd& named) const {
+    const TetMesh& mesh = system_.bodies.at(named.end.body).mesh;
+    std::vector<NodeWeight> weights = mean_weights(mesh, nodes_at(named));
+    const Vec3 mean_m = mean_of(weights, mesh);
+    Eigen::Matrix3d spread_m2 = Eigen::Matrix3d::Zero();
+    const auto arm_m = [&](const NodeWeight& one) -> Vec3 {
+      return mesh.nodes_m.row(one.node).transpose() - mean_m;
+    };
+    for (const NodeWeight& one : weights) {
+      spread_m2 += one.weight * arm_m(one) * arm_m(one).transpose();
+    }
+    const Vec3 tilt_per_m =
+        Eigen::CompleteOrthogonalDecomposition<Eigen::Matrix3d>{spread_m2}.solve(middle_m(named) -
+                                                                                 mean_m);
+    for (NodeWeight& one : weights) {
+      one.weight *= 1.0 + tilt_per_m.dot(arm_m(one));
+    }
+    return weights;
   }
   void add(const NamedEnd& named, Eigen::Index axis, double sign, Elongation& elongation) const {
     const JointSpring::End& end = named.end;
     const DiscreteBody& body = system_.bodies.at(end.body);
     const RigidMotions motions{body.mesh};
-    for (const NodeWeight& one : mean_weights(body.mesh, nodes_at(named))) {
+    for (const NodeWeight& one : weights_of(named)) {
       const int dof = body.dofs.position[static_cast<std::size_t>(3 * one.node + axis)];
       if (dof >= 0) {
         elongation.weights.emplace_back(system_.first_dof[end.body] + dof, sign * one.weight);
@@ -147,6 +181,7 @@ class Elongations {
   const Plate& plate_;
   const Joints& joints_;
   const CoupledBodies& system_;
+  std::vector<Vec3> shifts_m_;  // of the bodies, by which their joints meet
 };
 
 // k g g', of which the lower triangle.

@@ -248,14 +248,23 @@ std::string tetgen_switches(const MeshSize& size) {
   return switches;
 }
 
-void check_end(const TetgenInput& input, const TetgenOutput& output) {
+void check_end(const TetgenInput& input, const TetgenOutput& output, const MeshSize& size) {
+  constexpr double relaxed = 2.0;  // of elements that are still of use
   const std::size_t added = (output.coordinates.size() - input.coordinates.size()) / 3;
-  if (added >= max_added_points || static_cast<double>(output.corners.size()) > 4.0 * max_tets) {
-    throw ModelError{fmt::format(
-        "mesh: it needs more than {:.0g} tetrahedra or {} added points (choose a larger "
-        "max_tet_volume_m3 or a surface without tiny triangles)",
-        max_tets, max_added_points)};
+  if (added < max_added_points && static_cast<double>(output.corners.size()) <= 4.0 * max_tets) {
+    return;
   }
+  std::string advice = "a surface without tiny triangles";
+  if (size.radius_edge_ratio < relaxed) {
+    advice += fmt::format(", or mesh.radius_edge_ratio: {} in place of {}, which asks for less",
+                          relaxed, size.radius_edge_ratio);
+  }
+  if (size.max_tet_volume_m3) {
+    advice += fmt::format(", or tetrahedra larger than {:.3g} m³", *size.max_tet_volume_m3);
+  }
+  throw ModelError{
+      fmt::format("mesh: it needs more than {:.0g} tetrahedra or {} added points (try {})",
+                  max_tets, max_added_points, advice)};
 }
 }  // namespace
 
@@ -268,7 +277,7 @@ TetMesh mesh_shape(const Shape& shape, const MeshSize& size, const std::vector<V
                           : input_for(std::get<Solid>(shape).surface(), thickening);
   input.switches = tetgen_switches(size);
   const TetgenOutput output = run_tetgen(input);
-  check_end(input, output);
+  check_end(input, output, size);
   return mesh_from(output, thickening);
 }
 }  // namespace tapstudy::core

@@ -147,7 +147,8 @@ RealTap real_tap(const core::VibratingPlate* plate, const core::RenderSettings& 
     state.emplace(plate->model, settings.integrator, dt_s);
     state->touch(plate->locator->locate(at_m.x(), at_m.y()), core::Vec3::UnitZ());
   }
-  core::CoupledFinger finger{settings.finger, settings.penalty_stiffness_n_per_m, dt_s};
+  // a bare finger: nothing holds the hand beside it
+  core::CoupledFinger finger{settings.finger, {settings.penalty_stiffness_n_per_m, 0.0}, dt_s};
   finger.begin(0.0, -speed_m_s, 0.0);
   const auto ticks = static_cast<Eigen::Index>(std::lround(seconds / dt_s));
   RealTap tap{Eigen::VectorXd{ticks}, Eigen::VectorXd::Zero(ticks), Eigen::VectorXd{ticks}};

@@ -152,6 +152,34 @@ TEST_CASE("a block slides on the ground, however many nodes hold the ground", "[
   CHECK(core::solve_body(core::body_of(spec)).modes.report.rigid_body_modes == 3);
 }
 
+TEST_CASE("a free assembly has six rigid motions, however its regions are meshed",
+          "[core][model]") {
+  // of a ball each mesh has other nodes, whose mean is elsewhere
+  const auto ball = [](double x, double y, double z) {
+    core::Fixation fixation;
+    fixation.shape = core::RegionShape::ball;
+    fixation.at_m = {x, y, z};
+    fixation.radius_m = 0.03;
+    return fixation;
+  };
+  for (const double tet_volume_m3 : {1e-6, 7e-7}) {
+    core::PlateSpec spec{block({0.2, 0.15, 0.04}, tet_volume_m3), material_of(3e9, 1180.0, 0.02),
+                         900.0};
+    core::JoinedBody other{block({0.25, 0.2, 0.05}, 2e-6), material_of(2.5e9, 610.0, 0.02)};
+    core::Joints joints{{other}, {}};
+    for (const auto& [x, y] :
+         {std::pair{-0.063, -0.041}, {0.059, -0.038}, {-0.061, 0.037}, {0.057, 0.042}}) {
+      joints.springs.push_back({{0, ball(x, y, -0.04)}, {1, ball(x, y, 0.0)}, {1e6, 2e6, 3e6}});
+    }
+    spec.joints = std::make_shared<const core::Joints>(joints);
+    const core::SolvedBody body = core::solve_body(core::body_of(spec));
+    INFO(tet_volume_m3);
+    CHECK(body.modes.report.rigid_body_modes == 6);
+    REQUIRE(body.modes.kappa_rad_per_m.size() > 0);
+    CHECK(core::model_of(body.modes, spec).frequency_hz.minCoeff() > 100.0);
+  }
+}
+
 TEST_CASE("two equal free blocks on one spring part at sqrt(2 k / m)", "[core][model]") {
   core::PlateSpec spec = stiff_block(200.0);
   const core::JoinedBody other{static_cast<const core::Plate&>(spec), spec.material};

@@ -11,6 +11,7 @@
 #include "core/model/elements/assembly.hpp"
 #include "core/model/model_cache.hpp"
 #include "core/model/vtu_file.hpp"
+#include "core/techniques/technique.hpp"
 #include "support/catch.hpp"
 #include "support/plates.hpp"
 #include "support/processes.hpp"
@@ -194,4 +195,40 @@ TEST_CASE("a .vtu holds the mesh and its modes as another program reads them", "
   CHECK(shape.dot(matrices.mass() * shape) == Approx(1.0));
   CHECK_THROWS_AS(core::write_vtu(built.body, built.modal, density, directory / "body.vtu"),
                   core::InvalidInput);
+}
+
+TEST_CASE("a plate on soft feet sags under the finger as its springs say",
+          "[core][model][coupled]") {
+  for (const double k : {1e3, 1e4, 1e5}) {
+    core::PlateSpec spec{{core::Box{{0.3, 0.2, 0.01}}, {}, {}},
+                         {2e11, 7800.0, 0.3, core::ConstantDamping{0.5}},
+                         300.0};
+    spec.mesh.size.max_tet_volume_m3 = 2e-6;
+    for (const auto& [x, y] : {std::pair{-0.1, -0.07}, {0.1, -0.07}, {-0.1, 0.07}, {0.1, 0.07}}) {
+      core::Fixation foot;
+      foot.shape = core::RegionShape::disc;
+      foot.at_m = {x, y, 0.0};
+      foot.radius_m = 0.01;
+      foot.face = core::Face::bottom;
+      foot.springs_n_per_m = core::Vec3{k, k, k};
+      spec.fixations.push_back(foot);
+    }
+    const core::PlateModel built = core::build_plate_model(spec);
+    CHECK(built.body.modes.report.rigid_body_modes == 0);
+    REQUIRE(built.modal.frequency_hz.size() >= 6);  // those of the plate as a rigid body
+    const core::VibratingPlate plate{built.modal};
+    core::RenderSettings settings;
+    settings.finger.mass_kg = 0.0058;
+    core::TapRenderer renderer = core::make_renderer(*core::find_technique("fem-coupled"), settings,
+                                                     core::PlateFace{0.15, 0.1}, &plate);
+    renderer.tick({{0.0, 0.0, 1e-4}, {0.0, 0.0, -0.1}});
+    double force_n = 0.0;
+    for (int tick = 0; tick < 4000; ++tick) {
+      force_n = renderer.tick({{0.0, 0.0, -0.002}, {}}).force_n.z();
+    }
+    // the contact's stiffness in series with four springs
+    const double contact = settings.penalty_stiffness_n_per_m;
+    INFO(k);
+    CHECK(force_n == Approx(0.002 * contact / (1.0 + contact / (4.0 * k))).epsilon(2e-3));
+  }
 }

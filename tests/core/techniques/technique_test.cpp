@@ -8,20 +8,29 @@
 #include "core/techniques/compensated.hpp"
 #include "core/techniques/resampled.hpp"
 #include "support/catch.hpp"
+#include "support/plates.hpp"
 using namespace tapstudy::core;
 
-// Two springs in series beside a third.
-TEST_CASE("a coupled finger adds its spring, in series with the pad, to a slow press",
+TEST_CASE("at rest on a heavy plate every technique renders the contact spring's force",
           "[core][technique]") {
   RenderSettings settings;
-  settings.penalty_stiffness_n_per_m = 3000.0;
-  settings.finger.stiffness_n_per_m = 300.0;
-  for (const char* const name : {"fem-coupled", "fem-coupled+sinusoid"}) {
-    CHECK(find_technique(name)->added_stiffness_n_per_m(settings) ==
-          Approx(1.0 / (1.0 / 3000.0 + 1.0 / 300.0)));
-  }
-  for (const char* const name : {"none", "sinusoid", "fem", "fem+sinusoid"}) {
-    CHECK(find_technique(name)->added_stiffness_n_per_m(settings) == 0.0);
+  settings.sinusoid.amplitude_n_s_per_m = 3.0;
+  settings.recorded_taps = std::make_shared<const RecordedTaps>(
+      RecordedTaps{1.0 / settings.dt_s, {{{0.0, 0.0}, 0.3, {0.1, -0.1}}}});
+  const VibratingPlate heavy = tapstudy::testing::uniform_plate(
+      Eigen::ArrayXd::Constant(1, 200.0), 0.1, Eigen::ArrayXd::Constant(1, 1e-3));
+  for (const double finger_n_per_m : {30.0, 300.0, 30'000.0}) {
+    settings.finger.stiffness_n_per_m = finger_n_per_m;
+    for (const Technique& technique : techniques()) {
+      TapRenderer renderer = make_renderer(technique, settings, PlateFace{0.3, 0.3}, &heavy);
+      renderer.tick({{0.0, 0.0, 1e-4}, {0.0, 0.0, -0.3}});
+      double force_n = 0.0;
+      for (int tick = 0; tick < 10'000; ++tick) {
+        force_n = renderer.tick({{0.0, 0.0, -0.001}, {}}).force_n.z();
+      }
+      INFO(technique.name << " " << finger_n_per_m);
+      CHECK(force_n == Approx(3.0).epsilon(1e-6));
+    }
   }
 }
 

@@ -34,6 +34,43 @@ TEST_CASE("a comma where a document should begin is no endless row of documents"
   CHECK_THAT(refusal(text + "---\ntitle: another\n"), Contains("more than one YAML document"));
 }
 
+TEST_CASE("whole numbers are read as YAML 1.2 has them", "[protocols]") {
+  const auto repetitions = [](const std::string& number) {
+    return protocols::parse_protocol(
+               replaced(discrimination(), "repetitions: 2", "repetitions: " + number), "study.yaml")
+        .blocks.front()
+        .repetitions;
+  };
+  CHECK(repetitions("010") == 10);
+  CHECK(repetitions("0o10") == 8);
+  CHECK(repetitions("0x10") == 16);
+  CHECK(repetitions("+10") == 10);
+  for (const char* const none : {"08x", "1_000", "0b10", "1e1", "--1", "+-1", "0x-1"}) {
+    CHECK_THAT(
+        refusal(replaced(discrimination(), "repetitions: 2", std::string{"repetitions: "} + none)),
+        Contains(fmt::format("'{}' is not a whole number", none)));
+  }
+  CHECK_THAT(refusal(replaced(discrimination(), "repetitions: 2", "repetitions: 5000000000")),
+             Contains("5000000000 is not allowed"));
+  CHECK(protocols::parse_protocol(replaced(discrimination(), "rate_hz: 1000", "rate_hz: 01750"),
+                                  "study.yaml")
+            .rate_hz == 1750.0);
+}
+
+TEST_CASE("columns in messages count characters", "[protocols]") {
+  // the question's characters take one, two and three bytes
+  const auto column = [](const std::string& question) {
+    const std::string text = refusal("title: \"" + question + "\" x\n");
+    return text.substr(0, text.find(": not YAML"));
+  };
+  CHECK(column("aaaa") == column("aé板a"));
+  const auto at = [](const std::string& title) {
+    const std::string text = refusal("{title: " + title + ", nothing_known: 1}");
+    return text.substr(0, text.find("nothing_known"));
+  };
+  CHECK(at("aaa") == at("é板a"));
+}
+
 TEST_CASE("every shipped protocol can be read", "[protocols]") {
   for (const char* const folder : {"paper", "recommended", "examples"}) {
     for (const auto& entry : std::filesystem::directory_iterator{testing::shipped(folder)}) {

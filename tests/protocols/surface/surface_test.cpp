@@ -1,9 +1,13 @@
 // Bodies from surfaces: what is refused and what becomes of the rest.
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cctype>
 #include <cmath>
 
 #include "core/error.hpp"
 #include "core/model/body_modes.hpp"
+#include "core/model/mesh/tetgen_mesher.hpp"
 #include "core/model/shape/shape.hpp"
 #include "protocols/reader/read_protocol.hpp"
 #include "protocols/surface/check_surface.hpp"
@@ -125,6 +129,251 @@ TEST_CASE("a surface is read alike from every kind of file", "[core][surface]") 
   CHECK(surface.points_m.rows() == in_mm.points_m.rows());
   CHECK(surface.triangles.rows() == in_mm.triangles.rows());
   CHECK(core::volume_m3(surface) == Approx(0.3 * 0.2 * 0.02));
+}
+
+namespace {
+core::TriangleSurface read_text(const std::string& name, const std::string& text,
+                                double metres_per_unit = 1.0) {
+  return protocols::read_surface(protocols::surface_source(name, text), metres_per_unit);
+}
+std::string replaced_all(const std::string& text, const std::string& from, const std::string& to) {
+  std::string result;
+  std::size_t at = 0;
+  for (auto found = text.find(from); found != std::string::npos; found = text.find(from, at)) {
+    result += text.substr(at, found - at) + to;
+    at = found + from.size();
+  }
+  return result + text.substr(at);
+}
+bool are_equal(const core::TriangleSurface& a, const core::TriangleSurface& b) {
+  return a.points_m == b.points_m && a.triangles == b.triangles;
+}
+// A cube of 100 units, by its corners' numbers from 0.
+const std::vector<std::array<int, 4>> cube_sides{{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
+                                                 {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
+std::string cube_points(const std::string& start, const std::string& between,
+                        const std::string& end) {
+  std::string text;
+  for (int i = 0; i < 8; ++i) {
+    text += start;
+    for (const int bit : {1, 2, 4}) {
+      text += between + ((i & bit) != 0 ? "100" : "0");
+    }
+    text += end;
+  }
+  return text;
+}
+std::string cube_obj(const std::string& between, const std::string& point_end) {
+  std::string text = cube_points("v", between, point_end + "\n");
+  for (const auto& side : cube_sides) {
+    text += "f";
+    for (const int corner : side) {
+      text += between + std::to_string(corner + 1);
+    }
+    text += "\n";
+  }
+  return text;
+}
+std::string cube_stl() {
+  return as_ascii_stl(read_text("cube.obj", cube_obj(" ", "")));
+}
+}  // namespace
+
+TEST_CASE("an OBJ may have tabs, continued lines, lines, colours, weights and places from the end",
+          "[protocols][surface]") {
+  const core::TriangleSurface cube = read_text("cube.obj", cube_obj(" ", ""));
+  check_surface(read_text("cube.obj", cube_obj(" ", ""), 0.001));
+  CHECK(core::volume_m3(cube) == Approx(1e6));
+  CHECK(are_equal(read_text("tabs.obj", cube_obj("\t", "")), cube));
+  CHECK(are_equal(read_text("continued.obj", cube_obj(" \\\n ", "")), cube));
+  CHECK(are_equal(read_text("returns.obj", replaced_all(cube_obj(" ", ""), "\n", "\r\n")), cube));
+  CHECK(are_equal(read_text("lines.obj", cube_obj(" ", "") + "l 1 2\nl 3 4 5\n"), cube));
+  CHECK(are_equal(read_text("colours.obj", cube_obj(" ", " 0.5 0.5 1")), cube));
+  CHECK(are_equal(read_text("marked.obj", "\xEF\xBB\xBF" + cube_obj(" ", "")), cube));
+  CHECK(are_equal(read_text("comment.obj", "# a cube\n" + cube_obj(" ", " # corner")), cube));
+  // homogeneous coordinates
+  CHECK(are_equal(read_text("weights.obj", cube_obj(" ", " 2"), 2.0), cube));
+  CHECK(are_equal(
+      read_text("back.obj", testing::replaced(cube_obj(" ", ""), "f 1 3 4 2", "f -8 -6 -5 -7")),
+      cube));
+}
+
+TEST_CASE("an OBJ that is none is refused with its line and what is there",
+          "[protocols][surface]") {
+  const auto refused = [](const std::string& text, const std::string& message) {
+    CHECK_THROWS_WITH(read_text("body.obj", text), Contains(message));
+  };
+  refused("v 0 0 0\nv 1 0 0\nl 1 2\n", "holds 2 points (v), 1 lines (l) and no face (f)");
+  refused("v 0 0\n", "body.obj:1: a point (v) of 2 numbers");
+  refused("v 0 0 0\nv 1,5 0 0\n", "body.obj:2: '1,5' has a decimal comma");
+  refused("v 0 0 0 0\n", "weight 0");
+  refused("v 0 0 0\nv 1 0 0\nv 0 1 0\n\nf 1 2 \\\n 4\n",
+          "body.obj:5: a face (f) with the corner '4' (3 points so far)");
+  refused("v 0 0 nan\n", "'nan' is not a finite number");
+}
+
+TEST_CASE("an ASCII STL may be in capitals and begin with a byte order mark",
+          "[protocols][surface]") {
+  const core::TriangleSurface cube = read_text("cube.obj", cube_obj(" ", ""));
+  std::string capitals = cube_stl();
+  std::ranges::transform(capitals, capitals.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+  CHECK(are_equal(read_text("small.stl", cube_stl()), cube));
+  CHECK(are_equal(read_text("capitals.stl", capitals), cube));
+  CHECK(are_equal(read_text("marked.stl", "\xEF\xBB\xBF" + cube_stl()), cube));
+  // many a binary file begins with the word
+  std::string binary = as_binary_stl(cube);
+  binary.replace(0, 6, "solid ");
+  CHECK(are_equal(read_text("binary.stl", binary), cube));
+}
+
+TEST_CASE("an STL that is none is refused with what was found", "[protocols][surface]") {
+  CHECK_THROWS_WITH(
+      read_text("comma.stl", replaced_all(cube_stl(), "100", "100,000")),
+      Contains("comma.stl:") && Contains("'100,000' has a decimal comma") && Contains("100.000"));
+  CHECK_THROWS_WITH(read_text("cut.stl", cube_stl().substr(0, cube_stl().find("endloop"))),
+                    Contains("ends inside a facet"));
+  CHECK_THROWS_WITH(read_text("empty.stl", "solid nothing\nendsolid nothing\n"),
+                    Contains("without a facet"));
+  const std::string binary = as_binary_stl(read_text("cube.obj", cube_obj(" ", "")));
+  CHECK_THROWS_WITH(read_text("cut.stl", binary.substr(0, binary.size() - 60)),
+                    Contains("12 triangles by its header, and with bytes for 10"));
+}
+
+namespace {
+template <class Number>
+void append_number(std::string& bytes, double value, bool is_big_endian) {
+  const auto number = static_cast<Number>(value);
+  std::string own(reinterpret_cast<const char*>(&number), sizeof number);
+  if (is_big_endian) {
+    std::ranges::reverse(own);
+  }
+  bytes += own;
+}
+struct PlyType {
+  const char* name;
+  void (*append)(std::string& bytes, double value, bool is_big_endian);
+};
+const std::vector<PlyType> coordinate_types{
+    {"char", append_number<std::int8_t>},   {"uint8", append_number<std::uint8_t>},
+    {"short", append_number<std::int16_t>}, {"int32", append_number<std::int32_t>},
+    {"float", append_number<float>},        {"float64", append_number<double>}};
+const std::vector<PlyType> index_types{
+    {"char", append_number<std::int8_t>},     {"uchar", append_number<std::uint8_t>},
+    {"short", append_number<std::int16_t>},   {"ushort", append_number<std::uint16_t>},
+    {"uint16", append_number<std::uint16_t>}, {"int", append_number<std::int32_t>},
+    {"uint", append_number<std::uint32_t>}};
+std::string ply_header(const std::string& format, const std::string& coordinate,
+                       const std::string& faces) {
+  std::string text = "ply\nformat " + format + " 1.0\ncomment a cube\nelement vertex 8\n";
+  for (const char* const axis : {"x", "y", "z"}) {
+    text += "property " + coordinate + " " + axis + "\n";
+  }
+  return text + faces + "end_header\n";
+}
+}  // namespace
+
+TEST_CASE("a PLY is read whatever the types of its coordinates and indices are",
+          "[protocols][surface]") {
+  const core::TriangleSurface cube = read_text("cube.obj", cube_obj(" ", ""));
+  for (const bool is_big_endian : {false, true}) {
+    const std::string format = is_big_endian ? "binary_big_endian" : "binary_little_endian";
+    for (const PlyType& coordinate : coordinate_types) {
+      for (const PlyType& index : index_types) {
+        INFO(format << " " << coordinate.name << " " << index.name);
+        std::string bytes =
+            ply_header(format, coordinate.name,
+                       std::string{"element face 6\nproperty uchar flags\nproperty list uchar "} +
+                           index.name + " vertex_indices\n");
+        for (int i = 0; i < 8; ++i) {
+          for (const int bit : {1, 2, 4}) {
+            coordinate.append(bytes, (i & bit) != 0 ? 100.0 : 0.0, is_big_endian);
+          }
+        }
+        for (const auto& side : cube_sides) {
+          bytes += "\x01\x04";
+          for (const int corner : side) {
+            index.append(bytes, corner, is_big_endian);
+          }
+        }
+        CHECK(are_equal(read_text("cube.ply", bytes), cube));
+      }
+    }
+  }
+}
+
+TEST_CASE("a PLY of triangle strips is read, each triangle facing as the strip does",
+          "[protocols][surface]") {
+  // round the four walls, then the two ends
+  const std::string text =
+      ply_header("ascii", "float", "element tristrips 1\nproperty list int int vertex_indices\n") +
+      cube_points("", " ", "\n") + "20 0 4 1 5 3 7 2 6 0 4 -1 0 1 2 3 -1 4 6 5 7\n";
+  const core::TriangleSurface strips = read_text("strips.ply", text, 0.001);
+  CHECK(strips.triangles.rows() == 12);
+  CHECK(std::abs(core::volume_m3(strips)) == Approx(1e-3));
+}
+
+TEST_CASE("a PLY that is none is refused with what was found", "[protocols][surface]") {
+  const std::string faces = "element face 1\nproperty list uchar int vertex_indices\n";
+  const auto refused = [](const std::string& text, const std::string& message) {
+    CHECK_THROWS_WITH(read_text("body.ply", text), Contains(message));
+  };
+  refused("solid", "a PLY begins with a line 'ply'");
+  refused("ply\nformat ascii 1.0\nelement vertex 8\n", "does not end (end_header)");
+  refused(ply_header("text", "float", faces), "its format is 'text'");
+  refused(ply_header("ascii", "real", faces), "body.ply:5: the type 'real'");
+  refused(ply_header("ascii", "float", faces) + "0 0 0 1", "ends in vertex 1 of 8");
+  refused(ply_header("ascii", "float", faces) + cube_points("", " ", "\n") + "3 0 1 8\n",
+          "face 0 has the corner 8 (numbered from 0, of 8 points)");
+  refused(ply_header("ascii", "float", "") + cube_points("", " ", "\n"),
+          "holds 8 points and no face");
+}
+
+TEST_CASE("another format is refused with the program that converts it", "[protocols][surface]") {
+  for (const char* const name : {"body.3mf", "body.gltf", "body.GLB"}) {
+    CHECK_THROWS_WITH(read_text(name, "x"),
+                      Contains(std::string{"assimp export "} + name + " body.ply"));
+  }
+  CHECK_THROWS_WITH(read_text("body.step", "x"), Contains("gmsh body.step -2 -o body.stl"));
+  CHECK_THROWS_WITH(read_text("body.doc", "x"), Contains(".stl, .ply, .off, .obj"));
+}
+
+TEST_CASE("equal surfaces are equal bodies, to the last digit", "[protocols][surface][model]") {
+  const core::TriangleSurface in_mm = testing::box_surface({301.7, 202.3, 20.1}, 2);
+  core::TriangleSurface in_m = in_mm;
+  for (double& x : in_m.points_m.reshaped()) {
+    x = std::round(x * 100.0) / 1e5;
+  }
+  core::TriangleSurface shuffled = in_mm;
+  shuffled.triangles = in_mm.triangles.colwise().reverse().eval();
+  for (auto triangle : shuffled.triangles.rowwise()) {
+    triangle = Eigen::RowVector3i{triangle[1], triangle[2], triangle[0]};
+  }
+  const auto modes = [](const std::string& name, const std::string& text, double metres_per_unit) {
+    core::BodySpec body{{core::Solid{protocols::read_surface(protocols::surface_source(name, text),
+                                                             metres_per_unit)},
+                         {},
+                         {}},
+                        0.3,
+                        3.0};
+    body.mesh.size.max_tet_volume_m3 = 1e-5;
+    core::Fixation left;
+    left.shape = core::RegionShape::side;
+    left.side = core::Side::left;
+    body.fixations = {left};
+    return core::solve_body(body).modes.kappa_rad_per_m.eval();
+  };
+  const Eigen::ArrayXd ascii = modes("body.stl", as_ascii_stl(in_mm), 0.001);
+  REQUIRE(ascii.size() > 2);
+  const auto same = [&](const Eigen::ArrayXd& other) {
+    return other.size() == ascii.size() && (other == ascii).all();
+  };
+  CHECK(same(modes("metres.stl", as_ascii_stl(in_m), 1.0)));
+  CHECK(same(modes("binary.stl", as_binary_stl(in_mm), 0.001)));
+  CHECK(same(modes("binary_metres.stl", as_binary_stl(in_m), 1.0)));
+  CHECK(same(modes("body.obj", as_obj(in_mm), 0.001)));
+  CHECK(same(modes("metres.ply", as_ply(in_m), 1.0)));
+  CHECK(same(modes("shuffled.stl", as_ascii_stl(shuffled), 0.001)));
 }
 
 TEST_CASE("files that are no surface are refused with their name", "[core][surface]") {
@@ -321,4 +570,12 @@ TEST_CASE("a surface is turned about its vector, then moved; beside it is its ne
   const Eigen::Vector2d beside{usual.high_m.x() + 1.0, 0.0};
   REQUIRE_FALSE(top.at_m(beside));
   CHECK_THAT(top.describe_touchable(beside), Contains("nearest place is ("));
+}
+
+TEST_CASE("a mesh that would be too large is refused with what would help, not with keys unset",
+          "[protocols][surface][slow]") {
+  const core::Shape sheet = core::Solid{testing::box_surface({1.0, 1.0, 0.003})};
+  CHECK_THROWS_WITH(core::mesh_shape(sheet, {}, {}),
+                    Contains("mesh.radius_edge_ratio: 2 in place of 1.414") &&
+                        !Contains("larger than"));
 }

@@ -1,0 +1,33 @@
+#include "runner/studies/study_summary.hpp"
+
+#include "protocols/reader/read_protocol.hpp"
+#include "support/catch.hpp"
+#include "support/texts.hpp"
+using namespace tapstudy;
+
+namespace {
+std::vector<std::string> said_of(const std::string& technique,
+                                 const std::vector<std::string>& versions) {
+  const protocols::Protocol protocol = protocols::parse_protocol(
+      testing::replaced(testing::contents(testing::shipped("paper/discrimination.yaml")),
+                        "technique: fem", "technique: " + technique),
+      "study.yaml");
+  std::vector<results::SessionRow> sessions;
+  for (const std::string& version : versions) {
+    sessions.emplace_back().program_version = version;
+  }
+  return runner::rendered_by_earlier_versions(protocol, sessions);
+}
+}  // namespace
+
+TEST_CASE("a report says what earlier versions rendered otherwise, of the studies it concerns",
+          "[runner][report]") {
+  // 3000 N/m beside 3000 and 300 N/m in series
+  const auto said = said_of("fem-coupled", {"0.2.0", "0.1.0", "0.1.0", "0.1.7"});
+  REQUIRE(said.size() == 1);
+  CHECK_THAT(said.front(), Contains("sessions run by tapstudy 0.1.0, 0.1.7: fem-coupled") &&
+                               Contains("3273 N/m instead of 3000") &&
+                               Contains("the plate carried 8 % of the force"));
+  CHECK(said_of("fem-coupled", {"0.2.0", "0.10.0", "1.0.0", "of the future"}).empty());
+  CHECK(said_of("fem", {"0.1.0"}).empty());
+}

@@ -21,8 +21,9 @@ void SimulatedHand::hold(double seconds) {
 void SimulatedHand::start(TapPath path, double duration_s) {
   path_ = std::move(path);
   ticks_ = 0;
+  const Target start = path_.at(0.0);
+  aim_m_ = start.position_m;
   if (!has_started_) {
-    const Target start = path_.at(0.0);
     body_.place({start.position_m, start.velocity_m_s});
     has_started_ = true;
   }
@@ -41,9 +42,9 @@ core::TickFault SimulatedHand::write(const core::Vec3& force_n) noexcept {
   if (memory_ == Memory::kept && felt_.size() < felt_.capacity()) {
     felt_.push_back({body_.state(), force_n});
   }
-  const Target now = path_.at(static_cast<double>(ticks_) * dt_s_);
-  const Target next = path_.at(static_cast<double>(++ticks_) * dt_s_);
-  body_.move(now.position_m, next.position_m, force_n);
+  const core::Vec3 next_aim_m = path_.at(static_cast<double>(++ticks_) * dt_s_).position_m;
+  body_.move(aim_m_, next_aim_m, force_n);
+  aim_m_ = next_aim_m;
   return core::TickFault::none;
 }
 }  // namespace tapstudy::device

@@ -39,6 +39,7 @@ class SimulatedHand final : public Device {
   Memory memory_;
   TapPath path_{{}};
   std::int64_t ticks_{0};
+  core::Vec3 aim_m_{core::Vec3::Zero()};  // at this tick: where the muscle pulls the hand
   bool has_started_{false};
   core::Vec3 force_n_{core::Vec3::Zero()};
   std::vector<FeltTick> felt_;

@@ -4,6 +4,8 @@
 #include <sqlite3.h>
 
 #include <filesystem>
+#include <new>
+#include <utility>
 
 #include "results/store_error.hpp"
 namespace tapstudy::results {
@@ -114,14 +116,44 @@ std::int64_t Database::last_row_id() const {
   return sqlite3_last_insert_rowid(handle_.get());
 }
 
-void Statement::Finalise::operator()(sqlite3_stmt* handle) const {
+void Database::Finalise::operator()(sqlite3_stmt* handle) const {
   sqlite3_finalize(handle);
 }
 
-Statement::Statement(Database& database, const std::string& sql) : database_{&database} {
+Database::Prepared Database::prepared(const std::string& sql) {
+  if (const auto kept = kept_.find(sql); kept != kept_.end()) {
+    return std::move(kept_.extract(kept).mapped());
+  }
   sqlite3_stmt* handle = nullptr;
-  check(sqlite3_prepare_v2(database.handle_.get(), sql.c_str(), -1, &handle, nullptr));
-  handle_.reset(handle);
+  const int code = sqlite3_prepare_v3(handle_.get(), sql.c_str(), -1, SQLITE_PREPARE_PERSISTENT,
+                                      &handle, nullptr);
+  if (code != SQLITE_OK) {
+    throw failure(file_, handle_.get(), code);
+  }
+  return Prepared{handle};
+}
+
+// A statement left open would hold its rows' lock; texts and traces bound to it would stay in
+// memory.
+void Database::keep(Prepared statement) noexcept {
+  constexpr std::size_t most_kept = 64;
+  if (statement == nullptr || kept_.size() >= most_kept) {
+    return;
+  }
+  sqlite3_reset(statement.get());  // repeats the error of the last step, which has been thrown
+  sqlite3_clear_bindings(statement.get());
+  try {
+    std::string sql = sqlite3_sql(statement.get());
+    kept_.emplace(std::move(sql), std::move(statement));
+  } catch (const std::bad_alloc&) {  // NOLINT(bugprone-empty-catch): prepared anew next time
+  }
+}
+
+Statement::Statement(Database& database, const std::string& sql)
+    : database_{&database}, handle_{database.prepared(sql)} {}
+
+Statement::~Statement() {
+  database_->keep(std::move(handle_));
 }
 
 void Statement::check(int code) const {

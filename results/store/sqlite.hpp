@@ -2,6 +2,7 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -43,17 +44,29 @@ class Database {
     std::string path;
     int flags;
   };
+  struct Finalise {
+    void operator()(sqlite3_stmt* handle) const;
+  };
+  using Prepared = std::unique_ptr<sqlite3_stmt, Finalise>;
   Database(const Opening& opening, Access access);
+  // A statement that nobody uses, prepared now or kept from before.
+  Prepared prepared(const std::string& sql);
+  void keep(Prepared statement) noexcept;
   std::string file_;
   Access access_;
   std::unique_ptr<sqlite3, Close> handle_;
+  std::multimap<std::string, Prepared, std::less<>> kept_;  // preparing costs more than most rows
   std::unique_ptr<std::chrono::steady_clock::time_point> time_limit_;  // SQLite keeps its address
 };
 
-// Parameters are bound in order; columns are read by index, from 0.
+// Parameters are bound in order; columns are read by index, from 0. It ends before its database
+// does.
 class Statement {
  public:
   Statement(Database& database, const std::string& sql);
+  Statement(Statement&& other) = default;
+  Statement& operator=(Statement&& other) = delete;
+  ~Statement();
   Statement& bind(const std::string& text);
   Statement& bind(std::int64_t number);
   Statement& bind(int number) { return bind(static_cast<std::int64_t>(number)); }
@@ -94,11 +107,8 @@ class Statement {
     return is_null(column) ? std::nullopt : std::optional{(this->*read)(column)};
   }
   void check(int code) const;
-  struct Finalise {
-    void operator()(sqlite3_stmt* handle) const;
-  };
   Database* database_;
-  std::unique_ptr<sqlite3_stmt, Finalise> handle_;
+  Database::Prepared handle_;
   int bound_{0};
 };
 

@@ -61,7 +61,10 @@ void TraceCollector::drain() {
     if (watch_) {
       watch_(sample);
     }
-    pending_.push_back(sample);
+    ++collected_.ticks;
+    if (traced_ == Traced::whole) {
+      pending_.push_back(sample);
+    }
     if (pending_.size() == ticks_per_chunk) {
       pack();
     }
@@ -79,10 +82,7 @@ void TraceCollector::pack() {
     return;
   }
   const auto ticks = static_cast<std::int64_t>(pending_.size());
-  if (traced_ == Traced::whole) {
-    collected_.chunks.push_back({collected_.ticks, ticks, encode_trace(pending_)});
-  }
-  collected_.ticks += ticks;
+  collected_.chunks.push_back({collected_.ticks - ticks, ticks, encode_trace(pending_)});
   pending_.clear();
 }
 

@@ -17,6 +17,7 @@ void run_simulate(SimulatedStudy study, const std::string& participants) {
   study.participants = planned_participants(participants, protocol);
   check_trial_length(protocol);
   listen_for_stop();
+  study.progress = fmt::format("simulating {} participants", study.participants);
   const SimulatedTime time = simulate(study, protocol);
   fmt::print(
       "{} simulated participants, {} trials, {:.0f} s of tapping in {:.2f} s ({:.0f} × real "

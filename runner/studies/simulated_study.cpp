@@ -6,15 +6,15 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
-#include <exception>
 #include <iterator>
-#include <mutex>
+#include <optional>
 #include <set>
 #include <system_error>
 #include <thread>
 #include <vector>
 
 #include "analysis/statistics/quantiles.hpp"
+#include "analysis/statistics/resampling/replicates.hpp"
 #include "core/error.hpp"
 #include "core/random/rng.hpp"
 #include "device/device.hpp"
@@ -92,45 +92,6 @@ void run_participant(TrialEngine& engine, const protocols::Schedule& schedule) {
   }
 }
 
-// Workers take the next session until none is left or one of them has failed.
-class Workers {
- public:
-  using Work = std::function<void(const PlannedSession&)>;
-  static void share(const std::vector<PlannedSession>& sessions, const Work& work) {
-    Workers workers{sessions, work};
-    {
-      std::vector<std::jthread> threads;
-      // one more than there are processors: each waits while its trial is stored
-      for (unsigned int i = 0; i <= std::max(1U, std::thread::hardware_concurrency()); ++i) {
-        threads.emplace_back([&] { workers.run_worker(); });
-      }
-    }
-    if (workers.failure_) {
-      std::rethrow_exception(workers.failure_);
-    }
-  }
-
- private:
-  Workers(const std::vector<PlannedSession>& sessions, const Work& work)
-      : sessions_{sessions}, work_{work} {}
-  void run_worker() {
-    for (std::size_t i = next_++; i < sessions_.size() && !has_failed_; i = next_++) {
-      try {
-        work_(sessions_[i]);
-      } catch (...) {  // the first failure is thrown again on the calling thread
-        const std::lock_guard lock{mutex_};
-        failure_ = has_failed_.exchange(true) ? failure_ : std::current_exception();
-      }
-    }
-  }
-  const std::vector<PlannedSession>& sessions_;
-  const Work& work_;
-  std::atomic<std::size_t> next_{0};
-  std::atomic<bool> has_failed_{false};
-  std::mutex mutex_;
-  std::exception_ptr failure_;
-};
-
 struct Tapped {
   std::atomic<std::int64_t> ticks{0};
   std::atomic<int> trials{0};
@@ -167,20 +128,29 @@ void run_session(const SharedParts& shared, const PlannedSession& session,
 
 void run_sessions(const SharedParts& shared, const std::vector<PlannedSession>& sessions,
                   results::Store& store, Tapped& tapped) {
-  const Progress progress{fmt::format("{}simulating {} participants", shared.study.of_studies,
-                                      shared.study.participants)};
+  std::optional<Progress> progress;
+  if (!shared.study.progress.empty()) {
+    progress.emplace(shared.study.progress);
+  }
   results::Recorder recorder{store};
-  Workers::share(sessions, [&](const PlannedSession& session) {
-    run_session(shared, session, recorder, tapped);
-  });
+  // one more than there are processors: each waits while its trial is stored
+  const unsigned all = std::max(1U, std::thread::hardware_concurrency()) + 1;
+  analysis::parallel_for(
+      sessions.size(), shared.study.threads > 0 ? shared.study.threads : all,
+      [&](std::size_t i) { run_session(shared, sessions[i], recorder, tapped); });
 }
 }  // namespace
 
 SimulatedTime simulate(const SimulatedStudy& study, const protocols::Protocol& protocol) {
+  ModelLibrary models;
+  return simulate(study, protocol, models);
+}
+
+SimulatedTime simulate(const SimulatedStudy& study, const protocols::Protocol& protocol,
+                       ModelLibrary& models) {
   const auto start = std::chrono::steady_clock::now();
   const protocols::Rig rig = simulated_rig();
   const device::LoopSettings settings = loop_settings(protocol, rig);
-  ModelLibrary models;
   models.build_all(protocol);
   const bool is_new = !results::Store::has_database(study.directory);
   results::Store store =
@@ -229,14 +199,17 @@ ResultOfDesign result_of(const Found& found) {
   return result;
 }
 
-analysis::Summary summary_of_one(const SimulatedDesign& design, int study,
-                                 const protocols::Protocol& protocol) {
-  const std::uint64_t seed =
-      core::derived_seed(design.seed, core::Purpose::study, static_cast<std::uint64_t>(study));
+analysis::Summary summary_of_one(const SimulatedDesign& design, std::size_t study,
+                                 const protocols::Protocol& protocol, ModelLibrary& models) {
+  const std::uint64_t seed = core::derived_seed(design.seed, core::Purpose::study, study);
   const ScratchDirectory directory{seed};
-  simulate({design.protocol_file, directory.path(), design.participants, seed, false,
-            fmt::format("study {} of {}: ", study + 1, design.studies)},
-           protocol);
+  simulate({.protocol_file = design.protocol_file,
+            .directory = directory.path(),
+            .participants = design.participants,
+            .seed = seed,
+            .keeps_traces = false,
+            .threads = 1},
+           protocol, models);
   results::Store store = results::Store::open_existing(directory.path());
   return summary_of_study({{directory.path(), &store}}, results::Mode::simulated,
                           Detail::main_results);
@@ -245,10 +218,21 @@ analysis::Summary summary_of_one(const SimulatedDesign& design, int study,
 
 std::vector<ResultOfDesign> simulate_design(const SimulatedDesign& design,
                                             const protocols::Protocol& protocol) {
-  std::vector<Found> all;
-  for (int i = 0; i < design.studies; ++i) {
+  const auto studies = static_cast<std::size_t>(design.studies);
+  Progress progress{
+      fmt::format("simulating {} studies of {} participants", studies, design.participants)};
+  ModelLibrary models;
+  models.build_all(protocol);
+  std::vector<analysis::Summary> summaries(studies);
+  std::atomic<int> done{0};
+  analysis::parallel_for(studies, 0, [&](std::size_t i) {
     stop_if_asked();
-    for (const auto& block : summary_of_one(design, i, protocol).blocks) {
+    summaries[i] = summary_of_one(design, i, protocol, models);
+    progress.hook()(fmt::format("{} done", ++done));
+  });
+  std::vector<Found> all;
+  for (const analysis::Summary& summary : summaries) {
+    for (const auto& block : summary.blocks) {
       for (const analysis::MainResult& result : block->main_results) {
         auto known = std::ranges::find_if(all, [&](const Found& found) {
           return found.block == block->block && found.name == result.name;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "protocols/protocol.hpp"
+#include "runner/session/stimuli/model_library.hpp"
 namespace tapstudy::runner {
 // A directory for a simulated study of which only the results are kept. RAII: removed with all it
 // holds.
@@ -27,8 +28,9 @@ struct SimulatedStudy {
   std::string directory;
   int participants{};
   std::uint64_t seed{};
-  bool keeps_traces{true};   // otherwise events and answers only
-  std::string of_studies{};  // which of how many, for progress; empty: the only one
+  bool keeps_traces{true};  // otherwise events and answers only
+  std::string progress{};   // what to say of it on the terminal; empty: nothing
+  unsigned threads{};       // 0: as many as keep all processors busy
 };
 struct SimulatedTime {
   int trials{};
@@ -41,6 +43,9 @@ struct SimulatedTime {
 // same answers and forces to within 1e-9. Throws as TrialEngine::run and Store do, and InvalidInput
 // if one of the participants is already in the study.
 SimulatedTime simulate(const SimulatedStudy& study, const protocols::Protocol& protocol);
+// With the models of studies before, of the same protocol.
+SimulatedTime simulate(const SimulatedStudy& study, const protocols::Protocol& protocol,
+                       ModelLibrary& models);
 
 struct SimulatedDesign {
   std::string protocol_file;
@@ -61,8 +66,9 @@ struct ResultOfDesign {
   int significant{};  // of these, p < .05
 };
 
-// Simulates whole studies, each with other participants, and makes the report of each. Nothing is
-// kept on disk. Throws as simulate() and summary_of_study() do.
+// Simulates whole studies, each with other participants, and makes the report of each; as many at
+// once as there are processors. Nothing is kept on disk. Throws as simulate() and
+// summary_of_study() do.
 std::vector<ResultOfDesign> simulate_design(const SimulatedDesign& design,
                                             const protocols::Protocol& protocol);
 }  // namespace tapstudy::runner

@@ -15,7 +15,12 @@ void parallel_for(std::size_t count, unsigned threads,
   std::atomic<std::size_t> next{0};
   const auto work = [&] {
     for (std::size_t i = next++; i < count; i = next++) {
-      task(i);
+      try {
+        task(i);
+      } catch (...) {
+        next = count;  // nobody begins another one
+        throw;
+      }
     }
   };
   const std::size_t wanted = threads > 0 ? threads : std::thread::hardware_concurrency();

@@ -160,7 +160,8 @@ Predicted predicted(const Bench& bench, const Simulated& study, double noise_db)
   protocol.simulation.observer.noise_db = noise_db;
   const ScratchDirectory directory{bench.seed};
   simulate({study.file, directory.path(), study.participants, bench.seed, false,
-            fmt::format("{}, noise of {} dB: ", study.method, noise_db)},
+            fmt::format("{}, noise of {} dB: simulating {} participants", study.method, noise_db,
+                        study.participants)},
            protocol);
   const ConfusionMatrix printed = printed_table();
   Predicted result{noise_db, ConfusionMatrix{printed.stimuli, printed.responses}};

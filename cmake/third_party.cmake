@@ -57,6 +57,10 @@ target_link_libraries(sndfile::sndfile INTERFACE ${SNDFILE_LIBRARY})
 # Without the flags of threads that GLib's users also get: they are not those of the precompiled header.
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(LIBRSVG REQUIRED librsvg-2.0 cairo-pdf)
+pkg_check_modules(GLIB REQUIRED glib-2.0)  # which librsvg brings
+add_library(glib::glib INTERFACE IMPORTED)
+target_include_directories(glib::glib SYSTEM INTERFACE ${GLIB_INCLUDE_DIRS})
+target_link_libraries(glib::glib INTERFACE ${GLIB_LINK_LIBRARIES})
 add_library(librsvg::librsvg INTERFACE IMPORTED)
 target_include_directories(librsvg::librsvg SYSTEM INTERFACE ${LIBRSVG_INCLUDE_DIRS})
 target_link_libraries(librsvg::librsvg INTERFACE ${LIBRSVG_LINK_LIBRARIES})

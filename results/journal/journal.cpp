@@ -44,9 +44,18 @@ class LockedFile {
   int descriptor_;
 };
 
-bool is_written(int descriptor, const std::string& text, Journal::Flush flush) {
-  return core::write_all(descriptor, text) &&
-         (flush == Journal::Flush::when_asked || fsync(descriptor) == 0);
+// The bytes from `begin` to the file's end.
+std::string read_from(int descriptor, std::int64_t begin, const std::string& file) {
+  struct stat status {};
+  if (fstat(descriptor, &status) != 0) {
+    throw failure(file, "cannot be read");
+  }
+  std::string text(static_cast<std::size_t>(std::max<std::int64_t>(status.st_size - begin, 0)),
+                   '\0');
+  if (pread(descriptor, text.data(), text.size(), begin) != static_cast<ssize_t>(text.size())) {
+    throw failure(file, "cannot be read");
+  }
+  return text;
 }
 }  // namespace
 
@@ -56,8 +65,30 @@ std::string journal_file(const std::string& directory) {
 
 void Journal::flush() {
   const LockedFile file{file_};
-  if (fsync(file.descriptor()) != 0) {
-    throw failure(file_, "cannot be written");
+  flush(file.descriptor());
+}
+
+// A kernel that could not write a page says so once and takes it for written from then on: only
+// what is written again after a failure is flushed by the next fsync.
+void Journal::flush(int descriptor) {
+  if (flush_failed_) {
+    write_again(descriptor);
+  }
+  if (fsync(descriptor) != 0) {
+    flush_failed_ = true;
+    throw failure(file_, "writing failed");
+  }
+  flush_failed_ = false;
+  flushed_bytes_ = read_bytes_;
+}
+
+// In place: a program killed meanwhile takes nothing away.
+void Journal::write_again(int descriptor) {
+  const std::string text = read_from(descriptor, flushed_bytes_, file_);
+  const bool appends = fcntl(descriptor, F_SETFL, 0) != 0;  // NOLINT: the way of the C library
+  if (appends || pwrite(descriptor, text.data(), text.size(), flushed_bytes_) !=
+                     static_cast<ssize_t>(text.size())) {
+    throw failure(file_, "writing failed");
   }
 }
 
@@ -70,12 +101,9 @@ bool Journal::read_appended(int descriptor) {
     known_.clear();
     chain_.clear();
     read_bytes_ = 0;
+    flushed_bytes_ = 0;
   }
-  std::string text(static_cast<std::size_t>(status.st_size - read_bytes_), '\0');
-  if (pread(descriptor, text.data(), text.size(), read_bytes_) !=
-      static_cast<ssize_t>(text.size())) {
-    throw failure(file_, "cannot be read");
-  }
+  const std::string text = read_from(descriptor, read_bytes_, file_);
   std::size_t begin = 0;
   for (auto end = text.find('\n'); end != std::string::npos; end = text.find('\n', begin)) {
     const JournalLine line = split_line(text.substr(begin, end - begin));
@@ -115,7 +143,7 @@ bool Journal::complete(const std::function<StudyRow()>& study,
   for (const std::string& body : bodies) {
     text += chained(body);
   }
-  if (!text.empty() && !is_written(file.descriptor(), text, flush_)) {
+  if (!core::write_all(file.descriptor(), text)) {
     const StoreError error = failure(file_, "writing failed");
     chain_ = chain_before;
     static_cast<void>(!ftruncate(file.descriptor(), read_bytes_));  // else cut off when read next
@@ -123,6 +151,10 @@ bool Journal::complete(const std::function<StudyRow()>& study,
   }
   known_.insert(bodies.begin(), bodies.end());
   read_bytes_ += static_cast<std::int64_t>(text.size());
+  // also lines of a program that was killed, or whose disk failed, before it had flushed them
+  if (flush_ == Flush::each_time && flushed_bytes_ < read_bytes_) {
+    flush(file.descriptor());
+  }
   return true;
 }
 }  // namespace tapstudy::results

@@ -26,9 +26,9 @@ struct JournalEntries {
 std::string journal_file(const std::string& directory);
 
 // DIR/answers.journal: a second record of what was answered and of what the operator did, in plain
-// text, in case the database is lost. Only ever appended to, each line flushed to the disk: one
-// JSON object a line, the study first (with its protocol and surfaces), each session before its
-// answers. Each line ends with
+// text, in case the database is lost. Only ever appended to, each line flushed to the disk before
+// anybody is told that it is there, whoever wrote it: one JSON object a line, the study first (with
+// its protocol and surfaces), each session before its answers. Each line ends with
 //   "chain":"SHA-256 of the previous line's chain and of this line up to here"
 // so that a line that was changed, removed or inserted is noticed. Several programs may append at
 // once. A half line at the end, left by a power failure, was never confirmed and is cut off.
@@ -40,19 +40,25 @@ class Journal {
   // Throws StoreError if it cannot be written.
   void flush();
   // Appends what it does not hold yet; the study is asked for if it is new. Throws StoreError if it
-  // cannot be written; its end is then as it was before. False: nothing was appended, since lines
-  // that it once held are gone, with its file or its end; the next call begins with what is left.
+  // cannot be written: its end is then as it was before, or, where the line cannot be cut off or is
+  // not known to be on the disk, the next call writes and flushes it again. False: nothing was
+  // appended, since lines that it once held are gone, with its file or its end; the next call
+  // begins with what is left.
   bool complete(const std::function<StudyRow()>& study, const std::vector<SessionRow>& sessions,
                 const JournalEntries& entries);
 
  private:
   bool read_appended(int descriptor);  // false: it is another file now
   std::string chained(const std::string& body);
+  void flush(int descriptor);
+  void write_again(int descriptor);  // what is not known to be on the disk
   std::string file_;
   Flush flush_{Flush::each_time};
   std::set<std::string> known_;  // lines without their chain
   std::string chain_;            // of the last line known
   std::int64_t read_bytes_{0};
+  std::int64_t flushed_bytes_{0};  // of these, known to be on the disk
+  bool flush_failed_{false};
 };
 
 // The content of a study's journal. Reading throws StoreError with file and line where the chain is

@@ -144,6 +144,10 @@ Store::~Store() {
     return;
   }
   try {
+    journal_failed_calls();
+  } catch (const StoreError&) {  // NOLINT(bugprone-empty-catch): whoever opens it next does
+  }
+  try {
     // extra: of this change, too, a power failure leaves nothing to roll back
     database_.run("PRAGMA synchronous = EXTRA; PRAGMA journal_mode = DELETE");
   } catch (const StoreError&) {  // NOLINT(bugprone-empty-catch): another process has it open

@@ -122,6 +122,7 @@ class Store {
   void rewrite_database();
   void check_is_in_place(const TrialRow& trial);
   void add_to_journal(const TrialRecord& record);
+  void journal_failed_calls();
   void journal(const JournalEntries& entries, std::int64_t session_id);
   void insert_action(const OperatorActionRow& action);
   int insert_correction(const CorrectionRow& correction);  // which of the trial's, from 1

@@ -137,6 +137,7 @@ SaveOutcome Store::add_trial(const TrialRecord& record) {
 }
 
 void Store::add_to_journal(const TrialRecord& record) {
+  journal_failed_calls();
   if (record.response && record.trial.status == TrialStatus::answered) {
     journal({.answers = {{record.trial, record.alternatives, *record.response}}},
             record.trial.session_id);
@@ -338,7 +339,17 @@ void Store::insert_action(const OperatorActionRow& action) {
 }
 
 // Rows that are in the database, but whose journalling failed, are journalled by the next call of
-// any kind; the call that is made again for them finds them here and inserts nothing.
+// any kind, the last time when the store is closed.
+void Store::journal_failed_calls() {
+  for (FailedCall& one : failed_calls_) {
+    if (!one.is_journalled) {
+      journal(one.entries, one.session_id);
+      one.is_journalled = true;
+    }
+  }
+}
+
+// The call that is made again for rows that are in the database finds them and inserts nothing.
 void Store::add_and_journal(JournalEntries entries, std::int64_t session_id,
                             const std::function<void(JournalEntries&)>& insert) {
   const std::vector<std::string> what = to_lines(entries);
@@ -351,12 +362,7 @@ void Store::add_and_journal(JournalEntries entries, std::int64_t session_id,
   if (journal_) {
     check_has_not_moved();
   }
-  for (FailedCall& one : failed_calls_) {
-    if (!one.is_journalled) {
-      journal(one.entries, one.session_id);
-      one.is_journalled = true;
-    }
-  }
+  journal_failed_calls();
   std::erase_if(failed_calls_, [&](const FailedCall& one) { return one.lines == what; });
 }
 

@@ -32,6 +32,7 @@ struct ReportOptions {
   std::vector<std::string> compared;
   TableOptions table;
   std::string responses;
+  std::string order;
   std::string time_unit;
   std::string out;
   std::string mode;
@@ -132,12 +133,14 @@ void check_output_is_new(const ReportOptions& options) {
 
 bool reads_columns(const ReportOptions& options) {
   return options.table.columns.are_given() || !options.table.conditions.empty() ||
-         !options.responses.empty();
+         !options.responses.empty() || !options.order.empty() || !options.table.encoding.empty() ||
+         options.table.merges_alike || options.table.pools_runs;
 }
 
 TableOptions table_options(const ReportOptions& options) {
   TableOptions table = options.table;
   table.responses = split_row(options.responses, "--responses");
+  table.order = split_row(options.order, "--order");
   if (!options.time_unit.empty()) {
     table.columns.time_unit_s = options.time_unit == "ms" ? 1e-3 : 1.0;
   }
@@ -178,8 +181,8 @@ void check_options(const ReportOptions& options) {
   }
   if (!options.directories.empty() && reads_columns(options)) {
     throw core::InvalidInput{
-        "--stimulus-column, --response-column, --participant-column, --time-column, --where and "
-        "--responses say how to read --counts FILE.csv"};
+        "options with columns, --where, --responses, --order, --weights, --encoding, --merge-alike "
+        "and --pool-runs say how to read --counts FILE.csv"};
   }
   if (options.directories.size() > 1 && options.out.empty()) {
     throw core::InvalidInput{"--out: a report of several directories needs one of its own"};
@@ -228,6 +231,23 @@ void add_report(CommandParser& line) {
   command.option("--responses", options->responses,
                  "With --counts: answers that are no stimuli, and GIVEN=STIMULUS for what answers "
                  "stand for, comma-separated");
+  command.option(
+      "--weights", columns.weight,
+      "With --counts: the column that says how many answers a row stands for; none: one");
+  command.option(
+      "--correct-column", columns.correct,
+      "With --counts: whether the file takes the answer for right, which is compared with "
+      "the names; none: not compared");
+  command.option("--order", options->order,
+                 "With --counts: of stimuli and answers, comma-separated; default: as they first "
+                 "appear");
+  command.option("--encoding", options->table.encoding,
+                 "With --counts: of the file, as iconv calls it (UTF-16, windows-1252); default: "
+                 "UTF-8");
+  command.flag("--merge-alike", options->table.merges_alike,
+               "With --counts: names that read alike are one, the first of them");
+  command.flag("--pool-runs", options->table.pools_runs,
+               "With --counts: several runs of one participant count together");
   command.option("--out", options->out, "Output directory; default: the study's own");
   command.one_of("--mode", options->mode, {"real", "pilot", "simulated"},
                  "Which sessions: real, pilot or simulated");

@@ -13,6 +13,7 @@
 
 #include "analysis/report/answer_tables/answer_table.hpp"
 #include "analysis/report/answer_tables/counts_csv.hpp"
+#include "analysis/report/answer_tables/foreign_text.hpp"
 #include "core/error.hpp"
 #include "protocols/tasks/task.hpp"
 namespace tapstudy::runner {
@@ -20,15 +21,18 @@ namespace {
 using analysis::NamedCsv;
 using analysis::Summary;
 
-NamedCsv read_file(const std::string& file) {
+NamedCsv read_file(const std::string& file, const std::string& encoding) {
   std::ifstream text{file};
   if (!text) {
     throw core::InvalidInput{file + ": cannot be read"};
   }
-  std::string bytes = analysis::table_text(text, file);
+  std::string bytes = analysis::utf8_of(analysis::table_text(text, file), encoding, file);
   const bool is_json = analysis::is_json_list(bytes);
   std::istringstream whole{std::move(bytes)};
-  return {file, is_json ? analysis::read_json_rows(whole, file) : analysis::read_csv(whole, file)};
+  NamedCsv table{file,
+                 is_json ? analysis::read_json_rows(whole, file) : analysis::read_csv(whole, file)};
+  analysis::drop_further_headers(table.text);
+  return table;
 }
 
 std::pair<std::string, std::string> split(const std::string& text) {
@@ -48,6 +52,9 @@ analysis::AnswerReading reading_of(const TableOptions& options) {
     const auto [column, value] = split(condition);
     reading.conditions.push_back({column, value});
   }
+  reading.order = options.order;
+  reading.merges_alike = options.merges_alike;
+  reading.pools_runs = options.pools_runs;
   for (const std::string& response : options.responses) {
     reading.responses.insert(split(response));
   }
@@ -83,14 +90,34 @@ void check_differ(const std::vector<NamedCsv>& tables) {
   }
 }
 
+void add_unanswered(const analysis::AnswerTable& table, Summary& summary) {
+  std::size_t all = 0;
+  std::vector<std::string> kinds;
+  for (const auto& [cell, count] : table.unanswered) {
+    all += count;
+    kinds.push_back(fmt::format("{} '{}'", count, cell));
+  }
+  if (all > 0) {
+    summary.deviations.push_back(fmt::format("{} of {} rows have no answer and are left out: {}",
+                                             all, table.rows, fmt::join(kinds, ", ")));
+  }
+}
+
 Summary summary_of_answers(const std::vector<NamedCsv>& tables, const TableOptions& options,
                            const std::string& title) {
   const analysis::AnswerTable table = analysis::read_answers(tables, reading_of(options));
   Summary summary = analysis::summarise(table, title, protocols::identification().name(),
                                         modes_of(tables, table.modes));
-  if (table.unanswered > 0) {
+  add_unanswered(table, summary);
+  if (!table.weight_column.empty()) {
     summary.deviations.push_back(
-        fmt::format("{} of {} rows have no answer and are left out", table.unanswered, table.rows));
+        fmt::format("rows count as often as column '{}' says: {} rows are {} answers",
+                    table.weight_column, table.rows, table.answers.size()));
+  }
+  std::ranges::copy(table.merged, std::back_inserter(summary.deviations));
+  if (!table.pooled.empty()) {
+    summary.deviations.push_back(
+        fmt::format("several runs are pooled of participants {}", fmt::join(table.pooled, ", ")));
   }
   if (table.not_counted > 0) {
     summary.deviations.push_back(
@@ -121,7 +148,7 @@ Summary summary_of_answers(const std::vector<NamedCsv>& tables, const TableOptio
 Summary summary_of_tables(const std::vector<std::string>& files, const TableOptions& options) {
   std::vector<NamedCsv> tables;
   for (const std::string& file : files) {
-    tables.push_back(read_file(file));
+    tables.push_back(read_file(file, options.encoding));
   }
   check_differ(tables);
   const std::string title = std::filesystem::path{files.front()}.stem().string();

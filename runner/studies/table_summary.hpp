@@ -10,6 +10,10 @@ struct TableOptions {
   analysis::AnswerColumns columns{};
   std::vector<std::string> conditions{};  // "COLUMN=VALUE"
   std::vector<std::string> responses{};   // "ANSWER" that is no stimulus, "GIVEN=ANSWER"
+  std::vector<std::string> order{};       // of stimuli and responses
+  std::string encoding{};                 // as iconv calls it; empty: UTF-8
+  bool merges_alike{false};
+  bool pools_runs{false};
 };
 
 // The summary of a confusion matrix, or of answers one a row, whose participants are named by a

@@ -36,6 +36,8 @@ namespace {
 constexpr int exchanges_a_trial = 500;
 constexpr int exchanges_to_home = 300;
 constexpr int exchanges_a_tap = 200;
+constexpr int firm_pull_dac_counts = 50;  // more than the tension of strings at rest
+constexpr int enough_without_force = 51;
 constexpr unsigned max_run_s = 90;
 
 struct Options {
@@ -43,15 +45,16 @@ struct Options {
   int boards{1};
   double tick_s{2e-3};
   bool is_forbidden{false};
-  int kill_after{0};
+  // Troubles come in that trial, once a string is pulled; 0: never.
+  int kill_in_trial{0};
   int signal{SIGKILL};
-  int stop_after{0};
-  int kill_guardian_after{0};
-  int unplug_after{0};
-  int amplifier_off_after{0};
-  int halt_after{0};
-  int hang_after{0};
-  int nak_after{0};
+  int stop_in_trial{0};
+  int kill_guardian_in_trial{0};
+  int unplug_in_trial{0};
+  int amplifier_off_in_trial{0};
+  int halt_in_trial{0};
+  int hang_in_trial{0};
+  int nak_in_trial{0};
   bool is_silent{false};
   bool answers_nonsense{false};
   std::vector<std::string> command;
@@ -92,6 +95,7 @@ class Lab {
       stopped_.join();
     }
     nlohmann::json report{{"exit_code", code},
+                          {"requests_before_trouble", requests_before_trouble_.load()},
                           {"without_force_while_stopped", without_force_while_stopped_.load()}};
     for (const auto& board : boards_) {
       const MockedBoard::Log log = board->log();
@@ -175,7 +179,7 @@ class Lab {
       }
       is_tapping_ = false;
       switch_amplifier(true);
-      if (options_.nak_after > 0 || options_.hang_after > 0) {
+      if (options_.nak_in_trial > 0 || options_.hang_in_trial > 0) {
         boards_.front()->take_again();
       }
       boards_.back()->set_heir(guardian());  // the device may have been opened anew
@@ -188,9 +192,11 @@ class Lab {
     } else if (unanswered_.ends_with("> ")) {
       if (!is_tapping_.exchange(true)) {
         trial_began_ = exchange_.load();
+        trial_ = answers_ + 1;  // one that was interrupted comes again
       } else if (exchange_ >= trial_began_ + exchanges_a_trial) {
         is_tapping_ = false;
         type(std::to_string(1 + dice_() % 4) + "\n");
+        ++answers_;
       }
     }
   }
@@ -221,7 +227,13 @@ class Lab {
       std::this_thread::sleep_for(std::chrono::microseconds{1300});
     }
     std::this_thread::sleep_for(std::chrono::seconds{1});
-    without_force_while_stopped_ = boards_.front()->log().requests_without_force_at_the_end;
+    const auto without_force = [this] {
+      return boards_.front()->log().requests_without_force_at_the_end;
+    };
+    for (int i = 0; i < 20 * patience && without_force() < enough_without_force; ++i) {
+      std::this_thread::sleep_for(std::chrono::milliseconds{1});  // the guardian may be slow
+    }
+    without_force_while_stopped_ = without_force();
     kill(child_, SIGCONT);
   }
 
@@ -245,30 +257,30 @@ class Lab {
     if (board > 0) {
       return;  // trouble comes to the first
     }
-    if (exchange == options_.kill_after) {
-      kill(child_, options_.signal);
+    if (const MockedBoard::Log log = boards_.front()->log();
+        requests_before_trouble_ == 0 && is_tapping_ && log.dac_counts > firm_pull_dac_counts) {
+      trouble(log.requests);
     }
-    if (exchange == options_.stop_after && !stopped_.joinable()) {
-      stopped_ = std::thread{[this] { suspend_for_a_while(); }};
-    }
-    if (exchange == options_.kill_guardian_after) {
-      kill(guardian(), SIGKILL);
-    }
-    if (exchange == options_.unplug_after) {
-      boards_.front()->unplug();
-    }
-    if (exchange == options_.halt_after) {
-      boards_.front()->halt();
-    }
-    if (exchange == options_.hang_after) {
-      boards_.front()->hang();
-    }
-    if (exchange == options_.nak_after) {
-      boards_.front()->stop_taking();
-    }
-    if (exchange == options_.amplifier_off_after) {
-      switch_amplifier(false);
-    }
+  }
+
+  // However late this process and the program are, a string is pulled now.
+  void trouble(int requests) {
+    const auto come = [&](int in_trial, const auto& act) {
+      if (in_trial > 0 && in_trial == trial_) {
+        requests_before_trouble_ = requests;
+        act();
+      }
+    };
+    MockedBoard& board = *boards_.front();
+    come(options_.kill_in_trial, [&] { kill(child_, options_.signal); });
+    come(options_.stop_in_trial,
+         [&] { stopped_ = std::thread{[this] { suspend_for_a_while(); }}; });
+    come(options_.kill_guardian_in_trial, [&] { kill(guardian(), SIGKILL); });
+    come(options_.unplug_in_trial, [&] { board.unplug(); });
+    come(options_.halt_in_trial, [&] { board.halt(); });
+    come(options_.hang_in_trial, [&] { board.hang(); });
+    come(options_.nak_in_trial, [&] { board.stop_taking(); });
+    come(options_.amplifier_off_in_trial, [&] { switch_amplifier(false); });
   }
 
   Options options_;
@@ -281,7 +293,10 @@ class Lab {
   std::atomic<bool> is_tapping_{false};
   std::atomic<int> exchange_{0};
   std::atomic<int> taps_from_exchange_{-1};
+  std::atomic<int> trial_{0};  // that is on the screen, from 1
+  std::atomic<int> requests_before_trouble_{0};
   int trial_began_{0};
+  int answers_{0};
   std::mt19937 dice_{5};
   std::thread stopped_;
   std::atomic<int> without_force_while_stopped_{0};
@@ -296,15 +311,15 @@ int main(int count, char** words) {
   app.add_option("--boards", options.boards);
   app.add_option("--tick-s", options.tick_s);
   app.add_flag("--forbidden", options.is_forbidden);
-  app.add_option("--kill-after", options.kill_after);
+  app.add_option("--kill-in-trial", options.kill_in_trial);
   app.add_option("--signal", options.signal);
-  app.add_option("--stop-after", options.stop_after);
-  app.add_option("--kill-guardian-after", options.kill_guardian_after);
-  app.add_option("--unplug-after", options.unplug_after);
-  app.add_option("--amplifier-off-after", options.amplifier_off_after);
-  app.add_option("--halt-after", options.halt_after);
-  app.add_option("--hang-after", options.hang_after);
-  app.add_option("--nak-after", options.nak_after);
+  app.add_option("--stop-in-trial", options.stop_in_trial);
+  app.add_option("--kill-guardian-in-trial", options.kill_guardian_in_trial);
+  app.add_option("--unplug-in-trial", options.unplug_in_trial);
+  app.add_option("--amplifier-off-in-trial", options.amplifier_off_in_trial);
+  app.add_option("--halt-in-trial", options.halt_in_trial);
+  app.add_option("--hang-in-trial", options.hang_in_trial);
+  app.add_option("--nak-in-trial", options.nak_in_trial);
   app.add_flag("--silent", options.is_silent);
   app.add_flag("--nonsense", options.answers_nonsense);
   char** const end = words + count;

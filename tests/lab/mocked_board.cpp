@@ -200,14 +200,13 @@ bool MockedBoard::pass_on(UMockdevIoctlClient* client) {
 
 Bytes MockedBoard::answer(std::span<const std::uint8_t> request) {
   ++log_.requests;
-  bool has_force = false;
+  log_.dac_counts = 0;
   for (std::size_t i = 2; i + 1 < std::min<std::size_t>(request.size(), 18); i += 2) {
-    const int dac_counts = request[i] | request[i + 1] << 8;
-    log_.max_dac_counts = std::max(log_.max_dac_counts, dac_counts);
-    has_force = has_force || dac_counts != 0;
+    log_.dac_counts = std::max(log_.dac_counts, request[i] | request[i + 1] << 8);
   }
+  log_.max_dac_counts = std::max(log_.max_dac_counts, log_.dac_counts);
   log_.requests_without_force_at_the_end =
-      has_force ? 0 : log_.requests_without_force_at_the_end + 1;
+      log_.dac_counts != 0 ? 0 : log_.requests_without_force_at_the_end + 1;
   return hardware_.answer(request);
 }
 

@@ -26,6 +26,7 @@ class MockedBoard : private testing::UsbBoard {
  public:
   struct Log {
     int requests{0};
+    int dac_counts{0};  // the largest of the last request
     int max_dac_counts{0};
     int requests_without_force_at_the_end{0};
   };

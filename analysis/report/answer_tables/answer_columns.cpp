@@ -28,6 +28,8 @@ struct AnswerFormat {
   Names participant;
   Names time;
   double time_unit_s;
+  Names correct;
+  Names runs;
   std::vector<RowCondition> counted{};  // of the columns that there are
   std::string_view block{};
 };
@@ -40,6 +42,8 @@ const std::vector<AnswerFormat>& formats() {
        {"participant_id"},
        {"response_time_s"},
        1.0,
+       {"is_correct"},
+       {},  // a session that was resumed is no second run
        {{"is_practice", "0"},
         {"is_catch", "0"},
         {"is_excluded", "0"},
@@ -47,20 +51,31 @@ const std::vector<AnswerFormat>& formats() {
         {"status", "answered"}},
        "block"},
       // psychopy.org, "Long-wide" data files
-      {{"expName", "psychopyVersion"}, {"stimulus"}, {".keys"}, {"participant"}, {".rt"}, 1.0},
+      {{"expName", "psychopyVersion"},
+       {"stimulus"},
+       {".keys"},
+       {"participant"},
+       {".rt"},
+       1.0,
+       {},  // X.corr beside X.keys
+       {"date", "session"}},
       // jspsych.org, "Data storage": rt and time_elapsed are in milliseconds
       {{"trial_type", "trial_index", "time_elapsed"},
        {"stimulus"},
        {"response"},
        {"participant_id", "participant", "subject_id", "subject"},
        {"rt"},
-       1e-3},
+       1e-3,
+       {"correct"},
+       {"run_id", "session_id", "date", run_of_file}},
       {{},
        {"stimulus"},
        {"response"},
        {"participant_id", "participant", "subject_id", "subject", "subject_nr", "ppid"},
        {"response_time_s"},
-       1.0}};
+       1.0,
+       {"correct", "is_correct", "accuracy", "acc", "corr"},
+       {"date", "session", "session_id", "run", "run_id", run_of_file}}};
   return table;
 }
 
@@ -144,6 +159,52 @@ double unit_in(std::string_view name, double otherwise) {
 }
 }  // namespace
 
+bool is_share(const std::string& name) {
+  static constexpr std::array known{"percent",    "percentage", "pct",   "%",          "share",
+                                    "proportion", "prop",       "p.hat", "probability"};
+  return std::ranges::any_of(known, [&](const char* word) { return is_same_word(name, word); });
+}
+
+namespace {
+constexpr std::array weights{"n", "freq", "frequency", "count", "counts", "weight", "weights"};
+
+// The column of that option; a column of a usual name that is there twice is none.
+std::optional<std::size_t> optional_column(const Header& header, const std::string& chosen,
+                                           const Names& usual, const std::string& where) {
+  if (!chosen.empty()) {
+    return chosen == no_column ? std::nullopt
+                               : std::optional{place_of_named(header, chosen, where)};
+  }
+  for (const std::string_view name : usual) {
+    const std::vector<std::string> found = columns_like(header, name);
+    if (found.size() == 1) {
+      return place_of_named(header, found.front(), where);
+    }
+  }
+  return std::nullopt;
+}
+
+void find_what_rows_say(const Header& header, const AnswerColumns& chosen,
+                        const AnswerFormat& format, const std::string& where,
+                        AnswerPlaces& places) {
+  if (!places.is_own_export || !chosen.weight.empty()) {
+    places.weight = optional_column(header, chosen.weight, {weights.begin(), weights.end()}, where);
+  }
+  const std::string& answered = header[places.response];
+  const std::string beside = answered.substr(0, answered.rfind('.')) + ".corr";
+  Names correct = format.correct;
+  if (answered.ends_with(".keys")) {
+    correct = {beside};
+  }
+  places.correct = optional_column(header, chosen.correct, correct, where);
+  for (const std::string_view name : format.runs) {
+    if (const auto place = optional_column(header, "", {name}, where)) {
+      places.runs.push_back(*place);
+    }
+  }
+}
+}  // namespace
+
 AnswerPlaces find_columns(const Header& header, const AnswerColumns& chosen,
                           const std::string& where) {
   const AnswerFormat& format = format_of(header);
@@ -179,6 +240,8 @@ AnswerPlaces find_columns(const Header& header, const AnswerColumns& chosen,
                                [&](const char* known) { return is_same_word(name, known); });
   });
   places.possible_time = places.time || usual == header.end() ? "" : *usual;
+  places.is_own_export = !format.block.empty();
+  find_what_rows_say(header, chosen, format, where, places);
   return places;
 }
 

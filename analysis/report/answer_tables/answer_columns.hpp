@@ -11,11 +11,17 @@ struct AnswerColumns {
   std::string response{};
   std::string participant{};
   std::string time{};
-  double time_unit_s{};  // 0: the format's
+  double time_unit_s{};   // 0: the format's
+  std::string weight{};   // how many answers a row stands for; `no_column`: one
+  std::string correct{};  // whether the file takes the answer for right; `no_column`: not looked at
   bool are_given() const {
-    return !(stimulus.empty() && response.empty() && participant.empty() && time.empty());
+    return !(stimulus.empty() && response.empty() && participant.empty() && time.empty() &&
+             weight.empty() && correct.empty());
   }
 };
+
+inline constexpr const char* no_column = "none";
+inline constexpr const char* run_of_file = "run of the file";
 
 // A column and the value that it must have.
 struct RowCondition {
@@ -36,7 +42,15 @@ struct AnswerPlaces {
   std::vector<std::pair<std::size_t, std::string>> counted{};
   std::optional<std::size_t> block{};
   std::string possible_time{};  // a column that may hold times, of an unknown unit; empty: none
+  std::optional<std::size_t> weight{};  // as chosen, or by its name
+  std::optional<std::size_t> correct{};
+  // By their names they tell runs of one participant apart.
+  std::vector<std::size_t> runs{};
+  bool is_own_export{};
 };
+
+// Whether a column of that name holds shares, which are no counts.
+bool is_share(const std::string& name);
 
 // Formats are told apart by columns that no other has: tapstudy's own exports, PsychoPy's wide CSV
 // (answers are keys of the one keyboard component), jsPsych's CSV (times in milliseconds), and any

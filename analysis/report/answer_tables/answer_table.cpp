@@ -7,7 +7,9 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <iterator>
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <set>
 #include <span>
 #include <string_view>
@@ -15,30 +17,25 @@
 #include <unordered_set>
 #include <utility>
 
+#include "analysis/report/answer_tables/answer_checks.hpp"
 #include "analysis/report/answer_tables/answer_columns.hpp"
 #include "analysis/report/answer_tables/counts_csv.hpp"
+#include "analysis/report/answer_tables/foreign_text.hpp"
 #include "core/error.hpp"
 #include "core/text/plain_text.hpp"
 namespace tapstudy::analysis {
 namespace {
-std::string without_spaces(const std::string& text) {
-  const auto first = text.find_first_not_of(' ');
-  return first == std::string::npos ? ""
-                                    : text.substr(first, text.find_last_not_of(' ') - first + 1);
-}
-
 // A misspelt name would be one more stimulus, or one more participant.
 void check_differ(const std::set<std::string>& names, const std::string& file) {
-  std::vector<std::pair<std::string, std::string>> known;  // without spaces, and as given
+  std::unordered_map<std::string, std::string> known;  // by what is read
   for (const std::string& name : names) {
-    const std::string bare = without_spaces(name);
-    const auto other = std::ranges::find_if(
-        known, [&](const auto& each) { return is_same_word(each.first, bare); });
-    if (other != known.end()) {
-      throw core::InvalidInput{fmt::format("{}: '{}' and '{}' differ only in case or spaces", file,
-                                           other->second, name)};
+    const auto [other, is_new] = known.emplace(as_read(name), name);
+    if (!is_new) {
+      throw core::InvalidInput{
+          fmt::format("{}: '{}' and '{}' read alike (they differ in case, spaces, zeros before a "
+                      "number or how letters are composed): --merge-alike makes them one",
+                      file, other->second, name)};
     }
-    known.emplace_back(bare, name);
   }
 }
 }  // namespace
@@ -71,19 +68,37 @@ void check_names(const std::vector<results::AnswerRow>& answers, const std::stri
 }
 
 namespace {
-constexpr std::array missing_values{"", "NA", "None", "null", "NaN", "nan"};
+constexpr std::array missing_values{"",     "NA",  "N/A", "n/a",       "None",
+                                    "null", "NaN", "nan", "undefined", "timeout"};
 
 bool is_missing(const std::string& cell) {
   return std::ranges::find(missing_values, cell) != missing_values.end();
 }
 
-// Where an answer was read.
-struct Origin {
-  const NamedCsv* csv{};
-  int line{};
-};
-std::string to_text(const Origin& origin) {
-  return origin.csv->text.place(origin.csv->file, origin.line);
+using Origin = AnswerOrigin;
+
+// Unset: says neither.
+std::optional<bool> right_or_wrong(const std::string& cell) {
+  constexpr std::array right{"1", "1.0", "true", "yes", "right", "correct"};
+  constexpr std::array wrong{"0", "0.0", "false", "no", "wrong", "incorrect"};
+  const auto is_one_of = [&](const auto& words) {
+    return std::ranges::any_of(words, [&](const char* word) { return is_same_word(cell, word); });
+  };
+  return is_one_of(right)   ? std::optional{true}
+         : is_one_of(wrong) ? std::optional{false}
+                            : std::nullopt;
+}
+
+// {"Q0": "oak"} is the answer to the one question of a survey.
+std::string only_answer_in(const std::string& cell) {
+  if (!cell.starts_with('{')) {
+    return cell;
+  }
+  const auto answers = nlohmann::ordered_json::parse(cell, nullptr, false);
+  if (!answers.is_object() || answers.size() != 1 || answers.front().is_structured()) {
+    return cell;
+  }
+  return answers.front().is_string() ? answers.front().get<std::string>() : answers.front().dump();
 }
 
 // Reads one file.
@@ -102,6 +117,15 @@ class AnswerReader {
       }
       conditions_.emplace_back(static_cast<std::size_t>(found - header().begin()), condition.value);
     }
+    // others hold something else: a share of right answers, the right answer itself
+    if (places_.correct &&
+        !std::ranges::all_of(std::span{csv.text.rows}.subspan(1), [&](const CsvRow& row) {
+          const std::string& cell =
+              row.cells.size() == header().size() ? row.cells[*places_.correct] : "";
+          return is_missing(cell) || right_or_wrong(cell);
+        })) {
+      places_.correct.reset();
+    }
   }
 
   bool names_participants() const { return places_.participant.has_value(); }
@@ -119,6 +143,12 @@ class AnswerReader {
     table.possible_time = places_.possible_time;
     table.has_times |= places_.time.has_value();
   }
+  // The column whose name says that it tells how many answers a row stands for; empty: none.
+  std::string weight_column() const { return places_.weight ? header()[*places_.weight] : ""; }
+  std::string share_column() const {
+    const auto found = std::ranges::find_if(header(), is_share);
+    return found == header().end() ? "" : *found;
+  }
 
  private:
   using Conditions = std::vector<std::pair<std::size_t, std::string>>;  // place and value
@@ -131,12 +161,36 @@ class AnswerReader {
     ++table.rows;
     if (!meets(places_.counted, row)) {
       ++table.not_counted;
-    } else if (is_missing(row.cells[places_.response])) {
-      ++table.unanswered;
+    } else if (is_unanswered(row.cells[places_.response])) {
+      ++table.unanswered[row.cells[places_.response]];
     } else {
       table.answers.push_back(answer_of(row));
-      origins.push_back({&csv_, row.line});
+      origins.push_back(
+          {&csv_, row.line,
+           places_.correct ? right_or_wrong(row.cells[*places_.correct]) : std::nullopt,
+           run_of(row), places_.weight ? weight_of(row) : 1});
     }
+  }
+  bool is_unanswered(const std::string& cell) const {
+    return is_missing(cell) && !reading_.responses.contains(cell);
+  }
+  std::string run_of(const CsvRow& row) const {
+    std::vector<std::string> parts;
+    for (const std::size_t place : places_.runs) {
+      parts.push_back(fmt::format("{} '{}'", header()[place], row.cells[place]));
+    }
+    return fmt::format("{}", fmt::join(parts, ", "));
+  }
+  std::int64_t weight_of(const CsvRow& row) const {
+    constexpr std::int64_t max_weight = 1'000'000;
+    const std::string& cell = row.cells[*places_.weight];
+    const auto weight = core::number_in<std::int64_t>(cell);
+    if (!weight || *weight < 0 || *weight > max_weight) {
+      refuse(row.line, fmt::format("'{}' in column '{}' is not a count of answers (from 0 to {}; "
+                                   "shares are no counts; --weights none: each row is one answer)",
+                                   cell, weight_column(), max_weight));
+    }
+    return *weight;
   }
   const std::vector<std::string>& header() const { return csv_.text.rows.front().cells; }
   [[noreturn]] void refuse(int line, const std::string& what) const {
@@ -149,7 +203,7 @@ class AnswerReader {
     answer.participant_id = places_.participant ? row.cells[*places_.participant]
                                                 : std::filesystem::path{csv_.file}.stem().string();
     answer.stimulus = row.cells[places_.stimulus];
-    const std::string& cell = row.cells[places_.response];
+    const std::string cell = only_answer_in(row.cells[places_.response]);
     if (is_missing(answer.stimulus) || is_missing(answer.participant_id)) {
       refuse(row.line,
              fmt::format("has an answer, '{}', but no {} (--where COLUMN=VALUE leaves rows out)",
@@ -176,7 +230,10 @@ class AnswerReader {
       return std::numeric_limits<double>::quiet_NaN();
     }
     const std::string& cell = row.cells[*places_.time];
-    const auto value = csv_.text.number(cell);
+    auto value = csv_.text.number(cell);
+    if (const std::size_t comma = cell.find(','); !value && comma != std::string::npos) {
+      value = core::number_in<double>(std::string{cell}.replace(comma, 1, "."));  // in quotes
+    }
     if (!value || !(*value >= 0.0 && std::isfinite(*value))) {
       refuse(row.line, fmt::format("'{}' in column '{}' is not a time from 0", cell,
                                    header()[*places_.time]));
@@ -190,7 +247,7 @@ class AnswerReader {
   Conditions conditions_;
 };
 
-std::vector<Item> items_of(const std::set<std::string>& names) {
+std::vector<Item> items_of(const std::vector<std::string>& names) {
   std::vector<Item> items;
   for (const std::string& name : names) {
     items.push_back({name, name, {}});
@@ -273,38 +330,165 @@ void check_is_one_block(const std::vector<results::AnswerRow>& answers,
 }
 }  // namespace
 
-AnswerTable read_answers(const std::vector<NamedCsv>& files, const AnswerReading& reading) {
-  AnswerTable table;
-  table.are_participants_known = files.size() > 1;
+namespace {
+// The column that rows are weighted by; empty: each is one answer. A table that was counted has one
+// row for each kind of answer; a trial's own number may be called n, too.
+std::string weight_column(const std::string& named, const AnswerTable& table,
+                          const std::vector<Origin>& origins, const AnswerReading& reading) {
+  if (named.empty() || !reading.columns.weight.empty()) {
+    return named;
+  }
+  std::int64_t next = 0;
+  const bool only_counts_rows =
+      std::ranges::all_of(origins, [&](const Origin& origin) { return origin.weight == ++next; });
+  if (only_counts_rows || !is_counted_already(table.answers)) {
+    throw core::InvalidInput{
+        fmt::format("{}: column '{}' may say how many answers a row stands for: --weights {}, or "
+                    "--weights none if each row is one answer",
+                    to_text(origins.front()), named, named)};
+  }
+  return named;
+}
+
+void check_are_no_shares(const std::string& column, const AnswerTable& table,
+                         const std::vector<Origin>& origins) {
+  if (!column.empty() && table.answers.size() > 1 && is_counted_already(table.answers)) {
+    throw core::InvalidInput{fmt::format(
+        "{}: column '{}' holds shares, which are no counts: a table of answers needs how often "
+        "each was given (--weights names that column; --weights none: each row is one answer)",
+        to_text(origins.front()), column)};
+  }
+}
+
+void weigh(const std::string& column, AnswerTable& table, std::vector<Origin>& origins) {
+  table.weight_column = column;
+  table.has_times = false;  // of several answers there is at most a mean
+  table.possible_time.clear();
+  for (results::AnswerRow& answer : table.answers) {
+    answer.response_time_s = std::numeric_limits<double>::quiet_NaN();
+  }
+  apply_weights(table.answers, origins);
+}
+
+// Each once, as they first appear.
+std::vector<std::string> by_appearance(const std::vector<results::AnswerRow>& answers,
+                                       std::string results::AnswerRow::*column,
+                                       std::vector<std::string> names = {}) {
+  std::unordered_set<std::string> known{names.begin(), names.end()};
+  for (const results::AnswerRow& answer : answers) {
+    if (known.insert(answer.*column).second) {
+      names.push_back(answer.*column);
+    }
+  }
+  return names;
+}
+
+// Throws InvalidInput for a name that is none and where one is missing.
+std::vector<std::string> in_order(std::vector<std::string> names,
+                                  const std::vector<std::string>& order) {
+  if (order.empty()) {
+    return names;
+  }
+  const auto place_of = [&](const std::string& name) {
+    return std::ranges::find(order, name) - order.begin();
+  };
+  const auto missing = std::ranges::find_if(
+      names, [&](const std::string& name) { return place_of(name) == std::ssize(order); });
+  if (missing != names.end()) {
+    throw core::InvalidInput{fmt::format("--order: lacks '{}'", *missing)};
+  }
+  std::ranges::sort(names, {}, place_of);
+  return names;
+}
+
+void check_order_names(const std::vector<std::string>& order,
+                       const std::set<std::string>& responses) {
+  for (const std::string& name : order) {
+    if (!responses.contains(name)) {
+      throw core::InvalidInput{
+          fmt::format("--order: '{}' is no stimulus and no answer (there are {})", name,
+                      fmt::join(responses, ", "))};
+    }
+  }
+}
+
+// Rows of all files, of one mode and one block.
+struct ReadRows {
   std::vector<Origin> origins;
+  std::string weight_column;
+  std::string share_column;
+};
+ReadRows read_rows(const std::vector<NamedCsv>& files, const AnswerReading& reading,
+                   AnswerTable& table) {
+  ReadRows read;
   std::size_t lines = 0;
   for (const NamedCsv& csv : files) {
     lines += csv.text.rows.size();
   }
   table.answers.reserve(lines);
-  origins.reserve(lines);
+  read.origins.reserve(lines);
   for (const NamedCsv& csv : files) {
     if (csv.text.rows.empty()) {
       throw core::InvalidInput{fmt::format("{}: is empty", csv.file)};
     }
     const AnswerReader reader{csv, reading};
     table.are_participants_known |= reader.names_participants();
-    reader.add_to(table, origins);
+    reader.add_to(table, read.origins);
+    read.weight_column = reader.weight_column();
+    read.share_column = reader.share_column();
   }
   if (table.answers.empty()) {
     throw core::InvalidInput{fmt::format("{}: holds no answers", files.front().file)};
   }
-  keep_one_mode(table, origins);
-  check_is_one_block(table.answers, origins);
+  keep_one_mode(table, read.origins);
+  check_is_one_block(table.answers, read.origins);
+  return read;
+}
+
+// What rows stand for, and whose they are.
+void weigh_rows(ReadRows& read, const AnswerReading& reading, AnswerTable& table) {
+  if (const std::string column = weight_column(read.weight_column, table, read.origins, reading);
+      !column.empty()) {
+    weigh(column, table, read.origins);
+  } else if (reading.columns.weight.empty()) {
+    check_are_no_shares(read.share_column, table, read.origins);
+  }
+  if (table.answers.empty()) {
+    throw core::InvalidInput{"the weights of all answers are 0"};
+  }
+}
+}  // namespace
+
+AnswerTable read_answers(const std::vector<NamedCsv>& files, const AnswerReading& reading) {
+  AnswerTable table;
+  table.are_participants_known = files.size() > 1;
+  ReadRows read = read_rows(files, reading, table);
+  std::map<std::string, std::string> meanings = reading.responses;
+  if (reading.merges_alike) {
+    table.merged = merge_alike(table.answers, meanings);
+  }
   const std::set<std::string> stimuli = distinct(table.answers, &results::AnswerRow::stimulus);
   std::set<std::string> responses = stimuli;
-  for (const auto& [given, meaning] : reading.responses) {
+  for (const auto& [given, meaning] : meanings) {
     responses.insert(meaning);
   }
-  check_responses(table.answers, origins, responses);
+  check_responses(table.answers, read.origins, responses);
   check_names(table.answers, files.front().file, stimuli, responses);
-  table.stimuli = items_of(stimuli);
-  table.responses = items_of(responses);
+  check_right_answers(table.answers, read.origins);
+  if (table.are_participants_known) {
+    table.pooled = several_runs(table.answers, read.origins, reading.pools_runs);
+  }
+  weigh_rows(read, reading, table);
+  check_order_names(reading.order, responses);
+  std::vector<std::string> in_appearance =
+      by_appearance(table.answers, &results::AnswerRow::stimulus);
+  table.stimuli = items_of(in_order(in_appearance, reading.order));
+  in_appearance =
+      by_appearance(table.answers, &results::AnswerRow::response, std::move(in_appearance));
+  std::ranges::copy_if(responses, std::back_inserter(in_appearance), [&](const std::string& name) {
+    return std::ranges::find(in_appearance, name) == in_appearance.end();
+  });
+  table.responses = items_of(in_order(std::move(in_appearance), reading.order));
   for (Item& response : table.responses) {
     response.is_alternative = stimuli.contains(response.name);
   }
@@ -315,5 +499,15 @@ AnswerTable read_answers(const std::vector<NamedCsv>& files, const AnswerReading
   }
   count_on(table.answers);
   return table;
+}
+
+void drop_further_headers(CsvText& table) {
+  constexpr std::size_t import_row = 2;
+  if (table.rows.size() > import_row &&
+      std::ranges::all_of(table.rows[import_row].cells, [](const std::string& cell) {
+        return cell.starts_with("{\"ImportId\"");
+      })) {
+    table.rows.erase(table.rows.begin() + 1, table.rows.begin() + 1 + import_row);
+  }
 }
 }  // namespace tapstudy::analysis

@@ -15,8 +15,8 @@ namespace tapstudy::analysis {
 std::set<std::string> distinct(const std::vector<results::AnswerRow>& answers,
                                std::string results::AnswerRow::*column);
 
-// Throws InvalidInput, with the file, where two stimuli, responses or participants differ only in
-// case or spaces, and where no answer names a stimulus.
+// Throws InvalidInput, with the file, where two stimuli, responses or participants read alike
+// (as_read()), and where no answer names a stimulus.
 void check_names(const std::vector<results::AnswerRow>& answers, const std::string& file,
                  const std::set<std::string>& stimuli, const std::set<std::string>& responses);
 
@@ -25,17 +25,24 @@ struct AnswerReading {
   std::vector<RowCondition> conditions{};  // rows that fail one are other trials
   // What answers stand for, "1" for acrylic; an answer for itself is one that is no stimulus.
   std::map<std::string, std::string> responses{};
+  bool merges_alike{false};          // names that read alike are one, the first of them
+  bool pools_runs{false};            // of one participant
+  std::vector<std::string> order{};  // of stimuli and responses; empty: as they first appear
 };
 
 // One answer a row, of one question with one right answer: the stimulus's own name.
 struct AnswerTable {
   std::vector<results::AnswerRow> answers;  // response_time_s is NaN where it is not known
-  std::vector<Item> stimuli;                // by name
-  std::vector<Item> responses;              // by name
+  std::vector<Item> stimuli;                // in the order asked for, else of first appearance
+  std::vector<Item> responses;              // likewise, stimuli first
   std::set<std::string> modes;              // of them, but for real; at most one
   bool are_participants_known{};
-  std::size_t rows{};         // that meet the conditions
-  std::size_t unanswered{};   // of these: left out, for the answer is empty, NA, None or null
+  std::size_t rows{};  // that meet the conditions
+  // Of these: left out, by what stands in the answer's place ("NA", "timeout", … or "", empty).
+  std::map<std::string, std::size_t> unanswered{};
+  std::string weight_column{};        // says how many answers a row stands for; empty: one
+  std::vector<std::string> merged{};  // "'Oak' is read as 'oak'"
+  std::vector<std::string> pooled{};  // participants with several runs
   std::size_t not_counted{};  // of these: tapstudy's own practice, catch trials, excluded people …
   // Rows of other modes than the one reported: real before pilot before simulated.
   std::size_t of_other_modes{};
@@ -53,12 +60,17 @@ struct NamedCsv {
 // fewer cells than the header, more than 200 different answers, or no answers at all.
 AnswerTable read_answers(const std::vector<NamedCsv>& files, const AnswerReading& reading);
 
+// Without the two rows below the header in which Qualtrics repeats the questions and says where
+// they come from.
+void drop_further_headers(CsvText& table);
+
 // Whether the text begins as a list does in JSON. Reads nothing else of it.
 bool is_json_list(std::string_view text);
 
 // A list of objects, as jsPsych saves its data, as the table that it would be in CSV: a column for
 // each key that any has, a row for each object, numbered as its line. What is null or missing is
-// empty; lists and objects within are JSON. Throws InvalidInput with the file for what is no such
-// list and beyond 64 MB.
+// empty; lists within are JSON, and so are objects, whose entries are columns of their own, too
+// ("response.Q0"). Several lists, one a line, are runs: the column `run_of_file` counts them.
+// Throws InvalidInput with the file for what is no such list and beyond 64 MB.
 CsvText read_json_rows(std::istream& text, const std::string& file);
 }  // namespace tapstudy::analysis

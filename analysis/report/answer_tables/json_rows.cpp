@@ -3,25 +3,71 @@
 #include <algorithm>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "analysis/report/answer_tables/answer_table.hpp"
 #include "core/error.hpp"
+#include "core/text/plain_text.hpp"
 namespace tapstudy::analysis {
 namespace {
 using Json = nlohmann::ordered_json;
 
-Json list_in(std::istream& text, const std::string& file) {
+bool are_objects(const Json& list) {
+  return list.is_array() && !list.empty() &&
+         std::ranges::all_of(list, [](const Json& one) { return one.is_object(); });
+}
+
+// JATOS saves each run of a study as a list in a line of its own; empty: it is no such file.
+Json lists_in_lines(const std::string& text) {
+  Json all = Json::array();
+  std::istringstream lines{text};
+  int run = 0;
+  for (std::string line; std::getline(lines, line);) {
+    if (core::trimmed(line).empty()) {
+      continue;
+    }
+    const Json list = Json::parse(line, nullptr, false);
+    if (!are_objects(list)) {
+      return Json::array();
+    }
+    ++run;
+    for (Json object : list) {
+      object[run_of_file] = run;
+      all.push_back(std::move(object));
+    }
+  }
+  return all;
+}
+
+Json list_in(std::istream& stream, const std::string& file) {
+  const std::string text = table_text(stream, file);
   Json list;
   try {
-    list = Json::parse(table_text(text, file));
+    list = Json::parse(text);
   } catch (const Json::parse_error& error) {
-    throw core::InvalidInput{fmt::format("{}: not valid JSON: at byte {}", file, error.byte)};
+    list = lists_in_lines(text);
+    if (list.empty()) {
+      throw core::InvalidInput{fmt::format("{}: not valid JSON: at byte {}", file, error.byte)};
+    }
   }
-  if (!list.is_array() || list.empty() ||
-      !std::ranges::all_of(list, [](const Json& one) { return one.is_object(); })) {
+  if (!are_objects(list)) {
     throw core::InvalidInput{file + ": not a JSON list of objects, one for each trial"};
   }
   return list;
+}
+
+// The answers of a survey are objects: {"response": {"Q0": "oak"}}.
+Json with_entries(Json object) {
+  Json entries = Json::object();
+  for (const auto& [key, value] : object.items()) {
+    if (value.is_object()) {
+      for (const auto& [inner, entry] : value.items()) {
+        entries[key + "." + inner] = entry;
+      }
+    }
+  }
+  object.update(entries);
+  return object;
 }
 
 std::string cell_of(const Json& value) {
@@ -40,7 +86,8 @@ bool is_json_list(std::string_view text) {
 }
 
 CsvText read_json_rows(std::istream& text, const std::string& file) {
-  const Json list = list_in(text, file);
+  Json list = list_in(text, file);
+  std::ranges::transform(list, list.begin(), with_entries);
   CsvText table;
   table.has_objects = true;
   CsvRow header{1, {}};

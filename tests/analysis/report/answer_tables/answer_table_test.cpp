@@ -3,6 +3,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "analysis/report/answer_tables/foreign_text.hpp"
 #include "analysis/report/summary.hpp"
 #include "core/error.hpp"
 #include "support/catch.hpp"
@@ -87,7 +88,7 @@ TEST_CASE("rows without an answer are counted and left out", "[analysis][answer_
   reading.conditions = {{"task", "plate"}};
   const AnswerTable table = answers_in(data("jspsych.csv"), reading);
   CHECK(table.rows == 4);
-  CHECK(table.unanswered == 1);
+  CHECK(table.unanswered == std::map<std::string, std::size_t>{{"null", 1}});
 }
 
 TEST_CASE("columns may be in any order, separated by semicolons, with a byte order mark",
@@ -200,9 +201,211 @@ TEST_CASE(
         std::set<std::string>{"simulated"});
 }
 
-TEST_CASE("participants whose names differ only in case or spaces are not two",
+TEST_CASE("names that read alike are refused, or one by declaration", "[analysis][answer_tables]") {
+  const auto [one, other] = GENERATE(table<std::string, std::string>(
+      {{"Oak", "oak"},
+       {"oak", "\"oak \""},
+       {"oak wood", "oak\u00a0wood"},            // no-break space
+       {"gr\u00f6\u00dfe", "gro\u0308\u00dfe"},  // composed, decomposed
+       {"\u00c4ste", "\u00e4ste"},
+       {"01", "1"}}));
+  const std::string of_stimuli =
+      "stimulus,response\n" + one + ",b\nb,b\n" + other + "," + one + "\n";
+  const std::string of_people =
+      "participant,stimulus,response\n" + one + ",a,a\n" + other + ",b,b\n";
+  AnswerReading merging;
+  merging.merges_alike = true;
+  for (const std::string& text : {of_stimuli, of_people}) {
+    CHECK_THAT(refusal(text), Contains("read alike") && Contains("--merge-alike"));
+    CHECK(answers_in(text, merging).merged.size() == 1);
+  }
+  CHECK(answers_in(of_stimuli, merging).stimuli.size() == 2);
+  CHECK(distinct(answers_in(of_people, merging).answers, &results::AnswerRow::participant_id) ==
+        std::set<std::string>{one});
+  CHECK(refusal("stimulus,response\n10,10\n1,1\n100,10\n") == "accepted");
+}
+
+TEST_CASE("a row of a table that was counted stands for as many answers as it says",
           "[analysis][answer_tables]") {
-  const std::string header = "participant,stimulus,response\nP01,a,a\n";
-  CHECK_THAT(refusal(header + "p01,b,b\n"), Contains("'P01' and 'p01' differ only in case"));
-  CHECK_THAT(refusal(header + "\"P01 \",b,b\n"), Contains("differ only in case or spaces"));
+  const std::string column = GENERATE("n", "Freq", "count", "times");
+  const std::string counted =
+      "participant,stimulus,response," + column + "\nP1,a,a,3\nP1,a,b,1\nP2,b,b,2\nP2,a,b,0\n";
+  AnswerReading reading;
+  if (column == "times") {
+    reading.columns.weight = column;  // no name that tells
+  }
+  const std::string one_a_row =
+      "participant,stimulus,response\nP1,a,a\nP1,a,a\nP1,a,a\nP1,a,b\nP2,b,b\nP2,b,b\n";
+  CHECK(lines_of(answers_in(counted, reading)) == lines_of(answers_in(one_a_row)));
+  CHECK(answers_in(counted, reading).weight_column == column);
+  reading.columns.weight = no_column;
+  CHECK(answers_in(counted, reading).answers.size() == 4);
+}
+
+TEST_CASE("where it is not clear whether rows are counts, it is asked, and shares are none",
+          "[analysis][answer_tables]") {
+  // the trials' own numbers; the same answer in two rows
+  CHECK_THAT(refusal("stimulus,response,n\na,a,1\nb,b,2\na,b,3\n"), Contains("--weights none"));
+  CHECK_THAT(refusal("stimulus,response,n\na,a,2\nb,b,2\na,a,3\n"), Contains("--weights n"));
+  CHECK_THAT(refusal("stimulus,response,n\na,a,2\nb,b,0.5\n"),
+             Contains("answers.csv:3: '0.5' in column 'n' is not a count"));
+  CHECK_THAT(refusal("stimulus,response,percent\na,a,90\na,b,10\nb,b,100\n"),
+             Contains("'percent' holds shares"));
+  CHECK_THAT(refusal("stimulus,response,n\na,a,-1\n"), Contains("'-1'"));
+  CHECK_THAT(refusal("stimulus,response,n\na,a,0\nb,b,0\n"), Contains("are 0"));
+}
+
+TEST_CASE("a file that calls other answers right than their names do is refused with both figures",
+          "[analysis][answer_tables]") {
+  const std::string text =
+      "stimulus,response,correct\nleft,right,1\nright,left,1\nleft,right,1\nright,right,0\n";
+  CHECK_THAT(refusal(text), Contains("answers.csv:2:") && Contains("75 % of 4") &&
+                                Contains("by the names of stimuli and answers 25 %"));
+  AnswerReading swapped;
+  swapped.responses = {{"left", "right"}, {"right", "left"}};
+  CHECK(refusal(text, swapped) == "accepted");
+  AnswerReading not_looked_at;
+  not_looked_at.columns.correct = no_column;
+  CHECK(refusal(text, not_looked_at) == "accepted");
+  // the right answer itself, or a share, is no such column
+  CHECK(refusal("stimulus,response,correct\na,b,a\nb,b,b\n") == "accepted");
+  const std::string psychopy =
+      "plate,corrAns,key_resp.keys,key_resp.corr,participant,session,date,expName,psychopyVersion\n"
+      "a,1,1,1,1,001,2026,taps,2023\nb,2,1,1,1,001,2026,taps,2023\n";
+  AnswerReading keys;
+  keys.columns.stimulus = "plate";
+  keys.responses = {{"1", "a"}, {"2", "b"}};
+  CHECK_THAT(refusal(psychopy, keys), Contains("100 % of 2") && Contains("50 %"));
+}
+
+TEST_CASE("several runs of one participant are named, and pooled only where that is said",
+          "[analysis][answer_tables]") {
+  const std::string header = "participant,stimulus,response\n";
+  const std::string answers = "1,a,a\n1,b,b\n1,a,b\n1,b,a\n";
+  const std::vector<NamedCsv> crashed_and_rerun{csv_of(header + answers, "crashed.csv"),
+                                                csv_of(header + answers + "2,a,a\n", "rerun.csv")};
+  CHECK_THROWS_WITH(read_answers(crashed_and_rerun, {}),
+                    Contains("participant '1' took part 2 times: crashed.csv (4 answers); "
+                             "rerun.csv (4 answers)") &&
+                        Contains("--pool-runs"));
+  AnswerReading pooling;
+  pooling.pools_runs = true;
+  const AnswerTable pooled = read_answers(crashed_and_rerun, pooling);
+  CHECK(pooled.pooled == std::vector<std::string>{"1"});
+  CHECK(pooled.answers.size() == 9);
+  std::string two_days = "participant,stimulus,response,date\n";
+  std::string each_at_its_time = two_days;
+  for (int i = 0; i < 8; ++i) {
+    two_days += "1,a,a," + std::string{i < 4 ? "Monday\n" : "Tuesday\n"};
+    each_at_its_time += "1,a,a,12:0" + std::to_string(i) + "\n";
+  }
+  CHECK_THAT(refusal(two_days + "1,b,b,Tuesday\n"), Contains("date 'Monday' (4 answers)"));
+  CHECK(refusal(each_at_its_time + "1,b,b,13:00\n") == "accepted");
+}
+
+TEST_CASE("what stands in the place of an answer is counted by its kind",
+          "[analysis][answer_tables]") {
+  const AnswerTable table = answers_in(
+      "stimulus,response\na,a\nb,b\na,n/a\nb,NA\na,timeout\nb,undefined\na,None\nb,NA\na,\n");
+  CHECK(table.answers.size() == 2);
+  CHECK(table.unanswered ==
+        std::map<std::string, std::size_t>{
+            {"", 1}, {"n/a", 1}, {"NA", 2}, {"timeout", 1}, {"undefined", 1}, {"None", 1}});
+  AnswerReading an_answer;
+  an_answer.responses = {{"None", "None"}};
+  CHECK(answers_in("stimulus,response\na,None\nb,b\na,a\n", an_answer).answers.size() == 3);
+}
+
+TEST_CASE("labels come in the order of their first appearance, or in the one that is said",
+          "[analysis][answer_tables]") {
+  const std::string text = "stimulus,response\n10,2\n2,2\n1,10\n";
+  const auto names = [](const std::vector<Item>& items) {
+    std::string all;
+    for (const Item& item : items) {
+      all += item.name + " ";
+    }
+    return all;
+  };
+  CHECK(names(answers_in(text).stimuli) == "10 2 1 ");
+  AnswerReading ordered;
+  ordered.order = {"1", "2", "10"};
+  CHECK(names(answers_in(text, ordered).stimuli) == "1 2 10 ");
+  CHECK(names(answers_in(text, ordered).responses) == "1 2 10 ");
+  ordered.order = {"1", "2"};
+  CHECK_THAT(refusal(text, ordered), Contains("--order: lacks '10'"));
+  ordered.order = {"1", "2", "10", "3"};
+  CHECK_THAT(refusal(text, ordered), Contains("--order: '3' is no stimulus"));
+}
+
+TEST_CASE("a decimal comma in quotes is one", "[analysis][answer_tables]") {
+  CHECK(lines_of(answers_in("participant,stimulus,response,response_time_s\nP1,a,a,\"1,25\"\n"))
+            .front() == "P1 a a 1.25 1 1");
+}
+
+TEST_CASE("the one answer of a survey is the answer, and each of several has a column",
+          "[analysis][answer_tables]") {
+  const auto read = [](const std::string& list, const AnswerReading& reading) {
+    std::istringstream json{list};
+    return read_answers({{"jspsych.json", read_json_rows(json, "jspsych.json")}}, reading);
+  };
+  const AnswerTable one = read(R"([{"stimulus": "a", "response": {"Q0": "a"}},
+                                   {"stimulus": "b", "response": {"Q0": "a"}}])",
+                               {});
+  CHECK(one.answers[1].response == "a");
+  AnswerReading second;
+  second.columns.response = "response.Q1";
+  const AnswerTable several = read(
+      R"([{"stimulus": "a", "response": {"Q0": "x", "Q1": "a"}},
+          {"stimulus": "b", "response": {"Q0": "x", "Q1": "b"}}])",
+      second);
+  CHECK(several.answers[1].response == "b");
+}
+
+TEST_CASE("runs that stand one a line are read as such", "[analysis][answer_tables]") {
+  const std::string run = R"([{"stimulus": "a", "response": "a", "subject": "S"},
+                              {"stimulus": "b", "response": "b", "subject": "S"}])";
+  std::string line = run;
+  std::erase(line, '\n');
+  std::string other = line;
+  for (auto at = other.find("\"S\""); at != std::string::npos; at = other.find("\"S\"")) {
+    other.replace(at, 3, "\"T\"");
+  }
+  const auto read = [](const std::string& lines) {
+    std::istringstream json{lines};
+    return read_answers({{"jatos.txt", read_json_rows(json, "jatos.txt")}}, {});
+  };
+  CHECK(read(line + "\n" + other + "\n").answers.size() == 4);
+  CHECK_THROWS_WITH(
+      read(line + "\n" + line + "\n"),
+      Contains("participant 'S' took part 2 times") && Contains("run of the file '2'"));
+}
+
+TEST_CASE("rows below the header that say where questions come from are no answers",
+          "[analysis][answer_tables]") {
+  NamedCsv csv = csv_of(
+      "participant,stimulus,response\nWho,Shown,Said\n"
+      "\"{\"\"ImportId\"\":\"\"Q1\"\"}\",\"{\"\"ImportId\"\":\"\"Q2\"\"}\","
+      "\"{\"\"ImportId\"\":\"\"Q3\"\"}\"\nP01,a,a\nP01,b,b\n");
+  drop_further_headers(csv.text);
+  CHECK(read_answers({csv}, {}).answers.size() == 2);
+}
+
+TEST_CASE("text in another encoding is read where it is said, and the error says so",
+          "[analysis][answer_tables]") {
+  const std::string cp1252 =
+      "stimulus\nGr\xf6\xdf"
+      "e\n";
+  CHECK(utf8_of(cp1252, "windows-1252", "x.csv") == "stimulus\nGr\u00f6\u00dfe\n");
+  CHECK_THROWS_WITH(utf8_of(cp1252, "", "x.csv"), Contains("x.csv: is not UTF-8") &&
+                                                      Contains("--encoding") &&
+                                                      Contains("windows-1252"));
+  const std::string utf16{
+      "\xff\xfe"
+      "a\0\n\0",
+      6};
+  CHECK(utf8_of(utf16, "UTF-16", "x.csv") == "a\n");
+  CHECK_THROWS_WITH(utf8_of(utf16, "", "x.csv"), Contains("probably UTF-16)"));
+  CHECK_THROWS_WITH(utf8_of("a", "klingon", "x.csv"), Contains("'klingon' is not known"));
+  CHECK_THROWS_WITH(utf8_of("\xff", "UTF-8", "x.csv"), Contains("is not text in UTF-8"));
+  CHECK(utf8_of("sep=;\r\na;b\r\n", "", "x.csv") == "\r\na;b\r\n");
 }

@@ -1,0 +1,94 @@
+#include "analysis/report/answer_tables/foreign_text.hpp"
+
+#include <fmt/format.h>
+#include <glib.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cstddef>
+#include <memory>
+#include <string_view>
+
+#include "core/error.hpp"
+namespace tapstudy::analysis {
+namespace {
+struct Free {
+  void operator()(char* text) const { g_free(text); }
+};
+using Text = std::unique_ptr<char, Free>;
+
+gssize size_of(const std::string& text) {
+  return static_cast<gssize>(text.size());
+}
+
+// What a file that is no UTF-8 is most probably in.
+std::string likely_encoding(std::string_view bytes) {
+  const bool has_mark = bytes.starts_with("\xff\xfe") || bytes.starts_with("\xfe\xff");
+  if (has_mark) {
+    return "UTF-16";
+  }
+  return bytes.find('\0') == std::string_view::npos ? "windows-1252" : "UTF-16LE";
+}
+
+std::string without_separator_line(std::string text) {
+  constexpr std::string_view mark = "\xEF\xBB\xBF";
+  const std::size_t begin = text.starts_with(mark) ? mark.size() : 0;
+  const std::string line = text.substr(begin, text.find_first_of("\r\n", begin) - begin);
+  constexpr std::string_view key = "sep=";
+  if (line.size() == key.size() + 1 && line.starts_with(key)) {
+    text.erase(begin, line.size());  // its end stays, for the lines that are counted
+  }
+  return text;
+}
+}  // namespace
+
+std::string utf8_of(const std::string& bytes, const std::string& encoding,
+                    const std::string& file) {
+  if (encoding.empty()) {
+    if (bytes.find('\0') != std::string::npos ||
+        g_utf8_validate(bytes.data(), size_of(bytes), nullptr) == FALSE) {
+      throw core::InvalidInput{
+          fmt::format("{}: is not UTF-8 text (--encoding says what it is in: probably {})", file,
+                      likely_encoding(bytes))};
+    }
+    return without_separator_line(bytes);
+  }
+  gsize size = 0;
+  GError* failure = nullptr;
+  const Text text{
+      g_convert(bytes.data(), size_of(bytes), "UTF-8", encoding.c_str(), nullptr, &size, &failure)};
+  if (!text) {
+    // opening a converter that there is not fails in more than one way
+    const bool is_known =
+        g_error_matches(failure, G_CONVERT_ERROR, G_CONVERT_ERROR_ILLEGAL_SEQUENCE) != FALSE ||
+        g_error_matches(failure, G_CONVERT_ERROR, G_CONVERT_ERROR_PARTIAL_INPUT) != FALSE;
+    g_error_free(failure);
+    throw core::InvalidInput{
+        is_known ? fmt::format("{}: is not text in {} (--encoding)", file, encoding)
+                 : fmt::format("--encoding: '{}' is not known (iconv --list names all)", encoding)};
+  }
+  return without_separator_line({text.get(), size});
+}
+
+std::string as_read(const std::string& name) {
+  const Text normal{g_utf8_normalize(name.data(), size_of(name), G_NORMALIZE_ALL_COMPOSE)};
+  if (!normal) {
+    return name;  // no UTF-8
+  }
+  const Text folded{g_utf8_casefold(normal.get(), -1)};
+  const Text composed{g_utf8_normalize(folded.get(), -1, G_NORMALIZE_ALL_COMPOSE)};
+  std::string read;
+  for (const char c : std::string_view{composed.get()}) {
+    const bool is_space = c == ' ' || c == '\t';
+    if (!is_space || (!read.empty() && read.back() != ' ')) {
+      read += is_space ? ' ' : c;
+    }
+  }
+  read.erase(read.find_last_not_of(' ') + 1);
+  const auto is_digit = [](unsigned char c) { return std::isdigit(c) != 0; };
+  if (!read.empty() && std::ranges::all_of(read, is_digit)) {
+    read.erase(0, std::min(read.find_first_not_of('0'), read.size() - 1));
+  }
+  return read;
+}
+}  // namespace tapstudy::analysis

@@ -1,0 +1,14 @@
+#pragma once
+#include <string>
+namespace tapstudy::analysis {
+// The bytes of a file as UTF-8. `encoding` is a name that iconv knows; empty: UTF-8, with or
+// without a byte order mark. A line "sep=;" before the header, as spreadsheets write it, becomes
+// empty. Throws InvalidInput, with the file, for bytes that are not of the encoding and for one
+// that is not known.
+std::string utf8_of(const std::string& bytes, const std::string& encoding, const std::string& file);
+
+// The same for names that people read as one: whatever their case, the spaces in and around them
+// (no-break spaces included), how their letters are composed (Unicode, NFKC) and zeros before a
+// number.
+std::string as_read(const std::string& name);
+}  // namespace tapstudy::analysis

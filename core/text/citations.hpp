@@ -153,6 +153,9 @@ inline constexpr std::array references{
     Reference{"Watson 2017",
               "Watson, A. B. (2017). QUEST+: A general multidimensional Bayesian adaptive "
               "psychometric method. Journal of Vision 17(3), 10."},
+    Reference{"Wedderburn 1974",
+              "Wedderburn, R. W. M. (1974). Quasi-likelihood functions, generalized linear models, "
+              "and the Gauss-Newton method. Biometrika 61, 439–447."},
     Reference{"Wilcoxon 1945",
               "Wilcoxon, F. (1945). Individual comparisons by ranking methods. Biometrics Bulletin "
               "1, 80–83."},

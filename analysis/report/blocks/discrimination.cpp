@@ -119,13 +119,13 @@ std::optional<DifferentRates> rates_of(const Counts& counts) {
 
 std::optional<DPrimeOfMean> d_prime_of_mean(const std::vector<Proportion>& correct,
                                             const DecisionTask& task) {
-  const auto over = beta_binomial_mean(correct);
-  if (!over) {
+  const auto over = mean_share(correct);
+  if (!over || !over->interval) {
     return std::nullopt;
   }
   return DPrimeOfMean{
       d_prime_of(task, over->mean),
-      {d_prime_of(task, over->interval.low), d_prime_of(task, over->interval.high)}};
+      {d_prime_of(task, over->interval->low), d_prime_of(task, over->interval->high)}};
 }
 
 ParticipantDiscrimination participant_of(const BlockDesign& design, const std::string& name,
@@ -310,8 +310,8 @@ std::vector<CitingText> remarks_on(const BlockDesign& design,
                   "those who feel no difference every answer is right with that chance, whatever "
                   "they prefer. Each participant: Wilson interval.",
                   design.guess_rate),
-      results.participants.size() > 1 ? "The interval of all answers is over participants, of a "
-                                        "beta-binomial likelihood; those "
+      results.participants.size() > 1 ? "The interval of all answers is over participants, from three "
+                                        "on, each counting the same; those "
                                         "of one participant take the answers as independent."
                                       : "The interval takes the answers as independent."};
   if (!design.premise.empty()) {
@@ -386,9 +386,10 @@ std::shared_ptr<BlockSummary> summarise_discrimination(const BlockDesign& design
                                models_table(results),      answer_counts_table(rows.answers)};
   summary->results().remarks = remarks_on(design, results);
   summary->personal = shares_right(design, results);
-  if (const auto over = mean_proportion(correct_of(results.participants))) {
+  const auto over = mean_share(correct_of(results.participants));
+  if (over && over->interval) {
     summary->main_results = {
-        {"share of right answers", over->mean, over->interval, results.p, design.guess_rate}};
+        {"share of right answers", over->mean, *over->interval, results.p, design.guess_rate}};
   }
   for (const PlannedHypothesis& planned : design.hypotheses) {
     summary->hypotheses.push_back(tested(design, results, planned));

@@ -62,9 +62,9 @@ struct DiscriminationResults {
   };
   std::vector<Pair> pairs;  // by name
   Proportion correct;       // of all answers
-  // Of the mean proportion over participants and its interval (beta_binomial_mean), mapped through
+  // Of the mean proportion over participants and its interval (mean_share), mapped through
   // d'. Not the mean of the participants' d': each is 0 or above, so that guessing gave more than
-  // 0. Of two participants with answers or more.
+  // 0. Of three participants with answers or more.
   std::optional<DPrimeOfMean> d_prime_of_mean;
   // Exact binomial, one-sided, of all answers: places are drawn, so that of participants who feel
   // no difference every answer is right with the same chance, whatever they prefer. Unset where

@@ -91,7 +91,7 @@ ReportTable estimates_table(const IdentificationSummary& summary) {
       {column("right", "right"), column("answers", "answers"), column("of all", "share"),
        column("chance", "chance"), column("above chance", "p"),
        column("mean of participants", "mean_of_participants"),
-       range_column("95 % CI, beta-binomial", "beta_binomial"), range_column("95 % CI, t", "t"),
+       range_column("95 % CI", "over_participants"), range_column("95 % CI, t", "t"),
        range_column("95 % CI, bootstrap", "bootstrap"),
        column("intra-class correlation", "intraclass_correlation"),
        range_column("if answers were independent (Wilson)", "independent_wilson")}};
@@ -109,8 +109,8 @@ ReportTable estimates_table(const IdentificationSummary& summary) {
                           {percent(result.accuracy), {result.accuracy.value()}},
                           share(result.chance),
                           probability(result.p),
-                          over ? share(over->mean_of_shares) : number(std::nullopt),
-                          range_cell(over ? std::optional{over->interval} : std::nullopt),
+                          over ? share(over->mean) : number(std::nullopt),
+                          range_cell(over ? over->interval : std::nullopt),
                           range_cell(over ? over->t : std::nullopt),
                           range_cell(over ? over->bootstrap : std::nullopt),
                           over ? number(over->intraclass_correlation) : number(std::nullopt),
@@ -164,12 +164,14 @@ ReportSection accuracy_section(const IdentificationSummary& summary) {
   }
   if (summary.accuracy_over_participants) {
     section.remarks.emplace_back(core::citing(
-        "95 % intervals hold for participants of whom these are a sample: profile likelihood of a "
-        "beta-binomial distribution ({}) with the quantile of t for the number of participants, "
-        "which holds the mean in more than 95 % of studies where participants are few; t and the "
-        "bootstrap (BCa, {}, expanded after {}) over participants' shares are given beside it. "
-        "Wilson's interval would hold if all answers were independent of one another.",
-        "Williams 1975"_source, "Efron 1987"_source, "Hesterberg 2015"_source));
+        "95 % intervals hold for participants of whom these are a sample, from three on, each "
+        "counting the same: the score interval of their mean ({}) with the variance that they show "
+        "({}) and the quantile of t; t and the bootstrap (BCa, {}, expanded after {}) over their "
+        "shares are given beside it. The intra-class correlation is that of a beta-binomial "
+        "distribution ({}). Wilson's interval of all answers would hold if they were independent of "
+        "one another.",
+        "Wilson 1927"_source, "Wedderburn 1974"_source, "Efron 1987"_source,
+        "Hesterberg 2015"_source, "Williams 1975"_source));
   }
   section.remarks.push_back("All answers against chance: " + summary.chance_test + ".");
   add_remark_on_chance(summary, section);
@@ -243,6 +245,13 @@ GroupCounts counted(const IdentificationData& data, const Grouping& grouping) {
   return counts;
 }
 
+Cell mean_cell(const MeanShare& over) {
+  return over.interval ? Cell{fmt::format("{} ({})", percent(over.mean),
+                                          percent_range(*over.interval)),
+                              {over.mean, over.interval->low, over.interval->high}}
+                       : Cell{percent(over.mean), {over.mean, Value{}, Value{}}};
+}
+
 void add_group(const IdentificationData& data, const Grouping& grouping, ReportTable& shares,
                ReportTable& cells) {
   const GroupCounts counts = counted(data, grouping);
@@ -251,12 +260,9 @@ void add_group(const IdentificationData& data, const Grouping& grouping, ReportT
     if (all.trials == 0) {
       continue;
     }
-    const auto over = beta_binomial_mean(counts.right[level]);
-    shares.rows.push_back(
-        {word(grouping.name), word(grouping.levels[level]), counted(all),
-         over ? Cell{fmt::format("{} ({})", percent(over->mean), percent_range(over->interval)),
-                     {over->mean, over->interval.low, over->interval.high}}
-              : nothing(shares.columns.back())});
+    const auto over = mean_share(counts.right[level]);
+    shares.rows.push_back({word(grouping.name), word(grouping.levels[level]), counted(all),
+                           over ? mean_cell(*over) : nothing(shares.columns.back())});
     add_cells(data, grouping.name, grouping.levels[level], counts.of_level[level], cells);
   }
 }

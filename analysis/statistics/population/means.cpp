@@ -3,6 +3,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 
 #include "analysis/statistics/distributions.hpp"
@@ -57,7 +58,6 @@ namespace {
 constexpr int bootstrap_draws = 4999;
 constexpr std::uint64_t bootstrap_seed = 2;
 constexpr double largest_eta = 0.999;  // square root of the intra-class correlation
-constexpr double smallest_share = 1e-9;
 constexpr double indistinguishable = 1e-5;  // log likelihoods, by rounding where eta is small
 
 double log_likelihood(const std::vector<Proportion>& participants, double mean, double eta) {
@@ -81,19 +81,6 @@ Profile profile_at(const std::vector<Proportion>& participants, double mean) {
                                                       : Profile{inside.at, -inside.value};
 }
 
-Interval profile_interval(const std::vector<Proportion>& participants, double mean,
-                          double most_likely) {
-  const double t = t_quantile(0.975, static_cast<double>(participants.size()) - 1.0);
-  const auto excess = [&](double at) {
-    return 2.0 * (most_likely - profile_at(participants, at).log_likelihood) - t * t;
-  };
-  constexpr double low = smallest_share;
-  constexpr double high = 1.0 - smallest_share;
-  const double from = std::clamp(mean, low, high);
-  return {excess(low) <= 0.0 ? 0.0 : root(excess, low, from),
-          excess(high) <= 0.0 ? 1.0 : root(excess, from, high)};
-}
-
 std::vector<Proportion> answered(const std::vector<Proportion>& participants) {
   std::vector<Proportion> found;
   for (const Proportion& of : participants) {
@@ -105,6 +92,12 @@ std::vector<Proportion> answered(const std::vector<Proportion>& participants) {
     }
   }
   return found;
+}
+
+std::vector<double> shares_of(const std::vector<Proportion>& people) {
+  std::vector<double> shares;
+  std::ranges::transform(people, std::back_inserter(shares), &Proportion::value);
+  return shares;
 }
 
 // The share of right answers in all pooled, with its negative log likelihood.
@@ -195,6 +188,45 @@ std::optional<Interval> bootstrap_interval(const std::vector<double>& values, in
   return bca_interval(values, draws, seed, expanded_tail);
 }
 
+namespace {
+// The variance of participants' shares in proportion to mean (1 - mean).
+double dispersion(const std::vector<Proportion>& people, const MeanAndSpread& of) {
+  constexpr std::int64_t fewest = 2;  // answers of a kind, of which a variance says anything
+  double binomial = 0.0;
+  for (const Proportion& person : people) {
+    binomial += 1.0 / static_cast<double>(person.trials) / static_cast<double>(people.size());
+  }
+  const Proportion all = sum(people);
+  const bool are_few = std::min(all.successes, all.trials - all.successes) < fewest;
+  const double least = (are_few ? 1.0 : share_of_binomial) * binomial;
+  const double most = of.mean * (1.0 - of.mean);
+  const double variance = of.standard_deviation * of.standard_deviation;
+  return most > 0.0 ? std::max(least, variance / most) : least;
+}
+
+Interval score_interval(double mean, double dispersion, double n) {
+  const double t = t_quantile(0.975, n - 1.0);
+  const double e = t * t * dispersion / n;
+  const double centre = (mean + 0.5 * e) / (1.0 + e);
+  const double half = std::sqrt(e * mean * (1.0 - mean) + 0.25 * e * e) / (1.0 + e);
+  return within_shares({centre - half, centre + half});
+}
+}  // namespace
+
+std::optional<MeanShare> mean_share(const std::vector<Proportion>& participants) {
+  const std::vector<Proportion> people = answered(participants);
+  if (people.size() < 2) {
+    return std::nullopt;
+  }
+  const MeanAndSpread of = mean_and_spread(shares_of(people));
+  MeanShare result{static_cast<int>(people.size()), of.mean, {}};
+  if (people.size() > 2) {
+    result.interval =
+        score_interval(of.mean, dispersion(people, of), static_cast<double>(people.size()));
+  }
+  return result;
+}
+
 std::optional<BetaBinomialMean> beta_binomial_mean(const std::vector<Proportion>& participants) {
   const std::vector<Proportion> people = answered(participants);
   if (people.size() < 2) {
@@ -206,24 +238,20 @@ std::optional<BetaBinomialMean> beta_binomial_mean(const std::vector<Proportion>
   const Minimum pooled = pooled_share(people);
   best = pooled.value <= best.value + indistinguishable ? pooled : best;
   const double eta = profile_at(people, best.at).eta;
-  BetaBinomialMean result{static_cast<int>(people.size()), best.at, eta * eta,
-                          profile_interval(people, best.at, -best.value)};
   if (eta > 0.0 && eta < largest_eta && best.at > 0.0 && best.at < 1.0) {
     const auto [mean, nu] = refined(people, {best.at, 1.0 / (eta * eta) - 1.0});
-    result.mean = mean;
-    result.intraclass_correlation = 1.0 / (1.0 + nu);
+    return BetaBinomialMean{mean, 1.0 / (1.0 + nu)};
   }
-  return result;
+  return BetaBinomialMean{best.at, eta * eta};
 }
 
 std::optional<MeanProportion> mean_proportion(const std::vector<Proportion>& participants) {
-  const auto model = beta_binomial_mean(participants);
-  if (!model) {
+  const auto mean = mean_share(participants);
+  if (!mean) {
     return std::nullopt;
   }
-  std::vector<double> shares;
-  std::ranges::transform(answered(participants), std::back_inserter(shares), &Proportion::value);
-  MeanProportion result{*model, mean_of(shares), {}, {}};
+  const std::vector<double> shares = shares_of(answered(participants));
+  MeanProportion result{*mean, beta_binomial_mean(participants)->intraclass_correlation, {}, {}};
   if (!are_equal(shares)) {
     result.t = within_shares(t_interval(shares));
     if (const auto bootstrap = bootstrap_interval(shares, bootstrap_draws, bootstrap_seed)) {

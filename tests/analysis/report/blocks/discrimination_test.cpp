@@ -77,14 +77,14 @@ TEST_CASE("d' is that of the decision model, over participants that of their mea
   CHECK(json["participants"][0]["d_prime"].get<double>() == Approx(first.d_prime).epsilon(1e-9));
   CHECK(json["participants"][0]["d_prime_high"].get<double>() ==
         Approx(first.interval.high).epsilon(1e-9));
-  const auto mean = beta_binomial_mean(proportions);
+  const auto mean = mean_share(proportions);
   const auto& all = json["all"][0];
   CHECK(proportion_correct(task, all["d_prime_of_mean"].get<double>()) ==
         Approx(mean->mean).epsilon(1e-9));
   CHECK(proportion_correct(task, all["d_prime_of_mean_low"].get<double>()) ==
-        Approx(std::max(1.0 / 3.0, mean->interval.low)).epsilon(1e-9));  // at chance d' is 0
+        Approx(std::max(1.0 / 3.0, mean->interval->low)).epsilon(1e-9));  // at chance d' is 0
   CHECK(proportion_correct(task, all["d_prime_of_mean_high"].get<double>()) ==
-        Approx(mean->interval.high).epsilon(1e-9));
+        Approx(mean->interval->high).epsilon(1e-9));
 }
 
 TEST_CASE("where everybody guesses the interval of d' holds 0 as often as it says",
@@ -102,7 +102,7 @@ TEST_CASE("where everybody guesses the interval of d' holds 0 as often as it say
       add(answers, std::string(1, static_cast<char>('a' + person)), right, 24);
     }
     const auto results = discrimination_results(design_of("oddity", 3), answers);
-    holding += results.d_prime_of_mean->interval.low == 0.0 ? 1 : 0;
+    holding += results.d_prime_of_mean->interval->low == 0.0 ? 1 : 0;
   }
   CHECK(holding >= 185);  // 97.5 % of them, fewer by chance once in 1000
 }

@@ -146,7 +146,7 @@ TEST_CASE(
   const auto formats = reported(statistic, design, answers_of(design, 10, 2, 0.4, 1));
   CHECK_THAT(formats.text, Contains("95 % CI over 10 participants"));
   const auto& all = formats.json["accuracy_estimates"][0];
-  CHECK(all["beta_binomial_low"].get<double>() < all["share"].get<double>());
+  CHECK(all["over_participants_low"].get<double>() < all["share"].get<double>());
   CHECK(all["independent_wilson_low"].is_number());
   CHECK(formats.json["accuracy"]["over_participants_95"].size() == 2);
   CHECK(testing::longest_line(formats.text) <= 100);

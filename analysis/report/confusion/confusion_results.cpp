@@ -50,8 +50,8 @@ std::vector<Cell> share_row(const FactorResult& result, const std::string& words
     const auto& over = result.over_participants;
     const Interval of_answers = over ? Interval{result.accuracy.value(), result.accuracy.value()}
                                      : wilson_interval(result.accuracy);
-    cell.dot = Dot{result.accuracy.value(),
-                   over && over->interval ? *over->interval : of_answers, result.chance};
+    cell.dot = Dot{result.accuracy.value(), over && over->interval ? *over->interval : of_answers,
+                   result.chance};
   }
   return {word(title_of(result)), cell};
 }

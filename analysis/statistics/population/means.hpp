@@ -93,16 +93,18 @@ SignFlipTest sign_flip_test(const std::vector<double>& differences, std::uint64_
 
 PairedContrast paired_contrast(const std::vector<double>& differences, std::uint64_t seed);
 
-// The mean of people who differ, each known with an error.
-struct RandomEffects {
-  double mean{};
-  double between_sd{};  // of people, without their estimates' errors
-  Interval interval;    // 95 %, of the mean: t with people - 1 degrees of freedom
-};
+// Differences of which some are only known to lie in a range (low < high, either may be infinite),
+// as of a threshold beyond the levels presented. Mean and interval are of a normal distribution, by
+// its likelihood with probabilities of the ranges (Tobin 1958): the means whose profile likelihood
+// is 2 (l_max - l(mean)) <= n ln(1 + t^2 / (n - 1)), which of exact differences is t's interval; an
+// end that the likelihood does not limit is infinite. Both are NaN and unset where fewer than two
+// differences are exact. p is the permutation test by signs of the differences' ranks by size, of a
+// range by its least size; a range on both sides of 0 has none. Throws InvalidInput as
+// sign_flip_test.
+PairedContrast censored_contrast(const std::vector<Interval>& differences, std::uint64_t seed);
 
-// Weights are 1 / (error² + between²), and between² makes the weighted squares of the residuals as
-// large as they are expected, people - 1; 0 if they are smaller (Paule & Mandel 1982). The interval
-// is that of Hartung & Knapp 2001; where people are alike, that of their errors by t. As many
-// errors as values, each above 0; two or more. Throws InvalidInput for others.
-RandomEffects random_effects(const std::vector<double>& values, const std::vector<double>& errors);
+// The 95 % interval of the mean of values within bounds, which it does not leave: by t with a
+// variance that is in proportion to (mean - low) (high - mean), as in mean_share. Unset if all are
+// equal. Throws InvalidInput for fewer than two values, and values beyond the bounds.
+std::optional<Interval> bounded_interval(const std::vector<double>& values, const Interval& bounds);
 }  // namespace tapstudy::analysis

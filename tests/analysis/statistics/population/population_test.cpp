@@ -2,6 +2,7 @@
 
 #include <boost/math/distributions/beta.hpp>
 #include <cmath>
+#include <limits>
 
 #include "analysis/statistics/population/means.hpp"
 #include "core/error.hpp"
@@ -15,27 +16,6 @@ using namespace tapstudy::testing;
 namespace {
 const std::vector<Proportion> people{{2, 8}, {5, 8}, {3, 8}, {7, 8}, {4, 7},
                                      {1, 8}, {4, 8}, {6, 6}, {3, 8}, {5, 8}};
-
-// Right answers of participants whose shares are beta distributed.
-std::vector<Proportion> sample(double mean, double intraclass, core::Rng& rng) {
-  constexpr int participants = 10;
-  constexpr int answers = 8;
-  std::vector<Proportion> drawn;
-  for (int i = 0; i < participants; ++i) {
-    double share = mean;
-    if (intraclass > 0.0) {
-      const double nu = 1.0 / intraclass - 1.0;
-      share = boost::math::quantile(boost::math::beta_distribution<>{nu * mean, nu * (1.0 - mean)},
-                                    rng.uniform());
-    }
-    Proportion of{0, answers};
-    for (int k = 0; k < answers; ++k) {
-      of.successes += rng.uniform() < share ? 1 : 0;
-    }
-    drawn.push_back(of);
-  }
-  return drawn;
-}
 }  // namespace
 
 TEST_CASE("participants' distribution is that of R's beta-binomial likelihood",
@@ -310,60 +290,45 @@ TEST_CASE("one participant and no difference show nothing", "[analysis][particip
   CHECK_THROWS_AS(sign_flip_test({std::nan("")}, 1), core::InvalidInput);
 }
 
-// The mean of people who differ, against statsmodels.
-using analysis::random_effects;
-using analysis::RandomEffects;
-
-TEST_CASE("the mean, its interval and the spread of people are those of statsmodels",
+TEST_CASE("the likelihood of differences that are all exact has the interval of t",
           "[analysis][participants]") {
-  const std::vector<double> values{0.31, -0.12, 0.55, 0.02, 0.78, 0.21};
-  const std::vector<double> errors{0.08, 0.12, 0.20, 0.05, 0.30, 0.10};
-  const std::vector<double> expected = testing::python_numbers(R"py(
-import numpy as np
-from scipy import stats
-from statsmodels.stats.meta_analysis import combine_effects
-errors = np.array([0.08, 0.12, 0.20, 0.05, 0.30, 0.10])
-found = combine_effects(np.array([0.31, -0.12, 0.55, 0.02, 0.78, 0.21]), errors**2, method_re="iterated")
-half = stats.t.ppf(0.975, 5) * found.sd_eff_w_re_hksj
-out(found.mean_effect_re, np.sqrt(found.tau2), found.mean_effect_re - half, found.mean_effect_re + half)
-)py");
-  const RandomEffects found = random_effects(values, errors);
-  REQUIRE(expected.size() == 4);
-  CHECK(found.mean == Approx(expected[0]).epsilon(1e-4));  // which iterates to 1e-5
-  CHECK(found.between_sd == Approx(expected[1]).epsilon(1e-4));
-  CHECK(found.interval.low == Approx(expected[2]).epsilon(1e-3));
-  CHECK(found.interval.high == Approx(expected[3]).epsilon(1e-3));
-}
-
-TEST_CASE("people who differ no more than their errors are taken as alike",
-          "[analysis][participants]") {
-  const RandomEffects found = random_effects({1.0, 1.1, 0.9}, {0.5, 0.5, 0.5});
-  CHECK(found.between_sd == 0.0);
-  CHECK(found.mean == Approx(1.0));
-  // not narrower than three known errors allow: t of two degrees of freedom
-  CHECK(found.interval.high - found.mean == Approx(4.302652730 * 0.5 / std::sqrt(3.0)));
-}
-
-TEST_CASE("the interval holds the mean of people at its rate", "[analysis][participants]") {
-  core::Rng rng{5};
-  constexpr int studies = 2000;
-  int held = 0;
-  for (int study = 0; study < studies; ++study) {
-    std::vector<double> values;
-    std::vector<double> errors;
-    for (int person = 0; person < 8; ++person) {
-      errors.push_back(0.05 + 0.3 * rng.uniform());
-      values.push_back(2.0 + 0.2 * rng.normal() + errors.back() * rng.normal());
-    }
-    const RandomEffects found = random_effects(values, errors);
-    held += found.interval.low <= 2.0 && 2.0 <= found.interval.high ? 1 : 0;
+  const std::vector<double> exact{0.31, -0.12, 0.55, 0.02, 0.78, 0.21};
+  std::vector<Interval> ranges;
+  for (const double value : exact) {
+    ranges.push_back({value, value});
   }
-  CHECK(held / static_cast<double>(studies) == Approx(0.95).margin(0.02));
+  const PairedContrast found = censored_contrast(ranges, 1);
+  const Interval by_t = t_interval(exact);
+  CHECK(found.mean == Approx(paired_contrast(exact, 1).mean).epsilon(1e-5));
+  CHECK(found.interval->low == Approx(by_t.low).epsilon(1e-4));
+  CHECK(found.interval->high == Approx(by_t.high).epsilon(1e-4));
 }
 
-TEST_CASE("values without errors have no random effects", "[analysis][participants]") {
-  CHECK_THROWS_AS(random_effects({1.0}, {0.1}), core::InvalidInput);
-  CHECK_THROWS_AS(random_effects({1.0, 2.0}, {0.1}), core::InvalidInput);
-  CHECK_THROWS_AS(random_effects({1.0, 2.0}, {0.1, 0.0}), core::InvalidInput);
-  CHECK_THROWS_AS(random_effects({1.0, 2.0}, {0.1, std::nan("")}), core::InvalidInput);
+TEST_CASE("differences of which some are ranges have R's normal likelihood",
+          "[analysis][participants]") {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  const std::vector<Interval> ranges{{0.3, 0.3},      {0.7, 0.7}, {1.1, 1.1},  {0.9, infinity},
+                                     {0.5, infinity}, {0.4, 0.4}, {-0.2, 0.8}, {-infinity, 0.6}};
+  const auto r = r_numbers(
+      "a <- c(.3, .7, 1.1, .9, .5, .4, -.2, -Inf); b <- c(.3, .7, 1.1, Inf, Inf, .4, .8, .6);"
+      "l <- function(m, s) -sum(ifelse(a == b, dnorm(a, m, s, log = TRUE), log(pnorm(b, m, s) - "
+      "pnorm(a, m, s)))); p <- function(m) optimize(function(x) l(m, exp(x)), c(-5, 5), tol = "
+      "1e-10)$objective; o <- optimize(p, c(-2, 3), tol = 1e-10); n <- 8; k <- n * log(1 + "
+      "qt(.975, n - 1)^2 / (n - 1)); e <- function(m) 2 * (p(m) - o$objective) - k;"
+      "out(o$minimum, uniroot(e, c(-5, o$minimum), tol = 1e-10)$root, uniroot(e, c(o$minimum, 9), "
+      "tol = 1e-10)$root)");
+  const PairedContrast found = censored_contrast(ranges, 1);
+  CHECK(found.mean == Approx(r[0]).epsilon(1e-4));
+  CHECK(found.interval->low == Approx(r[1]).epsilon(1e-3));
+  CHECK(found.interval->high == Approx(r[2]).epsilon(1e-3));
+  CHECK(found.participants == 8);
+}
+
+TEST_CASE("the mean of a bounded scale stays within its bounds", "[analysis][participants]") {
+  const auto two = bounded_interval({40.0, 87.0}, {0.0, 100.0});
+  REQUIRE(two);
+  CHECK((two->low > 0.0 && two->low < 40.0));
+  CHECK((two->high < 100.0 && two->high > 87.0));
+  CHECK_FALSE(bounded_interval({50.0, 50.0}, {0.0, 100.0}));
+  CHECK_THROWS_AS(bounded_interval({50.0, 101.0}, {0.0, 100.0}), core::InvalidInput);
 }

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <iterator>
 #include <memory>
+#include <set>
 
 #include "analysis/report/document/sections.hpp"
 #include "analysis/statistics/population/means.hpp"
@@ -21,6 +22,7 @@ struct Contrast {
   const BlockSummary* first;
   const BlockSummary* second;
   PairedContrast result;  // of a ratio: of natural logarithms
+  int in_both{};          // who took part in both
 };
 
 bool are_comparable(const BlockSummary& first, const BlockSummary& second) {
@@ -28,16 +30,58 @@ bool are_comparable(const BlockSummary& first, const BlockSummary& second) {
          first.personal->measure == second.personal->measure;
 }
 
-// Of those who have values of both.
-std::vector<double> differences(const PersonalValues& first, const PersonalValues& second) {
-  std::vector<double> found;
-  for (const auto& [participant, value] : first.by_participant) {
-    const auto other = second.by_participant.find(participant);
-    if (other != second.by_participant.end()) {
-      found.push_back(first.is_ratio ? std::log(value / other->second) : value - other->second);
+std::set<std::string> participants_of(const PersonalValues& values) {
+  std::set<std::string> all = values.participants;
+  for (const auto& [participant, value] : values.by_participant) {
+    all.insert(participant);
+  }
+  for (const auto& [participant, range] : values.beyond) {
+    all.insert(participant);
+  }
+  return all;
+}
+
+// Unset where nothing is known of the participant's value.
+std::optional<Interval> range_of(const PersonalValues& values, const std::string& participant) {
+  const auto scaled = [&](double value) { return values.is_ratio ? std::log(value) : value; };
+  if (const auto own = values.by_participant.find(participant);
+      own != values.by_participant.end()) {
+    return Interval{scaled(own->second), scaled(own->second)};
+  }
+  const auto beyond = values.beyond.find(participant);
+  return beyond == values.beyond.end()
+             ? std::nullopt
+             : std::optional{Interval{scaled(beyond->second.low), scaled(beyond->second.high)}};
+}
+
+// Of those who have values of both, or are known to lie beyond what was presented.
+std::vector<Interval> differences(const PersonalValues& first, const PersonalValues& second) {
+  std::vector<Interval> found;
+  for (const std::string& participant : participants_of(first)) {
+    const auto own = range_of(first, participant);
+    const auto other = range_of(second, participant);
+    if (own && other) {
+      found.push_back({own->low - other->high, own->high - other->low});
     }
   }
   return found;
+}
+
+PairedContrast contrast_of(const std::vector<Interval>& differences) {
+  std::vector<double> exact;
+  for (const Interval& range : differences) {
+    if (range.low == range.high) {
+      exact.push_back(range.low);
+    }
+  }
+  return exact.size() == differences.size() ? paired_contrast(exact, contrasts_seed)
+                                            : censored_contrast(differences, contrasts_seed);
+}
+
+int number_in_both(const PersonalValues& first, const PersonalValues& second) {
+  const std::set<std::string> others = participants_of(second);
+  return static_cast<int>(std::ranges::count_if(
+      participants_of(first), [&](const std::string& one) { return others.contains(one); }));
 }
 
 // By the measure, in the order of the blocks.
@@ -49,10 +93,12 @@ std::map<std::string, std::vector<Contrast>> contrasts_of(
       if (!are_comparable(*blocks[i], *blocks[j])) {
         continue;
       }
-      const std::vector<double> found = differences(*blocks[i]->personal, *blocks[j]->personal);
+      const PersonalValues& first = *blocks[i]->personal;
+      const PersonalValues& second = *blocks[j]->personal;
+      const std::vector<Interval> found = differences(first, second);
       if (found.size() > 1) {
-        contrasts[blocks[i]->personal->measure].push_back(
-            {blocks[i].get(), blocks[j].get(), paired_contrast(found, contrasts_seed)});
+        contrasts[first.measure].push_back(
+            {blocks[i].get(), blocks[j].get(), contrast_of(found), number_in_both(first, second)});
       }
     }
   }
@@ -71,6 +117,16 @@ Cell compared(const Contrast& contrast) {
   return interval(std::exp(result.mean), range);
 }
 
+Cell compared_people(const Contrast& contrast) {
+  const int compared = contrast.result.participants;
+  Cell cell = count(compared);
+  cell.values.emplace_back(contrast.in_both);
+  if (compared < contrast.in_both) {
+    cell.text = fmt::format("{} of {}", compared, contrast.in_both);
+  }
+  return cell;
+}
+
 void add_rows(const std::string& measure, const std::vector<Contrast>& contrasts,
               ReportTable& table) {
   std::vector<double> p;
@@ -80,16 +136,20 @@ void add_rows(const std::string& measure, const std::vector<Contrast>& contrasts
   for (std::size_t i = 0; i < contrasts.size(); ++i) {
     table.rows.push_back({word(measure), word(contrasts[i].first->block),
                           word(contrasts[i].second->block), compared(contrasts[i]),
-                          count(contrasts[i].result.participants),
-                          probability(contrasts[i].result.p), probability(adjusted[i])});
+                          compared_people(contrasts[i]), probability(contrasts[i].result.p),
+                          probability(adjusted[i])});
   }
 }
 
 ReportTable empty_table(const std::string& name, const std::string& title, const Column& compared) {
   return {name,
           title,
-          {column("of", "measure"), column("first", "first"), column("second", "second"), compared,
-           column("participants", "participants"), column("permutation", "p"),
+          {column("of", "measure"),
+           column("first", "first"),
+           column("second", "second"),
+           compared,
+           {"participants", {"participants", "participants_in_both"}},
+           column("permutation", "p"),
            column("after Holm", "p_holm")}};
 }
 }  // namespace
@@ -111,9 +171,13 @@ std::optional<ReportSection> block_contrasts(
   ReportSection section{"Blocks compared", {differences, ratios}};
   section.name = "contrasts";
   section.remarks.emplace_back(core::citing(
-      "Of participants with a value in both blocks; ratios are geometric means. Two-sided "
+      "Of participants with a value in both blocks, or one that is known to lie beyond the levels "
+      "presented (\"6 of 8\": of two nothing is known); ratios are geometric means. Two-sided "
       "permutation test by changing the signs of participants' differences, of logarithms for "
-      "ratios (all patterns up to 16, else 9999), adjusted by {} for the pairs of a measure.",
+      "ratios (all patterns up to 16, else 9999), adjusted by {} for the pairs of a measure. Where "
+      "values lie beyond the levels, the test takes the ranks of the differences, and the interval "
+      "is by a normal likelihood of values and ranges; where that does not limit it, it is "
+      "infinite.",
       "Holm 1979"_source));
   if (is_order_fixed) {
     section.remarks.emplace_back(

@@ -69,10 +69,6 @@ inline constexpr std::array references{
     Reference{"Hart and Staveland 1988",
               "Hart, S. G. & Staveland, L. E. (1988). Development of NASA-TLX (Task Load Index). "
               "In P. A. Hancock & N. Meshkati (eds.), Human Mental Workload, 139–183."},
-    Reference{"Hartung & Knapp 2001",
-              "Hartung, J. & Knapp, G. (2001). On tests of the overall treatment effect in "
-              "meta-analysis with normally distributed responses. Statistics in Medicine 20, "
-              "1771–1782."},
     Reference{"Hautus 1995",
               "Hautus, M. J. (1995). Corrections for extreme proportions and their biasing effects "
               "on estimated values of d'. Behavior Research Methods 27, 46–51."},
@@ -122,10 +118,6 @@ inline constexpr std::array references{
     Reference{"Miller & Nicely 1955",
               "Miller, G. A. & Nicely, P. E. (1955). An analysis of perceptual confusions among "
               "some English consonants. Journal of the Acoustical Society of America 27, 338–352."},
-    Reference{
-        "Paule & Mandel 1982",
-        "Paule, R. C. & Mandel, J. (1982). Consensus values and weighting factors. Journal of "
-        "Research of the National Bureau of Standards 87, 377–385."},
     Reference{"Plackett 1975",
               "Plackett, R. L. (1975). The analysis of permutations. Journal of the Royal "
               "Statistical Society C 24, 193–202."},
@@ -153,6 +145,9 @@ inline constexpr std::array references{
     Reference{"Watson 2017",
               "Watson, A. B. (2017). QUEST+: A general multidimensional Bayesian adaptive "
               "psychometric method. Journal of Vision 17(3), 10."},
+    Reference{"Wedderburn 1974",
+              "Wedderburn, R. W. M. (1974). Quasi-likelihood functions, generalized linear models, "
+              "and the Gauss-Newton method. Biometrika 61, 439–447."},
     Reference{"Wilcoxon 1945",
               "Wilcoxon, F. (1945). Individual comparisons by ranking methods. Biometrics Bulletin "
               "1, 80–83."},

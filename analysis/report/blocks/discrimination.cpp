@@ -14,6 +14,7 @@
 #include "analysis/report/document/sections.hpp"
 #include "analysis/report/document/wording.hpp"
 #include "analysis/statistics/population/means.hpp"
+#include "analysis/statistics/resampling/replicates.hpp"
 #include "core/error.hpp"
 namespace tapstudy::analysis {
 ReportTable answer_counts_table(const std::vector<results::AnswerRow>& answers) {
@@ -119,22 +120,18 @@ std::optional<DifferentRates> rates_of(const Counts& counts) {
 
 std::optional<DPrimeOfMean> d_prime_of_mean(const std::vector<Proportion>& correct,
                                             const DecisionTask& task) {
-  const auto over = beta_binomial_mean(correct);
-  if (!over) {
+  const auto over = mean_share(correct);
+  if (!over || !over->interval) {
     return std::nullopt;
   }
   return DPrimeOfMean{
       d_prime_of(task, over->mean),
-      {d_prime_of(task, over->interval.low), d_prime_of(task, over->interval.high)}};
+      {d_prime_of(task, over->interval->low), d_prime_of(task, over->interval->high)}};
 }
 
-ParticipantDiscrimination participant_of(const BlockDesign& design, const std::string& name,
-                                         const Counts& counts,
+ParticipantDiscrimination participant_of(const std::string& name, const Counts& counts,
                                          const std::optional<DecisionTask>& task) {
   ParticipantDiscrimination person{name, counts.correct, {}, {}, rates_of(counts)};
-  if (design.premise.empty()) {
-    person.p = binomial_p_at_least(counts.correct, design.guess_rate);
-  }
   if (task) {
     person.sensitivity = sensitivity(*task, counts.correct);
   }
@@ -171,6 +168,108 @@ std::vector<Proportion> correct_of(const std::vector<ParticipantDiscrimination>&
   return correct;
 }
 
+namespace {
+// Of two answers the other one is right; of more the alternative that alone is what it is, or is as
+// the last one, which no answer names.
+std::string right_in_place_of(const AnswerRow& answer, const std::set<std::string>& given,
+                              bool are_two) {
+  if (are_two) {
+    const auto other = std::ranges::find_if(
+        given, [&](const std::string& response) { return response != answer.response; });
+    return other != given.end() ? *other : "not " + answer.response;
+  }
+  const auto& all = answer.alternatives;
+  const bool has_sample = !all.empty() && all.back().label == "X";
+  const auto count_of = [&](bool is_comparison) {
+    return std::ranges::count(all, is_comparison, &AlternativeRow::is_comparison);
+  };
+  const bool of_right = has_sample ? all.back().is_comparison : count_of(true) == 1;
+  if (all.empty() || count_of(of_right) != (has_sample ? 2 : 1)) {
+    return "";
+  }
+  return std::ranges::find(all, of_right, &AlternativeRow::is_comparison)->label;
+}
+
+RightAnswers each_by_itself(std::size_t answers) {
+  RightAnswers right(answers, std::vector<bool>(answers, false));
+  for (std::size_t i = 0; i < answers; ++i) {
+    right[i][i] = true;
+  }
+  return right;
+}
+
+constexpr int fewest_draws = 999;
+constexpr int most_draws = 9999;
+constexpr std::uint64_t places_seed = 8;
+
+PermutationResult tested_by_places(const NullTables& tables) {
+  return permutation_tests(tables, {each_by_itself(tables.observed.size())},
+                           affordable_replicates(tables.work, fewest_draws, most_draws),
+                           places_seed)
+      .front();
+}
+
+void test_participants(const BlockDesign& design, const std::vector<AnswerRow>& answers,
+                       DiscriminationResults& results) {
+  std::map<std::string, std::vector<AnswerRow>> own;
+  for (const AnswerRow& answer : answers) {
+    own[answer.participant_id].push_back(answer);
+  }
+  for (ParticipantDiscrimination& person : results.participants) {
+    const auto places = places_redrawn(design, own[person.participant_id]);
+    person.p = places ? tested_by_places(*places).p
+                      : binomial_p_at_least(person.correct, design.guess_rate);
+  }
+}
+
+void test_chance(const BlockDesign& design, const std::vector<AnswerRow>& answers,
+                 DiscriminationResults& results) {
+  if (const auto places = places_redrawn(design, answers)) {
+    const PermutationResult tested = tested_by_places(*places);
+    results.p = tested.p;
+    results.p_floor = tested.as_good == 0 ? tested.p : 0.0;
+    results.draws = tested.draws;
+  } else {
+    results.p = binomial_p_at_least(results.correct, design.guess_rate);
+  }
+  test_participants(design, answers, results);
+}
+}  // namespace
+
+std::optional<NullTables> places_redrawn(const BlockDesign& design,
+                                         const std::vector<AnswerRow>& answers) {
+  constexpr double half = 0.5;
+  std::set<std::string> given;
+  std::vector<std::string> right;
+  std::ranges::transform(answers, std::inserter(given, given.end()), &AnswerRow::response);
+  const bool are_two = std::abs(design.guess_rate - half) < 1e-6;
+  for (const AnswerRow& answer : answers) {
+    right.push_back(answer.is_correct.value_or(false) ? answer.response
+                                                      : right_in_place_of(answer, given, are_two));
+    if (answer.response.empty() || right.back().empty()) {
+      return std::nullopt;
+    }
+  }
+  std::set<std::string> names = given;
+  names.insert(right.begin(), right.end());
+  const auto place = [&](const std::string& name) {
+    return static_cast<std::size_t>(std::distance(names.begin(), names.find(name)));
+  };
+  const CountTable empty(names.size(), std::vector<std::int64_t>(names.size(), 0));
+  std::map<std::pair<std::string, int>, CountTable> tables;
+  for (std::size_t i = 0; i < answers.size(); ++i) {
+    CountTable& of =
+        tables.try_emplace({answers[i].participant_id, answers[i].repetition}, empty).first->second;
+    ++of[place(right[i])][place(answers[i].response)];
+  }
+  if (tables.empty()) {
+    return std::nullopt;
+  }
+  std::vector<CountTable> all;
+  std::ranges::transform(tables, std::back_inserter(all), [](const auto& of) { return of.second; });
+  return shuffled_tables(all);
+}
+
 DiscriminationResults discrimination_results(const BlockDesign& design,
                                              const std::vector<AnswerRow>& answers) {
   check(design);
@@ -192,14 +291,14 @@ DiscriminationResults discrimination_results(const BlockDesign& design,
     }
   }
   for (const auto& [name, counts] : people) {
-    results.participants.push_back(participant_of(design, name, counts, task));
+    results.participants.push_back(participant_of(name, counts, task));
   }
   results.pairs = pairs_of(pairs, are_same_presented(results.participants) ? std::nullopt : task);
   if (task) {
     results.d_prime_of_mean = d_prime_of_mean(correct_of(results.participants), *task);
   }
   if (design.premise.empty() && results.correct.trials > 0) {
-    results.p = binomial_p_at_least(results.correct, design.guess_rate);
+    test_chance(design, answers, results);
   }
   return results;
 }
@@ -306,14 +405,18 @@ std::vector<CitingText> remarks_on(const BlockDesign& design,
     return {"There are no answers."};
   }
   std::vector<CitingText> remarks{
-      fmt::format("Chance is {:.3g}. Exact binomial tests, one-sided: places are drawn, so that of "
-                  "those who feel no difference every answer is right with that chance, whatever "
-                  "they prefer. Each participant: Wilson interval.",
-                  design.guess_rate),
-      results.participants.size() > 1 ? "The interval of all answers is over participants, of a "
-                                        "beta-binomial likelihood; those "
-                                        "of one participant take the answers as independent."
-                                      : "The interval takes the answers as independent."};
+      fmt::format(
+          "Chance is {:.3g}. {} Each participant: Wilson interval.", design.guess_rate,
+          results.draws > 0
+              ? "Tests, one-sided: participants' answers stay as they are, and what was right is "
+                "shuffled within each repetition, as the study drew it."
+              : "Exact binomial tests, one-sided, as if what is right were drawn anew in every "
+                "trial: what was right is not known of all trials."),
+      results.participants.size() > 1
+          ? "The interval of all answers is over participants, from three "
+            "on, each counting the same; those "
+            "of one participant take the answers as independent."
+          : "The interval takes the answers as independent."};
   if (!design.premise.empty()) {
     remarks.push_back("Not tested: " + design.premise);
   }
@@ -356,11 +459,17 @@ std::vector<CitingText> remarks_on(const BlockDesign& design,
 
 HypothesisResult tested(const BlockDesign& design, const DiscriminationResults& results,
                         const PlannedHypothesis& planned) {
-  HypothesisResult result{planned, "", results.correct, design.guess_rate, {}, 0.0};
+  HypothesisResult result{planned, "", results.correct, design.guess_rate, {}, results.p_floor};
   result.p = results.p;
-  result.test = !design.premise.empty()       ? design.premise
-                : results.correct.trials == 0 ? "there are no answers"
-                                              : "one-sided exact binomial test of all answers";
+  result.test =
+      !design.premise.empty()       ? design.premise
+      : results.correct.trials == 0 ? "there are no answers"
+      : results.draws > 0
+          ? fmt::format(
+                "randomisation test by {} draws of what was right, one-sided, within each "
+                "participant's repetitions",
+                results.draws)
+          : "one-sided exact binomial test of all answers";
   return result;
 }
 
@@ -386,9 +495,10 @@ std::shared_ptr<BlockSummary> summarise_discrimination(const BlockDesign& design
                                models_table(results),      answer_counts_table(rows.answers)};
   summary->results().remarks = remarks_on(design, results);
   summary->personal = shares_right(design, results);
-  if (const auto over = mean_proportion(correct_of(results.participants))) {
+  const auto over = mean_share(correct_of(results.participants));
+  if (over && over->interval) {
     summary->main_results = {
-        {"share of right answers", over->mean, over->interval, results.p, design.guess_rate}};
+        {"share of right answers", over->mean, *over->interval, results.p, design.guess_rate}};
   }
   for (const PlannedHypothesis& planned : design.hypotheses) {
     summary->hypotheses.push_back(tested(design, results, planned));

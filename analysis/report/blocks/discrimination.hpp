@@ -9,6 +9,7 @@
 #include "analysis/report/document/cells.hpp"
 #include "analysis/statistics/detection/decision_model.hpp"
 #include "analysis/statistics/detection/rates.hpp"
+#include "analysis/statistics/resampling/null_tables.hpp"
 #include "results/rows.hpp"
 namespace tapstudy::analysis {
 // How often each participant gave each answer: one that is preferred whatever is presented is a
@@ -36,7 +37,7 @@ struct DifferentRates {
 struct ParticipantDiscrimination {
   std::string participant_id;
   Proportion correct;
-  std::optional<double> p;  // exact binomial, one-sided; unset where nothing is tested
+  std::optional<double> p;                 // by the same test as all; unset where nothing is tested
   std::optional<Sensitivity> sensitivity;  // by the block's decision model, if it has one
   std::optional<DifferentRates> rates;     // where there are trials of both kinds
 };
@@ -62,16 +63,26 @@ struct DiscriminationResults {
   };
   std::vector<Pair> pairs;  // by name
   Proportion correct;       // of all answers
-  // Of the mean proportion over participants and its interval (beta_binomial_mean), mapped through
+  // Of the mean proportion over participants and its interval (mean_share), mapped through
   // d'. Not the mean of the participants' d': each is 0 or above, so that guessing gave more than
-  // 0. Of two participants with answers or more.
+  // 0. Of three participants with answers or more.
   std::optional<DPrimeOfMean> d_prime_of_mean;
-  // Exact binomial, one-sided, of all answers: places are drawn, so that of participants who feel
-  // no difference every answer is right with the same chance, whatever they prefer. Unset where
-  // nothing is tested or answered.
+  // Of all answers, one-sided: by the places' own randomisation where it is known what was right in
+  // each trial (places_redrawn), else exact binomial. Unset where nothing is tested or answered.
   std::optional<double> p;
+  double p_floor{};                 // where no draw was as good: p is only known to be no larger
+  int draws{};                      // of places; 0: exact binomial
   const DecisionModelRow* model{};  // nullptr: none
 };
+
+// What would be right, and was answered, in each repetition of each participant's trials: of those
+// who feel no difference the places of answers might as well have been in any other order within a
+// repetition, in which each is right equally often. Binomial counts vary more than that, and less
+// where participants prefer an answer. Unset where not every answer says what was right: it is that
+// which was given, or the other of two, or the alternative that alone differs, or is as the last
+// one, X.
+std::optional<NullTables> places_redrawn(const BlockDesign& design,
+                                         const std::vector<results::AnswerRow>& answers);
 
 // Throws InvalidInput for answers that are neither right nor wrong, a guess rate that is not in (0,
 // 1), and a decision model that there is not or that does not have this guess rate.

@@ -173,9 +173,9 @@ std::vector<MainResult> shares_preferred(const BlockDesign& design,
                                          const PreferenceResults& results) {
   std::vector<MainResult> shares;
   for (std::size_t i = 0; i < design.stimuli.size(); ++i) {
-    const auto over = mean_proportion(shares_of_people(results, static_cast<Eigen::Index>(i)));
-    if (over) {
-      shares.push_back({"preferred: " + design.stimuli[i].label, over->mean, over->interval});
+    const auto over = mean_share(shares_of_people(results, static_cast<Eigen::Index>(i)));
+    if (over && over->interval) {
+      shares.push_back({"preferred: " + design.stimuli[i].label, over->mean, *over->interval});
     }
   }
   return shares;

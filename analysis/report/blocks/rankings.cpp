@@ -174,7 +174,8 @@ std::shared_ptr<BlockSummary> summarise_rankings(const BlockDesign& design, cons
                                column("mean place", "mean_place"), results.participants,
                                results.stimuli, results.mean_places)};
   summary->main_results =
-      means_over_participants("mean place", results.stimuli, results.mean_places);
+      means_over_participants("mean place", results.stimuli, results.mean_places,
+                              {1.0, static_cast<double>(results.stimuli.size())});
   summary->results().remarks = remarks_on(results);
   return summary;
 }

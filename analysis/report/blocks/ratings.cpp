@@ -156,15 +156,18 @@ ReportTable participant_values_table(const std::string& title, const Column& of,
 
 std::vector<MainResult> means_over_participants(const std::string& what,
                                                 const std::vector<std::string>& stimuli,
-                                                const std::vector<std::vector<double>>& values) {
+                                                const std::vector<std::vector<double>>& values,
+                                                const Interval& bounds) {
   std::vector<MainResult> means;
   for (std::size_t i = 0; i < stimuli.size() && values.size() > 1; ++i) {
     std::vector<double> of_stimulus;
     for (const std::vector<double>& of_participant : values) {
       of_stimulus.push_back(of_participant[i]);
     }
-    means.push_back({fmt::format("{}: {}", what, stimuli[i]), mean_and_spread(of_stimulus).mean,
-                     t_interval(of_stimulus)});
+    if (const auto range = bounded_interval(of_stimulus, bounds)) {
+      means.push_back(
+          {fmt::format("{}: {}", what, stimuli[i]), mean_and_spread(of_stimulus).mean, *range});
+    }
   }
   return means;
 }
@@ -298,8 +301,9 @@ std::shared_ptr<BlockSummary> summarise_ratings(const BlockDesign& design, const
                                pairs_table(results), participants_table(results)};
   std::vector<std::string> stimuli;
   std::ranges::transform(results.stimuli, std::back_inserter(stimuli), &StimulusRatings::stimulus);
-  summary->main_results =
-      means_over_participants("mean of participants' median ratings", stimuli, results.medians);
+  summary->main_results = means_over_participants(
+      "mean of participants' median ratings", stimuli, results.medians,
+      design.steps > 0 ? Interval{1.0, static_cast<double>(design.steps)} : Interval{0.0, 1.0});
   summary->results().remarks = remarks_on(results);
   for (const PlannedHypothesis& planned : design.hypotheses) {
     summary->hypotheses.push_back(tested(design, results, planned));

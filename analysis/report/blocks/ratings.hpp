@@ -40,11 +40,12 @@ ReportTable participant_values_table(const std::string& title, const Column& of,
                                      const std::vector<std::string>& participants,
                                      const std::vector<std::string>& stimuli,
                                      const RatingTable& values);
-// "WHAT: STIMULUS", the mean of the participants' values with its t interval; of two participants
-// or more. values: [participant][stimulus].
+// "WHAT: STIMULUS", the mean of the participants' values with its bounded_interval; of two
+// participants or more who differ. values: [participant][stimulus].
 std::vector<MainResult> means_over_participants(const std::string& what,
                                                 const std::vector<std::string>& stimuli,
-                                                const std::vector<std::vector<double>>& values);
+                                                const std::vector<std::vector<double>>& values,
+                                                const Interval& bounds);
 
 // Ratings of one presented stimulus a trial: their distribution, Friedman's test over participants,
 // pairwise signed-rank tests. Throws InvalidInput as rating_results does, and for a hypothesis

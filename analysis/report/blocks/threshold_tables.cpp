@@ -62,17 +62,17 @@ ReportTable participants_table(const BlockDesign& design, const ThresholdResults
   table.columns.push_back(column("", "no_threshold_because"));
   for (const ParticipantThreshold& person : results.participants) {
     std::vector<Cell> row{word(person.participant_id), proportion(person.correct)};
-    if (person.estimate) {
-      add_threshold(row, axis, person.estimate->curve.threshold,
-                    person.estimate->intervals.threshold);
-      row.push_back(share(person.estimate->proportion_at_threshold));
+    if (const auto reported = reported_threshold(person)) {
+      add_threshold(row, axis, reported->threshold, reported->interval);
+      row.push_back(person.estimate ? share(person.estimate->proportion_at_threshold)
+                                    : nothing(at));
     } else {
       for (const Column& of_threshold : thresholds) {
         row.push_back(nothing(of_threshold));
       }
       row.push_back(nothing(at));
     }
-    row.push_back(person.estimate ? Cell{"", {Value{}}} : word(person.no_threshold));
+    row.push_back(reported_threshold(person) ? Cell{"", {Value{}}} : word(person.no_threshold));
     table.rows.push_back(row);
   }
   return table;
@@ -112,16 +112,6 @@ ReportTable pooled_table(const VariedAxis& axis, const ThresholdResults& results
                     column("SD of log10 thresholds", "sd_log10"), axis, mean);
 }
 
-ReportTable population_table(const VariedAxis& axis, const ThresholdResults& results) {
-  std::optional<MeanThreshold> mean;
-  if (const auto& of = results.population) {
-    mean = {of->participants, of->log10.mean, of->log10.interval, of->log10.between_sd};
-  }
-  return mean_table("population",
-                    "Over participants: random-effects mean of their posterior thresholds",
-                    column("SD of log10 between participants", "between_sd_log10"), axis, mean);
-}
-
 Cell slope_cell(const ThresholdEstimate& of) {
   return of.is_step ? Cell{fmt::format("above {}", rounded(of.intervals.slope.low)),
                            {Value{}, of.intervals.slope.low, of.intervals.slope.high}}
@@ -132,13 +122,15 @@ ReportTable fits_table(const BlockDesign& design, const ThresholdResults& result
   ReportTable table{
       "fits",
       fmt::format("Fits: {} function of the level", core::row_of(design.shape).name),
-      {column("participant", "participant_id"), interval_column("slope (95 % CI)", "slope"),
-       column("guess", "guess"), column("lapse", "lapse"), column("deviance test", "deviance_p")}};
+      {column("participant", "participant_id"),
+       interval_column("likeliest threshold (95 % CI, profile)", "likeliest_threshold"),
+       interval_column("slope (95 % CI)", "slope"), column("guess", "guess"),
+       column("lapse", "lapse"), column("deviance test", "deviance_p")}};
   for (const ParticipantThreshold& person : results.participants) {
     if (const auto& of = person.estimate) {
       table.rows.push_back(
-          {word(person.participant_id), slope_cell(*of), number(of->curve.guess),
-           number(of->curve.lapse, 2),
+          {word(person.participant_id), interval(of->curve.threshold, of->intervals.threshold),
+           slope_cell(*of), number(of->curve.guess), number(of->curve.lapse, 2),
            probability(of->goodness ? std::optional{of->goodness->p} : std::nullopt)});
     }
   }
@@ -162,6 +154,25 @@ ReportTable posteriors_table(const ThresholdResults& results) {
                             interval(posterior->threshold, posterior->threshold_interval),
                             interval(posterior->slope, posterior->slope_interval),
                             of(posterior->lapse), of(posterior->eta), of(posterior->guess)});
+    }
+  }
+  return table;
+}
+
+// How much the thresholds rest on their prior.
+ReportTable priors_table(const ThresholdResults& results) {
+  ReportTable table{
+      "priors",
+      "Posterior thresholds with half and twice the breadth of the prior",
+      {column("participant", "participant_id"), interval_column("half", "threshold_half_prior"),
+       interval_column("as reported", "threshold_prior"),
+       interval_column("twice", "threshold_twice_prior")}};
+  for (const ParticipantThreshold& person : results.participants) {
+    if (person.narrower && person.posterior && person.broader) {
+      table.rows.push_back({word(person.participant_id)});
+      for (const auto& of : {person.narrower, person.posterior, person.broader}) {
+        table.rows.back().push_back(interval(of->threshold, of->threshold_interval));
+      }
     }
   }
   return table;
@@ -260,9 +271,9 @@ std::vector<ReportTable> threshold_tables(const BlockDesign& design,
                                           const ThresholdResults& results) {
   return {participants_table(design, results),
           pooled_table(*design.axis, results),
-          population_table(*design.axis, results),
           fits_table(design, results),
           posteriors_table(results),
+          priors_table(results),
           levels_over_participants(design, results),
           false_alarm_table(results),
           levels_table(design, results),
@@ -305,9 +316,9 @@ Chart function_chart(const ParticipantThreshold& person, const BlockDesign& desi
     return chart;
   }
   chart.line = curve_points(chart, design.shape, person.estimate->curve);
-  const Interval& interval = person.estimate->intervals.threshold;
-  chart.bars = {{person.estimate->proportion_at_threshold, interval}};
-  chart.alternative += "threshold " + with_interval(person.estimate->curve.threshold, interval);
+  const auto reported = reported_threshold(person);
+  chart.bars = {{person.estimate->proportion_at_threshold, reported->interval}};
+  chart.alternative += "threshold " + with_interval(reported->threshold, reported->interval);
   return chart;
 }
 

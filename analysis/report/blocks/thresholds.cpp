@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <map>
-#include <numbers>
 
 #include "analysis/report/blocks/discrimination.hpp"
 #include "analysis/report/blocks/psychometric_levels.hpp"
@@ -69,6 +69,7 @@ void estimate(ParticipantThreshold& person, const PsychometricModel& model,
               const std::vector<Level>& levels, int draws) {
   try {
     const PsychometricFit fit = fit_psychometric(model, levels);
+    person.outcome = fit.outcome;
     const auto curve = curve_with_threshold(model, levels, fit);
     if (!curve) {
       person.no_threshold = explanation(fit.outcome);
@@ -87,10 +88,20 @@ void estimate(ParticipantThreshold& person, const PsychometricModel& model,
 }
 
 void add_posterior(ParticipantThreshold& person, const PsychometricModel& model,
-                   const std::vector<Level>& levels) {
+                   const std::vector<Level>& levels, bool is_for_main_results) {
+  constexpr double confidence = 0.95;
+  const auto with = [&](double breadth) {
+    return psychometric_posterior(model, levels, confidence, breadth);
+  };
   try {
-    const PsychometricPosterior posterior = psychometric_posterior(model, levels);
+    const PsychometricPosterior posterior = with(prior_breadth);
     person.posterior = posterior.estimates;
+    const bool is_guess_free =
+        model.guess.low < model.guess.high;  // which takes eight times longer
+    if (posterior.estimates && !is_for_main_results && !is_guess_free) {
+      person.narrower = with(0.5 * prior_breadth).estimates;
+      person.broader = with(2.0 * prior_breadth).estimates;
+    }
     person.no_posterior = posterior.estimates ? "" : explanation(posterior.outcome);
   } catch (const core::NotEstimable& error) {
     person.no_posterior = error.what();
@@ -100,8 +111,9 @@ void add_posterior(ParticipantThreshold& person, const PsychometricModel& model,
 std::optional<MeanLogThreshold> mean_of(const std::vector<ParticipantThreshold>& people) {
   std::vector<double> logarithms;
   for (const ParticipantThreshold& person : people) {
-    if (person.estimate && person.estimate->curve.threshold > 0.0) {
-      logarithms.push_back(std::log10(person.estimate->curve.threshold));
+    const auto reported = reported_threshold(person);
+    if (reported && reported->threshold > 0.0) {
+      logarithms.push_back(std::log10(reported->threshold));
     }
   }
   if (logarithms.size() < 2) {
@@ -112,27 +124,45 @@ std::optional<MeanLogThreshold> mean_of(const std::vector<ParticipantThreshold>&
                           static_cast<int>(logarithms.size())};
 }
 
-// On a linear axis the standard error of log10(threshold) is SE / (threshold ln 10) (delta method).
-std::optional<PopulationThreshold> population_of(const std::vector<ParticipantThreshold>& people,
-                                                 core::PsychometricShape shape) {
-  std::vector<double> means;
-  std::vector<double> errors;
-  for (const ParticipantThreshold& person : people) {
-    if (!person.posterior || !(person.posterior->threshold > 0.0)) {
-      continue;
-    }
-    const Marginal& position = person.posterior->position;
-    const bool is_logarithm = core::row_of(shape).is_logarithmic;
-    means.push_back(is_logarithm ? position.mean : std::log10(person.posterior->threshold));
-    errors.push_back(is_logarithm ? position.standard_deviation
-                                  : position.standard_deviation /
-                                        (person.posterior->threshold * std::numbers::ln10));
-  }
-  return means.size() < 3 ? std::nullopt
-                          : std::optional{PopulationThreshold{random_effects(means, errors),
-                                                              static_cast<int>(means.size())}};
-}
 }  // namespace
+
+std::optional<ReportedThreshold> reported_threshold(const ParticipantThreshold& person) {
+  if (const auto& of = person.posterior) {
+    return ReportedThreshold{of->threshold, of->threshold_interval, true};
+  }
+  if (const auto& of = person.estimate) {
+    return ReportedThreshold{of->curve.threshold, of->intervals.threshold, false};
+  }
+  return std::nullopt;
+}
+
+std::optional<Interval> beyond_levels(const ParticipantThreshold& person) {
+  using enum FitOutcome;
+  const auto presented =
+      std::ranges::find_if(person.levels, [](const Level& one) { return one.value > 0.0; });
+  if (reported_threshold(person) || !person.outcome || presented == person.levels.end()) {
+    return std::nullopt;
+  }
+  switch (*person.outcome) {
+    case all_successes:
+    case threshold_below:
+      return Interval{0.0, presented->value};
+    case no_successes:
+    case threshold_above:
+      return Interval{person.levels.back().value, std::numeric_limits<double>::infinity()};
+    case no_increase: {  // at the foot of the function or at its top
+      constexpr double middle = 0.75;
+      return person.correct.value() < middle
+                 ? std::optional{Interval{person.levels.back().value,
+                                          std::numeric_limits<double>::infinity()}}
+                 : std::nullopt;
+    }
+    case fitted:
+    case step:
+      return std::nullopt;
+  }
+  return std::nullopt;
+}
 
 PsychometricModel model_of(const BlockDesign& design) {
   const Interval guess = design.has_own_guess_rate ? Interval{0.0, max_own_guess}
@@ -152,20 +182,18 @@ ThresholdResults participant_thresholds(const BlockDesign& design,
   for (const ParticipantThreshold& person : results.participants) {
     levels += person.levels.size();
   }
-  const bool is_examined = levels <= most_levels_examined && !design.is_for_main_results;
-  results.draws = is_examined ? draws_of_fit : 0;
-  results.has_posteriors = is_examined;
+  results.has_posteriors = levels <= most_levels_examined;
+  results.draws = results.has_posteriors && !design.is_for_main_results ? draws_of_fit : 0;
   const PsychometricModel model = model_of(design);
   parallel_for(results.participants.size(), 0, [&](std::size_t i) {
     ParticipantThreshold& person = results.participants[i];
     const std::vector<Level> fitted = fitted_levels(person, design);
     estimate(person, model, fitted, results.draws);
     if (results.has_posteriors) {
-      add_posterior(person, model, fitted);
+      add_posterior(person, model, fitted, design.is_for_main_results);
     }
   });
   results.mean_log = mean_of(results.participants);
-  results.population = population_of(results.participants, design.shape);
   return results;
 }
 
@@ -190,6 +218,24 @@ CitingText describe_d_prime(const BlockDesign& design) {
              ? ""
              : fmt::format("d' at a level by the decision model '{}' ({}).", design.decision_model,
                            find_decision_model(design.decision_model)->summary);
+}
+
+CitingText words_of_prior(const ThresholdResults& results) {
+  return results.has_posteriors
+             ? core::citing(
+                   "Posteriors: beta-binomial answers; priors of the form of {}: the threshold "
+                   "even "
+                   "over the levels presented, which span R, falling to 0 at 1.5 R beyond them; "
+                   "the "
+                   "width of the function (from 5 to 95 %) even from two gaps of levels to 3 R, "
+                   "falling to 0 at 9 R; lapses beta(1, 10). The table of priors has thresholds "
+                   "with "
+                   "half and twice these ranges: where they differ, the answers tell little. An "
+                   "upper end is infinite where the answers do not tell a threshold from guesses "
+                   "at "
+                   "every level (probability above .025, both as likely before).",
+                   "Schütt et al. 2016"_source)
+             : "Posteriors are not computed for so many levels.";
 }
 
 // Catch trials, at 0, aside.
@@ -239,12 +285,6 @@ std::vector<CitingText> remarks_on_mean(const ThresholdResults& results) {
       "Mean over participants: of the logarithms of their thresholds, each counting the same, "
       "interval by t. The standard deviation is that between participants and of their "
       "estimates' errors together. Answers of participants are not put together as if of one."};
-  if (results.population) {
-    remarks.emplace_back(
-        core::citing("Random-effects mean ({}, interval of {}): each posterior counts as well as "
-                     "it is known; its standard deviation is that of participants alone.",
-                     "Paule & Mandel 1982"_source, "Hartung & Knapp 2001"_source));
-  }
   const int without =
       static_cast<int>(results.participants.size()) - results.mean_log->participants;
   if (without > 0) {
@@ -263,9 +303,11 @@ std::vector<CitingText> threshold_remarks(const BlockDesign& design,
   }
   std::vector<CitingText> remarks{
       "Levels: " + level_words(*design.axis) + ".",
-      fmt::format("Thresholds: maximum likelihood of a {} function of the level, {}, lapse rate "
-                  "from 0 to 0.1; intervals by profile likelihood. At the threshold the function "
+      fmt::format("Thresholds: {} of a {} function of the level, {}, lapse rate "
+                  "from 0 to 0.1. At the threshold the function "
                   "without guesses and lapses is at {:.0f} %.",
+                  results.has_posteriors ? "posterior medians with 95 % credible intervals"
+                                         : "maximum likelihood with profile intervals",
                   core::row_of(design.shape).name,
                   design.has_own_guess_rate
                       ? "guess rate free, with the false alarms as answers at the level 0"
@@ -279,11 +321,7 @@ std::vector<CitingText> threshold_remarks(const BlockDesign& design,
                         "function does not fit.",
                         results.draws)
           : "Deviance tests are not made for so many levels.");
-  remarks.emplace_back(results.has_posteriors
-                           ? core::citing("Posteriors: beta-binomial answers and the priors of {}, "
-                                          "which limit the slope where the answers alone do not.",
-                                          "Schütt et al. 2016"_source)
-                           : "Posteriors are not computed for so many levels.");
+  remarks.push_back(words_of_prior(results));
   if (const CitingText words = describe_d_prime(design); !words.empty()) {
     remarks.push_back(words);
   }
@@ -305,14 +343,21 @@ MainResult mean_threshold(const VariedAxis& axis, const MeanLogThreshold& log_me
 // A threshold is where the function without guesses has a value that depends on its shape.
 PersonalValues thresholds_of(const BlockDesign& design, const ThresholdResults& results) {
   const VariedAxis& axis = *design.axis;
-  return personal_values(fmt::format("threshold of {}{}{}, {}, {} function", axis.name.with_unit(),
-                                     axis.is_below ? " below the standard" : "",
-                                     axis.is_fraction ? " (Weber fraction)" : "", design.task,
-                                     core::row_of(design.shape).name),
-                         true, results.participants, [](const ParticipantThreshold& person) {
-                           return person.estimate ? std::optional{person.estimate->curve.threshold}
-                                                  : std::nullopt;
-                         });
+  PersonalValues values =
+      personal_values(fmt::format("threshold of {}{}{}, {}, {} function", axis.name.with_unit(),
+                                  axis.is_below ? " below the standard" : "",
+                                  axis.is_fraction ? " (Weber fraction)" : "", design.task,
+                                  core::row_of(design.shape).name),
+                      true, results.participants, [](const ParticipantThreshold& person) {
+                        const auto reported = reported_threshold(person);
+                        return reported ? std::optional{reported->threshold} : std::nullopt;
+                      });
+  for (const ParticipantThreshold& person : results.participants) {
+    if (const auto range = beyond_levels(person)) {
+      values.beyond[person.participant_id] = *range;
+    }
+  }
+  return values;
 }
 }  // namespace
 

@@ -29,12 +29,31 @@ struct ParticipantThreshold {
   Proportion false_alarms;    // wrong answers in the others
   std::optional<ThresholdEstimate> estimate;
   std::string no_threshold;                     // why there is none; empty: there is
+  std::optional<FitOutcome> outcome;            // unset: too few levels
   std::optional<PosteriorEstimates> posterior;  // unset also where it would take too long
   std::string no_posterior;                     // why there is none; empty: there is, or not sought
+  // With half and twice the breadth of the prior; unset where they are left out.
+  std::optional<PosteriorEstimates> narrower{};
+  std::optional<PosteriorEstimates> broader{};
 };
 
-// Over participants: each one's threshold counts the same. Standard errors of fits to adaptive
-// tracks are too small to weight them by, or to test by them whether participants differ.
+// Of the posteriors' prior, for levels of adaptive tracks, which cover less than the function.
+inline constexpr double prior_breadth = 3.0;
+
+// What is reported of one participant: the posterior's median and 95 % credible interval, because
+// profile intervals of adaptive tracks hold the threshold in too few studies; where no posterior is
+// computed, the likeliest threshold and its profile interval.
+struct ReportedThreshold {
+  double threshold{};
+  Interval interval;
+  bool is_posterior{};
+};
+std::optional<ReportedThreshold> reported_threshold(const ParticipantThreshold& person);
+// Where the threshold of somebody who has none lies: above or below all levels; unset: unknown.
+std::optional<Interval> beyond_levels(const ParticipantThreshold& person);
+
+// Over participants: each one's reported threshold counts the same. Standard errors of adaptive
+// tracks depend on the thresholds, so that weights by them bias the mean.
 struct MeanLogThreshold {
   double mean{};                // of log10 thresholds
   double standard_deviation{};  // of the same: of participants and of their estimates' errors
@@ -42,18 +61,11 @@ struct MeanLogThreshold {
   int participants{};           // with a threshold
 };
 
-// Of the posteriors' log10 thresholds: each participant weighs as well as he is known.
-struct PopulationThreshold {
-  RandomEffects log10;
-  int participants{};
-};
-
 struct ThresholdResults {
   std::vector<ParticipantThreshold> participants;  // by name
   int draws{};                                     // of the tests of fit; 0: not made
   bool has_posteriors{};                           // they were computed
   std::optional<MeanLogThreshold> mean_log;        // of two thresholds or more
-  std::optional<PopulationThreshold> population;   // of three posteriors or more
 };
 
 // The block's psychometric function with its guess rate, or a free one, and a lapse rate of up to

@@ -91,7 +91,7 @@ ReportTable estimates_table(const IdentificationSummary& summary) {
       {column("right", "right"), column("answers", "answers"), column("of all", "share"),
        column("chance", "chance"), column("above chance", "p"),
        column("mean of participants", "mean_of_participants"),
-       range_column("95 % CI, beta-binomial", "beta_binomial"), range_column("95 % CI, t", "t"),
+       range_column("95 % CI", "over_participants"), range_column("95 % CI, t", "t"),
        range_column("95 % CI, bootstrap", "bootstrap"),
        column("intra-class correlation", "intraclass_correlation"),
        range_column("if answers were independent (Wilson)", "independent_wilson")}};
@@ -109,8 +109,8 @@ ReportTable estimates_table(const IdentificationSummary& summary) {
                           {percent(result.accuracy), {result.accuracy.value()}},
                           share(result.chance),
                           probability(result.p),
-                          over ? share(over->mean_of_shares) : number(std::nullopt),
-                          range_cell(over ? std::optional{over->interval} : std::nullopt),
+                          over ? share(over->mean) : number(std::nullopt),
+                          range_cell(over ? over->interval : std::nullopt),
                           range_cell(over ? over->t : std::nullopt),
                           range_cell(over ? over->bootstrap : std::nullopt),
                           over ? number(over->intraclass_correlation) : number(std::nullopt),
@@ -164,12 +164,15 @@ ReportSection accuracy_section(const IdentificationSummary& summary) {
   }
   if (summary.accuracy_over_participants) {
     section.remarks.emplace_back(core::citing(
-        "95 % intervals hold for participants of whom these are a sample: profile likelihood of a "
-        "beta-binomial distribution ({}) with the quantile of t for the number of participants, "
-        "which holds the mean in more than 95 % of studies where participants are few; t and the "
-        "bootstrap (BCa, {}, expanded after {}) over participants' shares are given beside it. "
-        "Wilson's interval would hold if all answers were independent of one another.",
-        "Williams 1975"_source, "Efron 1987"_source, "Hesterberg 2015"_source));
+        "95 % intervals hold for participants of whom these are a sample, from three on, each "
+        "counting the same: the score interval of their mean ({}) with the variance that they show "
+        "({}) and the quantile of t; t and the bootstrap (BCa, {}, expanded after {}) over their "
+        "shares are given beside it. The intra-class correlation is that of a beta-binomial "
+        "distribution ({}). Wilson's interval of all answers would hold if they were independent "
+        "of "
+        "one another.",
+        "Wilson 1927"_source, "Wedderburn 1974"_source, "Efron 1987"_source,
+        "Hesterberg 2015"_source, "Williams 1975"_source));
   }
   section.remarks.push_back("All answers against chance: " + summary.chance_test + ".");
   add_remark_on_chance(summary, section);
@@ -243,6 +246,13 @@ GroupCounts counted(const IdentificationData& data, const Grouping& grouping) {
   return counts;
 }
 
+Cell mean_cell(const MeanShare& over) {
+  return over.interval
+             ? Cell{fmt::format("{} ({})", percent(over.mean), percent_range(*over.interval)),
+                    {over.mean, over.interval->low, over.interval->high}}
+             : Cell{percent(over.mean), {over.mean, Value{}, Value{}}};
+}
+
 void add_group(const IdentificationData& data, const Grouping& grouping, ReportTable& shares,
                ReportTable& cells) {
   const GroupCounts counts = counted(data, grouping);
@@ -251,12 +261,9 @@ void add_group(const IdentificationData& data, const Grouping& grouping, ReportT
     if (all.trials == 0) {
       continue;
     }
-    const auto over = beta_binomial_mean(counts.right[level]);
-    shares.rows.push_back(
-        {word(grouping.name), word(grouping.levels[level]), counted(all),
-         over ? Cell{fmt::format("{} ({})", percent(over->mean), percent_range(over->interval)),
-                     {over->mean, over->interval.low, over->interval.high}}
-              : nothing(shares.columns.back())});
+    const auto over = mean_share(counts.right[level]);
+    shares.rows.push_back({word(grouping.name), word(grouping.levels[level]), counted(all),
+                           over ? mean_cell(*over) : nothing(shares.columns.back())});
     add_cells(data, grouping.name, grouping.levels[level], counts.of_level[level], cells);
   }
 }
@@ -309,26 +316,46 @@ struct Contrast {
   PairedContrast result;
 };
 
-Proportion right_at(const IdentifyingParticipant& person, const Grouping& grouping,
-                    std::size_t level) {
-  Proportion right;
+// How often a participant gives the answer that is right for each stimulus, whatever is presented.
+std::vector<double> right_by_preference(const IdentificationData& data,
+                                        const IdentifyingParticipant& person) {
+  std::vector<double> right(data.stimuli.size(), 0.0);
   for (const IdentifiedTrial& trial : person.trials) {
-    const bool is_of_level = grouping.level_of(trial) == level;
-    right.trials += is_of_level ? 1 : 0;
-    right.successes += is_of_level && trial.is_right ? 1 : 0;
+    for (std::size_t i = 0; i < right.size(); ++i) {
+      const bool is_right = data.stimuli[i].is_answered_by(data.responses[trial.response].name);
+      right[i] += is_right ? 1.0 / static_cast<double>(person.trials.size()) : 0.0;
+    }
   }
   return right;
 }
 
-// Of each participant with answers of both levels: the difference of the shares right.
+// The share of right answers at a level less what the participant's preferences among the answers
+// give there: 0 on average for answers that do not depend on the stimulus, whatever is preferred.
+// Unset without answers.
+std::optional<double> right_beyond_preference(const IdentifyingParticipant& person,
+                                              const std::vector<double>& by_preference,
+                                              const Grouping& grouping, std::size_t level) {
+  double sum = 0.0;
+  int trials = 0;
+  for (const IdentifiedTrial& trial : person.trials) {
+    if (grouping.level_of(trial) == level) {
+      sum += (trial.is_right ? 1.0 : 0.0) - by_preference[trial.stimulus];
+      ++trials;
+    }
+  }
+  return trials > 0 ? std::optional{sum / trials} : std::nullopt;
+}
+
+// Of each participant with answers of both levels.
 std::vector<double> differences(const IdentificationData& data, const Grouping& grouping,
                                 std::size_t first, std::size_t second) {
   std::vector<double> found;
   for (const IdentifyingParticipant& person : data.participants) {
-    const Proportion of_first = right_at(person, grouping, first);
-    const Proportion of_second = right_at(person, grouping, second);
-    if (of_first.trials > 0 && of_second.trials > 0) {
-      found.push_back(of_first.value() - of_second.value());
+    const std::vector<double> by_preference = right_by_preference(data, person);
+    const auto of_first = right_beyond_preference(person, by_preference, grouping, first);
+    const auto of_second = right_beyond_preference(person, by_preference, grouping, second);
+    if (of_first && of_second) {
+      found.push_back(*of_first - *of_second);
     }
   }
   return found;
@@ -351,7 +378,7 @@ std::vector<Contrast> contrasts_of(const IdentificationData& data, const Groupin
 
 ReportSection contrasts_section(const IdentificationData& data) {
   ReportTable table{"contrasts",
-                    "Differences of right answers within participants",
+                    "Differences of right answers beyond preferences, within participants",
                     {column("of", "of"), column("first", "first"), column("second", "second"),
                      interval_column("first - second (95 % CI, t)", "difference"),
                      column("participants", "participants"), column("permutation", "p"),
@@ -379,10 +406,11 @@ ReportSection contrasts_section(const IdentificationData& data) {
     return section;
   }
   section.remarks.emplace_back(
-      core::citing("Differences of a participant's shares right; two-sided permutation test by "
-                   "changing the signs of participants' differences (all patterns up to 16, else "
-                   "9999), adjusted within a technique or factor by {}. A participant who prefers "
-                   "some answers is right more often where they are right.",
+      core::citing("Differences of a participant's shares right, each less the share that would be "
+                   "right if he gave his answers as often without regard to the stimuli: who "
+                   "prefers some answers is right more often where they are right. Two-sided "
+                   "permutation test by changing the signs of participants' differences (all "
+                   "patterns up to 16, else 9999), adjusted within a technique or factor by {}.",
                    "Holm 1979"_source));
   return section;
 }

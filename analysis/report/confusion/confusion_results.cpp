@@ -42,13 +42,15 @@ ReportTable shares_table(const std::string& title, const std::string& of_what) {
   return table;
 }
 
-// The interval is that over participants; without one, that of the answers if they are independent.
+// The interval is that over participants, none of two; of one that of the answers if they are
+// independent.
 std::vector<Cell> share_row(const FactorResult& result, const std::string& words) {
   Cell cell{words, {}};
   if (result.accuracy.trials > 0) {
-    cell.dot = Dot{result.accuracy.value(),
-                   result.over_participants ? result.over_participants->interval
-                                            : wilson_interval(result.accuracy),
+    const auto& over = result.over_participants;
+    const Interval of_answers = over ? Interval{result.accuracy.value(), result.accuracy.value()}
+                                     : wilson_interval(result.accuracy);
+    cell.dot = Dot{result.accuracy.value(), over && over->interval ? *over->interval : of_answers,
                    result.chance};
   }
   return {word(title_of(result)), cell};
@@ -88,11 +90,11 @@ Json names_of(const std::vector<Item>& items) {
   return names;
 }
 
-// The interval is that over participants, null where there are not two.
+// The interval is that over participants, null where there are not three.
 Json share_json(const Proportion& pooled, const std::optional<MeanProportion>& over) {
   Json json = as_json(pooled);
   json["over_participants_95"] =
-      over ? Json{over->interval.low, over->interval.high} : Json(nullptr);
+      over && over->interval ? Json{over->interval->low, over->interval->high} : Json(nullptr);
   return json;
 }
 

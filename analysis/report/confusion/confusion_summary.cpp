@@ -159,9 +159,9 @@ IdentificationSummary::IdentificationSummary(const BlockDesign& design,
   if (chance_p) {
     methods = "Accuracy of identification against chance: " + chance_test + ".";
   }
-  if (accuracy_over_participants) {
+  if (accuracy_over_participants && accuracy_over_participants->interval) {
     main_results = {{"accuracy", accuracy_over_participants->mean,
-                     accuracy_over_participants->interval, chance_p, matrix.chance()}};
+                     *accuracy_over_participants->interval, chance_p, matrix.chance()}};
   }
   if (accuracy.trials > 0) {
     sections.push_back(accuracy_section(*this));

@@ -19,14 +19,18 @@ struct PersonalValues {
   std::string measure;  // with its unit; blocks of one measure can be compared
   bool is_ratio{};      // values are above 0, and compared by their ratio
   std::map<std::string, double> by_participant;
+  // Where the value of somebody lies who has none, such as above all levels that were presented.
+  std::map<std::string, Interval> beyond{};
+  std::set<std::string> participants{};  // all who took part; those above where it is empty
 };
 
 // Of the people for whom value_of gives one.
 template <class People, class ValueOf>
 PersonalValues personal_values(std::string measure, bool is_ratio, const People& people,
                                const ValueOf& value_of) {
-  PersonalValues values{std::move(measure), is_ratio, {}};
+  PersonalValues values{std::move(measure), is_ratio, {}, {}, {}};
   for (const auto& person : people) {
+    values.participants.insert(person.participant_id);
     if (const std::optional<double> value = value_of(person)) {
       values.by_participant[person.participant_id] = *value;
     }

@@ -63,13 +63,16 @@ std::string p_value(double p) {
   return "p = " + (digits.front() == '0' ? digits.substr(1) : digits);
 }
 
-std::string over_participants(const Proportion& all, const BetaBinomialMean& over) {
+std::string over_participants(const Proportion& all, const MeanShare& over) {
   const std::string mean = percent(over.mean);
-  return mean == percent(all.value())
-             ? fmt::format("(95 % CI over {} participants {})", over.participants,
-                           percent_range(over.interval))
-             : fmt::format("({} estimated over {} participants, 95 % CI {})", mean,
-                           over.participants, percent_range(over.interval));
+  const std::string range = over.interval ? "95 % CI " + percent_range(*over.interval)
+                                          : "no CI: two do not tell how much participants differ";
+  if (mean != percent(all.value())) {
+    return fmt::format("(mean of {} participants {}, {})", over.participants, mean, range);
+  }
+  return over.interval ? fmt::format("(95 % CI over {} participants {})", over.participants,
+                                     percent_range(*over.interval))
+                       : fmt::format("({} participants, {})", over.participants, range);
 }
 
 Cell pooled_proportion(const std::vector<Proportion>& participants) {
@@ -81,9 +84,12 @@ Cell pooled_proportion(const std::vector<Proportion>& participants) {
     return proportion(all);
   }
   Cell cell = counted(all);
-  if (const auto over = beta_binomial_mean(participants)) {
+  const auto over = mean_share(participants);
+  if (over) {
     cell.text += " " + over_participants(all, *over);
-    cell.values.insert(cell.values.end(), {over->interval.low, over->interval.high});
+  }
+  if (over && over->interval) {
+    cell.values.insert(cell.values.end(), {over->interval->low, over->interval->high});
   } else {
     cell.values.resize(cell.values.size() + 2);
   }

@@ -20,12 +20,13 @@ std::string p_value(double p);  // "p = .020", "p < .001"
 // The same, "p ≤ 1/10000" where only a bound is known, or "not tested".
 std::string p_value(const HypothesisResult& result);
 
-// "(95 % CI over 4 participants 14–92 %)", of beta_binomial_mean; where its mean is not the share
-// of all answers together, "(61 % estimated over 4 participants, 95 % CI 14–92 %)".
-std::string over_participants(const Proportion& all, const BetaBinomialMean& over);
+// "(95 % CI over 4 participants 14–92 %)"; where the mean of participants is not the share of all
+// answers together, "(mean of 4 participants 61 %, 95 % CI 14–92 %)"; without an interval it says
+// why.
+std::string over_participants(const Proportion& all, const MeanShare& over);
 
 // What all participants answered, for a proportion_column: the counts together, with an interval
-// over participants (beta_binomial_mean), because the answers of one are not independent of one
+// over participants (mean_share), because the answers of one are not independent of one
 // another. Of a single participant the score interval; without one where it takes more participants
 // with answers.
 Cell pooled_proportion(const std::vector<Proportion>& participants);

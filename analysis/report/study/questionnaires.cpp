@@ -149,12 +149,19 @@ std::vector<double> sorted_scores(const FormScores& scores) {
   return values;
 }
 
+// Scores are from 0 to 100, and so is their mean.
+Cell mean_score(const std::vector<double>& values) {
+  constexpr Interval bounds{0.0, 100.0};
+  return interval(mean_and_spread(values).mean,
+                  values.size() > 1 ? bounded_interval(values, bounds) : std::nullopt);
+}
+
 std::vector<Cell> score_row(const Questionnaire& form, const std::string& asked,
                             const FormScores& scores, const ReportTable& table) {
   const std::vector<double> values = sorted_scores(scores);
   std::vector<Cell> row{word(form.name), word(asked), count(std::ssize(values)),
                         count(scores.incomplete)};
-  row.push_back(values.empty() ? nothing(table.columns[4]) : mean_with_interval(values));
+  row.push_back(values.empty() ? nothing(table.columns[4]) : mean_score(values));
   const auto bootstrap = values.size() > 1 ? bootstrap_interval(values, draws, seed) : std::nullopt;
   row.push_back(bootstrap ? Cell{rounded(bootstrap->low) + " to " + rounded(bootstrap->high),
                                  {bootstrap->low, bootstrap->high}}
@@ -192,7 +199,7 @@ std::vector<ReportTable> empty_tables() {
           {"questionnaire_scores", "Scores from 0 to 100, means over participants",
            with_form({column("scored", "scored"),
                       column("incomplete", "incomplete"),
-                      interval_column("mean (95 % CI, t)", "mean"),
+                      interval_column("mean (95 % CI)", "mean"),
                       {"95 % CI, bootstrap", {"bootstrap_low", "bootstrap_high"}}})},
           {"questionnaire_scores_of_participants", "Scores of each participant",
            with_form({column("participant", "participant"), column("score", "score")})}};

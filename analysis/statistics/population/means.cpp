@@ -3,6 +3,8 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <limits>
 #include <numeric>
 
 #include "analysis/statistics/distributions.hpp"
@@ -56,8 +58,7 @@ BetaBinomialParameters refined(const std::vector<Proportion>& people,
 namespace {
 constexpr int bootstrap_draws = 4999;
 constexpr std::uint64_t bootstrap_seed = 2;
-constexpr double largest_eta = 0.999;  // square root of the intra-class correlation
-constexpr double smallest_share = 1e-9;
+constexpr double largest_eta = 0.999;       // square root of the intra-class correlation
 constexpr double indistinguishable = 1e-5;  // log likelihoods, by rounding where eta is small
 
 double log_likelihood(const std::vector<Proportion>& participants, double mean, double eta) {
@@ -81,19 +82,6 @@ Profile profile_at(const std::vector<Proportion>& participants, double mean) {
                                                       : Profile{inside.at, -inside.value};
 }
 
-Interval profile_interval(const std::vector<Proportion>& participants, double mean,
-                          double most_likely) {
-  const double t = t_quantile(0.975, static_cast<double>(participants.size()) - 1.0);
-  const auto excess = [&](double at) {
-    return 2.0 * (most_likely - profile_at(participants, at).log_likelihood) - t * t;
-  };
-  constexpr double low = smallest_share;
-  constexpr double high = 1.0 - smallest_share;
-  const double from = std::clamp(mean, low, high);
-  return {excess(low) <= 0.0 ? 0.0 : root(excess, low, from),
-          excess(high) <= 0.0 ? 1.0 : root(excess, from, high)};
-}
-
 std::vector<Proportion> answered(const std::vector<Proportion>& participants) {
   std::vector<Proportion> found;
   for (const Proportion& of : participants) {
@@ -105,6 +93,12 @@ std::vector<Proportion> answered(const std::vector<Proportion>& participants) {
     }
   }
   return found;
+}
+
+std::vector<double> shares_of(const std::vector<Proportion>& people) {
+  std::vector<double> shares;
+  std::ranges::transform(people, std::back_inserter(shares), &Proportion::value);
+  return shares;
 }
 
 // The share of right answers in all pooled, with its negative log likelihood.
@@ -195,6 +189,47 @@ std::optional<Interval> bootstrap_interval(const std::vector<double>& values, in
   return bca_interval(values, draws, seed, expanded_tail);
 }
 
+namespace {
+// The variance of participants' shares in proportion to mean (1 - mean).
+double dispersion(const std::vector<Proportion>& people, const MeanAndSpread& of) {
+  constexpr std::int64_t fewest = 2;  // answers of a kind, of which a variance says anything
+  double binomial = 0.0;
+  for (const Proportion& person : people) {
+    binomial += 1.0 / static_cast<double>(person.trials) / static_cast<double>(people.size());
+  }
+  const Proportion all = sum(people);
+  const bool are_few = std::min(all.successes, all.trials - all.successes) < fewest;
+  const double least = (are_few ? 1.0 : share_of_binomial) * binomial;
+  const double most = of.mean * (1.0 - of.mean);
+  const double variance = of.standard_deviation * of.standard_deviation;
+  return most > 0.0 ? std::max(least, variance / most) : least;
+}
+
+Interval score_interval(double mean, double dispersion, double n) {
+  const double t = t_quantile(0.975, n - 1.0);
+  const double e = t * t * dispersion / n;
+  const double centre = (mean + 0.5 * e) / (1.0 + e);
+  const double half = std::sqrt(e * mean * (1.0 - mean) + 0.25 * e * e) / (1.0 + e);
+  // whole to the last digit where all answers are alike
+  return {mean <= 0.0 ? 0.0 : std::max(0.0, centre - half),
+          mean >= 1.0 ? 1.0 : std::min(1.0, centre + half)};
+}
+}  // namespace
+
+std::optional<MeanShare> mean_share(const std::vector<Proportion>& participants) {
+  const std::vector<Proportion> people = answered(participants);
+  if (people.size() < 2) {
+    return std::nullopt;
+  }
+  const MeanAndSpread of = mean_and_spread(shares_of(people));
+  MeanShare result{static_cast<int>(people.size()), of.mean, {}};
+  if (people.size() > 2) {
+    result.interval =
+        score_interval(of.mean, dispersion(people, of), static_cast<double>(people.size()));
+  }
+  return result;
+}
+
 std::optional<BetaBinomialMean> beta_binomial_mean(const std::vector<Proportion>& participants) {
   const std::vector<Proportion> people = answered(participants);
   if (people.size() < 2) {
@@ -206,24 +241,20 @@ std::optional<BetaBinomialMean> beta_binomial_mean(const std::vector<Proportion>
   const Minimum pooled = pooled_share(people);
   best = pooled.value <= best.value + indistinguishable ? pooled : best;
   const double eta = profile_at(people, best.at).eta;
-  BetaBinomialMean result{static_cast<int>(people.size()), best.at, eta * eta,
-                          profile_interval(people, best.at, -best.value)};
   if (eta > 0.0 && eta < largest_eta && best.at > 0.0 && best.at < 1.0) {
     const auto [mean, nu] = refined(people, {best.at, 1.0 / (eta * eta) - 1.0});
-    result.mean = mean;
-    result.intraclass_correlation = 1.0 / (1.0 + nu);
+    return BetaBinomialMean{mean, 1.0 / (1.0 + nu)};
   }
-  return result;
+  return BetaBinomialMean{best.at, eta * eta};
 }
 
 std::optional<MeanProportion> mean_proportion(const std::vector<Proportion>& participants) {
-  const auto model = beta_binomial_mean(participants);
-  if (!model) {
+  const auto mean = mean_share(participants);
+  if (!mean) {
     return std::nullopt;
   }
-  std::vector<double> shares;
-  std::ranges::transform(answered(participants), std::back_inserter(shares), &Proportion::value);
-  MeanProportion result{*model, mean_of(shares), {}, {}};
+  const std::vector<double> shares = shares_of(answered(participants));
+  MeanProportion result{*mean, beta_binomial_mean(participants)->intraclass_correlation, {}, {}};
   if (!are_equal(shares)) {
     result.t = within_shares(t_interval(shares));
     if (const auto bootstrap = bootstrap_interval(shares, bootstrap_draws, bootstrap_seed)) {
@@ -299,58 +330,121 @@ PairedContrast paired_contrast(const std::vector<double>& differences, std::uint
 }
 
 namespace {
-struct Weighted {
-  double mean{};
-  double weights{};  // their sum
-  double squares{};  // of the weighted residuals
-};
-
-Weighted weighted(const std::vector<double>& values, const std::vector<double>& errors,
-                  double between_variance) {
-  const auto weight = [&](std::size_t i) {
-    return 1.0 / (errors[i] * errors[i] + between_variance);
-  };
-  Weighted of;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    of.weights += weight(i);
-    of.mean += weight(i) * values[i];
-  }
-  of.mean /= of.weights;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    of.squares += weight(i) * (values[i] - of.mean) * (values[i] - of.mean);
-  }
-  return of;
+bool is_exact(const Interval& range) {
+  return range.low == range.high;
 }
 
-// The weighted squares fall as the variance between people grows: by bisection.
-double between_variance(const std::vector<double>& values, const std::vector<double>& errors) {
-  constexpr int halvings = 200;
-  const double expected = static_cast<double>(values.size()) - 1.0;
-  const auto [least, most] = std::ranges::minmax(values);
-  double low = 0.0;
-  double high =
-      (most - least) * (most - least);  // weights of at most 1 / high: squares below n / 4
-  if (weighted(values, errors, low).squares <= expected) {
-    return 0.0;
+class CensoredNormal {
+ public:
+  explicit CensoredNormal(const std::vector<Interval>& differences) : differences_{differences} {
+    for (const Interval& range : differences) {
+      for (const double end : {range.low, range.high}) {
+        if (std::isfinite(end)) {
+          low_ = std::min(low_, end);
+          high_ = std::max(high_, end);
+        }
+      }
+    }
   }
-  for (int i = 0; i < halvings; ++i) {
-    const double middle = 0.5 * (low + high);
-    (weighted(values, errors, middle).squares > expected ? low : high) = middle;
+  double length() const { return std::max(high_ - low_, 1e-9); }
+  double low() const { return low_; }
+  double high() const { return high_; }
+
+  // -l(mean), at the likeliest standard deviation.
+  double profile(double mean) const {
+    const double scale = std::log(length() + std::abs(mean - 0.5 * (low_ + high_)));
+    constexpr double decades = 7.0;
+    return minimum([&](double log_sd) { return negative(mean, std::exp(log_sd)); }, scale - decades,
+                   scale + decades)
+        .value;
   }
-  return low;
+
+ private:
+  double negative(double mean, double sd) const {
+    double sum = 0.0;
+    for (const Interval& range : differences_) {
+      const double z = (range.low - mean) / sd;
+      if (is_exact(range)) {
+        sum += 0.5 * z * z + std::log(sd);
+      } else {
+        constexpr double least = 1e-300;
+        const double upper = (range.high - mean) / sd;  // tails by the nearer end
+        const double p =
+            z > 0.0 ? normal_cdf(-z) - normal_cdf(-upper) : normal_cdf(upper) - normal_cdf(z);
+        sum -= std::log(std::max(p, least));
+      }
+    }
+    return sum;
+  }
+
+  const std::vector<Interval>& differences_;
+  double low_{std::numeric_limits<double>::infinity()};
+  double high_{-std::numeric_limits<double>::infinity()};
+};
+
+// Differences signed, as large as their ranks by size are.
+std::vector<double> signed_ranks(const std::vector<Interval>& differences) {
+  const auto size = [](const Interval& range) {
+    return range.low < 0.0 && range.high > 0.0
+               ? 0.0
+               : std::min(std::abs(range.low), std::abs(range.high));
+  };
+  std::vector<double> ranks;
+  for (const Interval& range : differences) {
+    const double own = size(range);
+    double rank = 0.5;
+    for (const Interval& other : differences) {
+      rank += size(other) < own ? 1.0 : size(other) == own ? 0.5 : 0.0;
+    }
+    const bool has_side = !is_exact(range) && (range.low >= 0.0 || range.high <= 0.0);
+    ranks.push_back(own == 0.0 && !has_side ? 0.0 : range.low >= 0.0 ? rank : -rank);
+  }
+  return ranks;
 }
 }  // namespace
 
-RandomEffects random_effects(const std::vector<double>& values, const std::vector<double>& errors) {
-  const auto is_error = [](double error) { return error > 0.0 && std::isfinite(error); };
-  if (values.size() < 2 || errors.size() != values.size() ||
-      !std::ranges::all_of(errors, is_error)) {
-    throw core::InvalidInput{"random effects take two values or more, each with its error"};
+PairedContrast censored_contrast(const std::vector<Interval>& differences, std::uint64_t seed) {
+  const SignFlipTest test = sign_flip_test(signed_ranks(differences), seed);
+  PairedContrast result{
+      std::nan(""), {}, test.p, static_cast<int>(differences.size()), test.is_exact};
+  if (std::ranges::count_if(differences, is_exact) < 2) {
+    return result;
   }
-  const double between = between_variance(values, errors);
-  const Weighted of = weighted(values, errors, between);
-  const double freedom = static_cast<double>(values.size()) - 1.0;
-  const double half = t_quantile(0.975, freedom) / std::sqrt(of.weights);
-  return {of.mean, std::sqrt(between), {of.mean - half, of.mean + half}};
+  const CensoredNormal likelihood{differences};
+  const double reach = 20.0 * likelihood.length();
+  const auto profile = [&](double mean) { return likelihood.profile(mean); };
+  const Minimum best = minimum(profile, likelihood.low() - reach, likelihood.high() + reach);
+  const auto n = static_cast<double>(differences.size());
+  const double t = t_quantile(0.975, n - 1.0);
+  const double limit = n * std::log1p(t * t / (n - 1.0));
+  const auto excess = [&](double mean) { return 2.0 * (profile(mean) - best.value) - limit; };
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  const double low = best.at - 10.0 * reach;
+  const double high = best.at + 10.0 * reach;
+  result.mean = best.at;
+  result.interval = {excess(low) <= 0.0 ? -infinity : root(excess, low, best.at),
+                     excess(high) <= 0.0 ? infinity : root(excess, best.at, high)};
+  return result;
+}
+
+std::optional<Interval> bounded_interval(const std::vector<double>& values,
+                                         const Interval& bounds) {
+  check_values(values);
+  const double length = bounds.high - bounds.low;
+  std::vector<double> shares;
+  for (const double value : values) {
+    if (!(value >= bounds.low && value <= bounds.high)) {
+      throw core::InvalidInput{"values lie within the bounds of their scale"};
+    }
+    shares.push_back((value - bounds.low) / length);
+  }
+  if (are_equal(values)) {
+    return std::nullopt;
+  }
+  const MeanAndSpread of = mean_and_spread(shares);
+  const double variance = of.standard_deviation * of.standard_deviation;
+  const Interval score = score_interval(of.mean, variance / (of.mean * (1.0 - of.mean)),
+                                        static_cast<double>(values.size()));
+  return Interval{bounds.low + length * score.low, bounds.low + length * score.high};
 }
 }  // namespace tapstudy::analysis

@@ -16,27 +16,42 @@ struct BetaBinomialParameters {
 BetaBinomialParameters refined(const std::vector<Proportion>& people,
                                const BetaBinomialParameters& near);
 
-// The share of right answers over participants who differ, of whom those at hand are a sample.
-// Answers of one participant are not independent of one another, so that the score interval of all
-// answers pooled is too short.
-struct BetaBinomialMean {
-  int participants{};               // with answers
-  double mean{};                    // of the distribution, by maximum likelihood
-  double intraclass_correlation{};  // of the same; 0: participants do not differ
-  Interval interval;                // 95 %, profile likelihood, see below
+// The mean share of right answers over participants who differ, of whom those at hand are a sample,
+// each counting the same: those who stopped early may be those who found it hard. Answers of one
+// participant are not independent of one another, so that the score interval of all answers pooled
+// is too short.
+struct MeanShare {
+  int participants{};  // with answers
+  double mean{};       // of their shares
+  // 95 %, by the score of the mean (Wilson 1927) with the variance that participants show (quasi-
+  // likelihood, Wedderburn 1974) in place of the binomial one: the means m with
+  //   (mean - m)^2 <= t^2 phi m (1 - m) / n,   phi = s^2 / (mean (1 - mean)),
+  // s^2 the variance of n shares, t the 97.5 % quantile with n - 1 degrees of freedom. phi is at
+  // least share_of_binomial of what independent answers give, mean(1 / trials), because shares are
+  // discrete and may agree by chance; where fewer than two answers are right, or wrong, it is all
+  // of that. It lies within [0, 1]. Unset for two participants: their interval is as good as [0,
+  // 1].
+  std::optional<Interval> interval;
 };
-// k_i right of n_i are beta-binomial with one mean and one intra-class correlation (Williams 1975).
-// The interval holds the means whose profile likelihood is 2 (l_max - l(mean)) <= t^2, with t the
-// 97.5 % quantile of Student's t with participants - 1 degrees of freedom in place of the normal
-// one: that keeps its coverage with few participants. Throws InvalidInput for counts that are not
-// possible; unset for fewer than two participants with answers.
+inline constexpr double share_of_binomial = 0.05;
+// Throws InvalidInput for counts that are not possible; unset for fewer than two participants with
+// answers.
+std::optional<MeanShare> mean_share(const std::vector<Proportion>& participants);
+
+// k_i right of n_i are beta-binomial with one mean and one intra-class correlation (Williams 1975),
+// by maximum likelihood.
+struct BetaBinomialMean {
+  double mean{};                    // of the distribution
+  double intraclass_correlation{};  // of the same; 0: participants do not differ
+};
+// Throws and unset as mean_share.
 std::optional<BetaBinomialMean> beta_binomial_mean(const std::vector<Proportion>& participants);
 
-// The same with the mean of the participants' shares.
-struct MeanProportion : BetaBinomialMean {
-  double mean_of_shares{};
-  std::optional<Interval> t;          // 95 %, of that mean; unset if all shares are equal
-  std::optional<Interval> bootstrap;  // 95 %, of that mean, by bootstrap_interval; unset likewise
+// The mean share with what else is known of participants.
+struct MeanProportion : MeanShare {
+  double intraclass_correlation{};    // of their beta-binomial distribution
+  std::optional<Interval> t;          // 95 %, of the mean; unset if all shares are equal
+  std::optional<Interval> bootstrap;  // 95 %, of the mean, by bootstrap_interval; unset likewise
 };
 std::optional<MeanProportion> mean_proportion(const std::vector<Proportion>& participants);
 
@@ -78,16 +93,18 @@ SignFlipTest sign_flip_test(const std::vector<double>& differences, std::uint64_
 
 PairedContrast paired_contrast(const std::vector<double>& differences, std::uint64_t seed);
 
-// The mean of people who differ, each known with an error.
-struct RandomEffects {
-  double mean{};
-  double between_sd{};  // of people, without their estimates' errors
-  Interval interval;    // 95 %, of the mean: t with people - 1 degrees of freedom
-};
+// Differences of which some are only known to lie in a range (low < high, either may be infinite),
+// as of a threshold beyond the levels presented. Mean and interval are of a normal distribution, by
+// its likelihood with probabilities of the ranges (Tobin 1958): the means whose profile likelihood
+// is 2 (l_max - l(mean)) <= n ln(1 + t^2 / (n - 1)), which of exact differences is t's interval; an
+// end that the likelihood does not limit is infinite. Both are NaN and unset where fewer than two
+// differences are exact. p is the permutation test by signs of the differences' ranks by size, of a
+// range by its least size; a range on both sides of 0 has none. Throws InvalidInput as
+// sign_flip_test.
+PairedContrast censored_contrast(const std::vector<Interval>& differences, std::uint64_t seed);
 
-// Weights are 1 / (error² + between²), and between² makes the weighted squares of the residuals as
-// large as they are expected, people - 1; 0 if they are smaller (Paule & Mandel 1982). The interval
-// is that of Hartung & Knapp 2001; where people are alike, that of their errors by t. As many
-// errors as values, each above 0; two or more. Throws InvalidInput for others.
-RandomEffects random_effects(const std::vector<double>& values, const std::vector<double>& errors);
+// The 95 % interval of the mean of values within bounds, which it does not leave: by t with a
+// variance that is in proportion to (mean - low) (high - mean), as in mean_share. Unset if all are
+// equal. Throws InvalidInput for fewer than two values, and values beyond the bounds.
+std::optional<Interval> bounded_interval(const std::vector<double>& values, const Interval& bounds);
 }  // namespace tapstudy::analysis

@@ -149,26 +149,50 @@ double raised_cosine(double along) {
   return along >= 1.0 ? 0.0 : 0.5 * (1.0 + std::cos(std::numbers::pi * std::max(0.0, along)));
 }
 
+double log_sum_of(const std::vector<double>& logarithms) {
+  const double most = *std::ranges::max_element(logarithms);
+  double sum = 0.0;
+  for (const double one : logarithms) {
+    sum += std::exp(one - most);
+  }
+  return most + std::log(sum);
+}
+
 class Grid {
  public:
-  Grid(const PosteriorAxes& axes, const PsychometricModel& model, const std::vector<Level>& levels)
-      : axes_{axes}, model_{model}, levels_{levels}, range_{axis_range(levels, model.shape)} {}
+  Grid(const PosteriorAxes& axes, const PsychometricModel& model, const std::vector<Level>& levels,
+       double breadth)
+      : axes_{axes},
+        model_{model},
+        levels_{levels},
+        range_{axis_range(levels, model.shape)},
+        breadth_{breadth} {}
 
   Marginals marginals() {
+    add_all();
+    return summed();
+  }
+
+  // ln of the mean likelihood over the prior, as far as the grid's cells go.
+  double log_evidence() {
+    add_all();
+    return log_sum_of(log_densities_) - log_sum_of(log_priors_);
+  }
+
+ private:
+  void add_all() {
     for (std::size_t t = 0; t < axes_[position_at].cells; ++t) {
       for (std::size_t w = 0; w < axes_[log_width_at].cells; ++w) {
         add_curves(axes_[position_at].centre(t), axes_[log_width_at].centre(w));
       }
     }
-    return summed();
   }
 
- private:
   void add_curves(double position, double log_width) {
     const double width = std::exp(log_width);
     // ln width is the coordinate: its density is that of the width times the width
-    const double log_prior =
-        log_prior_of_position(position, range_) + log_prior_of_width(width, range_) + log_width;
+    const double log_prior = log_prior_of_position(position, range_, breadth_) +
+                             log_prior_of_width(width, range_, breadth_) + log_width;
     const double slope = width_of_unit_slope(model_.shape) / width;
     std::vector<double> shape_values;
     for (const Level& level : levels_) {
@@ -189,6 +213,7 @@ class Grid {
     for (std::size_t e = 0; e < axes_[eta_at].cells; ++e) {
       const double eta = axes_[eta_at].centre(e);
       double log_density = log_prior + log_prior_of_rates + log_prior_of_rate(eta);
+      log_priors_.push_back(log_density);
       for (std::size_t i = 0; i < levels_.size(); ++i) {
         const double p = guess + (1.0 - guess - lapse) * shape_values[i];
         log_density += beta_binomial_log_likelihood(levels_[i].answers, p, eta);
@@ -226,19 +251,22 @@ class Grid {
   const PsychometricModel& model_;
   const std::vector<Level>& levels_;
   AxisRange range_;
+  double breadth_;
   std::vector<double> log_densities_;
+  std::vector<double> log_priors_;
 };
 }  // namespace
 
-double log_prior_of_position(double position, const AxisRange& range) {
+double log_prior_of_position(double position, const AxisRange& range, double breadth) {
   const double outside = std::max({0.0, range.low - position, position - range.high});
-  return std::log(raised_cosine(outside / (0.5 * range.length())));
+  return std::log(raised_cosine(outside / (0.5 * breadth * range.length())));
 }
 
-double log_prior_of_width(double width, const AxisRange& range) {
+double log_prior_of_width(double width, const AxisRange& range, double breadth) {
   const double gap = range.smallest_gap;
+  const double broad = breadth * range.length();
   return std::log(raised_cosine((2.0 * gap - width) / gap)) +
-         std::log(raised_cosine((width - range.length()) / (2.0 * range.length())));
+         std::log(raised_cosine((width - broad) / (2.0 * broad)));
 }
 
 double log_prior_of_rate(double rate) {
@@ -252,11 +280,13 @@ double width_of_unit_slope(core::PsychometricShape shape) {
   return position_of(0.95) - position_of(0.05);
 }
 
-PosteriorAxes prior_axes(const PsychometricModel& model, const std::vector<Level>& levels) {
+PosteriorAxes prior_axes(const PsychometricModel& model, const std::vector<Level>& levels,
+                         double breadth) {
   constexpr std::array<std::size_t, posterior_parameters> cells{16, 16, 4, 4, 10};
   const AxisRange range = axis_range(levels, model.shape);
-  PosteriorAxes axes{GridAxis{range.low - 0.5 * range.length(), range.high + 0.5 * range.length()},
-                     GridAxis{std::log(range.smallest_gap), std::log(3.0 * range.length())},
+  const double outside = 0.5 * breadth * range.length();
+  PosteriorAxes axes{GridAxis{range.low - outside, range.high + outside},
+                     GridAxis{std::log(range.smallest_gap), std::log(6.0 * outside)},
                      GridAxis{model.guess.low, model.guess.high},
                      GridAxis{model.lapse.low, model.lapse.high}, GridAxis{0.0, 1.0}};
   for (std::size_t place = 0; place < posterior_parameters; ++place) {
@@ -267,8 +297,8 @@ PosteriorAxes prior_axes(const PsychometricModel& model, const std::vector<Level
 }
 
 Marginals marginals_on(const PosteriorAxes& axes, const PsychometricModel& model,
-                       const std::vector<Level>& levels) {
-  return Grid{axes, model, levels}.marginals();
+                       const std::vector<Level>& levels, double breadth) {
+  return Grid{axes, model, levels, breadth}.marginals();
 }
 
 namespace {
@@ -316,18 +346,38 @@ Marginal summary(const GridAxis& axis, const std::vector<double>& marginal, doub
   return result;
 }
 
+// Of answers that are guesses at every level against those with a threshold.
+double guessing(const PsychometricModel& model, const std::vector<Level>& levels, double breadth) {
+  const PosteriorAxes axes = prior_axes(model, levels, breadth);
+  const GridAxis& guesses = axes[guess_rate_at];
+  Proportion all;
+  for (const Level& level : levels) {
+    all.successes += level.answers.successes;
+    all.trials += level.answers.trials;
+  }
+  std::vector<double> logarithms;
+  std::vector<double> priors;
+  for (std::size_t i = 0; i < guesses.cells; ++i) {
+    priors.push_back(log_prior_of_rate(guesses.centre(i)));
+    logarithms.push_back(priors.back() + binomial_log_likelihood(all, guesses.centre(i)));
+  }
+  const double of_guesses = log_sum_of(logarithms) - log_sum_of(priors);
+  const double of_threshold = Grid{axes, model, levels, breadth}.log_evidence();
+  return 1.0 / (1.0 + std::exp(of_threshold - of_guesses));
+}
+
 PosteriorEstimates estimates_of(const PsychometricModel& model, const std::vector<Level>& levels,
-                                double confidence) {
+                                double confidence, double breadth) {
   constexpr int narrowings = 3;
-  PosteriorAxes axes = prior_axes(model, levels);
-  Marginals marginals = marginals_on(axes, model, levels);
+  PosteriorAxes axes = prior_axes(model, levels, breadth);
+  Marginals marginals = marginals_on(axes, model, levels, breadth);
   for (int narrowing = 1; narrowing <= narrowings; ++narrowing) {
     for (std::size_t axis = 0; axis < posterior_parameters; ++axis) {
       axes[axis] = narrowed(axes[axis], marginals[axis]);
       const bool is_last = narrowing == narrowings && axes[axis].cells > 1;
       axes[axis].cells *= is_last ? 2 : 1;
     }
-    marginals = marginals_on(axes, model, levels);
+    marginals = marginals_on(axes, model, levels, breadth);
   }
   const auto at = [&](std::size_t axis) {
     return summary(axes[axis], marginals[axis], confidence);
@@ -340,14 +390,17 @@ PosteriorEstimates estimates_of(const PsychometricModel& model, const std::vecto
                             0.0,
                             {},
                             0.0,
-                            {}};
+                            {},
+                            guessing(model, levels, breadth)};
   const auto value_at = [&](double position) { return from_axis(model.shape, position); };
   const auto slope_at = [&](double log_width) {
     return width_of_unit_slope(model.shape) / std::exp(log_width);
   };
   const Interval& position = result.position.credible;
   result.threshold = value_at(result.position.median);
-  result.threshold_interval = {value_at(position.low), value_at(position.high)};
+  result.threshold_interval = {value_at(position.low), result.guessing > 0.5 * (1.0 - confidence)
+                                                           ? infinity
+                                                           : value_at(position.high)};
   result.slope = slope_at(result.log_width.median);
   result.slope_interval = {slope_at(result.log_width.credible.high),
                            slope_at(result.log_width.credible.low)};
@@ -356,7 +409,8 @@ PosteriorEstimates estimates_of(const PsychometricModel& model, const std::vecto
 }  // namespace
 
 PsychometricPosterior psychometric_posterior(const PsychometricModel& model,
-                                             const std::vector<Level>& levels, double confidence) {
+                                             const std::vector<Level>& levels, double confidence,
+                                             double breadth) {
   if (!(confidence > 0.0 && confidence < 1.0)) {
     throw core::InvalidInput{fmt::format("a confidence is between 0 and 1, not {}", confidence)};
   }
@@ -368,7 +422,8 @@ PsychometricPosterior psychometric_posterior(const PsychometricModel& model,
   if (posterior.outcome != FitOutcome::fitted) {
     return posterior;
   }
-  posterior.estimates = estimates_of(model, checked_levels(levels, model.shape), confidence);
+  posterior.estimates =
+      estimates_of(model, checked_levels(levels, model.shape), confidence, breadth);
   return posterior;
 }
 }  // namespace tapstudy::analysis

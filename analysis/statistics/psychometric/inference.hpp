@@ -61,18 +61,20 @@ using PosteriorAxes = std::array<GridAxis, posterior_parameters>;
 // The probability of each cell of each axis.
 using Marginals = std::array<std::vector<double>, posterior_parameters>;
 
-// ln of the prior's density, up to a constant; -infinity where there is none.
-double log_prior_of_position(double position, const AxisRange& range);
-double log_prior_of_width(double width, const AxisRange& range);
+// ln of the prior's density, up to a constant; -infinity where there is none. breadth: of
+// psychometric_posterior.
+double log_prior_of_position(double position, const AxisRange& range, double breadth = 1.0);
+double log_prior_of_width(double width, const AxisRange& range, double breadth = 1.0);
 double log_prior_of_rate(double rate);
 
 // The distance on the axis from F = 0.05 to F = 0.95 at a slope of 1.
 double width_of_unit_slope(core::PsychometricShape shape);
 
 // A coarse grid over the support of the prior: free parameters with half the cells of a result.
-PosteriorAxes prior_axes(const PsychometricModel& model, const std::vector<Level>& levels);
+PosteriorAxes prior_axes(const PsychometricModel& model, const std::vector<Level>& levels,
+                         double breadth = 1.0);
 Marginals marginals_on(const PosteriorAxes& axes, const PsychometricModel& model,
-                       const std::vector<Level>& levels);
+                       const std::vector<Level>& levels, double breadth = 1.0);
 
 // One parameter, the others integrated out.
 struct Marginal {
@@ -97,6 +99,8 @@ struct PosteriorEstimates {
   Interval threshold_interval;
   double slope{};
   Interval slope_interval;
+  // That every answer was a guess, at any level, if that was as probable before as a threshold.
+  double guessing{};
 };
 
 struct PsychometricPosterior {
@@ -108,12 +112,17 @@ struct PsychometricPosterior {
 // The posterior of beta-binomial answers on a grid that is narrowed to where the posterior is
 // (Schütt et al. 2016). With levels from low to high, range R = high - low and the smallest gap g
 // on the shape's axis, the prior is the product of
-//   threshold  1 within [low, high], falling as a raised cosine to 0 at R/2 outside
-//   width      rising as a raised cosine from 0 at g to 1 at 2 g, falling from 1 at R to 0 at 3 R
-//   guess, lapse  beta(1, 10) within the model's range; eta  beta(1, 10)
-// confidence is that of the credible intervals. Throws InvalidInput as fit_psychometric does and
+//   threshold  1 within [low, high], falling as a raised cosine to 0 at b R/2 outside
+//   width      rising as a raised cosine from 0 at g to 1 at 2 g, falling from 1 at b R to 0 at 3 b
+//   R guess, lapse  beta(1, 10) within the model's range; eta  beta(1, 10)
+// b is the breadth; that of Schütt et al. is 1, for levels chosen to cover the function. Levels of
+// an adaptive track cover less of it. Where guesses alone are not less probable than half of what
+// the credible interval leaves out, the threshold's upper end is infinite: under them this happens
+// to all but as small a share of tracks, whatever the rule by which levels follow answers and the
+// track ends (Ville's inequality of likelihood ratios). confidence is that of the credible
+// intervals. Throws InvalidInput as fit_psychometric does and
 // for a confidence outside (0, 1).
 PsychometricPosterior psychometric_posterior(const PsychometricModel& model,
                                              const std::vector<Level>& levels,
-                                             double confidence = 0.95);
+                                             double confidence = 0.95, double breadth = 1.0);
 }  // namespace tapstudy::analysis

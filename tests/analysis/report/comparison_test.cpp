@@ -1,6 +1,7 @@
 #include "analysis/report/comparison.hpp"
 
 #include <cmath>
+#include <limits>
 
 #include "analysis/report/document/sections.hpp"
 #include "analysis/statistics/population/means.hpp"
@@ -24,7 +25,8 @@ void add(Blocks& blocks, const std::string& name, const PersonalValues& values,
 std::vector<double> numbers(const analysis::Cell& cell) {
   std::vector<double> found;
   for (const analysis::Value& value : cell.values) {
-    found.push_back(std::get<double>(value));
+    const auto* const whole = std::get_if<std::int64_t>(&value);
+    found.push_back(whole != nullptr ? static_cast<double>(*whole) : std::get<double>(value));
   }
   return found;
 }
@@ -47,6 +49,7 @@ TEST_CASE("blocks of one measure are compared by the differences of who did both
   CHECK(numbers(row[3]) ==
         std::vector{expected.mean, expected.interval->low, expected.interval->high});
   CHECK(row[4].text == "3");
+  CHECK(numbers(row[4]) == std::vector{3.0, 3.0});
   CHECK(section->remarks.size() == 2);
   CHECK(analysis::block_contrasts(blocks, false)->remarks.size() == 1);
 }
@@ -72,6 +75,39 @@ TEST_CASE("thresholds are compared by their geometric mean ratio, and all pairs 
   CHECK(std::get<double>(rows[0][5].values[0]) == Approx(2.0 / 256.0));  // all one sign, of 2^8
   CHECK(std::get<double>(rows[0][6].values[0]) == Approx(3.0 * 2.0 / 256.0));
   CHECK(std::get<double>(rows[2][5].values[0]) == 1.0);  // equal values
+}
+
+TEST_CASE("who lies beyond the levels takes part in a comparison, by order and by likelihood",
+          "[analysis][report]") {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  PersonalValues easy{"threshold", true, {}, {}, {}};
+  PersonalValues hard{"threshold", true, {}, {}, {}};
+  for (int i = 0; i < 8; ++i) {
+    const std::string id = "P" + std::to_string(i);
+    easy.by_participant[id] = 0.1 * (1.0 + 0.1 * i);
+    if (i < 2) {
+      hard.by_participant[id] = 0.3;
+    } else {
+      hard.beyond[id] = {0.5, infinity};
+    }
+  }
+  Blocks blocks;
+  add(blocks, "hard", hard);
+  add(blocks, "easy", easy);
+  const auto section = analysis::block_contrasts(blocks, false);
+  REQUIRE(section);
+  const auto& row = section->tables[1].rows.at(0);
+  CHECK(row[4].text == "8");
+  CHECK(std::get<double>(row[5].values[0]) == Approx(2.0 / 256.0));  // all of one sign
+  const std::vector<double> ratio = numbers(row[3]);
+  CHECK(ratio[0] > 3.0);
+  CHECK(ratio[1] > 1.0);
+  hard.beyond.erase("P7");
+  hard.participants = {"P7"};
+  blocks.clear();
+  add(blocks, "hard", hard);
+  add(blocks, "easy", easy);
+  CHECK(analysis::block_contrasts(blocks, false)->tables[1].rows.at(0)[4].text == "7 of 8");
 }
 
 TEST_CASE("a part is compared with the other parts of its block, and nothing with nothing",

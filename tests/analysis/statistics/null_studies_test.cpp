@@ -261,8 +261,8 @@ TEST_CASE("intervals over participants who differ hold the truth as often as the
         people.back().successes += rng.uniform() < share ? 1 : 0;
       }
     }
-    const auto mean = beta_binomial_mean(people);
-    return IntervalEstimate{mean->mean, mean->interval};
+    const auto mean = mean_share(people);
+    return IntervalEstimate{mean->mean, *mean->interval};
   };
   CHECK(holding_0([&](Rng& rng) {
           const IntervalEstimate first = study(rng);

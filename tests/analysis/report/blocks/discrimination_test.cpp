@@ -62,6 +62,105 @@ TEST_CASE("each participant, and all of them together, are tested by the exact b
   CHECK(json["all"][0]["correct_of"] == 90);
 }
 
+namespace {
+enum class Guesser { indifferent, of_habit, reluctant_to_repeat };
+
+// Both places of one comparison in each of so many repetitions, in random order, to people who feel
+// no difference.
+std::vector<results::AnswerRow> guesses(Guesser guesser, int people, int repetitions,
+                                        core::Rng& rng) {
+  std::vector<results::AnswerRow> answers;
+  for (int person = 0; person < people; ++person) {
+    int last = -1;
+    for (int trial = 0, first = 0; trial < 2 * repetitions; ++trial) {
+      first = trial % 2 == 0 ? static_cast<int>(rng.below(2)) : 1 - first;
+      const double habit = guesser == Guesser::of_habit ? 0.8 : 0.5;
+      int given = rng.uniform() < habit ? 0 : 1;
+      if (guesser == Guesser::reluctant_to_repeat && last >= 0) {
+        given = rng.uniform() < 0.25 ? last : 1 - last;
+      }
+      last = given;
+      results::AnswerRow answer = answer_of("p" + std::to_string(person), true, given == first);
+      answer.response = given == 0 ? "A" : "B";
+      answer.repetition = 1 + trial / 2;
+      answers.push_back(answer);
+    }
+  }
+  return answers;
+}
+}  // namespace
+
+TEST_CASE("where places are balanced guessers are found to discriminate in 3 to 6 % of studies",
+          "[analysis][discrimination]") {
+  constexpr int studies = 600;
+  constexpr double error = 0.009;  // of a share of .05 of them
+  const BlockDesign design = design_of("forced_choice", 2);
+  for (const Guesser guesser :
+       {Guesser::indifferent, Guesser::of_habit, Guesser::reluctant_to_repeat}) {
+    core::Rng rng{31};
+    int significant = 0;
+    for (int study = 0; study < studies; ++study) {
+      const auto places = places_redrawn(design, guesses(guesser, 20, 4, rng));
+      REQUIRE(places);
+      const auto tested =
+          permutation_tests(*places, {{{true, false}, {false, true}}}, 199, rng()).front();
+      significant += tested.p <= 0.05 ? 1 : 0;
+    }
+    INFO("guesser " << static_cast<int>(guesser) << ": " << significant << " of " << studies);
+    CHECK(significant <= (0.06 + 2.0 * error) * studies);
+    CHECK(significant >= (0.03 - 2.0 * error) * studies);
+  }
+}
+
+TEST_CASE("a report tests discrimination by the places' own randomisation, and says so",
+          "[analysis][discrimination]") {
+  core::Rng rng{3};
+  auto answers = guesses(Guesser::indifferent, 4, 6, rng);
+  for (auto& answer : answers) {
+    answer.response = *answer.is_correct ? answer.response : answer.response == "A" ? "B" : "A";
+    answer.is_correct = true;
+  }
+  const auto json = reported(statistic, design_of("forced_choice", 2), answers).json;
+  CHECK(json["hypotheses"][0]["p"].get<double>() == Approx(1e-4));
+  CHECK(json["hypotheses"][0]["p_is_upper_bound"] == true);
+  CHECK_THAT(json["hypotheses"][0]["test"].get<std::string>(), Contains("randomisation test"));
+  // of one person 2^-6 of the draws are as good
+  CHECK(json["participants"][0]["p"].get<double>() == Approx(1.0 / 64.0).margin(0.005));
+}
+
+TEST_CASE("what was right is the odd alternative, or the one that X is",
+          "[analysis][discrimination]") {
+  const auto row = [](const std::string& response, bool is_correct, std::vector<bool> flags,
+                      bool has_sample) {
+    results::AnswerRow answer;
+    answer.participant_id = "p";
+    answer.response = response;
+    answer.is_correct = is_correct;
+    for (std::size_t i = 0; i < flags.size(); ++i) {
+      const bool is_sample = has_sample && i + 1 == flags.size();
+      answer.alternatives.push_back({static_cast<int>(i),
+                                     is_sample ? "X" : std::string(1, static_cast<char>('A' + i)),
+                                     flags[i] ? "wood" : "steel",
+                                     {},
+                                     flags[i]});
+    }
+    return answer;
+  };
+  const auto odd =
+      places_redrawn(design_of("oddity", 3), {row("A", false, {false, false, true}, false),
+                                              row("B", false, {false, true, true}, false),
+                                              row("C", true, {true, true, false}, false)});
+  REQUIRE(odd);
+  // rows: what was right, columns: answers, A to C
+  CHECK(odd->observed == CountTable{{0, 1, 0}, {0, 0, 0}, {1, 0, 1}});
+  const auto sample =
+      places_redrawn(design_of("", 3), {row("A", false, {false, true, false, true}, true),
+                                        row("C", true, {false, false, true, true}, true)});
+  REQUIRE(sample);
+  CHECK(sample->observed == CountTable{{0, 0, 0}, {1, 0, 0}, {0, 0, 1}});
+  CHECK_FALSE(places_redrawn(design_of("oddity", 3), {row("A", false, {}, false)}));
+}
+
 TEST_CASE("d' is that of the decision model, over participants that of their mean proportion",
           "[analysis][discrimination]") {
   std::vector<results::AnswerRow> answers;
@@ -77,14 +176,14 @@ TEST_CASE("d' is that of the decision model, over participants that of their mea
   CHECK(json["participants"][0]["d_prime"].get<double>() == Approx(first.d_prime).epsilon(1e-9));
   CHECK(json["participants"][0]["d_prime_high"].get<double>() ==
         Approx(first.interval.high).epsilon(1e-9));
-  const auto mean = beta_binomial_mean(proportions);
+  const auto mean = mean_share(proportions);
   const auto& all = json["all"][0];
   CHECK(proportion_correct(task, all["d_prime_of_mean"].get<double>()) ==
         Approx(mean->mean).epsilon(1e-9));
   CHECK(proportion_correct(task, all["d_prime_of_mean_low"].get<double>()) ==
-        Approx(std::max(1.0 / 3.0, mean->interval.low)).epsilon(1e-9));  // at chance d' is 0
+        Approx(std::max(1.0 / 3.0, mean->interval->low)).epsilon(1e-9));  // at chance d' is 0
   CHECK(proportion_correct(task, all["d_prime_of_mean_high"].get<double>()) ==
-        Approx(mean->interval.high).epsilon(1e-9));
+        Approx(mean->interval->high).epsilon(1e-9));
 }
 
 TEST_CASE("where everybody guesses the interval of d' holds 0 as often as it says",

@@ -1,3 +1,5 @@
+#include "analysis/report/blocks/thresholds.hpp"
+
 #include <cmath>
 #include <random>
 
@@ -78,6 +80,11 @@ std::vector<results::AnswerRow> joined(std::vector<results::AnswerRow> first,
 }
 
 const PsychometricModel model{PsychometricShape::weibull, {0.5, 0.5}, {0.0, 0.1}};
+
+PosteriorEstimates posterior_of(const std::vector<Level>& levels,
+                                const PsychometricModel& of = model) {
+  return *psychometric_posterior(of, levels, 0.95, prior_breadth).estimates;
+}
 }  // namespace
 
 TEST_CASE("a report's interval holds the threshold of a simulated observer",
@@ -112,7 +119,6 @@ TEST_CASE("answers that fit a step have a threshold in it, with the profile's in
   }
   const auto json = reported(statistic, design_of(), answers).json;
   const auto& person = json["participants"][0];
-  CHECK(person["threshold"].get<double>() == Approx(std::sqrt(0.1 * 0.15)).epsilon(0.05));
   const auto ends = testing::python_numbers(
       "x = np.array([0.02, 0.03, 0.045, 0.07, 0.1, 0.15, 0.22, 0.33, 0.5])\n"
       "k = np.where(x > 0.12, 40, 20)\n"
@@ -125,34 +131,53 @@ TEST_CASE("answers that fit a step have a threshold in it, with the profile's in
       "l = np.array([best(v) for v in t])\n"
       "inside = t[l > l.max() - 3.841459 / 2]\n"
       "out(inside.min(), inside.max())");
-  CHECK(person["threshold_low"].get<double>() == Approx(ends[0]).epsilon(2e-3));
-  CHECK(person["threshold_high"].get<double>() == Approx(ends[1]).epsilon(2e-3));
+  const auto& of_fit = json["fits"][0];
+  CHECK(of_fit["likeliest_threshold"].get<double>() == Approx(std::sqrt(0.1 * 0.15)).epsilon(0.05));
+  CHECK((person["threshold"].get<double>() > 0.1 && person["threshold"].get<double>() < 0.15));
+  CHECK(of_fit["likeliest_threshold_low"].get<double>() == Approx(ends[0]).epsilon(2e-3));
+  CHECK(of_fit["likeliest_threshold_high"].get<double>() == Approx(ends[1]).epsilon(2e-3));
   CHECK(json["fits"][0]["slope"].is_null());
   CHECK(json["fits"][0]["slope_low"].get<double>() > 1.0);
   CHECK(json["posteriors"][0]["posterior_threshold"].get<double>() > 0.1);
   CHECK(json["posteriors"][0]["posterior_threshold"].get<double>() < 0.15);
 }
 
-TEST_CASE("a report's threshold is that of the fit to the participant's levels, in both units",
-          "[analysis][thresholds]") {
+TEST_CASE(
+    "a report's threshold is the posterior's, in both units, beside it that of the fit and those "
+    "of "
+    "half and twice the prior",
+    "[analysis][thresholds]") {
   const auto answers = observer("p", 0.1, 30, 7);
   const std::vector<Level> levels = levels_of(answers);
   const PsychometricFit fit = fit_psychometric(model, levels);
   const PsychometricIntervals intervals = profile_intervals(model, levels);
   const Formats formats = reported(statistic, design_of(), answers);
   const auto& row = formats.json["participants"][0];
-  CHECK(row["threshold"].get<double>() == Approx(fit.curve->threshold).epsilon(1e-9));
-  CHECK(row["threshold_low"].get<double>() == Approx(intervals.threshold.low).epsilon(1e-9));
-  CHECK(row["threshold_high"].get<double>() == Approx(intervals.threshold.high).epsilon(1e-9));
+  const PosteriorEstimates posterior = posterior_of(levels);
+  CHECK(row["threshold"].get<double>() == Approx(posterior.threshold).epsilon(1e-9));
+  CHECK(row["threshold_low"].get<double>() ==
+        Approx(posterior.threshold_interval.low).epsilon(1e-9));
+  CHECK(row["threshold_high"].get<double>() ==
+        Approx(posterior.threshold_interval.high).epsilon(1e-9));
   CHECK(row["weber_fraction"] == row["threshold"]);
-  CHECK(row["jnd"].get<double>() == Approx(standard * fit.curve->threshold).epsilon(1e-9));
+  CHECK(row["jnd"].get<double>() == Approx(standard * posterior.threshold).epsilon(1e-9));
+  const auto& of_prior = formats.json["priors"][0];
+  CHECK(of_prior["threshold_prior"] == row["threshold"]);
+  CHECK(of_prior["threshold_half_prior"].get<double>() ==
+        Approx(
+            psychometric_posterior(model, levels, 0.95, 0.5 * prior_breadth).estimates->threshold));
+  CHECK(of_prior["threshold_twice_prior_high"].get<double>() ==
+        Approx(psychometric_posterior(model, levels, 0.95, 2.0 * prior_breadth)
+                   .estimates->threshold_interval.high));
   CHECK(row["proportion_at_threshold"].get<double>() ==
         Approx(0.5 + (0.5 - fit.curve->lapse) * (1.0 - std::exp(-1.0))).epsilon(1e-9));
   CHECK(row["correct_of"] == 270);
   const auto& of_fit = formats.json["fits"][0];
+  CHECK(of_fit["likeliest_threshold"].get<double>() == Approx(fit.curve->threshold).epsilon(1e-9));
+  CHECK(of_fit["likeliest_threshold_low"].get<double>() ==
+        Approx(intervals.threshold.low).epsilon(1e-9));
   CHECK(of_fit["deviance_p"].get<double>() ==
         Approx(deviance_test(model, levels, 200, 1).p).margin(0.02));
-  const PosteriorEstimates posterior = *psychometric_posterior(model, levels).estimates;
   const auto& of_posterior = formats.json["posteriors"][0];
   CHECK(of_posterior["posterior_threshold_low"].get<double>() ==
         Approx(posterior.threshold_interval.low).epsilon(1e-9));
@@ -197,7 +222,7 @@ TEST_CASE("the mean threshold is R's of the participants' logarithms, not of one
        std::vector<std::tuple<std::string, double, std::uint64_t>>{
            {"a", 0.05, 1}, {"b", 0.1, 2}, {"c", 0.2, 3}}) {
     const auto of_one = observer(name, threshold, 40, seed);
-    logarithms.push_back(std::log10(fit_psychometric(model, levels_of(of_one)).curve->threshold));
+    logarithms.push_back(std::log10(posterior_of(levels_of(of_one)).threshold));
     answers = joined(answers, of_one);
   }
   const auto r = testing::r_numbers("x <- " + testing::r_vector(logarithms) +
@@ -263,14 +288,14 @@ TEST_CASE(
   }
   BlockDesign design = design_of();
   design.has_own_guess_rate = true;
-  const PsychometricFit fit =
-      fit_psychometric({PsychometricShape::weibull, {0.0, 0.85}, {0.0, 0.1}}, levels);
+  const PsychometricModel of_rates{PsychometricShape::weibull, {0.0, 0.85}, {0.0, 0.1}};
+  const PsychometricFit fit = fit_psychometric(of_rates, levels);
   const auto json = reported(statistic, design, answers).json;
   CHECK(json["false_alarms"][0]["false_alarms"] == 12);
   CHECK(json["false_alarms"][0]["false_alarms_of"] == 60);
   CHECK(json["participants"][0]["correct_of"] == 270);
   CHECK(json["participants"][0]["threshold"].get<double>() ==
-        Approx(fit.curve->threshold).epsilon(1e-9));
+        Approx(posterior_of(levels, of_rates).threshold).epsilon(1e-9));
   CHECK(json["fits"][0]["guess"].get<double>() == Approx(fit.curve->guess).epsilon(1e-9));
 }
 
@@ -283,7 +308,7 @@ TEST_CASE("a block's function is the one that is fitted", "[analysis][thresholds
     const PsychometricFit fit =
         fit_psychometric({shape, {0.5, 0.5}, {0.0, 0.1}}, levels_of(answers));
     const Formats formats = reported(statistic, design, answers);
-    CHECK(formats.json["participants"][0]["threshold"].get<double>() ==
+    CHECK(formats.json["fits"][0]["likeliest_threshold"].get<double>() ==
           Approx(fit.curve->threshold).epsilon(1e-9));
     CHECK_THAT(formats.text, Contains(std::string{row_of(shape).name} + " function"));
   }

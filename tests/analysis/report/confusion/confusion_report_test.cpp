@@ -146,7 +146,7 @@ TEST_CASE(
   const auto formats = reported(statistic, design, answers_of(design, 10, 2, 0.4, 1));
   CHECK_THAT(formats.text, Contains("95 % CI over 10 participants"));
   const auto& all = formats.json["accuracy_estimates"][0];
-  CHECK(all["beta_binomial_low"].get<double>() < all["share"].get<double>());
+  CHECK(all["over_participants_low"].get<double>() < all["share"].get<double>());
   CHECK(all["independent_wilson_low"].is_number());
   CHECK(formats.json["accuracy"]["over_participants_95"].size() == 2);
   CHECK(testing::longest_line(formats.text) <= 100);
@@ -227,6 +227,8 @@ TEST_CASE("contrasts, learning and medians are those that R computes from the an
   std::string person;
   std::string material;
   std::string right;
+  std::string stimulus;
+  std::string response;
   std::string repetition;
   std::string time;
   for (const auto& answer : answers) {
@@ -234,13 +236,16 @@ TEST_CASE("contrasts, learning and medians are those that R computes from the an
     person += fmt::format("{}{}", separator, answer.participant_index);
     material += fmt::format("{}{}", separator, answer.stimulus.starts_with("mdf") ? 1 : 0);
     right += fmt::format("{}{}", separator, *answer.is_correct ? 1 : 0);
+    stimulus += fmt::format("{}'{}'", separator, answer.stimulus);
+    response += fmt::format("{}'{}'", separator, answer.response);
     repetition += fmt::format("{}{}", separator, answer.repetition);
     time += fmt::format("{}{:.17g}", separator, answer.response_time_s);
   }
   const auto r = r_numbers(
       "p <- c(" + person + "); m <- c(" + material + "); k <- c(" + right + "); r <- c(" +
-      repetition + "); t <- c(" + time +
-      "); s <- tapply(k, list(p, m), mean);"
+      repetition + "); t <- c(" + time + "); z <- c(" + stimulus + "); a <- c(" + response +
+      "); q <- mapply(function(i, j) mean(a[p == i] == j), p, z);"
+      "s <- tapply(k - q, list(p, m), mean);"
       "d <- s[, 1] - s[, 2]; f <- function(d) { s <- as.matrix(expand.grid(rep(list(c(-1, 1)), "
       "length(d)))); mean(abs(s %*% d) >= abs(sum(d)) - 1e-9) };"
       "b <- sapply(split(data.frame(k, r), p), function(x) coef(lm(k ~ r, x))[2]);"
@@ -256,6 +261,30 @@ TEST_CASE("contrasts, learning and medians are those that R computes from the an
   CHECK(json["learning"][0]["p"].get<double>() == Approx(r[5]).epsilon(1e-9));
   CHECK(json["response_times"][0]["mean_median_s"].get<double>() == Approx(r[6]).epsilon(1e-9));
   CHECK(json["response_times"][0]["quartile_low_s"].get<double>() == Approx(r[7]).epsilon(1e-9));
+}
+
+TEST_CASE("a habit that all share is no difference between the levels of a factor",
+          "[analysis][identification][slow]") {
+  constexpr int studies = 400;
+  for (const bool are_equal : {true, false}) {
+    int significant = 0;
+    for (std::uint64_t study = 0; study < studies; ++study) {
+      const BlockDesign design = four_plates();
+      core::Rng rng{study + 1};
+      auto answers = answers_of(design, 10, 4, 0.0, 1000 + study);
+      for (auto& answer : answers) {
+        const double habit = are_equal ? 0.8 : 0.4 + 0.04 * answer.participant_index;
+        answer.response = design.responses[rng.uniform() < habit ? 0 : 1 + rng.below(3)].name;
+        answer.is_correct = answer.stimulus == answer.response;
+      }
+      const auto section = contrasts_section(identification_data(design, answers));
+      const double p = std::get<double>(section.tables.at(0).rows.at(0).at(5).values.at(0));
+      significant += p <= 0.05 ? 1 : 0;
+    }
+    INFO((are_equal ? "equal" : "unequal") << " preferences: " << significant << " of " << studies);
+    CHECK(significant < 0.07 * studies + 8);  // two standard errors
+    CHECK(significant > 0.03 * studies - 8);
+  }
 }
 
 TEST_CASE("who is presented techniques that differ has contrasts of them",

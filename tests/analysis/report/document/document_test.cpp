@@ -181,12 +181,15 @@ TEST_CASE("the interval of pooled answers is that over participants, never the s
   const auto over = mean_proportion(people);
   REQUIRE(over);
   CHECK(cell.values ==
-        std::vector<Value>{26, 48, 26.0 / 48.0, over->interval.low, over->interval.high});
+        std::vector<Value>{26, 48, 26.0 / 48.0, over->interval->low, over->interval->high});
   const Interval score = wilson_interval({26, 48});
-  CHECK(over->interval.high - over->interval.low > 1.5 * (score.high - score.low));
-  CHECK_THAT(cell.text.words,
-             Contains(fmt::format("26/48 = 54 % ({:.0f} % estimated over 6 participants, 95 % CI ",
-                                  100.0 * over->mean)));
+  CHECK(over->interval->high - over->interval->low > 1.5 * (score.high - score.low));
+  CHECK_THAT(cell.text.words, Contains("26/48 = 54 % (95 % CI over 6 participants "));
+  const Cell unequal = pooled_proportion({{8, 8}, {2, 4}, {1, 4}});
+  CHECK_THAT(unequal.text.words, Contains("11/16 = 69 % (mean of 3 participants 58 %, 95 % CI "));
+  const Cell two = pooled_proportion({{8, 8}, {4, 8}});
+  CHECK(two.values == std::vector<Value>{12, 16, 0.75, Value{}, Value{}});
+  CHECK_THAT(two.text.words, Contains("no CI: two do not tell how much participants differ"));
 }
 
 TEST_CASE("answers of one participant have their score interval, of none no share",

@@ -236,7 +236,9 @@ TEST_CASE("raw task load is the mean of six scales, its interval Student's over 
     const auto expected = testing::python_numbers(python_of(answers, row.at("asked")) + R"py(
 from scipy import stats
 scores = [100 * np.mean(r) for r in rows.values() if len(r) == 6]
-ci = stats.t.interval(0.95, len(scores) - 1, np.mean(scores), stats.sem(scores))
+m, v, e = np.mean(scores) / 100, np.var(scores, ddof=1) / 1e4, len(scores)
+e = stats.t.ppf(.975, e - 1)**2 * v / (m * (1 - m)) / e  # roots of (m - x)^2 = e x (1 - x)
+ci = np.sort(np.roots([1 + e, -2 * m - e, m * m])) * 100
 n = len(scores)
 tail = stats.norm.cdf(-np.sqrt(n / (n - 1)) * stats.t.ppf(.975, n - 1))  # Hesterberg 2015
 boot = stats.bootstrap((scores,), np.mean, n_resamples=20000, method='BCa', random_state=1,

@@ -2,6 +2,7 @@
 
 #include <boost/math/distributions/beta.hpp>
 #include <cmath>
+#include <limits>
 
 #include "analysis/statistics/population/means.hpp"
 #include "core/error.hpp"
@@ -15,40 +16,18 @@ using namespace tapstudy::testing;
 namespace {
 const std::vector<Proportion> people{{2, 8}, {5, 8}, {3, 8}, {7, 8}, {4, 7},
                                      {1, 8}, {4, 8}, {6, 6}, {3, 8}, {5, 8}};
-
-// Right answers of participants whose shares are beta distributed.
-std::vector<Proportion> sample(double mean, double intraclass, core::Rng& rng) {
-  constexpr int participants = 10;
-  constexpr int answers = 8;
-  std::vector<Proportion> drawn;
-  for (int i = 0; i < participants; ++i) {
-    double share = mean;
-    if (intraclass > 0.0) {
-      const double nu = 1.0 / intraclass - 1.0;
-      share = boost::math::quantile(boost::math::beta_distribution<>{nu * mean, nu * (1.0 - mean)},
-                                    rng.uniform());
-    }
-    Proportion of{0, answers};
-    for (int k = 0; k < answers; ++k) {
-      of.successes += rng.uniform() < share ? 1 : 0;
-    }
-    drawn.push_back(of);
-  }
-  return drawn;
-}
 }  // namespace
 
-TEST_CASE("the mean over participants and its interval are those of R's beta-binomial likelihood",
+TEST_CASE("participants' distribution is that of R's beta-binomial likelihood",
           "[analysis][participants]") {
-  const auto result = mean_proportion(people);
+  const auto result = beta_binomial_mean(people);
   REQUIRE(result);
-  const std::string profile =
+  const std::string likelihood =
       "k <- c(2,5,3,7,4,1,4,6,3,5); n <- c(8,8,8,8,7,8,8,6,8,8);"
       "l <- function(m, r) { v <- 1 / r - 1; sum(lbeta(k + v * m, n - k + v * (1 - m)) - "
       "lbeta(v * m, v * (1 - m))) };"
       "f <- optim(c(0, -2), function(x) -l(plogis(x[1]), plogis(x[2])), control = list(reltol = "
-      "1e-15, maxit = 5000)); p <- function(m) optimize(function(r) l(m, r), c(1e-6, .999), "
-      "maximum = TRUE, tol = 1e-9)$objective;"
+      "1e-15, maxit = 5000));"
       // values tell a maximum's place to seven digits, the score to all
       "s <- function(a, b) c(sum(digamma(k + a) - digamma(a) + digamma(a + b) - digamma(n + a + "
       "b)),"
@@ -57,16 +36,33 @@ TEST_CASE("the mean over participants and its interval are those of R's beta-bin
       "for (i in 1:20) { h <- 1e-6 * q; J <- cbind((s(q[1] + h[1], q[2]) - s(q[1] - h[1], q[2])) / "
       "(2 * h[1]), (s(q[1], q[2] + h[2]) - s(q[1], q[2] - h[2])) / (2 * h[2])); q <- q - "
       "solve(J, s(q[1], q[2])) };";
-  const auto r = r_numbers(profile + "out(q[1] / sum(q), 1 / (1 + sum(q)))");
+  const auto r = r_numbers(likelihood + "out(q[1] / sum(q), 1 / (1 + sum(q)))");
   CHECK(result->mean == Approx(r[0]).epsilon(1e-9));
   CHECK(result->intraclass_correlation == Approx(r[1]).epsilon(1e-9));
-  const auto ends = r_numbers(profile +
-                              "t <- qt(.975, 9)^2; e <- function(m) 2 * (-f$value - "
-                              "p(m)) - t; out(uniroot(e, c(.01, plogis(f$par[1])), "
-                              "tol = 1e-9)$root, uniroot(e, c(plogis(f$par[1]), .99), "
-                              "tol = 1e-9)$root)");
-  CHECK(result->interval.low == Approx(ends[0]).epsilon(1e-9));
-  CHECK(result->interval.high == Approx(ends[1]).epsilon(1e-9));
+}
+
+TEST_CASE("the interval over participants is where R's score of the mean is that of t",
+          "[analysis][participants]") {
+  for (const std::vector<Proportion>& of :
+       {people, {{3, 6}, {25, 30}, {28, 30}, {30, 30}}, {{14, 16}, {15, 16}, {13, 16}}}) {
+    std::vector<std::int64_t> right;
+    std::vector<std::int64_t> trials;
+    for (const Proportion& person : of) {
+      right.push_back(person.successes);
+      trials.push_back(person.trials);
+    }
+    const auto r = r_numbers(
+        "k <- " + r_vector(right) + "; t <- " + r_vector(trials) +
+        "; p <- k / t; n <- length(p); b <- mean(p); phi <- max(var(p) / (b * (1 - b)), .05 * "
+        "mean(1 / t)); e <- function(m) (b - m)^2 / (phi * m * (1 - m) / n) - qt(.975, n - 1)^2;"
+        "out(b, uniroot(e, c(1e-12, b), tol = 1e-14)$root, uniroot(e, c(b, 1 - 1e-12), tol = "
+        "1e-14)$root)");
+    const auto result = mean_share(of);
+    REQUIRE((result && result->interval));
+    CHECK(result->mean == Approx(r[0]).epsilon(1e-12));
+    CHECK(result->interval->low == Approx(r[1]).epsilon(1e-6));
+    CHECK(result->interval->high == Approx(r[2]).epsilon(1e-6));
+  }
 }
 
 TEST_CASE("the mean over participants and their intra-class correlation are glmmTMB's",
@@ -153,53 +149,89 @@ TEST_CASE("participants who do not differ, or are all right, have an interval to
   CHECK_FALSE(equal->t);
   CHECK_FALSE(equal->bootstrap);
   CHECK(equal->intraclass_correlation == 0.0);
-  CHECK((equal->interval.low < 0.4 && equal->interval.high > 0.6));
+  CHECK((equal->interval->low < 0.5 && equal->interval->high > 0.5));
   const auto perfect = mean_proportion({{8, 8}, {8, 8}, {8, 8}, {8, 8}, {0, 0}});
   REQUIRE(perfect);
   CHECK(perfect->participants == 4);
-  CHECK(perfect->interval.high == 1.0);
-  // all or none of a participant's answers are right with probability m: 4 ln m >= -t^2 / 2
+  CHECK(perfect->interval->high == 1.0);
+  // Wilson's of 32 answers, with t of three degrees of freedom
   const double t = r_numbers("out(qt(.975, 3))").front();
-  CHECK(perfect->interval.low == Approx(std::exp(-t * t / 8.0)).margin(0.01));
-  CHECK(mean_proportion({{0, 1}, {1, 1}})->interval.low < 0.05);
+  CHECK(perfect->interval->low == Approx(1.0 / (1.0 + t * t / 32.0)));
   CHECK_FALSE(mean_proportion({{3, 8}}));
   CHECK_THROWS_AS(mean_proportion({{9, 8}, {1, 8}}), core::InvalidInput);
 }
 
-TEST_CASE(
-    "the interval over participants holds the true share in 95 % of studies or more, however "
-    "they differ, where the pooled one does not",
-    "[analysis][participants][slow]") {
-  constexpr int studies = 1000;
-  constexpr double truth = 0.25;
-  const double error = std::sqrt(0.95 * 0.05 / studies);
-  for (const double intraclass : {0.0, 0.05, 0.1, 0.2}) {
-    core::Rng rng{17};
-    int ours = 0;
-    int by_t = 0;
-    int by_bootstrap = 0;
-    int pooled = 0;
-    for (int study = 0; study < studies; ++study) {
-      const auto drawn = sample(truth, intraclass, rng);
-      const auto holds = [&](const Interval& of) { return of.low <= truth && truth <= of.high; };
-      const auto result = mean_proportion(drawn);
-      Proportion all;
-      for (const Proportion& of : drawn) {
-        all.successes += of.successes;
-        all.trials += of.trials;
+TEST_CASE("two participants have a mean and no interval", "[analysis][participants]") {
+  const auto two = mean_share({{2, 8}, {6, 12}, {0, 0}});
+  REQUIRE(two);
+  CHECK(two->mean == 0.375);
+  CHECK_FALSE(two->interval);
+}
+
+namespace {
+// How often of so many studies the mean of shares is in its interval, and how wide that is as a
+// share of that by t.
+struct Coverage {
+  double held{};
+  double width{};
+};
+
+std::int64_t trials_of(bool are_equal, core::Rng& rng) {
+  return are_equal || rng.uniform() < 0.6 ? (are_equal ? 16 : 30) : 6;  // who stops at 6 of 30
+}
+
+double share_of_person(double mean, double intraclass, core::Rng& rng) {
+  if (intraclass == 0.0) {
+    return mean;
+  }
+  const double nu = 1.0 / intraclass - 1.0;
+  return boost::math::quantile(boost::math::beta_distribution<>{nu * mean, nu * (1.0 - mean)},
+                               rng.uniform());
+}
+
+Coverage coverage(double mean, double intraclass, int participants, bool are_equal) {
+  constexpr int studies = 2000;
+  core::Rng rng{23};
+  Coverage found;
+  double width = 0.0;
+  double width_of_t = 0.0;
+  for (int study = 0; study < studies; ++study) {
+    std::vector<Proportion> drawn;
+    std::vector<double> shares;
+    for (int i = 0; i < participants; ++i) {
+      const double share = share_of_person(mean, intraclass, rng);
+      drawn.push_back({0, trials_of(are_equal, rng)});
+      for (std::int64_t k = 0; k < drawn.back().trials; ++k) {
+        drawn.back().successes += rng.uniform() < share ? 1 : 0;
       }
-      ours += holds(result->interval) ? 1 : 0;
-      by_t += result->t && holds(*result->t) ? 1 : 0;
-      by_bootstrap += result->bootstrap && holds(*result->bootstrap) ? 1 : 0;
-      pooled += holds(wilson_interval(all)) ? 1 : 0;
+      shares.push_back(drawn.back().value());
     }
-    fmt::print(
-        "  intra-class correlation {}: covered {} (t {}, bootstrap {}, pooled Wilson {}) of {}\n",
-        intraclass, ours, by_t, by_bootstrap, pooled, studies);
-    CHECK(ours >= (0.95 - 3.0 * error) * studies);
-    CHECK(ours >= by_t - 3.0 * error * studies);
-    CHECK(by_bootstrap >= by_t - 3.0 * error * studies);
-    CHECK((intraclass < 0.1 || pooled < 0.9 * studies));
+    const Interval of = *mean_share(drawn)->interval;
+    const Interval by_t = t_interval(shares);
+    found.held += of.low <= mean && mean <= of.high ? 1.0 / studies : 0.0;
+    width += of.high - of.low;
+    width_of_t += std::min(1.0, by_t.high) - std::max(0.0, by_t.low);
+  }
+  found.width = width / width_of_t;
+  return found;
+}
+}  // namespace
+
+TEST_CASE("the interval over participants holds their mean in 93 to 97 % of studies",
+          "[analysis][participants]") {
+  constexpr double tolerance = 0.01;  // two standard errors of 2000 studies
+  for (const int participants : {3, 5, 8, 20}) {
+    for (const double intraclass : {0.0, 0.1, 0.3}) {
+      for (const bool are_equal : {true, false}) {
+        const Coverage found = coverage(0.5, intraclass, participants, are_equal);
+        INFO(participants << " participants, intra-class correlation " << intraclass << ", "
+                          << (are_equal ? "equal" : "unequal") << " trials: " << found.held
+                          << ", width " << found.width);
+        CHECK(found.held > 0.93 - tolerance);
+        CHECK(found.held < 0.97 + tolerance);
+        CHECK(found.width < 1.15);
+      }
+    }
   }
 }
 
@@ -258,60 +290,45 @@ TEST_CASE("one participant and no difference show nothing", "[analysis][particip
   CHECK_THROWS_AS(sign_flip_test({std::nan("")}, 1), core::InvalidInput);
 }
 
-// The mean of people who differ, against statsmodels.
-using analysis::random_effects;
-using analysis::RandomEffects;
-
-TEST_CASE("the mean, its interval and the spread of people are those of statsmodels",
+TEST_CASE("the likelihood of differences that are all exact has the interval of t",
           "[analysis][participants]") {
-  const std::vector<double> values{0.31, -0.12, 0.55, 0.02, 0.78, 0.21};
-  const std::vector<double> errors{0.08, 0.12, 0.20, 0.05, 0.30, 0.10};
-  const std::vector<double> expected = testing::python_numbers(R"py(
-import numpy as np
-from scipy import stats
-from statsmodels.stats.meta_analysis import combine_effects
-errors = np.array([0.08, 0.12, 0.20, 0.05, 0.30, 0.10])
-found = combine_effects(np.array([0.31, -0.12, 0.55, 0.02, 0.78, 0.21]), errors**2, method_re="iterated")
-half = stats.t.ppf(0.975, 5) * found.sd_eff_w_re_hksj
-out(found.mean_effect_re, np.sqrt(found.tau2), found.mean_effect_re - half, found.mean_effect_re + half)
-)py");
-  const RandomEffects found = random_effects(values, errors);
-  REQUIRE(expected.size() == 4);
-  CHECK(found.mean == Approx(expected[0]).epsilon(1e-4));  // which iterates to 1e-5
-  CHECK(found.between_sd == Approx(expected[1]).epsilon(1e-4));
-  CHECK(found.interval.low == Approx(expected[2]).epsilon(1e-3));
-  CHECK(found.interval.high == Approx(expected[3]).epsilon(1e-3));
-}
-
-TEST_CASE("people who differ no more than their errors are taken as alike",
-          "[analysis][participants]") {
-  const RandomEffects found = random_effects({1.0, 1.1, 0.9}, {0.5, 0.5, 0.5});
-  CHECK(found.between_sd == 0.0);
-  CHECK(found.mean == Approx(1.0));
-  // not narrower than three known errors allow: t of two degrees of freedom
-  CHECK(found.interval.high - found.mean == Approx(4.302652730 * 0.5 / std::sqrt(3.0)));
-}
-
-TEST_CASE("the interval holds the mean of people at its rate", "[analysis][participants]") {
-  core::Rng rng{5};
-  constexpr int studies = 2000;
-  int held = 0;
-  for (int study = 0; study < studies; ++study) {
-    std::vector<double> values;
-    std::vector<double> errors;
-    for (int person = 0; person < 8; ++person) {
-      errors.push_back(0.05 + 0.3 * rng.uniform());
-      values.push_back(2.0 + 0.2 * rng.normal() + errors.back() * rng.normal());
-    }
-    const RandomEffects found = random_effects(values, errors);
-    held += found.interval.low <= 2.0 && 2.0 <= found.interval.high ? 1 : 0;
+  const std::vector<double> exact{0.31, -0.12, 0.55, 0.02, 0.78, 0.21};
+  std::vector<Interval> ranges;
+  for (const double value : exact) {
+    ranges.push_back({value, value});
   }
-  CHECK(held / static_cast<double>(studies) == Approx(0.95).margin(0.02));
+  const PairedContrast found = censored_contrast(ranges, 1);
+  const Interval by_t = t_interval(exact);
+  CHECK(found.mean == Approx(paired_contrast(exact, 1).mean).epsilon(1e-5));
+  CHECK(found.interval->low == Approx(by_t.low).epsilon(1e-4));
+  CHECK(found.interval->high == Approx(by_t.high).epsilon(1e-4));
 }
 
-TEST_CASE("values without errors have no random effects", "[analysis][participants]") {
-  CHECK_THROWS_AS(random_effects({1.0}, {0.1}), core::InvalidInput);
-  CHECK_THROWS_AS(random_effects({1.0, 2.0}, {0.1}), core::InvalidInput);
-  CHECK_THROWS_AS(random_effects({1.0, 2.0}, {0.1, 0.0}), core::InvalidInput);
-  CHECK_THROWS_AS(random_effects({1.0, 2.0}, {0.1, std::nan("")}), core::InvalidInput);
+TEST_CASE("differences of which some are ranges have R's normal likelihood",
+          "[analysis][participants]") {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  const std::vector<Interval> ranges{{0.3, 0.3},      {0.7, 0.7}, {1.1, 1.1},  {0.9, infinity},
+                                     {0.5, infinity}, {0.4, 0.4}, {-0.2, 0.8}, {-infinity, 0.6}};
+  const auto r = r_numbers(
+      "a <- c(.3, .7, 1.1, .9, .5, .4, -.2, -Inf); b <- c(.3, .7, 1.1, Inf, Inf, .4, .8, .6);"
+      "l <- function(m, s) -sum(ifelse(a == b, dnorm(a, m, s, log = TRUE), log(pnorm(b, m, s) - "
+      "pnorm(a, m, s)))); p <- function(m) optimize(function(x) l(m, exp(x)), c(-5, 5), tol = "
+      "1e-10)$objective; o <- optimize(p, c(-2, 3), tol = 1e-10); n <- 8; k <- n * log(1 + "
+      "qt(.975, n - 1)^2 / (n - 1)); e <- function(m) 2 * (p(m) - o$objective) - k;"
+      "out(o$minimum, uniroot(e, c(-5, o$minimum), tol = 1e-10)$root, uniroot(e, c(o$minimum, 9), "
+      "tol = 1e-10)$root)");
+  const PairedContrast found = censored_contrast(ranges, 1);
+  CHECK(found.mean == Approx(r[0]).epsilon(1e-4));
+  CHECK(found.interval->low == Approx(r[1]).epsilon(1e-3));
+  CHECK(found.interval->high == Approx(r[2]).epsilon(1e-3));
+  CHECK(found.participants == 8);
+}
+
+TEST_CASE("the mean of a bounded scale stays within its bounds", "[analysis][participants]") {
+  const auto two = bounded_interval({40.0, 87.0}, {0.0, 100.0});
+  REQUIRE(two);
+  CHECK((two->low > 0.0 && two->low < 40.0));
+  CHECK((two->high < 100.0 && two->high > 87.0));
+  CHECK_FALSE(bounded_interval({50.0, 50.0}, {0.0, 100.0}));
+  CHECK_THROWS_AS(bounded_interval({50.0, 101.0}, {0.0, 100.0}), core::InvalidInput);
 }

@@ -3,13 +3,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <iterator>
+#include <map>
 #include <sstream>
 
 #include "analysis/statistics/distributions.hpp"
 #include "analysis/statistics/psychometric/example_levels.hpp"
 #include "analysis/statistics/psychometric/likelihood.hpp"
 #include "core/error.hpp"
+#include "core/random/rng.hpp"
 #include "support/catch.hpp"
 #include "support/processes.hpp"
 using namespace tapstudy;
@@ -265,6 +268,98 @@ TEST_CASE("a posterior of answers without a threshold has none either, that of a
   CHECK(step.estimates->threshold_interval.low > 1.5);
   CHECK_THROWS_AS(analysis::psychometric_posterior(model, {{1.0, {9, 9}}}), core::InvalidInput);
   CHECK_THROWS_AS(analysis::psychometric_posterior(model, yes_no_levels, 0.0), core::InvalidInput);
+}
+
+TEST_CASE("a threshold of answers that may all be guesses has no upper limit",
+          "[analysis][psychometric]") {
+  const PsychometricModel model{PsychometricShape::weibull, {0.5, 0.5}, {0.0, 0.1}};
+  const std::vector<Level> few{{0.2, {2, 5}}, {0.5, {3, 5}}, {1.0, {4, 5}}};
+  std::vector<Level> many = few;
+  for (Level& level : many) {
+    level.answers.successes *= 20;
+    level.answers.trials *= 20;
+  }
+  const auto of_few = *analysis::psychometric_posterior(model, few, 0.95, 3.0).estimates;
+  const auto of_many = *analysis::psychometric_posterior(model, many, 0.95, 3.0).estimates;
+  CHECK(of_few.guessing > 0.2);
+  CHECK(std::isinf(of_few.threshold_interval.high));
+  CHECK(of_many.guessing < 0.001);
+  CHECK(of_many.threshold_interval.high < 2.0);
+}
+
+namespace {
+// Steps up and down by a factor, smaller after the first reversal.
+struct Staircase {
+  int right_to_descend{};
+  double first_factor{};
+  double factor{};
+  int reversals{};
+  int trials{};
+};
+
+std::vector<Level> levels_of(const Staircase& of, core::Rng& rng,
+                             const std::function<double(double level)>& right) {
+  std::map<double, analysis::Proportion> levels;
+  double level = 1.0;
+  int in_a_row = 0;
+  int last = 0;
+  int reversals = 0;
+  for (int trial = 0; trial < of.trials && reversals < of.reversals; ++trial) {
+    const bool is_right = rng.uniform() < right(level);
+    levels[std::round(level * 1e9) / 1e9].add(is_right);
+    in_a_row = is_right ? in_a_row + 1 : 0;
+    const int direction = !is_right ? 1 : in_a_row == of.right_to_descend ? -1 : 0;
+    if (direction == 0) {
+      continue;
+    }
+    in_a_row = 0;
+    reversals += direction * last < 0 ? 1 : 0;
+    last = direction;
+    const double factor = reversals == 0 ? of.first_factor : of.factor;
+    level = std::clamp(direction > 0 ? level * factor : level / factor, 0.05, 3.0);
+  }
+  std::vector<Level> all;
+  for (const auto& [value, answers] : levels) {
+    all.push_back({value, answers});
+  }
+  return all;
+}
+}  // namespace
+
+TEST_CASE("of 60 staircases of guesses at most 3 have a closed interval of the threshold",
+          "[analysis][psychometric][slow]") {
+  const PsychometricModel model{PsychometricShape::weibull, {0.5, 0.5}, {0.0, 0.1}};
+  core::Rng rng{12};
+  int closed = 0;
+  for (int i = 0; i < 60; ++i) {
+    const auto levels = levels_of({2, 1.5, 1.1, 8, 60}, rng, [](double /*level*/) { return 0.54; });
+    const auto found = analysis::psychometric_posterior(model, levels, 0.95, 3.0).estimates;
+    closed += found && std::isfinite(found->threshold_interval.high) ? 1 : 0;
+  }
+  CHECK(closed <= 3);
+}
+
+TEST_CASE("the posterior of a staircase holds a threshold also where the function is shallow",
+          "[analysis][psychometric][slow]") {
+  const PsychometricModel model{PsychometricShape::weibull, {0.5, 0.5}, {0.0, 0.1}};
+  constexpr int tracks = 60;
+  constexpr double threshold = 0.3;
+  core::Rng rng{13};
+  int held = 0;
+  int found = 0;
+  for (int i = 0; i < tracks; ++i) {
+    const auto levels = levels_of({3, 1.58, 1.12, 1000, 60}, rng, [](double level) {
+      return core::proportion(PsychometricShape::weibull, level, threshold, 0.8, 0.5, 0.0);
+    });
+    const auto of = analysis::psychometric_posterior(model, levels, 0.95, 3.0).estimates;
+    found += of ? 1 : 0;
+    held +=
+        of && of->threshold_interval.low <= threshold && threshold <= of->threshold_interval.high
+            ? 1
+            : 0;
+  }
+  CHECK(found > 50);
+  CHECK(held >= 0.92 * found - 2.0);  // with a breadth of 1 it is 48 of 57
 }
 
 TEST_CASE("a free guess rate is found", "[analysis][psychometric]") {

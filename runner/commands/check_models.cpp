@@ -84,24 +84,6 @@ void print_families(const protocols::Protocol& protocol, ModelLibrary& models) {
   }
 }
 
-double largest_contact_stiffness_n_per_m(const protocols::Protocol& protocol) {
-  double largest = protocol.rendering.penalty_stiffness_n_per_m;
-  const auto consider = [&](const protocols::Stimulus& stimulus,
-                            const core::RenderSettings& settings) {
-    largest = std::max(largest, settings.penalty_stiffness_n_per_m +
-                                    stimulus.technique->added_stiffness_n_per_m(settings));
-  };
-  for (const protocols::Stimulus& stimulus : protocol.stimuli) {
-    consider(stimulus, stimulus_with(protocol, stimulus).rendering);
-    for (const protocols::AxisRange& range : stimulus.vary) {
-      const auto member =
-          stimulus_with(protocol, stimulus, {{std::string{range.axis->name}, range.to}});
-      consider(stimulus, member.rendering);
-    }
-  }
-  return largest;
-}
-
 namespace {
 core::Contact contact_from_above(const core::VibratingPlate& plate, const Eigen::Vector2d& at_m) {
   constexpr double far_m = 100.0;

@@ -108,4 +108,22 @@ void check_members(const protocols::Protocol& protocol, const protocols::Stimulu
     check_member(protocol, stimulus_with(protocol, stimulus, values), body);
   }
 }
+
+double largest_contact_stiffness_n_per_m(const protocols::Protocol& protocol) {
+  double largest = protocol.rendering.penalty_stiffness_n_per_m;
+  const auto consider = [&](const protocols::Stimulus& stimulus,
+                            const core::RenderSettings& settings) {
+    largest = std::max(largest, settings.penalty_stiffness_n_per_m +
+                                    stimulus.technique->added_stiffness_n_per_m(settings));
+  };
+  for (const protocols::Stimulus& stimulus : protocol.stimuli) {
+    consider(stimulus, stimulus_with(protocol, stimulus).rendering);
+    for (const protocols::AxisRange& range : stimulus.vary) {
+      const auto member =
+          stimulus_with(protocol, stimulus, {{std::string{range.axis->name}, range.to}});
+      consider(stimulus, member.rendering);
+    }
+  }
+  return largest;
+}
 }  // namespace tapstudy::runner

@@ -40,7 +40,8 @@ const char* to_text(TickFault fault) noexcept {
     case TickFault::velocity_wrong:
       return "the device reports a velocity that is not the change of its position (in m/s?)";
     case TickFault::position_frozen:
-      return "the device replies, but its position has stopped changing under force (encoders?)";
+      return "the device replies, but its position stands still under force, or is too old "
+             "(encoders?)";
     case TickFault::periods_missed:
       return "too many of the loop's periods were missed within a second: the device replies late, "
              "or the machine is busy (tapstudy doctor --rig measures both)";

@@ -2,94 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
 #include <limits>
 #include <utility>
-
-#include "device/remote/packets.hpp"
 namespace tapstudy::device {
-using core::TickFault;
-namespace {
-constexpr double max_ratio = 2.0;
-constexpr double margin_n = 1.0;
-constexpr double max_above_s = 0.0025;
-constexpr double max_against_s = 0.0055;
-constexpr double min_ratio = 0.05;
-constexpr double max_without_s = max_report_lag_s + 0.03;
-
-void count(double& total_s, bool is_so, double elapsed_s) noexcept {
-  total_s = is_so ? total_s + elapsed_s : 0.0;
-}
-}  // namespace
-
-void ExertedForce::remember(const core::Vec3& commanded_n, double elapsed_s) noexcept {
-  current_s_ += elapsed_s;
-  if (current_s_ > 0.5 * max_report_lag_s) {
-    recent_ = {Commands{commanded_n, commanded_n}, recent_[0], recent_[1]};
-    current_s_ = 0.0;
-  }
-  recent_[0].low_n = recent_[0].low_n.cwiseMin(commanded_n);
-  recent_[0].high_n = recent_[0].high_n.cwiseMax(commanded_n);
-}
-
-double ExertedForce::largest_along(const core::Vec3& direction) const noexcept {
-  double largest = 0.0;
-  for (const Commands& commands : recent_) {
-    const core::Vec3 furthest = (direction.array() > 0.0).select(commands.high_n, commands.low_n);
-    largest = std::max(largest, furthest.dot(direction));
-  }
-  return largest;
-}
-
-TickFault ExertedForce::judge(const core::Vec3& commanded_n, const core::Vec3& reported_n,
-                              double elapsed_s) noexcept {
-  remember(commanded_n, elapsed_s);
-  const double commanded = commanded_n.norm();
-  const double reported = reported_n.norm();
-  if (std::isnan(reported)) {
-    return TickFault::none;
-  }
-  const double explained_n = reported > 0.0 ? largest_along(reported_n / reported) : 0.0;
-  const bool is_force = commanded >= noticeable_n;
-  const double along = is_force ? reported_n.dot(commanded_n) / commanded : 0.0;
-  count(above_s_, reported > max_ratio * explained_n + margin_n, elapsed_s);
-  count(against_s_, along <= -noticeable_n && explained_n < min_ratio * reported, elapsed_s);
-  count(without_s_, is_force && along < min_ratio * commanded, elapsed_s);
-  return above_s_ > max_above_s || against_s_ > max_against_s || without_s_ > max_without_s
-             ? TickFault::force_not_followed
-             : TickFault::none;
-}
-
-using core::TickFault;
-namespace {
-constexpr double window_length_s = 0.05;
-constexpr double noticeable_m = 0.002;
-constexpr double tolerance = 0.5;
-constexpr int max_disagreements = 20;
-}  // namespace
-
-TickFault VelocityCheck::judge(const core::HandState& hand, double elapsed_s) noexcept {
-  if (has_begun_) {
-    integrated_m_ += elapsed_s * hand.velocity_m_s;
-    window_s_ += elapsed_s;
-    if (window_s_ < window_length_s) {
-      return TickFault::none;
-    }
-    const core::Vec3 moved_m = hand.position_m - began_at_m_;
-    const double larger_m = std::max(moved_m.norm(), integrated_m_.norm());
-    if (larger_m >= noticeable_m) {
-      const bool agrees = (moved_m - integrated_m_).norm() <= tolerance * larger_m;
-      disagreements_ = std::max(disagreements_ + (agrees ? -1 : 1), 0);
-    }
-  }
-  has_begun_ = true;
-  began_at_m_ = hand.position_m;
-  integrated_m_.setZero();
-  window_s_ = 0.0;
-  return disagreements_ > max_disagreements ? TickFault::velocity_wrong : TickFault::none;
-}
-
 using core::TickFault;
 namespace {
 constexpr double untold = std::numeric_limits<double>::quiet_NaN();
@@ -98,34 +13,39 @@ constexpr int attempts = 40;
 constexpr int measured_round_trips = 200;
 constexpr int max_released_replies = 30;  // after a silence, until the other program holds again
 constexpr std::chrono::milliseconds patience{50};  // timeout per attempt
+
+enum class Taken : std::uint8_t { yes, not_this, broken };
 }  // namespace
 
-RemoteHand::RemoteHand(std::uint16_t port, std::chrono::microseconds max_reply)
-    : RemoteHand{port, max_reply, open_udp_pipe(port)} {}
+RemoteHand::RemoteHand(std::uint16_t port, RemoteLimits limits)
+    : RemoteHand{port, limits, open_udp_pipe(port)} {}
 
-RemoteHand::RemoteHand(std::uint16_t port, std::chrono::microseconds max_reply,
-                       std::unique_ptr<DatagramPipe> pipe)
-    : port_{port}, max_reply_{patience}, pipe_{std::move(pipe)} {
-  core::HandState ignored;
+RemoteHand::RemoteHand(std::uint16_t port, RemoteLimits limits, std::unique_ptr<DatagramPipe> pipe)
+    : port_{port},
+      max_reply_{patience},
+      pipe_{std::move(pipe)},
+      samples_{limits.max_sample_age_s, 0.0} {
   bool is_misunderstood = false;
-  for (int i = 0; i < attempts; ++i) {
-    const TickFault fault = ask(ignored);
-    if (fault == TickFault::none) {
-      max_reply_ = max_reply;
-      return;
+  for (int i = 0; i < attempts && version_ == 0; ++i) {
+    is_misunderstood = !greet() || is_misunderstood;
+    if (version_ == 0) {
+      sleep_for(patience);
     }
-    is_misunderstood = is_misunderstood || fault == TickFault::bad_reply;
-    sleep_for(patience);
   }
-  throw DeviceError{
-      is_misunderstood
-          ? fmt::format(
-                "remote: replies come from 127.0.0.1, UDP port {}, but not as version 1 or 2 "
-                "of the protocol (device/remote/packets.hpp)",
-                port)
-          : fmt::format("remote: nobody answers at 127.0.0.1, UDP port {} (is the program that "
-                        "drives the device running?)",
-                        port)};
+  if (version_ == 0) {
+    throw DeviceError{
+        is_misunderstood
+            ? fmt::format("remote: replies come from 127.0.0.1, UDP port {}, but not as version 1, "
+                          "2 or 3 of the protocol (device/remote/README.md)",
+                          port)
+            : fmt::format("remote: nobody answers at 127.0.0.1, UDP port {} (is the program that "
+                          "drives the device running?)",
+                          port)};
+  }
+  max_reply_ = limits.max_reply;
+  if (introduction_) {
+    samples_ = SampleCheck{limits.max_sample_age_s, introduction_->rate_hz};
+  }
 }
 
 RemoteHand::~RemoteHand() {
@@ -133,13 +53,34 @@ RemoteHand::~RemoteHand() {
 }
 
 std::string RemoteHand::description() const {
-  return fmt::format("remote device at UDP port {}", port_);
+  return introduction_ ? fmt::format("{}, serial number {}, remote/3 at UDP port {}",
+                                     introduction_->name, introduction_->serial_number, port_)
+                       : fmt::format("remote device at UDP port {}, version {} of the protocol",
+                                     port_, version_);
 }
 
-TickFault RemoteHand::send(bool wants_reply) noexcept {
-  const auto bytes =
-      encoded({wants_reply ? RequestKind::reply : RequestKind::no_reply, ++number_, force_n_});
-  switch (pipe_->send(bytes)) {
+// Asks in both ways at once: a program of version 3 answers the first, an older one the second.
+// False if what came back was neither.
+bool RemoteHand::greet() {
+  const wire::Request introduction{.asked = wire::Asked::introduction, .number = ++number_};
+  if (send(encoded(introduction)) != TickFault::none ||
+      send(encoded(RemoteRequest{RequestKind::reply, ++number_})) != TickFault::none) {
+    return true;
+  }
+  return receive([this](std::span<const std::uint8_t> bytes) {
+           return is_understood(bytes) ? Taken::yes : Taken::broken;
+         }) != TickFault::bad_reply;
+}
+
+bool RemoteHand::is_understood(std::span<const std::uint8_t> bytes) {
+  introduction_ = decoded_introduction(bytes, number_ - 1);
+  const auto reply = decoded_reply(bytes);
+  version_ = introduction_ ? 3 : reply && reply->version < 3 ? reply->version : 0;
+  return version_ != 0;
+}
+
+TickFault RemoteHand::send(std::span<const std::uint8_t> datagram) noexcept {
+  switch (pipe_->send(datagram)) {
     case DatagramOutcome::ok:
       return TickFault::none;
     case DatagramOutcome::gone:
@@ -151,40 +92,57 @@ TickFault RemoteHand::send(bool wants_reply) noexcept {
   return TickFault::bad_reply;
 }
 
+TickFault RemoteHand::send_force(RequestKind kind) noexcept {
+  ++number_;
+  return version_ == 3
+             ? send(encoded(wire::Request{.number = number_,
+                                          .force_n = {force_n_.x(), force_n_.y(), force_n_.z()}}))
+             : send(encoded(RemoteRequest{kind, number_, force_n_}));
+}
+
 void RemoteHand::sleep_for(std::chrono::nanoseconds duration) noexcept {
   pipe_->wait_until(pipe_->now() + duration.count());
 }
 
-// Late replies to earlier requests are ignored.
-TickFault RemoteHand::receive(core::HandState& hand) noexcept {
+// The first datagram in time that is the one that is waited for.
+template <class Take>
+TickFault RemoteHand::receive(const Take& take) noexcept {
   const Nanoseconds deadline = pipe_->now() + max_reply_.count();
   while (true) {
-    std::array<std::uint8_t, reply_bytes_of_version_2 + 1> bytes{};
+    std::array<std::uint8_t, max_reply_datagram_bytes + 1> bytes{};
     const ReceivedDatagram received = pipe_->receive(bytes, deadline);
     if (received.outcome != DatagramOutcome::ok) {
       return received.outcome == DatagramOutcome::gone ? TickFault::device_gone
                                                        : TickFault::no_reply;
     }
-    const auto reply = decoded_reply(std::span{bytes}.first(received.bytes));
-    if (!reply) {
-      return TickFault::bad_reply;
-    }
-    if (reply->number == number_) {
-      if (tells_status_ && !reply->status) {
-        return TickFault::bad_reply;
-      }
-      tells_status_ = reply->status.has_value();
-      hand = reply->hand;
-      status_ = reply->status;
-      detail_.achieved_n = reply->exerted_n.value_or(core::Vec3::Constant(untold));
-      return TickFault::none;
+    const Taken taken = take(std::span<const std::uint8_t>{bytes}.first(received.bytes));
+    if (taken != Taken::not_this) {
+      return taken == Taken::yes ? TickFault::none : TickFault::bad_reply;
     }
   }
 }
 
-TickFault RemoteHand::ask(core::HandState& hand) noexcept {
-  const TickFault fault = send(true);
-  return fault == TickFault::none ? receive(hand) : fault;
+// Late replies to earlier requests are ignored, and so is the second of two.
+TickFault RemoteHand::ask() noexcept {
+  if (const TickFault fault = send_force(RequestKind::reply); fault != TickFault::none) {
+    return fault;
+  }
+  const TickFault fault = receive([this](std::span<const std::uint8_t> bytes) noexcept {
+    const auto reply = decoded_reply(bytes);
+    if (!reply || reply->version != version_) {
+      return Taken::broken;
+    }
+    if (reply->number != number_) {
+      return Taken::not_this;
+    }
+    reply_ = *reply;
+    return Taken::yes;
+  });
+  if (fault == TickFault::none) {
+    detail_.achieved_n = reply_.exerted_n.value_or(core::Vec3::Constant(untold));
+    text_ = reply_.sample ? reply_.sample->text : decltype(text_){};
+  }
+  return fault;
 }
 
 TickFault RemoteHand::begin() noexcept {
@@ -192,7 +150,9 @@ TickFault RemoteHand::begin() noexcept {
   exerted_.forget();
   velocity_.forget();
   reading_.forget();
-  since_reply_s_ = 0.0;
+  samples_.forget();
+  estimate_.forget();
+  since_reply_s_ = since_sample_s_ = 0.0;
   is_holding_ = false;
   released_replies_ = 0;
   detail_.missed_replies = 0;
@@ -200,31 +160,60 @@ TickFault RemoteHand::begin() noexcept {
 }
 
 // Between trials nobody asks, so that the first replies may report a release; not all of them.
-TickFault RemoteHand::fault_of_report(double elapsed_s) noexcept {
-  const std::uint32_t status = status_.value_or(motors_on);
-  if ((status & motors_on) == 0) {
+TickFault RemoteHand::fault_of_status(std::uint32_t status) noexcept {
+  if ((status & wire::motors_on) == 0) {
     return TickFault::amplifier_off;
   }
-  const bool has_released = (status & force_was_released) != 0;
+  if (version_ == 3 && (status & wire::must_be_homed) != 0) {
+    return TickFault::not_homed;
+  }
+  const bool has_released = (status & wire::force_was_released) != 0;
   released_replies_ = has_released ? released_replies_ + 1 : 0;
   if (has_released && (is_holding_ || released_replies_ > max_released_replies)) {
     return TickFault::force_released;
   }
   is_holding_ = is_holding_ || !has_released;
-  return exerted_.judge(force_n_, detail_.achieved_n, elapsed_s);
+  return TickFault::none;
 }
 
-// Protocols 1 and 2 do not number their samples: one that is repeated is known by its bits.
-TickFault RemoteHand::fault_of_motion(const core::HandState& hand, double elapsed_s) noexcept {
-  const core::HandState last = std::exchange(last_, hand);
-  const bool is_same = last.position_m == hand.position_m && last.velocity_m_s == hand.velocity_m_s;
+// Versions 1 and 2 do not number their samples: one that is repeated is known by its bits. So is,
+// in any version, that of encoders without supply.
+TickFault RemoteHand::fault_of_motion(double elapsed_s) noexcept {
+  const core::HandState last = std::exchange(last_, reply_.hand);
+  const bool is_same = last.position_m == reply_.hand.position_m &&
+                       (!is_velocity_measured_ || last.velocity_m_s == reply_.hand.velocity_m_s);
   return reading_.judge(is_same, force_n_, elapsed_s) ? TickFault::position_frozen
-                                                      : velocity_.judge(hand, elapsed_s);
+                                                      : velocity_.judge(reply_.hand, elapsed_s);
+}
+
+void RemoteHand::estimate_velocity(double elapsed_s) noexcept {
+  since_sample_s_ += elapsed_s;
+  if (samples_.is_new()) {
+    estimate_.take(reply_.hand.position_m, std::exchange(since_sample_s_, 0.0));
+  }
+  reply_.hand.velocity_m_s = estimate_.velocity_m_s();
+}
+
+TickFault RemoteHand::take_reply(double elapsed_s) noexcept {
+  const TickFault of_sample =
+      reply_.sample ? samples_.judge(*reply_.sample, elapsed_s) : TickFault::none;
+  is_velocity_measured_ = version_ < 3 || !reply_.hand.velocity_m_s.hasNaN();
+  if (!is_velocity_measured_) {
+    estimate_velocity(elapsed_s);
+  }
+  TickFault fault = fault_of_status(reply_.status.value_or(wire::motors_on));
+  if (fault == TickFault::none) {
+    fault = of_sample;
+  }
+  if (fault == TickFault::none) {
+    fault = exerted_.judge(force_n_, detail_.achieved_n, elapsed_s);
+  }
+  return fault == TickFault::none ? fault_of_motion(elapsed_s) : fault;
 }
 
 TickFault RemoteHand::read(core::HandState& hand, double elapsed_s) noexcept {
   since_reply_s_ += elapsed_s;
-  const TickFault fault = ask(hand);
+  const TickFault fault = ask();
   if (fault == TickFault::no_reply && held_.use_last_reading(hand)) {
     detail_.missed_replies = held_.missed_replies();
     detail_.achieved_n.setConstant(untold);
@@ -234,26 +223,24 @@ TickFault RemoteHand::read(core::HandState& hand, double elapsed_s) noexcept {
     return fault;
   }
   detail_.missed_replies = 0;
+  const TickFault of_reply = take_reply(std::exchange(since_reply_s_, 0.0));
+  hand = reply_.hand;
   held_.keep(hand);
-  const double since_s = std::exchange(since_reply_s_, 0.0);
-  const TickFault of_report = fault_of_report(since_s);
-  return of_report != TickFault::none ? of_report : fault_of_motion(hand, since_s);
+  return of_reply;
 }
 
 TickFault RemoteHand::write(const core::Vec3& force_n) noexcept {
   force_n_ = force_n;
-  return send(false);
+  return version_ == 3 ? TickFault::none : send_force(RequestKind::no_reply);
 }
 
 // The first reply may still report a release in an earlier silence.
 RemoteHand::Release RemoteHand::release_after(std::chrono::milliseconds silence) noexcept {
   const auto reported = [this]() -> std::optional<bool> {
-    status_.reset();
-    core::HandState ignored;
-    if (ask(ignored) != TickFault::none || !status_) {
+    if (ask() != TickFault::none || !reply_.status) {
       return std::nullopt;
     }
-    return (*status_ & force_was_released) != 0;
+    return (*reply_.status & wire::force_was_released) != 0;
   };
   std::optional<bool> before;
   for (int i = 0; i < max_released_replies; ++i) {
@@ -278,8 +265,7 @@ LatenessCount RemoteHand::round_trips() noexcept {
   LatenessCount times;
   for (int i = 0; i < measured_round_trips; ++i) {
     const Nanoseconds start = pipe_->now();
-    core::HandState ignored;
-    const bool has_replied = ask(ignored) == TickFault::none;
+    const bool has_replied = ask() == TickFault::none;
     times.add(has_replied ? pipe_->now() - start : max_reply_.count());
   }
   return times;
@@ -296,8 +282,7 @@ StopOutcome RemoteHand::zero_force() noexcept {
     if (i >= zero_force_packets) {
       sleep_for(std::chrono::milliseconds{1});
     }
-    core::HandState ignored;
-    has_replied = ask(ignored) == TickFault::none;
+    has_replied = ask() == TickFault::none;
     is_exerted = detail_.achieved_n.norm() >= noticeable_n;  // not so if it is not reported, NaN
   }
   return has_replied && !is_exerted ? StopOutcome::confirmed : StopOutcome::unconfirmed;

@@ -4,74 +4,32 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string_view>
 
 #include "core/haptics/haptic_state.hpp"
 #include "device/device.hpp"
 #include "device/frozen_reading.hpp"
 #include "device/loop/tick_clock.hpp"
 #include "device/remote/datagram_pipe.hpp"
+#include "device/remote/packets.hpp"
+#include "device/remote/reply_checks.hpp"
+#include "device/velocity_estimate.hpp"
 namespace tapstudy::device {
-// Of a measured force: less may be an offset, noise, or lost in friction.
-inline constexpr double noticeable_n = 0.5;
-
-// A device may report its force, not exert it, so much later than it was sent.
-inline constexpr double max_report_lag_s = 0.02;
-
-// Compares the force that a device reports with those that it was sent within max_report_lag_s.
-// Faults are a report more than twice and 1 N above the largest of them along it, for 3 ms; one
-// against the force while none was sent that way, for 6 ms; and one of almost nothing for 30 ms
-// longer than the lag. Margins are wide, since devices measure coarsely. One that reports nothing
-// (NaN) is not judged.
-class ExertedForce {
- public:
-  void forget() noexcept { *this = {}; }
-  // Once a reply, with what was commanded when the device reported, and the time since the last.
-  [[nodiscard]] core::TickFault judge(const core::Vec3& commanded_n, const core::Vec3& reported_n,
-                                      double elapsed_s) noexcept;
-
- private:
-  // The box of the commands of half a lag.
-  struct Commands {
-    core::Vec3 low_n{core::Vec3::Zero()};
-    core::Vec3 high_n{core::Vec3::Zero()};
-  };
-  void remember(const core::Vec3& commanded_n, double elapsed_s) noexcept;
-  double largest_along(const core::Vec3& direction) const noexcept;
-
-  std::array<Commands, 3> recent_{};  // the current half lag first
-  double current_s_{0.0};
-  double above_s_{0.0};
-  double against_s_{0.0};
-  double without_s_{0.0};
+struct RemoteLimits {
+  std::chrono::microseconds max_reply{3000};  // a reply that takes longer is missing
+  double max_sample_age_s{0.005};             // of a position, where the program tells (version 3)
 };
 
-// Compares the velocity that a device reports with the change of its position, since the strength
-// of an impact rests on the velocity: one in other units, of another frame or always 0 is a fault
-// after about a second of movement. Judged in windows of 50 ms in which the hand moves noticeably;
-// a velocity that lags behind by some 30 ms disagrees only where the hand turns back.
-class VelocityCheck {
- public:
-  void forget() noexcept { *this = {}; }
-  // Once a reply, with the time since the last one.
-  [[nodiscard]] core::TickFault judge(const core::HandState& hand, double elapsed_s) noexcept;
-
- private:
-  bool has_begun_{false};
-  core::Vec3 began_at_m_{core::Vec3::Zero()};
-  core::Vec3 integrated_m_{core::Vec3::Zero()};
-  double window_s_{0.0};
-  int disagreements_{0};  // less the agreements, from 0
-};
-
-// A device driven by another program on this machine, over UDP on the loopback (packets.hpp): each
-// tick requests the position and waits for it, then sends the force, which is applied immediately.
+// A device driven by another program on this machine, over UDP on the loopback (packets.hpp).
+// Version 3: each tick is one exchange, read() sends the force of the last write() and receives the
+// newest sample, so that a force acts one tick after the position that it was computed from.
+// Versions 1 and 2: read() requests the position, write() sends the force, which acts at once.
 class RemoteHand final : public Device {
  public:
   // Asks forty times, for two to four seconds: the other program may still wait for an earlier one.
   // Throws DeviceError if nobody answers.
-  RemoteHand(std::uint16_t port, std::chrono::microseconds max_reply);
-  RemoteHand(std::uint16_t port, std::chrono::microseconds max_reply,
-             std::unique_ptr<DatagramPipe> pipe);
+  RemoteHand(std::uint16_t port, RemoteLimits limits);
+  RemoteHand(std::uint16_t port, RemoteLimits limits, std::unique_ptr<DatagramPipe> pipe);
   ~RemoteHand() override;
   RemoteHand(const RemoteHand& other) = delete;
   RemoteHand& operator=(const RemoteHand& other) = delete;
@@ -85,6 +43,12 @@ class RemoteHand final : public Device {
   StopOutcome emergency_stop() noexcept override { return zero_force(); }
   DeviceDetail detail() const noexcept override { return detail_; }
   std::string description() const override;
+
+  int version() const noexcept { return version_; }
+  // Of version 3.
+  const std::optional<RemoteDescription>& introduction() const noexcept { return introduction_; }
+  // What its last reply says to the operator (version 3); empty: nothing.
+  std::string_view text() const noexcept { return text_.data(); }
   // Falls silent for so long, and asks whether the other program has released the force meanwhile.
   enum class Release {
     released,
@@ -97,28 +61,40 @@ class RemoteHand final : public Device {
   LatenessCount round_trips() noexcept;
 
  private:
-  core::TickFault send(bool wants_reply) noexcept;
-  core::TickFault ask(core::HandState& hand) noexcept;
-  core::TickFault receive(core::HandState& hand) noexcept;
-  core::TickFault fault_of_report(double elapsed_s) noexcept;
-  core::TickFault fault_of_motion(const core::HandState& hand, double elapsed_s) noexcept;
+  bool greet();
+  core::TickFault send(std::span<const std::uint8_t> datagram) noexcept;
+  core::TickFault send_force(RequestKind kind) noexcept;
+  core::TickFault ask() noexcept;
+  template <class Take>
+  core::TickFault receive(const Take& take) noexcept;
+  bool is_understood(std::span<const std::uint8_t> bytes);
+  core::TickFault take_reply(double elapsed_s) noexcept;
+  core::TickFault fault_of_status(std::uint32_t status) noexcept;
+  core::TickFault fault_of_motion(double elapsed_s) noexcept;
+  void estimate_velocity(double elapsed_s) noexcept;
   void sleep_for(std::chrono::nanoseconds duration) noexcept;
 
   std::uint16_t port_;
   std::chrono::nanoseconds max_reply_;
   std::unique_ptr<DatagramPipe> pipe_;
+  int version_{0};
+  std::optional<RemoteDescription> introduction_;
+  SampleCheck samples_;
   std::uint32_t number_{0};
   core::Vec3 force_n_{core::Vec3::Zero()};
+  RemoteReply reply_;
   HeldHand held_;
   core::HandState last_;
   FrozenReading reading_;
   ExertedForce exerted_;
   VelocityCheck velocity_;
+  VelocityEstimate estimate_;
   double since_reply_s_{0.0};
-  bool tells_status_{false};  // a reply was of version 2: none may be of version 1 then
-  bool is_holding_{false};    // a reply of this trial reported so
-  int released_replies_{0};   // of this trial, in a row
-  std::optional<std::uint32_t> status_;
+  double since_sample_s_{0.0};
+  bool is_velocity_measured_{true};
+  bool is_holding_{false};   // a reply of this trial reported so
+  int released_replies_{0};  // of this trial, in a row
+  std::array<char, sizeof(wire::Reply::text)> text_{};
   DeviceDetail detail_;
 };
 }  // namespace tapstudy::device

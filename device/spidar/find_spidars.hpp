@@ -19,7 +19,7 @@ std::vector<UsbListing> find_spidars();
 UsbListing find_only_spidar();
 
 struct BoardSettings {
-  std::chrono::milliseconds max_reply{100};
+  std::chrono::microseconds max_reply{100'000};
   double max_stall_s{0.02};  // the guardian acts after it
   int guardian_priority{0};  // SCHED_FIFO; 0: none
   std::string relay{};       // serial port of a dead-man relay; empty: there is none

@@ -11,8 +11,6 @@ using core::TickFault;
 namespace {
 constexpr int rounds_a_tick = 4;
 constexpr int rounds_from_anywhere = 20;
-// Velocity by finite differences is dominated by encoder quantisation; filter time constant.
-constexpr double velocity_time_s = 3e-3;
 // After a late tick the next may follow at once; a difference over less would be all quantisation.
 constexpr double min_step_s = 1e-4;
 }  // namespace
@@ -171,14 +169,14 @@ TickFault SpidarG6::follow(core::HandState& hand, double elapsed_s) noexcept {
   if (!found.has_converged || !(found.residual_m <= settings_.limits.max_residual_m)) {
     return TickFault::strings_disagree;
   }
-  const core::Vec3 difference_m_s = (found.pose.position_m - pose_.position_m) / elapsed_s;
-  const double share = 1.0 - std::exp(-elapsed_s / velocity_time_s);
-  velocity_m_s_ = has_position ? velocity_m_s_ + share * (difference_m_s - velocity_m_s_)
-                               : core::Vec3::Zero().eval();
+  if (!has_position) {
+    velocity_.forget();
+  }
   pose_ = found.pose;
   strings_ = found.strings;
   detail_.closure_margin = closure_margin(strings_);
-  hand = {with_z_turned(pose_.position_m), with_z_turned(velocity_m_s_)};
+  hand = {with_z_turned(pose_.position_m),
+          with_z_turned(velocity_.take(pose_.position_m, elapsed_s))};
   held_.keep(hand);
   const bool is_turned_too_far =
       rotation_vector_rad(pose_.rotation).norm() > settings_.limits.max_turn_rad;

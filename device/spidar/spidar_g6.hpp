@@ -7,6 +7,7 @@
 #include "device/spidar/calibration.hpp"
 #include "device/spidar/tensions.hpp"
 #include "device/usb/guardian.hpp"
+#include "device/velocity_estimate.hpp"
 namespace tapstudy::device {
 struct SpidarLimits {
   double max_residual_m{2e-4};       // beyond it a string is slack, slipped or miscounted
@@ -81,7 +82,7 @@ class SpidarG6 final : public Device {
   PerString length_at_rest_m_;
   Pose pose_;
   Strings strings_;
-  core::Vec3 velocity_m_s_{core::Vec3::Zero()};
+  VelocityEstimate velocity_;
   DacCounts dac_counts_{};
   std::int64_t largest_step_{0};
   bool is_homed_{false};

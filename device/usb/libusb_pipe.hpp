@@ -2,6 +2,7 @@
 #include <chrono>
 #include <memory>
 
+#include "device/loop/tick_clock.hpp"
 #include "device/usb/usb_node.hpp"
 #include "device/usb/usb_pipe.hpp"
 namespace tapstudy::device {
@@ -10,13 +11,17 @@ struct BulkEndpoints {
   std::uint8_t in{0x86};
 };
 
+using PipeClock = Nanoseconds (*)() noexcept;
+Nanoseconds monotonic_now() noexcept;
+
 // libusb-1.0 on an open node: the request and the read of its reply are submitted together. libusb
 // itself allocates a little memory for each transfer; nothing else here does.
 class LibusbPipe final : public UsbPipe {
  public:
-  // Claims interface 0. The node must outlive the pipe. Throws DeviceError.
+  // Claims interface 0. The node must outlive the pipe. A reply is waited for until max_reply after
+  // its request, by this clock. Throws DeviceError.
   LibusbPipe(const UsbNode& node, const BulkEndpoints& endpoints,
-             std::chrono::milliseconds time_out);
+             std::chrono::microseconds max_reply, PipeClock now = monotonic_now);
   ~LibusbPipe() override;
   LibusbPipe(const LibusbPipe& other) = delete;
   LibusbPipe& operator=(const LibusbPipe& other) = delete;

@@ -17,6 +17,7 @@
 #include "runner/session/devices/rigs.hpp"
 #include "runner/session/engine/session_row.hpp"
 #include "runner/session/stimuli/model_library.hpp"
+#include "runner/session/stimuli/stimulus_family.hpp"
 #include "runner/studies/counted.hpp"
 #include "runner/studies/simulated_study.hpp"
 #include "runner/terminal/process_exit.hpp"

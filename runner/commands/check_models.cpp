@@ -84,20 +84,6 @@ void print_families(const protocols::Protocol& protocol, ModelLibrary& models) {
   }
 }
 
-double largest_contact_stiffness_n_per_m(const protocols::Protocol& protocol) {
-  double largest = protocol.rendering.penalty_stiffness_n_per_m;
-  for (const protocols::Stimulus& stimulus : protocol.stimuli) {
-    largest =
-        std::max(largest, stimulus_with(protocol, stimulus).rendering.penalty_stiffness_n_per_m);
-    for (const protocols::AxisRange& range : stimulus.vary) {
-      const auto member =
-          stimulus_with(protocol, stimulus, {{std::string{range.axis->name}, range.to}});
-      largest = std::max(largest, member.rendering.penalty_stiffness_n_per_m);
-    }
-  }
-  return largest;
-}
-
 namespace {
 core::Contact contact_from_above(const core::VibratingPlate& plate, const Eigen::Vector2d& at_m) {
   constexpr double far_m = 100.0;

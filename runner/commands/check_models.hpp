@@ -7,9 +7,6 @@ namespace tapstudy::runner {
 // and to hold, and how many modes the members have. Builds all models. Throws as build_all does.
 void print_families(const protocols::Protocol& protocol, ModelLibrary& models);
 
-// The stiffest contact of all members of all stimuli: its spring and what techniques add to it.
-double largest_contact_stiffness_n_per_m(const protocols::Protocol& protocol);
-
 // The energy that a strike leaves in a plate at rest, over the kinetic energy of the finger, whose
 // momentum goes to the modes (paper eq. 14 to 16): m sum over modes of (phi . n)^2. Above 1 the
 // finger gives more than it has. at_m: on the plate from above, plate frame.

@@ -42,7 +42,7 @@ void spidar_tick_through_libusb(benchmark::State& state) {
                        }};
   bus.forget_requests_as_they_come();
   const device::UsbNode node{testing::node_of(bus)};
-  device::LibusbPipe pipe{node, {}, std::chrono::milliseconds{100}};
+  device::LibusbPipe pipe{node, {}, std::chrono::milliseconds{100}, testing::FakeBus::now};
   run(state, pipe);
 }
 }  // namespace

@@ -174,6 +174,28 @@ TEST_CASE("Ctrl-C in a session keeps what was answered and says how to go on",
   CHECK(sql(directory, "PRAGMA integrity_check") == "ok\n");
 }
 
+TEST_CASE("a rig that asks for more than its device can do, by its own words, is refused",
+          "[end_to_end][safety]") {
+  const auto [was, asked, said] = GENERATE(table<const char*, const char*, const char*>(
+      {{"max_force_n: 5", "max_force_n: 6", "max_force_n: 6 N asked, 5 N by what 'example finger'"},
+       {"workspace_radius_m: 0.05", "workspace_radius_m: 0.2", "workspace_radius_m: 0.2 m asked"},
+       {"max_reply_s: 0.003", "max_reply_s: 0.003, max_sample_age_s: 0.0009",
+        "max_sample_age_s: 0.0009 s asked, 0.001 s"}}));
+  const TempDirectory directory;
+  const std::uint16_t port = testing::free_port();
+  const testing::ExampleBridge bridge{port};
+  testing::write(
+      directory / "rig.yaml",
+      testing::replaced(
+          testing::replaced(testing::contents(testing::shipped("rigs/remote.yaml")), was, asked),
+          "port: 50607", fmt::format("port: {}", port)));
+  const auto refused =
+      testing::tapstudy({"run", paper("discrimination.yaml"), "--rig", directory / "rig.yaml",
+                         "--participant", "P01", "--out", directory / "out"});
+  CHECK(refused.exit_code == 2);
+  CHECK_THAT(refused.standard_error, Contains(said));
+}
+
 TEST_CASE("a session runs on a device that another program drives, and can be replayed",
           "[end_to_end][threads]") {
   const TempDirectory directory;
@@ -199,7 +221,7 @@ TEST_CASE("a session runs on a device that another program drives, and can be re
   CHECK_THAT(sql(directory, "SELECT doctor FROM session"),
              Contains(R"("sleep":"sleep inhibited")"));
   CHECK(sql(directory, "SELECT device FROM session") ==
-        "remote device at UDP port " + std::to_string(port) + "\n");
+        fmt::format("example finger, serial number 1, remote/3 at UDP port {}\n", port));
   CHECK(sql(directory, "SELECT count(*) FROM response") == "8\n");
   CHECK(sql(directory, "SELECT count(*) > 4 FROM event WHERE kind = 'impact'") == "1\n");
 

@@ -9,6 +9,12 @@ std::string tapstudy_program() {
 std::string bridge_program() {
   return TAPSTUDY_BRIDGE;
 }
+std::string serial_board_program() {
+  return TAPSTUDY_SERIAL_BOARD;
+}
+std::string dhd_program() {
+  return TAPSTUDY_DHD;
+}
 std::string lab_program() {
   return TAPSTUDY_LAB;
 }

@@ -4,40 +4,57 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <array>
+#include <chrono>
 #include <cstdint>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "support/built_paths.hpp"
 #include "support/catch.hpp"
 
 extern char** environ;
 namespace tapstudy::testing {
-// The example that ships, as a program of its own.
+// An example that ships, as a program of its own.
 class ExampleBridge {
  public:
-  explicit ExampleBridge(std::uint16_t port) {
-    std::string program{bridge_program()};
-    std::string number = std::to_string(port);
-    const std::array<char*, 3> words{program.data(), number.data(), nullptr};
-    REQUIRE(posix_spawn(&child_, program.c_str(), nullptr, nullptr, words.data(), environ) == 0);
+  // command: the program, and its arguments after the port.
+  explicit ExampleBridge(std::uint16_t port,
+                         std::vector<std::string> command = {bridge_program()}) {
+    command.insert(command.begin() + 1, std::to_string(port));
+    std::vector<char*> words;
+    for (std::string& word : command) {
+      words.push_back(word.data());
+    }
+    words.push_back(nullptr);
+    REQUIRE(posix_spawn(&child_, words.front(), nullptr, nullptr, words.data(), environ) == 0);
   }
   ~ExampleBridge() { end(); }
   ExampleBridge(const ExampleBridge&) = delete;
   ExampleBridge& operator=(const ExampleBridge&) = delete;
   ExampleBridge(ExampleBridge&&) = delete;
   ExampleBridge& operator=(ExampleBridge&&) = delete;
-  void end() {
+  void end(int signal = SIGKILL) {
     if (child_ > 0) {
-      kill(child_, SIGKILL);
+      kill(child_, signal);
       waitpid(child_, nullptr, 0);
       child_ = -1;
     }
+  }
+  // Of one that ends by itself.
+  int exit_code() {
+    int status = 0;
+    waitpid(std::exchange(child_, -1), &status, 0);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   }
 
  private:
   pid_t child_{-1};
 };
+
+// Examples run in real time: a machine that is busy elsewhere may keep either program from it for
+// long, but a reply comes in the end.
+inline constexpr std::chrono::milliseconds unhurried{20'000};
 
 // Apart for every process, so that tests may run beside each other.
 inline std::uint16_t free_port() {

@@ -1,6 +1,5 @@
 #pragma once
-#include <fmt/format.h>
-
+#include <algorithm>
 #include <memory>
 #include <stop_token>
 #include <vector>
@@ -21,15 +20,19 @@ inline std::vector<core::TraceSample> samples_of(core::SpscRing<core::TraceSampl
 }
 
 // Time that passes as told, late from now on if so told.
-class SteadyClock final : public device::TickClock {
+class SteadyClock : public device::TickClock {
  public:
   device::Nanoseconds now() noexcept override { return now_; }
-  device::Nanoseconds wait_until(device::Nanoseconds deadline) noexcept override {
-    return now_ = deadline + lateness;
+  device::Nanoseconds wait_until(device::Nanoseconds deadline) noexcept final {
+    pass_to(deadline + lateness);
+    return now();
   }
-  device::Nanoseconds suspended() noexcept override { return slept; }
+  device::Nanoseconds suspended() noexcept final { return slept; }
   device::Nanoseconds lateness{0};
   device::Nanoseconds slept{0};
+
+ protected:
+  virtual void pass_to(device::Nanoseconds moment) noexcept { now_ = std::max(now_, moment); }
 
  private:
   device::Nanoseconds now_{0};
@@ -38,12 +41,13 @@ class SteadyClock final : public device::TickClock {
 // The loop with a plate of 3000 N/m, on any device, to be driven into each of its states.
 class StagedLoop {
  public:
-  explicit StagedLoop(device::Device& device) {
+  StagedLoop(device::Device& device, SteadyClock& its_clock) : clock{its_clock} {
     renderers_.push_back(core::make_renderer(*core::find_technique("none"), core::RenderSettings{},
                                              core::PlateFace{0.3, 0.3}, nullptr));
     device::LoopSettings settings;
     settings.gate = {{5.0, 5000.0}, 1.0, 0.02, 0.1, 0.1};
-    settings.max_late_in_a_row = 5;
+    settings.max_late_in_a_row = 20;
+    settings.max_missed_share = 0.01;
     settings.max_stall = 10'000'000;
     settings.max_heartbeat_gap = 100'000'000;
     loop = std::make_unique<device::HapticLoop>(device, renderers_, settings, trace_, clock);
@@ -54,16 +58,11 @@ class StagedLoop {
       loop->run_ticks(1);
     }
   }
-  // On from the state reached, until force is off.
-  core::TickFault go_on() {
-    tick(200);
-    return loop->report().stopped_by;
-  }
-  core::TickFault go_on_and_stop() {
+  // As at the end of a trial.
+  void stop() {
     std::stop_source stop;
     stop.request_stop();
     loop->run(stop.get_token());
-    return loop->report().stopped_by;
   }
   core::TraceSample last_sample() {
     core::TraceSample sample{};
@@ -72,7 +71,7 @@ class StagedLoop {
     return sample;
   }
 
-  SteadyClock clock;
+  SteadyClock& clock;
   std::unique_ptr<device::HapticLoop> loop;
 
  private:
@@ -80,21 +79,4 @@ class StagedLoop {
   core::SpscRing<core::TraceSample> trace_{8192};
 };
 
-// A row of the table that a fault matrix prints.
-struct FaultRow {
-  const char* fault;
-  const char* state;
-  std::int64_t ticks_to_zero;
-  bool is_latched;
-  bool is_confirmed;
-  std::string stored;
-};
-inline void print_fault_heading(const std::string& device) {
-  fmt::print("  {}\n  {:<24}{:<12}{:>14}{:>9}{:>11}    the trial is stored with\n", device, "fault",
-             "state", "ticks to zero", "latched", "confirmed");
-}
-inline void print(const FaultRow& row) {
-  fmt::print("  {:<24}{:<12}{:>14}{:>9}{:>11}    {}\n", row.fault, row.state, row.ticks_to_zero,
-             row.is_latched ? "yes" : "no", row.is_confirmed ? "yes" : "no", row.stored);
-}
 }  // namespace tapstudy::testing

@@ -22,25 +22,26 @@ const DeviceKind& kind_of(const protocols::Rig& rig) {
   return **found;
 }
 
-double read_max_reply_s(protocols::MapReader& section, double least_s, double usual_s) {
+double read_max_reply_s(protocols::MapReader& section, double usual_s) {
   return section.number(
       {"max_reply_s",
        "a reply that takes longer is missing; more than three in a row, or a tenth of all in the "
        "long run, are a fault; at most half of loop.max_stall_s"},
-      {least_s, 0.05}, usual_s);
+      {0.0001, 0.05}, usual_s);
 }
 
 std::unique_ptr<SessionDevice> reconnect(const std::string& what_happened,
                                          const DeviceRequest& request,
                                          std::unique_ptr<SessionDevice> broken) {
   const device::DeviceError gives_up{what_happened + " (go on with --resume)"};
+  const std::string words = broken ? broken->last_words() : std::string{};
   if (!request.rig.has_hardware) {
     throw gives_up;
   }
   const DeviceKind& kind = kind_of(request.rig);
   std::string task = fmt::format(
-      "\n{}.\nType quit to stop here; or check the device, its power and cable, and to continue,",
-      what_happened);
+      "\n{}.\n{}Type quit to stop here; or check the device, its power and cable, and to continue,",
+      what_happened, words.empty() ? words : fmt::format("The device says: {}\n", words));
   while (request.ask_operator(task)) {
     task = "It is not there yet. To try again,";
     if (!kind.is_there()) {

@@ -26,6 +26,8 @@ class SessionDevice {
   // What was found when it was tried, at zero force, whether the device lets go of the force when
   // the program falls silent; empty if there is nothing to try.
   virtual std::string release() const { return {}; }
+  // What the device itself says to the operator; asked after a fault.
+  virtual std::string last_words() const { return {}; }
 };
 
 // The context in which a device is opened.
@@ -75,7 +77,7 @@ const std::vector<const DeviceKind*>& device_kinds();
 const DeviceKind& kind_of(const protocols::Rig& rig);
 
 // The key `max_reply_s` of a device with a communication link.
-double read_max_reply_s(protocols::MapReader& section, double least_s, double usual_s);
+double read_max_reply_s(protocols::MapReader& section, double usual_s);
 
 // A simulated hand that taps points drawn from the session's seed.
 const DeviceKind& simulated_hand();

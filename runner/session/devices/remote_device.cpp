@@ -3,10 +3,13 @@
 #include <chrono>
 #include <cmath>
 
+#include "core/error.hpp"
 #include "device/loop/tick_clock.hpp"
 #include "device/remote/remote_hand.hpp"
 #include "protocols/yaml/yaml_reader.hpp"
 #include "runner/session/devices/device_kind.hpp"
+#include "runner/session/stimuli/stimulus_family.hpp"
+#include "runner/terminal/logging.hpp"
 #include "runner/terminal/session_lock.hpp"
 namespace tapstudy::runner {
 namespace {
@@ -14,7 +17,8 @@ constexpr std::chrono::milliseconds tried_silence{150};
 
 struct RemoteSection final : protocols::DeviceSection {
   std::uint16_t port{};
-  double max_reply_s{0.003};             // of the other program to a tick's question
+  double max_reply_s{0.003};  // of the other program to a tick's question
+  double max_sample_age_s{device::RemoteLimits{}.max_sample_age_s};
   int delay_ticks{1};                    // of its force
   std::string accepted_without_release;  // who answers for it, and why; empty: nobody does
   double max_reply_time_s() const override { return max_reply_s; }
@@ -25,10 +29,13 @@ class RemoteDevice final : public SessionDevice {
   explicit RemoteDevice(const RemoteSection& section)
       : lock_{fmt::format("remote device at port {}", section.port),
               fmt::format("remote: UDP port {} is in use by another session", section.port)},
-        hand_{section.port, std::chrono::microseconds{std::llround(1e6 * section.max_reply_s)}} {}
+        hand_{section.port,
+              {std::chrono::microseconds{std::llround(1e6 * section.max_reply_s)},
+               section.max_sample_age_s}} {}
   device::Device& device() override { return hand_; }
   device::RemoteHand& hand() { return hand_; }
   void get_ready() override {}
+  std::string last_words() const override { return std::string{hand_.text()}; }
   std::optional<device::LatenessCount> round_trip() const override { return round_trip_; }
   std::string release() const override { return release_; }
   // Throws DeviceError where a force might stay on if this program died.
@@ -67,7 +74,7 @@ class RemoteDevice final : public SessionDevice {
             tried_silence.count());
       case always_reported:
         return "the other program reports a released force in every reply: it must report it only "
-               "after a silence (device/remote/packets.hpp)";
+               "after a silence (device/remote/README.md)";
       case not_reported:
         return "the other program does not report whether it releases the force when requests stop "
                "(version 1 of the protocol cannot)";
@@ -83,6 +90,54 @@ class RemoteDevice final : public SessionDevice {
   std::optional<device::LatenessCount> round_trip_;
 };
 
+// Throws InvalidInput if the rig, or the protocol, asks for more than the device can do.
+void refuse_beyond(const device::RemoteDescription& device, const DeviceRequest& request,
+                   double max_sample_age_s) {
+  const auto refuse = [&](bool is_refused, const char* asked, double value, const char* unit,
+                          double allowed, const char* remedy) {
+    if (is_refused) {
+      throw core::InvalidInput{
+          fmt::format("remote: {}: {:.6g} {} asked, {:.6g} {} by what '{}' "
+                      "says of itself ({})",
+                      asked, value, unit, allowed, unit, device.name, remedy)};
+    }
+  };
+  const core::GateSettings& gate = request.rig.gate;
+  const double stiffness_n_per_m = largest_contact_stiffness_n_per_m(request.protocol);
+  refuse(gate.limits.max_force_n > device.max_force_n, "max_force_n", gate.limits.max_force_n, "N",
+         device.max_force_n, "lower it in the rig");
+  refuse(gate.workspace_radius_m > device.workspace_radius_m, "workspace_radius_m",
+         gate.workspace_radius_m, "m", device.workspace_radius_m, "lower it in the rig");
+  refuse(stiffness_n_per_m > device.max_stiffness_n_per_m, "stiffness of the contact",
+         stiffness_n_per_m, "N/m", device.max_stiffness_n_per_m,
+         "lower penalty_stiffness_n_per_m in the protocol");
+  refuse(max_sample_age_s * device.rate_hz < 1.0, "max_sample_age_s", max_sample_age_s, "s",
+         1.0 / device.rate_hz, "at least the time between two samples");
+  const double tried_s = std::chrono::duration<double>{tried_silence}.count();
+  refuse(device.release_s > tried_s, "release of the force", tried_s, "s", device.release_s,
+         "the program must release it earlier");
+  refuse(device.driven_axes < 3, "driven axes", 3, "of force", device.driven_axes,
+         "taps need a force along each");
+}
+
+// Said once a session.
+std::string untold_by(int version) {
+  constexpr const char* frozen =
+      "does not number its samples: if the device stops measuring, this is noticed only under "
+      "force, after up to 3 s";
+  switch (version) {
+    case 1:
+      return fmt::format(
+          "remote: version 1 of the protocol tells neither the force exerted, nor a "
+          "release, and {}",
+          frozen);
+    case 2:
+      return fmt::format("remote: version 2 of the protocol {}", frozen);
+    default:
+      return {};
+  }
+}
+
 class RemoteKind final : public DeviceKind {
  public:
   std::string_view name() const override { return "remote"; }
@@ -94,7 +149,12 @@ class RemoteKind final : public DeviceKind {
             protocols::MapReader::Presence::required, [&](protocols::MapReader& reader) {
               section->port = static_cast<std::uint16_t>(
                   reader.integer({"port", "UDP port on the loopback interface"}, 1024, 65535));
-              section->max_reply_s = read_max_reply_s(reader, 0.0001, section->max_reply_s);
+              section->max_reply_s = read_max_reply_s(reader, section->max_reply_s);
+              section->max_sample_age_s = reader.number(
+                  {"max_sample_age_s",
+                   "an older position, or one whose sample number stands still for longer, is a "
+                   "fault; version 3 of the protocol"},
+                  {0.0005, 0.05}, section->max_sample_age_s);
               section->delay_ticks =
                   reader.integer({"delay_ticks",
                                   "ticks between the request of a force and its action, for the "
@@ -133,6 +193,11 @@ class RemoteKind final : public DeviceKind {
   std::unique_ptr<SessionDevice> open(const DeviceRequest& request) const override {
     const auto& section = dynamic_cast<const RemoteSection&>(*request.rig.section);
     auto opened = std::make_unique<RemoteDevice>(section);
+    if (const auto& introduction = opened->hand().introduction()) {
+      refuse_beyond(*introduction, request, section.max_sample_age_s);
+    } else {
+      warn(untold_by(opened->hand().version()));
+    }
     opened->try_release(section.accepted_without_release);
     opened->measure_round_trip();
     return opened;

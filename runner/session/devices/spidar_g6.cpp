@@ -61,7 +61,7 @@ double guardian_stall_s(double max_stall_s) {
 device::BoardSettings board_settings(const protocols::Rig& rig) {
   constexpr int max_priority = 99;
   const int priority = rig.realtime.fifo_priority;
-  return {std::chrono::milliseconds{std::llround(1e3 * section_of(rig).max_reply_s)},
+  return {std::chrono::microseconds{std::llround(1e6 * section_of(rig).max_reply_s)},
           guardian_stall_s(rig.max_stall_s),
           priority > 0 ? std::min(priority + 1, max_priority) : 0, section_of(rig).relay};
 }
@@ -216,7 +216,7 @@ class SpidarKind final : public DeviceKind {
     }
     section.max_turn_rad = reader.number({"max_turn_rad", "grip rotation beyond it is a fault"},
                                          Range::positive(0.5), section.max_turn_rad);
-    section.max_reply_s = read_max_reply_s(reader, 0.001, section.max_reply_s);
+    section.max_reply_s = read_max_reply_s(reader, section.max_reply_s);
     if (reader.has("relay")) {
       section.relay = reader.text({"relay",
                                    "serial port of a dead-man relay in the amplifier's supply, "

@@ -108,4 +108,18 @@ void check_members(const protocols::Protocol& protocol, const protocols::Stimulu
     check_member(protocol, stimulus_with(protocol, stimulus, values), body);
   }
 }
+
+double largest_contact_stiffness_n_per_m(const protocols::Protocol& protocol) {
+  double largest = protocol.rendering.penalty_stiffness_n_per_m;
+  for (const protocols::Stimulus& stimulus : protocol.stimuli) {
+    largest =
+        std::max(largest, stimulus_with(protocol, stimulus).rendering.penalty_stiffness_n_per_m);
+    for (const protocols::AxisRange& range : stimulus.vary) {
+      const auto member =
+          stimulus_with(protocol, stimulus, {{std::string{range.axis->name}, range.to}});
+      largest = std::max(largest, member.rendering.penalty_stiffness_n_per_m);
+    }
+  }
+  return largest;
+}
 }  // namespace tapstudy::runner

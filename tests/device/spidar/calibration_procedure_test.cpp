@@ -24,7 +24,7 @@ struct Workbench {
   testing::FakeBus bus{device::cyverse_vendor, device::sh4_product,
                        [this](auto request) { return reply(request); }};
   device::UsbNode node{testing::node_of(bus)};
-  device::LibusbPipe pipe{node, {}, std::chrono::milliseconds{100}};
+  device::LibusbPipe pipe{node, {}, std::chrono::milliseconds{100}, testing::FakeBus::now};
   std::unique_ptr<device::SpidarBoard> board{device::board_of(device::sh4_product)};
   device::WatchdogChannel watchdog;
   device::VirtualClock clock;

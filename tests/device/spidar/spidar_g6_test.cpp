@@ -80,7 +80,7 @@ TEST_CASE("a Simple board is set up, then told outputs and asked to latch, in ev
                          return reply;
                        }};
   device::UsbNode node = testing::node_of(bus);
-  device::LibusbPipe pipe{node, {}, std::chrono::milliseconds{100}};
+  device::LibusbPipe pipe{node, {}, std::chrono::milliseconds{100}, testing::FakeBus::now};
   SimpleBoard board;
   device::BoardReading reading;
   REQUIRE(board.begin(pipe, reading) == device::UsbOutcome::ok);
@@ -448,7 +448,7 @@ struct Guarded {
   std::unique_ptr<device::SpidarBoard> board{device::board_of(product)};
   // a busy machine may keep the test from beating for long
   device::Guardian guardian{node, {0x02, 0x86, board->zero_force_packet(), 20.0, 0, -1}};
-  device::LibusbPipe pipe{node, {}, std::chrono::milliseconds{25}};
+  device::LibusbPipe pipe{node, {}, std::chrono::milliseconds{25}, testing::FakeBus::now};
   device::SpidarG6 spidar{pipe, *board, [this] {
                             device::SpidarSettings settings = testing::simulated_settings();
                             settings.watchdog = &guardian.channel();
@@ -695,7 +695,7 @@ TEST_CASE("a board that does not answer is refused at once", "[device][spidar][u
   FakeBus bus{device::cyverse_vendor, device::sh4_product,
               [](std::span<const std::uint8_t>) { return testing::Bytes{}; }};
   const device::UsbNode node{testing::node_of(bus)};
-  device::LibusbPipe pipe{node, {}, std::chrono::milliseconds{3}};
+  device::LibusbPipe pipe{node, {}, std::chrono::milliseconds{3}, testing::FakeBus::now};
   const auto board = device::board_of(device::sh4_product);
   CHECK_THROWS_WITH((device::SpidarG6{pipe, *board, testing::simulated_settings()}),
                     Contains("does not answer: no reply in time"));

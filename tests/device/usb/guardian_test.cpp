@@ -225,7 +225,7 @@ TEST_CASE("nothing but a whole reply that carries the zeros, and is not from bef
           "[device][usb][guardian][safety]") {
   using Trouble = FakeBus::Trouble;
   Watched watched;
-  device::LibusbPipe pipe{*watched.node, {}, std::chrono::milliseconds{25}};
+  device::LibusbPipe pipe{*watched.node, {}, std::chrono::milliseconds{25}, testing::FakeBus::now};
   const device::Sh4Board::Packet zeros = device::Sh4Board::request({});
   for (int i = 0; i < 3; ++i) {  // their replies are left over
     REQUIRE(pipe.send(zeros) == device::UsbOutcome::ok);

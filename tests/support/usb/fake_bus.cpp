@@ -122,6 +122,19 @@ void FakeBus::persist_in(Trouble trouble) {
   usbfs_.persist_in(trouble);
 }
 
+void FakeBus::reply_after(nanoseconds delay) {
+  const std::lock_guard lock{mutex_};
+  usbfs_.reply_after(delay);
+}
+
+std::int64_t FakeBus::now() noexcept {
+  return bus_now().count();
+}
+
+void FakeBus::pass_to(std::int64_t moment) noexcept {
+  bus_time = std::max(bus_now(), nanoseconds{moment});
+}
+
 void FakeBus::halt_out(int clears) {
   const std::lock_guard lock{mutex_};
   usbfs_.halt_out(clears);
@@ -232,9 +245,8 @@ std::int64_t FakeBus::read(void* to, std::size_t size) {
 }
 
 // Wakes for replies that are due meanwhile, and tells of an unplugged device as the kernel does.
-int FakeBus::poll(pollfd* all, unsigned long count, int time_out_ms) {
-  const nanoseconds end =
-      bus_now() + std::chrono::milliseconds{time_out_ms < 0 ? 60'000 : time_out_ms};
+int FakeBus::poll(pollfd* all, unsigned long count, nanoseconds time_out) {
+  const nanoseconds end = bus_now() + time_out;
   const std::lock_guard lock{mutex_};
   while (true) {
     usbfs_.deliver_what_is_due();
@@ -274,10 +286,25 @@ ssize_t read(int descriptor, void* to, std::size_t size) {
 int poll(struct pollfd* all, nfds_t count, int time_out_ms) {
   for (nfds_t i = 0; i < count; ++i) {
     if (FakeBus* const bus = FakeBus::of(all[i].fd)) {
-      return bus->poll(all, count, time_out_ms);
+      return bus->poll(all, count,
+                       std::chrono::milliseconds{time_out_ms < 0 ? 60'000 : time_out_ms});
     }
   }
   return static_cast<int>(syscall(SYS_poll, all, count, time_out_ms));
+}
+int ppoll(struct pollfd* all, nfds_t count, const struct timespec* time_out,
+          const sigset_t* signals) {
+  for (nfds_t i = 0; i < count; ++i) {
+    if (FakeBus* const bus = FakeBus::of(all[i].fd)) {
+      return bus->poll(
+          all, count,
+          std::chrono::seconds{time_out->tv_sec} + std::chrono::nanoseconds{time_out->tv_nsec});
+    }
+  }
+  timespec left = time_out != nullptr ? *time_out : timespec{};  // the kernel writes to it
+  constexpr std::size_t signal_set_bytes = 8;
+  return static_cast<int>(syscall(SYS_ppoll, all, count, time_out != nullptr ? &left : nullptr,
+                                  signals, signal_set_bytes));
 }
 int clock_gettime(clockid_t clock, struct timespec* time) noexcept {
   using namespace tapstudy::testing;

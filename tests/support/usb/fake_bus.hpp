@@ -39,6 +39,8 @@ class FakeBus : private UsbBoard {
   void plan(Trouble trouble, int after = 0, std::chrono::milliseconds delay = {});
   // Trouble with every request from now on.
   void persist_in(Trouble trouble);
+  // Every reply comes so late from now on.
+  void reply_after(std::chrono::nanoseconds delay);
   // Requests stall until the halt was cleared so many times.
   void halt_out(int clears);
   void unplug();
@@ -49,8 +51,11 @@ class FakeBus : private UsbBoard {
   // What the kernel is asked.
   int ioctl(unsigned long request, void* argument);
   std::int64_t read(void* to, std::size_t size);
-  int poll(pollfd* all, unsigned long count, int time_out_ms);
+  int poll(pollfd* all, unsigned long count, std::chrono::nanoseconds time_out);
   static FakeBus* of(int descriptor);
+  // The time of all buses, in nanoseconds.
+  static std::int64_t now() noexcept;
+  static void pass_to(std::int64_t moment) noexcept;
 
  private:
   Bytes answer(std::span<const std::uint8_t> request) override;

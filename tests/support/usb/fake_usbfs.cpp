@@ -53,7 +53,7 @@ void FakeUsbfs::unplug() {
 }
 
 void FakeUsbfs::send_back(Bytes reply, Trouble trouble) {
-  Reply planned{std::move(reply)};
+  Reply planned{std::move(reply), 0, now_() + usual_delay_};
   switch (trouble) {
     case Trouble::missing:
       return;

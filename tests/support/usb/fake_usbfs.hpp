@@ -76,6 +76,8 @@ class FakeUsbfs {
   void plan(Trouble trouble, int after, std::chrono::milliseconds delay);
   // Trouble with every request that none is planned for.
   void persist_in(Trouble trouble) { lasting_ = trouble; }
+  // Every reply comes so late.
+  void reply_after(std::chrono::nanoseconds delay) { usual_delay_ = delay; }
   // Requests stall until the halt was cleared so many times, of both endpoints.
   void halt_out(int clears) { clears_needed_ = 2 * clears; }
   void unplug();
@@ -122,5 +124,6 @@ class FakeUsbfs {
   Trouble lasting_{Trouble::none};
   int exchanges_until_trouble_{0};
   std::chrono::milliseconds delay_{0};
+  std::chrono::nanoseconds usual_delay_{0};
 };
 }  // namespace tapstudy::testing

@@ -21,15 +21,16 @@ inline device::SpidarSettings simulated_settings() {
 
 // The real libusb between a SpidarG6 and a simulated one.
 struct SpidarOnBus {
-  explicit SpidarOnBus(std::uint16_t board_product = device::sh4_product)
-      : product{board_product} {}
+  explicit SpidarOnBus(std::uint16_t board_product = device::sh4_product,
+                       std::chrono::microseconds reply_within = std::chrono::milliseconds{25})
+      : product{board_product}, max_reply{reply_within} {}
   std::uint16_t product;
+  std::chrono::microseconds max_reply;  // in the bus's time
   SimulatedSpidar hardware;
   FakeBus bus{device::cyverse_vendor, product,
               [this](auto request) { return hardware.answer(request); }};
   device::UsbNode node{node_of(bus)};
-  // in the bus's time
-  device::LibusbPipe pipe{node, {}, std::chrono::milliseconds{25}};
+  device::LibusbPipe pipe{node, {}, max_reply, FakeBus::now};
   std::unique_ptr<device::SpidarBoard> board{device::board_of(product)};
   device::SpidarG6 spidar{pipe, *board, simulated_settings()};
 };

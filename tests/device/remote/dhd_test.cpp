@@ -1,0 +1,110 @@
+#include <fcntl.h>
+#include <stdlib.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <new>
+
+#include "device/remote/remote_hand.hpp"
+#include "support/catch.hpp"
+#include "support/dhd/stand_in.hpp"
+#include "support/example_bridge.hpp"
+using namespace tapstudy;
+using core::TickFault;
+using core::Vec3;
+using testing::DhdStandIn;
+using testing::unhurried;
+
+namespace {
+// The bridge, built with a stand-in for the vendor's library, and the device that it sees.
+class DhdBench {
+ public:
+  explicit DhdBench(bool has_watchdog = true)
+      : file_{std::filesystem::temp_directory_path() /
+              ("tapstudy_dhd_" + std::to_string(getpid()))} {
+    const int descriptor = open(file_.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
+    REQUIRE(ftruncate(descriptor, sizeof(DhdStandIn)) == 0);
+    void* const mapped =
+        mmap(nullptr, sizeof(DhdStandIn), PROT_READ | PROT_WRITE, MAP_SHARED, descriptor, 0);
+    close(descriptor);
+    shared_ = new (mapped) DhdStandIn;
+    shared_->has_watchdog = has_watchdog;
+    setenv(DhdStandIn::variable, file_.c_str(), 1);
+  }
+  ~DhdBench() {
+    munmap(shared_, sizeof(DhdStandIn));
+    std::filesystem::remove(file_);
+  }
+  DhdBench(const DhdBench&) = delete;
+  DhdBench& operator=(const DhdBench&) = delete;
+  DhdBench(DhdBench&&) = delete;
+  DhdBench& operator=(DhdBench&&) = delete;
+  DhdStandIn& device() { return *shared_; }
+  Vec3 force_n() const { return {shared_->force_n[0], shared_->force_n[1], shared_->force_n[2]}; }
+
+ private:
+  std::filesystem::path file_;
+  DhdStandIn* shared_{nullptr};
+};
+}  // namespace
+
+TEST_CASE("the bridge of the DHD interface turns its frame into the device frame and back",
+          "[device][remote]") {
+  DhdBench bench;
+  const std::uint16_t port = testing::free_port();
+  const testing::ExampleBridge bridge{port, {testing::dhd_program(), "4.0", "3000", "0.05"}};
+  device::RemoteHand hand{port, {unhurried, 1.0}};
+  REQUIRE(hand.introduction());
+  CHECK(hand.introduction()->name == "stand-in");
+  CHECK(hand.introduction()->serial_number == "4711");
+  CHECK(bench.device().watchdog * 125e-6 == Approx(0.02));
+  core::HandState state;
+  REQUIRE(hand.write({1.0, 2.0, 3.0}) == TickFault::none);
+  TickFault fault = TickFault::force_released;
+  while (fault == TickFault::force_released) {  // this test may have been kept waiting
+    static_cast<void>(hand.begin());
+    fault = hand.read(state, 1e-3);
+  }
+  CHECK(fault == TickFault::none);
+  CHECK(state.position_m == Vec3{0.02, 0.03, 0.01});  // right, up, towards the participant
+  REQUIRE(hand.write({0.0, 30.0, 0.0}) == TickFault::none);
+  while (bench.force_n() != Vec3{0.0, 0.0, 4.0}) {
+    static_cast<void>(hand.read(state, 1e-3));
+  }
+}
+
+TEST_CASE("the DHD's device has no force when tapstudy falls silent, its bridge ends or it is gone",
+          "[device][remote][safety]") {
+  DhdBench bench;
+  const std::uint16_t port = testing::free_port();
+  testing::ExampleBridge bridge{port, {testing::dhd_program(), "4.0", "3000", "0.05"}};
+  device::RemoteHand hand{port, {unhurried, 1.0}};
+  core::HandState state;
+  while (bench.force_n().z() != 2.0) {
+    REQUIRE(hand.write({0.0, 2.0, 0.0}) == TickFault::none);
+    static_cast<void>(hand.read(state, 1e-3));
+  }
+  const int what = GENERATE(0, 1, 2);
+  if (what == 1) {
+    bridge.end(SIGTERM);
+    CHECK_FALSE(bench.device().is_force_enabled);
+  } else if (what == 2) {
+    bench.device().is_gone = true;
+    static_cast<void>(hand.begin());
+    CHECK(hand.read(state, 1e-3) == TickFault::amplifier_off);
+    CHECK(hand.text() == "device not ready");
+  }
+  while (bench.force_n() != Vec3::Zero()) {
+  }
+  SUCCEED("force is off, however long it took");
+}
+
+TEST_CASE("a device of the DHD interface without a watchdog gets no force",
+          "[device][remote][safety]") {
+  DhdBench bench{false};
+  const std::uint16_t port = testing::free_port();
+  testing::ExampleBridge bridge{port, {testing::dhd_program(), "4.0", "3000", "0.05"}};
+  CHECK(bridge.exit_code() == 1);
+  CHECK_FALSE(bench.device().is_force_enabled);
+}

@@ -1,0 +1,71 @@
+#include "support/dhd/stand_in.hpp"
+
+#include <dhdc.h>
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <cstdlib>
+namespace {
+using tapstudy::testing::DhdStandIn;
+
+DhdStandIn& device() {
+  static DhdStandIn* const shared = [] {
+    const int file = open(std::getenv(DhdStandIn::variable), O_RDWR | O_CLOEXEC);
+    void* const mapped =
+        mmap(nullptr, sizeof(DhdStandIn), PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
+    return static_cast<DhdStandIn*>(mapped);
+  }();
+  return *shared;
+}
+int outcome() {
+  return device().is_gone ? -1 : 0;
+}
+}  // namespace
+
+int dhdOpen() {
+  return outcome();
+}
+int dhdClose(char /*id*/) {
+  return 0;
+}
+int dhdEnableExpertMode() {
+  return 0;
+}
+int dhdSetWatchdog(unsigned char duration, char /*id*/) {
+  device().watchdog = duration;
+  return device().has_watchdog ? 0 : -1;
+}
+int dhdEnableForce(unsigned char is_on, char /*id*/) {
+  device().is_force_enabled = is_on == DHD_ON;
+  return outcome();
+}
+int dhdGetSerialNumber(unsigned short* number, char /*id*/) {
+  *number = 4711;
+  return outcome();
+}
+const char* dhdGetSystemName(char /*id*/) {
+  return "stand-in";
+}
+int dhdGetPosition(double* x_m, double* y_m, double* z_m, char /*id*/) {
+  *x_m = 0.01;
+  *y_m = 0.02;
+  *z_m = 0.03;
+  return outcome();
+}
+int dhdGetLinearVelocity(double* x_m_s, double* y_m_s, double* z_m_s, char /*id*/) {
+  *x_m_s = *y_m_s = *z_m_s = 0.0;
+  return outcome();
+}
+int dhdSetForce(double x_n, double y_n, double z_n, char /*id*/) {
+  device().force_n[0] = x_n;
+  device().force_n[1] = y_n;
+  device().force_n[2] = z_n;
+  return outcome();
+}
+unsigned int dhdGetButtonMask(char /*id*/) {
+  return 1;
+}
+const char* dhdErrorGetLastStr() {
+  return device().is_gone ? "device not ready" : "no error";
+}

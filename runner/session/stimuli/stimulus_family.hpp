@@ -36,6 +36,6 @@ std::vector<double> poissons_ratios(const protocols::Protocol& protocol,
 void check_members(const protocols::Protocol& protocol, const protocols::Stimulus& stimulus,
                    const protocols::AxisValues& tabled, const core::BodyModes& body);
 
-// The stiffest contact of all members of all stimuli: its spring and what techniques add to it.
+// The stiffest contact spring of all members of all stimuli.
 double largest_contact_stiffness_n_per_m(const protocols::Protocol& protocol);
 }  // namespace tapstudy::runner
